@@ -1,5 +1,7 @@
 //! Actions: one table for the keyboard, the menus and the cheat sheet.
 
+use std::cell::RefCell;
+
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
 /// What a key or a menu entry does.
@@ -37,10 +39,16 @@ pub enum Action {
     Compare,
     FlipAb,
     Trade,
+    Timing,
     Panels,
     Timeline,
     Log,
+    Palette,
     CheatSheet,
+    Settings,
+    ScaleUp,
+    ScaleDown,
+    ScaleReset,
 }
 
 const COMMAND: Modifiers = Modifiers::COMMAND;
@@ -61,7 +69,7 @@ const fn command(key: Key) -> KeyboardShortcut {
 /// An action, its label and its shortcuts.
 pub type Entry = (Action, &'static str, &'static [KeyboardShortcut]);
 
-/// Every action. A shortcut with Shift comes before the same key without, so that it is matched first.
+/// Every action with the shortcuts that it has unless the user binds others, see [`Keymap`](super::settings::keymap::Keymap).
 pub const ACTIONS: &[Entry] = &[
     (Action::Redo, "Redo", &[KeyboardShortcut::new(COMMAND_SHIFT, Key::Z), command(Key::Y)]),
     (Action::Undo, "Undo", &[command(Key::Z)]),
@@ -95,10 +103,16 @@ pub const ACTIONS: &[Entry] = &[
     (Action::Compare, "Compare: wipe, side by side, difference", &[shift(Key::Backslash), plain(Key::Pipe)]),
     (Action::FlipAb, "Switch between the reference and this preset", &[plain(Key::Backslash)]),
     (Action::Trade, "Show or hide Trade: time against error", &[plain(Key::M)]),
+    (Action::Timing, "Show or hide timing", &[plain(Key::G)]),
     (Action::Panels, "Show or hide panels", &[plain(Key::F11)]),
     (Action::Timeline, "Show or hide the timeline", &[plain(Key::T)]),
     (Action::Log, "Show or hide the log", &[plain(Key::L)]),
+    (Action::Palette, "Command palette…", &[command(Key::K)]),
     (Action::CheatSheet, "Cheat sheet", &[plain(Key::F1), plain(Key::Questionmark)]),
+    (Action::Settings, "Settings and keys…", &[command(Key::Comma)]),
+    (Action::ScaleUp, "Larger texts and controls", &[command(Key::Plus), command(Key::Equals)]),
+    (Action::ScaleDown, "Smaller texts and controls", &[command(Key::Minus)]),
+    (Action::ScaleReset, "Texts and controls at 100 %", &[command(Key::Num0)]),
 ];
 
 /// What the pointer does, for the cheat sheet.
@@ -120,6 +134,16 @@ pub const POINTER: &[(&str, &str)] = &[
     ("Copy or paste the preset", "Ctrl+C, Ctrl+V elsewhere"),
 ];
 
+thread_local! {
+    /// What the user has bound in the window that this thread shows: actions with their first shortcuts, for the texts that name one.
+    static SHOWN: RefCell<Vec<(Action, Option<KeyboardShortcut>)>> = const { RefCell::new(Vec::new()) };
+}
+
+/// Makes texts on this thread name these shortcuts for these actions.
+pub fn show_shortcuts(bound: Vec<(Action, Option<KeyboardShortcut>)>) {
+    SHOWN.set(bound);
+}
+
 impl Action {
     fn entry(self) -> &'static Entry {
         ACTIONS.iter().find(|(action, ..)| *action == self).expect("every action is in the table")
@@ -132,7 +156,7 @@ impl Action {
 
     /// Does it open a field for text?
     pub fn takes_text(self) -> bool {
-        matches!(self, Self::Open | Self::Save | Self::SaveAs | Self::Export | Self::CheatSheet)
+        matches!(self, Self::Open | Self::Save | Self::SaveAs | Self::Export | Self::Palette | Self::CheatSheet)
     }
 
     /// Its first shortcut as text: `Ctrl+Shift+Z`; empty without one.
@@ -140,21 +164,67 @@ impl Action {
         match self {
             Self::CopyPreset => "Ctrl+C".into(),
             Self::PastePreset => "Ctrl+V".into(),
-            _ => self.entry().2.first().map_or_else(String::new, shortcut_text),
+            _ => SHOWN.with_borrow(|shown| {
+                let bound = shown.iter().find(|(action, _)| *action == self).map(|(_, shortcut)| *shortcut);
+                bound.unwrap_or(self.entry().2.first().copied()).map_or_else(String::new, |shortcut| shortcut_text(&shortcut))
+            }),
         }
+    }
+
+    /// Its label with its first shortcut: `Undo (Ctrl+Z)`.
+    pub fn hint(self) -> String {
+        match self.shortcut_text() {
+            shortcut if shortcut.is_empty() => self.label().to_owned(),
+            shortcut => format!("{} ({shortcut})", self.label()),
+        }
+    }
+
+    /// The shortcuts that it has unless the user binds others.
+    pub fn default_shortcuts(self) -> &'static [KeyboardShortcut] {
+        self.entry().2
+    }
+
+    /// Its name in the settings file: `previous_preset`.
+    pub fn id(self) -> String {
+        let mut id = String::new();
+        for letter in format!("{self:?}").chars() {
+            if letter.is_ascii_uppercase() && !id.is_empty() {
+                id.push('_');
+            }
+            id.push(letter.to_ascii_lowercase());
+        }
+        id
+    }
+
+    /// The action of this name in the settings file.
+    pub fn of_id(id: &str) -> Option<Self> {
+        ACTIONS.iter().map(|(action, ..)| *action).find(|action| action.id() == id)
     }
 }
 
 /// `Ctrl+Shift+Z`.
 pub fn shortcut_text(shortcut: &KeyboardShortcut) -> String {
-    let Modifiers { shift, command, .. } = shortcut.modifiers;
-    let command_name = if cfg!(target_os = "macos") { "Cmd+" } else { "Ctrl+" };
-    format!("{}{}{}", if command { command_name } else { "" }, if shift { "Shift+" } else { "" }, shortcut.logical_key.symbol_or_name())
+    format!("{}{}", modifiers_text(shortcut.modifiers), shortcut.logical_key.symbol_or_name())
+}
+
+/// `Ctrl+Shift+`.
+pub fn modifiers_text(modifiers: Modifiers) -> String {
+    let command = if cfg!(target_os = "macos") { "Cmd+" } else { "Ctrl+" };
+    let held = [(modifiers.command, command), (modifiers.alt, "Alt+"), (modifiers.shift, "Shift+")];
+    held.iter().filter(|(is_held, _)| *is_held).map(|(_, name)| *name).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_action_has_a_name_of_its_own_that_leads_back_to_it() {
+        for (action, ..) in ACTIONS {
+            assert_eq!(Action::of_id(&action.id()), Some(*action), "{action:?}");
+        }
+        assert_eq!(Action::PreviousPreset.id(), "previous_preset");
+    }
 
     #[test]
     fn no_two_actions_share_a_key() {

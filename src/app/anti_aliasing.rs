@@ -9,7 +9,6 @@ use super::screen::Inputs;
 use crate::{
     accuracy::{AccuracyOptions, Axis, AxisOption, RenderScale},
     effects::Stack,
-    gpu::Report,
     plan::Caps,
     preset::{AccuracyRequest, Preset},
     scene::Scene,
@@ -71,7 +70,7 @@ impl PartialEq for Subject {
     }
 }
 
-/// A finished picture: its options, its time on the device, and whether it was drawn as large as it is shown.
+/// A finished picture: its options, its cost as far as it is known (the time of its first frame is not), and whether it was drawn as large as it is shown.
 #[derive(Clone, Copy, Debug)]
 pub struct Finished {
     pub options: AccuracyOptions,
@@ -80,8 +79,8 @@ pub struct Finished {
 }
 
 impl Finished {
-    pub fn new(options: AccuracyOptions, report: &Report, is_full_size: bool) -> Self {
-        Self { options, gpu_ms: report.gpu_ms, is_full_size }
+    pub fn new(options: AccuracyOptions, gpu_ms: Option<f64>, is_full_size: bool) -> Self {
+        Self { options, gpu_ms, is_full_size }
     }
 }
 

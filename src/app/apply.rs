@@ -10,11 +10,11 @@ use eframe::egui::{self, ViewportCommand};
 use super::{
     anti_aliasing,
     command::{CodeUse, Command, Commands, FileCommand, KeyframeEdit, Manner, Purpose, RowCommand, Side, Toggle, ViewCommand},
-    film,
+    film, library,
     log::Level,
     new_effect, open,
     panels::{Panels, timeline::Timeline},
-    reload,
+    reload, reveal,
     screen::Inputs,
     session::UndoState,
     state::State,
@@ -85,6 +85,12 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
         }
         Command::ExportFilm(request, progress) => export_film(state, *request, progress),
         Command::Toggle(which) => toggle(state, panels, which),
+        Command::Settings(command) => {
+            if let Err(refused) = state.settings.change(ctx, command) {
+                state.notify(Level::Warning, refused);
+            }
+        }
+        Command::Library(command) => library::library(ctx, state, panels, command),
         Command::Verify => verify(state, panels),
         Command::CancelVerify => state.verification.cancel(),
         Command::Mute(effect, true) => drop(state.session.muted.insert(effect.name)),
@@ -96,6 +102,11 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
         }
         Command::Paste => ctx.send_viewport_cmd(ViewportCommand::RequestPaste),
         Command::PasteText(text) => paste(state, panels, &text),
+        Command::SetText(path, text) => set_text(state, &path, &text),
+        Command::Reveal(path) => {
+            state.open.right = true;
+            reveal::start(ctx, path);
+        }
         Command::ClearLog => state.log.clear(),
         Command::Log(level, text) => state.log.add(level, text),
         Command::Notify(level, text) => state.notify(level, text),
@@ -160,17 +171,25 @@ fn row(ctx: &egui::Context, state: &mut State, command: RowCommand) {
     }
 }
 
+/// Gives the value at `path`, and says so.
+fn set_text(state: &mut State, path: &str, text: &str) {
+    match state.session.set_text(path, text) {
+        Ok(()) => state.notify(Level::Info, format!("{path} = {text}")),
+        Err(error) => state.notify(Level::Error, error),
+    }
+}
+
 /// Text from the clipboard: a preset, or a value for a row.
 fn paste(state: &mut State, panels: &mut Panels, text: &str) {
     state.history.close();
     let hovered = state.clipboard.hovered_row.as_ref().map(|(path, _)| path.clone());
     let row = state.clipboard.paste_into.take().or(hovered);
     let is_preset = text.trim_start().starts_with("rasterlab1:");
+    if preset_file::is_effect_text(text) {
+        return library::paste_effect(state, text);
+    }
     match row {
-        Some(path) if !is_preset => match state.session.set_text(&path, text.trim()) {
-            Ok(()) => state.notify(Level::Info, format!("{path} = {}", text.trim())),
-            Err(error) => state.notify(Level::Error, error),
-        },
+        Some(path) if !is_preset => set_text(state, &path, text.trim()),
         _ => match preset_file::from_line(text) {
             Ok(pasted) => request_open(state, panels, pasted, Manner::WithScene, "Pasted a preset".into()),
             Err(error) => state.notify(Level::Error, error.to_string()),
@@ -199,8 +218,11 @@ fn toggle(state: &mut State, panels: &mut Panels, which: Toggle) {
         }
         Toggle::Timeline => open.timeline = !open.timeline,
         Toggle::Trade => open.trade = !open.trade,
+        Toggle::Timing => open.timing = !open.timing,
         Toggle::Log => open.log = !open.log,
         Toggle::CheatSheet => open.cheat_sheet = !open.cheat_sheet,
+        Toggle::Settings => open.settings = !open.settings,
+        Toggle::Palette => panels.palette.toggle(&state.session, panels.browser.entries()),
         Toggle::Extremes => panels.extremes.toggle(),
         Toggle::Randomize => panels.randomize.toggle(),
         Toggle::Sweep => panels.sweep.toggle(),
@@ -239,7 +261,10 @@ fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: Fi
             let size = state.screen.requested().map_or(output, |inputs| [inputs.view.width, inputs.view.height]);
             panels.dialogs.ask_path(purpose, &state.session, state.folders.presets.as_deref(), size);
         }
-        FileCommand::Browse(purpose, path) => state.jobs.ask_path(purpose, path),
+        FileCommand::Browse(purpose, path) => state.jobs.ask_path(purpose, &path),
+        FileCommand::List(folder) => state.jobs.list_folder(folder),
+        FileCommand::Restore(restored) => open::restore(state, panels, *restored),
+        FileCommand::ForgetRecents => state.settings.recents.clear(),
         FileCommand::Open(what) if Path::new(&what).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("wgsl")) => {
             reload::add_effect_file(state, Path::new(&what));
         }
@@ -279,8 +304,8 @@ fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: Fi
         FileCommand::Edit(path) => state.jobs.open_editor(path),
         FileCommand::Resolve { theirs, side, saving } => resolve(state, panels, theirs, side, saving),
         FileCommand::UseCode { preset_file, then, runs } => use_code(state, panels, *preset_file, then, runs),
-        FileCommand::DiscardAndQuit => {
-            state.may_quit = true;
+        FileCommand::Quit { keeps_edits } => {
+            (state.may_quit, state.keeps_edits) = (true, keeps_edits);
             ctx.send_viewport_cmd(ViewportCommand::Close);
         }
     }
@@ -365,16 +390,27 @@ fn write(state: &mut State, panels: &mut Panels, path: &Path) {
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty())
         && let Err(error) = std::fs::create_dir_all(folder)
     {
-        return state.notify(Level::Error, format!("{}: the folder cannot be created: {error}", folder.display()));
+        let reason = format!("{}: the folder cannot be created: {error}", folder.display());
+        return save_failed(state, panels, Purpose::SaveAs, path, reason);
     }
     match preset_file::save(&mut state.session.preset_file, path) {
         Ok(()) => {
             let saved = state.session.preset_file.clone();
+            state.settings.recents.add_opened(&saved);
             panels.browser.refresh(&state.folders, &saved.id);
             state.session.remember(saved);
             state.notify(Level::Info, format!("Saved {}", path.display()));
         }
-        Err(error) => state.notify(Level::Error, error.to_string()),
+        Err(error) => save_failed(state, panels, Purpose::SaveAs, path, error.to_string()),
+    }
+}
+
+/// Shows the dialog of a save that failed again, with its path and the reason.
+pub fn save_failed(state: &mut State, panels: &mut Panels, purpose: Purpose, path: &Path, reason: String) {
+    if panels.dialogs.save_failed(purpose, path, &reason) {
+        state.log.add(Level::Error, reason);
+    } else {
+        state.notify(Level::Error, reason);
     }
 }
 

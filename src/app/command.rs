@@ -6,33 +6,30 @@
 
 use std::{cell::RefCell, path::PathBuf, sync::Arc};
 
-use glam::DVec3;
-
 use super::{
     action::Action,
     cells::Cells,
+    favorites::Starred,
     film,
     key_id::KeyId,
     log::Level,
     overlay::Overlay,
     screen::Inputs,
+    settings::last_session::Restored,
+    theme::ThemeChoice,
     trade::request::{Progress, Request},
 };
 use crate::{
     accuracy::{Axis, PinnedOptions},
     effect_files::Hook,
     effects::Effect,
-    params::{Field, Value},
-    preset::{ClipPlayback, Clock, animation::Easing, settings::Setting},
+    preset::animation::Easing,
     preset_file::PresetFile,
-    scene::{
-        camera::Camera,
-        parts::{PartKind, Scope},
-    },
+    scene::parts::PartKind,
 };
+use eframe::egui::KeyboardShortcut;
 
-/// A parameter of an effect.
-pub type Parameter = (&'static Effect, &'static Field);
+pub use super::preset_edit::{Edit, Parameter};
 
 /// What a click on the model sets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,6 +82,8 @@ pub enum Command {
     /// Pins the options of these axes, as a separate undo step.
     PinOptions(PinnedOptions, Vec<&'static Axis>),
     Toggle(Toggle),
+    Settings(SettingsCommand),
+    Library(LibraryCommand),
     /// Starts the oracle on the picture that is shown, and on the one it is compared with.
     Verify,
     /// Ends the judgements under way.
@@ -102,38 +101,14 @@ pub enum Command {
     Paste,
     /// The clipboard's text: a preset, or a value for the row that a menu or the pointer chose.
     PasteText(String),
+    /// Gives the value at a path, from text, as `--set` does.
+    SetText(String, String),
+    /// Shows the row of this path, or the effect of this name, in the inspector.
+    Reveal(String),
     ClearLog,
     Log(Level, String),
     /// Logs a message and shows it as a toast.
     Notify(Level, String),
-}
-
-/// A change of the preset.
-pub enum Edit {
-    Setting(&'static Setting, Value),
-    /// Sets a parameter; an animated one gets a keyframe at the time shown.
-    Parameter(Parameter, Value),
-    Enable(&'static Effect),
-    Disable(&'static Effect),
-    /// Limits an effect to parts of the scene.
-    Scope(&'static Effect, Scope),
-    /// Disables the first effect and enables the second.
-    Replace(&'static str, &'static Effect),
-    /// Uses the second effect in place of the first, with the same values and keyframes.
-    Rebind(&'static Effect, &'static Effect),
-    /// Swaps two positions of the stack.
-    Swap(usize, usize),
-    /// The same built-in scene with other parameters.
-    BuiltinQuery(String),
-    /// Removes the preset's camera and uses the scene camera of this name; empty = the first.
-    SceneCamera(String),
-    Play(ClipPlayback),
-    Clock(Clock),
-    /// The camera of the preset; none for the automatic one.
-    Camera(Option<Camera>),
-    FrameScene,
-    LookAlong(DVec3),
-    ToggleOrthographic,
 }
 
 /// A change of the keyframes of an animated parameter.
@@ -267,8 +242,48 @@ pub enum FileCommand {
         then: CodeUse,
         runs: bool,
     },
-    /// Closes the window without saving.
-    DiscardAndQuit,
+    /// Closes the window without saving; the edits may come back at the next start.
+    Quit {
+        keeps_edits: bool,
+    },
+    /// Reads what is in a folder.
+    List(PathBuf),
+    /// Opens what was open in the last session.
+    Restore(Box<Restored>),
+    /// Forgets the recent files.
+    ForgetRecents,
+}
+
+/// What a name is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Naming {
+    /// Another name for the preset of this file.
+    Preset { path: PathBuf, title: String },
+    /// A name for the present values of this effect.
+    Values(&'static Effect),
+}
+
+/// Favorites, files of presets, and values of effects.
+pub enum LibraryCommand {
+    /// Makes the preset of this id, or the effect of this name, a favorite (true), or takes its star away.
+    Star(Starred, String, bool),
+    AskName(Naming),
+    /// Uses the name that was asked for.
+    Name(Naming, String),
+    /// Writes a copy of the preset, as its file has it.
+    Duplicate(Box<PresetFile>),
+    /// Moves the preset at this path to the trash.
+    Delete(PathBuf),
+    /// Puts the preset that was deleted last back.
+    Restore,
+    /// What was deleted stays in the trash.
+    ForgetDeleted,
+    /// Puts the effect with its values on the clipboard.
+    CopyEffect(&'static Effect),
+    /// Gives an effect the values of this file.
+    UseValues(PathBuf),
+    /// Moves this file of values to the trash.
+    DeleteValues(PathBuf),
 }
 
 /// A place in a picture.
@@ -301,12 +316,29 @@ pub enum Toggle {
     Panels,
     Timeline,
     Trade,
+    Timing,
     Log,
     CheatSheet,
+    Palette,
+    Settings,
     Extremes,
     Randomize,
     Sweep,
     Film,
+}
+
+/// A change of the window's settings.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SettingsCommand {
+    Theme(ThemeChoice),
+    /// Makes texts and controls larger by this many steps, or smaller.
+    Scale(f32),
+    ResetScale,
+    /// Makes this the only shortcut of the action; none takes its shortcuts away.
+    Bind(Action, Option<KeyboardShortcut>),
+    /// Gives the action its own shortcuts again.
+    ResetKeys(Action),
+    ResetAllKeys,
 }
 
 impl From<Action> for Command {
@@ -343,12 +375,18 @@ impl From<Action> for Command {
             Action::Panels => Self::Toggle(Toggle::Panels),
             Action::Timeline => Self::Toggle(Toggle::Timeline),
             Action::Trade => Self::Toggle(Toggle::Trade),
+            Action::Timing => Self::Toggle(Toggle::Timing),
             Action::Log => Self::Toggle(Toggle::Log),
+            Action::Palette => Self::Toggle(Toggle::Palette),
             Action::CheatSheet => Self::Toggle(Toggle::CheatSheet),
             Action::Extremes => Self::Toggle(Toggle::Extremes),
             Action::RandomizeWindow => Self::Toggle(Toggle::Randomize),
             Action::Sweep => Self::Toggle(Toggle::Sweep),
             Action::Film => Self::Toggle(Toggle::Film),
+            Action::Settings => Self::Toggle(Toggle::Settings),
+            Action::ScaleUp => Self::Settings(SettingsCommand::Scale(1.0)),
+            Action::ScaleDown => Self::Settings(SettingsCommand::Scale(-1.0)),
+            Action::ScaleReset => Self::Settings(SettingsCommand::ResetScale),
         }
     }
 }
@@ -361,6 +399,7 @@ impl Command {
             Self::Row(_)
             | Self::RecallSeed(_)
             | Self::SetValues(_)
+            | Self::SetText(..)
             | Self::PinOptions(..)
             | Self::Keyframe(KeyframeEdit::Ease(..) | KeyframeEdit::Remove(_)) => true,
             _ => false,

@@ -1,23 +1,28 @@
-//! The device of the window: how it is opened, and how it presents.
+//! The devices of the window: how they are opened, and how the window presents.
 
 use std::sync::Arc;
 
 use anyhow::Context as _;
 use eframe::{egui, egui_wgpu, wgpu};
 
+use super::settings::WindowPlace;
 use crate::gpu::{
     Gpu,
     device::{self, AdapterChoice},
 };
 
+/// Smallest size of the window's contents, points.
+const MIN_SIZE: [f32; 2] = [900.0, 600.0];
+
 /// Size and settings of the window.
-pub fn native_options(adapter: &AdapterChoice) -> eframe::NativeOptions {
+pub fn native_options(adapter: &AdapterChoice, window: WindowPlace) -> eframe::NativeOptions {
     eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("rasterlab")
             .with_app_id("rasterlab")
-            .with_inner_size([1280.0, 800.0])
-            .with_min_inner_size([900.0, 600.0])
+            .with_inner_size(window.size.map(|side| side.max(1.0)))
+            .with_maximized(window.is_maximized)
+            .with_min_inner_size(MIN_SIZE)
             .with_drag_and_drop(true),
         wgpu_options: egui_wgpu::WgpuConfiguration { wgpu_setup: wgpu_setup(adapter), ..Default::default() },
         // Dithering would change the bytes that the kernels drew.
@@ -50,14 +55,33 @@ fn select(adapters: &[wgpu::Adapter], surface: Option<&wgpu::Surface<'_>>, choic
     device::choose(choice, &names).map(|index| suitable[index].clone()).map_err(|error| error.to_string())
 }
 
-/// The window's device, for the kernels; `gpu` if it is known from another window on the same device.
+/// The window's devices, for the kernels; `devices` if they are known from another window on the same device.
 ///
 /// # Errors
 /// If the window has no wgpu device.
-pub fn adopt(cc: &eframe::CreationContext<'_>, gpu: Option<Arc<Gpu>>) -> anyhow::Result<(egui_wgpu::RenderState, Arc<Gpu>)> {
+pub fn adopt(cc: &eframe::CreationContext<'_>, devices: Option<Devices>) -> anyhow::Result<(egui_wgpu::RenderState, Devices)> {
     let window = cc.wgpu_render_state.clone().context("the window has no wgpu device")?;
-    let gpu = gpu.unwrap_or_else(|| Gpu::adopt(&window.adapter, window.device.clone(), window.queue.clone()));
-    Ok((window, gpu))
+    let devices = devices.unwrap_or_else(|| Devices::of(Gpu::adopt(&window.adapter, window.device.clone(), window.queue.clone())));
+    Ok((window, devices))
+}
+
+/// The device that shows pictures, and the one that draws them.
+#[derive(Clone)]
+pub struct Devices {
+    /// egui's, too.
+    pub window: Arc<Gpu>,
+    /// The same on a graphics card. On a CPU adapter it is a second one, because compiling and drawing keep everything waiting that is
+    /// submitted to the same device, the window's own frames included.
+    pub picture: Arc<Gpu>,
+}
+
+impl Devices {
+    /// The devices for a window on `window`. Without a second device the first draws, too.
+    pub fn of(window: Arc<Gpu>) -> Self {
+        let choice = AdapterChoice::Named(window.summary.name.clone());
+        let second = if window.summary.software { Gpu::open(&choice).ok() } else { None };
+        Self { picture: second.unwrap_or_else(|| window.clone()), window }
+    }
 }
 
 /// Presents without waiting for the display on a software adapter, which is slower than any display. Waiting would also

@@ -57,6 +57,18 @@ impl Session {
             }
             Edit::Swap(a, b) if a.max(b) < preset.stack.0.len() => preset.stack.0.swap(a, b),
             Edit::Swap(..) => {}
+            Edit::Move(from, to) => preset.stack.move_effect(from, to),
+            Edit::EnableAt(effect, index) => {
+                if let Some(conflict) = preset.stack.conflict_with(effect) {
+                    return Err(conflict.to_string());
+                }
+                let before = preset.stack.0.len();
+                preset.stack.enable(effect);
+                let from = preset.stack.0.iter().position(|enabled| enabled.effect == effect).unwrap_or(index);
+                // A new effect in front of the index moves it by one.
+                let moved = usize::from(preset.stack.0.len() > before && from < index);
+                preset.stack.move_effect(from, index + moved);
+            }
             Edit::BuiltinQuery(query) => preset.scene = SceneSource::Builtin(query),
             Edit::SceneCamera(name) => {
                 preset.scene_camera = name;

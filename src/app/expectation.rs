@@ -20,7 +20,7 @@ pub struct Expectation {
 /// What the picture that is shown would cost and err by in `tier`, with the options that the preset pins; none before the first picture.
 pub fn expectation(state: &State, tier: Tier) -> Option<Expectation> {
     let (plan, drawn) = (state.screen.plan()?, state.screen.drawn()?);
-    let ms = state.screen.report().and_then(|report| report.gpu_ms);
+    let ms = state.screen.timings().cost_ms();
     Some(of(plan, &drawn.stack, &state.screen.gpu, AccuracyRequest { tier, ..drawn.accuracy }, ms))
 }
 

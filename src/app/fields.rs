@@ -1,13 +1,15 @@
 //! Rows: a label and the control for its type of value. One function serves every setting of a preset and every parameter of
 //! every effect.
 
-use eframe::egui::{self, Align, Align2, Color32, DragValue, Rect, RichText, Sense, Slider, SliderClamping, Ui, UiBuilder, pos2, vec2};
+use eframe::egui::{self, Align, Align2, Color32, Rect, RichText, Sense, Slider, SliderClamping, Ui, UiBuilder, pos2, vec2};
 
 use super::{
     command::{Command, Commands, Edit, Parameter, RowCommand},
     icons::{Icon, icon_button, key_button},
     key_id::Keying,
-    theme,
+    log::Level,
+    numbers::NumberField,
+    reveal, theme,
 };
 use crate::{
     params::{Param, Value, ValueType},
@@ -114,13 +116,13 @@ pub fn row_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) {
     let reset_rect = Rect::from_min_max(pos2(rect.right() - RESET_WIDTH, rect.top()), rect.max);
     if row.modified {
         let bar = Rect::from_min_size(rect.min + vec2(0.0, 4.0), vec2(BAR_WIDTH, rect.height() - 8.0));
-        ui.painter().rect_filled(bar, 1.5, theme::ACCENT);
+        ui.painter().rect_filled(bar, 1.5, theme::accent());
     }
     let mut command = label_ui(ui, row, value, label_rect);
     let layout = egui::Layout::left_to_right(Align::Center);
     let mut control = ui.new_child(UiBuilder::new().id_salt(&row.path).max_rect(control_rect).layout(layout));
     control.spacing_mut().item_spacing.x = 6.0;
-    let changed = control_ui(&mut control, row, value);
+    let changed = control_ui(&mut control, commands, row, value);
     if row.modified {
         let mut reset = ui.new_child(UiBuilder::new().id_salt((&row.path, "reset")).max_rect(reset_rect).layout(layout));
         if icon_button(&mut reset, Icon::Reset, &format!("Reset {}", row.path)).clicked() {
@@ -132,6 +134,7 @@ pub fn row_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) {
     {
         command = Some(RowCommand::ToggleKey(row.path.clone()));
     }
+    reveal::row(ui, &row.path, rect);
     if ui.rect_contains_pointer(rect) {
         commands.send(Command::HoverRow { path: row.path.clone(), value: row.written(value) });
     }
@@ -147,7 +150,7 @@ pub fn row_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) {
 /// The label: tooltip, double click to reset, menu.
 fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<RowCommand> {
     let response = ui.interact(rect, egui::Id::unique((&row.path, "label")), Sense::click());
-    let color = if row.modified || response.hovered() { theme::TEXT_STRONG } else { theme::TEXT };
+    let color = if row.modified || response.hovered() { theme::text_strong() } else { theme::text() };
     // The bundled fonts have no bold cut, so bold is the same text twice, half a pixel apart.
     let clipped = ui.painter_at(rect.expand(1.0));
     let font = egui::TextStyle::Body.resolve(ui.style());
@@ -173,7 +176,7 @@ fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<RowComm
         }
     });
     response.on_hover_ui(|ui| {
-        ui.label(RichText::new(row.param.doc).color(theme::TEXT_STRONG));
+        ui.label(RichText::new(row.param.doc).color(theme::text_strong()));
         ui.label(theme::weak(format!("{}   {}{}", row.path, row.param.allowed(), spaced(row.param.unit))));
     });
     command
@@ -183,23 +186,26 @@ fn spaced(unit: &str) -> String {
     if unit.is_empty() { String::new() } else { format!(" {unit}") }
 }
 
-fn control_ui(ui: &mut Ui, row: &Row, value: &Value) -> Option<Value> {
+fn control_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) -> Option<Value> {
     match (row.param.value_type, value) {
         (_, Value::Bool(on)) => {
             let mut on = *on;
-            let changed = ui.checkbox(&mut on, "").accessible_name(&row.path).changed();
-            changed.then_some(Value::Bool(on))
+            let shown = ui.checkbox(&mut on, "").accessible_name(&row.path);
+            reveal::focus(&row.path, &shown);
+            shown.changed().then_some(Value::Bool(on))
         }
         (ValueType::Choice(words), Value::Choice(index)) => word_ui(ui, row, words, *index),
         (ValueType::Color, Value::Numbers(components)) => color_ui(ui, row, components),
         (_, Value::Numbers(components)) => match components[..] {
-            [number] => number_ui(ui, row, number),
-            _ => components_ui(ui, row, components),
+            [number] => number_ui(ui, commands, row, number),
+            _ => components_ui(ui, commands, row, components),
         },
         (ValueType::Text { max_chars }, Value::Text(text)) => {
             let mut text = text.clone();
             let edit = egui::TextEdit::singleline(&mut text).char_limit(max_chars).desired_width(ui.available_width());
-            ui.add(edit).accessible_name(&row.path).changed().then_some(Value::Text(text))
+            let shown = ui.add(edit).accessible_name(&row.path);
+            reveal::focus(&row.path, &shown);
+            shown.changed().then_some(Value::Text(text))
         }
         _ => None, // Lists of texts are edited in the file.
     }
@@ -207,7 +213,7 @@ fn control_ui(ui: &mut Ui, row: &Row, value: &Value) -> Option<Value> {
 
 fn word_ui(ui: &mut Ui, row: &Row, words: &[&str], chosen: usize) -> Option<Value> {
     let mut now = chosen;
-    egui::ComboBox::from_id_salt(&row.path)
+    let shown = egui::ComboBox::from_id_salt(&row.path)
         .selected_text(words.get(chosen).copied().unwrap_or_default())
         .width(ui.available_width())
         .show_ui(ui, |ui| {
@@ -217,6 +223,7 @@ fn word_ui(ui: &mut Ui, row: &Row, words: &[&str], chosen: usize) -> Option<Valu
         })
         .response
         .accessible_name(&row.path);
+    reveal::focus(&row.path, &shown);
     (now != chosen).then_some(Value::Choice(now))
 }
 
@@ -224,15 +231,16 @@ fn color_ui(ui: &mut Ui, row: &Row, components: &[f64]) -> Option<Value> {
     let mut color: [f32; 4] = std::array::from_fn(|i| components[i] as f32);
     ui.spacing_mut().interact_size.x = 44.0;
     let response = ui.color_edit_button_rgba_unmultiplied(&mut color).accessible_name(&row.path).on_hover_text("Choose the color");
+    reveal::focus(&row.path, &response);
     let [r, g, b, a] = egui::Rgba::from_rgba_unmultiplied(color[0], color[1], color[2], color[3]).to_srgba_unmultiplied();
     let alpha = if a == 255 { String::new() } else { format!(" {:.0}%", f64::from(a) / 2.55) };
-    ui.label(RichText::new(format!("#{r:02x}{g:02x}{b:02x}{alpha}")).monospace().color(theme::TEXT_WEAK));
+    ui.label(RichText::new(format!("#{r:02x}{g:02x}{b:02x}{alpha}")).monospace().color(theme::text_weak()));
     // The picker's arithmetic may leave the unit range by a bit.
     response.changed().then(|| Value::Numbers(color.map(|c| f64::from(if c.is_finite() { c.clamp(0.0, 1.0) } else { 0.0 })).to_vec()))
 }
 
 /// One number: a slider over the soft range, and a field that takes the hard one.
-fn number_ui(ui: &mut Ui, row: &Row, value: f64) -> Option<Value> {
+fn number_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: f64) -> Option<Value> {
     let ([low, high], whole, soft) = (row.param.hard, row.is_whole(), row.slider());
     let mut now = value;
     if let Some([from, to]) = soft {
@@ -240,16 +248,24 @@ fn number_ui(ui: &mut Ui, row: &Row, value: f64) -> Option<Value> {
         now = slider_ui(ui, row, value, [from, to], whole);
     }
     let speed = soft.map_or_else(|| value.abs().max(1.0) * 0.01, |[from, to]| (to - from) / 300.0);
-    let mut drag =
-        DragValue::new(&mut now).range(low..=high).speed(if whole { speed.max(0.05) } else { speed }).update_while_editing(false);
-    drag = if whole { drag.fixed_decimals(0) } else { drag.max_decimals(decimals(soft)) };
-    if !row.param.unit.is_empty() {
-        drag = drag.suffix(spaced(row.param.unit));
-    }
     let width = if soft.is_some() { NUMBER_WIDTH } else { ui.available_width().min(120.0) };
-    ui.add_sized([width, theme::ROW - 4.0], drag).accessible_name(format!("{} value", row.path));
+    let unit = spaced(row.param.unit);
+    let speed = if whole { speed.max(0.05) } else { speed };
+    let field = NumberField { range: [low, high], speed, is_whole: whole, decimals: decimals(soft), unit: &unit };
+    let (response, said) = field.show(ui, width, &mut now);
+    reveal::focus(&row.path, &response);
+    response.accessible_name(format!("{} value", row.path));
+    say(commands, row, said);
     let now = if whole { now.round() } else { now };
     (now != value && now.is_finite()).then(|| Value::number(now.clamp(low, high)))
+}
+
+/// Says that a typed number was not taken as it was.
+fn say(commands: &Commands, row: &Row, said: Option<String>) {
+    if let Some(said) = said {
+        let text = format!("{} takes {}{}: {said}.", row.path, row.param.allowed(), spaced(row.param.unit));
+        commands.send(Command::Notify(Level::Warning, text));
+    }
 }
 
 /// Decimals worth showing for a soft range.
@@ -287,16 +303,18 @@ fn slider_ui(ui: &mut Ui, row: &Row, value: f64, [from, to]: [f64; 2], whole: bo
 }
 
 /// Two or three numbers side by side.
-fn components_ui(ui: &mut Ui, row: &Row, components: &[f64]) -> Option<Value> {
+fn components_ui(ui: &mut Ui, commands: &Commands, row: &Row, components: &[f64]) -> Option<Value> {
     let ([low, high], whole, soft) = (row.param.hard, row.is_whole(), row.slider());
     let mut now = components.to_vec();
-    (ui.spacing_mut().item_spacing.x, ui.spacing_mut().button_padding.x) = (4.0, 3.0);
+    ui.spacing_mut().item_spacing.x = 4.0;
     let width = (ui.available_width() - 4.0 * (components.len() - 1) as f32) / components.len() as f32;
     for (component, name) in now.iter_mut().zip(row.param.value_type.component_names()) {
         let speed = if whole { 1.0 } else { soft.map_or_else(|| component.abs().max(0.5) * 0.01, |[from, to]| (to - from) / 300.0) };
-        let drag =
-            DragValue::new(component).range(low..=high).speed(speed).max_decimals(if whole { 0 } else { 3 }).update_while_editing(false);
-        ui.add_sized([width, theme::ROW - 4.0], drag).accessible_name(format!("{}.{name}", row.path)).on_hover_text(*name);
+        let field = NumberField { range: [low, high], speed, is_whole: whole, decimals: if whole { 0 } else { 3 }, unit: "" };
+        let (response, said) = field.show(ui, width, component);
+        reveal::focus(&row.path, &response);
+        response.accessible_name(format!("{}.{name}", row.path)).on_hover_text(*name);
+        say(commands, row, said);
     }
     let changed = now != components && now.iter().all(|component| component.is_finite());
     changed.then(|| Value::Numbers(now.iter().map(|component| if whole { component.round() } else { *component }).collect()))

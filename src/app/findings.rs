@@ -56,6 +56,11 @@ impl Findings {
         found
     }
 
+    /// Pixels that show another triangle than the exact picture of the true positions; none if the effects are not reproducible.
+    pub fn wrong_against_true(&self) -> Option<u64> {
+        self.reference.as_ref().map(|_| self.count(Overlay::NotReference))
+    }
+
     /// Pixels that an overlay paints.
     pub fn count(&self, overlay: Overlay) -> u64 {
         self.counts[overlay as usize]

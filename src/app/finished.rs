@@ -3,10 +3,12 @@
 use eframe::egui;
 
 use super::{
+    apply,
     cells::CellOf,
-    command::Commands,
+    command::{Commands, Purpose},
     findings::Findings,
     jobs::Done,
+    library,
     log::Level,
     measured::error_text,
     new_effect, open,
@@ -41,25 +43,37 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
         }
         Done::SceneBox(source, bounds) => open::bounds_arrived(state, panels, source, bounds),
         Done::Verdict(inputs, work, findings) => {
-            state.verification.ended(&work);
-            verdict(state, panels, *inputs, findings);
+            if state.verification.ended(&work) {
+                verdict(state, panels, *inputs, findings);
+            }
         }
         Done::Trade(points) => {
-            if let Some(error) = panels.trade.arrived(points) {
-                state.log.add(Level::Error, error);
+            let timed = points.as_ref().map_or(0, |points| points.iter().filter(|point| point.ms.is_some()).count());
+            match panels.trade.arrived(points) {
+                Some(error) => state.log.add(Level::Error, error),
+                None if timed > 0 => state.log.add(Level::Info, format!("Trade: combinations measured: {timed}")),
+                None => {}
             }
         }
         Done::Cell(CellOf::Sweep { number, index }, picture) => panels.sweep.arrived(ctx, (number, index), picture),
         Done::Cell(CellOf::Seed(seed), picture) => panels.randomize.arrived(ctx, seed, picture),
-        Done::Thumbnail(id, image) => panels.browser.thumbnail_arrived(ctx, id, image),
-        Done::ThumbnailOn(key, id, image) => panels.browser.on_model_arrived(ctx, key, id, image),
+        Done::Thumbnail(id, image) => panels.browser.pictures.arrived(ctx, &id, image),
+        Done::ThumbnailOn(key, id, image) => panels.browser.pictures.on_model_arrived(ctx, &key, &id, image),
+        Done::EffectPicture(effect, image) => panels.browser.effects.picture_arrived(ctx, effect, image),
+        Done::Favorites(outcome) => {
+            state.favorites.written();
+            match outcome {
+                Ok(()) => library::write_favorites(state),
+                Err(error) => state.notify(Level::Error, error),
+            }
+        }
         Done::Export(path, Ok(())) => state.notify(Level::Info, format!("Saved {}", path.display())),
-        Done::Export(_, Err(error)) => state.notify(Level::Error, error),
         Done::Film(progress, ended) => {
             if let Some((level, text)) = panels.film.arrived(&progress, ended) {
                 state.notify(level, text);
             }
         }
+        Done::Export(path, Err(error)) => apply::save_failed(state, panels, Purpose::Export, &path, error),
         Done::Compiled(reload, outcome) => compiled(state, panels, reload, outcome),
         Done::Precision(of, measured) => {
             if let Some(error) = state.precision.arrived(*of, measured) {
@@ -77,9 +91,9 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
             let text = format!("{} could not be opened in an editor: {reason}", path.display());
             state.notify(Level::Warning, text);
         }
-        Done::Path(purpose, path) => {
-            panels.dialogs.path_arrived(purpose, path, state.session.preset_file.path.as_deref(), commands);
-        }
+        Done::Path(purpose, answer) => panels.dialogs.path_arrived(purpose, answer, &state.session.preset_file, commands),
+        Done::Folder(listing) => panels.dialogs.folder_arrived(listing),
+        Done::Missing(files) => state.missing_files = files,
     }
 }
 
@@ -89,7 +103,7 @@ fn verdict(state: &mut State, panels: &mut Panels, of: Inputs, findings: Result<
         // Overlays do not begin it again.
         Ok(None) => state.verification.fail(of),
         Ok(Some(findings)) => {
-            state.log.add(Level::Info, format!("verified {}: {}", state.session.title(), error_text(&findings.accuracy)));
+            state.log.add(Level::Info, format!("verified {}: {}", state.session.title(), error_text(&findings)));
             let verdict = Verdict { of, findings: findings.into() };
             if !panels.viewport.compare.take_verdict(&verdict) || state.screen.requested() == Some(&verdict.of) {
                 state.verification.set(verdict);

@@ -29,6 +29,15 @@ pub enum Icon {
     Loop,
     /// Three dots: a menu.
     More,
+    /// A star's outline, and a filled one.
+    Star,
+    StarFull,
+    /// Four squares.
+    Grid,
+    /// Lines of text beside squares.
+    List,
+    /// Six dots: something that can be dragged.
+    Grip,
 }
 
 /// A square button without a frame; `name` is its tooltip and its accessible name.
@@ -45,7 +54,7 @@ pub fn icon_button(ui: &mut Ui, icon: Icon, name: &str) -> Response {
 
 /// A button that is on or off.
 pub fn toggle_button(ui: &mut Ui, icon: Icon, on: bool, name: &str) -> Response {
-    let response = bare_button(ui, icon, |_, _| if on { theme::ACCENT } else { theme::TEXT_WEAK });
+    let response = bare_button(ui, icon, |_, _| if on { theme::accent() } else { theme::text_weak() });
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, on, name));
     response
 }
@@ -73,10 +82,10 @@ pub fn key_button(ui: &mut Ui, rect: Rect, keying: Keying, path: &str) -> Respon
     };
     let near = response.hovered() || response.has_focus();
     let color = match (keying, near && ui.is_enabled()) {
-        (Keying::Still, false) => theme::TEXT_WEAK.gamma_multiply(0.7),
-        (Keying::Still, true) => theme::TEXT_STRONG,
-        (_, false) => theme::ACCENT,
-        (_, true) => theme::TEXT_STRONG,
+        (Keying::Still, false) => theme::text_weak().gamma_multiply(0.7),
+        (Keying::Still, true) => theme::text_strong(),
+        (_, false) => theme::accent(),
+        (_, true) => theme::text_strong(),
     };
     let fill = if keying == Keying::OnKey { color } else { Color32::TRANSPARENT };
     paint_diamond(ui.painter(), rect.center(), if near { 5.5 } else { 4.5 }, fill, color);
@@ -165,6 +174,35 @@ pub fn paint(painter: &egui::Painter, icon: Icon, rect: Rect, color: Color32) {
         Icon::More => {
             for y in [0.05, 0.5, 0.95] {
                 painter.circle_filled(at(0.5, y), rect.width() * 0.13, color);
+            }
+        }
+        Icon::Star | Icon::StarFull => {
+            let corner = |i: i32| {
+                let (angle, radius) = ((36.0 * i as f32 - 90.0).to_radians(), if i % 2 == 0 { 0.6 } else { 0.26 });
+                rect.center() + vec2(angle.cos(), angle.sin()) * rect.width() * radius
+            };
+            let corners: Vec<Pos2> = (0..10).map(corner).collect();
+            if icon == Icon::StarFull {
+                // A star is not convex: a pentagon and five triangles are.
+                fill(&corners.iter().skip(1).step_by(2).copied().collect::<Vec<_>>());
+                (0..5).for_each(|i| fill(&[corners[(2 * i + 9) % 10], corners[2 * i], corners[2 * i + 1]]));
+            }
+            painter.add(Shape::closed_line(corners, Stroke::new(1.2, color)));
+        }
+        Icon::Grid => {
+            for (x, y) in [(0.0, 0.0), (0.58, 0.0), (0.0, 0.58), (0.58, 0.58)] {
+                painter.rect_filled(Rect::from_two_pos(at(x, y), at(x + 0.42, y + 0.42)), 1.0, color);
+            }
+        }
+        Icon::List => {
+            for y in [0.0, 0.4, 0.8] {
+                painter.rect_filled(Rect::from_two_pos(at(0.0, y), at(0.2, y + 0.2)), 0.5, color);
+                painter.rect_filled(Rect::from_two_pos(at(0.34, y), at(1.0, y + 0.2)), 0.5, color);
+            }
+        }
+        Icon::Grip => {
+            for (x, y) in [(0.3, 0.05), (0.3, 0.5), (0.3, 0.95), (0.7, 0.05), (0.7, 0.5), (0.7, 0.95)] {
+                painter.circle_filled(at(x, y), rect.width() * 0.1, color);
             }
         }
         Icon::Dice => {

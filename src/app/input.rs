@@ -5,15 +5,17 @@ use std::path::PathBuf;
 use eframe::egui::{self, Event, KeyboardShortcut};
 
 use super::{
-    action::{ACTIONS, Action},
+    action::Action,
     command::{Command, Commands, FileCommand, RowCommand},
     log::Level,
+    settings::keymap::Keymap,
     state::State,
     typing::HeldTyping,
 };
 
 /// Sends the actions whose shortcuts were pressed, in the order of the keys. Shortcuts without Ctrl do nothing while a widget has the focus
-/// or the camera flies; those with Ctrl do nothing while text is typed. What is typed after a key that opens a text field is held for it.
+/// or the camera flies; those with Ctrl, but for the palette's, do
+/// nothing while text is typed. What is typed after a key that opens a text field is held for it.
 pub fn shortcuts(ctx: &egui::Context, state: &State, held: &mut HeldTyping, commands: &Commands) {
     let is_typing = ctx.text_edit_focused();
     let is_focused = ctx.egui_wants_keyboard_input();
@@ -21,7 +23,9 @@ pub fn shortcuts(ctx: &egui::Context, state: &State, held: &mut HeldTyping, comm
     let is_allowed = |k: &KeyboardShortcut| if k.modifiers.command { !is_typing } else { !is_focused && !is_flying };
     let mut index = 0;
     while let Some(event) = ctx.input(|i| i.events.get(index).cloned()) {
-        let Some(action) = action_of(&event, is_allowed) else {
+        // The palette opens from anywhere, so that its key does not depend on what was typed before.
+        let opens_palette = || action_of(&event, &state.settings.keys, |k| k.modifiers.command).filter(|a| *a == Action::Palette);
+        let Some(action) = action_of(&event, &state.settings.keys, is_allowed).or_else(opens_palette) else {
             index += 1;
             continue;
         };
@@ -37,12 +41,9 @@ pub fn shortcuts(ctx: &egui::Context, state: &State, held: &mut HeldTyping, comm
 }
 
 /// The action of a pressed key, if its shortcut is allowed.
-fn action_of(event: &Event, is_allowed: impl Fn(&KeyboardShortcut) -> bool) -> Option<Action> {
+fn action_of(event: &Event, keys: &Keymap, is_allowed: impl Fn(&KeyboardShortcut) -> bool) -> Option<Action> {
     let Event::Key { key, modifiers, pressed: true, .. } = event else { return None };
-    let is_pressed = |shortcut: &KeyboardShortcut| {
-        shortcut.logical_key == *key && modifiers.matches_logically(shortcut.modifiers) && is_allowed(shortcut)
-    };
-    ACTIONS.iter().find(|(_, _, shortcuts)| shortcuts.iter().any(is_pressed)).map(|(action, ..)| *action)
+    keys.action_of(*key, *modifiers, is_allowed)
 }
 
 /// Copies the value of the row under the pointer, or the preset, and pastes.

@@ -2,8 +2,13 @@
 //! saving pictures, waiting for file dialogs.
 
 use std::{
+    collections::HashSet,
     path::{Path, PathBuf},
-    sync::{Arc, atomic::AtomicBool, mpsc},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc,
+    },
 };
 
 use eframe::egui;
@@ -11,13 +16,17 @@ use eframe::egui;
 use super::{
     cells::{self, CellOf, CellResult, Cells},
     command::{Origin, Purpose},
-    film,
+    completion::Listing,
+    computing::{Computing, Count},
+    effect_picture::EffectPicture,
+    favorites, film,
     findings::Findings,
     golden_check::{self, GoldenCheck},
     live::Reload,
     precision::{self, Measured},
     scene_loader::SceneKey,
     screen::Inputs,
+    system_dialog,
     trade::{
         measure,
         point::Point,
@@ -48,10 +57,18 @@ pub enum Done {
     Thumbnail(String, Option<egui::ColorImage>),
     /// The thumbnail of a preset on the user's own scene.
     ThumbnailOn(SceneKey, String, Option<egui::ColorImage>),
+    /// The picture of an effect on the open model; none if it was cancelled or cannot be drawn.
+    EffectPicture(&'static str, Option<egui::ColorImage>),
+    /// The favorites were written.
+    Favorites(Result<(), String>),
     Export(PathBuf, Result<(), String>),
     Film(Arc<film::Progress>, Result<film::Finished, film::Failure>),
-    /// The path from the system's file dialog; none if it was canceled or could not be shown.
-    Path(Purpose, Option<PathBuf>),
+    /// How the system's file dialog ended.
+    Path(Purpose, system_dialog::Answer),
+    /// What is in a folder.
+    Folder(Listing),
+    /// Which recent files are not there.
+    Missing(HashSet<PathBuf>),
     /// Pipelines for what was changed on disk.
     Compiled(Reload, Result<(), String>),
     /// The f32 errors of the user's effects in a picture; none if the measurement was cancelled.
@@ -69,12 +86,13 @@ pub struct Jobs {
     ctx: egui::Context,
     sender: mpsc::Sender<Done>,
     receiver: mpsc::Receiver<Done>,
+    computing: Count,
 }
 
 impl Jobs {
     pub fn new(ctx: egui::Context) -> Self {
         let (sender, receiver) = mpsc::channel();
-        Self { ctx, sender, receiver }
+        Self { ctx, sender, receiver, computing: Count::default() }
     }
 
     /// The next finished piece of work, if any.
@@ -82,7 +100,22 @@ impl Jobs {
         self.receiver.try_recv().ok()
     }
 
+    /// True while a job keeps the processor busy: times that are measured meanwhile are not those of a picture at rest.
+    pub fn is_computing(&self) -> bool {
+        self.computing.is_any()
+    }
+
+    /// Starts work that keeps the processor busy.
     fn spawn(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
+        let computing = self.busy();
+        self.spawn_idle(name, move || {
+            let _computing = computing;
+            work()
+        });
+    }
+
+    /// Starts work that mostly waits.
+    fn spawn_idle(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
         let (sender, ctx) = (self.sender.clone(), self.ctx.clone());
         let started = std::thread::Builder::new().name(name.into()).spawn(move || {
             // The window may be closed by now; then the result is dropped.
@@ -190,18 +223,24 @@ impl Jobs {
         self.spawn("trade", || Done::Trade(caught("measuring the trade", work)));
     }
 
-    /// Draws the picture of a preset with the oracle, which needs no device.
-    pub fn thumbnail(&self, preset_file: PresetFile) {
+    /// Writes changes of the favorites.
+    pub fn write_favorites(&self, path: PathBuf, changes: Vec<favorites::Change>) {
+        self.spawn("favorites", move || Done::Favorites(caught("writing the favorites", || favorites::update(&path, &changes))));
+    }
+
+    /// Draws the picture of a preset with the oracle, which needs no device. Width and height are in pixels.
+    pub fn thumbnail(&self, preset_file: PresetFile, size: [u32; 2]) {
         self.spawn("thumbnail", move || {
-            let image = caught("drawing a thumbnail", || thumbnail(&preset_file).ok_or_else(String::new));
+            let image = caught("drawing a thumbnail", || thumbnail(&preset_file, size).ok_or_else(String::new));
             Done::Thumbnail(preset_file.id, image.ok())
         });
     }
 
-    /// Draws small pictures on the window's device and hands over one after another.
+    /// Draws small pictures on the device of the picture and hands over one after another.
     pub fn draw_cells(&self, gpu: Arc<Gpu>, cells: Cells) {
-        let (sender, ctx) = (self.sender.clone(), self.ctx.clone());
+        let (sender, ctx, computing) = (self.sender.clone(), self.ctx.clone(), self.busy());
         let work = move || {
+            let _computing = computing;
             let take = |of, picture| {
                 // The window may be closed by now; then the picture is dropped.
                 if sender.send(Done::Cell(of, picture)).is_ok() {
@@ -222,10 +261,21 @@ impl Jobs {
     }
 
     /// Draws the picture of a preset on the scene of `own` with the oracle.
-    pub fn thumbnail_on(&self, look: PresetFile, own: PresetFile, scene: Arc<Scene>) {
+    pub fn thumbnail_on(&self, look: PresetFile, own: PresetFile, scene: Arc<Scene>, size: [u32; 2]) {
         self.spawn("thumbnail", move || {
-            let image = caught("drawing a thumbnail", || thumbnail_on(&look, &own, &scene).ok_or_else(String::new));
+            let image = caught("drawing a thumbnail", || thumbnail_on(&look, &own, &scene, size).ok_or_else(String::new));
             Done::ThumbnailOn(SceneKey::of(&own), look.id, image.ok())
+        });
+    }
+
+    /// Draws the picture of an effect on the open model with the oracle.
+    pub fn effect_picture(&self, EffectPicture { effect, preset, scene, size, cancelled }: EffectPicture) {
+        self.spawn("effect picture", move || {
+            let draw = || match cancelled.load(Ordering::Relaxed) {
+                true => Err(String::new()),
+                false => thumbnail_of(&preset, &scene, size).ok_or_else(String::new),
+            };
+            Done::EffectPicture(effect, caught("drawing a picture of an effect", draw).ok())
         });
     }
 
@@ -254,30 +304,25 @@ impl Jobs {
         });
     }
 
-    /// Shows the system's file dialog.
-    pub fn ask_path(&self, purpose: Purpose, start: PathBuf) {
-        let mut dialog = rfd::AsyncFileDialog::new();
-        if let Some(folder) = start.parent().filter(|folder| folder.is_dir()) {
-            dialog = dialog.set_directory(folder);
-        }
-        let name = start.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        for (label, extensions) in filters(purpose) {
-            dialog = dialog.add_filter(*label, extensions);
-        }
-        let chosen: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match purpose {
-            Purpose::Open => Box::pin(dialog.pick_file()),
-            Purpose::SaveAs | Purpose::Export => Box::pin(dialog.set_file_name(name).save_file()),
-        };
-        self.spawn("file dialog", move || Done::Path(purpose, pollster::block_on(chosen).map(|file| file.path().to_owned())));
+    /// Counts work on another thread, which keeps the processor busy, for as long as what is returned exists.
+    pub fn busy(&self) -> Computing {
+        self.computing.add()
     }
-}
 
-/// File types of the system's dialog: names and extensions.
-const fn filters(purpose: Purpose) -> &'static [(&'static str, &'static [&'static str])] {
-    match purpose {
-        Purpose::Open => &[("Presets, models, pictures, effects", &["toml", "glb", "gltf", "png", "wgsl"])],
-        Purpose::SaveAs => &[("Presets", &["toml"])],
-        Purpose::Export => &[("Pictures", &["png"])],
+    /// Shows the system's file dialog.
+    pub fn ask_path(&self, purpose: Purpose, start: &Path) {
+        let show = system_dialog::prepare(purpose, start);
+        self.spawn_idle("file dialog", move || Done::Path(purpose, show()));
+    }
+
+    /// Reads what is in a folder.
+    pub fn list_folder(&self, folder: PathBuf) {
+        self.spawn_idle("folder", move || Done::Folder(Listing::read(&folder)));
+    }
+
+    /// Looks which of these files are not there.
+    pub fn find_missing(&self, files: Vec<PathBuf>) {
+        self.spawn_idle("recent files", move || Done::Missing(files.into_iter().filter(|file| !file.exists()).collect()));
     }
 }
 
@@ -313,31 +358,29 @@ fn reference_ids(scene: &Scene, view: &View, stack: &Stack, accuracy: &AccuracyR
     Ok(frame.triangle_id)
 }
 
-/// Size of a thumbnail in pixels; shown at half of it.
-pub const THUMBNAIL: [u32; 2] = [144, 108];
-
 /// A scene with more triangles gets no thumbnail: it would take too long.
 const THUMBNAIL_TRIANGLES: u64 = 400_000;
 
-fn thumbnail(preset_file: &PresetFile) -> Option<egui::ColorImage> {
+fn thumbnail(preset_file: &PresetFile, size: [u32; 2]) -> Option<egui::ColorImage> {
     let scene = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref()).ok()?;
-    thumbnail_of(&preset_file.preset, &scene)
+    thumbnail_of(&preset_file.preset, &scene, size)
 }
 
-fn thumbnail_on(look: &PresetFile, own: &PresetFile, scene: &Scene) -> Option<egui::ColorImage> {
+fn thumbnail_on(look: &PresetFile, own: &PresetFile, scene: &Scene, size: [u32; 2]) -> Option<egui::ColorImage> {
     let fit = match look.needs_fit() {
         true => Fit::between(&preset_file::scene_bounds(&look.scene_source(), None).ok()?, &scene.content_bounds()),
         false => None,
     };
     // The whole model is shown, so that the picture stays right when the camera moves.
-    thumbnail_of(&Preset { camera: None, ..look.landed_on(own, fit.as_ref()).preset }, scene)
+    thumbnail_of(&Preset { camera: None, ..look.landed_on(own, fit.as_ref()).preset }, scene, size)
 }
 
-fn thumbnail_of(preset: &Preset, scene: &Scene) -> Option<egui::ColorImage> {
+/// The picture of a preset on `scene`; none if the scene is too large or the preset cannot be drawn.
+fn thumbnail_of(preset: &Preset, scene: &Scene, size: [u32; 2]) -> Option<egui::ColorImage> {
     if scene.triangle_count() > THUMBNAIL_TRIANGLES {
         return None;
     }
-    let frame = oracle::render_scaled(scene, &preset.moments(scene, THUMBNAIL), preset.accuracy.scale().factor()).ok()?;
+    let frame = oracle::render_scaled(scene, &preset.moments(scene, size), preset.accuracy.scale().factor()).ok()?;
     let bytes: Vec<u8> = frame.color.concat();
     Some(egui::ColorImage::from_rgba_unmultiplied([frame.width as usize, frame.height as usize], &bytes))
 }

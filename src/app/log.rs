@@ -1,6 +1,6 @@
 //! Messages: all of them in the log, and the outcome of what the user just did as a toast too.
 
-use std::collections::VecDeque;
+use std::{collections::VecDeque, fs::File, io::Write as _, sync::Arc};
 
 use eframe::egui::Color32;
 
@@ -17,9 +17,9 @@ pub enum Level {
 impl Level {
     pub fn color(self) -> Color32 {
         match self {
-            Self::Info => theme::TEXT_WEAK,
-            Self::Warning => theme::AMBER,
-            Self::Error => theme::RED,
+            Self::Info => theme::text_weak(),
+            Self::Warning => theme::amber(),
+            Self::Error => theme::red(),
         }
     }
 
@@ -63,12 +63,29 @@ const ERROR_TOAST_S: f64 = 8.0;
 pub struct Log {
     entries: VecDeque<Entry>,
     toasts: Vec<Toast>,
+    /// Each message is appended to it as a line.
+    file: Option<Arc<File>>,
 }
 
 impl Log {
+    /// An empty log whose messages are appended to `file`.
+    pub fn kept_in(file: Option<Arc<File>>) -> Self {
+        Self { file, ..Self::default() }
+    }
+
+    fn keep(&mut self, level: Level, text: &str) {
+        let Some(mut file) = self.file.as_deref() else { return };
+        let line = format!("{}: {text}\n", level.word());
+        if let Err(error) = file.write_all(line.as_bytes()) {
+            self.file = None;
+            self.add(Level::Error, format!("The log is no longer kept in its file: {error}"));
+        }
+    }
+
     /// Logs a message. One that was logged before is counted and moves to the end.
     pub fn add(&mut self, level: Level, text: impl Into<String>) {
         let text = text.into();
+        self.keep(level, &text);
         let known = self.entries.iter().position(|entry| entry.level == level && entry.text == text);
         let count = known.and_then(|at| self.entries.remove(at)).map_or(1, |entry| entry.count.saturating_add(1));
         self.entries.push_back(Entry { level, text, count });
@@ -120,6 +137,27 @@ pub fn times(count: u32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_message_is_appended_to_the_file_of_the_log() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("window.log");
+        for run in 0..2 {
+            let file = File::options().create(true).append(true).open(&path).expect("a file");
+            let mut log = Log::kept_in(Some(Arc::new(file)));
+            log.add(Level::Info, "opened");
+            log.notify(Level::Error, "no such file", 0.0);
+            log.clear();
+            assert_eq!(std::fs::read_to_string(&path).expect("a file").lines().count(), 2 * (run + 1));
+        }
+        assert!(std::fs::read_to_string(&path).expect("a file").ends_with("info: opened\nerror: no such file\n"));
+        // A file that cannot be written is given up once, in words.
+        let read_only = File::open(&path).expect("a file");
+        let mut log = Log::kept_in(Some(Arc::new(read_only)));
+        log.add(Level::Info, "opened");
+        log.add(Level::Info, "closed");
+        assert_eq!(log.entries().filter(|entry| entry.text.contains("no longer kept")).count(), 1);
+    }
 
     #[test]
     fn a_repeated_message_is_counted_and_not_repeated() {

@@ -6,11 +6,12 @@
 use std::path::Path;
 
 use super::{
-    command::Manner,
+    command::{CodeUse, Manner},
     log::Level,
     opening::{Opening, Request},
     panels::{Panels, timeline::Timeline},
     scene_loader::SceneKey,
+    settings::last_session::Restored,
     state::State,
 };
 use crate::{
@@ -36,6 +37,7 @@ fn open_preset(state: &mut State, panels: &mut Panels, mut opened: PresetFile) {
         state.log.add(Level::Warning, remark);
     }
     opened.effects = opened.effects.joined(&state.folders.effects);
+    state.settings.recents.add_opened(&opened);
     state.session.open(opened);
     panels.timeline = Timeline::default();
     state.observe(false);
@@ -51,6 +53,19 @@ pub fn begin(state: &mut State, panels: &mut Panels, opened: PresetFile, manner:
     let manner = if lands { manner } else { Manner::WithScene };
     state.opening.waiting = Some(Request { opened: opened.into(), manner, said, loading: None });
     go_on(state, panels);
+}
+
+/// Opens what was open in the last session, with its unsaved edits. Code that it brings runs only if the user has allowed it.
+pub fn restore(state: &mut State, panels: &mut Panels, Restored { preset_file, filed }: Restored) {
+    let said = format!("Opened {} as it was", preset_file.title());
+    if !state.trust.allows(&preset_file, &state.folders.effects) {
+        return panels.dialogs.ask_code(preset_file.into(), CodeUse::Open(Manner::WithScene, said));
+    }
+    let key = SceneKey::of(&preset_file);
+    open_preset(state, panels, filed);
+    state.session.preset_file.preset = preset_file.preset;
+    state.opening.waiting = None;
+    state.opening.announced = Some((key, said));
 }
 
 /// Opens what waits, if everything that it needs has been read, or starts reading that.

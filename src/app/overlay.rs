@@ -39,23 +39,23 @@ const TABLE: [(Overlay, &str, &str, Color32); 11] = [
     ),
     (
         Overlay::NotReference,
-        "Differs from the reference",
-        "Another triangle than in the exact picture on the finest grid. This is what Trade counts; it includes the \
-         error of every coarser option",
+        "Wrong (true)",
+        "Another triangle than in the exact picture of the true positions, on the finest grid. The header and Trade count the same; \
+         it includes the error of snapping and of every other option",
         Color32::from_rgb(204, 156, 255),
     ),
     (Overlay::Doubles, "Drawn twice", "A triangle was drawn more often than it covers the sample", Color32::from_rgb(255, 233, 74)),
     (Overlay::Holes, "Holes", "A triangle covers the sample and was not drawn there", Color32::from_rgb(60, 225, 255)),
     (
         Overlay::WrongTriangle,
-        "Wrong triangle",
-        "Another triangle than the exact one, and no rounding that is allowed explains it",
+        "Wrong (snapped)",
+        "Another triangle than the oracle draws from the same snapped corners, and no rounding that is allowed explains it. The header counts the same",
         Color32::from_rgb(255, 64, 224),
     ),
     (
         Overlay::WrongDepth,
         "Wrong depth winner",
-        "The triangle covers the sample but is not the nearest. These pixels are wrong triangles too",
+        "The triangle covers the sample but is not the nearest. These pixels are wrong against the snapped corners too",
         Color32::from_rgb(255, 150, 48),
     ),
     (

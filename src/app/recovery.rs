@@ -1,10 +1,18 @@
-//! The preset that the window opens with, and saving it when the device is lost.
+//! The preset that the window opens with, and saving it when the device is lost. Settings and sessions: see `settings`.
 
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 
-use super::log::{Level, Log};
+use super::{
+    log::{Level, Log},
+    session::Session,
+    settings::{
+        keeper::{Keeper, Left},
+        last_session::Restored,
+    },
+    trust::Trust,
+};
 use crate::{
     preset::SceneSource,
     preset_file::{self, Folders, PresetFile},
@@ -13,9 +21,57 @@ use crate::{
 /// The preset of a window that was opened without one; it plays. A software driver draws it fast enough for that.
 pub const FIRST_PRESET: &str = "facet-random";
 
+/// What the window begins with.
+pub struct Start {
+    pub session: Session,
+    /// It is that of the last time.
+    pub is_restored: bool,
+    /// A preset that brings code which the user has not allowed yet.
+    pub brings_code: Option<PresetFile>,
+    /// What a crash left, to be asked about.
+    pub crashed: Option<Box<Restored>>,
+}
+
+/// What the window begins with: what it was asked to open, or the last session if it was asked for nothing. After a crash, and until the user
+/// has decided about code that a preset brings, the first preset is shown.
+pub fn start(
+    opened: Option<PresetFile>,
+    open: Option<&str>,
+    folders: &Folders,
+    (keeper, trust): (&Keeper, &Trust),
+    log: &mut Log,
+) -> Start {
+    let left = if opened.is_none() && open.is_none() { keeper.left(folders) } else { Left::Nothing };
+    let (mut filed, mut crashed) = (None, None);
+    let first = match left {
+        Left::Closed(restored) => {
+            restored.preset_file.remarks().into_iter().for_each(|remark| log.add(Level::Warning, remark));
+            filed = Some(restored.filed);
+            restored.preset_file
+        }
+        Left::Crashed(restored) => {
+            crashed = Some(restored);
+            first_preset(None, None, folders, log)
+        }
+        Left::Lost(reason) => {
+            log.notify(Level::Warning, format!("The last session cannot be opened again: {reason}"), 0.0);
+            first_preset(None, None, folders, log)
+        }
+        Left::Nothing => first_preset(opened, open, folders, log),
+    };
+    if !trust.allows(&first, &folders.effects) {
+        let session = Session::new(first_preset(None, None, folders, log));
+        return Start { session, is_restored: false, brings_code: Some(first), crashed };
+    }
+    let is_restored = filed.is_some();
+    let mut session = Session::new(filed.unwrap_or_else(|| first.clone()));
+    session.preset_file = first;
+    Start { session, is_restored, brings_code: None, crashed }
+}
+
 /// The preset to begin with: one that is open already, or `open`. If it cannot be opened, the error is logged and the teapot is
 /// shown.
-pub fn first_preset(opened: Option<PresetFile>, open: Option<&str>, folders: &Folders, log: &mut Log) -> PresetFile {
+fn first_preset(opened: Option<PresetFile>, open: Option<&str>, folders: &Folders, log: &mut Log) -> PresetFile {
     let what = open.unwrap_or(FIRST_PRESET);
     match opened.map_or_else(|| preset_file::open(what, folders), Ok) {
         Ok(mut preset_file) => {
@@ -38,7 +94,12 @@ pub fn first_preset(opened: Option<PresetFile>, open: Option<&str>, folders: &Fo
 
 /// The file that the preset is saved to when the device is lost.
 pub fn recovery_path() -> Option<PathBuf> {
-    Some(preset_file::user_folder()?.parent()?.join("recovery.toml"))
+    Some(config_folder()?.join("recovery.toml"))
+}
+
+/// The folder of the user's configuration of this program, with settings and session.
+pub fn config_folder() -> Option<PathBuf> {
+    Some(preset_file::user_folder()?.parent()?.to_owned())
 }
 
 /// Saves the preset for the next start. Returns in words whether that worked.

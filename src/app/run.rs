@@ -5,8 +5,10 @@ use anyhow::Context as _;
 use super::{
     device::native_options,
     log::Level,
+    loss::LossFlag,
     recovery::recovery_path,
-    window::{App, LossFlag, Options},
+    settings::{WindowPlace, keeper::read_settings},
+    window::{App, Options},
 };
 
 /// Lost devices after which the window is not opened again.
@@ -19,6 +21,9 @@ const MAX_LOSSES: u32 = 2;
 /// If there is no suitable device or no display, or [`DeviceLost`].
 pub fn run(options: Options) -> anyhow::Result<()> {
     let mut options = options;
+    // What is wrong with the settings is said in the log of the window, which reads them again.
+    let window =
+        options.config.as_deref().map_or_else(WindowPlace::default, |folder| read_settings(folder, &mut Vec::new(), false).0.window);
     for losses in 0..=MAX_LOSSES {
         let loss = LossFlag::default();
         let (flag, opened) = (loss.clone(), options.clone());
@@ -29,7 +34,7 @@ pub fn run(options: Options) -> anyhow::Result<()> {
             }
             Ok(Box::new(app))
         };
-        let closed = eframe::run_native("rasterlab", native_options(&options.adapter), Box::new(create));
+        let closed = eframe::run_native("rasterlab", native_options(&options.adapter, window), Box::new(create));
         if !loss.is_set() {
             return closed.map_err(|error| anyhow::anyhow!("{error}")).context("the window could not be opened");
         }

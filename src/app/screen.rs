@@ -1,62 +1,51 @@
-//! Screen: a picture in the window and the renderer that draws it. It draws only when an input has changed; after a failure
-//! the last good picture stays.
+//! Screen: a picture in the window and the thread that draws it. It draws only when an input has changed, and a few frames more at rest
+//! to measure them; after a failure the last good picture stays.
 
 use std::sync::Arc;
 
-use eframe::{egui_wgpu, wgpu};
+use eframe::{egui, egui_wgpu, wgpu};
 
-use super::blit::{Blit, Blitter};
+pub use super::inputs::Inputs;
+use super::{
+    blit::{Blit, Blitter},
+    device::Devices,
+    ending::EndingThreads,
+    picture_thread::{Drawn, Finished, Outcome, PictureThread},
+    timings::{Sample, Subject, Timings},
+};
 use crate::{
     accuracy::AccuracyOptions,
-    effects::Stack,
-    gpu::{Explanation, Gpu, RenderError, Renderer, Report},
+    gpu::{Explanation, Gpu, Report},
     plan::Plan,
-    preset::AccuracyRequest,
-    scene::{Scene, view::View},
 };
 
-/// Everything a picture depends on.
-#[derive(Clone, Debug)]
-pub struct Inputs {
-    pub scene: Arc<Scene>,
-    pub view: View,
-    pub stack: Stack,
-    pub accuracy: AccuracyRequest,
-}
-
-impl PartialEq for Inputs {
-    fn eq(&self, other: &Self) -> bool {
-        let Self { scene, view, stack, accuracy } = self;
-        Arc::ptr_eq(scene, &other.scene) && *view == other.view && *stack == other.stack && *accuracy == other.accuracy
-    }
-}
-
-/// Most redraws of the same inputs. A queue that overflowed has the right size after one or two.
-const MAX_REDRAWS: u32 = 6;
-
-/// Seconds after which a report that has not arrived is given up.
-const REPORT_TIMEOUT_S: f64 = 10.0;
-
-/// A picture in the window and the renderer that draws it.
+/// A picture in the window and the thread that draws it.
 pub struct Screen {
+    /// Draws the pictures.
     pub gpu: Arc<Gpu>,
-    renderer: Renderer,
+    devices: Devices,
+    ctx: egui::Context,
+    thread: PictureThread,
+    ending: Arc<EndingThreads>,
     blitter: Blitter,
     picture: Option<Picture>,
     /// The inputs that were requested last, at full size.
     requested: Option<Inputs>,
     divisor: u32,
-    /// What the newest picture was made from; smaller than requested while it moves on a slow adapter.
+    /// What the thread draws, or drew last; smaller than requested while it moves on a slow adapter.
+    ordered: Option<Inputs>,
+    /// The picture that was ordered is still to come.
+    is_waiting: bool,
+    /// It could not be drawn; it is not tried again until it changes.
+    has_failed: bool,
+    is_measuring: bool,
+    /// What the newest picture was made from.
     drawn: Option<Inputs>,
-    /// Inputs that could not be drawn; not tried again until they change.
-    refused: Option<Inputs>,
     report: Option<Report>,
+    options: Option<AccuracyOptions>,
+    plan: Option<Arc<Plan>>,
     explanation: Option<Explanation>,
-    waiting_since_s: Option<f64>,
-    redraws: u32,
-    /// The newest frame compiled pipelines, so its time does not count and one more frame is drawn.
-    cold: bool,
-    draws: u64,
+    timings: Timings,
 }
 
 /// What the window shows.
@@ -67,50 +56,64 @@ struct Picture {
 }
 
 impl Screen {
-    pub fn new(window: &egui_wgpu::RenderState, gpu: Arc<Gpu>) -> Self {
-        Self::with(gpu, Blitter::new(window))
+    pub fn new(window: &egui_wgpu::RenderState, devices: Devices, ctx: egui::Context) -> Self {
+        Self::with(devices, Blitter::new(window), ctx, Arc::default())
     }
 
-    fn with(gpu: Arc<Gpu>, blitter: Blitter) -> Self {
+    fn with(devices: Devices, blitter: Blitter, ctx: egui::Context, ending: Arc<EndingThreads>) -> Self {
         Self {
-            renderer: Renderer::new(gpu.clone()),
-            gpu,
+            thread: PictureThread::start(devices.picture.clone(), devices.window.clone(), ctx.clone(), ending.clone()),
+            ending,
+            gpu: devices.picture.clone(),
+            devices,
+            ctx,
             blitter,
             picture: None,
             requested: None,
             divisor: 1,
+            ordered: None,
+            is_waiting: false,
+            has_failed: false,
+            is_measuring: false,
             drawn: None,
-            refused: None,
             report: None,
+            options: None,
+            plan: None,
             explanation: None,
-            waiting_since_s: None,
-            redraws: 0,
-            cold: false,
-            draws: 0,
+            timings: Timings::default(),
         }
     }
 
     /// A second screen on the same device, for another picture in the same window.
     pub fn sibling(&self) -> Self {
-        let Self { gpu, blitter, .. } = self;
-        Self::with(gpu.clone(), blitter.clone())
+        Self::with(self.devices.clone(), self.blitter.clone(), self.ctx.clone(), self.ending.clone())
     }
 
     /// Draws the next picture with the shaders as they are now, and again if the last one could not be drawn.
     pub fn reload_shaders(&mut self) {
-        self.renderer = Renderer::new(self.gpu.clone());
-        (self.drawn, self.refused, self.waiting_since_s) = (None, None, None);
+        self.thread.reload_shaders();
+        self.ordered = None;
+        (self.is_waiting, self.has_failed, self.is_measuring) = (false, false, false);
     }
 
-    /// True if the device was lost. Polls it, since nothing else does while nothing is drawn.
+    /// True if a device was lost. Asks the window's, since nothing else does while nothing is drawn.
     pub fn is_lost(&self) -> bool {
-        let _ = self.gpu.device.poll(wgpu::PollType::Poll);
-        self.gpu.is_lost()
+        let _ = self.devices.window.device.poll(wgpu::PollType::Poll);
+        if !Arc::ptr_eq(&self.gpu, &self.devices.window) {
+            // Asked here, the device could keep the window waiting.
+            self.thread.check_device();
+        }
+        self.gpu.is_lost() || self.devices.window.is_lost()
+    }
+
+    /// The first error of a device that no scope caught, since the last call.
+    pub fn take_error(&self) -> Option<String> {
+        self.gpu.take_error().or_else(|| self.devices.window.take_error())
     }
 
     /// Number of frames dispatched so far.
     pub fn draws(&self) -> u64 {
-        self.draws
+        self.thread.draws()
     }
 
     /// The newest picture and its size in pixels.
@@ -121,7 +124,7 @@ impl Screen {
     /// How the newest picture differs from another screen's, times `gain`.
     pub fn difference(&self, other: &Self, gain: u8) -> Option<Blit> {
         let views = [&self.picture.as_ref()?.view, &other.picture.as_ref()?.view];
-        Some(self.blitter.difference(&self.gpu.device, views, gain))
+        Some(self.blitter.difference(&self.devices.window.device, views, gain))
     }
 
     /// The inputs that were requested last, at full size; none before the first.
@@ -134,19 +137,24 @@ impl Screen {
         self.drawn.as_ref()
     }
 
-    /// Times and counters of the newest finished frame.
+    /// Times and counters of the newest frame whose inputs had changed.
     pub fn report(&self) -> Option<&Report> {
         self.report.as_ref()
     }
 
+    /// The times of its frames.
+    pub fn timings(&self) -> &Timings {
+        &self.timings
+    }
+
     /// The accuracy options of the newest picture's kernel.
     pub fn options(&self) -> Option<AccuracyOptions> {
-        self.renderer.key().map(|key| key.options)
+        self.options
     }
 
     /// The plan of the newest picture.
     pub fn plan(&self) -> Option<&Plan> {
-        self.renderer.plan()
+        self.plan.as_deref()
     }
 
     /// What the newest picture ran, and why.
@@ -156,12 +164,40 @@ impl Screen {
 
     /// True if the requested picture was tried and could not be drawn.
     pub fn is_refused(&self) -> bool {
-        self.refused.is_some() && self.refused == self.requested
+        self.has_failed
     }
 
-    /// True while a report is still to come; the window must be shown again soon.
+    /// True while the requested picture is still to come.
     pub fn is_waiting(&self) -> bool {
-        self.waiting_since_s.is_some()
+        self.is_waiting
+    }
+
+    /// True while a picture is still to come that differs by more than its moment from the one that is shown. While a preset plays, the
+    /// requested picture is always still to come.
+    pub fn is_awaited(&self, is_playing: bool) -> bool {
+        let is_shown = || self.drawn.as_ref().zip(self.ordered.as_ref()).is_some_and(|(drawn, ordered)| drawn.shares_kernels(ordered));
+        self.is_waiting && !(is_playing && is_shown())
+    }
+
+    /// True while the picture is drawn again to be measured.
+    pub fn is_measuring(&self) -> bool {
+        self.is_measuring
+    }
+
+    /// What is compiled for the requested picture, in words; none while nothing is.
+    pub fn compiling(&self) -> Option<String> {
+        let ordered = self.ordered.as_ref().filter(|_| self.is_waiting && self.thread.is_compiling())?;
+        let new = ordered.new_effects(self.drawn.as_ref());
+        Some(match &new[..] {
+            [] => "Compiling kernels…".into(),
+            [one] => format!("Compiling {one}…"),
+            [first @ .., last] => format!("Compiling {} and {last}…", first.join(", ")),
+        })
+    }
+
+    /// Holds the thread when it is next about to compile, or lets it go on. For tests.
+    pub fn hold_compiling(&self, is_held: bool) {
+        self.thread.hold_compiling(is_held);
     }
 
     /// Full pixels per drawn pixel along a side; above 1 while the picture moves on a slow adapter.
@@ -169,80 +205,83 @@ impl Screen {
         self.divisor
     }
 
-    /// Draws `requested` at its size over `divisor`, unless that is what the picture shows or what could not be drawn.
-    ///
-    /// # Errors
-    /// If the scene or the effects cannot be drawn on this device.
-    pub fn show(&mut self, requested: Inputs, divisor: u32, now_s: f64) -> Result<(), RenderError> {
-        let mut inputs = requested.clone();
-        // The same frustum on fewer pixels, so that nothing jumps when the motion ends.
-        inputs.view.width = inputs.view.width.div_ceil(divisor);
-        inputs.view.height = inputs.view.height.div_ceil(divisor);
+    /// Has `requested` drawn at its size over `divisor`, unless that is what the picture shows or what could not be drawn.
+    pub fn show(&mut self, requested: Inputs, divisor: u32) {
+        let inputs = requested.reduced(divisor);
         (self.requested, self.divisor) = (Some(requested), divisor);
-        if self.drawn.as_ref() == Some(&inputs) || self.refused.as_ref() == Some(&inputs) {
-            return Ok(());
-        }
-        self.redraws = 0;
-        self.draw(&inputs, now_s)
-    }
-
-    fn draw(&mut self, inputs: &Inputs, now_s: f64) -> Result<(), RenderError> {
-        let compiled = self.renderer.compiled();
-        let drawn = self.dispatch(inputs);
-        self.cold = self.renderer.compiled() > compiled;
-        if drawn.is_err() {
-            self.refused = Some(inputs.clone());
-            return drawn;
-        }
-        self.refused = None;
-        self.drawn = Some(inputs.clone());
-        self.draws += 1;
-        self.waiting_since_s = self.renderer.is_pending().then_some(now_s);
-        self.explanation = Some(self.renderer.explain());
-        self.register([inputs.view.width, inputs.view.height]);
-        Ok(())
-    }
-
-    fn dispatch(&mut self, Inputs { scene, view, stack, accuracy }: &Inputs) -> Result<(), RenderError> {
-        self.renderer.set_scene(scene)?;
-        self.renderer.draw(view, stack, accuracy)
-    }
-
-    /// Gives the renderer's texture to the window, unless the window has it already.
-    fn register(&mut self, size: [u32; 2]) {
-        let Some(view) = self.renderer.texture_view() else { return };
-        if let Some(picture) = self.picture.as_mut().filter(|picture| picture.view == *view) {
-            picture.size = size;
+        if self.ordered.as_ref() == Some(&inputs) {
             return;
         }
-        let blit = self.blitter.blit(&self.gpu.device, view);
-        self.picture = Some(Picture { blit, view: view.clone(), size });
+        (self.is_waiting, self.has_failed, self.is_measuring) = (true, false, false);
+        self.timings.change();
+        self.ordered = Some(inputs.clone());
+        self.thread.draw(inputs);
     }
 
-    /// Takes a report that has arrived, without waiting; draws again if a queue had overflowed and has grown.
+    /// Forgets what was measured of another preset, or at another size.
+    pub fn reset_timings(&mut self) {
+        self.timings.reset();
+    }
+
+    /// True if the picture shows what was requested, at full size, and its cost is not known.
+    pub fn needs_measuring(&self) -> bool {
+        let is_drawn = self.requested.is_some() && self.drawn == self.requested && self.picture.is_some();
+        is_drawn && !self.is_waiting && !self.has_failed && self.gpu.caps.timestamps && !self.timings.is_settled()
+    }
+
+    /// Has the picture drawn again until its cost is known, if that is needed.
+    pub fn measure(&mut self) {
+        if self.needs_measuring()
+            && !self.is_measuring
+            && let Some(drawn) = &self.drawn
+        {
+            self.thread.measure(drawn.clone());
+            self.is_measuring = true;
+        }
+    }
+
+    /// Takes what the thread has finished, without waiting.
     ///
     /// # Errors
-    /// If that draw fails.
-    pub fn poll(&mut self, now_s: f64) -> Result<(), RenderError> {
-        let Some(since_s) = self.waiting_since_s else { return Ok(()) };
-        let Some(report) = self.renderer.report() else {
-            if now_s - since_s > REPORT_TIMEOUT_S {
-                self.waiting_since_s = None;
+    /// If the requested picture could not be drawn, in a sentence for people.
+    pub fn poll(&mut self) -> Result<(), String> {
+        let mut refused = Ok(());
+        while let Some(Finished { inputs, outcome }) = self.thread.next() {
+            let is_newest = self.ordered.as_ref() == Some(&inputs);
+            match outcome {
+                Outcome::Drawn(drawn, asked_at) => {
+                    self.is_waiting &= !is_newest || drawn.is_partial;
+                    self.take(inputs, *drawn, asked_at.elapsed().as_secs_f64() * 1e3);
+                }
+                Outcome::Refused(error) if is_newest => {
+                    (self.is_waiting, self.has_failed, self.is_measuring) = (false, true, false);
+                    refused = Err(error);
+                }
+                Outcome::Measured(samples) if is_newest && !self.is_waiting => {
+                    self.is_measuring = false;
+                    self.timings.settle(samples);
+                }
+                Outcome::Refused(_) | Outcome::Measured(_) => {}
             }
-            return Ok(());
-        };
-        let again = report.simulation_pending || (report.redraw || self.cold) && self.redraws < MAX_REDRAWS;
-        self.report = Some(report);
-        if self.renderer.is_pending() {
-            return Ok(());
         }
-        self.waiting_since_s = None;
-        match self.drawn.clone() {
-            Some(inputs) if again => {
-                self.redraws += 1;
-                self.draw(&inputs, now_s)
+        refused
+    }
+
+    /// Shows a finished picture.
+    fn take(&mut self, inputs: Inputs, drawn: Drawn, latency_ms: f64) {
+        let Drawn { view, size, report, options, plan, explanation, is_compiled, .. } = drawn;
+        if let Some(view) = view {
+            match self.picture.as_mut().filter(|picture| picture.view == view) {
+                Some(picture) => picture.size = size,
+                None => {
+                    let blit = self.blitter.blit(&self.devices.window.device, &view);
+                    self.picture = Some(Picture { blit, view, size });
+                }
             }
-            _ => Ok(()),
         }
+        let sample = report.as_ref().and_then(Sample::of);
+        self.timings.drawn(Subject { size, kernel: explanation.key.clone() }, sample, is_compiled, latency_ms);
+        self.report = report.or(self.report.take());
+        (self.drawn, self.options, self.plan, self.explanation) = (Some(inputs), options, plan, Some(explanation));
     }
 }

@@ -13,7 +13,7 @@ use crate::{
     effects::{Effect, Stack},
     params::Field,
     preset::{Fit, LengthUnit, Preset, rebind::Replaced},
-    preset_file::PresetFile,
+    preset_file::{Look, PresetFile},
     scene::{
         Scene,
         camera::{Camera, Projection},
@@ -131,6 +131,32 @@ impl Session {
     /// Remembers how a file is now, after it was read or written.
     pub fn remember(&mut self, preset_file: PresetFile) {
         self.files.insert(FileId::of(&preset_file), preset_file);
+    }
+
+    /// The presets that were opened or saved since the start.
+    pub fn file_ids(&self) -> impl Iterator<Item = &FileId> {
+        self.files.keys()
+    }
+
+    /// A preset that was opened or saved since the start, as its file has it.
+    pub fn filed(&self, id: &FileId) -> Option<&PresetFile> {
+        self.files.get(id)
+    }
+
+    /// The preset that was `before` has another file, which is now as `after`. The changes of the open preset stay.
+    pub fn refile(&mut self, before: &FileId, after: PresetFile) {
+        self.files.remove(before);
+        let landed = self.files.values_mut().chain([&mut self.preset_file]).filter_map(|landed| landed.look.as_mut());
+        for look in landed.filter(|look| look.id == before.id && look.path == before.path) {
+            *look = Look { id: after.id.clone(), path: after.path.clone(), title: after.title().to_owned() };
+        }
+        if FileId::of(&self.preset_file) == *before {
+            let mut preset = std::mem::take(&mut self.preset_file.preset);
+            preset.name.clone_from(&after.preset.name);
+            self.preset_file = after.clone();
+            self.preset_file.preset = preset;
+        }
+        self.remember(after);
     }
 
     /// True if the preset differs from its file. A preset without a file does not until it is edited.

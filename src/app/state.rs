@@ -1,10 +1,11 @@
 //! The state of the window besides its panels: the session, its history, the picture, and what several panels share.
 //! Panels read it; only `App` changes it.
 
-use std::sync::Arc;
+use std::{collections::HashSet, path::PathBuf, sync::Arc};
 
 use super::{
     command::{Marker, Picking},
+    favorites::Favorites,
     findings::Findings,
     history::History,
     jobs::Jobs,
@@ -15,27 +16,14 @@ use super::{
     precision::PrecisionState,
     screen::Screen,
     session::{Session, UndoState},
+    settings::{OpenPanels, Settings},
     trust::Trust,
     verification::Verification,
 };
-use crate::{measure::ErrorReport, preset_file::Folders};
-
-/// Which panels and windows are open.
-#[derive(Clone, Copy, Debug)]
-pub struct OpenPanels {
-    pub left: bool,
-    pub right: bool,
-    pub timeline: bool,
-    pub trade: bool,
-    pub log: bool,
-    pub cheat_sheet: bool,
-}
-
-impl Default for OpenPanels {
-    fn default() -> Self {
-        Self { left: true, right: true, timeline: true, trade: false, log: false, cheat_sheet: false }
-    }
-}
+use crate::{
+    measure::ErrorReport,
+    preset_file::{Folders, SavedValues, Trashed},
+};
 
 /// What copy and paste apply to.
 #[derive(Clone, Debug, Default)]
@@ -55,6 +43,11 @@ pub struct State {
     /// Effects that came inside presets and may run.
     pub trust: Trust,
     pub session: Session,
+    pub favorites: Favorites,
+    /// Files that were moved to the trash since the start, the newest last.
+    pub deleted: Vec<Trashed>,
+    /// Saved values of effects.
+    pub values: Vec<SavedValues>,
     pub history: History<UndoState>,
     /// The preset that is being opened.
     pub opening: Opening,
@@ -71,8 +64,15 @@ pub struct State {
     pub clipboard: Clipboard,
     pub log: Log,
     pub open: OpenPanels,
+    pub settings: Settings,
+    /// Recent files that are not there.
+    pub missing_files: HashSet<PathBuf>,
+    /// The session comes back at the next start.
+    pub keeps_session: bool,
     /// The user agreed to quit without saving.
     pub may_quit: bool,
+    /// The unsaved edits come back at the next start, although the window closes.
+    pub keeps_edits: bool,
     /// Time of this frame, seconds since the start.
     pub now_s: f64,
 }

@@ -17,6 +17,8 @@ struct Judgement {
     work: Arc<Work>,
     pixels: f64,
     began: Instant,
+    /// It is of a preset or a size that is not shown any more.
+    is_outdated: bool,
 }
 
 /// Stages of a judgement: the oracle's, and before and after them the drawing and the reference picture.
@@ -77,17 +79,18 @@ impl Verification {
     /// A judgement of a picture of so many pixels begins. Returns what cancels it.
     pub fn start(&mut self, pixels: f64) -> Arc<Work> {
         let work = Arc::new(Work::default());
-        self.running.push(Judgement { work: work.clone(), pixels, began: Instant::now() });
+        self.running.push(Judgement { work: work.clone(), pixels, began: Instant::now(), is_outdated: false });
         work
     }
 
-    /// A judgement ended.
-    pub fn ended(&mut self, work: &Arc<Work>) {
-        let Some(at) = self.running.iter().position(|judgement| Arc::ptr_eq(&judgement.work, work)) else { return };
-        let Judgement { pixels, began, .. } = self.running.remove(at);
+    /// A judgement ended. Returns false if it is of a preset or a size that is not shown any more.
+    pub fn ended(&mut self, work: &Arc<Work>) -> bool {
+        let Some(at) = self.running.iter().position(|judgement| Arc::ptr_eq(&judgement.work, work)) else { return false };
+        let Judgement { pixels, began, is_outdated, .. } = self.running.remove(at);
         if !work.is_canceled() && pixels > 0.0 {
             self.s_per_pixel = Some(began.elapsed().as_secs_f64() / pixels);
         }
+        !is_outdated
     }
 
     /// Ends every judgement at its next row.
@@ -95,9 +98,16 @@ impl Verification {
         self.running.iter().for_each(|judgement| judgement.work.cancel());
     }
 
+    /// Forgets the verdict, because another preset or another size is shown, and ends the judgements under way.
+    pub fn reset(&mut self) {
+        self.verdict = None;
+        self.cancel();
+        self.running.iter_mut().for_each(|judgement| judgement.is_outdated = true);
+    }
+
     /// How far the oldest judgement is; none while there is none.
     pub fn progress(&self) -> Option<Progress> {
-        let Judgement { work, pixels, began } = self.running.first()?;
+        let Judgement { work, pixels, began, .. } = self.running.first()?;
         Some(Progress::new(work.stage(), began.elapsed().as_secs_f64(), self.s_per_pixel.map(|each_s| each_s * pixels)))
     }
 
@@ -135,5 +145,16 @@ mod tests {
         assert!(verification.is_running() && verification.s_per_pixel.is_none());
         verification.ended(&second);
         assert!(!verification.is_running() && verification.progress().is_none());
+    }
+
+    #[test]
+    fn a_judgement_of_what_is_not_shown_any_more_is_canceled_and_does_not_count() {
+        let mut verification = Verification::default();
+        let before = verification.start(100.0);
+        verification.reset();
+        assert!(before.is_canceled());
+        let after = verification.start(100.0);
+        assert!(!verification.ended(&before), "it may have ended before it saw that it was canceled");
+        assert!(verification.ended(&after));
     }
 }

@@ -1,46 +1,44 @@
 //! The window: its state and its panels, and what happens in a frame.
 
-use std::sync::{
-    Arc,
-    atomic::{AtomicBool, Ordering},
-};
+use std::{collections::HashSet, path::PathBuf, sync::Arc, time::Duration};
 
 use eframe::egui::{self, Ui, ViewportCommand};
 
 use super::{
     apply,
     command::{CodeUse, Commands, Manner},
-    device,
+    device::{self, Devices},
+    escape::escape,
+    favorites::Favorites,
     finished::finish,
     history::History,
     input,
     jobs::Jobs,
     live::Live,
     log::{Level, Log},
+    loss::LossFlag,
     open,
     opening::Opening,
     overlay::OverlaySelection,
     panel::Panel,
     panels::{Panels, log::toasts_ui},
+    pointer_frames::PointerFrames,
     precision::{PrecisionState, REST_S},
     recovery, reload,
     scene_loader::SceneKey,
     screen::Screen,
-    session::Session,
-    state::{Clipboard, OpenPanels, State},
+    settings::{keeper::Keeper, recents::Recents},
+    state::{Clipboard, State},
     theme,
     trust::Trust,
     typing::HeldTyping,
+    ui_frames::UiFrames,
     verification::Verification,
     watch::Watcher,
 };
 use crate::{
-    accuracy::RenderScale,
-    gpu::{Gpu, device::AdapterChoice},
-    measure::ErrorReport,
-    preset::Preset,
-    preset_file::{Folders, PresetFile},
-    scene::view::View,
+    gpu::device::AdapterChoice,
+    preset_file::{self, Folders, PresetFile},
 };
 
 /// How the window is opened.
@@ -51,128 +49,37 @@ pub struct Options {
     /// What `open` names, where it has been read, perhaps with changes.
     pub opened: Option<PresetFile>,
     pub adapter: AdapterChoice,
-    /// The window's device with the pipelines that were compiled for it before; none before the first window.
-    pub gpu: Option<Arc<Gpu>>,
+    /// The window's devices with the pipelines that were compiled for them before; none before the first window.
+    pub devices: Option<Devices>,
     /// Where presets and effects are, beside the user's own presets.
     pub folders: Folders,
     /// A new effect is opened in the user's editor.
     pub opens_editor: bool,
+    /// The folder where settings and session are kept; none keeps nothing.
+    pub config: Option<PathBuf>,
+    /// The file that messages of the log are appended to.
+    pub log: Option<Arc<std::fs::File>>,
 }
 
-/// Set when the window closes because its device was lost.
-#[derive(Clone, Debug, Default)]
-pub struct LossFlag(Arc<AtomicBool>);
-
-impl LossFlag {
-    pub fn set(&self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-
-    pub fn is_set(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
-    }
-}
+/// Most seconds between two frames of the window while a preset plays.
+const PLAY_STEP_S: f32 = 1.0 / 30.0;
 
 /// The whole window.
 pub struct App {
-    state: State,
-    panels: Panels,
+    pub(super) state: State,
+    pub(super) panels: Panels,
     commands: Commands,
     /// What was typed while a dialog opened.
     typing: HeldTyping,
-    loss: LossFlag,
+    /// A text field had the focus when the last frame ended.
+    was_typing: bool,
+    pub(super) keeper: Keeper,
+    /// The recent files that were looked for, and whether the window had the focus then.
+    pub(super) looked_for: (Recents, bool),
+    pub(super) loss: LossFlag,
+    /// When the time was last advanced, while the preset plays.
+    played_at_s: Option<f64>,
     title: String,
-}
-
-/// What tests read.
-impl App {
-    /// The open preset with its file.
-    pub fn preset_file(&self) -> &PresetFile {
-        &self.state.session.preset_file
-    }
-
-    /// The open preset, to be changed as a panel would change it.
-    pub fn preset_mut(&mut self) -> &mut Preset {
-        self.state.session.preset_mut()
-    }
-
-    /// The time that is shown, seconds.
-    pub fn shown_time_s(&self) -> f64 {
-        self.state.session.shown_time_s()
-    }
-
-    /// Frames drawn so far; unchanged while nothing changes.
-    pub fn draws(&self) -> u64 {
-        self.state.screen.draws()
-    }
-
-    /// Number of steps that undo can take back.
-    pub fn undo_steps(&self) -> usize {
-        self.state.history.steps()
-    }
-
-    /// True if the picture shows the preset and nothing is still to come.
-    pub fn is_idle(&self) -> bool {
-        let State { session, screen, verification, .. } = &self.state;
-        let Panels { viewport, trade, browser, film, .. } = &self.panels;
-        let is_shown =
-            !self.state.opening.is_waiting() && !session.scenes.is_loading() && session.scene().is_some() && !screen.is_waiting();
-        let is_judged = !verification.is_running() && self.state.overlays_are_ready();
-        is_shown
-            && is_judged
-            && !self.state.precision.is_running()
-            && !self.state.live.is_busy()
-            && !viewport.compare.is_waiting()
-            && !trade.is_measuring()
-            && !film.is_exporting()
-            && !browser.is_busy()
-            && !self.panels.randomize.is_drawing()
-            && !self.panels.sweep.is_drawing()
-    }
-
-    /// True if there is a picture, even one of an earlier preset.
-    pub fn has_picture(&self) -> bool {
-        self.state.screen.picture().is_some()
-    }
-
-    /// The log as text.
-    pub fn log_text(&self) -> String {
-        self.state.log.to_text()
-    }
-
-    /// The view that a picture of `size` pixels shows; none while there is no scene.
-    pub fn view(&self, size: [u32; 2]) -> Option<View> {
-        self.state.session.scene().map(|scene| self.state.session.view_at(scene, size))
-    }
-
-    pub fn gpu(&self) -> &Arc<Gpu> {
-        &self.state.screen.gpu
-    }
-
-    /// How many pixels are drawn for one that is shown, with automatic anti-aliasing; none before the first picture.
-    pub fn drawn_scale(&self) -> Option<RenderScale> {
-        self.state.screen.requested().map(|inputs| inputs.accuracy.scale())
-    }
-
-    /// The measured error of the picture that is drawn; none if it was not measured.
-    pub fn accuracy(&self) -> Option<&ErrorReport> {
-        self.state.accuracy()
-    }
-
-    /// Position of the comparison's divider, as a fraction of the picture's width; none unless the wipe is open.
-    pub fn wipe_split(&self) -> Option<f32> {
-        self.panels.viewport.compare.wipe_split()
-    }
-
-    /// Number of pictures of the newest sweep that are drawn.
-    pub fn sweep_pictures(&self) -> usize {
-        self.panels.sweep.pictures()
-    }
-
-    /// Number of points of the newest measurement of the panel Trade.
-    pub fn trade_points(&self) -> usize {
-        self.panels.trade.points()
-    }
 }
 
 impl App {
@@ -189,25 +96,36 @@ impl App {
     /// # Errors
     /// If the window has no wgpu device.
     pub fn with_loss_flag(cc: &eframe::CreationContext<'_>, options: Options, loss: LossFlag) -> anyhow::Result<Self> {
-        theme::apply(&cc.egui_ctx);
-        let (window, gpu) = device::adopt(cc, options.gpu)?;
-        let mut log = Log::default();
-        let opened = recovery::first_preset(options.opened, options.open.as_deref(), &options.folders, &mut log);
-        let summary = &gpu.summary;
+        let ctx = &cc.egui_ctx;
+        theme::apply(ctx);
+        ctx.add_plugin(PointerFrames::default());
+        ctx.add_plugin(UiFrames::default());
+        ctx.options_mut(|options| options.zoom_with_keyboard = false); // The table of actions has these keys.
+        let (window, devices) = device::adopt(cc, options.devices)?;
+        let mut log = Log::kept_in(options.log);
+        let (keeper, settings, remarks) = Keeper::new(options.config);
+        remarks.into_iter().for_each(|remark| log.add(Level::Warning, remark));
+        settings.theme.choose(ctx);
+        ctx.set_zoom_factor(settings.scale);
+        let summary = &devices.picture.summary;
         log.add(Level::Info, format!("adapter: {}, {}, {}", summary.name, summary.backend, summary.driver));
         let mut panels = Panels::new(&options.folders);
+        panels.browser.show(settings.browsing);
         let trust = Trust::default();
-        let opened = if trust.allows(&opened, &options.folders.effects) {
-            opened
-        } else {
-            // Until the user decides, a preset without code is shown.
-            let said = format!("Opened {}", opened.title());
-            panels.dialogs.ask_code(opened.into(), CodeUse::Open(Manner::WithScene, said));
-            recovery::first_preset(None, None, &options.folders, &mut log)
-        };
-        let mut session = Session::new(opened);
+        let start = recovery::start(options.opened, options.open.as_deref(), &options.folders, (&keeper, &trust), &mut log);
+        if let Some(brings) = start.brings_code {
+            let said = format!("Opened {}", brings.title());
+            panels.dialogs.ask_code(brings.into(), CodeUse::Open(Manner::WithScene, said));
+        }
+        if let Some(crashed) = start.crashed {
+            panels.dialogs.ask_restore(crashed);
+        }
+        let mut session = start.session;
         // The start preset plays; a preset that the user named does not.
-        session.playback.playing = options.open.is_none() && session.preset().is_moving();
+        session.playback.playing = options.open.is_none() && !start.is_restored && session.preset().is_moving();
+        let (favorites, fault) = Favorites::load(options.folders.user.as_deref());
+        fault.into_iter().for_each(|fault| log.notify(Level::Warning, fault, 0.0));
+        let values = options.folders.effect_values().map_or_else(Vec::new, |folder| preset_file::saved_values(&folder));
         Ok(Self {
             panels,
             state: State {
@@ -217,8 +135,11 @@ impl App {
                 history: History::new(session.undo_state()),
                 opening: Opening::default(),
                 session,
+                favorites,
+                deleted: Vec::new(),
+                values,
                 jobs: Jobs::new(cc.egui_ctx.clone()),
-                screen: Screen::new(&window, gpu),
+                screen: Screen::new(&window, devices, cc.egui_ctx.clone()),
                 verification: Verification::default(),
                 overlays: OverlaySelection::default(),
                 precision: PrecisionState::default(),
@@ -226,13 +147,21 @@ impl App {
                 picking: None,
                 clipboard: Clipboard::default(),
                 log,
-                open: OpenPanels::default(),
+                open: settings.open,
+                settings,
+                missing_files: HashSet::new(),
+                keeps_session: keeper.keeps_session(),
                 may_quit: false,
+                keeps_edits: false,
                 now_s: 0.0,
             },
             commands: Commands::default(),
             typing: HeldTyping::default(),
+            was_typing: false,
+            keeper,
+            looked_for: (Recents::default(), false),
             loss,
+            played_at_s: None,
             title: String::new(),
         })
     }
@@ -284,10 +213,19 @@ impl App {
 
     /// Advances the time while the preset plays.
     fn play(&mut self, ctx: &egui::Context) {
-        if self.state.session.playback.playing {
+        let State { session, screen, now_s, .. } = &mut self.state;
+        if !session.playback.playing {
+            self.played_at_s = None;
+            return;
+        }
+        let before_s = self.played_at_s.replace(*now_s);
+        session.advance(before_s.map_or(0.0, |before_s| *now_s - before_s));
+        // A software adapter draws the window on the processor that draws the picture, so the window does not run ahead of it. A finished
+        // picture repaints.
+        if screen.gpu.summary.software && screen.is_waiting() {
+            ctx.request_repaint_after_secs(PLAY_STEP_S);
+        } else {
             ctx.request_repaint();
-            let passed_s = f64::from(ctx.input(|i| i.stable_dt));
-            self.state.session.advance(passed_s);
         }
     }
 
@@ -301,18 +239,22 @@ impl App {
     }
 
     /// Starts drawing a thumbnail when nothing more urgent needs the processor.
-    fn request_thumbnail(&mut self) {
-        if self.state.session.scenes.is_loading() || self.state.screen.is_waiting() {
+    fn request_thumbnail(&mut self, ctx: &egui::Context) {
+        let (screen, is_playing) = (&self.state.screen, self.state.session.playback.playing);
+        if self.state.session.scenes.is_loading() || screen.is_awaited(is_playing) || (!is_playing && screen.needs_measuring()) {
             return;
         }
-        if let Some(next) = self.panels.browser.next_thumbnail() {
-            return self.state.jobs.thumbnail(next);
+        let browser = &mut self.panels.browser;
+        if let Some((next, size)) = browser.next_thumbnail(ctx) {
+            return self.state.jobs.thumbnail(next, size);
         }
         let own = &self.state.session.preset_file;
         let key = SceneKey::of(own);
         let Some(scene) = self.state.session.scenes.shown_for(&key) else { return };
-        if let Some(next) = self.panels.browser.next_on_model(&key) {
-            self.state.jobs.thumbnail_on(next, own.clone(), scene.clone());
+        if let Some((next, size)) = browser.next_on_model(ctx, &key) {
+            self.state.jobs.thumbnail_on(next, own.clone(), scene.clone(), size);
+        } else if let Some(next) = browser.effects.next_picture(ctx, &self.state.session) {
+            self.state.jobs.effect_picture(next);
         }
     }
 
@@ -322,7 +264,7 @@ impl App {
         let Some(requested) = screen.requested() else { return };
         let rest_s = precision.rest_s(requested, *now_s);
         let is_known = precision.is_running() || precision.of(Some(requested)).is_some() || precision.has_failed(Some(requested));
-        let is_busy = is_held || session.playback.playing || screen.is_waiting() || verification.is_running();
+        let is_busy = is_held || session.playback.playing || screen.is_waiting() || screen.is_measuring() || verification.is_running();
         let is_used = requested.stack.0.iter().any(|enabled| enabled.effect.is_of_file());
         if !is_used || is_known || is_busy || !open.right || screen.drawn() != Some(requested) {
             return;
@@ -347,19 +289,30 @@ impl App {
         let trade = egui::Panel::bottom("trade").frame(theme::panel_frame()).resizable(true).default_size(304.0).min_size(190.0);
         let mut is_open = self.state.open.trade;
         trade.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.trade));
-        // The panel has a button that closes it, too.
+        // This panel and the next have a button that closes them, too.
         self.state.open.trade &= is_open;
+        let timing = egui::Panel::bottom("timing").frame(theme::panel_frame()).resizable(true).default_size(230.0).min_size(150.0);
+        let mut is_open = self.state.open.timing;
+        timing.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.timing));
+        self.state.open.timing &= is_open;
         let log = egui::Panel::bottom("log").frame(theme::panel_frame()).resizable(true).default_size(150.0).min_size(72.0);
         let mut is_open = self.state.open.log;
         log.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.log));
         self.state.open.log = is_open;
-        let left = egui::Panel::left("left").frame(theme::panel_frame()).default_size(264.0).size_range(200.0..=420.0);
+        let window = ui.ctx().content_rect().width();
+        let [left_width, right_width] = self.state.settings.panel_widths(window);
+        let left = egui::Panel::left("left").frame(theme::panel_frame()).default_size(left_width).size_range(200.0..=420.0);
         let mut is_open = self.state.open.left;
-        left.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.browser));
+        let shown = left.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.browser));
+        self.state.settings.keep_width(0, self.state.open.left && is_open, shown.map(|shown| shown.response.rect), window);
         self.state.open.left = is_open;
-        let right = egui::Panel::right("right").frame(theme::panel_frame()).default_size(344.0).size_range(272.0..=520.0);
+        if !is_open {
+            self.panels.browser.close();
+        }
+        let right = egui::Panel::right("right").frame(theme::panel_frame()).default_size(right_width).size_range(272.0..=520.0);
         let mut is_open = self.state.open.right;
-        right.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.inspector));
+        let shown = right.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.inspector));
+        self.state.settings.keep_width(1, self.state.open.right && is_open, shown.map(|shown| shown.response.rect), window);
         self.state.open.right = is_open;
         let rect = egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_ui(ui)).response.rect;
         toasts_ui(ui.ctx(), &self.state.log, rect, self.state.now_s);
@@ -379,7 +332,10 @@ impl App {
 }
 
 impl eframe::App for App {
-    fn logic(&mut self, ctx: &egui::Context, _: &mut eframe::Frame) {
+    fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {
+        if let Some(taken_s) = frame.info().cpu_usage {
+            ctx.with_plugin(|frames: &mut UiFrames| frames.painted(Duration::from_secs_f32(taken_s)));
+        }
         while let Some(done) = self.state.jobs.next() {
             finish(ctx, &mut self.state, &mut self.panels, &self.commands, done);
             self.apply(ctx);
@@ -388,7 +344,7 @@ impl eframe::App for App {
         if self.state.screen.is_lost() {
             self.rescue(ctx);
         }
-        if let Some(error) = self.state.screen.gpu.take_error() {
+        if let Some(error) = self.state.screen.take_error() {
             self.state.log.add(Level::Error, format!("the graphics driver reports an error, which is a bug of rasterlab: {error}"));
         }
     }
@@ -398,6 +354,8 @@ impl eframe::App for App {
             return; // egui panics if it has something to paint on a lost device.
         }
         let ctx = ui.ctx().clone();
+        theme::follow(&ctx);
+        self.state.settings.keys.show();
         device::tune(frame, &self.state.screen.gpu);
         let (now_s, is_pressed, is_held) = ctx.input(|i| (i.time, i.pointer.any_pressed(), i.pointer.any_down()));
         self.state.now_s = now_s;
@@ -409,11 +367,13 @@ impl eframe::App for App {
         }
         input::dropped_files(&ctx, &self.commands);
         self.apply(&ctx);
-        if !self.panels.dialogs.is_open() {
+        escape(&ctx, &self.state, &mut self.panels, self.was_typing, &self.commands);
+        self.apply(&ctx);
+        if !self.panels.has_dialog() && !self.panels.settings.takes_key() {
             input::shortcuts(&ctx, &self.state, &mut self.typing, &self.commands);
             self.apply(&ctx);
         }
-        let is_awaited = self.panels.dialogs.takes_text() || (self.state.open.cheat_sheet && !self.panels.dialogs.is_open());
+        let is_awaited = self.panels.takes_text() || (self.state.open.cheat_sheet && !self.panels.has_dialog());
         self.typing.follow(&ctx, is_awaited, now_s);
         self.state.clipboard.hovered_row = None;
         self.play(&ctx);
@@ -422,11 +382,14 @@ impl eframe::App for App {
         self.panels_ui(ui);
         self.panel_ui(ui, |panels| &mut panels.dialogs);
         self.panel_ui(ui, |panels| &mut panels.cheat_sheet);
+        self.panel_ui(ui, |panels| &mut panels.palette);
+        self.panel_ui(ui, |panels| &mut panels.naming);
+        self.panel_ui(ui, |panels| &mut panels.settings);
         self.panel_ui(ui, |panels| &mut panels.extremes);
         self.panel_ui(ui, |panels| &mut panels.randomize);
         self.panel_ui(ui, |panels| &mut panels.sweep);
         self.panel_ui(ui, |panels| &mut panels.film);
-        self.request_thumbnail();
+        self.request_thumbnail(&ctx);
         self.request_precision(&ctx, is_held);
         self.state.observe(is_held);
         if let Some(wait_s) = self.state.history.wake_in_s(now_s).filter(|_| !is_held) {
@@ -434,9 +397,11 @@ impl eframe::App for App {
         }
         self.guard_close(&ctx);
         self.update_title(&ctx);
+        self.keep(&ctx);
+        self.was_typing = ctx.text_edit_focused();
     }
 
-    fn clear_color(&self, _: &egui::Visuals) -> [f32; 4] {
-        theme::PANEL.to_normalized_gamma_f32()
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
     }
 }

@@ -13,6 +13,9 @@ pub struct Cli {
     /// A preset, a model (.glb, .gltf) or a PNG saved by rasterlab, to open in the window
     #[arg(value_name = "PRESET|MODEL|PICTURE.png")]
     pub open: Option<String>,
+    /// Append the messages of the window's log to this file, each as a line
+    #[arg(long, value_name = "FILE")]
+    pub log: Option<PathBuf>,
     #[command(flatten)]
     pub common: Common,
     #[command(subcommand)]

@@ -72,6 +72,9 @@ pub fn run(cli: &Cli) -> Result<Exit, CliError> {
             "{preset_file:?} stands before a command; leave it out, or leave out the command to open it in the window"
         )));
     }
+    if cli.log.is_some() {
+        return Err(CliError::usage(format!("--log has no meaning for {}; it keeps the log of the window", command.name())));
+    }
     let mut streams = Streams::new(cli.common.quiet, cli.common.json);
     let result = dispatch(&cli.common, command, &mut streams).and_then(|exit| streams.finish().map(|()| exit).map_err(CliError::from));
     match result {
@@ -113,27 +116,36 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
 #[cfg(feature = "gui")]
 fn window(cli: &Cli) -> Result<Exit, CliError> {
     // Errors are reported on the terminal instead of in an empty window.
-    let (what, opened) = match (&cli.open, &cli.common.preset) {
-        (None, Some(look)) => (look.as_str(), open::open_alone(&cli.common, look)),
-        (what, _) => {
+    // Without anything to open or to change, the window goes on with its last session.
+    let is_asked = cli.open.is_some() || cli.common.preset.is_some() || !(cli.common.set.is_empty() && cli.common.unset.is_empty());
+    let opened = match (&cli.open, &cli.common.preset) {
+        (None, Some(look)) => Some((look.as_str(), open::open_alone(&cli.common, look))),
+        (what, _) if is_asked => {
             let what = what.as_deref().unwrap_or(crate::app::FIRST_PRESET);
-            (what, open::open(&cli.common, what))
+            Some((what, open::open(&cli.common, what)))
         }
+        _ => None,
     };
-    let opened = opened.map_err(|error| suggest_command(error, what))?;
+    let opened = opened.map(|(what, opened)| opened.map_err(|error| suggest_command(error, what))).transpose()?;
     let adapter = match backend::backend_choice(&cli.common) {
         backend::BackendChoice::Oracle => {
             return Err(CliError::usage("the window needs a GPU adapter; --adapter cpu serves render, verify, compare and check"));
         }
         backend::BackendChoice::Gpu(choice) => choice,
     };
+    let log = cli.log.as_ref().map(|path| {
+        let file = std::fs::File::options().create(true).append(true).open(path);
+        file.map_err(|error| CliError::usage(format!("--log {}: the file cannot be written: {error}", path.display())))
+    });
     let options = crate::app::Options {
         open: cli.open.clone(),
-        opened: Some(opened),
+        opened,
         adapter,
-        gpu: None,
+        devices: None,
         folders: cli.common.folders(),
         opens_editor: true,
+        config: crate::app::config_folder(),
+        log: log.transpose()?.map(std::sync::Arc::new),
     };
     crate::app::run(options).map_err(CliError::window)?;
     Ok(Exit::Done)

@@ -80,6 +80,15 @@ impl Stack {
         stack
     }
 
+    /// Moves the effect at index `from` in front of the one that is at index `to` now; an index of the length of the stack is its end. Indices
+    /// beyond that change nothing.
+    pub fn move_effect(&mut self, from: usize, to: usize) {
+        if from < self.0.len() && to <= self.0.len() {
+            let moved = self.0.remove(from);
+            self.0.insert(if to > from { to - 1 } else { to }, moved);
+        }
+    }
+
     pub fn disable(&mut self, name: &str) {
         self.0.retain(|enabled| enabled.effect.name != name);
     }

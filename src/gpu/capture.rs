@@ -82,11 +82,22 @@ impl Renderer {
     /// # Errors
     /// As [`Self::draw_complete`].
     pub fn capture_next(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Capture, RenderError> {
+        for _ in 0..MOST_REDRAWS {
+            if let Some(capture) = self.capture_once(view, stack, accuracy)? {
+                return Ok(capture);
+            }
+        }
+        Err(RenderError::Overflow(0))
+    }
+
+    /// The same; none where a queue overflowed only when layers were counted, and has grown.
+    fn capture_once(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Option<Capture>, RenderError> {
         let mut counters = self.draw_complete(view, stack, accuracy)?;
         let shown = [view.width, view.height];
         if view.pixels() == 0 {
             let frame = Frame { width: view.width, height: view.height, ..Frame::default() };
-            return Ok(Capture { frame, geometry: Geometry::default(), layers: Some(Vec::new()), previous: None, shown: None });
+            let geometry = Geometry::default();
+            return Ok(Some(Capture { frame, geometry, layers: Some(Vec::new()), previous: None, shown: None }));
         }
         let key = self.picture.frame()?.plan.key.clone();
         let mut judge = if key.culls() { Some(self.redraw_unculled(view, stack, accuracy, &mut counters)?) } else { None };
@@ -122,10 +133,16 @@ impl Renderer {
             geometry.dots = dots.read(&mut self.device, &key, &mut self.picture.buffers, &others)?;
         }
         if layers.is_none() {
-            layers = Some(count_layers(&mut self.device, judge.as_mut().unwrap_or(&mut self.picture), &others)?);
+            layers = count_layers(&mut self.device, judge.as_mut().unwrap_or(&mut self.picture), &others)?;
+            if layers.is_none() {
+                if let Some(judge) = judge {
+                    self.picture.capacities = judge.capacities;
+                }
+                return Ok(None);
+            }
         }
         let shown = scaled.map(|picture| frame.shown(shown, picture));
-        Ok(Capture { frame, geometry, layers, previous, shown })
+        Ok(Some(Capture { frame, geometry, layers, previous, shown }))
     }
 
     /// Draws a culled picture once more as another view, for the judge, who asks for the vertices, clipped triangles and layers of all

@@ -30,6 +30,8 @@ pub enum RenderError {
     Lost,
     #[error("no scene has been set")]
     NoScene,
+    #[error("compiling was stopped, because another picture was asked for")]
+    Stopped,
     #[error(transparent)]
     Link(#[from] LinkError),
     #[error(transparent)]

@@ -6,6 +6,7 @@ mod gpu_record;
 pub mod records;
 mod resource_id;
 
+mod compile_watch;
 mod pipeline_store;
 
 pub mod device;
@@ -57,6 +58,7 @@ pub mod trade;
 
 pub use buffers::BufferNote;
 pub use capture::Capture;
+pub use compile_watch::CompileWatch;
 pub use device::Gpu;
 pub use error::RenderError;
 pub use explain::{Explanation, SizesNote};

@@ -9,6 +9,7 @@ use std::{
 use rayon::prelude::*;
 
 use super::{
+    compile_watch::CompileWatch,
     device::Gpu,
     error::RenderError,
     pipeline_store::{Identity, Pipeline},
@@ -40,11 +41,17 @@ pub struct Pipelines {
     library: Library,
     known: HashMap<KernelKey, HashMap<Pass, Weak<Pipeline>>>,
     compiled: usize,
+    watch: Option<Arc<CompileWatch>>,
 }
 
 impl Pipelines {
     pub fn new(library: Library) -> Self {
-        Self { library, known: HashMap::new(), compiled: 0 }
+        Self { library, known: HashMap::new(), compiled: 0, watch: None }
+    }
+
+    /// Tells `watch` before something is compiled, and lets it stop that.
+    pub fn watch(&mut self, watch: Arc<CompileWatch>) {
+        self.watch = Some(watch);
     }
 
     /// Where the shaders come from.
@@ -90,6 +97,7 @@ impl Pipelines {
         let pipeline = match gpu.pipelines.find(&desc.identity) {
             Some(pipeline) => pipeline,
             None => {
+                self.watch.iter().for_each(|watch| watch.begin());
                 let pipeline = compile(gpu, &desc)?;
                 self.keep(gpu, desc.identity, pipeline)
             }
@@ -113,12 +121,7 @@ impl Pipelines {
                 fresh.push(desc);
             }
         }
-        let pipelines: Vec<Pipeline> = fresh.par_iter().map(|desc| compile(gpu, desc)).collect::<Result<_, _>>()?;
-        let fresh: Vec<Identity> = fresh.into_iter().map(|desc| desc.identity.clone()).collect();
-        for (identity, pipeline) in fresh.into_iter().zip(pipelines) {
-            let pipeline = self.keep(gpu, identity, pipeline);
-            gpu.pipelines.mark(&pipeline);
-        }
+        self.compile_all(gpu, &fresh)?;
         for (pass, desc) in missing.into_iter().zip(descs) {
             if let Some(pipeline) = gpu.pipelines.find(&desc.identity) {
                 gpu.pipelines.mark(&pipeline);
@@ -126,6 +129,28 @@ impl Pipelines {
             }
         }
         Ok(())
+    }
+
+    /// Compiles and keeps pipelines. What was compiled is kept even where compiling was stopped or another pipeline was refused.
+    fn compile_all(&mut self, gpu: &Gpu, fresh: &[&PipelineDesc]) -> Result<(), RenderError> {
+        if fresh.is_empty() {
+            return Ok(());
+        }
+        let watch = self.watch.clone();
+        watch.iter().for_each(|watch| watch.begin());
+        let check = || watch.as_ref().map_or(Ok(()), |watch| watch.check());
+        let outcomes: Vec<Result<Pipeline, RenderError>> = fresh.par_iter().map(|desc| check().and_then(|()| compile(gpu, desc))).collect();
+        let mut all = Ok(());
+        for (desc, outcome) in fresh.iter().zip(outcomes) {
+            match outcome {
+                Ok(pipeline) => {
+                    let pipeline = self.keep(gpu, desc.identity.clone(), pipeline);
+                    gpu.pipelines.mark(&pipeline);
+                }
+                Err(error) => all = all.and(Err(error)),
+            }
+        }
+        all
     }
 
     fn remember(&mut self, key: &KernelKey, pass: Pass, pipeline: &Arc<Pipeline>) {

@@ -6,6 +6,7 @@ use super::{
     error::RenderError,
     frame_layout::Region,
     particles::ParticleSimulation,
+    queues::recorded_capacities,
     recording::{CommandList, Device, Resources, Timing},
     records::{ClippedTriangleRecord, CounterRecord, DepthAndId, VertexRecord},
     resource_id::{BufferId, ClearedBy},
@@ -157,8 +158,9 @@ pub fn shadow_map(gpu: &Gpu, scene: &SceneResources, shadow: &ShadowPass) -> Res
     Ok(ShadowMap { depth_keys: readback.region(Region::Nearest)?, geometry: readback.geometry(None)? })
 }
 
-/// Runs the raster passes of a view once more into a counter per pixel; returns layers per pixel.
-pub fn count_layers(device: &mut Device, view: &mut ViewResources, others: &Resources<'_>) -> Result<Vec<u32>, RenderError> {
+/// Runs the raster passes of a view once more into a counter per pixel; returns layers per pixel. None where a queue overflowed, which a
+/// view drawn from lists of tiles does not have until now: it has grown, draw the view again.
+pub fn count_layers(device: &mut Device, view: &mut ViewResources, others: &Resources<'_>) -> Result<Option<Vec<u32>>, RenderError> {
     let PreparedFrame { plan, view: of, .. } = view.frame()?;
     let (key, pixels): (KernelKey, _) = (plan.key.clone(), of.pixels() as u64);
     let bytes = pixels * size_of::<u32>() as u64;
@@ -172,8 +174,11 @@ pub fn count_layers(device: &mut Device, view: &mut ViewResources, others: &Reso
     commands.record(0..commands.len(), &mut encoder, layout, &view.buffers, Timing { timer: None, ends_frame: true })?;
     device.gpu.queue.submit([encoder.finish()]);
     let layers = buffers::read(&device.gpu, view.buffers.get(BufferId::LayerCounts)?, bytes)?;
+    let counters = buffers::read(&device.gpu, view.buffers.get(BufferId::Counters)?, size_of::<CounterRecord>() as u64)?;
     view.buffers.keep(|id| id != BufferId::LayerCounts);
-    Ok(bytemuck::pod_collect_to_vec(&layers))
+    let demand: CounterRecord = bytemuck::pod_read_unaligned(&counters);
+    let is_complete = demand.counters(&recorded_capacities(&key, &view.capacities)).overflow == 0 || !view.grow_queues(&demand);
+    Ok(is_complete.then(|| bytemuck::pod_collect_to_vec(&layers)))
 }
 
 /// Weight of all layers of a pixel, as `shaders/variants/xray_buffer` adds it up.

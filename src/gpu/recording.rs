@@ -100,6 +100,18 @@ struct Command {
     group: wgpu::BindGroup,
 }
 
+impl Command {
+    fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, dispatch: Dispatch, buffers: &Buffers) -> Result<(), RenderError> {
+        pass.set_pipeline(&self.pipeline.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        match dispatch {
+            Dispatch::Direct { groups: [x, y], times } => (0..times).for_each(|_| pass.dispatch_workgroups(x, y, 1)),
+            Dispatch::Indirect { buffer, offset } => pass.dispatch_workgroups_indirect(buffers.get(buffer)?, offset),
+        }
+        Ok(())
+    }
+}
+
 /// Passes with their pipelines and bind groups, for as long as neither the key nor a resource changes.
 pub struct CommandList {
     key: KernelKey,
@@ -165,18 +177,38 @@ impl CommandList {
         buffers: &Buffers,
         mut timing: Timing<'_>,
     ) -> Result<(), RenderError> {
+        if timing.timer.as_ref().is_none_or(|timer| timer.is_whole()) {
+            return self.record_in_one(part, encoder, layout, buffers, timing);
+        }
         let last = part.end;
         for (i, command) in part.clone().zip(&self.commands[part]) {
             let is_last = timing.ends_frame && i + 1 == last;
             let label = Some(command.label.as_str());
             let timestamp_writes = timing.timer.as_mut().and_then(|timer| timer.compute(&command.label, is_last));
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes });
-            pass.set_pipeline(&command.pipeline.pipeline);
-            pass.set_bind_group(0, &command.group, &[]);
-            match layout.dispatch(&self.key, command.pass) {
-                Dispatch::Direct { groups: [x, y], times } => (0..times).for_each(|_| pass.dispatch_workgroups(x, y, 1)),
-                Dispatch::Indirect { buffer, offset } => pass.dispatch_workgroups_indirect(buffers.get(buffer)?, offset),
-            }
+            command.dispatch(&mut pass, layout.dispatch(&self.key, command.pass), buffers)?;
+        }
+        Ok(())
+    }
+
+    /// The same as a single compute pass of wgpu, which costs less; its dispatches cannot be timed one by one.
+    fn record_in_one(
+        &self,
+        part: Range<usize>,
+        encoder: &mut wgpu::CommandEncoder,
+        layout: &FrameLayout,
+        buffers: &Buffers,
+        mut timing: Timing<'_>,
+    ) -> Result<(), RenderError> {
+        if part.is_empty() {
+            return Ok(());
+        }
+        let timestamp_writes = timing.timer.as_mut().and_then(|timer| timer.compute("passes", timing.ends_frame));
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("passes"), timestamp_writes });
+        for command in &self.commands[part] {
+            pass.push_debug_group(&command.label);
+            command.dispatch(&mut pass, layout.dispatch(&self.key, command.pass), buffers)?;
+            pass.pop_debug_group();
         }
         Ok(())
     }

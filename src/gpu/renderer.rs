@@ -4,6 +4,7 @@ use std::{collections::VecDeque, sync::Arc};
 
 use super::{
     buffers::{self, color_stride},
+    compile_watch::CompileWatch,
     device::Gpu,
     error::RenderError,
     explain::Explanation,
@@ -99,6 +100,11 @@ impl Renderer {
         &self.device.gpu
     }
 
+    /// Tells `watch` before something is compiled, and lets it stop that.
+    pub fn watch_compiling(&mut self, watch: Arc<CompileWatch>) {
+        self.device.pipelines.watch(watch);
+    }
+
     /// Shares out work differently from the next picture on; the default is what suits the adapter.
     pub fn set_tuning(&mut self, tuning: Tuning) {
         self.device.tuning = tuning;
@@ -121,8 +127,8 @@ impl Renderer {
     }
 
     /// Plan of the last picture.
-    pub fn plan(&self) -> Option<&Plan> {
-        self.picture.frame().ok().map(|frame| &*frame.plan)
+    pub fn plan(&self) -> Option<&Arc<Plan>> {
+        self.picture.frame().ok().map(|frame| &frame.plan)
     }
 
     /// Which meshlets were culled in the last finished picture; none where it does not cull.
@@ -306,6 +312,16 @@ impl Renderer {
     /// The finished picture: Rgba8Unorm with gamma-encoded bytes; none before the first draw and for 0 pixels.
     pub fn texture_view(&self) -> Option<&wgpu::TextureView> {
         self.presentation.as_ref().map(|presentation| &presentation.view)
+    }
+
+    /// The pixels of the finished picture, row by row, as many as the view had; waits for them. None before the first draw and for 0 pixels.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn read_shown(&self) -> Result<Option<Vec<[u8; 4]>>, RenderError> {
+        let Some(presentation) = &self.presentation else { return Ok(None) };
+        let size = [presentation.texture.width(), presentation.texture.height()];
+        buffers::read_picture(&self.device.gpu, self.picture.buffers.get(self.shown_buffer())?, size).map(Some)
     }
 
     /// Statistics of the newest finished frame, or none yet; does not wait.

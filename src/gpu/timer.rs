@@ -65,6 +65,11 @@ impl Timer {
         encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("begin"), timestamp_writes });
     }
 
+    /// Is only the whole frame timed?
+    pub fn is_whole(&self) -> bool {
+        self.detail == Detail::Whole
+    }
+
     /// Indices of the stamps of the next span, labeled. A pass's two stamps must be neighbors: wgpu resets the whole
     /// range between them, and a stamp that was reset makes some drivers wait for ever.
     fn span(&mut self, label: &str, is_last: bool) -> Option<(Option<u32>, Option<u32>)> {

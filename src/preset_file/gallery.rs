@@ -44,6 +44,9 @@ pub struct GalleryEntry {
 /// Where presets and effects are looked for, beside the built-in ones.
 #[derive(Clone, Debug, Default)]
 pub struct Folders {
+    /// The user's own folder, `rasterlab` in the configuration folder of the system: `presets`, `effects`, `effect-values`, `trash` and
+    /// `favorites.toml` are in it. None: the user has no presets, and nothing is kept.
+    pub user: Option<PathBuf>,
     /// `--presets DIR`.
     pub presets: Option<PathBuf>,
     /// Folders of effects: the user's, `--effects DIR`, then those of dropped files. A later one wins.
@@ -56,7 +59,25 @@ impl Folders {
     /// These folders, and the effects in the user's own folder.
     pub fn new(presets: Option<PathBuf>, effects: &Path) -> Self {
         let effect_folders: Vec<PathBuf> = user_effects_folder().into_iter().chain([effects.to_owned()]).collect();
-        Self { presets, effects: Catalog::of_folders(effect_folders.iter().map(PathBuf::as_path)), effect_folders }
+        let user = user_folder().and_then(|presets| presets.parent().map(Path::to_owned));
+        Self { user, presets, effects: Catalog::of_folders(effect_folders.iter().map(PathBuf::as_path)), effect_folders }
+    }
+}
+
+impl Folders {
+    /// The folder of the user's own presets.
+    pub fn user_presets(&self) -> Option<PathBuf> {
+        Some(self.user.as_ref()?.join("presets"))
+    }
+
+    /// The folder of deleted files.
+    pub fn trash(&self) -> Option<PathBuf> {
+        Some(self.user.as_ref()?.join("trash"))
+    }
+
+    /// The folder of saved values of effects.
+    pub fn effect_values(&self) -> Option<PathBuf> {
+        Some(self.user.as_ref()?.join("effect-values"))
     }
 }
 
@@ -98,7 +119,7 @@ fn builtin_entry(file: &File<'_>) -> GalleryEntry {
 /// The folders of presets on disk, in order of precedence.
 fn places(folders: &Folders) -> Vec<(Origin, PathBuf)> {
     let beside = std::env::current_exe().ok().and_then(|exe| Some(exe.parent()?.join("presets")));
-    let places = [(Origin::Chosen, folders.presets.clone()), (Origin::Beside, beside), (Origin::User, user_folder())];
+    let places = [(Origin::Chosen, folders.presets.clone()), (Origin::Beside, beside), (Origin::User, folders.user_presets())];
     places.into_iter().filter_map(|(origin, folder)| Some((origin, folder?))).collect()
 }
 

@@ -76,14 +76,22 @@ impl PresetFile {
     /// Does the preset lie at `path`, or is it the built-in one called `id`? A look that has landed counts as its preset.
     pub fn is_look_of(&self, id: &str, path: Option<&Path>) -> bool {
         match &self.look {
-            Some(look) => look.id == id && look.path.as_deref() == path,
-            None => self.id == id && self.path.as_deref() == path,
+            Some(look) => look.id == id && is_same_file(look.path.as_deref(), path),
+            None => self.id == id && is_same_file(self.path.as_deref(), path),
         }
     }
 
     /// The id by which the gallery knows the look.
     pub fn look_id(&self) -> &str {
         self.look.as_ref().map_or(&self.id, |look| &look.id)
+    }
+}
+
+/// Are two presets the same file? The path of one may be relative.
+fn is_same_file(a: Option<&Path>, b: Option<&Path>) -> bool {
+    match (a, b) {
+        (Some(a), Some(b)) => a == b || std::path::absolute(a).is_ok_and(|a| std::path::absolute(b).is_ok_and(|b| a == b)),
+        (a, b) => a == b,
     }
 }
 

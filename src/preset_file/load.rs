@@ -101,7 +101,8 @@ pub fn migrated(path: &Path) -> Result<Migrated, PresetError> {
     Ok(Migrated { from, before, after })
 }
 
-fn read_text(path: &Path) -> Result<String, PresetError> {
+/// The text of a preset file, or of another file of at most [`MAX_BYTES`].
+pub(super) fn read_text(path: &Path) -> Result<String, PresetError> {
     let bytes = read_capped(path, MAX_BYTES as u64)?;
     String::from_utf8(bytes).map_err(|_| PresetError::Read { file: path.display().to_string(), reason: "it is not UTF-8 text".into() })
 }

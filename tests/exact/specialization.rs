@@ -1,6 +1,6 @@
 //! Promise: what the planner leaves out does not show, is not allocated and is not compiled again. Needs an adapter.
 
-use std::{path::Path, sync::Arc};
+use std::{collections::BTreeSet, path::Path, sync::Arc};
 
 use crate::common::*;
 use rasterlab::{
@@ -16,7 +16,8 @@ use rasterlab::{
     shader::{Fetch, key::AttributeFormat},
 };
 
-/// Every built-in scene on every option, and every preset on one: the resolve of its effects hardly knows the option.
+/// Every built-in scene on every option, and on one option a preset for every effect: the resolve of its effects hardly
+/// knows the option.
 fn pictures(options: &[Visibility]) -> Vec<(String, Arc<Scene>, View, Stack, Visibility)> {
     let mut pictures = Vec::new();
     for query in SCENES {
@@ -25,15 +26,19 @@ fn pictures(options: &[Visibility]) -> Vec<(String, Arc<Scene>, View, Stack, Vis
         let stack = stack(&["depth", "lambert"]);
         pictures.extend(options.iter().map(|&option| ((*query).to_owned(), scene.clone(), view.clone(), stack.clone(), option)));
     }
-    let preset_files = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets");
-    for entry in std::fs::read_dir(preset_files).expect("presets/ can be read") {
-        let path = entry.expect("presets/ can be read").path();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets");
+    let entries = std::fs::read_dir(folder).expect("presets/ can be read");
+    let mut preset_files: Vec<_> = entries.map(|entry| entry.expect("presets/ can be read").path()).collect();
+    preset_files.sort();
+    let mut met = BTreeSet::new();
+    for path in preset_files {
         if path.extension().is_some_and(|e| e == "toml") {
             let preset_file = preset_file::load(&path).unwrap_or_else(|error| panic!("{error}"));
             let scene = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref())
                 .unwrap_or_else(|error| panic!("{}: {error}", preset_file.id));
             let view = preset_file.preset.view(&scene, preset_file.preset.output.size);
-            if preset_file.preset.stack.is_repeatable() {
+            let brings_new = preset_file.preset.stack.0.iter().filter(|enabled| met.insert(enabled.effect.name)).count() > 0;
+            if brings_new && preset_file.preset.stack.is_repeatable() {
                 pictures.push((preset_file.id.clone(), scene, view, preset_file.preset.evaluated_stack(), options[0]));
             }
         }

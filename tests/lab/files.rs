@@ -101,6 +101,7 @@ fn a_dropped_file_that_is_malformed_keeps_the_picture_and_is_one_sentence() {
         assert!(said.last().is_some_and(|line| line.contains(&name)), "{name}: {said:?}");
         assert_eq!(lab.state().draws(), draws, "{name}");
     }
+    wait_for_toasts(&mut lab);
     let below = |image: &image::RgbaImage| image::imageops::crop_imm(image, 0, 48, image.width(), image.height() / 2).to_image();
     assert!(below(&before) == below(&picture(&mut lab)), "the last good picture went away");
 }

@@ -3,19 +3,22 @@
 use std::{
     iter,
     ops::{Deref, DerefMut},
-    path::Path,
+    path::{Path, PathBuf},
     sync::{Arc, OnceLock},
     time::{Duration, Instant},
 };
 
 use eframe::{
-    egui::{Key, Modifiers, Pos2, Rect, Role, TexturesDelta, mutex::RwLock},
+    egui::{Key, Modifiers, Pos2, Rect, Role, TexturesDelta, ThemePreference, accesskit::Toggled, mutex::RwLock},
     egui_wgpu::{self, RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration},
     wgpu,
 };
-use egui_kittest::{Harness, Node, TestRenderer, kittest::Queryable as _};
+use egui_kittest::{
+    Harness, Node, TestRenderer,
+    kittest::{NodeT as _, Queryable as _},
+};
 use rasterlab::{
-    app::{App, Options, wgpu_setup},
+    app::{App, Devices, Options, wgpu_setup},
     gpu::{Gpu, device::AdapterChoice},
     preset_file::Folders,
 };
@@ -58,18 +61,18 @@ impl TestRenderer for Window {
     }
 }
 
-/// The device that all windows of this program share, with the pipelines that were compiled for it: compiling them for each window
+/// The devices that all windows of this program share, with the pipelines that were compiled for it: compiling them for each window
 /// would take most of the time of its test.
-fn shared_device(adapter: &AdapterChoice) -> (RenderState, Arc<Gpu>) {
-    static SHARED: OnceLock<(RenderState, Arc<Gpu>)> = OnceLock::new();
-    let (first, gpu) = SHARED.get_or_init(|| {
+fn shared_devices(adapter: &AdapterChoice) -> (RenderState, Devices) {
+    static SHARED: OnceLock<(RenderState, Devices)> = OnceLock::new();
+    let (first, devices) = SHARED.get_or_init(|| {
         let window = device(adapter);
         let gpu = Gpu::adopt(&window.adapter, window.device.clone(), window.queue.clone());
-        (window, gpu)
+        (window, Devices::of(gpu))
     });
     // Textures belong to one window.
     let renderer = egui_wgpu::Renderer::new(&first.device, first.target_format, RendererOptions::PREDICTABLE);
-    (RenderState { renderer: Arc::new(RwLock::new(renderer)), ..first.clone() }, gpu.clone())
+    (RenderState { renderer: Arc::new(RwLock::new(renderer)), ..first.clone() }, devices.clone())
 }
 
 /// A device without a surface, opened with the program's settings.
@@ -134,31 +137,61 @@ impl Lab {
     }
 }
 
-/// A window of 1280 x 800 that shows the preset `open`, with its first picture drawn; presets lie in `presets_dir`.
+/// A window of 1280 x 800 that shows the preset `open`, with its first picture drawn; presets lie in `presets_dir`. It keeps no settings.
 pub fn lab_in(open: &str, presets_dir: Option<&Path>) -> Option<Lab> {
-    let mut lab = opened(Some(open), presets_dir)?;
+    lab_with(open, Folders { presets: presets_dir.map(Path::to_owned), ..Folders::default() })
+}
+
+/// A window that shows the preset `open` and has these folders.
+pub fn lab_with(open: &str, folders: Folders) -> Option<Lab> {
+    let mut lab = created(Some(open), folders, None, SIZE)?;
     settle(&mut lab);
     Some(lab)
 }
 
-/// A window of 1280 x 800 as it is created, before its first frame; without `open` as the program starts.
+/// A window of 1280 x 800 as it is created, before its first frame; without `open` as the program starts. It keeps no settings.
 pub fn opened(open: Option<&str>, presets_dir: Option<&Path>) -> Option<Lab> {
+    created(open, Folders { presets: presets_dir.map(Path::to_owned), ..Folders::default() }, None, SIZE)
+}
+
+/// Size of a window in points, unless a test says otherwise.
+pub const SIZE: [f32; 2] = [1280.0, 800.0];
+
+/// A window of `size` with these folders that keeps its settings and session in the folder `config`, before its first frame.
+pub fn created(open: Option<&str>, folders: Folders, config: Option<PathBuf>, size: [f32; 2]) -> Option<Lab> {
     crate::common::gpu()?; // Fails with one sentence when there is none.
     let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
-    let (window, gpu) = shared_device(&adapter);
-    let options = Options {
-        open: open.map(str::to_owned),
-        opened: None,
-        adapter,
-        gpu: Some(gpu),
-        folders: Folders { presets: presets_dir.map(Path::to_owned), ..Folders::default() },
-        opens_editor: false,
-    };
-    let harness = Harness::builder()
-        .with_size([1280.0, 800.0])
-        .renderer(Window(window.clone()))
-        .build_eframe(|cc| App::new(cc, options).unwrap_or_else(|error| panic!("{error:#}")));
-    Some(Lab { harness, window })
+    let (window, devices) = shared_devices(&adapter);
+    Some(built(open, folders, (config, size), adapter, (window, Some(devices))))
+}
+
+/// A window on devices for which nothing has been compiled yet, with its first picture drawn.
+pub fn lab_on_new_devices(open: &str) -> Option<Lab> {
+    crate::common::gpu()?;
+    let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
+    let window = device(&adapter);
+    let mut lab = built(Some(open), Folders::default(), (None, SIZE), adapter, (window, None));
+    settle(&mut lab);
+    Some(lab)
+}
+
+fn built(
+    open: Option<&str>,
+    folders: Folders,
+    (config, size): (Option<PathBuf>, [f32; 2]),
+    adapter: AdapterChoice,
+    (window, devices): (RenderState, Option<Devices>),
+) -> Lab {
+    let options =
+        Options { open: open.map(str::to_owned), opened: None, adapter, devices, folders, opens_editor: false, config, log: None };
+    let mut theme = ThemePreference::default();
+    let harness = Harness::builder().with_size(size).renderer(Window(window.clone())).build_eframe(|cc| {
+        let app = App::new(cc, options).unwrap_or_else(|error| panic!("{error:#}"));
+        theme = cc.egui_ctx.options(|options| options.theme_preference);
+        app
+    });
+    harness.ctx.set_theme(theme); // The harness has put its own in place of the window's.
+    Lab { harness, window }
 }
 
 /// A window with the program's own presets.
@@ -194,6 +227,11 @@ pub fn drag(lab: &mut Lab, from: Pos2, to: Pos2) {
     lab.drop_at(to);
     lab.step();
     settle(lab);
+}
+
+/// Is a box ticked, or an entry of a list selected?
+pub fn is_on(node: &Node<'_>) -> bool {
+    node.accesskit_node().toggled() == Some(Toggled::True)
 }
 
 pub fn slider<'a>(lab: &'a Lab, path: &'a str) -> Node<'a> {
@@ -273,9 +311,17 @@ pub fn error_lines(lab: &Lab) -> Vec<String> {
     lab.state().log_text().lines().filter(|line| line.starts_with("error")).map(str::to_owned).collect()
 }
 
+/// Steps until no toast lies over the picture.
+pub fn wait_for_toasts(lab: &mut Lab) {
+    while lab.state().shows_toasts() {
+        lab.step();
+    }
+}
+
 /// The middle of the picture, clear of everything that lies over its borders.
 pub fn middle(lab: &mut Lab) -> image::RgbaImage {
     lab.remove_cursor();
+    wait_for_toasts(lab);
     lab.run_steps(2);
     let whole = picture(lab);
     image::imageops::crop_imm(&whole, 0, 48, whole.width(), whole.height() - 208).to_image()

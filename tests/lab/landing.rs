@@ -3,11 +3,11 @@
 
 use std::path::{Path, PathBuf};
 
-use eframe::egui::{Key, Modifiers, Role, vec2};
+use eframe::egui::{Event, Key, Modifiers, Role, vec2};
 use egui_kittest::kittest::Queryable as _;
 use rasterlab::{
     preset::SceneSource,
-    preset_file::{self, Folders, PresetFile},
+    preset_file::{self, Folders, GalleryEntry, PresetFile},
     scene::builtin,
 };
 
@@ -92,16 +92,57 @@ fn the_presets_own_scene_comes_with_shift_and_with_the_menu() {
 }
 
 #[test]
+fn the_menu_of_the_browser_and_the_palette_open_presets_and_scenes_like_a_click() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let model = model(folder.path());
+    let Some(mut lab) = lab(&model.to_string_lossy()) else { return };
+    let run = |lab: &mut Lab, entry: &str| {
+        press(lab, Modifiers::COMMAND, Key::K);
+        lab.event(Event::Text(entry.into()));
+        lab.run_steps(3);
+        press(lab, Modifiers::NONE, Key::Enter);
+    };
+    let knot = gallery("facet-knot");
+    run(&mut lab, &format!("open {}", knot.title()));
+    assert_eq!((scene(&lab), lab.state().preset_file().look_id()), (SceneSource::File(model.clone()), "facet-knot"), "it lands");
+
+    let label = format!("Preset {}", knot.title());
+    lab.get_by_role_and_label(Role::Button, &label).scroll_to_me();
+    lab.run_steps(20);
+    lab.get_by_role_and_label(Role::Button, &label).click_secondary();
+    lab.run_steps(4);
+    lab.get_by_role_and_label(Role::Button, "Open with its scene").click();
+    lab.run_steps(4);
+    settle(&mut lab);
+    assert_eq!((scene(&lab), lab.state().preset_file().id.as_str()), (knot.preset.scene, "facet-knot"));
+
+    // A built-in scene that is chosen takes the look that is open.
+    run(&mut lab, "scene sphere");
+    assert_eq!((scene(&lab), stack(&lab)), (SceneSource::Builtin("sphere".into()), vec!["facet", "lambert"]));
+    assert_eq!(error_lines(&lab), [""; 0]);
+    assert!(
+        lab.state().preset_file().has_own_scene(),
+        "a built-in scene that was chosen is the user's own: {}\n{}",
+        lab.state().preset_file().title(),
+        lab.state().log_text()
+    );
+}
+
+#[test]
 fn the_keys_and_dropped_presets_land_too() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let model = model(folder.path());
     let Some(mut lab) = lab("hatch") else { return };
     drop_files(&mut lab, &[&model]);
-    let ids: Vec<String> = preset_file::gallery(&Folders::default()).into_iter().map(|entry| entry.id).collect();
+    // In the order of their names, as the browser lists them.
+    let title = |entry: &GalleryEntry| entry.preset_file.as_ref().expect("a preset").title().to_lowercase();
+    let mut entries = preset_file::gallery(&Folders::default());
+    entries.sort_by_key(|entry| (title(entry), entry.id.clone()));
+    let ids: Vec<String> = entries.into_iter().map(|entry| entry.id).collect();
     let here = ids.iter().position(|id| id == "hatch").expect("a preset of the gallery");
     for step in 1..=2 {
         press(&mut lab, Modifiers::NONE, Key::CloseBracket);
-        assert_eq!(lab.state().preset_file().look_id(), ids[here + step]);
+        assert_eq!(lab.state().preset_file().look_id(), ids[(here + step) % ids.len()]);
         assert_eq!(scene(&lab), SceneSource::File(model.clone()));
     }
     let dropped = folder.path().join("ink.toml");
@@ -223,4 +264,13 @@ fn thumbnails_show_the_presets_on_the_users_model() {
     assert!(thumbnail(&mut lab) != own, "the thumbnail shows another scene");
     click(&mut lab, Role::CheckBox, "Thumbnails on tri");
     assert!(thumbnail(&mut lab) == own, "the preset's own thumbnail is kept");
+
+    // Large pictures show the model, too.
+    click(&mut lab, Role::CheckBox, "Large pictures");
+    lab.get_by_role_and_label(Role::Button, &format!("Preset {first}")).scroll_to_me();
+    lab.run_steps(20);
+    settle(&mut lab);
+    let own = thumbnail(&mut lab);
+    click(&mut lab, Role::CheckBox, "Thumbnails on tri");
+    assert!(thumbnail(&mut lab) != own, "the large picture shows another scene");
 }

@@ -15,7 +15,7 @@ fn verify_measures_the_picture_and_a_change_makes_the_result_stale() {
     let accuracy = lab.state().accuracy().cloned().expect("a verdict on the picture as it is shown");
     assert_eq!((accuracy.wrong_triangles, accuracy.holes, accuracy.double_hits), (0, 0, 0));
     assert!(accuracy.pixels > 100_000 && accuracy.max_color_delta <= 2, "{accuracy:?}");
-    assert!(lab.query_all_by_label_contains("0 wrong triangles").count() > 0);
+    assert!(lab.query_all_by_label_contains("wrong: 0 snapped").count() > 0);
     click(&mut lab, Role::Button, "Top view");
     assert!(lab.state().accuracy().is_none());
     assert!(lab.query_by_label_contains("stale").is_some());
@@ -106,7 +106,7 @@ fn overlays_are_laid_over_the_picture_and_counted_in_a_legend() {
 #[test]
 fn the_legend_says_that_nothing_is_wrong_where_nothing_is() {
     let Some(mut lab) = lab("facet-sweep") else { return };
-    show_overlay(&mut lab, "wrong triangle");
+    show_overlay(&mut lab, "wrong (snapped)");
     show_overlay(&mut lab, "holes");
     let pixels = lab.state().accuracy().expect("a verdict").pixels;
     let sentence = format!("no errors: 0 of {},{:03} pixels", pixels / 1000, pixels % 1000);

@@ -64,7 +64,10 @@ fn undo_of_a_preset_brings_its_name_back() {
 #[test]
 fn brackets_walk_through_the_gallery() {
     let Some(mut lab) = lab("lambert") else { return };
-    let ids: Vec<String> = preset_file::gallery(&Folders::default()).into_iter().map(|entry| entry.id).collect();
+    let mut presets = preset_file::gallery(&Folders::default());
+    let title = |entry: &preset_file::GalleryEntry| entry.preset_file.as_ref().map_or(String::new(), |found| found.title().to_lowercase());
+    presets.sort_by_key(|entry| (title(entry), entry.id.clone()));
+    let ids: Vec<String> = presets.into_iter().map(|entry| entry.id).collect();
     let here = ids.iter().position(|id| id == "lambert").expect("a preset of the gallery");
     press(&mut lab, Modifiers::NONE, Key::CloseBracket);
     assert_eq!(lab.state().preset_file().id, ids[here + 1]);
@@ -111,6 +114,8 @@ fn a_picture_that_cannot_be_drawn_keeps_the_last_one_and_is_reported_once() {
     let Some(mut lab) = lab("lambert") else { return };
     let before = picture(&mut lab);
     lab.state_mut().preset_mut().camera = Some(rasterlab::scene::camera::Camera { eye: glam::DVec3::splat(1e13), ..Default::default() });
+    lab.run_steps(2);
+    settle(&mut lab);
     lab.run_steps(10);
     let log = lab.state().log_text();
     assert_eq!(log.lines().filter(|line| line.starts_with("error")).count(), 1, "{log}");

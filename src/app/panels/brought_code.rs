@@ -8,7 +8,7 @@ use crate::{app::theme, preset_file::PresetFile};
 pub fn code_ui(ui: &mut Ui, preset_file: &PresetFile) {
     let count = preset_file.brought().count();
     let what = if count == 1 { "an effect".to_owned() } else { format!("{count} effects") };
-    ui.label(RichText::new(format!("{} brings code", preset_file.title())).size(15.0).color(theme::TEXT_STRONG).strong());
+    ui.label(RichText::new(format!("{} brings code", preset_file.title())).size(15.0).color(theme::text_strong()).strong());
     ui.label(theme::weak(format!(
         "This preset contains {what} in WGSL, which would run on this computer's graphics device and processor. Loops are bounded, and files \
          cannot be read. Until you decide, nothing of it runs."
@@ -20,7 +20,7 @@ pub fn code_ui(ui: &mut Ui, preset_file: &PresetFile) {
             let (lines, bytes) = (source.written.lines().count(), source.written.len());
             let lines = if lines == 1 { "1 line".to_owned() } else { format!("{lines} lines") };
             let title = format!("{}: {lines}, {bytes} bytes, {}", source.stem, effect.hooks.names());
-            ui.collapsing(RichText::new(title).color(theme::TEXT_STRONG), |ui| {
+            ui.collapsing(RichText::new(title).color(theme::text_strong()), |ui| {
                 ui.add(egui::Label::new(RichText::new(&source.written).monospace()).wrap());
             })
             .header_response

@@ -44,7 +44,7 @@ impl Panel for CheatSheet {
                 egui::ScrollArea::vertical().max_height(height).show(ui, |ui| rows_ui(ui, &self.search, state));
             });
         // The key that opens it closes it, too; the search would keep it.
-        is_open &= !ctx.input(|i| i.key_pressed(Key::Escape) || i.key_pressed(Key::F1));
+        is_open &= !ctx.input(|i| i.key_pressed(Key::F1));
         if state.open.cheat_sheet && !is_open {
             commands.send(Command::Toggle(Toggle::CheatSheet));
         }
@@ -54,8 +54,8 @@ impl Panel for CheatSheet {
 /// Actions and pointer gestures that contain `search`.
 fn rows_ui(ui: &mut Ui, search: &str, state: &State) {
     let search = search.to_lowercase();
-    let actions = ACTIONS.iter().map(|(action, label, shortcuts)| {
-        let shortcuts = shortcuts.iter().map(shortcut_text).collect::<Vec<_>>().join("  ");
+    let actions = ACTIONS.iter().map(|(action, label, _)| {
+        let shortcuts = state.settings.keys.of(*action).iter().map(shortcut_text).collect::<Vec<_>>().join("  ");
         (*label, if shortcuts.is_empty() { action.shortcut_text() } else { shortcuts }, value_text(*action, state))
     });
     let pointer = POINTER.iter().map(|(label, gesture)| (*label, (*gesture).to_owned(), None));
@@ -66,7 +66,7 @@ fn rows_ui(ui: &mut Ui, search: &str, state: &State) {
     egui::Grid::new("cheat sheet").num_columns(3).spacing([24.0, 6.0]).show(ui, |ui| {
         for (label, how, value) in rows {
             ui.label(label);
-            ui.label(RichText::new(how).monospace().color(theme::TEXT_STRONG));
+            ui.label(RichText::new(how).monospace().color(theme::text_strong()));
             ui.label(theme::weak(value.unwrap_or_default()));
             ui.end_row();
         }

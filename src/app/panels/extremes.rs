@@ -11,6 +11,7 @@ use eframe::egui::{self, Color32, RichText, Ui};
 use crate::{
     app::{
         command::{Command, Commands},
+        computing::Computing,
         log::Level,
         panel::Panel,
         state::State,
@@ -100,11 +101,12 @@ impl Extremes {
         self.run.as_ref().is_some_and(|run| !run.progress().is_over)
     }
 
-    fn start(&mut self, adapter: String, ctx: &egui::Context) {
+    fn start(&mut self, adapter: String, computing: Computing, ctx: &egui::Context) {
         let cases = stress::chosen(Some(&self.filter));
         let run = Arc::new(Run { planned: cases.len(), work: Arc::default(), began: Instant::now(), progress: Mutex::default() });
         let (seed, ctx, shared) = (self.seed, ctx.clone(), run.clone());
         let work = move || {
+            let _computing = computing;
             let result = catch_unwind(AssertUnwindSafe(|| shared.draw(&cases, adapter, seed, &ctx)))
                 .unwrap_or_else(|_| Err("the run failed because of a bug; see the terminal for details".into()));
             let mut progress = shared.progress();
@@ -147,6 +149,10 @@ fn summary(reports: &[Report]) -> String {
 }
 
 impl Extremes {
+    pub fn is_open(&self) -> bool {
+        self.is_open
+    }
+
     /// Shows or hides the window.
     pub fn toggle(&mut self) {
         self.is_open = !self.is_open;
@@ -171,7 +177,7 @@ impl Extremes {
         });
     }
 
-    fn start_ui(&mut self, ui: &mut Ui, adapter: &str) {
+    fn start_ui(&mut self, ui: &mut Ui, state: &State) {
         let about = "Slivers, ties, NaN, full queues, huge numbers: each case is compared with the oracle, on a second device.";
         ui.label(theme::weak(about));
         ui.add_space(theme::HALF);
@@ -184,9 +190,9 @@ impl Extremes {
                 }
             } else {
                 let text = if found == 1 { "Run 1 case".to_owned() } else { format!("Run {found} cases") };
-                let button = egui::Button::new(text).fill(theme::ACCENT_GROUND);
+                let button = egui::Button::new(text).fill(theme::accent_ground());
                 if ui.add_enabled(found > 0, button).clicked() {
-                    self.start(adapter.to_owned(), ui.ctx());
+                    self.start(state.screen.gpu.summary.name.clone(), state.jobs.busy(), ui.ctx());
                 }
             }
             let filter = egui::TextEdit::singleline(&mut self.filter).hint_text("All; a number or part of a name");
@@ -211,7 +217,7 @@ impl Panel for Extremes {
             .default_pos(area.center())
             .show(ui.ctx(), |ui| {
                 ui.set_width(560.0);
-                self.start_ui(ui, &state.screen.gpu.summary.name);
+                self.start_ui(ui, state);
                 if let Some(run) = &self.run {
                     let height = (area.height() - 260.0).max(120.0);
                     run_ui(ui, run, height);
@@ -227,7 +233,7 @@ fn run_ui(ui: &mut Ui, run: &Run, height: f32) {
     ui.add_space(theme::HALF);
     if progress.is_over {
         let failed = progress.reports.iter().any(|report| report.outcome.is_failure());
-        let color = if failed || progress.error.is_some() { theme::RED } else { theme::GREEN };
+        let color = if failed || progress.error.is_some() { theme::red() } else { theme::green() };
         ui.label(RichText::new(summary(&progress.reports)).color(color));
     } else {
         let text = match run.left_s(done) {
@@ -239,7 +245,7 @@ fn run_ui(ui: &mut Ui, run: &Run, height: f32) {
         ui.add(egui::Label::new(theme::weak(progress.now.as_str())).truncate());
     }
     if let Some(error) = &progress.error {
-        theme::notice(ui, theme::RED, error);
+        theme::notice(ui, theme::red(), error);
     }
     egui::ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
         let (failed, others): (Vec<_>, Vec<_>) = progress.reports.iter().partition(|report| report.outcome.is_failure());
@@ -251,13 +257,13 @@ fn run_ui(ui: &mut Ui, run: &Run, height: f32) {
 
 fn report_ui(ui: &mut Ui, report: &Report) {
     let color: Color32 = match report.outcome {
-        Outcome::Passed | Outcome::Refused(_) => theme::GREEN,
-        Outcome::Skipped(_) | Outcome::Stopped => theme::AMBER,
-        Outcome::Failed(_) => theme::RED,
+        Outcome::Passed | Outcome::Refused(_) => theme::green(),
+        Outcome::Skipped(_) | Outcome::Stopped => theme::amber(),
+        Outcome::Failed(_) => theme::red(),
     };
     ui.horizontal(|ui| {
         ui.add_sized([24.0, 16.0], egui::Label::new(theme::weak(report.number.to_string())));
-        ui.add(egui::Label::new(RichText::new(report.name).color(theme::TEXT_STRONG)).truncate())
+        ui.add(egui::Label::new(RichText::new(report.name).color(theme::text_strong())).truncate())
             .on_hover_text(format!("{}\nExpected: {}", report.about, report.expectation));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.label(theme::weak(format!("{:.0} ms", report.ms)));

@@ -170,10 +170,10 @@ impl FilmPanel {
     fn end_ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
         let fault = self.form.as_ref().and_then(|form| form.fault(&state.session.preset().clock));
         match (&fault, &self.failure) {
-            (Some(fault), _) => theme::notice(ui, theme::AMBER, fault),
-            (None, Some(Failure::Stopped)) => theme::notice(ui, theme::AMBER, "Stopped. Finished frames stay, and are not drawn again."),
-            (None, Some(Failure::Taken(reason))) => theme::notice(ui, theme::AMBER, &format!("{reason}. Replace overwrites it.")),
-            (None, Some(Failure::Other(reason))) => theme::notice(ui, theme::RED, reason),
+            (Some(fault), _) => theme::notice(ui, theme::amber(), fault),
+            (None, Some(Failure::Stopped)) => theme::notice(ui, theme::amber(), "Stopped. Finished frames stay, and are not drawn again."),
+            (None, Some(Failure::Taken(reason))) => theme::notice(ui, theme::amber(), &format!("{reason}. Replace overwrites it.")),
+            (None, Some(Failure::Other(reason))) => theme::notice(ui, theme::red(), reason),
             (None, None) => {}
         }
         ui.add_space(theme::HALF);
@@ -182,7 +182,7 @@ impl FilmPanel {
         let (mut is_started, mut is_closed) = (false, false);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let verb = if is_taken { "Replace" } else { "Export film" };
-            let button = egui::Button::new(verb).fill(theme::ACCENT_GROUND).min_size(egui::vec2(96.0, theme::ROW));
+            let button = egui::Button::new(verb).fill(theme::accent_ground()).min_size(egui::vec2(96.0, theme::ROW));
             is_started = ui.add_enabled(is_ready, button).clicked();
             is_closed = ui.add(egui::Button::new("Close").min_size(egui::vec2(72.0, theme::ROW))).clicked();
         });
@@ -322,7 +322,7 @@ fn about(form: &Form, schedule: &crate::film::Schedule) -> String {
 /// Returns true if the film is to be stopped.
 fn progress_ui(ui: &mut Ui, request: &Request, progress: &Progress) -> bool {
     let counts = progress.read();
-    ui.label(RichText::new(request.path.display().to_string()).color(theme::TEXT_STRONG));
+    ui.label(RichText::new(request.path.display().to_string()).color(theme::text_strong()));
     ui.add_space(theme::HALF);
     let text = if counts.all == 0 { "Preparing".to_owned() } else { format!("{} of {} frames", counts.done, counts.all) };
     ui.add(egui::ProgressBar::new(counts.done as f32 / counts.all.max(1) as f32).text(text).animate(true));

@@ -36,7 +36,7 @@ impl Panel for LogPanel {
                 ui.horizontal_wrapped(|ui| {
                     ui.spacing_mut().item_spacing.x = 8.0;
                     ui.label(RichText::new(level.word()).monospace().color(level.color()));
-                    ui.label(RichText::new(text).monospace().color(theme::TEXT));
+                    ui.label(RichText::new(text).monospace().color(theme::text()));
                     ui.label(theme::weak(times(*count)));
                 });
             }
@@ -44,19 +44,19 @@ impl Panel for LogPanel {
     }
 }
 
-/// Shows the toasts at the lower edge of `area`, and repaints when the next one ends.
+/// Shows the toasts at the upper right of `area`, below the buttons there, and repaints when the next one ends.
 pub fn toasts_ui(ctx: &egui::Context, log: &Log, area: Rect, now_s: f64) {
     let Some(wait_s) = log.next_toast_ends_in_s(now_s) else { return };
     ctx.request_repaint_after_secs(wait_s as f32);
     egui::Area::new(egui::Id::unique("toasts"))
         .order(egui::Order::Foreground)
-        .pivot(egui::Align2::CENTER_BOTTOM)
-        .fixed_pos(area.center_bottom() - egui::vec2(0.0, 16.0))
+        .pivot(egui::Align2::RIGHT_TOP)
+        .fixed_pos(area.right_top() + egui::vec2(-10.0, 46.0))
         .interactable(false)
         .show(ctx, |ui| {
-            ui.set_max_width((area.width() - 32.0).clamp(200.0, 560.0));
+            ui.set_max_width((area.width() - 20.0).clamp(160.0, 380.0));
             for toast in log.toasts(now_s) {
-                theme::toast_frame(toast.level.color()).show(ui, |ui| ui.label(RichText::new(&toast.text).color(theme::TEXT_STRONG)));
+                theme::toast_frame(toast.level.color()).show(ui, |ui| ui.label(RichText::new(&toast.text).color(theme::text_strong())));
             }
         });
 }

@@ -4,23 +4,28 @@ pub mod anti_aliasing;
 pub mod brought_code;
 pub mod cheat_sheet;
 pub mod dialogs;
+pub mod effect_browser;
 pub mod extremes;
 pub mod film;
 pub mod inspector;
 pub mod log;
+pub mod naming;
 pub mod new_effect;
+pub mod palette;
 pub mod preset_browser;
 pub mod randomize;
+pub mod settings;
 pub mod sweep;
 pub mod timeline;
+pub mod timing;
 pub mod topbar;
 pub mod trade;
 pub mod viewport;
 
 use self::{
     cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, film::FilmPanel, inspector::Inspector, log::LogPanel,
-    preset_browser::PresetBrowser, randomize::RandomizePanel, sweep::SweepPanel, timeline::Timeline, topbar::TopBar, trade::TradePanel,
-    viewport::Viewport,
+    naming::NameDialog, palette::Palette, preset_browser::PresetBrowser, randomize::RandomizePanel, settings::SettingsWindow,
+    sweep::SweepPanel, timeline::Timeline, timing::TimingPanel, topbar::TopBar, trade::TradePanel, viewport::Viewport,
 };
 use crate::preset_file::Folders;
 
@@ -31,17 +36,31 @@ pub struct Panels {
     pub inspector: Inspector,
     pub timeline: Timeline,
     pub trade: TradePanel,
+    pub timing: TimingPanel,
     pub log: LogPanel,
     pub viewport: Viewport,
     pub dialogs: Dialogs,
     pub cheat_sheet: CheatSheet,
+    pub settings: SettingsWindow,
     pub extremes: Extremes,
     pub randomize: RandomizePanel,
     pub sweep: SweepPanel,
     pub film: FilmPanel,
+    pub palette: Palette,
+    pub naming: NameDialog,
 }
 
 impl Panels {
+    /// True while a dialog takes all keys.
+    pub fn has_dialog(&self) -> bool {
+        self.dialogs.is_open() || self.palette.is_open() || self.naming.is_open()
+    }
+
+    /// True while a dialog with a field for text is open.
+    pub fn takes_text(&self) -> bool {
+        self.dialogs.takes_text() || self.palette.is_open() || self.naming.is_open()
+    }
+
     /// The panels at the start, with the presets of `folders` in the gallery.
     pub fn new(folders: &Folders) -> Self {
         Self {
@@ -50,14 +69,18 @@ impl Panels {
             inspector: Inspector,
             timeline: Timeline::default(),
             trade: TradePanel::default(),
+            timing: TimingPanel,
             log: LogPanel,
             viewport: Viewport::default(),
             dialogs: Dialogs::default(),
             cheat_sheet: CheatSheet::default(),
+            settings: SettingsWindow::default(),
             extremes: Extremes::default(),
             randomize: RandomizePanel::default(),
             sweep: SweepPanel::default(),
             film: FilmPanel::default(),
+            palette: Palette::default(),
+            naming: NameDialog::default(),
         }
     }
 }

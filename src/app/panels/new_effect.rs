@@ -62,7 +62,7 @@ pub fn fields_ui(ui: &mut Ui, dialog: &mut NewEffect) -> bool {
                 .to_owned(),
         ),
     };
-    ui.label(RichText::new(title).size(15.0).color(theme::TEXT_STRONG).strong());
+    ui.label(RichText::new(title).size(15.0).color(theme::text_strong()).strong());
     ui.label(theme::weak(about));
     ui.add_space(theme::HALF);
     let mut shown = egui::TextEdit::singleline(name).hint_text("Name, for instance ink").desired_width(f32::INFINITY).show(ui);
@@ -82,7 +82,7 @@ pub fn fields_ui(ui: &mut Ui, dialog: &mut NewEffect) -> bool {
         }
     }
     if let Some(error) = error {
-        theme::notice(ui, theme::AMBER, error);
+        theme::notice(ui, theme::amber(), error);
     }
     ui.add_space(theme::HALF);
     is_entered

@@ -52,7 +52,11 @@ impl RandomizePanel {
 
     /// Begins to draw the newest seed that has no picture, one at a time, when the picture is at rest.
     fn request(&mut self, state: &State, commands: &Commands) {
-        let (Some(requested), false) = (state.screen.requested(), self.is_drawing() || state.screen.is_waiting()) else { return };
+        let (Some(requested), false) =
+            (state.screen.requested(), self.is_drawing() || state.screen.is_awaited(state.session.playback.playing))
+        else {
+            return;
+        };
         let seeds = &state.session.randomizer;
         self.pictures.retain(|seed, _| seeds.seeds().any(|seeded| seeded.seed == *seed));
         let Some(next) = seeds.seeds().find(|seeded| !self.pictures.contains_key(&seeded.seed)) else { return };
@@ -99,7 +103,7 @@ impl Panel for RandomizePanel {
 
 fn controls_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     ui.horizontal(|ui| {
-        let button = egui::Button::new("Randomize").fill(theme::ACCENT_GROUND);
+        let button = egui::Button::new("Randomize").fill(theme::accent_ground());
         let is_possible = !state.session.preset().stack.0.is_empty();
         let hint = format!("Give every parameter that is not locked a random value ({})", Action::Randomize.shortcut_text());
         if ui.add_enabled(is_possible, button).on_hover_text(hint).accessible_name("Randomize now").clicked() {
@@ -128,7 +132,7 @@ fn locks_ui(ui: &mut Ui, state: &State, commands: &Commands, enabled: &EnabledEf
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 10.0;
         let mut varies = locked < shown.len();
-        let title = RichText::new(effect.name).strong().color(theme::TEXT_STRONG);
+        let title = RichText::new(effect.name).strong().color(theme::text_strong());
         let all = ui.checkbox(&mut varies, title).on_hover_text("Let all of its parameters vary, or lock them all");
         if all.accessible_name(format!("Vary {}", effect.name)).clicked() {
             shown.iter().for_each(|field| commands.send(Command::Lock((effect, field), !all_locked)));
@@ -172,18 +176,18 @@ fn seed_ui(ui: &mut Ui, seed: u32, picture: Option<&Option<egui::TextureHandle>>
     let (rect, response) = ui.allocate_exact_size(vec2(width, 0.625 * width), Sense::click());
     match picture {
         Some(Some(texture)) => egui::Image::from_texture((texture.id(), rect.size())).corner_radius(4.0).paint_at(ui, rect),
-        _ => drop(ui.painter().rect_filled(rect, 4.0, theme::WELL)),
+        _ => drop(ui.painter().rect_filled(rect, 4.0, theme::well())),
     }
     let edge = match () {
-        () if is_current => theme::ACCENT,
-        () if response.hovered() || response.has_focus() => theme::TEXT_STRONG,
-        () => theme::LINE,
+        () if is_current => theme::accent(),
+        () if response.hovered() || response.has_focus() => theme::text_strong(),
+        () => theme::line(),
     };
     ui.painter().rect_stroke(rect, 4.0, (if is_current { 2.0 } else { 1.0 }, edge), egui::StrokeKind::Inside);
-    let note = ui.painter().layout_no_wrap(seed.to_string(), egui::FontId::proportional(11.0), theme::TEXT_STRONG);
+    let note = ui.painter().layout_no_wrap(seed.to_string(), egui::FontId::proportional(11.0), theme::text_strong());
     let plate = egui::Rect::from_min_size(rect.min + vec2(4.0, 4.0), note.size() + vec2(8.0, 2.0));
     ui.painter().rect_filled(plate, 3.0, egui::Color32::from_black_alpha(150));
-    ui.painter().galley(plate.min + vec2(4.0, 1.0), note, theme::TEXT_STRONG);
+    ui.painter().galley(plate.min + vec2(4.0, 1.0), note, theme::text_strong());
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_current, format!("Seed {seed}")));
     response.on_hover_text(format!("Go back to seed {seed}"))
 }

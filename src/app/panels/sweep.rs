@@ -178,7 +178,7 @@ impl SweepPanel {
         }
         ui.horizontal(|ui| {
             let requested = state.screen.requested();
-            let button = egui::Button::new("Draw the sheet").fill(theme::ACCENT_GROUND);
+            let button = egui::Button::new("Draw the sheet").fill(theme::accent_ground());
             let is_clicked = ui.add_enabled(requested.is_some(), button).clicked();
             if let Some(requested) = requested.filter(|_| is_clicked) {
                 self.start(state, commands, requested);
@@ -191,7 +191,7 @@ impl SweepPanel {
             }
         });
         if let Some(error) = &self.error {
-            theme::notice(ui, theme::RED, error);
+            theme::notice(ui, theme::red(), error);
         }
     }
 }
@@ -259,7 +259,7 @@ impl Panel for SweepPanel {
 fn sheet_ui(ui: &mut Ui, drawn: &Drawn, state: &State, commands: &Commands, height: f32) {
     ui.add_space(theme::HALF);
     if *drawn.of != state.session.visible_preset() {
-        ui.label(RichText::new("Drawn from an earlier picture, or a picture of the sheet was taken").size(11.0).color(theme::AMBER));
+        ui.label(RichText::new("Drawn from an earlier picture, or a picture of the sheet was taken").size(11.0).color(theme::amber()));
     }
     let aspect =
         drawn.cells.iter().find_map(|cell| cell.picture.as_ref()?.as_ref().ok()).map_or(0.625, |texture| texture.aspect_ratio().recip());
@@ -283,13 +283,13 @@ fn cell_ui(ui: &mut Ui, cell: &DrawnCell, size: egui::Vec2) -> egui::Response {
         let (rect, response) = ui.allocate_exact_size(size, Sense::click());
         match &cell.picture {
             Some(Ok(texture)) => egui::Image::from_texture((texture.id(), size)).corner_radius(4.0).paint_at(ui, rect),
-            Some(Err(_)) | None => drop(ui.painter().rect_filled(rect, 4.0, theme::WELL)),
+            Some(Err(_)) | None => drop(ui.painter().rect_filled(rect, 4.0, theme::well())),
         }
         if response.hovered() || response.has_focus() {
-            ui.painter().rect_stroke(rect, 4.0, (2.0, theme::ACCENT), egui::StrokeKind::Inside);
+            ui.painter().rect_stroke(rect, 4.0, (2.0, theme::accent()), egui::StrokeKind::Inside);
             ui.set_cursor_icon(egui::CursorIcon::PointingHand);
         }
-        ui.add_sized([size.x, 14.0], egui::Label::new(RichText::new(&cell.caption).size(11.0).color(theme::TEXT)).truncate());
+        ui.add_sized([size.x, 14.0], egui::Label::new(RichText::new(&cell.caption).size(11.0).color(theme::text())).truncate());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Take {}", cell.caption)));
         match &cell.picture {
             Some(Err(error)) => response.on_hover_text(error),

@@ -1,23 +1,28 @@
 //! The bar at the top: menus, the open preset, the adapter, and the cost and error of the picture.
 
+use std::path::Path;
+
 use eframe::egui::{self, Align, Layout, RichText, Sense, Ui, vec2};
 
 use super::anti_aliasing::anti_aliasing_ui;
 use crate::app::{
     action::Action,
-    command::{Command, Commands},
+    command::{Command, Commands, FileCommand, SettingsCommand},
     fields::dot,
     icons::{Icon, icon_button},
-    measured::{error_line, time_text},
+    measured::{error_line, time_line},
     panel::Panel,
     state::State,
-    theme,
+    theme::{self, ThemeChoice},
     trade::pace::about,
     verification::Progress,
 };
 
 /// The bar at the top: menus, the open preset, the adapter, and the cost and error of the picture.
 pub struct TopBar;
+
+/// Below this width of the window the adapter is a dot, points.
+const NARROW: f32 = 1080.0;
 
 /// Menus with their entries; none is a separator.
 const MENUS: [(&str, &[Option<Action>]); 4] = [
@@ -57,10 +62,13 @@ const MENUS: [(&str, &[Option<Action>]); 4] = [
             Some(Action::Panels),
             Some(Action::Timeline),
             Some(Action::Trade),
+            Some(Action::Timing),
             Some(Action::Log),
             None,
             Some(Action::Extremes),
+            Some(Action::Palette),
             Some(Action::CheatSheet),
+            Some(Action::Settings),
         ],
     ),
 ];
@@ -71,12 +79,14 @@ impl Panel for TopBar {
             ui.set_min_height(28.0);
             menus_ui(ui, state, commands);
             ui.add_space(theme::HALF);
-            name_ui(ui, state);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                adapter_ui(ui, state);
+                ui.spacing_mut().item_spacing.x = 6.0;
+                adapter_ui(ui, state, ui.ctx().content_rect().width() < NARROW);
                 ui.separator();
                 anti_aliasing_ui(ui, state, commands);
                 cost_ui(ui, state, commands);
+                // What is left belongs to the name, which is cut if it is too long.
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| name_ui(ui, state));
             });
         });
     }
@@ -85,7 +95,14 @@ impl Panel for TopBar {
 fn menus_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     ui.spacing_mut().item_spacing.x = 2.0;
     for (title, actions) in MENUS {
-        let chosen = ui.menu_button(title, |ui| menu_ui(ui, actions)).inner.flatten();
+        let chosen = ui.menu_button(title, |ui| {
+            let chosen = menu_ui(ui, actions, state, commands);
+            if title == "View" {
+                looks_ui(ui, state.settings.theme, commands);
+            }
+            chosen
+        });
+        let chosen = chosen.inner.flatten();
         if let Some(action) = chosen {
             commands.perform(action);
         }
@@ -95,7 +112,7 @@ fn menus_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     for (icon, action, is_enabled) in
         [(Icon::Left, Action::PreviousPreset, true), (Icon::Right, Action::NextPreset, true), (Icon::Reset, Action::Undo, can_undo)]
     {
-        let name = format!("{} ({})", action.label(), action.shortcut_text());
+        let name = action.hint();
         if ui.add_enabled_ui(is_enabled, |ui| icon_button(ui, icon, &name)).inner.clicked() {
             commands.perform(action);
         }
@@ -103,7 +120,7 @@ fn menus_ui(ui: &mut Ui, state: &State, commands: &Commands) {
 }
 
 /// The entries of one menu.
-fn menu_ui(ui: &mut Ui, actions: &[Option<Action>]) -> Option<Action> {
+fn menu_ui(ui: &mut Ui, actions: &[Option<Action>], state: &State, commands: &Commands) -> Option<Action> {
     let mut chosen = None;
     ui.set_min_width(220.0);
     for action in actions {
@@ -116,44 +133,112 @@ fn menu_ui(ui: &mut Ui, actions: &[Option<Action>]) -> Option<Action> {
             chosen = Some(*action);
             ui.close();
         }
+        if *action == Action::Open {
+            ui.menu_button("Open recent", |ui| recents_ui(ui, state, commands));
+        }
     }
     chosen
+}
+
+/// Recent files, newest first. Those that are gone are greyed.
+fn recents_ui(ui: &mut Ui, state: &State, commands: &Commands) {
+    ui.set_max_width(420.0);
+    let recents = &state.settings.recents;
+    if recents.is_empty() {
+        ui.label(theme::weak("No file was opened yet."));
+        return;
+    }
+    for path in recents.iter() {
+        let is_missing = state.missing_files.contains(path);
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let folder = path.parent().and_then(Path::file_name).unwrap_or_default().to_string_lossy();
+        let detail = if is_missing { "missing" } else { &folder };
+        let button = egui::Button::new(&*name).shortcut_text(detail).truncate().min_size(vec2(280.0, theme::ROW));
+        let button = ui.add_enabled(!is_missing, button).on_hover_text(path.display().to_string());
+        if button.on_disabled_hover_text(format!("{} is gone", path.display())).accessible_name(format!("Recent {name}")).clicked() {
+            commands.send(Command::File(FileCommand::Open(path.to_string_lossy().into_owned())));
+            ui.close();
+        }
+    }
+    ui.separator();
+    if ui.button("Forget these files").clicked() {
+        commands.send(Command::File(FileCommand::ForgetRecents));
+        ui.close();
+    }
+}
+
+/// Theme, and size of texts and controls. A menu of its own, so that its parent fits into a small window.
+fn looks_ui(ui: &mut Ui, chosen: ThemeChoice, commands: &Commands) {
+    ui.menu_button("Theme and size", |ui| {
+        for choice in ThemeChoice::ALL {
+            if ui.selectable_label(chosen == choice, choice.label()).clicked() {
+                commands.send(Command::Settings(SettingsCommand::Theme(choice)));
+                ui.close();
+            }
+        }
+        ui.separator();
+        for action in [Action::ScaleUp, Action::ScaleDown, Action::ScaleReset] {
+            let button = egui::Button::new(action.label()).shortcut_text(action.shortcut_text()).min_size(vec2(240.0, theme::ROW));
+            if ui.add(button).accessible_name(action.label()).clicked() {
+                commands.perform(action);
+                ui.close();
+            }
+        }
+    });
 }
 
 /// Name of the preset, and whether it has unsaved changes.
 fn name_ui(ui: &mut Ui, state: &State) {
     ui.spacing_mut().item_spacing.x = 6.0;
     let open = &state.session.preset_file;
-    let name = RichText::new(open.title()).color(theme::TEXT_STRONG).strong();
+    let name = RichText::new(open.title()).color(theme::text_strong()).strong();
     let file = match (&open.path, open.read_only) {
         (Some(path), _) => path.display().to_string(),
         (None, true) => "Built in. Save asks for a file name.".into(),
         (None, false) => "Not saved yet".into(),
     };
-    ui.add(egui::Label::new(name).truncate().sense(Sense::hover())).on_hover_text(file);
-    if state.session.is_modified() {
-        dot(ui, theme::ACCENT);
-        ui.label(theme::weak("unsaved"));
+    let width = ui.available_width();
+    let is_modified = state.session.is_modified();
+    let rest = if !is_modified {
+        0.0
+    } else if width > 150.0 {
+        70.0
+    } else {
+        16.0
+    };
+    ui.scope(|ui| {
+        ui.set_max_width((width - rest).max(0.0));
+        ui.add(egui::Label::new(name).truncate().sense(Sense::hover())).on_hover_text(file);
+    });
+    if is_modified {
+        dot(ui, theme::accent());
+        if rest > 16.0 {
+            ui.label(theme::weak("unsaved"));
+        }
     }
 }
 
-/// The adapter; in amber if it is software.
-fn adapter_ui(ui: &mut Ui, state: &State) {
+/// The adapter; in amber if it is software. A dot alone where there is little room.
+fn adapter_ui(ui: &mut Ui, state: &State, is_narrow: bool) {
     let gpu = &state.screen.gpu;
     let summary = &gpu.summary;
     let name = summary.name.split('(').next().unwrap_or_default().trim();
     let text = if summary.software { format!("{name} · software") } else { name.to_owned() };
-    let ink = if summary.software { theme::AMBER } else { theme::TEXT };
-    ui.add(egui::Label::new(RichText::new(text).color(ink)).truncate()).on_hover_ui(|ui| {
-        ui.label(RichText::new(&summary.name).color(theme::TEXT_STRONG));
+    let ink = if summary.software { theme::amber() } else { theme::text() };
+    let hint = |ui: &mut Ui| {
+        ui.label(RichText::new(&summary.name).color(theme::text_strong()));
         ui.label(format!("{} · {}", summary.backend, summary.driver));
         ui.label(theme::weak(format!("class {}", gpu.caps.class())));
         if summary.software {
             let text = "A software adapter: its pictures are right, but its times do not tell how fast a graphics card is.";
-            ui.label(RichText::new(text).color(theme::AMBER));
+            ui.label(RichText::new(text).color(theme::amber()));
         }
-    });
-    dot(ui, if summary.software { theme::AMBER } else { theme::GREEN });
+    };
+    if !is_narrow {
+        ui.add(egui::Label::new(RichText::new(text).color(ink)).truncate()).on_hover_ui(hint);
+    }
+    let place = ui.scope(|ui| dot(ui, if summary.software { theme::amber() } else { theme::green() })).response;
+    place.on_hover_ui(hint);
 }
 
 /// Cost and error, always side by side.
@@ -164,15 +249,16 @@ fn cost_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         Some(progress) => verifying_ui(ui, &progress, commands),
         None => {
             let verify = ui.add_enabled(state.screen.requested().is_some(), egui::Button::new("Verify"));
-            if verify.on_hover_text("Compare every pixel with the exact CPU oracle (V)").clicked() {
+            if verify.on_hover_text(format!("Compare every pixel with the exact CPU oracle ({})", Action::Verify.shortcut_text())).clicked()
+            {
                 commands.perform(Action::Verify);
             }
         }
     }
     ui.label(RichText::new(error).color(color)).on_hover_text(hint);
     ui.label(theme::weak("·"));
-    ui.label(RichText::new(time_text(state.screen.report())).color(theme::TEXT_STRONG))
-        .on_hover_text("Time of the newest frame on the device. Timing lists its passes.");
+    let (time, hint) = time_line(Some(&state.screen));
+    ui.label(RichText::new(time).color(theme::text_strong())).on_hover_text(hint);
     pins_ui(ui, &state.session.preset().accuracy.pins.words());
 }
 
@@ -183,7 +269,7 @@ fn verifying_ui(ui: &mut Ui, progress: &Progress, commands: &Commands) {
         commands.send(Command::CancelVerify);
     }
     let text = RichText::new(format!("{} left", about(progress.left_s))).size(11.0);
-    let bar = egui::ProgressBar::new(progress.fraction as f32).desired_width(96.0).text(text).fill(theme::ACCENT_GROUND);
+    let bar = egui::ProgressBar::new(progress.fraction as f32).desired_width(96.0).text(text).fill(theme::accent_ground());
     ui.add(bar).on_hover_text(format!("Verifying: {}", progress.stage));
     ui.request_repaint_after_secs(0.1);
 }
@@ -196,5 +282,5 @@ fn pins_ui(ui: &mut Ui, words: &str) {
         count => format!("{count} options pinned"),
     };
     ui.label(theme::weak("·"));
-    ui.label(RichText::new(text).size(12.0).color(theme::ACCENT)).on_hover_text(words.replace(' ', "\n"));
+    ui.label(RichText::new(text).size(12.0).color(theme::accent())).on_hover_text(words.replace(' ', "\n"));
 }

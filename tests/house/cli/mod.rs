@@ -110,8 +110,10 @@ fn adapters_always_end_with_cpu() {
 
 #[test]
 fn usage_errors_exit_with_2_and_leave_stdout_empty() {
-    let cases: [&[&str]; 19] = [
+    let cases: [&[&str]; 21] = [
         &["--no-such-flag"],
+        &["--log", "no-such-folder/window.log"],
+        &["--log", "window.log", "list"],
         &["render"],
         &["render", "fascet", "--adapter", "cpu"],
         &["render", "facet", "--adapter", "cpu", "--size", "10"],

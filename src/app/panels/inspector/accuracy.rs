@@ -10,6 +10,8 @@ use crate::{
         anti_aliasing,
         command::{Commands, Edit},
         expectation::{Expectation, expectation},
+        findings::Findings,
+        measured::time_line,
         state::State,
         text::short,
         theme,
@@ -84,7 +86,7 @@ fn names_ui(ui: &mut Ui, setting: &'static Setting, commands: &Commands, chosen:
             _ if t == 1.0 => (Align2::RIGHT_CENTER, right + 9.0),
             _ => (Align2::CENTER_CENTER, left + t * (right - left)),
         };
-        let color = if tier == chosen { theme::TEXT_STRONG } else { theme::TEXT_WEAK };
+        let color = if tier == chosen { theme::text_strong() } else { theme::text_weak() };
         let at = ui.painter().text(pos2(x, rect.center().y), align, tier.name(), egui::FontId::proportional(11.5), color);
         let response = ui.interact(at.expand(2.0), egui::Id::unique(("tier", index)), Sense::click());
         response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, tier == chosen, format!("Tier {}", tier.name())));
@@ -103,6 +105,14 @@ fn expected_text(expected: &Expectation) -> String {
     format!("{ms}{wrong} wrong ppm, color Δ {channel}")
 }
 
+/// `12.34 ms GPU, color Δ 0` and `wrong ppm: 0 snapped, 17 true`.
+fn measured_texts(time: &str, findings: &Findings) -> (String, String) {
+    let report = &findings.accuracy;
+    let ppm = |count: u64| short(count as f64 * 1e6 / (report.pixels as f64).max(1.0));
+    let against_true = findings.wrong_against_true().map_or_else(String::new, |count| format!(", {} true", ppm(count)));
+    (format!("{time}, color Δ {}", report.max_color_delta), format!("wrong ppm: {} snapped{against_true}", ppm(report.wrong_triangles)))
+}
+
 /// Milliseconds and error: expected and measured.
 fn numbers_ui(ui: &mut Ui, state: &State, accuracy: &AccuracyRequest) {
     let expected = expectation(state, accuracy.tier);
@@ -110,19 +120,17 @@ fn numbers_ui(ui: &mut Ui, state: &State, accuracy: &AccuracyRequest) {
         ui.horizontal(|ui| {
             ui.add_space(theme::GAP);
             ui.add_sized([64.0, 16.0], egui::Label::new(theme::weak(name).size(11.5)));
-            ui.add(egui::Label::new(RichText::new(text).monospace().size(11.5).color(theme::TEXT_STRONG)).truncate());
+            ui.add(egui::Label::new(RichText::new(text).monospace().size(11.5).color(theme::text_strong())).truncate());
         });
     };
     line(ui, "expected", expected.as_ref().map_or_else(|| "after the first picture".into(), expected_text));
-    let ms = state.screen.report().and_then(|report| report.gpu_ms).map_or_else(|| "no time".into(), |ms| format!("{} ms", short(ms)));
-    let error = state.accuracy().map_or_else(
-        || "error not measured (V)".to_owned(),
-        |report| {
-            let ppm = report.wrong_triangles as f64 * 1e6 / (report.pixels as f64).max(1.0);
-            format!("{} wrong ppm, color Δ {}", short(ppm), report.max_color_delta)
-        },
-    );
-    line(ui, "measured", format!("{ms}, {error}"));
+    let time = time_line(Some(&state.screen)).0;
+    let (measured, wrong) = match state.verification.verdict_on(state.screen.drawn()) {
+        Some(verdict) => measured_texts(&time, &verdict.findings),
+        None => (time, "error not measured (V)".to_owned()),
+    };
+    line(ui, "measured", measured);
+    line(ui, "", wrong);
 }
 
 /// The axes that decide about something in the picture, and those that the preset pins.

@@ -4,7 +4,9 @@ use eframe::egui::{self, Ui};
 
 use crate::{
     app::{
-        command::{Command, Commands, Edit, FileCommand, RowCommand},
+        action::Action,
+        command::{Command, Commands, Edit, FileCommand, LibraryCommand, Naming, RowCommand},
+        icons::{Icon, icon_button},
         state::State,
         theme,
     },
@@ -14,7 +16,8 @@ use crate::{
 
 /// Shows the entries of the menu.
 pub fn menu_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static Effect) {
-    let mut chosen = None;
+    let mut chosen = values_ui(ui, state, effect);
+    ui.separator();
     // Whether an effect can be duplicated does not depend on the name.
     let duplicated = duplicate(effect, "duplicate");
     let button = ui.add_enabled(duplicated.is_ok(), entry("Duplicate as my own…"));
@@ -44,6 +47,40 @@ pub fn menu_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static
         commands.send(command);
         ui.close();
     }
+}
+
+/// What can be done with the effect's values as a whole: copied, pasted, saved and recalled.
+fn values_ui(ui: &mut Ui, state: &State, effect: &'static Effect) -> Option<Command> {
+    let mut chosen = None;
+    let is_enabled = state.session.preset().stack.get(effect.name).is_some();
+    let copy = ui.add_enabled(is_enabled, entry("Copy effect"));
+    if copy.on_hover_text("Put the effect with its values and keyframes on the clipboard, for another preset").clicked() {
+        chosen = Some(Command::Library(LibraryCommand::CopyEffect(effect)));
+    }
+    if ui.add(entry("Paste effect")).on_hover_text("Enable the effect that is on the clipboard, with its values").clicked() {
+        chosen = Some(Command::Perform(Action::PastePreset));
+    }
+    let mut saved = state.values.iter().filter(|saved| saved.effect == effect.name).peekable();
+    if is_enabled || saved.peek().is_some() {
+        let menu = ui.menu_button("Saved values", |ui| {
+            for saved in saved {
+                ui.horizontal(|ui| {
+                    if ui.add(entry(&saved.name)).accessible_name(format!("Use {} for {}", saved.name, effect.name)).clicked() {
+                        chosen = Some(Command::Library(LibraryCommand::UseValues(saved.path.clone())));
+                    }
+                    if icon_button(ui, Icon::Cross, &format!("Delete {} of {}", saved.name, effect.name)).clicked() {
+                        chosen = Some(Command::Library(LibraryCommand::DeleteValues(saved.path.clone())));
+                    }
+                });
+            }
+            let save = ui.add_enabled(is_enabled, entry("Save these values…"));
+            if save.on_hover_text("Keep the effect's values under a name, for every preset").clicked() {
+                chosen = Some(Command::Library(LibraryCommand::AskName(Naming::Values(effect))));
+            }
+        });
+        menu.response.accessible_name("Saved values");
+    }
+    chosen
 }
 
 fn entry(text: &str) -> egui::Button<'_> {

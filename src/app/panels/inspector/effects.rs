@@ -1,6 +1,6 @@
 //! The effects of the inspector: the stack in order, with the parameters of each, then every effect that is not in it.
 
-use eframe::egui::{self, RichText, Ui};
+use eframe::egui::{self, Rect, RichText, Sense, Ui, vec2};
 
 use super::{effect_menu, precision::precision_ui, scope::scope_ui};
 use crate::{
@@ -8,8 +8,11 @@ use crate::{
         action::Action,
         command::{Command, Commands, Edit, FileCommand, Parameter, Picking, ViewCommand},
         fields::{Row, row_ui},
-        icons::{Icon, icon_button},
+        icons::{Icon, icon_button, paint},
         log::Level,
+        panels::effect_browser::groups::depends_on_order,
+        reveal,
+        stack_drag::{StackDrag, drop_ui},
         state::State,
         theme,
     },
@@ -22,7 +25,7 @@ pub fn effects_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     ui.horizontal(|ui| {
         ui.label(theme::heading("Effects"));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if icon_button(ui, Icon::Dice, "Randomize effects (R)").clicked() {
+            if icon_button(ui, Icon::Dice, &Action::Randomize.hint()).clicked() {
                 commands.perform(Action::Randomize);
             }
         });
@@ -32,9 +35,11 @@ pub fn effects_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         ui.label(theme::weak("No effect is enabled, so the picture shows plain base colors. Enable one below."));
         ui.add_space(theme::HALF);
     }
-    for (index, effect) in stack.iter().enumerate() {
-        enabled_ui(ui, state, commands, effect, (index, stack.len()));
-    }
+    let top = ui.cursor().top();
+    let rects: Vec<Rect> = (0..stack.len()).map(|index| enabled_ui(ui, state, commands, &stack, index)).collect();
+    let area = Rect::from_x_y_ranges(ui.max_rect().x_range(), top..=rects.last().map_or(top, |last| last.bottom()));
+    let names: Vec<&str> = stack.iter().map(|effect| effect.name).collect();
+    drop_ui(ui, commands, &names, &rects, area);
     ui.add_space(theme::HALF);
     for effect in EFFECTS.iter().copied().filter(|effect| !stack.contains(effect)) {
         ui.horizontal(|ui| disabled_ui(ui, state, commands, effect));
@@ -62,7 +67,7 @@ fn own_effects_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&'st
         ui.horizontal(|ui| {
             ui.set_min_height(theme::ROW);
             ui.add_space(theme::GAP);
-            let label = ui.label(RichText::new(format!("{name}.wgsl is faulty")).color(theme::RED));
+            let label = ui.label(RichText::new(format!("{name}.wgsl is faulty")).color(theme::red()));
             label.on_hover_text(RichText::new(error).monospace());
         });
     }
@@ -73,14 +78,19 @@ fn fold_id(effect: &Effect) -> egui::Id {
     egui::Id::unique(("fold", effect.name))
 }
 
-/// An effect of the stack at `index` of `count`.
-fn enabled_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static Effect, (index, count): (usize, usize)) {
-    let frame = egui::Frame::new().fill(theme::BAR).corner_radius(6.0).inner_margin(egui::Margin { left: 8, right: 4, top: 3, bottom: 5 });
+/// The effect of `stack` at `index`. Returns where it is.
+fn enabled_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&'static Effect], index: usize) -> Rect {
+    let effect = stack[index];
+    let frame =
+        egui::Frame::new().fill(theme::bar()).corner_radius(6.0).inner_margin(egui::Margin { left: 8, right: 4, top: 3, bottom: 5 });
     let is_muted = state.session.muted.contains(effect.name);
+    if reveal::is_within(ui.ctx(), effect.name) {
+        ui.data_mut(|data| data.insert_temp(fold_id(effect), false));
+    }
     let is_folded = ui.data(|data| data.get_temp(fold_id(effect))).unwrap_or(false);
-    frame.show(ui, |ui| {
+    let shown = frame.show(ui, |ui| {
         ui.set_min_width(ui.available_width());
-        header_ui(ui, state, commands, effect, (index, count), (is_muted, is_folded));
+        header_ui(ui, state, commands, stack, index, (is_muted, is_folded));
         if is_folded {
             return;
         }
@@ -90,24 +100,30 @@ fn enabled_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static 
         });
         precision_ui(ui, state, commands, effect);
     });
+    reveal::row(ui, effect.name, shown.response.rect);
     ui.add_space(theme::HALF);
+    shown.response.rect
 }
 
 fn header_ui(
     ui: &mut Ui,
     state: &State,
     commands: &Commands,
-    effect: &'static Effect,
-    (index, count): (usize, usize),
+    stack: &[&'static Effect],
+    index: usize,
     (is_muted, is_folded): (bool, bool),
 ) {
+    let (effect, count) = (stack[index], stack.len());
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
+        if count > 1 {
+            grip_ui(ui, stack, index);
+        }
         let mut on = true;
         if ui.checkbox(&mut on, "").on_hover_text("Take it out of the stack").accessible_name(effect.name).clicked() {
             commands.edit(Edit::Disable(effect));
         }
-        let text = RichText::new(title(effect)).strong().color(theme::TEXT_STRONG);
+        let text = RichText::new(title(effect)).strong().color(theme::text_strong());
         let fold = ui.add(egui::Button::new(text).frame(false)).on_hover_text(effect.about);
         let verb = if is_folded { "Unfold" } else { "Fold" };
         if fold.accessible_name(format!("{verb} {}", effect.name)).clicked() {
@@ -128,6 +144,22 @@ fn header_ui(
                 }
             }
         });
+    });
+}
+
+/// What an effect is dragged by to another place of the stack.
+fn grip_ui(ui: &mut Ui, stack: &[&'static Effect], index: usize) {
+    let effect = stack[index];
+    let (rect, grip) = ui.allocate_exact_size(vec2(10.0, theme::ROW - 4.0), Sense::drag());
+    grip.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Drag {}", effect.name)));
+    let ink = if grip.hovered() || grip.dragged() { theme::text_strong() } else { theme::text_weak() };
+    paint(ui.painter(), Icon::Grip, Rect::from_center_size(rect.center(), vec2(12.0, 12.0)), ink);
+    grip.dnd_set_drag_payload(StackDrag::Move(index));
+    let others = depends_on_order(effect, stack);
+    grip.on_hover_text(if others.is_empty() {
+        "Drag to another place of the stack. No other effect depends on it.".into()
+    } else {
+        format!("Drag to another place of the stack. It matters whether it comes before or after {}.", others.join(", "))
     });
 }
 

@@ -2,7 +2,7 @@
 
 mod accuracy;
 mod clips;
-mod effect_menu;
+pub mod effect_menu;
 mod effects;
 mod overlays;
 mod precision;

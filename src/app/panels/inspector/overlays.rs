@@ -34,7 +34,7 @@ pub fn overlays_ui(ui: &mut Ui, state: &State, commands: &Commands) {
                 let is_bad = overlay.is_error() && overlay.fault().is_some() && count > 0;
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     let text = RichText::new(grouped(count)).monospace();
-                    ui.label(text.color(if is_bad { theme::RED } else { theme::TEXT_WEAK })).on_hover_text("pixels");
+                    ui.label(text.color(if is_bad { theme::red() } else { theme::text_weak() })).on_hover_text("pixels");
                 });
             }
         });

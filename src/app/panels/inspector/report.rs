@@ -3,7 +3,14 @@
 use eframe::egui::{self, RichText, Ui};
 
 use crate::{
-    app::{measured::error_text, state::State, text, theme},
+    app::{
+        findings::Findings,
+        measured::time_line,
+        state::State,
+        text::{self, grouped},
+        theme,
+        timings::{Cost, Summary},
+    },
     gpu::{Explanation, Report},
 };
 
@@ -13,25 +20,45 @@ pub fn timing_ui(ui: &mut Ui, state: &State) {
         ui.label(theme::weak("Times appear with the first frame."));
         return;
     };
-    let error = state.accuracy().map_or_else(|| "not measured".into(), error_text);
+    let drawn = state.verification.verdict_on(state.screen.drawn());
+    let mut main = vec![("frame".to_owned(), time_line(Some(&state.screen)).0)];
+    main.extend(error_lines(drawn.map(|verdict| &*verdict.findings)));
+    let main_count = main.len();
+    let summary = match state.screen.timings().cost() {
+        Cost::Settled(summary) => Some(summary),
+        _ => None,
+    };
     egui::Grid::new("timing").num_columns(2).spacing([16.0, 4.0]).min_col_width(96.0).show(ui, |ui| {
-        for (index, (name, value)) in lines(report, error).into_iter().enumerate() {
-            let is_main = index < 2;
-            ui.label(RichText::new(name).color(if is_main { theme::TEXT_STRONG } else { theme::TEXT_WEAK }));
-            ui.label(RichText::new(value).monospace().color(if is_main { theme::TEXT_STRONG } else { theme::TEXT }));
+        for (index, (name, value)) in main.into_iter().chain(lines(report, summary)).enumerate() {
+            let is_main = index < main_count;
+            ui.label(RichText::new(name).color(if is_main { theme::text_strong() } else { theme::text_weak() }));
+            ui.label(RichText::new(value).monospace().color(if is_main { theme::text_strong() } else { theme::text() }));
             ui.end_row();
         }
     });
     if state.screen.gpu.summary.software {
-        ui.label(RichText::new("Compare software-adapter timings only with each other.").color(theme::AMBER));
+        ui.label(RichText::new("Compare software-adapter timings only with each other.").color(theme::amber()));
     }
 }
 
-/// Names and values: frame time and error first, then the passes, then the counters that are not 0.
-fn lines(report: &Report, error: String) -> Vec<(String, String)> {
-    let frame = report.gpu_ms.map_or_else(|| "no timer on this adapter".into(), |ms| format!("{ms:.3} ms"));
-    let mut lines = vec![("frame".to_owned(), frame), ("error".to_owned(), error)];
-    lines.extend(report.passes.iter().map(|(name, ms)| (name.to_string(), format!("{ms:.3} ms"))));
+/// The error of the picture, a row for each number: one long row would make the inspector wider, and so the picture another one.
+fn error_lines(findings: Option<&Findings>) -> Vec<(String, String)> {
+    let Some(findings) = findings else { return vec![("error".into(), "not measured".into())] };
+    let against_true = findings.wrong_against_true().map_or_else(|| "not known".into(), grouped);
+    vec![
+        ("wrong (snapped)".into(), grouped(findings.accuracy.wrong_triangles)),
+        ("wrong (true)".into(), against_true),
+        ("max Δ".into(), format!("{} of 255", findings.accuracy.max_color_delta)),
+    ]
+}
+
+/// Medians of the passes and of what the frame takes beyond them, then the counters that are not 0.
+fn lines(report: &Report, summary: Option<&Summary>) -> Vec<(String, String)> {
+    let mut lines = Vec::new();
+    if let Some(Summary { passes, rest, .. }) = summary {
+        lines.extend(passes.iter().map(|(name, spread)| (name.clone(), format!("{:.3} ms", spread.median))));
+        lines.push(("rest".into(), format!("{:.3} ms", rest.median)));
+    }
     if let Some(culled) = report.culled {
         lines.push(("meshlets drawn".into(), culled.drawn.to_string()));
         lines.push(("culled".into(), culled.reasons()));
@@ -56,7 +83,7 @@ pub fn kernel_ui(ui: &mut Ui, state: &State) {
         ui.label(theme::weak("The kernel appears with the first frame."));
         return;
     };
-    ui.label(RichText::new(key).monospace().color(theme::TEXT_STRONG));
+    ui.label(RichText::new(key).monospace().color(theme::text_strong()));
     let bytes: u64 = buffers.iter().map(|buffer| buffer.bytes).sum();
     ui.add_space(theme::HALF);
     ui.label(theme::weak(format!("{} passes; {} buffers, {} in total", passes.len(), buffers.len(), text::bytes(bytes))));

@@ -6,15 +6,32 @@ use crate::{
     app::{
         command::Commands,
         fields::{Row, row_ui},
+        reveal,
         state::State,
         theme,
     },
     preset::settings::Setting,
 };
 
+/// Folders, and the settings that each always has a row of, where they apply to the preset.
+const FOLDERS: &[(&str, &[&str])] = &[
+    ("Scene", &["scene.room", "scene.spin_deg_per_s", "output.background"]),
+    ("Camera", &["camera.eye", "camera.target", "camera.fov_y_deg", "camera.orthographic_height_m", "camera.near_m"]),
+    ("Clock", &["clock.time_s", "clock.range_s", "clock.loop", "clock.speed"]),
+    ("Preset", &["name", "about", "output.size"]),
+];
+
+/// Does a folder have a row of the setting at `path`?
+pub fn has_row(path: &str) -> bool {
+    FOLDERS.iter().any(|(_, paths)| paths.contains(&path))
+}
+
 /// A folder of the inspector; `open` at the start.
 pub fn folder(ui: &mut Ui, title: &str, open: bool, contents: impl FnOnce(&mut Ui)) {
-    egui::CollapsingHeader::new(theme::heading(title)).default_open(open).show_unindented(ui, |ui| {
+    let mut paths = FOLDERS.iter().filter(|(folder, _)| *folder == title).flat_map(|(_, paths)| *paths);
+    let is_revealed = paths.any(|path| reveal::is_within(ui.ctx(), path));
+    let header = egui::CollapsingHeader::new(theme::heading(title)).default_open(open).open(is_revealed.then_some(true));
+    header.show_unindented(ui, |ui| {
         ui.add_space(2.0);
         contents(ui);
         ui.add_space(theme::GAP);

@@ -60,7 +60,7 @@ pub fn scope_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'stati
     if let Some(scene) = state.session.scene().filter(|_| !on.is_whole_scene()) {
         let prefix = format!("effects.{}.on: ", effect.name);
         for sentence in missing(ui, state, scene, effect, &on).iter() {
-            theme::notice(ui, theme::AMBER, sentence.strip_prefix(&prefix).unwrap_or(sentence));
+            theme::notice(ui, theme::amber(), sentence.strip_prefix(&prefix).unwrap_or(sentence));
         }
     }
 }

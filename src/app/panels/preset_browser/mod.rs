@@ -1,194 +1,273 @@
-//! The left panel: presets with thumbnails, and scenes with their parameters.
+//! The left panel: presets with thumbnails, effects, and scenes with their parameters.
 
+mod arrange;
 mod entry;
-mod on_model;
+mod menu;
+pub mod pictures;
 mod scenes;
+pub mod thumbnails;
+pub mod toolbar;
 
-use std::collections::{HashMap, VecDeque};
+use std::time::SystemTime;
 
-use eframe::egui::{self, RichText, Ui, vec2};
+use eframe::egui::{self, Align, Rect, RichText, Ui, vec2};
 
-use self::on_model::OnModel;
+use self::{
+    arrange::{Filter, Item, arrange, tags},
+    entry::{Shown, entry_size, entry_ui},
+    menu::{menu_ui, opening},
+    pictures::Pictures,
+    thumbnails::Size,
+};
 use crate::{
     app::{
-        command::{Command, Commands, FileCommand, Manner},
-        log::Level,
+        action::Action,
+        command::{Command, Commands, LibraryCommand, Manner},
+        favorites::{Favorites, Starred},
+        icons::{Icon, icon_button},
         panel::Panel,
+        panels::effect_browser::EffectBrowser,
         scene_loader::SceneKey,
+        session::FileId,
+        settings::browsing::{Browsing, Layout, Tab},
         state::State,
         theme,
     },
     preset_file::{self, Folders, GalleryEntry, PresetFile},
 };
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Tab {
-    Presets,
-    Scene,
-}
-
-/// The left panel: presets with thumbnails, and scenes with their parameters.
+/// The left panel: presets with thumbnails, effects, and scenes with their parameters.
 pub struct PresetBrowser {
     entries: Vec<GalleryEntry>,
-    /// Thumbnails by preset id.
-    thumbnails: HashMap<String, egui::TextureHandle>,
-    /// Ids of the presets that wait for a thumbnail; one is drawn at a time.
-    queue: VecDeque<String>,
-    drawing: Option<String>,
-    /// Thumbnails on the user's own scene.
-    on_model: OnModel,
+    /// What the search knows of each entry.
+    items: Vec<Item>,
+    pub pictures: Pictures,
     tab: Tab,
+    pub effects: EffectBrowser,
+    filter: Filter,
+    layout: Layout,
+    shows_all_tags: bool,
+    /// Indices of the entries that are listed, in order.
+    listed: Vec<usize>,
+    /// The preset that was open in the last frame: the list scrolls to another one.
+    shown: Option<FileId>,
 }
 
 impl PresetBrowser {
     /// The presets of `folders`, of the user's folder, and the built-in ones.
     pub fn new(folders: &Folders) -> Self {
-        let entries = preset_file::gallery(folders);
-        // The code of a preset runs only after the user has allowed it, so a preset that brings code has no thumbnail.
-        let has_no_code = |entry: &&GalleryEntry| entry.preset_file.as_ref().is_ok_and(|found| found.brought_effects.is_empty());
-        let queue = entries.iter().filter(has_no_code).map(|entry| entry.id.clone()).collect();
-        Self { entries, queue, thumbnails: HashMap::new(), drawing: None, on_model: OnModel::default(), tab: Tab::Presets }
+        let mut browser = Self {
+            entries: Vec::new(),
+            items: Vec::new(),
+            pictures: Pictures::default(),
+            tab: Tab::default(),
+            effects: EffectBrowser::default(),
+            filter: Filter::default(),
+            layout: Layout::default(),
+            shows_all_tags: false,
+            listed: Vec::new(),
+            shown: None,
+        };
+        browser.read(folders);
+        browser
+    }
+
+    fn read(&mut self, folders: &Folders) {
+        self.entries = preset_file::gallery(folders);
+        self.items = self.entries.iter().map(item).collect();
+        self.listed = arrange(&self.items, &self.filter);
+    }
+
+    /// The presets of the gallery.
+    pub fn entries(&self) -> &[GalleryEntry] {
+        &self.entries
+    }
+
+    /// What the panel shows, and how it lists presets, for the next start.
+    pub fn browsing(&self) -> Browsing {
+        Browsing { tab: self.tab, layout: self.layout, sort: self.filter.sort }
+    }
+
+    /// Shows what was shown at the end of the last session.
+    pub fn show(&mut self, Browsing { tab, layout, sort }: Browsing) {
+        (self.tab, self.layout, self.filter.sort) = (tab, layout, sort);
     }
 
     /// True while thumbnails are still to come.
     pub fn is_busy(&self) -> bool {
-        self.drawing.is_some() || !self.queue.is_empty() || self.on_model.is_busy()
+        self.pictures.is_busy() || self.effects.is_busy()
     }
 
     /// Reads the folders again and redraws the thumbnail of the preset `changed`.
     pub fn refresh(&mut self, folders: &Folders, changed: &str) {
-        self.entries = preset_file::gallery(folders);
-        self.on_model.forget(changed);
-        let is_there =
-            |entry: &GalleryEntry| entry.id == changed && entry.preset_file.as_ref().is_ok_and(|found| found.brought_effects.is_empty());
-        if self.entries.iter().any(is_there) && !self.queue.iter().any(|id| id == changed) {
-            self.queue.push_back(changed.to_owned());
-        }
+        self.read(folders);
+        self.pictures.changed(changed);
     }
 
-    /// The preset whose thumbnail is to be drawn next; none while one is being drawn.
-    pub fn next_thumbnail(&mut self) -> Option<PresetFile> {
-        if self.drawing.is_some() {
-            return None;
-        }
-        let id = self.queue.pop_front()?;
-        let found = self.entries.iter().find(|entry| entry.id == id)?.preset_file.as_ref().ok()?.clone();
-        self.drawing = Some(id);
-        Some(found)
+    /// What is in view is told anew; nothing is while the panel is hidden.
+    pub fn begin_frame(&mut self) {
+        self.pictures.begin_frame();
     }
 
-    /// The preset whose thumbnail is to be drawn next on the scene of `key`, the user's own; none while another is being drawn.
-    pub fn next_on_model(&mut self, key: &SceneKey) -> Option<PresetFile> {
-        if self.drawing.is_some() {
-            return None;
-        }
-        let id = self.on_model.next(key)?;
-        let found = self.entries.iter().find(|entry| entry.id == id).and_then(|entry| entry.preset_file.as_ref().ok().cloned());
-        if found.is_none() {
-            self.on_model.forget(&id);
-        }
-        found
+    /// The panel is not shown any more: what is not drawn yet is not needed.
+    pub fn close(&mut self) {
+        self.begin_frame();
+        self.effects.close();
     }
 
-    /// Takes a thumbnail on the user's own scene; none if it could not be drawn.
-    pub fn on_model_arrived(&mut self, ctx: &egui::Context, key: SceneKey, id: String, image: Option<egui::ColorImage>) {
-        self.on_model.arrived(ctx, key, id, image);
+    /// The preset whose thumbnail is to be drawn next, and its size in pixels; none while one is being drawn.
+    pub fn next_thumbnail(&mut self, ctx: &egui::Context) -> Option<(PresetFile, [u32; 2])> {
+        self.pictures.next(ctx, &self.entries)
     }
 
-    /// The picture of a preset: on the user's own scene if the switch says so and it has been drawn.
-    fn picture(&self, entry: &GalleryEntry, state: &State, is_in_view: bool) -> Option<&egui::TextureHandle> {
-        let open = &state.session.preset_file;
-        // The code of a preset runs only after the user has allowed it.
-        let has_no_code = entry.preset_file.as_ref().is_ok_and(|found| found.brought_effects.is_empty());
-        let is_on = self.on_model.is_on && open.has_own_scene() && has_no_code;
-        let on_model = is_on.then(|| self.on_model.picture(&SceneKey::of(open), &entry.id, is_in_view)).flatten();
-        on_model.or_else(|| self.thumbnails.get(&entry.id))
+    /// The same on the scene of `key`, the user's own.
+    pub fn next_on_model(&mut self, ctx: &egui::Context, key: &SceneKey) -> Option<(PresetFile, [u32; 2])> {
+        self.pictures.next_on_model(ctx, key, &self.entries)
     }
 
-    /// The switch for thumbnails on the user's own scene.
-    fn on_model_ui(&mut self, ui: &mut Ui, state: &State) {
-        let open = &state.session.preset_file;
-        if open.has_own_scene() {
-            let text = format!("Thumbnails on {}", open.scene_name());
-            ui.checkbox(&mut self.on_model.is_on, text).on_hover_text("Show every preset on this model, drawn as it comes into view");
-        }
-    }
-
-    /// Takes a thumbnail that was drawn; none if the scene is too large or broken.
-    pub fn thumbnail_arrived(&mut self, ctx: &egui::Context, id: String, image: Option<egui::ColorImage>) {
-        if self.drawing.as_ref() == Some(&id) {
-            self.drawing = None;
-        }
-        if let Some(image) = image {
-            let texture = ctx.load_texture(format!("preset {id}"), image, egui::TextureOptions::LINEAR);
-            self.thumbnails.insert(id, texture);
-        }
-    }
-
-    /// The preset `step` entries after the one called `id`, wrapping round; the first if `id` is not in the gallery.
+    /// The preset `step` entries after the one called `id` in the list, wrapping round; the first if `id` is not listed. Where nothing is
+    /// listed, every preset counts.
     pub fn neighbor(&self, id: &str, step: isize) -> Option<&PresetFile> {
-        let good: Vec<&GalleryEntry> = self.entries.iter().filter(|entry| entry.preset_file.is_ok()).collect();
+        let listed = self.listed.iter().filter_map(|index| self.entries.get(*index));
+        let mut good: Vec<&GalleryEntry> = listed.filter(|entry| entry.preset_file.is_ok()).collect();
+        if good.is_empty() {
+            good = self.entries.iter().filter(|entry| entry.preset_file.is_ok()).collect();
+        }
         let here = good.iter().position(|entry| entry.id == id);
         let there = here.map_or(0, |here| (here as isize + step).rem_euclid(good.len() as isize) as usize);
         good.get(there)?.preset_file.as_ref().ok()
     }
 
-    fn presets_ui(&self, ui: &mut Ui, state: &State, commands: &Commands) {
-        if self.entries.is_empty() {
-            ui.label(theme::weak("No presets found. Build one on the right and save it with Ctrl+S."));
-        }
-        let open = &state.session.preset_file;
-        self.on_model.begin_frame();
-        for entry in &self.entries {
-            let is_open = open.is_look_of(&entry.id, entry.path.as_deref());
-            let is_modified = is_open && state.session.is_modified();
-            let is_in_view = ui.is_rect_visible(entry::row_rect(ui));
-            let response = entry::entry_ui(ui, entry, self.picture(entry, state, is_in_view), is_open, is_modified);
-            if let Some(manner) = chosen_manner(&response) {
-                commands.send(match &entry.preset_file {
-                    Ok(found) => Command::File(FileCommand::OpenPreset(Box::new(found.clone()), manner)),
-                    Err(error) => Command::Notify(Level::Error, error.to_string()),
+    fn presets_ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
+        self.mark_favorites(&state.favorites);
+        let chips = tags(&self.items, &self.filter);
+        self.pictures.switch_ui(ui, &state.session);
+        toolbar::toolbar_ui(ui, &mut self.filter, &mut self.layout, &mut self.shows_all_tags, &chips);
+        self.listed = arrange(&self.items, &self.filter);
+        count_ui(ui, &mut self.filter, self.listed.len(), self.entries.len());
+        let has_undo = !state.deleted.is_empty();
+        let footer = if has_undo { theme::ROW + theme::GAP } else { 0.0 };
+        let area = egui::ScrollArea::vertical().id_salt("presets").auto_shrink(false).max_height(ui.available_height() - footer);
+        area.show(ui, |ui| self.gallery_ui(ui, state, commands));
+        if let Some(deleted) = state.deleted.last() {
+            ui.horizontal(|ui| {
+                ui.set_min_height(theme::ROW);
+                ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
+                    if icon_button(ui, Icon::Cross, "Keep it in the trash").clicked() {
+                        commands.send(Command::Library(LibraryCommand::ForgetDeleted));
+                    }
+                    let undo = ui.button("Undo").on_hover_text(format!("Put {} back", deleted.from.display()));
+                    if undo.accessible_name("Undo the deletion").clicked() {
+                        commands.send(Command::Library(LibraryCommand::Restore));
+                    }
+                    ui.with_layout(egui::Layout::left_to_right(Align::Center), |ui| {
+                        ui.add(egui::Label::new(theme::weak(format!("{} was deleted", deleted.name()))).truncate());
+                    });
                 });
+            });
+        }
+    }
+
+    fn mark_favorites(&mut self, favorites: &Favorites) {
+        for item in &mut self.items {
+            item.is_favorite = favorites.has(Starred::Preset, &item.id);
+        }
+    }
+
+    fn gallery_ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
+        let open = &state.session.preset_file;
+        let opened = FileId::of(open);
+        let is_other = self.shown.as_ref() != Some(&opened);
+        let (size, columns) = entry_size(self.layout, ui.available_width());
+        let quality = if self.layout == Layout::Grid { Size::Large } else { Size::Small };
+        let gap = if self.layout == Layout::Grid { theme::GAP } else { theme::HALF };
+        for row in self.listed.chunks(columns) {
+            let (line, _) = ui.allocate_exact_size(vec2(ui.available_width(), size.y), egui::Sense::hover());
+            for (column, index) in row.iter().enumerate() {
+                let entry = &self.entries[*index];
+                let rect = Rect::from_min_size(line.min + vec2(column as f32 * (size.x + gap), 0.0), size);
+                let is_open = open.is_look_of(&entry.id, entry.path.as_deref());
+                if is_open && is_other {
+                    ui.scroll_to_rect(rect, None);
+                    self.shown = Some(opened.clone());
+                }
+                let shown = Shown {
+                    entry,
+                    picture: self.pictures.picture(entry, &state.session, quality, ui.is_rect_visible(rect)),
+                    is_open,
+                    is_modified: is_open && state.session.is_modified(),
+                    is_favorite: self.items[*index].is_favorite,
+                };
+                let responses = entry_ui(ui, &shown, self.layout, rect);
+                responses.entry.context_menu(|ui| menu_ui(ui, entry, commands));
+                if responses.star.clicked() {
+                    commands.send(Command::Library(LibraryCommand::Star(Starred::Preset, entry.id.clone(), !shown.is_favorite)));
+                }
+                if responses.entry.clicked() {
+                    let with_scene = ui.input(|i| i.modifiers.shift || i.modifiers.alt);
+                    commands.send(opening(entry, if with_scene { Manner::WithScene } else { Manner::Look }));
+                }
             }
+            ui.add_space(gap - ui.spacing().item_spacing.y);
         }
     }
 }
 
-/// How the user opens a preset: by a click on the user's own scene, by a click with Shift or Alt or by the menu with the preset's.
-fn chosen_manner(response: &egui::Response) -> Option<Manner> {
-    let mut is_in_menu = false;
-    response.context_menu(|ui| {
-        if ui.button("Open with its scene").clicked() {
-            is_in_menu = true;
-            ui.close();
-        }
-    });
-    let with_scene = response.ctx.input(|i| i.modifiers.shift || i.modifiers.alt);
-    match (is_in_menu, response.clicked()) {
-        (true, _) => Some(Manner::WithScene),
-        (_, true) => Some(if with_scene { Manner::WithScene } else { Manner::Look }),
-        _ => None,
+/// Says how many presets are listed while not all are.
+fn count_ui(ui: &mut Ui, filter: &mut Filter, listed: usize, all: usize) {
+    if all == 0 {
+        let save = match Action::Save.shortcut_text() {
+            keys if keys.is_empty() => "with File › Save".to_owned(),
+            keys => format!("with {keys}"),
+        };
+        ui.label(theme::weak(format!("No presets found. Build one on the right and save it {save}.")));
+    } else if !filter.is_empty() {
+        ui.horizontal(|ui| {
+            ui.label(theme::weak(if listed == 0 { "No preset answers.".into() } else { format!("{listed} of {all}") }));
+            if ui.small_button("Show all").clicked() {
+                *filter = Filter { sort: filter.sort, ..Filter::default() };
+            }
+        });
     }
+}
+
+/// What the search knows of an entry.
+fn item(entry: &GalleryEntry) -> Item {
+    let changed: Option<SystemTime> = entry.path.as_ref().and_then(|path| path.metadata().ok()?.modified().ok());
+    let (title, about, tags, effects) = match &entry.preset_file {
+        Ok(found) => {
+            let effects = found.preset.stack.0.iter().map(|enabled| enabled.effect.name.to_owned()).collect();
+            (found.title().to_owned(), found.preset.about.clone(), found.preset.tags.clone(), effects)
+        }
+        Err(_) => (entry.id.clone(), String::new(), Vec::new(), Vec::new()),
+    };
+    Item { id: entry.id.clone(), title, about, tags, effects, changed, is_favorite: false }
 }
 
 impl Panel for PresetBrowser {
     fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
-            for (tab, text) in [(Tab::Presets, "Presets"), (Tab::Scene, "Scene")] {
-                let button = egui::Button::selectable(self.tab == tab, RichText::new(text).strong()).min_size(vec2(72.0, theme::ROW));
+            for tab in Tab::ALL {
+                let button =
+                    egui::Button::selectable(self.tab == tab, RichText::new(tab.label()).strong()).min_size(vec2(72.0, theme::ROW));
                 if ui.add(button).clicked() {
                     self.tab = tab;
                 }
             }
         });
         ui.add_space(theme::HALF);
-        if self.tab == Tab::Presets {
-            self.on_model_ui(ui, state);
+        self.begin_frame();
+        if self.tab != Tab::Effects {
+            self.effects.close();
         }
-        egui::ScrollArea::vertical().id_salt(self.tab as u8).auto_shrink(false).show(ui, |ui| match self.tab {
+        match self.tab {
             Tab::Presets => self.presets_ui(ui, state, commands),
-            Tab::Scene => scenes::scenes_ui(ui, state, commands),
-        });
+            Tab::Effects => self.effects.ui(ui, state, commands),
+            Tab::Scene => {
+                let area = egui::ScrollArea::vertical().id_salt("scenes").auto_shrink(false);
+                area.show(ui, |ui| scenes::scenes_ui(ui, state, commands));
+            }
+        }
     }
 }

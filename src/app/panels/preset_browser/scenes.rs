@@ -49,7 +49,7 @@ fn shown_ui(ui: &mut Ui, session: &Session) {
         SceneSource::Builtin(query) => query.clone(),
         SceneSource::File(path) => path.display().to_string(),
     };
-    ui.add(Label::new(RichText::new(&source).color(theme::TEXT_STRONG).strong()).truncate()).on_hover_text(&source);
+    ui.add(Label::new(RichText::new(&source).color(theme::text_strong()).strong()).truncate()).on_hover_text(&source);
     if session.scenes.is_loading() {
         ui.horizontal(|ui| {
             ui.add(egui::Spinner::new().size(12.0));
@@ -58,7 +58,7 @@ fn shown_ui(ui: &mut Ui, session: &Session) {
         return;
     }
     if session.scenes.has_failed() {
-        theme::notice(ui, theme::RED, "This scene cannot be shown. See the log.");
+        theme::notice(ui, theme::red(), "This scene cannot be shown. See the log.");
         return;
     }
     let Some(scene) = session.scene() else { return };
@@ -67,9 +67,9 @@ fn shown_ui(ui: &mut Ui, session: &Session) {
         ui.label(theme::weak(format!("{} instances", grouped(scene.instances.len() as u64))));
     }
     if scene.triangle_count() == 0 {
-        theme::notice(ui, theme::AMBER, "This scene has no triangles, so the picture is only background.");
+        theme::notice(ui, theme::amber(), "This scene has no triangles, so the picture is only background.");
     }
-    scene.notes.iter().for_each(|note| theme::notice(ui, theme::AMBER, note));
+    scene.notes.iter().for_each(|note| theme::notice(ui, theme::amber(), note));
 }
 
 /// Fields for the parameters of a built-in scene. Returns the new query if one changed.
@@ -83,7 +83,7 @@ fn params_ui(ui: &mut Ui, builtin: &Builtin, query: &str) -> Option<String> {
                 let (label, response) = ui.allocate_exact_size(vec2(84.0, theme::ROW - 4.0), Sense::hover());
                 response.on_hover_text(param.doc);
                 let font = egui::TextStyle::Body.resolve(ui.style());
-                ui.painter_at(label).text(label.left_center(), Align2::LEFT_CENTER, param.name, font, theme::TEXT);
+                ui.painter_at(label).text(label.left_center(), Align2::LEFT_CENTER, param.name, font, theme::text());
                 let speed = if param.whole { value.abs().max(10.0) * 0.02 } else { value.abs().max(0.1) * 0.02 };
                 // Building a scene is slow, so a drag only shows the number and the scene is built on release.
                 let id = egui::Id::unique((builtin.name, param.name));

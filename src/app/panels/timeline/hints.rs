@@ -32,7 +32,7 @@ pub fn hint_ui(ui: &mut Ui, session: &Session, commands: &Commands) {
         ui.spacing_mut().item_spacing.x = 6.0;
         ui.label(theme::weak(before));
         let (rect, _) = ui.allocate_exact_size(vec2(10.0, TRACK), egui::Sense::hover());
-        paint_diamond(ui.painter(), rect.center(), 4.5, egui::Color32::TRANSPARENT, theme::TEXT);
+        paint_diamond(ui.painter(), rect.center(), 4.5, egui::Color32::TRANSPARENT, theme::text());
         ui.add(Label::new(theme::weak(after)).truncate());
     });
 }

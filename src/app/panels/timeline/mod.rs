@@ -70,7 +70,7 @@ impl Timeline {
         let (easing, is_stepped) = (track.keys()[index].easing, steps(track.field()));
         ui.spacing_mut().item_spacing.x = 6.0;
         ui.separator();
-        ui.add(egui::Label::new(RichText::new(key.path()).color(theme::TEXT_STRONG)).truncate());
+        ui.add(egui::Label::new(RichText::new(key.path()).color(theme::text_strong())).truncate());
         let mut time_s = key.time_s;
         let drag = DragValue::new(&mut time_s).speed(0.01).max_decimals(3).suffix(" s").update_while_editing(false);
         let response = ui.add_sized([72.0, theme::ROW - 2.0], drag).accessible_name("Key time").on_hover_text("Time of this key");
@@ -159,7 +159,7 @@ fn transport_ui(ui: &mut Ui, session: &Session, commands: &Commands) {
         (play, Action::Play),
         (Icon::StepForward, Action::StepForward),
     ] {
-        if icon_button(ui, icon, &format!("{} ({})", action.label(), action.shortcut_text())).clicked() {
+        if icon_button(ui, icon, &action.hint()).clicked() {
             commands.perform(action);
         }
     }

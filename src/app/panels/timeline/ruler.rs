@@ -33,14 +33,14 @@ pub fn ruler_ui(ui: &mut Ui, rail: Rect, span: &Span, session: &Session, command
     let response = response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
     let painter = ui.painter_at(rail);
     let clock = session.preset().clock;
-    painter.rect_filled(rail, 4.0, theme::WELL);
+    painter.rect_filled(rail, 4.0, theme::well());
     let [from, to] = clock.range_s.map(|time_s| span.x(time_s));
     let range = Rect::from_min_max(pos2(from, rail.top()), pos2(to, rail.bottom()));
-    painter.rect_filled(range.intersect(rail), 2.0, if response.hovered() { theme::RAISED_HOVER } else { theme::RAISED });
+    painter.rect_filled(range.intersect(rail), 2.0, if response.hovered() { theme::raised_hover() } else { theme::raised() });
     ticks(&painter, rail, span);
     let own = span.x(clock.time_s);
     let mark = [pos2(own - 3.5, rail.bottom()), pos2(own, rail.bottom() - 5.0), pos2(own + 3.5, rail.bottom())];
-    painter.add(Shape::convex_polygon(mark.to_vec(), theme::TEXT_WEAK, Stroke::NONE));
+    painter.add(Shape::convex_polygon(mark.to_vec(), theme::text_weak(), Stroke::NONE));
 }
 
 /// The playhead: a line at `time_s` over the ruler and all tracks.
@@ -50,10 +50,10 @@ pub fn playhead_ui(ui: &Ui, rect: Rect, span: &Span, time_s: f64) {
         return;
     }
     let painter = ui.painter_at(rect);
-    painter.vline(x, rect.top()..=rect.bottom(), (1.0, theme::ACCENT));
+    painter.vline(x, rect.top()..=rect.bottom(), (1.0, theme::accent()));
     let top = pos2(x, rect.top());
     let head = [top + vec2(-5.0, 0.0), top + vec2(5.0, 0.0), top + vec2(5.0, 5.0), top + vec2(0.0, 10.0), top + vec2(-5.0, 5.0)];
-    painter.add(Shape::convex_polygon(head.to_vec(), theme::ACCENT, Stroke::NONE));
+    painter.add(Shape::convex_polygon(head.to_vec(), theme::accent(), Stroke::NONE));
 }
 
 fn ticks(painter: &egui::Painter, rail: Rect, span: &Span) {
@@ -65,16 +65,16 @@ fn ticks(painter: &egui::Painter, rail: Rect, span: &Span) {
     for i in 0..=count.min(200) {
         let time_s = (first + f64::from(i)) * step;
         let x = span.x(time_s);
-        painter.vline(x, rail.bottom() - 6.0..=rail.bottom(), (1.0, theme::TEXT_WEAK));
+        painter.vline(x, rail.bottom() - 6.0..=rail.bottom(), (1.0, theme::text_weak()));
         for part in 1..5 {
             let x = span.x(time_s + step * f64::from(part) / 5.0);
-            painter.vline(x, rail.bottom() - 3.0..=rail.bottom(), (1.0, theme::LINE));
+            painter.vline(x, rail.bottom() - 3.0..=rail.bottom(), (1.0, theme::line()));
         }
         // At the right end there is no space on the right.
         let align = if x + 40.0 > rail.right() { Align2::RIGHT_CENTER } else { Align2::LEFT_CENTER };
         let aside = if align == Align2::RIGHT_CENTER { -4.0 } else { 4.0 };
         let at = pos2(x + aside, rail.center().y - 1.0);
-        painter.text(at, align, format!("{time_s:.decimals$}"), FontId::proportional(11.0), theme::TEXT_WEAK);
+        painter.text(at, align, format!("{time_s:.decimals$}"), FontId::proportional(11.0), theme::text_weak());
     }
 }
 

@@ -52,7 +52,7 @@ impl Tracks<'_> {
         if !ui.is_rect_visible(rect) {
             return;
         }
-        ui.painter().hline(rect.x_range(), rect.top() + 0.5, (1.0, theme::LINE));
+        ui.painter().hline(rect.x_range(), rect.top() + 0.5, (1.0, theme::line()));
         let left = self.span.rect().left() - 10.0;
         self.gutter_ui(ui, track, Rect::from_min_max(rect.min, pos2(left - theme::GAP, rect.bottom())), is_open);
         let rail = Rect::from_min_max(pos2(left, rect.top()), rect.max);
@@ -80,12 +80,12 @@ impl Tracks<'_> {
         let value = value_text(track, self.session.shown_time_s());
         let painter = ui.painter_at(top);
         let (font, y) = (FontId::proportional(13.0), top.center().y);
-        let shown = painter.text(pos2(top.right(), y), Align2::RIGHT_CENTER, value, FontId::monospace(11.5), theme::TEXT_WEAK);
+        let shown = painter.text(pos2(top.right(), y), Align2::RIGHT_CENTER, value, FontId::monospace(11.5), theme::text_weak());
         let name = Rect::from_min_max(pos2(row.cursor().left() + theme::HALF, top.top()), pos2(shown.left() - 6.0, top.bottom()));
-        ui.painter_at(name).text(pos2(name.left(), y), Align2::LEFT_CENTER, &path, font, theme::TEXT);
+        ui.painter_at(name).text(pos2(name.left(), y), Align2::LEFT_CENTER, &path, font, theme::text());
         if is_open && let Some([low, high]) = Curve::of(track, rect).shown_range() {
             let (at, text) = (pos2(name.left(), y + 18.0), format!("{} to {}", format_number(low), format_number(high)));
-            ui.painter_at(rect).text(at, Align2::LEFT_CENTER, text, FontId::proportional(11.5), theme::TEXT_WEAK);
+            ui.painter_at(rect).text(at, Align2::LEFT_CENTER, text, FontId::proportional(11.5), theme::text_weak());
         }
     }
 
@@ -177,9 +177,9 @@ fn value_text(track: &Track, time_s: f64) -> String {
 
 /// A diamond; a square where the value jumps.
 fn paint_mark(ui: &Ui, at: Pos2, easing: Easing, is_selected: bool, is_near: bool) {
-    let fill = if is_selected { theme::TEXT_STRONG } else { theme::ACCENT };
+    let fill = if is_selected { theme::text_strong() } else { theme::accent() };
     let r = if is_near { MARK + 1.0 } else { MARK };
-    let edge = Stroke::new(1.5, theme::BAR);
+    let edge = Stroke::new(1.5, theme::bar());
     let shape = match easing {
         Easing::Hold => {
             Shape::convex_polygon([(-r, -r), (r, -r), (r, r), (-r, r)].map(|(x, y)| at + vec2(x, y) * 0.75).to_vec(), fill, edge)
@@ -194,7 +194,7 @@ fn bars(ui: &Ui, track: &Track, span: &Span, rail: Rect) {
     let painter = ui.painter_at(rail);
     for pair in track.keys().windows(2) {
         let moves = pair[0].value != pair[1].value && pair[0].easing != Easing::Hold;
-        let color = if moves { theme::ACCENT.gamma_multiply(0.6) } else { theme::RAISED_HOVER };
+        let color = if moves { theme::accent().gamma_multiply(0.6) } else { theme::raised_hover() };
         painter.hline(span.x(pair[0].time_s)..=span.x(pair[1].time_s), rail.center().y, (if moves { 2.0 } else { 1.0 }, color));
     }
 }
@@ -241,8 +241,8 @@ impl Curve {
 /// Red, green and blue for x, y, z and for r, g, b; the accent for a single number.
 fn component_color(component: usize, components: usize) -> Color32 {
     if components == 1 {
-        theme::ACCENT.gamma_multiply(0.7)
+        theme::accent().gamma_multiply(0.7)
     } else {
-        [theme::RED, theme::GREEN, theme::ACCENT][component.min(2)].gamma_multiply(0.8)
+        [theme::red(), theme::green(), theme::accent()][component.min(2)].gamma_multiply(0.8)
     }
 }

@@ -194,7 +194,7 @@ impl TradePanel {
         let request = shown.filter(|_| count <= MAX_COMBINATIONS).map(|inputs| self.request(state, inputs));
         ui.horizontal(|ui| {
             let is_ready = request.is_some() && count >= 2;
-            let button = egui::Button::new("Measure").fill(theme::ACCENT_GROUND).min_size(egui::vec2(84.0, theme::ROW));
+            let button = egui::Button::new("Measure").fill(theme::accent_ground()).min_size(egui::vec2(84.0, theme::ROW));
             let reason = match count {
                 _ if shown.is_none() => "There is no picture yet",
                 0..2 => "Choose an axis with more than one option",
@@ -208,7 +208,7 @@ impl TradePanel {
             if let Some((request, workload)) = request.as_ref().filter(|_| button.clicked()) {
                 self.start(commands, request.clone(), *workload);
             }
-            let color = if count > MAX_COMBINATIONS { theme::RED } else { theme::TEXT_WEAK };
+            let color = if count > MAX_COMBINATIONS { theme::red() } else { theme::text_weak() };
             ui.label(RichText::new(format!("{count} combinations")).color(color));
         });
         if let Some((_, workload)) = request.as_ref().filter(|_| count >= 2) {
@@ -216,7 +216,7 @@ impl TradePanel {
                 .on_hover_text("How long it is expected to take, from the size and the time of the picture and from earlier measurements");
         }
         if let Some(error) = &self.error {
-            theme::notice(ui, theme::RED, error);
+            theme::notice(ui, theme::red(), error);
         }
     }
 
@@ -229,7 +229,7 @@ impl TradePanel {
             title: state.session.title().to_owned(),
         };
         // Without a timer, a frame of a software adapter.
-        let frame_ms = state.screen.report().and_then(|report| report.gpu_ms).unwrap_or(30.0);
+        let frame_ms = state.screen.timings().cost_ms().or(state.screen.timings().newest_ms()).unwrap_or(30.0);
         let workload = Workload::of(&request, frame_ms);
         (request, workload)
     }
@@ -280,8 +280,11 @@ impl TradePanel {
             let is_stale = picture_of(&request.preset) != picture_of(&state.session.visible_preset());
             let software = if state.screen.gpu.summary.software { "; compare software-adapter timings only with each other" } else { "" };
             let of = format!("{}, {width} × {height} px{software}", request.title);
-            let (color, text) =
-                if is_stale { (theme::AMBER, format!("stale: measured on an earlier picture of {of}")) } else { (theme::TEXT_WEAK, of) };
+            let (color, text) = if is_stale {
+                (theme::amber(), format!("stale: measured on an earlier picture of {of}"))
+            } else {
+                (theme::text_weak(), of)
+            };
             ui.add(egui::Label::new(RichText::new(text).size(11.0).color(color)).truncate());
             clicked = table::table_ui(ui, points, axes, metric, &is_current).or(clicked);
         });
@@ -320,7 +323,7 @@ fn progress_ui(ui: &mut Ui, progress: &Progress) {
     ui.horizontal(|ui| {
         let text = RichText::new(format!("{:.0} %  {state}", 100.0 * fraction)).size(11.0);
         let bar = egui::ProgressBar::new(fraction as f32).desired_width(AXES_WIDTH - 76.0).text(text);
-        ui.add(bar.fill(theme::ACCENT_GROUND));
+        ui.add(bar.fill(theme::accent_ground()));
         if ui.add_enabled(!is_canceled, egui::Button::new("Cancel")).on_hover_text("Keep what has been timed").clicked() {
             progress.cancel();
         }

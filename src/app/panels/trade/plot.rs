@@ -104,9 +104,9 @@ pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
     front.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let along: PlotPoints<'_> = front.into_iter().map(|position| span.at(position)).collect();
     let style = |i: usize| match standings[i] {
-        Some(Standing::Front) => (theme::ACCENT, true, 4.5),
-        Some(Standing::Tied) => (theme::TEXT, true, 3.5),
-        Some(Standing::Dominated) | None => (theme::TEXT_WEAK, false, 3.5),
+        Some(Standing::Front) => (theme::accent(), true, 4.5),
+        Some(Standing::Tied) => (theme::text(), true, 3.5),
+        Some(Standing::Dominated) | None => (theme::text_weak(), false, 3.5),
     };
     let response = Plot::new("trade plot")
         .allow_drag(false)
@@ -118,7 +118,7 @@ pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
         .show_x(false)
         .show_y(false)
         .show_background(false)
-        .grid_color(theme::LINE)
+        .grid_color(theme::line())
         .grid_fade(0.0)
         .sense(Sense::hover())
         .label_formatter(|_| None)
@@ -141,9 +141,9 @@ pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
         .show(ui, |plot| {
             plot.set_plot_bounds_x(span.x[0]..=span.x[1]);
             plot.set_plot_bounds_y(span.y[0]..=span.y[1]);
-            let line = HLine::new("exact", span.exact).color(theme::GREEN.gamma_multiply(0.7)).width(1.0);
+            let line = HLine::new("exact", span.exact).color(theme::green().gamma_multiply(0.7)).width(1.0);
             plot.hline(line.style(LineStyle::dashed_dense()).allow_hover(false));
-            plot.line(Line::new("front", along).color(theme::ACCENT.gamma_multiply(0.7)).width(1.5).allow_hover(false));
+            plot.line(Line::new("front", along).color(theme::accent().gamma_multiply(0.7)).width(1.5).allow_hover(false));
             for &Plotted { i, at, bar } in &plotted {
                 let (color, filled, radius) = style(i);
                 let at = span.at(at);
@@ -151,7 +151,7 @@ pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
                 plot.line(Line::new("", ends).color(color.gamma_multiply(0.6)).width(1.5).allow_hover(false));
                 plot.points(Points::new("", vec![at]).color(color).filled(filled).radius(radius).allow_hover(false));
                 if current(&points[i]) {
-                    plot.points(Points::new("", vec![at]).color(theme::AMBER).filled(false).radius(8.0).allow_hover(false));
+                    plot.points(Points::new("", vec![at]).color(theme::amber()).filled(false).radius(8.0).allow_hover(false));
                 }
             }
         });
@@ -163,7 +163,7 @@ pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
         let words = points[i].pins.words();
         handle.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Point {words}")));
         if handle.hovered() || handle.has_focus() {
-            ui.painter().circle_stroke(at, 7.0, (1.5, theme::TEXT_STRONG));
+            ui.painter().circle_stroke(at, 7.0, (1.5, theme::text_strong()));
             ui.set_cursor_icon(egui::CursorIcon::PointingHand);
         }
         let role = match () {
@@ -181,7 +181,7 @@ pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
 
 /// Options and numbers of a point.
 fn details_ui(ui: &mut Ui, point: &Point, role: &str) {
-    ui.label(RichText::new(point.pins.words().replace(' ', "\n")).monospace().color(theme::TEXT_STRONG));
+    ui.label(RichText::new(point.pins.words().replace(' ', "\n")).monospace().color(theme::text_strong()));
     ui.label(point.ms.map_or_else(
         || "not timed".to_owned(),
         |ms| format!("{} ms median, {} to {} ms from 5 to 95 %, {} samples", short(ms.p50), short(ms.p5), short(ms.p95), point.samples),
@@ -194,7 +194,7 @@ fn details_ui(ui: &mut Ui, point: &Point, role: &str) {
         ui.label(theme::weak(format!("{name}: {}", short(*value))));
     }
     if let Some(note) = &point.note {
-        ui.label(RichText::new(note).color(theme::AMBER));
+        ui.label(RichText::new(note).color(theme::amber()));
     }
     ui.label(theme::weak(role));
 }
@@ -202,14 +202,14 @@ fn details_ui(ui: &mut Ui, point: &Point, role: &str) {
 /// The legend of the marks, from right to left.
 pub fn legend_ui(ui: &mut Ui) {
     let marks = [
-        (theme::AMBER, false, 6.0, "this preset"),
-        (theme::TEXT_WEAK, false, 3.5, "dominated"),
-        (theme::TEXT, true, 3.5, "within the noise"),
-        (theme::ACCENT, true, 4.0, "on the front"),
+        (theme::amber(), false, 6.0, "this preset"),
+        (theme::text_weak(), false, 3.5, "dominated"),
+        (theme::text(), true, 3.5, "within the noise"),
+        (theme::accent(), true, 4.0, "on the front"),
     ];
     ui.spacing_mut().item_spacing.x = 4.0;
     for (color, filled, radius, text) in marks {
-        ui.label(RichText::new(text).size(11.0).color(theme::TEXT_WEAK));
+        ui.label(RichText::new(text).size(11.0).color(theme::text_weak()));
         let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), Sense::hover());
         match filled {
             true => ui.painter().circle_filled(rect.center(), radius, color),

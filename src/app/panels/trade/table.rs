@@ -49,10 +49,10 @@ fn row_ui(
     let is_front = standing == Some(Standing::Front);
     let words: Vec<&str> = axes.iter().filter_map(|axis| Some(axis.words[point.pins.get(axis)?])).collect();
     let ink = match (point.ms.is_some(), is_current, is_front) {
-        (false, ..) => theme::TEXT_WEAK,
-        (_, true, _) => theme::AMBER,
-        (_, _, true) => theme::TEXT_STRONG,
-        _ => theme::TEXT,
+        (false, ..) => theme::text_weak(),
+        (_, true, _) => theme::amber(),
+        (_, _, true) => theme::text_strong(),
+        _ => theme::text(),
     };
     let name = RichText::new(words.join(" · ")).size(12.0).color(ink);
     let button = ui.add_enabled(point.ms.is_some(), egui::Button::new(name).small().frame(false));
@@ -60,14 +60,14 @@ fn row_ui(
     let clicked = button.accessible_name(format!("Use {}", point.pins.words())).clicked();
     let cell = |ui: &mut Ui, value: Option<f64>| {
         let text = value.map_or_else(|| "not measured".into(), short);
-        ui.label(RichText::new(text).monospace().size(11.5).color(if value.is_some() { theme::TEXT } else { theme::TEXT_WEAK }));
+        ui.label(RichText::new(text).monospace().size(11.5).color(if value.is_some() { theme::text() } else { theme::text_weak() }));
     };
     [0, 1, 2].into_iter().for_each(|i| cell(ui, point.ms.map(|ms| [ms.p50, ms.p5, ms.p95][i])));
     metrics.iter().for_each(|metric| cell(ui, point.error(*metric)));
     let remark = match standing {
-        _ if is_current => RichText::new("this preset").color(theme::AMBER),
-        Some(Standing::Front) => RichText::new("on the front").color(theme::ACCENT),
-        Some(Standing::Tied) => RichText::new("within the noise").color(theme::TEXT),
+        _ if is_current => RichText::new("this preset").color(theme::amber()),
+        Some(Standing::Front) => RichText::new("on the front").color(theme::accent()),
+        Some(Standing::Tied) => RichText::new("within the noise").color(theme::text()),
         Some(Standing::Dominated) => theme::weak("dominated"),
         None if point.ms.is_none() => theme::weak("not timed"),
         None => RichText::new(""),

@@ -18,9 +18,9 @@ pub fn badges_ui(ui: &mut Ui, state: &State, rect: Rect) {
         .show(ui.ctx(), |ui| {
             ui.set_max_width((rect.width() - 48.0).max(160.0));
             for (subject, text) in faults {
-                theme::toast_frame(theme::RED).show(ui, |ui| {
-                    ui.label(RichText::new(title(subject)).color(theme::RED).strong());
-                    ui.label(RichText::new(text).monospace().color(theme::TEXT_STRONG));
+                theme::toast_frame(theme::red()).show(ui, |ui| {
+                    ui.label(RichText::new(title(subject)).color(theme::red()).strong());
+                    ui.label(RichText::new(text).monospace().color(theme::text_strong()));
                 });
             }
         });

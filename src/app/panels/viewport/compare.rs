@@ -110,13 +110,42 @@ impl Compare {
 
     /// True while a report on A is still to come.
     pub fn is_waiting(&self) -> bool {
-        self.screen.as_ref().is_some_and(Screen::is_waiting)
+        self.shown().is_some_and(Screen::is_waiting)
+    }
+
+    /// True while a picture of A is still to come, other than the next moment of a preset that plays.
+    pub fn is_awaited(&self, is_playing: bool) -> bool {
+        self.shown().is_some_and(|screen| screen.is_awaited(is_playing))
+    }
+
+    /// True while the cost of A is to be measured.
+    pub fn needs_measuring(&self) -> bool {
+        self.shown().is_some_and(Screen::needs_measuring)
+    }
+
+    /// Measures the cost of A, if that is needed.
+    pub fn measure(&mut self) {
+        if self.needs_measuring()
+            && let Some(screen) = &mut self.screen
+        {
+            screen.measure();
+        }
+    }
+
+    /// Forgets what was measured of another preset, or at another size.
+    pub fn reset_measurements(&mut self) {
+        self.verdict = None;
+        self.screen.iter_mut().for_each(Screen::reset_timings);
+    }
+
+    /// A's picture, unless only B is shown.
+    fn shown(&self) -> Option<&Screen> {
+        self.screen.as_ref().filter(|_| !matches!(self.mode, None | Some(Mode::B)))
     }
 
     /// Time of A's newest frame, milliseconds; 0 if there is none.
     pub fn ms(&self) -> f64 {
-        let report = self.screen.as_ref().and_then(Screen::report);
-        if self.mode == Some(Mode::B) { 0.0 } else { report.and_then(|report| report.gpu_ms).unwrap_or(0.0) }
+        self.shown().and_then(|screen| screen.timings().newest_ms()).unwrap_or(0.0)
     }
 
     /// The inputs that were requested for A, at full size.
@@ -165,8 +194,9 @@ impl Compare {
         let Some(live) = state.screen.requested() else { return };
         let inputs = self.inputs(state, live);
         let screen = self.screen.get_or_insert_with(|| state.screen.sibling());
-        let drawn = screen.poll(state.now_s).and_then(|()| screen.show(inputs, state.screen.divisor(), state.now_s));
-        if let Err(error) = drawn {
+        let polled = screen.poll();
+        screen.show(inputs, state.screen.divisor());
+        if let Err(error) = polled {
             state.notify(Level::Error, format!("The comparison cannot be drawn: {error}"));
         }
     }

@@ -29,10 +29,10 @@ pub fn labels_ui(ui: &Ui, name: &str, sides: [Rect; 2], is_difference: bool) {
         }
         let corner = align.pos_in_rect(&side.shrink2(vec2(19.0, UP_TO_LABELS)));
         let painter = ui.painter_at(side);
-        let label = painter.layout_no_wrap(text, FontId::proportional(13.0), theme::TEXT_STRONG);
+        let label = painter.layout_no_wrap(text, FontId::proportional(13.0), theme::text_strong());
         let rect = align.anchor_size(corner, label.size());
-        painter.rect_filled(rect.expand2(vec2(7.0, 4.0)), 5.0, theme::BAR.gamma_multiply(0.88));
-        painter.galley(rect.min, label, theme::TEXT_STRONG);
+        painter.rect_filled(rect.expand2(vec2(7.0, 4.0)), 5.0, theme::bar().gamma_multiply(0.88));
+        painter.galley(rect.min, label, theme::text_strong());
     }
 }
 
@@ -43,7 +43,7 @@ pub fn bar_ui(ui: &mut Ui, compare: &mut Compare, state: &State, rect: Rect) {
     let corner = pos2(rect.center().x - width / 2.0, rect.bottom() - UP_TO_BAR);
     let rect = Rect::from_min_size(corner, vec2(width, BAR));
     let mut bar = ui.new_child(egui::UiBuilder::new().id_salt("compare bar").max_rect(rect));
-    theme::toast_frame(theme::LINE).inner_margin(egui::Margin::symmetric(8, 3)).show(&mut bar, |ui| {
+    theme::toast_frame(theme::line()).inner_margin(egui::Margin::symmetric(8, 3)).show(&mut bar, |ui| {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 6.0;
             for (mode, name) in MODES {
@@ -57,7 +57,7 @@ pub fn bar_ui(ui: &mut Ui, compare: &mut Compare, state: &State, rect: Rect) {
                 ui.add(gain).accessible_name("Difference gain").on_hover_text("Factor of the difference");
             }
             ui.separator();
-            let label = egui::Label::new(RichText::new(&text).size(12.0).color(theme::TEXT)).truncate();
+            let label = egui::Label::new(RichText::new(&text).size(12.0).color(theme::text())).truncate();
             ui.add(label).on_hover_text("A against B, pixel by pixel. Verify (V) measures both.");
         });
     });

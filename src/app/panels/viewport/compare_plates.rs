@@ -5,7 +5,7 @@ use eframe::egui::{self, Color32, Rect, RichText, Ui, pos2, vec2};
 use super::compare::{Compare, Mode};
 use crate::app::{
     icons::{Icon, icon_button},
-    measured::{error_line, time_text},
+    measured::{error_line, time_line},
     screen::Screen,
     state::State,
     theme,
@@ -33,13 +33,13 @@ pub fn plates_ui(ui: &mut Ui, compare: &mut Compare, state: &State, rect: Rect, 
 
 fn plate_a_ui(ui: &mut Ui, compare: &mut Compare, state: &State) {
     let (color, error, hint) = match compare.screen.as_ref().is_some_and(Screen::is_refused) {
-        true => (theme::RED, "cannot be drawn".into(), "See the log.".into()),
+        true => (theme::red(), "cannot be drawn".into(), "See the log.".into()),
         false => error_line(compare.verdict.as_ref(), compare.requested()),
     };
-    let time = time_text(compare.screen.as_ref().and_then(Screen::report));
+    let time = time_line(compare.screen.as_ref());
     let is_kept = compare.kept.is_some();
     let doc = if is_kept { "The preset as it was kept" } else { "This preset with the most exact option on every axis" };
-    plate(ui, &format!("A · {}", compare.name()), doc, (&time, &error, color, &hint), |ui| {
+    plate(ui, &format!("A · {}", compare.name()), doc, ((&time.0, &time.1), (&error, color, &hint)), |ui| {
         if ui.small_button("Keep B").on_hover_text("Keep the preset as it is now, and show it as A").clicked() {
             let session = &state.session;
             // Without muted effects the preset keeps its movement too.
@@ -57,9 +57,9 @@ fn plate_a_ui(ui: &mut Ui, compare: &mut Compare, state: &State) {
 
 fn plate_b_ui(ui: &mut Ui, compare: &mut Compare, state: &State) {
     let (color, error, hint) = error_line(state.verification.verdict(), state.screen.requested());
-    let time = time_text(state.screen.report());
+    let time = time_line(Some(&state.screen));
     let key = state.screen.explanation().map_or(String::new(), |explanation| explanation.key.clone());
-    plate(ui, "B · this preset", &key, (&time, &error, color, &hint), |ui| {
+    plate(ui, "B · this preset", &key, ((&time.0, &time.1), (&error, color, &hint)), |ui| {
         if icon_button(ui, Icon::Cross, "Close the comparison").clicked() {
             compare.close();
         }
@@ -67,17 +67,23 @@ fn plate_b_ui(ui: &mut Ui, compare: &mut Compare, state: &State) {
 }
 
 /// Title and buttons of a side, and below them its time and its error.
-fn plate(ui: &mut Ui, title: &str, doc: &str, (time, error, color, hint): (&str, &str, Color32, &str), buttons: impl FnOnce(&mut Ui)) {
-    theme::toast_frame(theme::LINE).inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
+fn plate(
+    ui: &mut Ui,
+    title: &str,
+    doc: &str,
+    ((time, time_hint), (error, color, hint)): ((&str, &str), (&str, Color32, &str)),
+    buttons: impl FnOnce(&mut Ui),
+) {
+    theme::toast_frame(theme::line()).inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
         ui.set_min_width(ui.available_width());
         ui.spacing_mut().item_spacing.y = 2.0;
         ui.horizontal(|ui| {
-            ui.add(egui::Label::new(RichText::new(title).strong().color(theme::TEXT_STRONG)).truncate()).on_hover_text(doc);
+            ui.add(egui::Label::new(RichText::new(title).strong().color(theme::text_strong())).truncate()).on_hover_text(doc);
             buttons(ui);
         });
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 6.0;
-            ui.label(RichText::new(time).size(12.0).color(theme::TEXT));
+            ui.label(RichText::new(time).size(12.0).color(theme::text())).on_hover_text(time_hint);
             ui.label(theme::weak("·"));
             ui.add(egui::Label::new(RichText::new(error).size(12.0).color(color)).truncate()).on_hover_text(hint);
         });

@@ -34,7 +34,7 @@ pub fn compare_ui(ui: &mut Ui, compare: &mut Compare, state: &State, (rect, at):
         };
         let target = fitted(if mode == Mode::SideBySide { half_a } else { rect }, size);
         if mode == Mode::SideBySide {
-            ui.painter_at(half_a).rect_filled(half_a, 0.0, theme::VIEW);
+            ui.painter_at(half_a).rect_filled(half_a, 0.0, theme::view());
         }
         ui.painter_at(side_a).extend(blit.map(|blit| blit.shape(target)));
     }
@@ -43,7 +43,7 @@ pub fn compare_ui(ui: &mut Ui, compare: &mut Compare, state: &State, (rect, at):
     }
     match mode {
         Mode::Wipe => divider_ui(ui, &mut compare.split, at),
-        Mode::SideBySide => drop(ui.painter().vline(half_a.right(), rect.y_range(), (1.5, theme::LINE))),
+        Mode::SideBySide => drop(ui.painter().vline(half_a.right(), rect.y_range(), (1.5, theme::line()))),
         Mode::Difference | Mode::A | Mode::B => {}
     }
     labels_ui(ui, compare.name(), [side_a, side_b], mode == Mode::Difference);
@@ -74,7 +74,7 @@ fn divider_ui(ui: &Ui, split: &mut f32, at: Rect) {
     }
     *split = split.clamp(0.0, 1.0);
     let is_near = response.hovered() || response.dragged() || response.has_focus();
-    paint_divider(ui, at, x, if is_near { theme::ACCENT } else { theme::TEXT_STRONG });
+    paint_divider(ui, at, x, if is_near { theme::accent() } else { theme::text_strong() });
 }
 
 /// A line with dark edges, visible on any picture, and a knob with two arrows.
@@ -83,7 +83,7 @@ fn paint_divider(ui: &Ui, at: Rect, x: f32, color: Color32) {
     painter.vline(x, at.y_range(), (4.0, Color32::from_black_alpha(140)));
     painter.vline(x, at.y_range(), (1.5, color));
     let knob = pos2(x, at.center().y);
-    painter.circle(knob, 12.0, theme::BAR, (1.5, color));
+    painter.circle(knob, 12.0, theme::bar(), (1.5, color));
     for side in [-1.0, 1.0] {
         let tip = knob + vec2(7.0 * side, 0.0);
         let points: [Pos2; 3] = [tip, tip + vec2(-4.0 * side, -4.0), tip + vec2(-4.0 * side, 4.0)];

@@ -86,10 +86,10 @@ fn ball_ui(ui: &Ui, center: Pos2, light: &Shadow, camera: &Camera, is_active: bo
     }
     let painter = ui.painter();
     painter.add(ball);
-    let rim = if is_active { theme::ACCENT } else { theme::LINE };
+    let rim = if is_active { theme::accent() } else { theme::line() };
     painter.circle_stroke(center, RADIUS, Stroke::new(1.5, rim));
     let mark = position(toward.dot(x), toward.dot(y));
-    let ink = if is_active { theme::ACCENT } else { theme::TEXT_STRONG };
+    let ink = if is_active { theme::accent() } else { theme::text_strong() };
     if toward.dot(back) >= 0.0 {
         painter.circle_filled(mark, 5.0, tint(1.0, 255));
     }

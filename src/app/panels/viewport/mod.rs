@@ -7,6 +7,7 @@ mod compare;
 mod compare_bar;
 mod compare_plates;
 mod compare_ui;
+mod compiling;
 mod heat_legend;
 mod layout;
 mod light;
@@ -24,12 +25,14 @@ use eframe::egui::{self, Align2, FontId, Rect, Response, Sense, Ui, vec2};
 use self::{compare::Compare, layout::fitted, overlays::OverlayPainter};
 use crate::app::{
     anti_aliasing::{AutomaticAntiAliasing, Finished},
-    command::{Command, Commands, Edit, ViewCommand},
+    command::{Commands, Edit},
     log::Level,
     scene_loader::SceneKey,
     screen::Inputs,
+    session::FileId,
     state::State,
     theme,
+    timings::Measurable,
 };
 use crate::{effects::Stack, preset::AccuracyRequest, scene::Scene};
 
@@ -47,6 +50,8 @@ pub struct Viewport {
     pub compare: Compare,
     overlays: OverlayPainter,
     anti_aliasing: AutomaticAntiAliasing,
+    /// What the numbers in the header are of.
+    measured: Measurable<(FileId, SceneKey)>,
 }
 
 /// Where the picture is, and what the pointer did there.
@@ -76,13 +81,7 @@ impl Viewport {
         if camera.is_some() {
             commands.edit(Edit::Camera(camera));
         }
-        if state.marker.is_some() && state.picking.is_none() && ui.input(|i| i.key_pressed(egui::Key::Escape)) {
-            commands.send(Command::View(ViewCommand::Mark(None)));
-        }
         if let Some(picking) = state.picking {
-            if ui.input(|i| i.key_pressed(egui::Key::Escape)) {
-                commands.send(Command::View(ViewCommand::Pick(None)));
-            }
             pick_input::pick(&response, self.compare.side_b(rect), picking, state, commands);
         }
         Interaction { response, size, is_moved }
@@ -91,11 +90,17 @@ impl Viewport {
     /// Draws the preset, at a lower resolution while it moves on a slow adapter.
     pub fn draw(&mut self, ctx: &egui::Context, state: &mut State, interaction: &Interaction) {
         let now_s = state.now_s;
-        if let Err(error) = state.screen.poll(now_s) {
-            state.log.add(Level::Error, error.to_string());
+        if let Err(error) = state.screen.poll() {
+            state.log.add(Level::Error, error); // Words stay in the picture as long as this is so.
         }
         // While the scene of another preset is shown there is nothing to draw.
         let Some(scene) = state.session.scenes.shown_for(&SceneKey::of(&state.session.preset_file)).cloned() else { return };
+        let file = &state.session.preset_file;
+        if self.measured.resets((FileId::of(file), SceneKey::of(file)), interaction.size) {
+            state.screen.reset_timings();
+            state.verification.reset();
+            self.compare.reset_measurements();
+        }
         let stack = state.session.visible_stack();
         let accuracy = self.accuracy(state, &scene, &stack, interaction.size);
         let requested = Inputs { view: state.session.view_at(&scene, interaction.size), scene, stack, accuracy };
@@ -109,20 +114,26 @@ impl Viewport {
         if divisor > 1 {
             ctx.request_repaint_after_secs(rest_in_s.unwrap_or(0.0) as f32 + 0.01);
         }
-        if let Err(error) = state.screen.show(requested, divisor, now_s) {
-            state.log.notify(Level::Error, error.to_string(), now_s);
-        }
+        state.screen.show(requested, divisor);
         self.compare.draw(state);
-        if state.screen.is_waiting() || self.compare.is_waiting() {
-            ctx.request_repaint_after_secs(0.015);
+        // What else runs would be measured, too.
+        let is_busy = is_held || state.session.playback.playing || state.jobs.is_computing() || self.compare.is_waiting();
+        if rest_in_s.is_none() && !is_busy {
+            state.screen.measure();
+            if !state.screen.is_measuring() {
+                self.compare.measure();
+            }
         }
     }
 
     /// The preset's accuracy, with automatic anti-aliasing where the card can afford it.
     fn accuracy(&mut self, state: &State, scene: &Arc<Scene>, stack: &Stack, size: [u32; 2]) -> AccuracyRequest {
         let screen = &state.screen;
-        let newest = screen.options().zip(screen.report()).filter(|_| !screen.is_waiting());
-        let finished = newest.map(|(options, report)| Finished::new(options, report, screen.divisor() == 1));
+        let newest = screen.options().zip(screen.drawn().filter(|drawn| screen.requested().is_some_and(|next| next.shares_kernels(drawn))));
+        let finished = newest.map(|(options, drawn)| {
+            let is_full_size = [drawn.view.width, drawn.view.height] == size;
+            Finished::new(options, screen.timings().cost_ms(), is_full_size)
+        });
         self.anti_aliasing.applied(state.session.preset().accuracy, (scene, stack, size), &screen.gpu.caps, finished)
     }
 
@@ -135,7 +146,7 @@ impl Viewport {
     /// By how much a moving picture of `full` pixels must be smaller along a side to stay smooth, from the time of the last one.
     fn divisor(&self, state: &State, full: [u32; 2]) -> u32 {
         let screen = &state.screen;
-        let Some(ms) = screen.report().and_then(|report| report.gpu_ms).map(|ms| ms + self.compare.ms()) else {
+        let Some(ms) = screen.timings().newest_ms().map(|ms| ms + self.compare.ms()) else {
             return if screen.gpu.summary.software { 2 } else { 1 };
         };
         let [width, height] = screen.picture().map_or(full, |(_, size)| size);
@@ -155,7 +166,8 @@ impl Viewport {
             return false;
         }
         let screen = &state.screen;
-        let is_drawn = screen.requested().is_some() && screen.drawn() == screen.requested() && !screen.is_waiting();
+        let is_drawn =
+            screen.requested().is_some() && screen.drawn() == screen.requested() && !screen.is_waiting() && !screen.is_measuring();
         if !is_drawn || ctx.input(|i| i.pointer.any_down()) {
             return false; // The event that ends this state repaints.
         }
@@ -180,6 +192,7 @@ impl Viewport {
             heat_legend::heat_ui(ui, free, &params);
         }
         badges::badges_ui(ui, state, rect);
+        compiling::compiling_ui(ui, state, rect);
     }
 }
 
@@ -189,20 +202,23 @@ fn picture_ui(ui: &Ui, state: &State, rect: Rect) -> Rect {
     if let Some((blit, size)) = state.screen.picture().filter(|(_, size)| size.iter().all(|&side| side > 0)) {
         let at = fitted(rect, size);
         if at != rect {
-            painter.rect_filled(rect, 0.0, theme::VIEW);
+            painter.rect_filled(rect, 0.0, theme::view());
         }
         painter.add(blit.shape(at));
         return at;
     }
-    painter.rect_filled(rect, 0.0, theme::VIEW);
-    let (title, detail) = if state.session.scenes.has_failed() {
+    painter.rect_filled(rect, 0.0, theme::view());
+    let compiling = state.screen.compiling();
+    let (title, detail) = if let Some(compiling) = &compiling {
+        (compiling.as_str(), "The first picture takes longest.")
+    } else if state.session.scenes.has_failed() {
         ("This scene cannot be shown", "See the log. Choose another scene on the left, or drop a .glb file here.")
     } else if state.screen.is_refused() {
         ("This picture cannot be drawn", "See the log.")
     } else {
         ("Loading the scene", "Large scenes take a moment.")
     };
-    painter.text(rect.center() - vec2(0.0, 12.0), Align2::CENTER_CENTER, title, FontId::proportional(17.0), theme::TEXT);
-    painter.text(rect.center() + vec2(0.0, 12.0), Align2::CENTER_CENTER, detail, FontId::proportional(13.0), theme::TEXT_WEAK);
+    painter.text(rect.center() - vec2(0.0, 12.0), Align2::CENTER_CENTER, title, FontId::proportional(17.0), theme::text());
+    painter.text(rect.center() + vec2(0.0, 12.0), Align2::CENTER_CENTER, detail, FontId::proportional(13.0), theme::text_weak());
     rect
 }

@@ -41,16 +41,16 @@ fn lines(overlays: &OverlaySelection, found: &Findings, stack: &Stack) -> Vec<Li
     if overlays.contains(Overlay::Unsound) {
         let crossed = found.crossed();
         lines.extend(crossed.iter().map(|(crossing, count)| {
-            Line::sentence(theme::TEXT_STRONG, format!("    {} px: {}", grouped(*count), crossing_text(crossing, stack)))
+            Line::sentence(theme::text_strong(), format!("    {} px: {}", grouped(*count), crossing_text(crossing, stack)))
         }));
     }
     let errors: Vec<Overlay> = shown.into_iter().filter(|overlay| overlay.is_error()).collect();
     let pixels = grouped(found.faults.pixels() as u64);
     if !errors.is_empty() && errors.iter().all(|overlay| found.count(*overlay) == 0) {
         let what = if let [one] = errors[..] { format!("no {}", one.name().to_lowercase()) } else { "no errors".into() };
-        lines.push(Line::sentence(theme::GREEN, format!("{what}: 0 of {pixels} pixels")));
+        lines.push(Line::sentence(theme::green(), format!("{what}: 0 of {pixels} pixels")));
     } else if lines.is_empty() {
-        lines.push(Line::sentence(theme::TEXT, format!("nothing to show in {pixels} pixels")));
+        lines.push(Line::sentence(theme::text(), format!("nothing to show in {pixels} pixels")));
     }
     lines
 }
@@ -79,7 +79,7 @@ fn line(overlay: Overlay, gain: u8, found: &Findings) -> Line {
         Overlay::Unsound => format!("{}: {count} px", overlay.name()),
         _ => format!("{name}: {count} px"),
     };
-    Line { swatch: Some(overlay.color()), text, color: theme::TEXT_STRONG }
+    Line { swatch: Some(overlay.color()), text, color: theme::text_strong() }
 }
 
 /// What is known of the pixel under the pointer.
@@ -91,7 +91,7 @@ fn hovered_line(ui: &Ui, state: &State, at: Rect) -> Option<Line> {
     let i = (y * found.size[0] + x) as usize;
     let crossing = found.crossing(i).filter(|_| state.overlays.contains(Overlay::Unsound));
     let crossing = crossing.map_or(String::new(), |crossing| format!(", {}", crossing_text(crossing, &state.session.visible_stack())));
-    Some(Line::sentence(theme::TEXT_WEAK, format!("{x}, {y}: {}{crossing}", found.pixel_text(i))))
+    Some(Line::sentence(theme::text_weak(), format!("{x}, {y}: {}{crossing}", found.pixel_text(i))))
 }
 
 /// Shows the legend at the lower left of `free`; the picture is at `at`. Returns what of `free` it does not cover.
@@ -101,9 +101,9 @@ pub fn legend_ui(ui: &mut Ui, state: &State, free: Rect, at: Rect) -> Rect {
     }
     let mut lines = match state.findings() {
         Some(found) if state.screen.divisor() == 1 => lines(&state.overlays, found, &state.session.visible_stack()),
-        _ if state.verification.is_running() => vec![Line::sentence(theme::TEXT, "Comparing this picture with the oracle")],
-        _ if state.overlays_are_ready() => vec![Line::sentence(theme::RED, "This picture could not be verified. See the log.")],
-        _ => vec![Line::sentence(theme::TEXT_WEAK, "Overlays appear when the picture is at rest")],
+        _ if state.verification.is_running() => vec![Line::sentence(theme::text(), "Comparing this picture with the oracle")],
+        _ if state.overlays_are_ready() => vec![Line::sentence(theme::red(), "This picture could not be verified. See the log.")],
+        _ => vec![Line::sentence(theme::text_weak(), "Overlays appear when the picture is at rest")],
     };
     lines.extend(hovered_line(ui, state, at));
     let height = lines.len() as f32 * LINE + 2.0 * MARGIN;
@@ -112,7 +112,7 @@ pub fn legend_ui(ui: &mut Ui, state: &State, free: Rect, at: Rect) -> Rect {
         return free;
     }
     let mut child = ui.new_child(egui::UiBuilder::new().id_salt("overlay legend").max_rect(plate));
-    let frame = theme::toast_frame(theme::LINE).inner_margin(egui::Margin::symmetric(10, MARGIN as i8));
+    let frame = theme::toast_frame(theme::line()).inner_margin(egui::Margin::symmetric(10, MARGIN as i8));
     frame.show(&mut child, |ui| {
         ui.spacing_mut().item_spacing = vec2(theme::GAP, 0.0);
         ui.spacing_mut().interact_size.y = LINE;
@@ -164,7 +164,7 @@ mod tests {
             lines(overlays, found, &Stack::default()).into_iter().map(|line| line.text).collect::<Vec<_>>()
         };
         assert_eq!(text(&overlays, &found(&[])), ["no errors: 0 of 6 pixels"]);
-        assert_eq!(text(&overlays, &found(&[1, 4])), ["wrong triangle: 2 px", "holes: 2 px"]);
+        assert_eq!(text(&overlays, &found(&[1, 4])), ["wrong (snapped): 2 px", "holes: 2 px"]);
         assert_eq!(text(&only(Overlay::WrongDepth), &found(&[1])), ["no wrong depth winner: 0 of 6 pixels"]);
         assert_eq!(text(&only(Overlay::Edges), &found(&[1])), ["nothing to show in 6 pixels"]);
         assert_eq!(text(&only(Overlay::TriangleIds), &found(&[1])), ["triangle ids: 6 px are covered"]);

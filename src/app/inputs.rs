@@ -1,0 +1,47 @@
+//! Inputs: everything a picture in the window depends on.
+
+use std::sync::Arc;
+
+use crate::{
+    effects::Stack,
+    preset::AccuracyRequest,
+    scene::{Scene, view::View},
+};
+
+/// Everything a picture depends on.
+#[derive(Clone, Debug)]
+pub struct Inputs {
+    pub scene: Arc<Scene>,
+    pub view: View,
+    pub stack: Stack,
+    pub accuracy: AccuracyRequest,
+}
+
+impl PartialEq for Inputs {
+    fn eq(&self, other: &Self) -> bool {
+        let Self { scene, view, stack, accuracy } = self;
+        Arc::ptr_eq(scene, &other.scene) && *view == other.view && *stack == other.stack && *accuracy == other.accuracy
+    }
+}
+
+impl Inputs {
+    /// The same frustum on fewer pixels, so that nothing jumps when a motion ends.
+    pub fn reduced(&self, divisor: u32) -> Self {
+        let mut inputs = self.clone();
+        inputs.view.width = inputs.view.width.div_ceil(divisor);
+        inputs.view.height = inputs.view.height.div_ceil(divisor);
+        inputs
+    }
+
+    /// True if both are drawn by the same kernels, unless the camera requires others.
+    pub fn shares_kernels(&self, other: &Self) -> bool {
+        let effects = |inputs: &Self| inputs.stack.0.iter().map(|enabled| enabled.effect).collect::<Vec<_>>();
+        Arc::ptr_eq(&self.scene, &other.scene) && self.accuracy == other.accuracy && effects(self) == effects(other)
+    }
+
+    /// Names of the effects that `shown` does not have.
+    pub fn new_effects(&self, shown: Option<&Self>) -> Vec<&'static str> {
+        let is_new = |name: &&str| shown.is_none_or(|shown| shown.stack.get(name).is_none());
+        self.stack.0.iter().map(|enabled| enabled.effect.name).filter(is_new).collect()
+    }
+}

@@ -1,0 +1,90 @@
+//! An entry of the palette: what it shows, and the commands that carry it out.
+
+use crate::app::{
+    action::Action,
+    command::{Command, Edit, FileCommand},
+    log::Level,
+};
+use crate::{accuracy::Axis, effects::Effect};
+
+/// What kind of thing an entry is, for its first column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Action,
+    Effect,
+    Parameter,
+    Setting,
+    Accuracy,
+    Preset,
+    Scene,
+}
+
+impl Kind {
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Action => "action",
+            Self::Effect => "effect",
+            Self::Parameter => "parameter",
+            Self::Setting => "setting",
+            Self::Accuracy => "accuracy",
+            Self::Preset => "preset",
+            Self::Scene => "scene",
+        }
+    }
+}
+
+/// What an entry does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Choice {
+    Perform(Action),
+    Enable(&'static Effect),
+    Disable(&'static Effect),
+    /// Disables the first effect and enables the second, since both take the same slot.
+    Replace(&'static str, &'static Effect),
+    /// Shows the row of this path in the inspector, after enabling the effect that it belongs to.
+    Reveal(String, Option<&'static Effect>),
+    /// Gives the value at this path.
+    Set(String, String),
+    /// Opens the preset of this id.
+    Open(String),
+    Builtin(&'static str),
+    /// Nothing can be done, for this reason.
+    Refuse(String),
+}
+
+/// An entry of the palette.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    pub kind: Kind,
+    /// What is searched first, for instance `facet.amount` or `Enable toon`.
+    pub text: String,
+    /// Shown behind it: the present value, or what it is about.
+    pub detail: String,
+    /// What is searched, too.
+    pub about: &'static str,
+    /// Its keys, for instance `Ctrl+Z`.
+    pub keys: String,
+    pub choice: Choice,
+}
+
+/// The commands that carry out `choice`.
+pub fn commands(choice: Choice) -> Vec<Command> {
+    match choice {
+        Choice::Perform(action) => vec![Command::Perform(action)],
+        Choice::Enable(effect) => vec![Command::Edit(Edit::Enable(effect)), Command::Reveal(effect.name.into())],
+        Choice::Disable(effect) => vec![Command::Edit(Edit::Disable(effect))],
+        Choice::Replace(other, effect) => vec![Command::Edit(Edit::Replace(other, effect)), Command::Reveal(effect.name.into())],
+        Choice::Reveal(path, effect) => {
+            effect.map(|effect| Command::Edit(Edit::Enable(effect))).into_iter().chain([Command::Reveal(path)]).collect()
+        }
+        Choice::Set(path, value) => vec![Command::SetText(path, value)],
+        Choice::Open(id) => vec![Command::File(FileCommand::Open(id))],
+        Choice::Builtin(name) => vec![Command::File(FileCommand::Open(format!("builtin:{name}")))],
+        Choice::Refuse(reason) => vec![Command::Notify(Level::Warning, reason)],
+    }
+}
+
+/// The path of an accuracy axis among the settings.
+pub fn axis_path(axis: &Axis) -> String {
+    format!("accuracy.{}", axis.name)
+}

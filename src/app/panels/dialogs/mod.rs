@@ -1,0 +1,239 @@
+//! Dialogs inside the window, one at a time.
+
+mod buttons;
+mod path;
+mod questions;
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui::{self, Ui};
+
+use self::{
+    buttons::{Choice, buttons},
+    path::{PathDialog, path_ui},
+    questions::{brought_ui, changed_ui, muted_ui, restore_ui, unsaved_ui},
+};
+use crate::{
+    app::{
+        command::{CodeUse, Command, Commands, FileCommand, Origin, Purpose},
+        completion::Listing,
+        panel::Panel,
+        panels::new_effect::{NewEffect, fields_ui},
+        session::Session,
+        settings::last_session::Restored,
+        state::State,
+        system_dialog::Answer,
+    },
+    effect_files::Catalog,
+    effects::Effect,
+    preset_file::{self, PresetFile},
+};
+
+/// The dialog that is open.
+enum Dialog {
+    Path(PathDialog),
+    /// Save with muted effects enabled, or without them?
+    Muted {
+        path: PathBuf,
+    },
+    /// Quit with unsaved changes?
+    Unsaved,
+    NewEffect(NewEffect),
+    /// May the code that a preset brings run?
+    Code(Box<PresetFile>, CodeUse),
+    /// Keep unsaved changes, or take what the preset's file has now, or both? It is saved to the path afterwards.
+    Changed(Box<PresetFile>, Option<PathBuf>),
+    /// Go on with the session that a crash ended?
+    Restore(Box<Restored>),
+}
+
+/// The open dialog, if any.
+#[derive(Default)]
+pub struct Dialogs {
+    open: Option<Dialog>,
+    /// The dialog that a save was asked for with. It comes back if the save fails.
+    saving: Option<PathDialog>,
+}
+
+impl Dialogs {
+    pub fn is_open(&self) -> bool {
+        self.open.is_some()
+    }
+
+    /// Does the open dialog have a field for text?
+    pub fn takes_text(&self) -> bool {
+        matches!(self.open, Some(Dialog::Path(_) | Dialog::NewEffect(_)))
+    }
+
+    /// Asks for a path. `presets_dir` is the folder of presets from the command line; a picture is exported at `size` pixels
+    /// unless another size is typed.
+    pub fn ask_path(&mut self, purpose: Purpose, session: &Session, presets_dir: Option<&Path>, size: [u32; 2]) {
+        let id = &session.preset_file.id;
+        let text = match purpose {
+            Purpose::Open => presets_dir.map_or_else(String::new, |folder| format!("{}/", folder.display())),
+            Purpose::SaveAs => {
+                let id = if id.is_empty() { "preset" } else { id };
+                let is_builtin = session.preset_file.path.is_none() && session.preset_file.read_only;
+                let name = if is_builtin { format!("my-{id}") } else { id.to_owned() };
+                save_folder(session, presets_dir).join(format!("{name}.toml")).display().to_string()
+            }
+            Purpose::Export => std::env::current_dir().unwrap_or_default().join(format!("{id}.png")).display().to_string(),
+        };
+        self.open = Some(Dialog::Path(PathDialog::new(purpose, text, size)));
+    }
+
+    /// Asks whether muted effects are saved to `path` too.
+    pub fn ask_muted(&mut self, path: PathBuf) {
+        self.open = Some(Dialog::Muted { path });
+    }
+
+    /// Asks whether to save before the window closes.
+    pub fn ask_unsaved(&mut self) {
+        self.open = Some(Dialog::Unsaved);
+    }
+
+    /// Asks for the name of a new effect, and for its hook unless it is a duplicate of `duplicated`.
+    pub fn ask_new_effect(&mut self, duplicated: Option<&'static Effect>, catalog: &Catalog) {
+        self.open = Some(Dialog::NewEffect(NewEffect::new(duplicated, catalog)));
+    }
+
+    /// Asks what becomes of unsaved changes and of `theirs`, the open preset as its file has it now. The outcome is saved to `saving`.
+    pub fn ask_changed(&mut self, theirs: Box<PresetFile>, saving: Option<PathBuf>) {
+        self.open = Some(Dialog::Changed(theirs, saving));
+    }
+
+    /// Asks whether the effects that `preset_file` brings may run.
+    pub fn ask_code(&mut self, preset_file: Box<PresetFile>, then: CodeUse) {
+        self.open = Some(Dialog::Code(preset_file, then));
+    }
+
+    /// Asks whether to go on with the session that a crash ended.
+    pub fn ask_restore(&mut self, restored: Box<Restored>) {
+        self.open = Some(Dialog::Restore(restored));
+    }
+
+    /// Is the question open what is to happen with the session that a crash ended?
+    pub fn asks_restore(&self) -> bool {
+        matches!(self.open, Some(Dialog::Restore(_)))
+    }
+
+    /// A save to `path` failed: shows its dialog again, with the path and the reason. Returns false if another dialog is open.
+    pub fn save_failed(&mut self, purpose: Purpose, path: &Path, reason: &str) -> bool {
+        if self.is_open() {
+            return false;
+        }
+        let kept = self.saving.take().filter(|saving| saving.purpose == purpose && saving.path() == path);
+        let mut dialog = kept.unwrap_or_else(|| PathDialog::new(purpose, path.display().to_string(), [1, 1]));
+        (dialog.error, dialog.replace) = (Some(reason.to_owned()), None);
+        self.open = Some(Dialog::Path(dialog));
+        true
+    }
+
+    /// Takes the contents of a folder.
+    pub fn folder_arrived(&mut self, listing: Listing) {
+        if let Some(Dialog::Path(dialog)) = &mut self.open {
+            dialog.folder_arrived(listing);
+        }
+    }
+
+    /// Takes the answer of the system's dialog.
+    pub fn path_arrived(&mut self, purpose: Purpose, answer: Answer, open: &PresetFile, commands: &Commands) {
+        let Some(Dialog::Path(dialog)) = &mut self.open else { return };
+        if dialog.purpose != purpose {
+            return;
+        }
+        dialog.is_browsing = false;
+        match answer {
+            Answer::Chosen(path) => {
+                dialog.text = path.display().to_string();
+                dialog.replace = Some(path); // The system's dialog has asked whether to replace it.
+                self.choose(Choice::Accept, open, commands);
+            }
+            Answer::Canceled => {}
+            Answer::Unavailable(reason) => dialog.no_system_dialog = Some(reason),
+        }
+    }
+
+    /// Carries out the choice of a button. The dialog stays open if the choice leads to another question in it.
+    fn choose(&mut self, choice: Choice, open: &PresetFile, commands: &Commands) {
+        let file = |command| commands.send(Command::File(command));
+        match (choice, self.open.take()) {
+            (Choice::Cancel, _) | (_, None) => {}
+            (Choice::Browse, Some(Dialog::Path(mut dialog))) => {
+                file(FileCommand::Browse(dialog.purpose, PathBuf::from(&dialog.text)));
+                dialog.is_browsing = true;
+                self.open = Some(Dialog::Path(dialog));
+            }
+            (Choice::Accept, Some(Dialog::Path(mut dialog))) => {
+                if dialog.accept(open.path.as_deref(), commands) {
+                    self.saving = Some(dialog).filter(|dialog| dialog.purpose != Purpose::Open);
+                } else {
+                    self.open = Some(Dialog::Path(dialog));
+                }
+            }
+            (Choice::KeepMuted, Some(Dialog::Muted { path })) => file(FileCommand::Write { path, drops_muted: false }),
+            (Choice::DropMuted, Some(Dialog::Muted { path })) => file(FileCommand::Write { path, drops_muted: true }),
+            (Choice::Save, Some(Dialog::Unsaved)) => file(FileCommand::Save),
+            (Choice::Keep, Some(Dialog::Unsaved)) => file(FileCommand::Quit { keeps_edits: true }),
+            (Choice::Discard, Some(Dialog::Unsaved)) => file(FileCommand::Quit { keeps_edits: false }),
+            (Choice::Restore, Some(Dialog::Restore(restored))) => file(FileCommand::Restore(restored)),
+            (Choice::Discard, Some(Dialog::Restore(_))) => {}
+            (Choice::Accept, Some(Dialog::NewEffect(mut dialog))) => {
+                if dialog.check(&open.effects) {
+                    file(FileCommand::NewEffect { name: dialog.name, origin: dialog.origin });
+                } else {
+                    self.open = Some(Dialog::NewEffect(dialog));
+                }
+            }
+            (Choice::Run | Choice::OpenWithout, Some(Dialog::Code(preset_file, then))) => {
+                file(FileCommand::UseCode { preset_file, then, runs: choice == Choice::Run });
+            }
+            (Choice::Side(side), Some(Dialog::Changed(theirs, saving))) => file(FileCommand::Resolve { theirs, side, saving }),
+            (_, dialog) => self.open = dialog,
+        }
+    }
+}
+
+impl Panel for Dialogs {
+    fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
+        let Some(dialog) = &mut self.open else { return };
+        if let Dialog::Path(dialog) = dialog {
+            dialog.request_folder(commands);
+        }
+        let mut chosen = None;
+        let frame = egui::Frame::window(&ui.ctx().global_style()).inner_margin(16.0);
+        let modal = egui::Modal::new(egui::Id::unique("dialog")).frame(frame).show(ui.ctx(), |ui| {
+            ui.set_width(460.0f32.min(ui.ctx().content_rect().width() - 64.0));
+            chosen = match dialog {
+                Dialog::Path(dialog) => path_ui(ui, dialog, &state.settings.recents, &state.missing_files),
+                Dialog::Muted { .. } => muted_ui(ui, &state.session.muted.iter().copied().collect::<Vec<_>>()),
+                Dialog::Unsaved => unsaved_ui(ui, state.session.title(), state.keeps_session),
+                Dialog::NewEffect(dialog) => new_effect_ui(ui, dialog),
+                Dialog::Changed(theirs, saving) => changed_ui(ui, theirs.title(), saving.is_some()),
+                Dialog::Code(preset_file, _) => brought_ui(ui, preset_file),
+                Dialog::Restore(restored) => restore_ui(ui, restored),
+            };
+        });
+        // What a crash left is not thrown away by a click beside the question.
+        if chosen.is_none() && modal.should_close() && !matches!(dialog, Dialog::Restore(_)) {
+            chosen = Some(Choice::Cancel);
+        }
+        if let Some(choice) = chosen {
+            self.choose(choice, &state.session.preset_file, commands);
+        }
+    }
+}
+
+/// The folder that presets are saved to by default.
+fn save_folder(session: &Session, presets_dir: Option<&Path>) -> PathBuf {
+    let open = &session.preset_file;
+    let own = open.path.as_deref().and_then(Path::parent).filter(|_| !open.read_only).map(Path::to_owned);
+    own.or_else(|| presets_dir.map(Path::to_owned)).or_else(preset_file::user_folder).unwrap_or_default()
+}
+
+fn new_effect_ui(ui: &mut Ui, dialog: &mut NewEffect) -> Option<Choice> {
+    let is_entered = fields_ui(ui, dialog);
+    let verb = if matches!(dialog.origin, Origin::Duplicate(_)) { "Duplicate" } else { "Create" };
+    let choice = buttons(ui, &[(verb, Choice::Accept, true), ("Cancel", Choice::Cancel, false)], |_| None);
+    if is_entered { Some(Choice::Accept) } else { choice }
+}

@@ -1,0 +1,134 @@
+//! Promise: files are found and saved without a service of the desktop: paths are completed, recent files are listed, and a save that fails
+//! keeps its dialog with the path and the reason.
+
+use std::time::{Duration, Instant};
+
+use eframe::egui::{Event, Key, Modifiers, Role};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+
+use crate::{files::tiny_glb, harness::*};
+
+fn type_text(lab: &mut Lab, text: &str) {
+    lab.event(Event::Text(text.into()));
+    lab.run_steps(3);
+}
+
+/// Steps until `reached`.
+fn wait_for(lab: &mut Lab, what: &str, reached: impl Fn(&Lab) -> bool) {
+    let patience = Instant::now() + Duration::from_secs(60);
+    while !reached(lab) {
+        assert!(Instant::now() < patience, "{what}\n{}", lab.state().log_text());
+        lab.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn path_of(lab: &Lab) -> String {
+    lab.get_by_role_and_label(Role::TextInput, "Path").accesskit_node().value().unwrap_or_default()
+}
+
+#[test]
+fn tab_completes_a_path_and_enter_goes_into_folders_and_opens_files() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let models = folder.path().join("models");
+    std::fs::create_dir(&models).expect("a folder");
+    std::fs::write(models.join("triangle.glb"), tiny_glb()).expect("a file");
+    std::fs::write(models.join("notes.txt"), "").expect("a file");
+    let Some(mut lab) = lab("lambert") else { return };
+    press(&mut lab, Modifiers::COMMAND, Key::O);
+    type_text(&mut lab, &format!("{}/mod", folder.path().display()));
+    wait_for(&mut lab, "the folder is listed", |lab| lab.query_by_label("models/").is_some());
+    press(&mut lab, Modifiers::NONE, Key::Tab);
+    assert_eq!(path_of(&lab), format!("{}/", models.display()));
+    wait_for(&mut lab, "the folder is listed", |lab| lab.query_by_label("triangle.glb").is_some());
+    assert!(lab.query_by_label("notes.txt").is_none(), "a file that cannot be opened is listed");
+    type_text(&mut lab, "tr");
+    press(&mut lab, Modifiers::NONE, Key::Tab);
+    assert_eq!(path_of(&lab), models.join("triangle.glb").display().to_string());
+    press(&mut lab, Modifiers::NONE, Key::Enter);
+    settle(&mut lab);
+    assert_eq!(lab.state().preset_file().title(), "Daylight on triangle");
+    assert!(lab.query_by_role_and_label(Role::TextInput, "Path").is_none());
+
+    // The file is recent now. The arrow keys choose it.
+    press(&mut lab, Modifiers::NONE, Key::CloseBracket);
+    press(&mut lab, Modifiers::COMMAND, Key::O);
+    wait_for(&mut lab, "the recent file is listed", |lab| lab.query_by_label("triangle.glb").is_some());
+    press(&mut lab, Modifiers::NONE, Key::ArrowDown);
+    press(&mut lab, Modifiers::NONE, Key::Enter);
+    settle(&mut lab);
+    let title = lab.state().preset_file().title();
+    assert!(title.ends_with(" on triangle") && title != "Daylight on triangle", "{title}");
+}
+
+#[test]
+fn a_save_that_fails_keeps_the_dialog_its_path_and_the_reason() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("file");
+    std::fs::write(&file, "in the way").expect("a file");
+    let Some(mut lab) = lab("lambert") else { return };
+    press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::S);
+    press(&mut lab, Modifiers::COMMAND, Key::A);
+    let path = file.join("mine.toml");
+    type_text(&mut lab, &path.display().to_string());
+    press(&mut lab, Modifiers::NONE, Key::Enter);
+    assert_eq!(path_of(&lab), path.display().to_string());
+    assert!(lab.query_by_label_contains("the folder cannot be created").is_some(), "{}", lab.state().log_text());
+    // Another name, and it is saved.
+    press(&mut lab, Modifiers::COMMAND, Key::A);
+    let path = folder.path().join("mine.toml");
+    type_text(&mut lab, &path.display().to_string());
+    press(&mut lab, Modifiers::NONE, Key::Enter);
+    assert!(path.exists() && lab.query_by_role_and_label(Role::TextInput, "Path").is_none());
+}
+
+#[test]
+fn typing_replaces_the_proposed_name_and_keeps_folder_and_extension() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab_in("lambert", Some(folder.path())) else { return };
+    press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::S);
+    type_text(&mut lab, "evening");
+    assert_eq!(path_of(&lab), folder.path().join("evening.toml").display().to_string());
+    press(&mut lab, Modifiers::COMMAND, Key::A);
+    type_text(&mut lab, &folder.path().display().to_string());
+    press(&mut lab, Modifiers::NONE, Key::Escape);
+    assert!(!folder.path().join("evening.toml").exists());
+}
+
+/// Run by the next test in a separate process, which has no desktop.
+#[test]
+#[ignore = "run by without_a_desktop_the_dialog_says_so_and_works"]
+fn child_without_a_desktop() {
+    let mut lab = lab("lambert").expect("the parent has an adapter");
+    press(&mut lab, Modifiers::COMMAND, Key::O);
+    if let Some(browse) = lab.query_by_role_and_label(Role::Button, "Browse…") {
+        browse.click();
+    }
+    wait_for(&mut lab, "the dialog says that there is no other", |lab| {
+        lab.query_by_label_contains("The system's file dialog is not available").is_some()
+    });
+    assert!(lab.query_by_role_and_label(Role::Button, "Browse…").is_none());
+    press(&mut lab, Modifiers::NONE, Key::Escape);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn without_a_desktop_the_dialog_says_so_and_works() {
+    if crate::common::gpu().is_none() {
+        return;
+    }
+    let home = tempfile::tempdir().expect("a temporary folder");
+    // With an address of a bus that is not there, the library is asked; without one it need not be.
+    for bus in ["unix:path=/nowhere/bus", ""] {
+        let child = std::process::Command::new(std::env::current_exe().expect("this test"))
+            .args(["--exact", "dialogs::child_without_a_desktop", "--ignored"])
+            .env("XDG_CONFIG_HOME", home.path())
+            .env("XDG_RUNTIME_DIR", home.path())
+            .env("DBUS_SESSION_BUS_ADDRESS", bus)
+            .env("PATH", "/nowhere")
+            .output()
+            .expect("the child starts");
+        let said = String::from_utf8_lossy(&child.stdout).into_owned() + &String::from_utf8_lossy(&child.stderr);
+        assert!(child.status.success(), "{said}");
+    }
+}

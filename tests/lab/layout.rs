@@ -1,0 +1,139 @@
+//! Promise: nothing overlaps or is cut off in a small window, in both themes; values stay in their boxes; a click on a slider counts however
+//! short it is; a number that cannot be taken is said; Escape closes what is open, the innermost first.
+
+use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Role, vec2};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use rasterlab::preset_file::Folders;
+
+use crate::harness::*;
+
+/// Names and places of what can be clicked and lies in `area` in part.
+fn controls(lab: &Lab, area: Rect) -> Vec<(String, Rect)> {
+    let roles = [Role::Button, Role::CheckBox, Role::Slider, Role::ComboBox];
+    let nodes = roles.into_iter().flat_map(|role| lab.query_all_by_role(role));
+    nodes
+        .map(|node| (node.accesskit_node().label().unwrap_or_default(), node.rect()))
+        .filter(|(name, rect)| !name.is_empty() && rect.intersects(area) && rect.width() > 0.0)
+        .collect()
+}
+
+#[test]
+fn in_a_small_window_no_control_is_cut_off_or_covered() {
+    let size = [900.0, 600.0];
+    let Some(mut lab) = created(Some("facet-knot"), Folders::default(), None, size) else { return };
+    settle(&mut lab);
+    let window = Rect::from_min_size(Pos2::ZERO, size.into());
+    let picture = lab.get_by_label("Picture").rect();
+    assert!(picture.width() > 150.0 && picture.height() > 200.0, "{picture}");
+    let top = Rect::from_min_max(Pos2::ZERO, lower_right(window, picture));
+    let over_picture = Rect::from_min_max(picture.min, picture.right_top() + vec2(0.0, 46.0));
+    for (what, area) in [("top bar", top), ("picture", over_picture)] {
+        // Presets are scrolled below the top bar, where they are hidden.
+        let is_over = |name: &str| !name.starts_with("Picture") && !name.starts_with("Preset ");
+        let controls: Vec<_> = controls(&lab, area.shrink(1.0)).into_iter().filter(|(name, _)| is_over(name)).collect();
+        assert!(controls.len() >= 4, "{what}: {controls:?}");
+        for (at, (name, rect)) in controls.iter().enumerate() {
+            let bounds = if what == "picture" { picture } else { window };
+            assert!(bounds.expand(0.5).contains_rect(*rect), "{what}: {name} at {rect} is cut off");
+            for (other, other_rect) in &controls[..at] {
+                assert!(!rect.shrink(1.0).intersects(other_rect.shrink(1.0)), "{what}: {name} at {rect} covers {other} at {other_rect}");
+            }
+        }
+    }
+    assert!(lab.query_by_label_contains("Compare:").is_some());
+}
+
+/// The lower right corner of the top bar.
+fn lower_right(window: Rect, picture: Rect) -> Pos2 {
+    Pos2::new(window.right(), picture.top() - 2.0)
+}
+
+fn button(pos: Pos2, pressed: bool) -> Event {
+    Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE }
+}
+
+#[test]
+fn a_click_and_a_drag_within_one_frame_move_a_slider() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    let rail = slider(&lab, "facet.amount").rect();
+    let at = |part: f32| Pos2::new(rail.left() + part * rail.width(), rail.center().y);
+    let pressed_at = |lab: &mut Lab, events: Vec<Event>| {
+        lab.input_mut().events.extend(events);
+        lab.run_steps(6);
+        settle(lab);
+        value(lab, "facet", "amount")[0]
+    };
+    let low = pressed_at(&mut lab, vec![Event::PointerMoved(at(0.25)), button(at(0.25), true), button(at(0.25), false)]);
+    assert!((low - 0.25).abs() < 0.1, "the click was lost: {low}");
+    let moves = [0.3, 0.5, 0.75].map(|part| Event::PointerMoved(at(part)));
+    let events = [vec![Event::PointerMoved(at(0.25)), button(at(0.25), true)], moves.to_vec(), vec![button(at(0.75), false)]].concat();
+    let high = pressed_at(&mut lab, events);
+    assert!((high - 0.75).abs() < 0.1, "the drag was lost: {high}");
+
+    // The camera follows a drag within one frame, too.
+    let view = lab.get_by_label("Picture").rect();
+    let before = lab.state().preset_file().preset.camera;
+    let [from, to] = [view.center(), view.center() + vec2(90.0, 30.0)];
+    let events = vec![Event::PointerMoved(from), button(from, true), Event::PointerMoved(to), button(to, false)];
+    lab.input_mut().events.extend(events);
+    lab.run_steps(6);
+    settle(&mut lab);
+    assert_ne!(lab.state().preset_file().preset.camera, before, "the drag over the picture was lost");
+}
+
+#[test]
+fn a_number_out_of_range_is_said_to_be_clamped_and_a_word_to_be_none() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    for (typed, said, expected) in [("7", "facet.amount takes 0..=1: 7 became 1", 1.0), ("abc", "\"abc\" is no number, so it stays 1", 1.0)]
+    {
+        lab.get_by_label("facet.amount value").click();
+        lab.run_steps(3);
+        lab.event(Event::Text(typed.into()));
+        lab.run_steps(2);
+        press(&mut lab, Modifiers::NONE, Key::Enter);
+        assert_eq!(value(&lab, "facet", "amount"), [expected]);
+        assert!(lab.state().log_text().contains(said), "{}", lab.state().log_text());
+    }
+    // A look at the number changes nothing and says nothing.
+    let before = lab.state().log_text();
+    lab.get_by_label("facet.amount value").click();
+    lab.run_steps(3);
+    press(&mut lab, Modifiers::NONE, Key::Enter);
+    assert_eq!((value(&lab, "facet", "amount"), lab.state().log_text()), (vec![1.0], before));
+}
+
+#[test]
+fn escape_closes_the_innermost_first() {
+    let Some(mut lab) = lab("facet-knot") else { return };
+    press(&mut lab, Modifiers::NONE, Key::L);
+    press(&mut lab, Modifiers::NONE, Key::M);
+    press(&mut lab, Modifiers::COMMAND, Key::Comma);
+    press(&mut lab, Modifiers::COMMAND, Key::O);
+    let is_open = |lab: &Lab| {
+        [
+            lab.query_by_role_and_label(Role::TextInput, "Path").is_some(),
+            lab.query_by_role_and_label(Role::TextInput, "Search keys").is_some(),
+            lab.state().is_trade_open(),
+            lab.query_by_label("Clear the log").is_some(),
+        ]
+    };
+    assert_eq!(is_open(&lab), [true; 4]);
+    for closed in 1..=4 {
+        press(&mut lab, Modifiers::NONE, Key::Escape);
+        assert_eq!(is_open(&lab), [0, 1, 2, 3].map(|at| at >= closed), "after {closed} times Escape");
+    }
+    press(&mut lab, Modifiers::NONE, Key::Escape);
+    assert_eq!(lab.state().undo_steps(), 0);
+}
+
+#[test]
+fn escape_in_a_field_leaves_the_field_and_no_panel() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    press(&mut lab, Modifiers::NONE, Key::L);
+    lab.get_by_label("facet.amount value").click();
+    lab.run_steps(3);
+    press(&mut lab, Modifiers::NONE, Key::Escape);
+    assert!(lab.query_by_label("Clear the log").is_some());
+    press(&mut lab, Modifiers::NONE, Key::Escape);
+    assert!(lab.query_by_label("Clear the log").is_none());
+}

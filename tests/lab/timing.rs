@@ -1,0 +1,106 @@
+//! Promise: the numbers in the header are those of the picture that is shown: measured at rest, never a first sample, never of another
+//! preset or size; and the same count of wrong pixels stands in the header and in the legend.
+
+use std::time::Duration;
+
+use eframe::egui::{self, Key, Modifiers, Role, vec2};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+
+use crate::harness::*;
+
+/// The texts of the window that contain `part`. What a label says is its value.
+fn texts(lab: &Lab, part: &str) -> Vec<String> {
+    let text = |node: egui_kittest::Node<'_>| node.accesskit_node().label().or_else(|| node.accesskit_node().value());
+    lab.query_all_by_label_contains(part).filter_map(text).collect()
+}
+
+fn has_timer(lab: &Lab) -> bool {
+    lab.state().gpu().caps.timestamps
+}
+
+#[test]
+fn the_cost_is_a_median_at_rest_and_then_nothing_is_drawn() {
+    let Some(mut lab) = lab("lambert") else { return };
+    if !has_timer(&lab) {
+        assert!(!texts(&lab, "no GPU timer").is_empty());
+        return;
+    }
+    assert!(!texts(&lab, " ms GPU").is_empty() && texts(&lab, "timing…").is_empty());
+    let draws = lab.state().draws();
+    assert!(draws >= 6, "{draws} frames: the first, and five at least that are measured");
+    lab.run_steps(30);
+    assert_eq!(lab.state().draws(), draws, "an idle window draws");
+    assert_eq!(lab.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay, Duration::MAX, "{:?}", lab.ctx.repaint_causes());
+
+    lab.key_press(Key::Num7);
+    lab.run_steps(2);
+    assert!(!texts(&lab, "timing…").is_empty(), "the time of another picture is shown: {:?}", texts(&lab, " ms GPU"));
+    assert!(texts(&lab, " ms GPU").is_empty());
+    settle(&mut lab);
+    assert!(!texts(&lab, " ms GPU").is_empty());
+    assert!(lab.state().draws() >= draws + 6);
+}
+
+#[test]
+fn a_new_size_and_another_preset_reset_time_and_verdict() {
+    let Some(mut lab) = lab("lambert") else { return };
+    let size = lab.get_by_label("Picture").rect().size();
+    click(&mut lab, Role::Button, "Verify");
+    assert_eq!(lab.get_by_label("Picture").rect().size(), size, "a verdict changes the size of the picture");
+    assert!(texts(&lab, "error not measured").is_empty() && !texts(&lab, " snapped").is_empty());
+    lab.set_size(vec2(1216.0, 800.0));
+    lab.run_steps(2);
+    assert!(!texts(&lab, "error not measured").is_empty(), "a verdict on another size is shown: {:?}", texts(&lab, " snapped"));
+    assert!(texts(&lab, " ms GPU").is_empty());
+    settle(&mut lab);
+    click(&mut lab, Role::Button, "Verify");
+    assert!(texts(&lab, "error not measured").is_empty());
+    press(&mut lab, Modifiers::NONE, Key::CloseBracket);
+    assert!(!texts(&lab, "error not measured").is_empty(), "a verdict on another preset is shown: {:?}", texts(&lab, " snapped"));
+    // A verdict that comes after the change is dropped as well.
+    lab.get_by_role_and_label(Role::Button, "Verify").click();
+    lab.run_steps(2);
+    press(&mut lab, Modifiers::NONE, Key::OpenBracket);
+    assert!(!texts(&lab, "error not measured").is_empty(), "a late verdict on another preset is shown: {:?}", texts(&lab, " snapped"));
+}
+
+#[test]
+fn header_and_legend_count_the_same_wrong_pixels() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let text = "schema = 2\n[scene]\nbuiltin = \"teapot\"\n[effects.facet]\n[accuracy]\ncoverage = \"fixed4\"\n";
+    let Some(mut lab) = lab_of(folder.path(), text) else { return };
+    press(&mut lab, Modifiers::NONE, Key::O);
+    let header = texts(&lab, "wrong: 0 snapped, ");
+    let header = header.first().unwrap_or_else(|| panic!("no header: {:?}", texts(&lab, "wrong")));
+    let count = header.trim_start_matches("wrong: 0 snapped, ").split(" true").next().expect("a count");
+    assert_ne!(count, "0", "a grid of 1/16 px moves edges");
+    let legend = format!("wrong (true): {count} px");
+    assert!(lab.query_by_label(&legend).is_some(), "{header} beside {:?}", texts(&lab, "wrong (true)"));
+    assert!(texts(&lab, "no errors").is_empty());
+}
+
+#[test]
+fn the_timing_panel_lists_passes_rest_and_latency() {
+    let Some(mut lab) = lab("lambert") else { return };
+    if !has_timer(&lab) {
+        return;
+    }
+    let draws = lab.state().draws();
+    press(&mut lab, Modifiers::NONE, Key::G);
+    assert!(!texts(&lab, "Times of ").is_empty());
+    for title in ["median", "p5 – p95", "rest", "frame"] {
+        assert!(!texts(&lab, title).is_empty(), "{title} is missing");
+    }
+    // The panel makes the picture smaller, which is another picture.
+    assert!(lab.state().draws() > draws);
+    let view = lab.get_by_label("Picture").rect();
+    drag(&mut lab, view.center(), view.center() + vec2(60.0, 20.0));
+    assert!(!texts(&lab, "input to picture: ").is_empty());
+    assert!(!texts(&lab, " ms a frame, longest ").is_empty(), "the panel does not tell how long the window takes");
+    click(&mut lab, Role::Button, "Close timing");
+    assert!(texts(&lab, "Times of ").is_empty());
+    press(&mut lab, Modifiers::NONE, Key::G);
+    assert!(!texts(&lab, "Times of ").is_empty());
+    press(&mut lab, Modifiers::NONE, Key::Escape);
+    assert!(texts(&lab, "Times of ").is_empty(), "Escape closes the panel");
+}
