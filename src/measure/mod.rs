@@ -23,6 +23,9 @@ pub struct ErrorReport {
     pub step_band_pixels: u64,
     /// Different sets of right colors among them: a flat area on a step is one.
     pub step_band_colors: u64,
+    /// Pixels whose color only the errors of interpolated normals and depths explain.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub interpolation_pixels: u64,
     /// Samples that a triangle covers and that were not drawn.
     pub holes: u64,
     /// Samples that were drawn more often than they are covered.

@@ -22,5 +22,16 @@ pub type PlacePerturbation = [f64; 4];
 /// Offset of what is interpolated from corners: the normal in x, y and z of world space, and the depth, each in error bounds.
 pub type InterpolatedPerturbation = [f64; 4];
 
+/// How far what is interpolated at a sample may err.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Doubt {
+    /// Not so far that a color shows it.
+    None,
+    /// So little that colors change in proportion.
+    Narrow,
+    /// So far that first-order bounds say nothing of colors.
+    Wide,
+}
+
 /// Offset of texture lookups: across, down, and in the level of detail, each in error bounds.
 pub type TexturePerturbation = [f64; 3];

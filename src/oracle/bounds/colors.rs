@@ -8,20 +8,25 @@
 
 use std::collections::{HashMap, HashSet};
 
+use rayon::prelude::*;
+
 use super::{
     super::{
-        perturbation::Perturbation,
+        perturbation::{Doubt, Perturbation},
         render::{
+            draw_order::ranks,
             layers::LayerImage,
-            resolve::{ResolveInput, background, finish, shade_perturbed},
-            surface::{each_surface, surface_colors},
+            resolve::{Finish, ResolveInput, finish, first_triangles, shade_perturbed},
+            shadow::Light,
+            surface::{SurfaceTriangle, shaded},
         },
         shot::Shot,
+        work::checkpoint,
     },
     layers::LayerBounds,
-    perturbations::{color_steps, has_textures, interpolations, is_far, perturbations},
+    perturbations::{WIDE_SLACK, color_steps, has_textures, interpolations, is_far, perturbations},
 };
-use crate::frame::{Geometry, NO_TRIANGLE};
+use crate::{effects::Surface, frame::Geometry};
 
 /// The pictures that are right.
 pub struct AcceptedColors {
@@ -31,8 +36,14 @@ pub struct AcceptedColors {
     is_span: bool,
     /// Pictures that belong to the same perturbation of color steps.
     per_step: usize,
-    /// Smallest and largest right color of pixels where what is interpolated is in doubt.
+    /// Smallest and largest right color of pixels where what is interpolated is in doubt and the adapter has another color.
     unsure: HashMap<usize, [[u8; 4]; 2]>,
+}
+
+/// Smallest and largest value of every channel; none of no colors.
+fn span(colors: impl Iterator<Item = [u8; 4]>) -> Option<[[u8; 4]; 2]> {
+    let both = |pick: fn(u8, u8) -> u8, a: [u8; 4], b: [u8; 4]| [0, 1, 2, 3].map(|c| pick(a[c], b[c]));
+    colors.map(|color| [color; 2]).reduce(|a, b| [both(u8::min, a[0], b[0]), both(u8::max, a[1], b[1])])
 }
 
 impl AcceptedColors {
@@ -54,8 +65,7 @@ impl AcceptedColors {
     }
 
     /// Adds what is right where interpolated normals and depths err, at the pixels where `adapter` has another color. Those of other
-    /// pixels are not asked for, which saves most of the work. A color that follows from a normal or a depth of which almost nothing is
-    /// known may be any.
+    /// pixels are not asked for, which saves most of the work.
     pub fn with_interpolations(mut self, shot: &Shot, input: &ResolveInput, geometry: &Geometry, adapter: &[[u8; 4]]) -> Self {
         let nearest = self.nearest(adapter);
         let differs = |i: &usize| (0..4).any(|c| nearest[*i][c].abs_diff(adapter[*i][c]) > 1);
@@ -63,28 +73,34 @@ impl AcceptedColors {
         if pixels.is_empty() {
             return self;
         }
-        let mut triangle_ids = vec![NO_TRIANGLE; adapter.len()];
-        pixels.iter().for_each(|&i| triangle_ids[i] = input.triangle_ids[i]);
-        let pictures: Vec<_> = interpolations(shot.stack)
-            .iter()
-            .map(|perturbation| {
-                let colors = surface_colors(shot, &triangle_ids, background(shot.view), geometry, perturbation);
-                finish(shot, input, &colors, perturbation.color_step)
-            })
-            .collect();
-        let is_unknown = each_surface(shot, &triangle_ids, geometry, &Perturbation::default(), |found| {
-            found.is_some_and(|(triangle, surface)| triangle.is_unknown(surface.pixel))
-        });
-        let span = |i: usize| {
-            let answers = || self.pictures.iter().chain(&pictures).map(|picture| picture[i]);
-            if is_unknown[i] && pictures.iter().any(|picture| picture[i] != self.pictures[0][i]) {
-                return [[u8::MIN; 4], [u8::MAX; 4]];
-            }
-            [u8::min, u8::max]
-                .map(|pick: fn(u8, u8) -> u8| [0, 1, 2, 3].map(|c| answers().map(|a| a[c]).reduce(pick).expect("there is an answer")))
+        let (ranks, light) = (ranks(shot, geometry), Light::of(shot, geometry));
+        let first_triangles = first_triangles(shot);
+        let finish = Finish::new(shot, input, &first_triangles);
+        let checkpoint = checkpoint();
+        let right = |&i: &usize| {
+            checkpoint.pass();
+            let id = input.triangle_ids[i];
+            let triangle = SurfaceTriangle::new(shot, geometry, id)?;
+            let (x, y) = (i % shot.view.width as usize, i / shot.view.width as usize);
+            let doubt = triangle.doubt(x, y);
+            let rank = ranks.get(id as usize).copied().unwrap_or(0.0);
+            let finished = |perturbation: Perturbation| {
+                let surface = triangle.surface(x, y, &perturbation);
+                let color = shaded(shot, &triangle, Surface { rank, ..surface }, light.as_ref(), perturbation.color_step);
+                finish.pixel(i, color, perturbation.color_step)
+            };
+            let [least, most] = span(interpolations(shot.stack, doubt).map(finished))?;
+            let slack = |c: usize| if doubt == Doubt::Wide { (f64::from(most[c] - least[c]) * WIDE_SLACK).ceil() as u8 } else { 0 };
+            let wide = [[0, 1, 2, 3].map(|c| least[c].saturating_sub(slack(c))), [0, 1, 2, 3].map(|c| most[c].saturating_add(slack(c)))];
+            Some((i, span(self.pictures.iter().map(|picture| picture[i]).chain(wide))?))
         };
-        self.unsure = pixels.into_iter().map(|i| (i, span(i))).collect();
+        self.unsure = pixels.par_iter().filter_map(right).collect();
         self
+    }
+
+    /// Number of pixels whose color only the errors of interpolated normals and depths explain.
+    pub fn unsure_pixels(&self) -> u64 {
+        self.unsure.len() as u64
     }
 
     /// The exact picture.

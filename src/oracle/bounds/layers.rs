@@ -6,7 +6,7 @@ use glam::{DVec3, DVec4};
 
 use super::{
     super::{
-        perturbation::Perturbation,
+        perturbation::{Doubt, Perturbation},
         render::{
             coverage::{Hit, scatter},
             draw_order::ranks,
@@ -16,7 +16,7 @@ use super::{
         },
     },
     coverage::depth_interval,
-    perturbations::{interpolations, perturbations},
+    perturbations::{WIDE_SLACK, interpolations, perturbations},
 };
 use crate::effects::{Surface, xray, xray::Xray};
 
@@ -78,8 +78,7 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<SumBounds> {
     let mut sums: Vec<SumBounds> = (0..view.pixels()).map(|_| SumBounds::default()).collect();
     let (ranks, light) = (ranks(&input.shot, input.geometry), Light::of(&input.shot, input.geometry));
     let perturbations = perturbations(input.shot.scene, view, stack);
-    let interpolations = interpolations(stack);
-    let (ranks, light, perturbations, interpolations) = (&ranks, light.as_ref(), &perturbations, &interpolations);
+    let (ranks, light, perturbations) = (&ranks, light.as_ref(), &perturbations);
     scatter(input.tests, input.triangles, view, &mut sums, |triangle| {
         let mut surface: Option<Option<SurfaceTriangle<'_>>> = None;
         let rank = ranks.get(triangle.id as usize).copied().unwrap_or(0.0);
@@ -94,11 +93,11 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<SumBounds> {
             }
             let Some(known) = surface.get_or_insert_with(|| SurfaceTriangle::new(&input.shot, input.geometry, triangle.id)) else { return };
             let lit_point = known.lit_point(&known.surface(x, y, &Perturbation::default()));
-            let unsure = if known.is_unsure(x, y) { interpolations.as_slice() } else { &[] };
-            let mut shaded = perturbations.iter().chain(unsure).map(|perturbation| {
+            let doubt = known.doubt(x, y);
+            let mut shaded = perturbations.iter().copied().chain(interpolations(stack, doubt)).map(|perturbation| {
                 let step = perturbation.color_step;
                 let lit = light.map_or(0.0, |light| light.arrives(&lit_point, triangle.id, step));
-                let surface = Surface { rank, lit, step_offset: step, ..known.surface(x, y, perturbation) };
+                let surface = Surface { rank, lit, step_offset: step, ..known.surface(x, y, &perturbation) };
                 stack.shade(surface, known.scopes)
             });
             let exact = shaded.next().expect("the first perturbation is none");
@@ -108,11 +107,10 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<SumBounds> {
                 let (color, weight) = (shaded.color.truncate(), params.weight_of(&shaded));
                 ([least.min(color), most.max(color)], [lightest.min(weight), heaviest.max(weight)])
             });
-            let is_unknown = !unsure.is_empty() && known.is_unknown(exact.pixel);
-            let (colors, weights) = match is_unknown {
-                true => ([DVec3::ZERO, DVec3::ONE], if params.unit() > 1 { [1.0, f64::from(xray::FULL_WEIGHT)] } else { weights }),
-                false => (colors, weights),
-            };
+            let slack = if doubt == Doubt::Wide { WIDE_SLACK } else { 0.0 };
+            let (color_slack, weight_slack) = ((colors[1] - colors[0]) * slack, (weights[1] - weights[0]) * slack);
+            let colors = [(colors[0] - color_slack).max(DVec3::ZERO), colors[1] + color_slack];
+            let weights = [(weights[0] - weight_slack).max(0.0), (weights[1] + weight_slack).min(f64::from(params.unit()))];
             // On a clipped triangle f32 has a sample's position only to some 2^-16 of its distance.
             let weight_error = match (params.unit() > 1, triangle.is_clipped()) {
                 (false, _) => 0.0,

@@ -1,6 +1,10 @@
 //! The perturbations under which a picture is shaded to find what an f32 renderer may draw.
 
-use super::super::perturbation::{InterpolatedPerturbation, Perturbation, PlacePerturbation, TexturePerturbation};
+use std::sync::LazyLock;
+
+use glam::DVec3;
+
+use super::super::perturbation::{Doubt, InterpolatedPerturbation, Perturbation, PlacePerturbation, TexturePerturbation};
 use crate::{
     effects::{Stack, hooks::Slot},
     scene::{Scene, view::View},
@@ -32,7 +36,7 @@ const PLACES: [PlacePerturbation; 9] = {
 /// color by at most √3 + 1 times as much as the one of these four numbers that matters most does alone.
 const INTERPOLATED: f64 = 2.75;
 
-/// All perturbations of what is interpolated.
+/// All perturbations of what is interpolated, where colors change in proportion.
 const INTERPOLATIONS: [InterpolatedPerturbation; 8] = {
     let mut interpolations = [[0.0; 4]; 8];
     let mut axis = 0;
@@ -43,6 +47,26 @@ const INTERPOLATIONS: [InterpolatedPerturbation; 8] = {
     }
     interpolations
 };
+
+/// Perturbations of what is interpolated where colors do not change in proportion: normals all over the cone in which they lie, depths
+/// all over their interval, and both together.
+static WIDE_INTERPOLATIONS: LazyLock<Vec<InterpolatedPerturbation>> = LazyLock::new(|| {
+    const DIRECTIONS: u32 = 96;
+    // Interval of a direction in z, and the golden angle: directions that are evenly spread on a sphere.
+    let direction = |i: u32| {
+        let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(DIRECTIONS);
+        let (sin, cos) = (f64::from(i) * 2.399_963_229_728_653).sin_cos();
+        DVec3::new(cos * (1.0 - z * z).sqrt(), sin * (1.0 - z * z).sqrt(), z)
+    };
+    let turns = (0..DIRECTIONS).flat_map(|i| [0.4, 1.1].map(|length| direction(i) * length));
+    // In powers, because an error may be a multiple of the depth.
+    let stretches = (0..16).flat_map(|i| [1.0, -1.0].map(|sign| sign * 1.1 * 0.5f64.powi(i)));
+    let turned = turns.flat_map(|turn| [0.0, 1.1, -1.1].map(|stretch| [turn.x, turn.y, turn.z, stretch]));
+    turned.chain(stretches.map(|stretch| [0.0, 0.0, 0.0, stretch])).collect()
+});
+
+/// How far answers between [`WIDE_INTERPOLATIONS`] may lie outside theirs, as a fraction of their span.
+pub const WIDE_SLACK: f64 = 0.25;
 
 /// From so far away that the depth of the scene is less than this fraction of the distances that are added, their roundings are seen in
 /// colors that change with the place, like fog.
@@ -77,11 +101,16 @@ pub fn perturbations(scene: &Scene, view: &View, stack: &Stack) -> Vec<Perturbat
 }
 
 /// The perturbations of what is interpolated, for each perturbation of color steps.
-pub fn interpolations(stack: &Stack) -> Vec<Perturbation> {
-    let with_step = |&color_step: &f64| {
-        INTERPOLATIONS.iter().map(move |&interpolated| Perturbation { color_step, interpolated, ..Perturbation::default() })
+pub fn interpolations(stack: &Stack, doubt: Doubt) -> impl Iterator<Item = Perturbation> {
+    let offsets = match doubt {
+        Doubt::None => &[],
+        Doubt::Narrow => INTERPOLATIONS.as_slice(),
+        Doubt::Wide => WIDE_INTERPOLATIONS.as_slice(),
     };
-    color_steps(stack).iter().flat_map(with_step).collect()
+    let with_step = move |&color_step: &f64| {
+        offsets.iter().map(move |&interpolated| Perturbation { color_step, interpolated, ..Perturbation::default() })
+    };
+    color_steps(stack).iter().flat_map(with_step)
 }
 
 /// Returns true if the places of samples are perturbed.

@@ -182,6 +182,7 @@ impl JudgedColors {
         }
         let delta = compare::pictures(&nearest, &frame.color, 0);
         (report.max_color_delta, report.rms_color_delta) = (delta.max_delta, delta.rms);
+        report.interpolation_pixels = self.accepted.unsure_pixels();
         report.step_band_colors = self.accepted.step_band_colors();
         report.step_band_pixels = self.accepted.step_band().iter().filter(|is_band| **is_band).count() as u64;
         nearest

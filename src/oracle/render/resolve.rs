@@ -9,6 +9,7 @@ use super::{
 };
 use crate::{
     effects::{
+        Stack,
         dots::{Dots, FULL},
         hooks::{Picture, Pixel, tone::encoded},
     },
@@ -43,26 +44,51 @@ pub fn shade_perturbed(shot: &Shot, input: &ResolveInput, geometry: &Geometry, p
 
 /// Bytes of a picture from its gamma-encoded surface colors: dots and image effects, whose steps are moved by `color_step`.
 pub fn finish(shot: &Shot, input: &ResolveInput, colors: &[DVec4], color_step: f64) -> Vec<[u8; 4]> {
-    let Shot { draws, view, stack, .. } = *shot;
-    let first_triangles: Vec<u32> = draws.iter().map(|draw| draw.first_triangle).collect();
-    let picture = Picture {
-        width: view.width,
-        height: view.height,
-        triangle_ids: input.triangle_ids,
-        keys: input.depth_keys,
-        draws: &first_triangles,
-        previous: input.previous,
-        background: background(view),
-    };
-    let dots = stack.dots().filter(|_| !input.dots.is_empty());
+    let first_triangles = first_triangles(shot);
+    let finish = Finish::new(shot, input, &first_triangles);
     let checkpoint = checkpoint();
     let finished = |(i, &color): (usize, &DVec4)| {
         checkpoint.pass();
-        let color = dots.as_ref().map_or(color, |dots| dotted(dots, color, picture.background, input.dots[i]));
-        let pixel = Pixel { color, x: i as u32 % view.width, y: i as u32 / view.width, step_offset: color_step };
-        bytes(if stack.finishes() { stack.finish(pixel, &picture).color } else { color })
+        finish.pixel(i, color, color_step)
     };
     colors.par_iter().enumerate().map(finished).collect()
+}
+
+/// First triangle of every draw.
+pub fn first_triangles(shot: &Shot) -> Vec<u32> {
+    shot.draws.iter().map(|draw| draw.first_triangle).collect()
+}
+
+/// Dots and image effects, pixel by pixel.
+pub struct Finish<'a> {
+    stack: &'a Stack,
+    dots: Option<Dots>,
+    strengths: &'a [u32],
+    picture: Picture<'a>,
+}
+
+impl<'a> Finish<'a> {
+    /// Over the images of `input`; `draws` are the first triangles of every draw.
+    pub fn new(shot: &Shot<'a>, input: &ResolveInput<'a>, draws: &'a [u32]) -> Self {
+        let picture = Picture {
+            width: shot.view.width,
+            height: shot.view.height,
+            triangle_ids: input.triangle_ids,
+            keys: input.depth_keys,
+            draws,
+            previous: input.previous,
+            background: background(shot.view),
+        };
+        let dots = shot.stack.dots().filter(|_| !input.dots.is_empty());
+        Self { stack: shot.stack, dots, strengths: input.dots, picture }
+    }
+
+    /// Bytes of the pixel with this index, from its gamma-encoded surface color.
+    pub fn pixel(&self, i: usize, color: DVec4, color_step: f64) -> [u8; 4] {
+        let color = self.dots.as_ref().map_or(color, |dots| dotted(dots, color, self.picture.background, self.strengths[i]));
+        let pixel = Pixel { color, x: i as u32 % self.picture.width, y: i as u32 / self.picture.width, step_offset: color_step };
+        bytes(if self.stack.finishes() { self.stack.finish(pixel, &self.picture).color } else { color })
+    }
 }
 
 /// A pixel with a dot over its surface, or over the background if the effect hides the model.

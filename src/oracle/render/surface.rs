@@ -12,7 +12,7 @@ use super::{
             vector::{DEGENERATE, plane_normal},
         },
         bounds::surface::CornerErrors,
-        perturbation::Perturbation,
+        perturbation::{Doubt, Perturbation},
         shot::Shot,
         work::checkpoint,
     },
@@ -51,10 +51,14 @@ pub fn surface_colors(
         let Some((triangle, surface)) = found else { return background };
         let id = surface.triangle_id;
         let rank = ranks.get(id as usize).copied().unwrap_or(0.0);
-        let lit = light.as_ref().map_or(0.0, |light| light.arrives(&triangle.lit_point(&surface), id, perturbation.color_step));
-        let surface = Surface { rank, lit, step_offset: perturbation.color_step, ..surface };
-        encoded(shot.stack.shade(surface, triangle.scopes).color)
+        shaded(shot, triangle, Surface { rank, ..surface }, light.as_ref(), perturbation.color_step)
     })
+}
+
+/// The gamma-encoded color of a surface of `triangle`, whose steps are moved by `color_step`.
+pub fn shaded(shot: &Shot, triangle: &SurfaceTriangle, surface: Surface, light: Option<&Light>, color_step: f64) -> DVec4 {
+    let lit = light.map_or(0.0, |light| light.arrives(&triangle.lit_point(&surface), triangle.id, color_step));
+    encoded(shot.stack.shade(Surface { lit, step_offset: color_step, ..surface }, triangle.scopes).color)
 }
 
 /// Visits the surface of every pixel before any surface effect, given the triangle of each; none without one. Row-major.
@@ -260,20 +264,18 @@ impl<'a> SurfaceTriangle<'a> {
         [at.normal, if self.is_deformed { corners.plane(self.positions) } else { 0.0 }, at.depth]
     }
 
-    /// Returns true if the interpolated normal, the plane or the depth at a pixel errs so far in f32 that a color may show it.
-    pub fn is_unsure(&self, x: usize, y: usize) -> bool {
+    /// How far the interpolated normal, the plane and the depth at a pixel may err in f32.
+    pub fn doubt(&self, x: usize, y: usize) -> Doubt {
         // A sixteenth of a step of 255, in the dark, where gamma encoding is 13 times as steep.
         const VISIBLE: f64 = 1.0 / (1 << 16) as f64;
-        let point = self.sample_point(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
-        self.errors(&point, self.weights.at(&point)).into_iter().any(|error| error > VISIBLE)
-    }
-
-    /// Returns true if one of them is known so badly at the place of a surface that first-order bounds say nothing of colors.
-    pub fn is_unknown(&self, pixel: DVec2) -> bool {
         // A color that has its maximum there falls by half of the square: half a step of 255.
         const LINEAR: f64 = 1.0 / 16.0;
-        let point = self.sample_point(pixel);
-        self.errors(&point, self.weights.at(&point)).into_iter().any(|error| error > LINEAR)
+        let point = self.sample_point(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+        match self.errors(&point, self.weights.at(&point)).into_iter().fold(0.0, f64::max) {
+            error if error > LINEAR => Doubt::Wide,
+            error if error > VISIBLE => Doubt::Narrow,
+            _ => Doubt::None,
+        }
     }
 
     fn sample_point(&self, pixel: DVec2) -> SamplePoint {
