@@ -183,6 +183,7 @@ const TRIANGLE_IDS: (&str, fn(&Errors) -> u64) = ("wrong triangle ids", |e| e.wr
 const COLORS: (&str, fn(&Errors) -> u64) = ("colors", |e| u64::from(e.max_color_delta > 1));
 const KEYS: (&str, fn(&Errors) -> u64) = ("depth keys", |e| e.key_outside_bound);
 const SNAPS: (&str, fn(&Errors) -> u64) = ("snapped vertices", |e| e.snap_outside_bound);
+const CLIPS: (&str, fn(&Errors) -> u64) = ("clipped triangles", |e| e.clips_wrong);
 const UNEXPLAINED: (&str, fn(&Errors) -> u64) = ("unexplained pixels", |e| e.unexplained);
 
 fn mutants() -> Vec<Mutant> {
@@ -307,6 +308,22 @@ fn mutants() -> Vec<Mutant> {
             "if i == 2u { continue; }\n        let slot = atomicAdd(&counters.clipped_triangles, 1u);",
             hall(),
             UNEXPLAINED,
+        ),
+        mutant(
+            "a piece of what was clipped is turned over",
+            "stages/geometry/clip",
+            "ClippedTriangle(records[0], records[i], records[i + 1u],",
+            "ClippedTriangle(records[0], records[select(i, i + 1u, i == 2u)], records[select(i + 1u, i, i == 2u)],",
+            hall(),
+            CLIPS,
+        ),
+        mutant(
+            "a plane's cut is an edge of the triangle",
+            "stages/geometry/clip",
+            "let is_first = i == 1u && polygon.corners[0].is_edge;",
+            "let is_first = i == 1u;",
+            hall(),
+            CLIPS,
         ),
         mutant(
             "a medium triangle stops a block early",

@@ -144,3 +144,25 @@ fn a_flat_area_on_a_step_of_color_is_one_color_in_doubt() {
     let Some(mut renderer) = renderer() else { return };
     exact_preset(&mut renderer, "scene.builtin = \"stack\"\noutput.size = [157, 98]\n[effects.hatch]\n[effects.dither]");
 }
+
+#[test]
+fn colors_of_clipped_triangles_err_by_the_normals_and_depths_of_their_corners() {
+    let Some(mut renderer) = renderer() else { return };
+    // Waves of a few centimeters across walls of 20 m: f32 does not tell where in the wave a corner behind the eye lies.
+    let near = "scene.builtin = \"near\"\noutput.size = [1, 5]";
+    let lit = format!("{near}\n[effects.wobble]\nsway = [0.90552074, 1.0, 0.90710723]\nwavelength_m = 0.056449506\n[effects.lambert]");
+    let direction = "direction = [0.9509494, 0.06562333, 0.29090148]";
+    exact_preset(&mut renderer, &lit);
+    exact_preset(&mut renderer, &format!("{near}\n[effects.wobble]\n{direction}\nwavelength_m = 0.15100664\n[effects.normals]"));
+
+    // What is hardly known of a normal does not excuse a color that no normal has.
+    let preset = preset_file::parse(&format!("schema = 2\n{lit}"), "case").unwrap_or_else(|error| panic!("{error}")).preset;
+    let scene = preset_file::load_scene(&preset, None).unwrap_or_else(|error| panic!("{error}"));
+    for (from, to) in [(") * light + s.glow", ") * light * 0.05 + s.glow"), (") * light + s.glow", ") * (light + 4.0) + s.glow")] {
+        let shaders = mutated("effects/lambert", from, to);
+        let mut mistaken = Renderer::with_library(renderer.gpu().clone(), shaders.shaders());
+        let (_, verdict) = judged_preset(&mut mistaken, &scene, &preset, &preset.accuracy);
+        let caught = verdict.error_map.color_delta.iter().filter(|delta| **delta > 1).count();
+        assert!(verdict.report.max_color_delta > 1 && caught >= 4, "{to}: {caught} pixels are caught: {:?}", verdict.report);
+    }
+}

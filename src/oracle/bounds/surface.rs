@@ -56,17 +56,20 @@ impl CornerErrors {
 
     /// At a sample with these weights, which err by `errors`. `depths` are those of the corners as parts of that of the sample; `normals`
     /// are in world space, of any length.
+    ///
+    /// However far the weights err, a renderer clamps them from 0 to 1 with a sum of 1, so what they mix lies between the corners'.
     pub fn at(&self, weights: [f64; 3], errors: [f64; 3], depths: [f64; 3], normals: Option<[DVec3; 3]>) -> SampleErrors {
-        let depth = (0..3).map(|k| errors[k] * (depths[k] - 1.0).abs()).sum();
+        let mixed = |differences: [f64; 3]| {
+            let sum: f64 = (0..3).map(|k| errors[k] * differences[k]).sum();
+            sum.min(largest(differences))
+        };
         let normal = normals.map_or(0.0, |normals| {
             let middle = (0..3).map(|k| normals[k] * weights[k]).sum::<DVec3>();
-            let from = |k: usize| {
-                let own = weights[k].abs() * normals[k].length() * (self.normals[k] + 8.0 * ROUNDING);
-                errors[k] * (normals[k] - middle).length() + own
-            };
-            relative((0..3).map(from).sum(), middle.length())
+            let own = [0, 1, 2].map(|k| normals[k].length() * (self.normals[k] + 8.0 * ROUNDING));
+            let of_corners = (0..3).map(|k| (weights[k].abs() + errors[k]) * own[k]).sum::<f64>().min(largest(own));
+            relative(mixed(normals.map(|normal| (normal - middle).length())) + of_corners, middle.length())
         });
-        SampleErrors { normal, depth }
+        SampleErrors { normal, depth: mixed(depths.map(|depth| (depth - 1.0).abs())) }
     }
 
     /// Of the direction of the plane through the displaced corners.
@@ -75,6 +78,10 @@ impl CornerErrors {
         let error = |k: usize, edge: DVec3| self.offsets_m[0] + self.offsets_m[k] + 8.0 * ROUNDING * edge.length();
         relative(ab.length() * error(2, ac) + ac.length() * error(1, ab), ab.cross(ac).length())
     }
+}
+
+fn largest(values: [f64; 3]) -> f64 {
+    values.into_iter().fold(0.0, f64::max)
 }
 
 /// Bound of the error of the direction of a vector of this length.
