@@ -320,8 +320,8 @@ fn mutants() -> Vec<Mutant> {
         mutant(
             "a plane's cut is an edge of the triangle",
             "stages/geometry/clip",
-            "let is_first = i == 1u && polygon.corners[0].is_edge;",
-            "let is_first = i == 1u;",
+            "let outline = select(0u, 1u, polygon.corners[i].is_edge)",
+            "let outline = select(1u, 0u, polygon.corners[i].is_edge)",
             hall(),
             CLIPS,
         ),

@@ -163,6 +163,15 @@ fn colors_of_clipped_triangles_err_by_the_normals_and_depths_of_their_corners() 
         let mut mistaken = Renderer::with_library(renderer.gpu().clone(), shaders.shaders());
         let (_, verdict) = judged_preset(&mut mistaken, &scene, &preset, &preset.accuracy);
         let caught = verdict.error_map.color_delta.iter().filter(|delta| **delta > 1).count();
-        assert!(verdict.report.max_color_delta > 1 && caught >= 4, "{to}: {caught} pixels are caught: {:?}", verdict.report);
+        assert!(verdict.report.max_color_delta > 1 && caught >= 3, "{to}: {caught} pixels are caught: {:?}", verdict.report);
     }
+}
+
+#[test]
+fn surfaces_may_cross_where_only_depths_moved() {
+    let Some(mut renderer) = renderer() else { return };
+    // Triangles in a plane, waving by 590 m along the parallel rays of the camera, with a wave of a millimeter.
+    let sway = "sway = [0.0, 0.0, -1.0]\namplitude_m = 590.5813\nwavelength_m = 0.001";
+    let clock = "[clock]\ntime_s = 1.0";
+    exact_preset(&mut renderer, &format!("scene.builtin = \"sizes?seed=1\"\noutput.size = [200, 1]\n{clock}\n[effects.wobble]\n{sway}"));
 }

@@ -126,6 +126,10 @@ impl EndToEnd<'_> {
         // Packed corners err so far that the depths between them do, too.
         let is_near = is_whole && self.adapter.packed_bits.is_none();
         let clip_error = if is_near { 0.0 } else { errors.iter().map(|error| 8.0 * error.clip_error).fold(0.0, f64::max) };
+        // Corners whose depths alone moved, as under an orthographic camera, change which surface is the nearest.
+        let given = self.shot.corner_records(draw, self.adapter, id);
+        let depths = records.iter().zip(&given).map(|(own, given)| f64::from((own.depth - given.depth).abs()));
+        let depth_error = if is_whole { depths.fold(0.0, f64::max) } else { 0.0 };
         let half_picture = half_size(self.shot.view).map(f64::from).into_iter().fold(0.0, f64::max);
         // The oracle's clipped triangles are sorted by parent.
         let clipped = &self.own.clipped_triangles;
@@ -137,6 +141,6 @@ impl EndToEnd<'_> {
             Shape::Points => Drawn::Points(self.shot.stack.point_radius().into()),
         };
         let triangles = if is_whole { vec![records] } else { clipped[fan].iter().map(|triangle| triangle.corners).collect() };
-        Some(Outline { drawn, triangles, reach, clip_error, half_picture })
+        Some(Outline { drawn, triangles, reach, clip_error, depth_error, half_picture })
     }
 }

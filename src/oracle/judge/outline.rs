@@ -24,6 +24,8 @@ pub struct Outline {
     /// Of a clipped triangle: bound of the error of its points in clip space. At a point it moves an edge by this over w, in halves of
     /// the picture.
     pub clip_error: f64,
+    /// How far the depth of a corner is from the adapter's.
+    pub depth_error: f64,
     /// Half the larger side of the picture, in sub-pixel units.
     pub half_picture: f64,
 }
@@ -71,7 +73,7 @@ impl Outline {
                 under.map(|corner| around(corner.depth)).reduce(union)
             }
         });
-        each.reduce(union)
+        each.reduce(union).map(|[low, high]| [low - self.depth_error, high + self.depth_error])
     }
 }
 
