@@ -274,7 +274,7 @@ fn mutants() -> Vec<Mutant> {
             builtin("stack?layers=5", [128, 128]),
             TRIANGLE_IDS,
         ),
-        mutant("one rebased block is skipped", "stages/raster/raster_large", "for (var block = 0;", "for (var block = 1;", sizes(), HOLES),
+        mutant("half of a tile is skipped", "stages/raster/raster_large", "for (var half = 0u;", "for (var half = 1u;", sizes(), HOLES),
         mutant(
             "saturation at 2^31",
             "variants/large_edges/rebased",
@@ -309,6 +309,14 @@ fn mutants() -> Vec<Mutant> {
             UNEXPLAINED,
         ),
         mutant(
+            "a triangle hides itself in the blocks that it covers",
+            "lib/hidden_blocks",
+            "return range.y < farthest;",
+            "return is_whole;",
+            sizes(),
+            TRIANGLE_IDS,
+        ),
+        mutant(
             "a medium triangle stops a block early",
             "stages/raster/raster_medium",
             "x <= pixels.z; x += 8",
@@ -335,6 +343,9 @@ const GRAPHICS_CARD: Tuning = Tuning {
     max_list_entries: u32::MAX,
     listed_tiles: false,
     early_load: true,
+    queue_groups: 0,
+    clears_in_passes: false,
+    hides_blocks: true,
     specialized: true,
 };
 

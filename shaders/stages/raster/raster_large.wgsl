@@ -1,67 +1,121 @@
-// raster_large: one workgroup per tile of 64x64 pixels of a large triangle, in sixteen blocks of 16x16 pixels.
+// raster_large: one workgroup per tile of 64x64 pixels of a large triangle, or several where there are few tiles. First each of its 64
+// invocations examines one block of 8x8 pixels; the blocks that are left are then drawn one after another, an invocation to a pixel.
+// Edge functions are rebased in blocks of 16x16 pixels.
 //@ use lib/frame
 //@ use lib/fixed
 //@ use lib/shape
 //@ use lib/queues
 //@ use lib/queued_triangle
+//@ use lib/hidden_blocks
 //@ use variants/large_edges
 //@ use variants/large_depth
 //@ use variants/depth
 //@ use variants/framebuffer_write
 //@ use steps/sample_test
 
+// Most workgroups that share a tile.
+const MAX_PARTS = 4u;
+
+// First and last slot of the queue.
+var<workgroup> slots: vec2u;
 // Three edges of sixteen blocks.
-var<workgroup> blocks: array<BlockEdge, 48>;
+var<workgroup> edges: array<BlockEdge, 48>;
+// A bit for every block of 8x8 pixels that is drawn.
+var<workgroup> drawn: array<atomic<u32>, 2>;
 
 @compute @workgroup_size(64)
 fn raster_large(
     @builtin(workgroup_id) workgroup: vec3u, @builtin(num_workgroups) workgroups: vec3u,
     @builtin(local_invocation_index) invocation_index: u32
 ) {
-    let slot = queues_tiles_done() + workgroup.y * workgroups.x + workgroup.x;
-    let exists = slot < queues_tiles_count();
-    let word = frame.tile_first + 2u * select(0u, slot, exists);
+    if invocation_index == 0u { slots = vec2u(queues_tiles_done(), queues_tiles_count()); }
+    let range = workgroupUniformLoad(&slots);
+    let count = range.y - range.x;
+    let groups = workgroups.x * workgroups.y;
+    let parts = clamp(groups / max(count, 1u), 1u, MAX_PARTS);
+    for (var item = workgroup.y * workgroups.x + workgroup.x; item < count * parts; item += groups) {
+        draw_tile(range.x + item / parts, item % parts, parts, invocation_index);
+    }
+}
+
+// Draws every block of a tile whose row is of this part.
+fn draw_tile(slot: u32, part: u32, parts: u32, invocation_index: u32) {
+    let word = frame.tile_first + 2u * slot;
     let packed_tile = queues[word + 1u];
     let t = queued_triangle(queues[word]);
     let large = clockwise_triangle(t);
 
     let tile = vec2i(vec2u(packed_tile & 0xffffu, packed_tile >> 16u)) * 64;
+    // Nobody reads the blocks of the tile before any more.
+    workgroupBarrier();
     if invocation_index < 48u {
         let block = i32(invocation_index / 3u);
         let p = grid_sample(tile + vec2i(block % 4, block / 4) * 16);
         let edge = invocation_index % 3u;
         let begin = select(select(large.a, large.c, edge == 1u), large.b, edge == 0u);
         let end = select(select(large.b, large.a, edge == 1u), large.c, edge == 0u);
-        blocks[invocation_index] = block_edge(begin, end, p, large.bias[edge]);
+        edges[invocation_index] = block_edge(begin, end, p, large.bias[edge]);
         large_depth_prepare(invocation_index, begin, end, p);
     }
+    if invocation_index < 2u { atomicStore(&drawn[invocation_index], 0u); }
     workgroupBarrier();
-    if !exists { return; }
 
     framebuffer_begin(t.id);
     let pixels = clockwise_pixels(large);
     let plane = depth_plane_wide(large.z, large.area);
     let nearest = depth_key(bitcast<f32>(max(max(large.z.x, large.z.y), large.z.z)));
-    let mine = vec2i(vec2u(invocation_index % 16u, invocation_index / 16u));
-    for (var block = 0; block < 16; block += 1) {
-        let origin = tile + vec2i(block % 4, block / 4) * 16;
-        let e0 = blocks[block * 3];
-        let e1 = blocks[block * 3 + 1];
-        let e2 = blocks[block * 3 + 2];
-        // An edge function is largest 15 pixels along its own inward direction.
-        if SHAPE != SHAPE_BOXES && !block_contains(e0, e1, e2, 15 * (max(large.dx, vec3i(0)) + max(-large.dy, vec3i(0)))) { continue; }
-        for (var i = 0; i < 4; i += 1) {
-            let offset = mine + vec2i(0, 4 * i);
-            let at = origin + offset;
+    let mine = vec2i(vec2u(invocation_index % 8u, invocation_index / 8u));
+    if block_is_drawn(large, plane, pixels, tile, mine * 8) && u32(mine.y) % parts == part {
+        atomicOr(&drawn[invocation_index / 32u], 1u << (invocation_index % 32u));
+    }
+    workgroupBarrier();
+
+    for (var half = 0u; half < 2u; half += 1u) {
+        var left = atomicLoad(&drawn[half]);
+        for (var i = 0u; i < 32u && left != 0u; i += 1u) {
+            let block = i32(half * 32u + firstTrailingBit(left));
+            left &= left - 1u;
+            let from_tile = vec2i(block % 8, block / 8) * 8 + mine;
+            let offset = from_tile & vec2i(15);
+            let index = block_edges(from_tile);
+            let at = tile + from_tile;
             let step = large.dx * offset.y - large.dy * offset.x;
-            let is_covered = (SHAPE == SHAPE_BOXES || block_contains(e0, e1, e2, step)) && all(at >= pixels.xy) && all(at <= pixels.zw);
+            let is_inside = SHAPE == SHAPE_BOXES || block_contains(edges[index], edges[index + 1u], edges[index + 2u], step);
+            let is_covered = is_inside && all(at >= pixels.xy) && all(at <= pixels.zw);
             if is_covered && sample_test(t, vec2u(at), u32(at.y) * frame.size.x + u32(at.x)) {
                 var key = nearest;
                 if SHAPE != SHAPE_BOXES {
-                    key = block_depth_key(block_depth_prepared(plane, u32(block) * 3u), e0, e1, e2, step, large.bias);
+                    let depth = block_depth_prepared(plane, index);
+                    key = block_depth_key(depth, edges[index], edges[index + 1u], edges[index + 2u], step, large.bias);
                 }
                 framebuffer_write(u32(at.y) * frame.size.x + u32(at.x), key, t.id);
             }
         }
     }
+}
+
+// Index of the edges of the block of 16x16 pixels that holds a pixel, counted from the tile's first.
+fn block_edges(from_tile: vec2i) -> u32 {
+    return u32((from_tile.y / 16) * 4 + from_tile.x / 16) * 3u;
+}
+
+// Does the triangle touch the block of 8x8 pixels at `from_tile`, and may it show there?
+fn block_is_drawn(t: ClockwiseTriangle, plane: DepthPlane, pixels: vec4i, tile: vec2i, from_tile: vec2i) -> bool {
+    let first = tile + from_tile;
+    if any(first > pixels.zw) || any(first + 7 < pixels.xy) { return false; }
+    if SHAPE == SHAPE_BOXES { return true; }
+    let offset = from_tile & vec2i(15);
+    let index = block_edges(from_tile);
+    let e0 = edges[index];
+    let e1 = edges[index + 1u];
+    let e2 = edges[index + 2u];
+    let start = t.dx * offset.y - t.dy * offset.x;
+    // An edge function is largest 7 pixels along its own inward direction.
+    if !block_contains(e0, e1, e2, start + 7 * (max(t.dx, vec3i(0)) + max(-t.dy, vec3i(0)))) { return false; }
+    if !HIDES_BLOCKS { return true; }
+    // Float edges may contain samples outside the box, which are not drawn.
+    let is_boxed = all(first >= pixels.xy) && all(min(first + 7, vec2i(frame.size) - 1) <= pixels.zw);
+    let is_whole = is_boxed && block_contains(e0, e1, e2, start + 7 * (min(t.dx, vec3i(0)) + min(-t.dy, vec3i(0))));
+    let depths = block_depth_range(block_depth_prepared(plane, index), e0, e1, e2, start, t.dx, t.dy);
+    return !hidden_block_test(first, depths, is_whole);
 }
