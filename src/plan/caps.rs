@@ -45,7 +45,7 @@ impl Caps {
             early_load: self.software,
             queue_groups: if self.software { 0 } else { 8192 },
             clears_in_passes: !self.software,
-            hides_blocks: true,
+            hides_blocks: !self.software,
             specialized: true,
         }
     }

@@ -303,6 +303,11 @@ impl KernelKey {
         self.work.hides_blocks && draws_all && self.samples.shape == Shape::Triangles
     }
 
+    /// Do workgroups of the medium and the large path share entries of their queues, or look for hidden blocks first?
+    pub fn shares_entries(&self) -> bool {
+        self.work.queue_groups > 0 || self.hides_blocks()
+    }
+
     /// Are there queues of triangles for another path than the first?
     pub const fn has_queues(&self) -> bool {
         self.paths.has_clipping || self.paths.has_medium || self.paths.has_large

@@ -57,7 +57,7 @@ impl WorkDistribution {
             listed_tiles,
             early_load: listed_tiles,
             queue_groups: if self == Self::Card { 48 } else { 0 },
-            hides_blocks: self != Self::InvocationEach,
+            hides_blocks: is_card,
             clears_in_passes: self == Self::Card,
             specialized: true,
         }

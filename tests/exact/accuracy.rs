@@ -255,9 +255,9 @@ fn mutants() -> Vec<Mutant> {
         ),
         mutant(
             "sample at the pixel corner of large triangles",
-            "stages/raster/raster_large",
-            "* 16);\n        let edge",
-            "* 16) - 128;\n        let edge",
+            "lib/large_tile",
+            "* 16);\n    let edge",
+            "* 16) - 128;\n    let edge",
             sizes(),
             TRIANGLE_IDS,
         ),
@@ -274,7 +274,7 @@ fn mutants() -> Vec<Mutant> {
             builtin("stack?layers=5", [128, 128]),
             TRIANGLE_IDS,
         ),
-        mutant("half of a tile is skipped", "stages/raster/raster_large", "for (var half = 0u;", "for (var half = 1u;", sizes(), HOLES),
+        mutant("half of a tile is skipped", "variants/large_tiles/shared", "for (var half = 0u;", "for (var half = 1u;", sizes(), HOLES),
         mutant(
             "saturation at 2^31",
             "variants/large_edges/rebased",
@@ -318,7 +318,7 @@ fn mutants() -> Vec<Mutant> {
         ),
         mutant(
             "a medium triangle stops a block early",
-            "stages/raster/raster_medium",
+            "variants/medium_boxes/shared",
             "x <= pixels.z; x += 8",
             "x + 8 <= pixels.z; x += 8",
             builtin("sphere?triangles=200", [128, 128]),

@@ -150,12 +150,14 @@ const QUEUES: Feature = Feature { constants: &[("HAS_QUEUES", |key, _| flag(key.
 const MEDIUM_PATH: Feature = Feature {
     label: |key| word_if(key.paths.has_medium, "medium"),
     part: Some(Part { name: "raster_medium", is_used: |key| key.paths.has_medium, why_omitted: largest_triangle }),
+    variants: &[("medium_boxes", |key, _| stem_if(key.shares_entries(), "shared"))],
     ..Feature::NONE
 };
 
 const LARGE_PATH: Feature = Feature {
     label: |key| word_if(key.paths.has_large, "large"),
     part: Some(Part { name: "tile_large, raster_large", is_used: |key| key.paths.has_large, why_omitted: largest_triangle }),
+    variants: &[("large_tiles", |key, _| stem_if(key.shares_entries(), "shared"))],
     constants: &[("HAS_LARGE", |key, _| flag(key.paths.has_large))],
     ..Feature::NONE
 };
