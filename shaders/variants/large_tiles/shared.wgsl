@@ -1,7 +1,6 @@
 // Large tiles, shared: workgroups take tiles in turn; where tiles are few, several workgroups share one. First each of the 64 invocations
 // examines one block of 8x8 pixels; the blocks that show are then drawn one after another, an invocation to a pixel.
 //@ use lib/frame
-//@ use lib/fixed
 //@ use lib/shape
 //@ use lib/queues
 //@ use lib/queued_triangle

@@ -159,7 +159,6 @@ const LARGE_PATH: Feature = Feature {
     part: Some(Part { name: "tile_large, raster_large", is_used: |key| key.paths.has_large, why_omitted: largest_triangle }),
     variants: &[("large_tiles", |key, _| stem_if(key.shares_entries(), "shared"))],
     constants: &[("HAS_LARGE", |key, _| flag(key.paths.has_large))],
-    ..Feature::NONE
 };
 
 fn largest_triangle(needs: &Needs) -> String {
