@@ -8,6 +8,7 @@
 #   sh scripts/first_hour.sh FOLDER fox.glb         with another model
 #   RASTERLAB="rasterlab --adapter llvmpipe" sh scripts/first_hour.sh FOLDER
 #   SIZE=900x600 THEME=light sh scripts/first_hour.sh FOLDER     another size of the window, from 900x600; another theme
+#   PACE=3 sh scripts/first_hour.sh FOLDER                       slower, on a machine that does other things too
 #
 # Each step is printed with the longest frame of the window in it, and with the longest time from an input to its picture, milliseconds: of
 # pictures that compiled nothing, and of those that did. They mean something only while the machine does nothing else.
@@ -92,7 +93,7 @@ largest() {
 
 done_step() {
     # Notes of timings come a second after what they tell of.
-    sleep 1.5
+    nap 1.5
     shot
     printf '%02d %-22s longest frame %5s ms, slowest picture %5s ms, compiled %5s ms\n' "$number" "$step" "$(largest longest)" \
         "$(largest '[0-9] pictures, slowest')" "$(largest 'compiled pictures, slowest')"
@@ -103,7 +104,7 @@ title_has() { xdotool search --name rasterlab getwindowname 2> /dev/null | grep 
 log_has() { grep -qF -- "$1" "$log"; }
 session_has() { grep -qF -- "$1" "$session"; }
 # The picture in the middle of the window differs from that of the last call in more than 400 pixels.
-middle() { import -window root -crop 620x420+300+120 +repage "$work/$1.png"; }
+middle() { import -window root -crop "$((width * 36 / 100))x$((height / 2))+$((width * 27 / 100))+$((height * 16 / 100))" +repage "$work/$1.png"; }
 picture_changed() {
     middle now
     # compare exits with 1 where pictures differ.
@@ -111,9 +112,11 @@ picture_changed() {
     [ "${count%%[. e]*}" -gt 400 ]
 }
 
-key() { xdotool key --clearmodifiers "$@"; sleep 0.4; }
-write() { xdotool type --delay 25 "$1"; sleep 0.5; }
-click() { xdotool mousemove "$1" "$2"; sleep 0.3; xdotool click 1; sleep 0.5; }
+# A person looks before going on, and so does this script; on a busy machine it must look longer.
+nap() { sleep "$(awk "BEGIN { print $1 * ${PACE:-1} }")"; }
+key() { xdotool key --clearmodifiers "$@"; nap 0.4; }
+write() { xdotool type --delay 25 "$1"; nap 0.5; }
+click() { xdotool mousemove "$1" "$2"; nap 0.3; xdotool click 1; nap 0.5; }
 # Carries out an entry of the command palette.
 palette() { key ctrl+k; write "$1"; key Return; }
 

@@ -126,6 +126,11 @@ fn the_file_of_the_log_tells_the_longest_frame_and_the_slowest_picture_and_a_win
     assert!(!written.is_empty() && written.iter().all(|line| line.contains(" frames, longest ")), "{written:#?}");
     assert!(written.iter().any(|line| line.contains(" pictures, slowest ")), "{written:#?}");
     assert!(!lab.state().log_text().contains("timing: "), "the log of the window is for messages");
-    let rests = || lab.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;
-    assert_eq!(rests(), Duration::MAX, "{:?}", lab.ctx.repaint_causes());
+    // The frame that writes a note asks for no other.
+    let rests = (0..12).any(|_| {
+        let before = notes().len();
+        lab.step();
+        notes().len() > before && lab.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay == Duration::MAX
+    });
+    assert!(rests, "{:?}", lab.ctx.repaint_causes());
 }
