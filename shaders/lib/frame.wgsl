@@ -62,6 +62,7 @@ struct Counters {
     longest_list: atomic<u32>,   // entries of the longest triangle list of a tile
     spare_0: atomic<u32>,
     spare_1: atomic<u32>,
+    farthest: array<atomic<u32>>, // a key for every block of 8x8 pixels: see lib/hidden_blocks
 }
 
 @group(0) @binding(7) var<storage, read_write> counters: Counters;

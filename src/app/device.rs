@@ -5,7 +5,10 @@ use std::sync::Arc;
 use anyhow::Context as _;
 use eframe::{egui, egui_wgpu, wgpu};
 
-use super::settings::WindowPlace;
+use super::{
+    background::{Urgency, started_as},
+    settings::WindowPlace,
+};
 use crate::gpu::{
     Gpu,
     device::{self, AdapterChoice},
@@ -79,7 +82,8 @@ impl Devices {
     /// The devices for a window on `window`. Without a second device the first draws, too.
     pub fn of(window: Arc<Gpu>) -> Self {
         let choice = AdapterChoice::Named(window.summary.name.clone());
-        let second = if window.summary.software { Gpu::open(&choice).ok() } else { None };
+        let opened = || started_as(Urgency::Picture, || Gpu::open(&choice).ok());
+        let second = if window.summary.software { opened() } else { None };
         Self { picture: second.unwrap_or_else(|| window.clone()), window }
     }
 }

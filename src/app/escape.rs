@@ -13,6 +13,9 @@ use super::{
 enum Closing {
     Picking,
     Marker,
+    Film,
+    Sweep,
+    Randomize,
     Extremes,
     Settings,
     CheatSheet,
@@ -31,7 +34,10 @@ pub fn escape(ctx: &egui::Context, state: &State, panels: &mut Panels, was_typin
     }
     let Some(closing) = innermost(state, panels) else { return };
     // The search of a window is a part of it.
-    let is_window = matches!(closing, Closing::Extremes | Closing::Settings | Closing::CheatSheet);
+    let is_window = matches!(
+        closing,
+        Closing::Film | Closing::Sweep | Closing::Randomize | Closing::Extremes | Closing::Settings | Closing::CheatSheet
+    );
     if was_typing && !is_window {
         return;
     }
@@ -39,6 +45,9 @@ pub fn escape(ctx: &egui::Context, state: &State, panels: &mut Panels, was_typin
     match closing {
         Closing::Picking => commands.send(Command::View(ViewCommand::Pick(None))),
         Closing::Marker => commands.send(Command::View(ViewCommand::Mark(None))),
+        Closing::Film => commands.send(Command::Toggle(Toggle::Film)),
+        Closing::Sweep => commands.send(Command::Toggle(Toggle::Sweep)),
+        Closing::Randomize => commands.send(Command::Toggle(Toggle::Randomize)),
         Closing::Extremes => commands.send(Command::Toggle(Toggle::Extremes)),
         Closing::Settings => commands.send(Command::Toggle(Toggle::Settings)),
         Closing::CheatSheet => commands.send(Command::Toggle(Toggle::CheatSheet)),
@@ -52,6 +61,9 @@ pub fn escape(ctx: &egui::Context, state: &State, panels: &mut Panels, was_typin
 fn innermost(state: &State, panels: &Panels) -> Option<Closing> {
     [
         (state.picking.is_some(), Closing::Picking),
+        (panels.film.is_open(), Closing::Film),
+        (panels.sweep.is_open(), Closing::Sweep),
+        (panels.randomize.is_open(), Closing::Randomize),
         (panels.extremes.is_open(), Closing::Extremes),
         (state.open.settings, Closing::Settings),
         (state.open.cheat_sheet, Closing::CheatSheet),

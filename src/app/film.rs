@@ -47,6 +47,15 @@ impl Format {
         }
     }
 
+    /// Its name in the settings file.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Frames => "frames",
+            Self::Apng => "apng",
+            Self::Video(container) => container.extension(),
+        }
+    }
+
     pub const fn extension(self) -> &'static str {
         match self {
             Self::Frames | Self::Apng => "png",

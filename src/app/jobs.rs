@@ -14,6 +14,7 @@ use std::{
 use eframe::egui;
 
 use super::{
+    background::{self, Urgency, yield_processor},
     cells::{self, CellOf, CellResult, Cells},
     command::{Origin, Purpose},
     completion::Listing,
@@ -105,8 +106,21 @@ impl Jobs {
         self.computing.is_any()
     }
 
-    /// Starts work that keeps the processor busy.
+    /// Starts work that keeps the processor busy, and leaves it to the window.
     fn spawn(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
+        self.spawn_urgent(name, move || {
+            yield_processor(Urgency::Later);
+            work()
+        });
+    }
+
+    /// Draws or judges pictures with the oracle.
+    fn spawn_oracle(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
+        self.spawn(name, || background::compute(work));
+    }
+
+    /// Starts work that keeps the processor busy, as urgent as the window.
+    fn spawn_urgent(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
         let computing = self.busy();
         self.spawn_idle(name, move || {
             let _computing = computing;
@@ -129,7 +143,7 @@ impl Jobs {
     }
 
     pub fn load_scene(&self, key: SceneKey) {
-        self.spawn("scene", move || {
+        self.spawn_urgent("scene", move || {
             let preset = Preset { scene: key.source.clone(), room: key.room, ..Preset::default() };
             let scene = caught("loading the scene", || preset_file::load_scene(&preset, None).map_err(|e| e.to_string()));
             Done::Scene(key, scene)
@@ -146,7 +160,7 @@ impl Jobs {
 
     /// Draws `inputs` with a second renderer, reads everything back and judges it with the oracle.
     pub fn verify(&self, gpu: Arc<Gpu>, inputs: Inputs, work: Arc<Work>) {
-        self.spawn("verify", move || {
+        self.spawn_oracle("verify", move || {
             let verdict = caught("judging the picture", || work.run(|| verify(gpu, &inputs, &work)).transpose());
             Done::Verdict(Box::new(inputs), work, verdict)
         });
@@ -162,7 +176,7 @@ impl Jobs {
 
     /// Measures the f32 errors of the user's effects with the oracle.
     pub fn measure_precision(&self, inputs: Inputs, cancelled: Arc<AtomicBool>) {
-        self.spawn("precision", move || {
+        self.spawn_oracle("precision", move || {
             let measured =
                 caught("measuring the f32 error", || precision::measure(&inputs, &cancelled).map(|measured| measured.map(Box::new)));
             Done::Precision(Box::new(inputs), measured)
@@ -171,7 +185,7 @@ impl Jobs {
 
     /// Draws the golden of a preset again and compares.
     pub fn check_golden(&self, number: u64, preset_file: PresetFile) {
-        self.spawn("golden", move || {
+        self.spawn_oracle("golden", move || {
             let checked = caught("drawing the golden", || Ok(golden_check::check(&preset_file)));
             Done::Golden(number, checked.ok().flatten())
         });
@@ -220,7 +234,8 @@ impl Jobs {
     /// Measures combinations of accuracy options on a second device, so that the window stays responsive.
     pub fn measure(&self, adapter: String, scene: Arc<Scene>, request: Request, progress: Arc<Progress>) {
         let work = move || measure::measure(adapter, &scene, &request, &progress);
-        self.spawn("trade", || Done::Trade(caught("measuring the trade", work)));
+        // What it measures is time, so it yields to nothing.
+        self.spawn_urgent("trade", || Done::Trade(caught("measuring the trade", work)));
     }
 
     /// Writes changes of the favorites.
@@ -230,7 +245,7 @@ impl Jobs {
 
     /// Draws the picture of a preset with the oracle, which needs no device. Width and height are in pixels.
     pub fn thumbnail(&self, preset_file: PresetFile, size: [u32; 2]) {
-        self.spawn("thumbnail", move || {
+        self.spawn_oracle("thumbnail", move || {
             let image = caught("drawing a thumbnail", || thumbnail(&preset_file, size).ok_or_else(String::new));
             Done::Thumbnail(preset_file.id, image.ok())
         });
@@ -241,6 +256,7 @@ impl Jobs {
         let (sender, ctx, computing) = (self.sender.clone(), self.ctx.clone(), self.busy());
         let work = move || {
             let _computing = computing;
+            yield_processor(Urgency::Later);
             let take = |of, picture| {
                 // The window may be closed by now; then the picture is dropped.
                 if sender.send(Done::Cell(of, picture)).is_ok() {
@@ -262,7 +278,7 @@ impl Jobs {
 
     /// Draws the picture of a preset on the scene of `own` with the oracle.
     pub fn thumbnail_on(&self, look: PresetFile, own: PresetFile, scene: Arc<Scene>, size: [u32; 2]) {
-        self.spawn("thumbnail", move || {
+        self.spawn_oracle("thumbnail", move || {
             let image = caught("drawing a thumbnail", || thumbnail_on(&look, &own, &scene, size).ok_or_else(String::new));
             Done::ThumbnailOn(SceneKey::of(&own), look.id, image.ok())
         });
@@ -270,7 +286,7 @@ impl Jobs {
 
     /// Draws the picture of an effect on the open model with the oracle.
     pub fn effect_picture(&self, EffectPicture { effect, preset, scene, size, cancelled }: EffectPicture) {
-        self.spawn("effect picture", move || {
+        self.spawn_oracle("effect picture", move || {
             let draw = || match cancelled.load(Ordering::Relaxed) {
                 true => Err(String::new()),
                 false => thumbnail_of(&preset, &scene, size).ok_or_else(String::new),

@@ -12,6 +12,9 @@ impl App {
         let State { settings, open, session, jobs, now_s, .. } = &mut self.state;
         settings.open = OpenPanels { cheat_sheet: false, settings: false, ..*open };
         settings.browsing = self.panels.browser.browsing();
+        if settings.film != *self.panels.film.last() {
+            settings.film = self.panels.film.last().clone();
+        }
         ctx.input(|i| settings.window.follow(i.viewport(), settings.scale));
         let is_focused = ctx.input(|i| i.focused);
         if settings.recents != self.looked_for.0 || is_focused && !self.looked_for.1 {

@@ -73,19 +73,28 @@ impl Log {
         Self { file, ..Self::default() }
     }
 
-    fn keep(&mut self, level: Level, text: &str) {
+    fn append(&mut self, line: &str) {
         let Some(mut file) = self.file.as_deref() else { return };
-        let line = format!("{}: {text}\n", level.word());
         if let Err(error) = file.write_all(line.as_bytes()) {
             self.file = None;
             self.add(Level::Error, format!("The log is no longer kept in its file: {error}"));
         }
     }
 
+    /// Are messages appended to a file?
+    pub fn is_kept(&self) -> bool {
+        self.file.is_some()
+    }
+
+    /// Appends a line to the file alone: `timing: text`.
+    pub fn note_timing(&mut self, text: &str) {
+        self.append(&format!("timing: {text}\n"));
+    }
+
     /// Logs a message. One that was logged before is counted and moves to the end.
     pub fn add(&mut self, level: Level, text: impl Into<String>) {
         let text = text.into();
-        self.keep(level, &text);
+        self.append(&format!("{}: {text}\n", level.word()));
         let known = self.entries.iter().position(|entry| entry.level == level && entry.text == text);
         let count = known.and_then(|at| self.entries.remove(at)).map_or(1, |entry| entry.count.saturating_add(1));
         self.entries.push_back(Entry { level, text, count });
@@ -147,10 +156,12 @@ mod tests {
             let mut log = Log::kept_in(Some(Arc::new(file)));
             log.add(Level::Info, "opened");
             log.notify(Level::Error, "no such file", 0.0);
+            log.note_timing("1 frame");
             log.clear();
-            assert_eq!(std::fs::read_to_string(&path).expect("a file").lines().count(), 2 * (run + 1));
+            assert_eq!(std::fs::read_to_string(&path).expect("a file").lines().count(), 3 * (run + 1));
+            assert_eq!(log.entries().len(), 0, "timings are in the file alone");
         }
-        assert!(std::fs::read_to_string(&path).expect("a file").ends_with("info: opened\nerror: no such file\n"));
+        assert!(std::fs::read_to_string(&path).expect("a file").ends_with("info: opened\nerror: no such file\ntiming: 1 frame\n"));
         // A file that cannot be written is given up once, in words.
         let read_only = File::open(&path).expect("a file");
         let mut log = Log::kept_in(Some(Arc::new(read_only)));

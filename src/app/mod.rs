@@ -7,6 +7,7 @@
 mod action;
 mod anti_aliasing;
 mod apply;
+mod background;
 mod blit;
 mod cells;
 mod command;
@@ -23,6 +24,7 @@ mod fields;
 mod film;
 mod findings;
 mod finished;
+mod frame_notes;
 mod fuzzy;
 mod golden_check;
 mod history;

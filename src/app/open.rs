@@ -116,14 +116,20 @@ fn land(state: &mut State, panels: &mut Panels, request: Request, boxes: Option<
     let fit = boxes.and_then(|(from, to)| Fit::between(&from, &to));
     let open = &state.session.preset_file;
     let mut landed = if manner == Manner::Look {
-        let mut landed = opened.landed_on(open, fit.as_ref());
+        let own = state.session.scenes.get(&SceneKey::of(open));
+        // A model that cannot move misses no clip.
+        let mut landed = match own.is_some_and(|scene| scene.rig.clips.is_empty()) {
+            true => without_clip(&opened).landed_on(open, fit.as_ref()),
+            false => opened.landed_on(open, fit.as_ref()),
+        };
         landed.warnings.splice(0..0, opened.warnings.iter().cloned());
         landed
     } else {
         // The frame of the picture stays, and the camera shows the whole model.
         let mut model = (*opened).clone();
         model.preset.output = Output { size: open.preset.output.size, ..model.preset.output };
-        open.landed_on(&model, fit.as_ref())
+        // The clip belongs to the scene that goes.
+        without_clip(open).landed_on(&model, fit.as_ref())
     };
     let look = if manner == Manner::Look { &opened } else { open };
     if look.needs_fit() && fit.is_none() {
@@ -138,7 +144,10 @@ fn land(state: &mut State, panels: &mut Panels, request: Request, boxes: Option<
     let said = match (manner, &landed.warnings[..]) {
         (_, []) if manner == Manner::Look => format!("Opened {}", landed.title()),
         (_, []) => said,
-        (_, [warning]) => warning.clone(),
+        (_, [warning]) => {
+            let title = landed.title();
+            format!("Opened {title}; {}", warning.strip_prefix(&format!("{title}: ")).unwrap_or(warning))
+        }
         (_, warnings) => format!("Opened {}; {} things were left out, see the log", landed.title(), warnings.len()),
     };
     if manner == Manner::Look {
@@ -146,6 +155,13 @@ fn land(state: &mut State, panels: &mut Panels, request: Request, boxes: Option<
         state.session.remember(*opened);
     }
     finish(state, panels, landed, said);
+}
+
+/// A look without the clip of its own scene.
+fn without_clip(look: &PresetFile) -> PresetFile {
+    let mut look = look.clone();
+    look.preset.playback.clip.clear();
+    look
 }
 
 fn finish(state: &mut State, panels: &mut Panels, opened: PresetFile, said: String) {

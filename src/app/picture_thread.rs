@@ -20,6 +20,7 @@ use std::{
 use eframe::{egui, wgpu};
 
 use super::{
+    background::{Urgency, yield_processor},
     ending::EndingThreads,
     inputs::Inputs,
     timings::{Sample, has_settled},
@@ -155,8 +156,8 @@ impl PictureThread {
         Self { shared, watch, sender, finished, handle, ending }
     }
 
-    /// Draws this picture instead of any that was asked for and is not begun.
-    pub fn draw(&self, inputs: Inputs) {
+    /// Draws this picture, which was asked for at `asked_at`, instead of any that was asked for and is not begun.
+    pub fn draw(&self, inputs: Inputs, asked_at: Instant) {
         if self.handle.is_none() {
             let outcome = Outcome::Refused("no thread could be started for the picture; the system has no room for one".into());
             // The receiver lives as long as `self`.
@@ -166,7 +167,7 @@ impl PictureThread {
         if orders.current.as_ref().is_some_and(|current| !current.shares_kernels(&inputs)) {
             self.watch.stop();
         }
-        orders.next = Some(Order::Draw(inputs, Instant::now()));
+        orders.next = Some(Order::Draw(inputs, asked_at));
         self.shared.changed.notify_one();
     }
 
@@ -238,6 +239,9 @@ struct Worker {
 
 impl Worker {
     fn run(mut self) {
+        if self.gpu.summary.software {
+            yield_processor(Urgency::Picture);
+        }
         while let Some(order) = self.wait_for_order() {
             let inputs = match &order {
                 Order::Draw(inputs, _) | Order::Measure(inputs) => inputs.clone(),

@@ -1,7 +1,7 @@
 //! Screen: a picture in the window and the thread that draws it. It draws only when an input has changed, and a few frames more at rest
 //! to measure them; after a failure the last good picture stays.
 
-use std::sync::Arc;
+use std::{sync::Arc, time::Instant};
 
 use eframe::{egui, egui_wgpu, wgpu};
 
@@ -12,6 +12,7 @@ use super::{
     ending::EndingThreads,
     picture_thread::{Drawn, Finished, Outcome, PictureThread},
     timings::{Sample, Subject, Timings},
+    ui_frames::UiFrames,
 };
 use crate::{
     accuracy::AccuracyOptions,
@@ -215,7 +216,9 @@ impl Screen {
         (self.is_waiting, self.has_failed, self.is_measuring) = (true, false, false);
         self.timings.change();
         self.ordered = Some(inputs.clone());
-        self.thread.draw(inputs);
+        // The input that asks for it was there when the frame of the window began.
+        let asked_at = self.ctx.with_plugin(|frames: &mut UiFrames| frames.begun()).flatten();
+        self.thread.draw(inputs, asked_at.unwrap_or_else(Instant::now));
     }
 
     /// Forgets what was measured of another preset, or at another size.
@@ -251,6 +254,7 @@ impl Screen {
             match outcome {
                 Outcome::Drawn(drawn, asked_at) => {
                     self.is_waiting &= !is_newest || drawn.is_partial;
+                    self.ctx.with_plugin(|frames: &mut UiFrames| frames.shows(asked_at, drawn.is_compiled));
                     self.take(inputs, *drawn, asked_at.elapsed().as_secs_f64() * 1e3);
                 }
                 Outcome::Refused(error) if is_newest => {

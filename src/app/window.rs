@@ -11,6 +11,7 @@ use super::{
     escape::escape,
     favorites::Favorites,
     finished::finish,
+    frame_notes::FrameNotes,
     history::History,
     input,
     jobs::Jobs,
@@ -79,6 +80,7 @@ pub struct App {
     pub(super) loss: LossFlag,
     /// When the time was last advanced, while the preset plays.
     played_at_s: Option<f64>,
+    notes: FrameNotes,
     title: String,
 }
 
@@ -111,6 +113,7 @@ impl App {
         log.add(Level::Info, format!("adapter: {}, {}, {}", summary.name, summary.backend, summary.driver));
         let mut panels = Panels::new(&options.folders);
         panels.browser.show(settings.browsing);
+        panels.film.begin_with(settings.film.clone());
         let trust = Trust::default();
         let start = recovery::start(options.opened, options.open.as_deref(), &options.folders, (&keeper, &trust), &mut log);
         if let Some(brings) = start.brings_code {
@@ -162,6 +165,7 @@ impl App {
             looked_for: (Recents::default(), false),
             loss,
             played_at_s: None,
+            notes: FrameNotes::default(),
             title: String::new(),
         })
     }
@@ -398,6 +402,7 @@ impl eframe::App for App {
         self.guard_close(&ctx);
         self.update_title(&ctx);
         self.keep(&ctx);
+        self.notes.follow(&ctx, &mut self.state);
         self.was_typing = ctx.text_edit_focused();
     }
 

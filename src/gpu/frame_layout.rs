@@ -92,6 +92,10 @@ pub struct LayoutInputs<'a> {
 /// A part of a buffer that holds one thing where the buffer holds several, one behind the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Region {
+    /// What a frame counts.
+    Counts,
+    /// The farthest key of every block of pixels that hides what lies behind it; behind the counts.
+    HiddenBlocks,
     /// Projected vertices.
     VertexRecords,
     /// What sample effects and masks set up per triangle; behind the vertex records.
@@ -161,6 +165,8 @@ const VISIBLE_MESHLET: u64 = 16;
 
 /// Side of a tile of the resolve, which can be dispatched over listed tiles alone; pixels.
 const RESOLVE_TILE: u32 = 8;
+/// Side of a block of pixels that hides what lies behind it, pixels.
+const HIDDEN_BLOCK: u32 = 8;
 /// Side of a tile of the tiled rasterizer, pixels.
 const RASTER_TILE: u32 = 16;
 /// Side of a block of Hi-Z depths, pixels.
@@ -168,6 +174,14 @@ const HIZ_BLOCK: u32 = 64;
 
 /// Triangles whose samples are added up by one workgroup.
 const ORDER_BLOCK: u64 = 1024;
+
+/// What the first pass of a frame may clear beside its own work: `shaders/variants/clear_step`.
+const CLEARED_IN_PASSES: &[BufferId] =
+    &[BufferId::Counters, BufferId::DepthKeys, BufferId::TriangleIds, BufferId::DepthAndId, BufferId::PackedDepthId];
+/// Most workgroups that share a medium triangle, as the kernel has it.
+const MOST_PARTS: u32 = 4;
+/// Most pixels that an invocation of the first pass clears.
+const CLEARED_PIXELS: u64 = 4;
 
 /// Rows of the background that are kept, to be copied all over the picture.
 pub const BACKGROUND_ROWS: u32 = 32;
@@ -203,6 +217,9 @@ impl FrameLayout {
         if target == Target::Picture {
             layout.add_picture(key);
             layout.add_dots(key);
+        }
+        if key.work.clears_in_passes {
+            CLEARED_IN_PASSES.iter().for_each(|&id| layout.clear_only(id, None));
         }
         layout
     }
@@ -289,7 +306,9 @@ impl FrameLayout {
         if effect_bytes > 0 {
             self.add(BufferId::Effects, effect_bytes);
         }
-        self.add(BufferId::Counters, size_of::<CounterRecord>() as u64);
+        // The array at the end of the struct has at least one element, and the buffer whole records of 16 bytes.
+        let blocks = if key.hides_blocks() { self.tile_count(HIDDEN_BLOCK).next_multiple_of(4) } else { 4 };
+        self.add_regions(BufferId::Counters, &[(Region::Counts, size_of::<CounterRecord>() as u64), (Region::HiddenBlocks, WORD * blocks)]);
         if key.is_scaled() && self.target == Target::Picture {
             self.add(BufferId::Scaling, size_of::<ScalingUniform>() as u64);
         }
@@ -477,6 +496,21 @@ impl FrameLayout {
         }
     }
 
+    /// Most workgroups that the entries of a pass's queue can keep busy.
+    fn most_queued(&self, pass: Pass) -> u32 {
+        let room = &self.capacities;
+        match pass {
+            Pass::Clip => room.clip.div_ceil(64),
+            // Large triangles are few, as a rule, and workgroups that find none cost a little too.
+            Pass::TileLarge => room.large.div_ceil(4),
+            Pass::BinLarge(_) => room.large,
+            Pass::BinMedium(_) => room.medium,
+            // Several workgroups may share an entry.
+            Pass::RasterMedium(_) => room.medium.saturating_mul(MOST_PARTS),
+            _ => room.tiles.div_ceil(8),
+        }
+    }
+
     /// The culling uniform.
     pub fn culling_uniform(&self) -> CullingUniform {
         CullingUniform {
@@ -497,6 +531,10 @@ impl FrameLayout {
         match pass {
             Pass::Particles => over(scene.particles),
             Pass::Skin => over(scene.deformable),
+            Pass::Project if key.work.clears_in_passes => {
+                let clearing = self.pixels().div_ceil(CLEARED_PIXELS) as u32;
+                over((vertex_records(key, scene) as u32).max(clearing).max(1))
+            }
             Pass::Project => over(vertex_records(key, scene) as u32),
             Pass::Cull(_) => over(scene.meshlets),
             Pass::DepthReduce => Dispatch::once(self.tiles(HIZ_BLOCK)),
@@ -508,6 +546,11 @@ impl FrameLayout {
             Pass::OrderSums | Pass::OrderRanks => Dispatch::once(folded(triangles.div_ceil(ORDER_BLOCK as u32))),
             Pass::OrderLimit | Pass::OrderCut | Pass::Args | Pass::AdvanceQueues { .. } | Pass::BinScan | Pass::DotsArgs => {
                 Dispatch::once([1, 1])
+            }
+            Pass::Clip | Pass::TileLarge | Pass::RasterMedium(_) | Pass::BinMedium(_) | Pass::RasterLarge(_) | Pass::BinLarge(_)
+                if key.work.queue_groups > 0 =>
+            {
+                Dispatch::once([key.work.queue_groups.min(self.most_queued(pass)).max(1), 1])
             }
             Pass::Clip => Dispatch::args(offset_of!(DispatchArgs, clip)),
             Pass::RasterMedium(_) | Pass::BinMedium(_) => Dispatch::args(offset_of!(DispatchArgs, medium)),

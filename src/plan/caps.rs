@@ -43,6 +43,9 @@ impl Caps {
             max_list_entries: u32::MAX,
             listed_tiles: self.software,
             early_load: self.software,
+            queue_groups: if self.software { 0 } else { 8192 },
+            clears_in_passes: !self.software,
+            hides_blocks: !self.software,
             specialized: true,
         }
     }
@@ -64,6 +67,13 @@ pub struct Tuning {
     pub listed_tiles: bool,
     /// Load before the depth atomic (visibility `split32` alone).
     pub early_load: bool,
+    /// Workgroups of every pass over a queue, which share its entries, at most 65,535; 0: as many as the queue has entries, by an
+    /// indirect dispatch (culled pictures always).
+    pub queue_groups: u32,
+    /// The first pass clears counters and pixels beside its own work (pictures that are not culled, without x-ray sums).
+    pub clears_in_passes: bool,
+    /// Large and medium triangles skip blocks of pixels in which what was drawn hides them.
+    pub hides_blocks: bool,
     /// Omit what the scene does not need; else keep every path and every branch.
     pub specialized: bool,
 }

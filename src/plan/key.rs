@@ -6,7 +6,7 @@ use super::{
     traits::StackTraits,
 };
 use crate::{
-    accuracy::{AccuracyOptions, Clipping, Parameters, Visibility},
+    accuracy::{AccuracyOptions, Clipping, Culling, Parameters, Visibility},
     effects::hooks::{Layers, Shape},
     math::SMALL_EXTENT,
     scene::needs::Needs,
@@ -43,6 +43,9 @@ pub(super) fn key_of(
             max_list_entries: tuning.max_list_entries.min(loops::samples(caps, loops::of_an_entry(has_mask, needs.draws, &options))).max(1),
             listed_tiles: tuning.listed_tiles && !stack.finishes_pixels() && stack.dots.is_none(),
             early_load: tuning.early_load,
+            queue_groups: if options.culling == Culling::None { tuning.queue_groups.min(65_535) } else { 0 },
+            hides_blocks: tuning.hides_blocks,
+            clears_in_passes: tuning.clears_in_passes && options.culling == Culling::None && !matches!(layers, Some(Layers::Xray { .. })),
         },
         framebuffer: Framebuffer {
             layers,

@@ -140,17 +140,22 @@ impl KernelKey {
     /// The passes that clip and divide the triangles which the first raster pass has queued.
     fn queue_passes(&self, walks_samples: bool) -> Vec<Pass> {
         let mut passes = Vec::new();
+        // Passes of a fixed size need no arguments.
+        let is_indirect = self.work.queue_groups == 0;
+        let sets_up_clipped = self.paths.has_clipping && self.sample_setups() > 0;
         if self.paths.has_clipping {
-            passes.extend([Pass::Args, Pass::Clip]);
+            passes.extend(is_indirect.then_some(Pass::Args));
+            passes.push(Pass::Clip);
         }
-        if self.has_queues() {
+        if self.has_queues() && is_indirect || sets_up_clipped {
             passes.push(Pass::Args);
         }
-        if self.paths.has_clipping && self.sample_setups() > 0 {
+        if sets_up_clipped {
             passes.push(Pass::SampleSetup(TriangleSource::ClippedTriangles));
         }
         if self.paths.has_large && walks_samples {
-            passes.extend([Pass::TileLarge, Pass::Args]);
+            passes.push(Pass::TileLarge);
+            passes.extend(is_indirect.then_some(Pass::Args));
         }
         passes
     }

@@ -121,6 +121,12 @@ pub struct WorkSharing {
     pub listed_tiles: bool,
     /// Load before the depth atomic.
     pub early_load: bool,
+    /// Workgroups of every pass over a queue, which share its entries; 0: as many as it has entries, by an indirect dispatch.
+    pub queue_groups: u32,
+    /// The first pass clears counters and pixels beside its own work.
+    pub clears_in_passes: bool,
+    /// Triangles that cover a block of pixels hide what lies behind.
+    pub hides_blocks: bool,
 }
 
 /// What a pixel holds.
@@ -220,6 +226,9 @@ impl KernelKey {
                 max_list_entries: u32::MAX,
                 listed_tiles: true,
                 early_load: true,
+                queue_groups: 0,
+                clears_in_passes: true,
+                hides_blocks: true,
             },
             framebuffer: Framebuffer { layers, triangle_id_bits: if visibility == Visibility::Packed32 { 24 } else { 0 } },
             surface: SurfaceInputs { has_material_atlas: true, has_planes: true },
@@ -286,6 +295,17 @@ impl KernelKey {
     /// Are particles drawn as discs? Boxes and points show no triangles.
     pub fn has_discs(&self) -> bool {
         self.generated.has_particles && self.samples.shape == Shape::Triangles
+    }
+
+    /// Does a triangle that covers a block of pixels hide what lies behind? Only where every covered sample is drawn.
+    pub fn hides_blocks(&self) -> bool {
+        let draws_all = !self.has_sample_effects() && !self.has_discs() && !self.samples.has_mask && self.samples.draw_order.is_none();
+        self.work.hides_blocks && draws_all && self.samples.shape == Shape::Triangles
+    }
+
+    /// Do workgroups of the medium and the large path share entries of their queues, or look for hidden blocks first?
+    pub fn shares_entries(&self) -> bool {
+        self.work.queue_groups > 0 || self.hides_blocks()
     }
 
     /// Are there queues of triangles for another path than the first?

@@ -104,7 +104,10 @@ impl Reflected {
             offset: m.offset as usize,
             kind: kind_name(&self.module, m.ty),
         };
-        Some((*span as usize, members.iter().map(member).collect()))
+        // An array that takes the rest of its buffer belongs to no record.
+        let is_open =
+            |m: &&naga::StructMember| matches!(self.module.types[m.ty].inner, TypeInner::Array { size: naga::ArraySize::Dynamic, .. });
+        Some((*span as usize, members.iter().filter(|m| !is_open(m)).map(member).collect()))
     }
 }
 

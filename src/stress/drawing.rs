@@ -56,6 +56,9 @@ impl WorkDistribution {
             max_small_side,
             listed_tiles,
             early_load: listed_tiles,
+            queue_groups: if self == Self::Card { 48 } else { 0 },
+            hides_blocks: is_card,
+            clears_in_passes: self == Self::Card,
             specialized: true,
         }
     }

@@ -143,6 +143,7 @@ fn workgroups_direct(context: &mut CaseContext) -> Result<(), EarlyEnd> {
 fn workgroups_indirect(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let option = pinned(context.quick_option());
     let [workgroup_each, card] = [WorkDistribution::WorkgroupEach, WorkDistribution::Card].map(WorkDistribution::tuning);
+    let card = Tuning { queue_groups: 0, ..card };
     // Medium triangles: one workgroup each.
     let demands = [65_537u32, 65_535, 65_536];
     if context.is_slow() {

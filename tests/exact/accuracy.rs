@@ -256,9 +256,9 @@ fn mutants() -> Vec<Mutant> {
         ),
         mutant(
             "sample at the pixel corner of large triangles",
-            "stages/raster/raster_large",
-            "* 16);\n        let edge",
-            "* 16) - 128;\n        let edge",
+            "lib/large_tile",
+            "* 16);\n    let edge",
+            "* 16) - 128;\n    let edge",
             sizes(),
             TRIANGLE_IDS,
         ),
@@ -275,7 +275,7 @@ fn mutants() -> Vec<Mutant> {
             builtin("stack?layers=5", [128, 128]),
             TRIANGLE_IDS,
         ),
-        mutant("one rebased block is skipped", "stages/raster/raster_large", "for (var block = 0;", "for (var block = 1;", sizes(), HOLES),
+        mutant("half of a tile is skipped", "variants/large_tiles/shared", "for (var half = 0u;", "for (var half = 1u;", sizes(), HOLES),
         mutant(
             "saturation at 2^31",
             "variants/large_edges/rebased",
@@ -326,8 +326,16 @@ fn mutants() -> Vec<Mutant> {
             CLIPS,
         ),
         mutant(
+            "a triangle hides itself in the blocks that it covers",
+            "lib/hidden_blocks",
+            "return range.y < farthest;",
+            "return is_whole;",
+            sizes(),
+            TRIANGLE_IDS,
+        ),
+        mutant(
             "a medium triangle stops a block early",
-            "stages/raster/raster_medium",
+            "variants/medium_boxes/shared",
             "x <= pixels.z; x += 8",
             "x + 8 <= pixels.z; x += 8",
             builtin("sphere?triangles=200", [128, 128]),
@@ -352,6 +360,9 @@ const GRAPHICS_CARD: Tuning = Tuning {
     max_list_entries: u32::MAX,
     listed_tiles: false,
     early_load: true,
+    queue_groups: 0,
+    clears_in_passes: false,
+    hides_blocks: true,
     specialized: true,
 };
 

@@ -53,6 +53,9 @@ const GRAPHICS_CARD: Tuning = Tuning {
     max_list_entries: u32::MAX,
     listed_tiles: false,
     early_load: false,
+    queue_groups: 64,
+    clears_in_passes: true,
+    hides_blocks: true,
     specialized: true,
 };
 
@@ -265,7 +268,7 @@ fn repeated_frames_are_equal_to_the_bit() {
             assert_eq!(again.layers, first.layers, "{what}: layers");
             assert_eq!(again.frame.counters, first.frame.counters, "{what}: counters");
         }
-        is_drawn_by(&renderer, &["project", "raster_small", "dispatch_args", "clip", "resolve"]);
+        is_drawn_by(&renderer, &["project", "raster_small", "clip", "resolve"]);
         is_drawn_by(&renderer, if option == Visibility::Tiled { TILED } else { &["tile_large", "raster_medium", "raster_large"] });
     }
 }
@@ -385,6 +388,59 @@ fn the_early_load_does_not_show() {
         });
         assert_same(&with.frame, &without.frame, query);
     }
+}
+
+#[test]
+fn blocks_that_hide_what_lies_behind_do_not_show() {
+    let Some(mut renderer) = renderer() else { return };
+    for query in ["near", "stack?layers=60&gap=0.5", "sizes", "sphere?triangles=200"] {
+        let scene = scene(query);
+        let view = view(&scene, SIZE);
+        for option in options(&renderer) {
+            let [with, without] = [true, false].map(|hides_blocks| {
+                renderer.set_tuning(Tuning { hides_blocks, ..GRAPHICS_CARD });
+                captured(&mut renderer, &scene, &view, &stack(&["lambert"]), &pinned(option))
+            });
+            let what = format!("{query} {}", option.name());
+            assert_same(&with.frame, &without.frame, &what);
+            assert_eq!(with.layers, without.layers, "{what}: layers");
+        }
+    }
+}
+
+/// A picture that fills every pixel, then one that leaves most empty; buffers that a pass clears are as empty as those that are cleared
+/// before it.
+#[test]
+fn a_picture_begins_with_nothing_of_the_one_before() {
+    let Some(mut renderer) = renderer() else { return };
+    let (full, empty) = (hall(), scene("sphere?triangles=200"));
+    let aside = view(&empty, SIZE);
+    for option in options(&renderer) {
+        let [cleared_by_passes, cleared_before] = [true, false].map(|clears_in_passes| {
+            renderer.set_tuning(Tuning { clears_in_passes, ..GRAPHICS_CARD });
+            captured(&mut renderer, &full.0, &full.1, &stack(&[]), &pinned(option));
+            captured(&mut renderer, &empty, &aside, &stack(&[]), &pinned(option))
+        });
+        assert!(cleared_before.frame.triangle_id.contains(&NO_TRIANGLE), "no pixel is empty");
+        assert_same(&cleared_by_passes.frame, &cleared_before.frame, option.name());
+        assert_eq!(cleared_by_passes.frame.counters, cleared_before.frame.counters, "{}: counters", option.name());
+    }
+}
+
+/// A picture that is drawn from lists of tiles lists no tiles of large triangles before the judge counts its layers.
+#[test]
+fn the_layers_of_a_tiled_picture_are_counted_in_queues_that_grow() {
+    let Some(mut renderer) = renderer() else { return };
+    renderer.set_tuning(GRAPHICS_CARD);
+    let (scene, view) = hall();
+    let expected = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32));
+    renderer.set_scene(&scene).expect("a builtin fits");
+    let room = renderer.capacities();
+    renderer.set_capacities(Capacities { tiles: 1, ..room });
+    let capture = renderer.capture(&view, &stack(&[]), &pinned(Visibility::Tiled)).expect("drawn");
+    assert!(renderer.capacities().tiles > 1, "a queue of one tile is enough");
+    assert_eq!(capture.layers, expected.layers);
+    assert_same(&capture.frame, &expected.frame, "tiled");
 }
 
 /// Mistakes in the tiled kernels that a picture must show: file, what stands there, what stands there instead, scene.

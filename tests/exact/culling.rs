@@ -84,6 +84,9 @@ fn both_tunings(renderer: &Renderer) -> [Tuning; 2] {
         max_list_entries: u32::MAX,
         listed_tiles: false,
         early_load: false,
+        queue_groups: 64,
+        clears_in_passes: true,
+        hides_blocks: true,
         specialized: true,
     };
     [renderer.gpu().caps.tuning(), card]

@@ -121,6 +121,9 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles() {
         max_list_entries: u32::MAX,
         listed_tiles: false,
         early_load: false,
+        queue_groups: 0,
+        clears_in_passes: false,
+        hides_blocks: false,
         specialized: true,
     };
     let explained = |query, tuning| explained(query, [320, 240], Visibility::Split32, tuning);

@@ -95,6 +95,30 @@ fn typing_replaces_the_proposed_name_and_keeps_folder_and_extension() {
     assert!(!folder.path().join("evening.toml").exists());
 }
 
+#[test]
+fn a_whole_path_in_place_of_the_proposed_name_replaces_the_folder_too() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let presets = folder.path().join("presets");
+    let Some(mut lab) = lab_in("lambert", Some(&presets)) else { return };
+    press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::S);
+    let path = folder.path().join("mine.toml");
+    // Letter by letter, as it is typed.
+    for letter in path.display().to_string().chars() {
+        type_text(&mut lab, &letter.to_string());
+    }
+    assert!(path_of(&lab).starts_with(&path.display().to_string()), "{}", path_of(&lab));
+    press(&mut lab, Modifiers::NONE, Key::Enter);
+    assert!(path.exists() && !presets.exists(), "{}", lab.state().log_text());
+
+    // Pasted at once.
+    press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::S);
+    let other = folder.path().join("other");
+    type_text(&mut lab, &other.display().to_string());
+    assert_eq!(path_of(&lab), format!("{}.toml", other.display()));
+    press(&mut lab, Modifiers::NONE, Key::Enter);
+    assert!(other.with_extension("toml").exists(), "{}", lab.state().log_text());
+}
+
 /// Run by the next test in a separate process, which has no desktop.
 #[test]
 #[ignore = "run by without_a_desktop_the_dialog_says_so_and_works"]

@@ -8,7 +8,7 @@ use std::{
 
 use eframe::egui::{self, Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
-use rasterlab::preset_file;
+use rasterlab::preset_file::{self, Folders};
 
 use crate::harness::*;
 
@@ -29,7 +29,8 @@ fn fill(lab: &mut Lab, role: Role, label: &str, text: &str) {
     lab.run_steps(2);
     lab.event(egui::Event::Text(text.to_owned()));
     lab.run_steps(2);
-    lab.key_press_modifiers(Modifiers::NONE, Key::Enter);
+    // Enter in the path would export.
+    lab.key_press_modifiers(Modifiers::NONE, if role == Role::TextInput { Key::Tab } else { Key::Enter });
     lab.run_steps(3);
 }
 
@@ -58,6 +59,84 @@ fn files_in(folder: &Path) -> Vec<PathBuf> {
     files.retain(|path| path.extension().is_some_and(|extension| extension != "toml"));
     files.sort();
     files
+}
+
+#[test]
+fn the_next_film_begins_as_the_last_one_was_exported_also_after_a_new_start() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let preset = folder.path().join("mine.toml");
+    std::fs::write(&preset, SECOND).expect("a file");
+    let config = folder.path().join("config");
+    let start = |open: &str| {
+        let mut lab = created(Some(open), Folders::default(), Some(config.clone()), SIZE)?;
+        settle(&mut lab);
+        Some(lab)
+    };
+    let Some(mut lab) = start(&preset.to_string_lossy()) else { return };
+    open_dialog(&mut lab, "PNG frames", &folder.path().join("walk"), "4");
+    fill(&mut lab, Role::SpinButton, "End of the film", "0.5");
+    click(&mut lab, Role::ComboBox, "Anti-aliasing of the film");
+    click(&mut lab, Role::Button, "2×2");
+    click(&mut lab, Role::Button, "Export film");
+    assert!(lab.state().log_text().contains("2 frames drawn"), "{}", lab.state().log_text());
+    drop(lab);
+
+    let Some(mut lab) = start(&preset.to_string_lossy()) else { return };
+    press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::E);
+    assert!(lab.query_by_label_contains("2 frames, 0.50 s: mine_").is_some(), "range, rate or format is another");
+    let path = folder.path().join("again");
+    fill(&mut lab, Role::TextInput, "Path of the film", &path.to_string_lossy());
+    click(&mut lab, Role::Button, "Export film");
+    let frame = files_in(folder.path()).into_iter().find(|file| file.to_string_lossy().contains("again")).expect("a frame");
+    let picture = image::open(&frame).expect("a PNG");
+    assert_eq!((picture.width(), picture.height()), (64, 48));
+    let saved = preset_file::preset_from_png(&std::fs::read(&frame).expect("a file"), "frame").expect("a preset inside");
+    assert_eq!(saved.preset.accuracy.scale().factor(), 2.0);
+    drop(lab);
+
+    // The range belongs to the preset.
+    let Some(mut lab) = start("facet-sweep") else { return };
+    press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::E);
+    assert!(lab.query_by_label_contains(" frames, 0.50 s").is_none());
+}
+
+#[test]
+fn the_dialog_is_filled_in_and_confirmed_without_the_mouse() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab_of(folder.path(), SECOND) else { return };
+    press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::E);
+    let rect = |lab: &Lab, role: Role, label: &str| lab.get_by_role_and_label(role, label).rect();
+    let [row, buttons] = [rect(&lab, Role::Button, "Turntable None"), rect(&lab, Role::Button, "Export film")];
+    assert!(buttons.top() - row.bottom() < 40.0, "the dialog has a hole of {} points", buttons.top() - row.bottom());
+    // The path has the focus.
+    let path = folder.path().join("out.png");
+    press(&mut lab, Modifiers::COMMAND, Key::A);
+    lab.event(egui::Event::Text(path.to_string_lossy().into_owned()));
+    lab.run_steps(2);
+    for text in ["64", "48", "2"] {
+        press(&mut lab, Modifiers::NONE, Key::Tab);
+        lab.event(egui::Event::Text(text.to_owned()));
+        lab.run_steps(2);
+    }
+    for _ in 0..3 {
+        press(&mut lab, Modifiers::SHIFT, Key::Tab);
+    }
+    assert!(lab.query_by_label("2 frames, 1.00 s").is_some());
+    press(&mut lab, Modifiers::NONE, Key::Enter);
+    settle(&mut lab);
+    assert!(path.exists() && !is_open(&lab), "{}", lab.state().log_text());
+    // Once more: Enter alone replaces nothing.
+    press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::E);
+    fill(&mut lab, Role::SpinButton, "Frames per second", "3");
+    let before = std::fs::read(&path).expect("the film");
+    for _ in 0..2 {
+        lab.get_by_role_and_label(Role::TextInput, "Path of the film").focus();
+        lab.run_steps(2);
+        press(&mut lab, Modifiers::NONE, Key::Enter);
+        settle(&mut lab);
+    }
+    assert!(is_open(&lab) && shows(&lab, "Replace overwrites it"), "{}", lab.state().log_text());
+    assert_eq!(std::fs::read(&path).expect("the film"), before);
 }
 
 #[test]

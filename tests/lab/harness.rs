@@ -162,7 +162,18 @@ pub fn created(open: Option<&str>, folders: Folders, config: Option<PathBuf>, si
     crate::common::gpu()?; // Fails with one sentence when there is none.
     let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
     let (window, devices) = shared_devices(&adapter);
-    Some(built(open, folders, (config, size), adapter, (window, Some(devices))))
+    Some(built(open, folders, (config, size), None, adapter, (window, Some(devices))))
+}
+
+/// A window that shows the preset `open` and appends its log to `file`.
+pub fn lab_with_log(open: &str, file: std::fs::File) -> Option<Lab> {
+    crate::common::gpu()?;
+    let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
+    let (window, devices) = shared_devices(&adapter);
+    let log = Some(Arc::new(file));
+    let mut lab = built(Some(open), Folders::default(), (None, SIZE), log, adapter, (window, Some(devices)));
+    settle(&mut lab);
+    Some(lab)
 }
 
 /// A window on devices for which nothing has been compiled yet, with its first picture drawn.
@@ -170,7 +181,7 @@ pub fn lab_on_new_devices(open: &str) -> Option<Lab> {
     crate::common::gpu()?;
     let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
     let window = device(&adapter);
-    let mut lab = built(Some(open), Folders::default(), (None, SIZE), adapter, (window, None));
+    let mut lab = built(Some(open), Folders::default(), (None, SIZE), None, adapter, (window, None));
     settle(&mut lab);
     Some(lab)
 }
@@ -179,11 +190,11 @@ fn built(
     open: Option<&str>,
     folders: Folders,
     (config, size): (Option<PathBuf>, [f32; 2]),
+    log: Option<Arc<std::fs::File>>,
     adapter: AdapterChoice,
     (window, devices): (RenderState, Option<Devices>),
 ) -> Lab {
-    let options =
-        Options { open: open.map(str::to_owned), opened: None, adapter, devices, folders, opens_editor: false, config, log: None };
+    let options = Options { open: open.map(str::to_owned), opened: None, adapter, devices, folders, opens_editor: false, config, log };
     let mut theme = ThemePreference::default();
     let harness = Harness::builder().with_size(size).renderer(Window(window.clone())).build_eframe(|cc| {
         let app = App::new(cc, options).unwrap_or_else(|error| panic!("{error:#}"));

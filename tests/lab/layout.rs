@@ -127,6 +127,24 @@ fn escape_closes_the_innermost_first() {
 }
 
 #[test]
+fn escape_closes_the_windows_for_films_sweeps_and_seeds() {
+    let Some(mut lab) = lab("facet-knot") else { return };
+    press(&mut lab, Modifiers::NONE, Key::L);
+    let windows = [
+        (Modifiers::SHIFT, Key::R, "The last twelve seeds"),
+        (Modifiers::SHIFT, Key::S, "Draw the sheet"),
+        (Modifiers::COMMAND | Modifiers::SHIFT, Key::E, "Export film"),
+    ];
+    for (modifiers, key, shown) in windows {
+        press(&mut lab, modifiers, key);
+        assert!(lab.query_all_by_label_contains(shown).next().is_some(), "{shown}");
+        press(&mut lab, Modifiers::NONE, Key::Escape);
+        assert!(lab.query_all_by_label_contains(shown).next().is_none(), "Escape does not close {shown}");
+        assert!(lab.query_by_label("Clear the log").is_some(), "Escape closes the log as well");
+    }
+}
+
+#[test]
 fn escape_in_a_field_leaves_the_field_and_no_panel() {
     let Some(mut lab) = lab("facet-sweep") else { return };
     press(&mut lab, Modifiers::NONE, Key::L);

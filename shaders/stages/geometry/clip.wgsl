@@ -104,8 +104,13 @@ fn clip(
     @builtin(workgroup_id) workgroup: vec3u, @builtin(num_workgroups) workgroups: vec3u,
     @builtin(local_invocation_index) invocation_index: u32
 ) {
-    let slot = queues_clip_done() + frame_invocation(workgroup, workgroups, invocation_index, 64u);
-    if slot >= queues_clip_count() { return; }
+    let count = queues_clip_count();
+    let invocations = workgroups.x * workgroups.y * 64u;
+    let first = queues_clip_done() + frame_invocation(workgroup, workgroups, invocation_index, 64u);
+    for (var slot = first; slot < count; slot += invocations) { clip_queued(slot); }
+}
+
+fn clip_queued(slot: u32) {
     let t = triangle_load(queues[slot]);
     let at = triangle_vertices(t.draw, t.id - draws[t.draw].first_triangle);
     let flags = vec4u(t.a.x, t.b.x, t.c.x, 0u);

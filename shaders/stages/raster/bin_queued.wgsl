@@ -12,8 +12,12 @@ fn bin_queued(
     @builtin(workgroup_id) workgroup: vec3u, @builtin(num_workgroups) workgroups: vec3u,
     @builtin(local_invocation_index) invocation_index: u32
 ) {
-    let slot = workgroup.y * workgroups.x + workgroup.x;
-    if slot >= select(queues_medium_count(), queues_large_count(), IS_LARGE) { return; }
+    let count = select(queues_medium_count(), queues_large_count(), IS_LARGE);
+    let groups = workgroups.x * workgroups.y;
+    for (var slot = workgroup.y * workgroups.x + workgroup.x; slot < count; slot += groups) { list(slot, invocation_index); }
+}
+
+fn list(slot: u32, invocation_index: u32) {
     let entry = queues[select(frame.medium_first, frame.large_first, IS_LARGE) + slot];
     let t = clockwise_triangle(queued_triangle(entry));
     tile_lists_add_triangle(entry, t.a, t.b, t.c, clockwise_pixels(t), IS_LARGE, invocation_index, 64u);

@@ -10,8 +10,14 @@ fn tile_large(
     @builtin(workgroup_id) workgroup: vec3u, @builtin(num_workgroups) workgroups: vec3u,
     @builtin(local_invocation_index) invocation_index: u32
 ) {
-    let slot = queues_large_done() + workgroup.y * workgroups.x + workgroup.x;
-    if slot >= queues_large_count() { return; }
+    let count = queues_large_count();
+    let groups = workgroups.x * workgroups.y;
+    for (var slot = queues_large_done() + workgroup.y * workgroups.x + workgroup.x; slot < count; slot += groups) {
+        find_tiles(slot, invocation_index);
+    }
+}
+
+fn find_tiles(slot: u32, invocation_index: u32) {
     let entry = queues[frame.large_first + slot];
     let t = clockwise_triangle(queued_triangle(entry));
 

@@ -24,3 +24,15 @@ fn coverage_contains(coverage: Coverage, edges: vec3i) -> bool {
 fn coverage_key(coverage: Coverage, edges: vec3i) -> u32 {
     return coverage.key;
 }
+
+fn coverage_touches(coverage: Coverage, edges: vec3i) -> bool {
+    return true;
+}
+
+fn coverage_fills(coverage: Coverage, edges: vec3i) -> bool {
+    return false;
+}
+
+fn coverage_range(coverage: Coverage) -> vec2u {
+    return vec2u(coverage.key);
+}

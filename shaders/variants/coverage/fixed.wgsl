@@ -42,3 +42,18 @@ fn coverage_contains(coverage: Coverage, edges: vec3i) -> bool {
 fn coverage_key(coverage: Coverage, edges: vec3i) -> u32 {
     return depth_at(coverage.depth, edges + coverage.bias);
 }
+
+// On a grid finer than 8 bits, edge functions wrap at those samples of a block that lie outside the triangle's box.
+fn coverage_touches(coverage: Coverage, edges: vec3i) -> bool {
+    if SUBPIXEL_BITS > 8u { return true; }
+    return coverage_contains(coverage, edges + (max(coverage.step_x, vec3i(0)) + max(coverage.step_y, vec3i(0))) * 7);
+}
+
+fn coverage_fills(coverage: Coverage, edges: vec3i) -> bool {
+    if SUBPIXEL_BITS > 8u { return false; }
+    return coverage_contains(coverage, edges + (min(coverage.step_x, vec3i(0)) + min(coverage.step_y, vec3i(0))) * 7);
+}
+
+fn coverage_range(coverage: Coverage) -> vec2u {
+    return depth_range(coverage.depth);
+}

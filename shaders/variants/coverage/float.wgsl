@@ -46,3 +46,16 @@ fn coverage_key(coverage: Coverage, edges: vec3f) -> u32 {
     let z = edges.x * coverage.depth.x + edges.y * coverage.depth.y + edges.z * coverage.depth.z;
     return depth_key(clamp(z, coverage.range.x, coverage.range.y));
 }
+
+// Rounding differs from sample to sample, so nothing is certain about a block.
+fn coverage_touches(coverage: Coverage, edges: vec3f) -> bool {
+    return true;
+}
+
+fn coverage_fills(coverage: Coverage, edges: vec3f) -> bool {
+    return false;
+}
+
+fn coverage_range(coverage: Coverage) -> vec2u {
+    return vec2u(depth_key(coverage.range.x), depth_key(coverage.range.y));
+}

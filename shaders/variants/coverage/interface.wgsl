@@ -12,3 +12,9 @@
 //@ declare fn coverage_contains
 // Depth key at a covered sample, at least 1: `coverage_key(coverage, edges)`.
 //@ declare fn coverage_key
+// May the block of 8x8 samples be touched, of whose first sample these are the edge functions? `coverage_touches(coverage, edges)`.
+//@ declare fn coverage_touches
+// Are all samples of that block certainly covered? `coverage_fills(coverage, edges)`.
+//@ declare fn coverage_fills
+// The farthest and the nearest depth key of any sample.
+//@ declare fn coverage_range(coverage: Coverage) -> vec2u

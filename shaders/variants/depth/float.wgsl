@@ -59,3 +59,7 @@ fn depth_weighted(plane: DepthPlane, weights: vec3f) -> u32 {
 fn depth_at(plane: DepthPlane, edges: vec3i) -> u32 {
     return depth_weighted(plane, vec3f(edges));
 }
+
+fn depth_range(plane: DepthPlane) -> vec2u {
+    return vec2u(depth_key(plane.range.x), depth_key(plane.range.y));
+}

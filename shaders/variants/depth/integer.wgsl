@@ -72,3 +72,8 @@ fn depth_packed(plane: DepthPlane, quotient: u32) -> u32 {
 fn depth_at(plane: DepthPlane, edges: vec3i) -> u32 {
     return depth_packed(plane, depth_quotient(plane, vec3u(edges)));
 }
+
+fn depth_range(plane: DepthPlane) -> vec2u {
+    let z = plane.z;
+    return vec2u(depth_packed(plane, min(min(z.x, z.y), z.z)), depth_packed(plane, max(max(z.x, z.y), z.z)));
+}

@@ -13,6 +13,8 @@
 //@ declare fn depth_plane_wide(depths: vec3u, area: Wide) -> DepthPlane
 // Key at a covered sample, from unbiased edge functions.
 //@ declare fn depth_at(plane: DepthPlane, edges: vec3i) -> u32
+// The farthest and the nearest key of any sample: those of corners.
+//@ declare fn depth_range(plane: DepthPlane) -> vec2u
 //
 // variants/large_depth is chosen along with this, and uses more of each: `depth_weighted(plane, weights: vec3f)` of float,
 // `depth_quotient` and `depth_packed` of integer.

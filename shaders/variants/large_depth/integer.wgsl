@@ -36,3 +36,7 @@ fn block_depth_key(depth: BlockDepth, e0: BlockEdge, e1: BlockEdge, e2: BlockEdg
         block_depth_stepped(depth, depth.e2, step.z));
     return depth_packed(depth.plane, depth_quotient(depth.plane, edges));
 }
+
+fn block_depth_range(depth: BlockDepth, e0: BlockEdge, e1: BlockEdge, e2: BlockEdge, start: vec3i, dx: vec3i, dy: vec3i) -> vec2u {
+    return depth_range(depth.plane);
+}

@@ -9,5 +9,7 @@
 //@ declare fn block_depth(plane: DepthPlane, a: vec2i, b: vec2i, c: vec2i, p: vec2i) -> BlockDepth
 // What raster_large has prepared for the block whose edges begin at an index.
 //@ declare fn block_depth_prepared(plane: DepthPlane, index: u32) -> BlockDepth
+// The farthest and the nearest key that any sample of a block of 8x8 pixels may have, `start` being `step` at its first pixel.
+//@ declare fn block_depth_range(depth: BlockDepth, e0: BlockEdge, e1: BlockEdge, e2: BlockEdge, start: vec3i, dx: vec3i, dy: vec3i) -> vec2u
 // Key at a covered sample, `step` as in large_edges.
 //@ declare fn block_depth_key(depth: BlockDepth, e0: BlockEdge, e1: BlockEdge, e2: BlockEdge, step: vec3i, bias: vec3i) -> u32

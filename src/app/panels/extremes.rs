@@ -10,6 +10,7 @@ use eframe::egui::{self, Color32, RichText, Ui};
 
 use crate::{
     app::{
+        background::{Urgency, yield_processor},
         command::{Command, Commands},
         computing::Computing,
         log::Level,
@@ -107,6 +108,7 @@ impl Extremes {
         let (seed, ctx, shared) = (self.seed, ctx.clone(), run.clone());
         let work = move || {
             let _computing = computing;
+            yield_processor(Urgency::Later);
             let result = catch_unwind(AssertUnwindSafe(|| shared.draw(&cases, adapter, seed, &ctx)))
                 .unwrap_or_else(|_| Err("the run failed because of a bug; see the terminal for details".into()));
             let mut progress = shared.progress();

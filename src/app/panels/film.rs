@@ -11,6 +11,7 @@ use crate::{
         film::{Failure, Finished, Format, Progress, Request, time_left_text},
         log::Level,
         panel::Panel,
+        settings::film::FilmSettings,
         state::State,
         theme,
     },
@@ -18,11 +19,7 @@ use crate::{
     preset::Clock,
 };
 
-/// Longest side of a film, pixels: that of an exported picture.
-const MAX_SIDE: u32 = 8192;
-
-/// Largest number of frames per second that the window offers.
-const MAX_FPS: f64 = 240.0;
+const MAX_SIDE: u32 = FilmSettings::MAX_SIDE;
 
 /// Width of the window, points.
 const WIDTH: f32 = 460.0;
@@ -38,11 +35,15 @@ const TURNTABLES: [(Option<Turntable>, &str); 3] = [(None, "None"), (Some(Turnta
 pub struct FilmPanel {
     form: Option<Form>,
     is_open: bool,
+    /// It has just been opened: the path gets the focus.
+    takes_focus: bool,
     running: Option<(Request, Arc<Progress>)>,
     /// The film that was canceled, until its thread has written the frame it was at.
     ending: Option<Arc<Progress>>,
     /// Why the last film was not finished.
     failure: Option<Failure>,
+    /// How the last film was exported.
+    last: FilmSettings,
 }
 
 /// What the person has chosen.
@@ -60,21 +61,23 @@ struct Form {
 }
 
 impl Form {
-    fn new(state: &State) -> Self {
+    fn new(state: &State, last: &FilmSettings) -> Self {
         let session = &state.session;
         let id = if session.preset_file.id.is_empty() { "film" } else { &session.preset_file.id };
         let output = session.preset().output.size;
         let shown = state.screen.requested().map_or(output, |inputs| [inputs.view.width, inputs.view.height]);
+        let own_range_s = last.range_s.as_ref().filter(|(preset, _)| *preset == session.preset_file.id).map(|(_, range_s)| *range_s);
+        let path = last.format.named(&std::env::current_dir().unwrap_or_default().join(format!("{id}.png")));
         Self {
             preset: session.preset_file.id.clone(),
-            path: std::env::current_dir().unwrap_or_default().join(format!("{id}.png")).display().to_string(),
-            format: Format::Apng,
+            path: path.display().to_string(),
+            format: last.format,
             // Even, as MP4 needs it.
-            size: shown.map(|side| (side & !1).clamp(2, MAX_SIDE)),
-            fps: 30.0,
-            range_s: session.preset().clock.range_s,
+            size: last.size.unwrap_or_else(|| shown.map(|side| (side & !1).clamp(2, MAX_SIDE))),
+            fps: last.fps,
+            range_s: own_range_s.unwrap_or(session.preset().clock.range_s),
             turntable: None,
-            scale: None,
+            scale: last.scale,
             has_ffmpeg: find_ffmpeg().is_some(),
         }
     }
@@ -90,6 +93,12 @@ impl Form {
             scale: self.scale,
             replaces,
         }
+    }
+
+    /// What is remembered of it.
+    fn settings(&self, clock: &Clock) -> FilmSettings {
+        let range_s = (self.range_s != clock.range_s).then(|| (self.preset.clone(), self.range_s));
+        FilmSettings { format: self.format, size: Some(self.size), fps: self.fps, scale: self.scale, range_s }
     }
 
     fn choose(&mut self, format: Format) {
@@ -114,14 +123,29 @@ impl FilmPanel {
     /// Shows or hides the dialog, filled in for the open preset.
     pub fn toggle(&mut self, state: &State) {
         self.is_open = !self.is_open;
+        self.takes_focus = self.is_open;
         if !self.is_open || self.running.is_some() {
             return;
         }
         match &mut self.form {
             // What was chosen before stays.
             Some(form) if form.preset == state.session.preset_file.id => form.has_ffmpeg = find_ffmpeg().is_some(),
-            form => (*form, self.failure) = (Some(Form::new(state)), None),
+            form => (*form, self.failure) = (Some(Form::new(state, &self.last)), None),
         }
+    }
+
+    /// How the last film was exported.
+    pub fn last(&self) -> &FilmSettings {
+        &self.last
+    }
+
+    /// The next film begins with these settings.
+    pub fn begin_with(&mut self, last: FilmSettings) {
+        self.last = last;
+    }
+
+    pub fn is_open(&self) -> bool {
+        self.is_open
     }
 
     pub fn is_exporting(&self) -> bool {
@@ -158,8 +182,9 @@ impl FilmPanel {
         }
     }
 
-    fn start(&mut self, replaces: bool, commands: &Commands) {
+    fn start(&mut self, replaces: bool, clock: &Clock, commands: &Commands) {
         let Some(form) = &self.form else { return };
+        self.last = form.settings(clock);
         let (request, progress) = (form.request(replaces), Arc::<Progress>::default());
         self.failure = None;
         commands.send(Command::ExportFilm(Box::new(request.clone()), progress.clone()));
@@ -167,7 +192,7 @@ impl FilmPanel {
     }
 
     /// The buttons, and what stands in the way.
-    fn end_ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
+    fn end_ui(&mut self, ui: &mut Ui, state: &State, is_entered: bool, commands: &Commands) {
         let fault = self.form.as_ref().and_then(|form| form.fault(&state.session.preset().clock));
         match (&fault, &self.failure) {
             (Some(fault), _) => theme::notice(ui, theme::amber(), fault),
@@ -179,15 +204,16 @@ impl FilmPanel {
         ui.add_space(theme::HALF);
         let is_taken = matches!(self.failure, Some(Failure::Taken(_)));
         let is_ready = fault.is_none() && self.ending.is_none() && state.session.scene().is_some();
-        let (mut is_started, mut is_closed) = (false, false);
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        let (mut is_started, mut is_closed) = (is_entered && is_ready && !is_taken, false);
+        let row = egui::vec2(ui.available_width(), theme::ROW);
+        ui.allocate_ui_with_layout(row, egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let verb = if is_taken { "Replace" } else { "Export film" };
             let button = egui::Button::new(verb).fill(theme::accent_ground()).min_size(egui::vec2(96.0, theme::ROW));
-            is_started = ui.add_enabled(is_ready, button).clicked();
+            is_started |= ui.add_enabled(is_ready, button).clicked();
             is_closed = ui.add(egui::Button::new("Close").min_size(egui::vec2(72.0, theme::ROW))).clicked();
         });
         if is_started {
-            self.start(is_taken, commands);
+            self.start(is_taken, &state.session.preset().clock, commands);
         }
         if is_closed {
             self.is_open = false;
@@ -225,21 +251,20 @@ impl Panel for FilmPanel {
                 }
                 let clock = state.session.preset().clock;
                 let before = self.form.as_ref().map(|form| form.request(false));
-                if let Some(form) = &mut self.form {
-                    form_ui(ui, form, &clock);
-                }
+                let takes_focus = std::mem::take(&mut self.takes_focus);
+                let is_entered = self.form.as_mut().is_some_and(|form| form_ui(ui, form, &clock, takes_focus));
                 if before != self.form.as_ref().map(|form| form.request(false)) {
                     // What was agreed to, or failed, was another film.
                     self.failure = None;
                 }
-                self.end_ui(ui, state, commands);
+                self.end_ui(ui, state, is_entered, commands);
             });
-        let is_escaped = ui.ctx().input(|i| i.key_pressed(Key::Escape)) && !ui.ctx().any_popup_open();
-        self.is_open &= is_open && !is_escaped;
+        self.is_open &= is_open;
     }
 }
 
-fn form_ui(ui: &mut Ui, form: &mut Form, clock: &Clock) {
+/// Returns true if Enter was pressed in the path.
+fn form_ui(ui: &mut Ui, form: &mut Form, clock: &Clock, takes_focus: bool) -> bool {
     ui.horizontal(|ui| {
         for format in Format::ALL {
             if ui.selectable_label(form.format == format, format.name()).clicked() {
@@ -249,7 +274,11 @@ fn form_ui(ui: &mut Ui, form: &mut Form, clock: &Clock) {
     });
     ui.add_space(theme::HALF);
     let path = egui::TextEdit::singleline(&mut form.path).hint_text("Path").desired_width(f32::INFINITY);
-    ui.add(path).accessible_name("Path of the film");
+    let path = ui.add(path).accessible_name("Path of the film");
+    let is_entered = path.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
+    if takes_focus {
+        path.request_focus();
+    }
     let schedule = form.request(false).schedule(clock).ok();
     if let Some(schedule) = &schedule {
         ui.add(egui::Label::new(theme::weak(about(form, schedule))).truncate());
@@ -266,7 +295,8 @@ fn form_ui(ui: &mut Ui, form: &mut Form, clock: &Clock) {
         });
         ui.end_row();
         ui.label("Frames per second");
-        ui.add(DragValue::new(&mut form.fps).range(1.0..=MAX_FPS).max_decimals(3).speed(0.5)).accessible_name("Frames per second");
+        ui.add(DragValue::new(&mut form.fps).range(1.0..=FilmSettings::MAX_FPS).max_decimals(3).speed(0.5))
+            .accessible_name("Frames per second");
         ui.end_row();
         ui.label("Range");
         ui.horizontal(|ui| {
@@ -305,6 +335,7 @@ fn form_ui(ui: &mut Ui, form: &mut Form, clock: &Clock) {
         ui.end_row();
     });
     ui.add_space(theme::HALF);
+    is_entered
 }
 
 /// `120 frames, 4 s`, and the names of the files.

@@ -37,6 +37,10 @@ impl RandomizePanel {
         self.is_open = !self.is_open;
     }
 
+    pub fn is_open(&self) -> bool {
+        self.is_open
+    }
+
     pub fn is_drawing(&self) -> bool {
         self.drawing.is_some()
     }

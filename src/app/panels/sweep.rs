@@ -103,6 +103,13 @@ impl SweepPanel {
     /// Shows or hides the window.
     pub fn toggle(&mut self) {
         self.is_open = !self.is_open;
+        if !self.is_open {
+            self.cancel();
+        }
+    }
+
+    pub fn is_open(&self) -> bool {
+        self.is_open
     }
 
     /// True while pictures are still to come.

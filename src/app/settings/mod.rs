@@ -3,6 +3,7 @@
 
 pub mod browsing;
 mod change;
+pub mod film;
 pub mod keeper;
 pub mod keymap;
 pub mod last_session;
@@ -12,7 +13,7 @@ mod writer;
 
 use eframe::egui;
 
-use self::{browsing::Browsing, keymap::Keymap, recents::Recents};
+use self::{browsing::Browsing, film::FilmSettings, keymap::Keymap, recents::Recents};
 use super::theme::ThemeChoice;
 
 /// Sizes of texts and controls that can be chosen, as a factor of the system's.
@@ -41,6 +42,8 @@ pub struct Settings {
     pub widths: [Option<f32>; 2],
     /// What the left panel shows, and how.
     pub browsing: Browsing,
+    /// How the last film was exported.
+    pub film: FilmSettings,
 }
 
 impl Default for Settings {
@@ -54,6 +57,7 @@ impl Default for Settings {
             open: OpenPanels::default(),
             widths: [None; 2],
             browsing: Browsing::default(),
+            film: FilmSettings::default(),
         }
     }
 }

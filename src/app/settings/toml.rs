@@ -7,6 +7,7 @@ use toml_edit::{Array, DocumentMut, Item, Table, TableLike, value};
 use super::{
     PANEL_WIDTHS, SCALES, Settings, WINDOW_SIZES,
     browsing::{Layout, Sort, Tab},
+    film::FilmSettings,
     keymap::{self, Keymap},
     recents::Recents,
 };
@@ -29,7 +30,7 @@ pub fn read(text: &str, file: &str) -> Result<(Settings, DocumentMut, Vec<String
 
 /// Writes settings into `document`.
 pub fn write(settings: &Settings, document: &mut DocumentMut) {
-    let Settings { theme, scale, recents, keys, window, open, widths, browsing } = settings;
+    let Settings { theme, scale, recents, keys, window, open, widths, browsing, film } = settings;
     set(document.as_table_mut(), "theme", value(theme.word()));
     set(document.as_table_mut(), "scale", value(number(*scale)));
     let mut recent = Array::new();
@@ -62,6 +63,8 @@ pub fn write(settings: &Settings, document: &mut DocumentMut) {
     set(table, "presets", value(browsing.layout.word()));
     set(table, "order", value(browsing.sort.word()));
 
+    write_film(film, table_of(document, "film"));
+
     let table = table_of(document, "keys");
     let known: Vec<String> = table.iter().map(|(key, _)| key.to_owned()).collect();
     for id in known {
@@ -71,6 +74,24 @@ pub fn write(settings: &Settings, document: &mut DocumentMut) {
     }
     for (action, shortcuts) in keys.bound() {
         set(table, &action.id(), value(shortcuts.iter().map(keymap::written).collect::<Array>()));
+    }
+}
+
+fn write_film(film: &FilmSettings, table: &mut dyn TableLike) {
+    let FilmSettings { format, size, fps, scale, range_s } = film;
+    set(table, "format", value(format.word()));
+    set_or_remove(table, "size", size.map(|size| size.iter().map(|side| i64::from(*side)).collect::<Array>()));
+    set(table, "fps", value(*fps));
+    let scale = FilmSettings::SCALES.iter().find(|(_, known)| known == scale).map_or("preset", |(word, _)| word);
+    set(table, "anti_aliasing", value(scale));
+    set_or_remove(table, "range_s", range_s.as_ref().map(|(_, range_s)| range_s.iter().copied().collect::<Array>()));
+    set_or_remove(table, "range_of", range_s.as_ref().map(|(preset, _)| preset.as_str()));
+}
+
+fn set_or_remove(table: &mut dyn TableLike, key: &str, new: Option<impl Into<toml_edit::Value>>) {
+    match new {
+        Some(new) => set(table, key, value(new)),
+        None => drop(table.remove(key)),
     }
 }
 
@@ -150,14 +171,45 @@ impl Reader<'_> {
             }
             settings.widths = ["left_width", "right_width"].map(|key| self.number(table, key, PANEL_WIDTHS));
             let browsing = &mut settings.browsing;
-            self.word(table, "tab", &Tab::ALL.map(|tab| (tab.word(), tab)), &mut browsing.tab);
-            self.word(table, "presets", &Layout::ALL.map(|layout| (layout.word(), layout)), &mut browsing.layout);
-            self.word(table, "order", &Sort::ALL.map(|sort| (sort.word(), sort)), &mut browsing.sort);
+            self.word(table, "panels.tab", &Tab::ALL.map(|tab| (tab.word(), tab)), &mut browsing.tab);
+            self.word(table, "panels.presets", &Layout::ALL.map(|layout| (layout.word(), layout)), &mut browsing.layout);
+            self.word(table, "panels.order", &Sort::ALL.map(|sort| (sort.word(), sort)), &mut browsing.sort);
+        }
+        if let Some(table) = self.table(root, "film") {
+            settings.film = self.film(table);
         }
         if let Some(table) = self.table(root, "keys") {
             settings.keys = self.keys(table);
         }
         settings
+    }
+
+    fn film(&mut self, table: &dyn TableLike) -> FilmSettings {
+        let mut film = FilmSettings::default();
+        self.word(table, "film.format", &FilmSettings::formats(), &mut film.format);
+        self.word(table, "film.anti_aliasing", &FilmSettings::SCALES, &mut film.scale);
+        let numbers = |item: &Item| item.as_array().map(|array| array.iter().filter_map(as_f64).collect::<Vec<f64>>()).unwrap_or_default();
+        if let Some(item) = table.get("size") {
+            match numbers(item)[..] {
+                [w, h] if [w, h].iter().all(|side| (1.0..=f64::from(FilmSettings::MAX_SIDE)).contains(side) && side.fract() == 0.0) => {
+                    film.size = Some([w, h].map(|side| side as u32));
+                }
+                _ => self.refuse("film.size", item, "it takes [width, height] from 1 to 8192 pixels"),
+            }
+        }
+        if let Some(item) = table.get("fps") {
+            match item.as_value().and_then(as_f64).filter(|fps| (1.0..=FilmSettings::MAX_FPS).contains(fps)) {
+                Some(fps) => film.fps = fps,
+                None => self.refuse("film.fps", item, "it takes a number from 1 to 240"),
+            }
+        }
+        if let Some(item) = table.get("range_s") {
+            match (&numbers(item)[..], table.get("range_of").and_then(Item::as_str)) {
+                (&[begin, end], Some(preset)) if begin < end => film.range_s = Some((preset.to_owned(), [begin, end])),
+                _ => self.refuse("film.range_s", item, "it takes [begin, end] in seconds, and film.range_of the preset that it belongs to"),
+            }
+        }
+        film
     }
 
     /// Binds the keys of all actions of the file. An action gives its keys up first, so that two can exchange theirs.
@@ -214,14 +266,14 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads one of the words of the table of panels.
+    /// Reads one of `words` at the path `key`, which ends with its key in `table`.
     fn word<T: Copy>(&mut self, table: &dyn TableLike, key: &str, words: &[(&str, T)], chosen: &mut T) {
-        let Some(item) = table.get(key) else { return };
+        let Some(item) = table.get(key.rsplit('.').next().unwrap_or(key)) else { return };
         match words.iter().find(|(word, _)| item.as_str() == Some(word)) {
             Some((_, found)) => *chosen = *found,
             None => {
                 let quoted: Vec<String> = words.iter().map(|(word, _)| format!("{word:?}")).collect();
-                self.refuse(&format!("panels.{key}"), item, &format!("it takes {}", quoted.join(" or ")));
+                self.refuse(key, item, &format!("it takes {}", quoted.join(" or ")));
             }
         }
     }
@@ -232,9 +284,12 @@ impl Reader<'_> {
     }
 }
 
+fn as_f64(value: &toml_edit::Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64)).filter(|number| number.is_finite())
+}
+
 fn as_number(value: &toml_edit::Value) -> Option<f32> {
-    let number = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))?;
-    number.is_finite().then_some(number as f32)
+    as_f64(value).map(|number| number as f32)
 }
 
 fn texts(item: &Item) -> Option<Vec<String>> {
@@ -246,7 +301,14 @@ mod tests {
     use eframe::egui::{Key, Modifiers};
 
     use super::*;
-    use crate::app::settings::{OpenPanels, WindowPlace, browsing::Browsing};
+    use crate::{
+        accuracy::RenderScale,
+        app::{
+            film::Format,
+            settings::{OpenPanels, WindowPlace, browsing::Browsing},
+        },
+        film::Container,
+    };
 
     fn round_trip(settings: &Settings, text: &str) -> String {
         let mut document: DocumentMut = text.parse().expect("TOML");
@@ -267,6 +329,13 @@ mod tests {
             open: OpenPanels { left: false, log: true, ..OpenPanels::default() },
             widths: [Some(212.0), None],
             browsing: Browsing { tab: Tab::Effects, layout: Layout::Grid, sort: Sort::FavoritesFirst },
+            film: FilmSettings {
+                format: Format::Video(Container::Webm),
+                size: Some([640, 360]),
+                fps: 23.976,
+                scale: Some(RenderScale::Double),
+                range_s: Some(("walk".into(), [0.5, 2.25])),
+            },
         }
     }
 
@@ -294,7 +363,7 @@ mod tests {
     #[test]
     fn each_bad_field_is_named_and_keeps_its_default() {
         let text = "theme = \"blue\"\nscale = 9\nrecent = [1]\nwindow = 3\n[panels]\nleft = \"yes\"\nlog = true\nleft_width = -1\norder = \"size\"\n\
-            [keys]\nrandomize = [\"Ctrl+S\"]\nverify = [\"Nokey\"]\nfly = [\"F\"]\n";
+            [film]\nformat = \"avi\"\nsize = [0, 5]\nfps = 1000\nrange_s = [2, 1]\nanti_aliasing = \"8x8\"\n[keys]\nrandomize = [\"Ctrl+S\"]\nverify = [\"Nokey\"]\nfly = [\"F\"]\n";
         let (settings, _, remarks) = read(text, "settings.toml").expect("TOML");
         let expected = Settings { open: OpenPanels { log: true, ..OpenPanels::default() }, ..Settings::default() };
         assert_eq!(settings, expected);
@@ -306,6 +375,11 @@ mod tests {
             "panels.left",
             "left_width",
             "panels.order",
+            "film.format",
+            "film.size",
+            "film.fps",
+            "film.range_s",
+            "film.anti_aliasing",
             "keys.verify",
             "keys.fly",
             "keys.randomize",

@@ -16,7 +16,7 @@ use crate::{
 pub(super) const BASIS: &[Feature] = &[FETCH, COVERAGE, FRAMEBUFFER, SMALL_PATH, OTHER_OPTIONS, DEPTH];
 
 pub(super) const FEATURES: &[Feature] =
-    &[QUEUES, MEDIUM_PATH, LARGE_PATH, BINS, TILE_LIST, SHAPE, SAMPLE_SETUPS, DRAW_ORDER, COUNTERS, SAMPLE_EFFECTS];
+    &[CLEARS, HIDDEN_BLOCKS, QUEUES, MEDIUM_PATH, LARGE_PATH, BINS, TILE_LIST, SHAPE, SAMPLE_SETUPS, DRAW_ORDER, COUNTERS, SAMPLE_EFFECTS];
 
 const FETCH: Feature = Feature {
     label: |key| if key.vertices.fetch == Fetch::Direct { "fetch=direct".into() } else { "fetch=indexed".into() },
@@ -118,19 +118,47 @@ fn depth_interpolation(key: &KernelKey, _: Pass) -> &'static str {
     if key.options.depth == DepthFormat::Integer { "integer" } else { "float" }
 }
 
+/// What the first pass clears beside its own work.
+const CLEARS: Feature = Feature {
+    variants: &[
+        ("clear_step", |key, _| step_if(key.work.clears_in_passes, "counters")),
+        ("clear_step", |key, _| match key.framebuffer_layout() {
+            _ if !key.work.clears_in_passes => NO_STEP,
+            FramebufferLayout::Split32 if key.view.is_light => "depth",
+            FramebufferLayout::Split32 => "split32",
+            FramebufferLayout::Packed32 => "packed32",
+            FramebufferLayout::Packed64 => "packed64",
+        }),
+    ],
+    constants: &[("HAS_SURPLUS", |key, _| flag(key.work.clears_in_passes))],
+    ..Feature::NONE
+};
+
+const HIDDEN_BLOCKS: Feature = Feature {
+    constants: &[
+        ("HIDES_BLOCKS", |key, pass| {
+            let keeps_keys = matches!(pass.phase(), Some(RasterPhase::Packed | RasterPhase::Depth | RasterPhase::TriangleId));
+            flag(key.hides_blocks() && keeps_keys)
+        }),
+        ("RAISES_BLOCKS", |_, pass| flag(pass.phase() != Some(RasterPhase::TriangleId))),
+    ],
+    ..Feature::NONE
+};
+
 const QUEUES: Feature = Feature { constants: &[("HAS_QUEUES", |key, _| flag(key.has_queues()))], ..Feature::NONE };
 
 const MEDIUM_PATH: Feature = Feature {
     label: |key| word_if(key.paths.has_medium, "medium"),
     part: Some(Part { name: "raster_medium", is_used: |key| key.paths.has_medium, why_omitted: largest_triangle }),
+    variants: &[("medium_boxes", |key, _| stem_if(key.shares_entries(), "shared"))],
     ..Feature::NONE
 };
 
 const LARGE_PATH: Feature = Feature {
     label: |key| word_if(key.paths.has_large, "large"),
     part: Some(Part { name: "tile_large, raster_large", is_used: |key| key.paths.has_large, why_omitted: largest_triangle }),
+    variants: &[("large_tiles", |key, _| stem_if(key.shares_entries(), "shared"))],
     constants: &[("HAS_LARGE", |key, _| flag(key.paths.has_large))],
-    ..Feature::NONE
 };
 
 fn largest_triangle(needs: &Needs) -> String {

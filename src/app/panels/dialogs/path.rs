@@ -3,7 +3,7 @@
 
 use std::{
     collections::HashSet,
-    path::{Path, PathBuf},
+    path::{Path, PathBuf, is_separator},
 };
 
 use eframe::egui::{
@@ -83,6 +83,8 @@ pub struct PathDialog {
     listing: Option<Listing>,
     /// The row that the arrow keys have chosen.
     chosen: Option<usize>,
+    /// The text is a proposal whose name is selected; nothing was typed yet.
+    is_proposed: bool,
     /// The text was not typed: the cursor goes to its end, or the name is selected.
     places_cursor: bool,
 }
@@ -102,6 +104,7 @@ impl PathDialog {
             asked: None,
             listing: None,
             chosen: None,
+            is_proposed: purpose != Purpose::Open,
             places_cursor: true,
         }
     }
@@ -158,6 +161,7 @@ impl PathDialog {
 
     fn set_text(&mut self, text: String) {
         (self.text, self.places_cursor, self.chosen, self.error) = (text, true, None, None);
+        self.is_proposed = false;
     }
 
     /// The rows of the list.
@@ -218,6 +222,7 @@ pub fn path_ui(ui: &mut Ui, dialog: &mut PathDialog, recents: &Recents, missing:
     let field = ui.add(edit).accessible_name("Path");
     if dialog.text != before {
         (dialog.error, dialog.chosen) = (None, None);
+        begin_anew(ui.ctx(), id, dialog, &before);
     }
     let entered = field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
     if !entered && ui.memory(|memory| memory.focused().is_none()) {
@@ -258,6 +263,23 @@ pub fn path_ui(ui: &mut Ui, dialog: &mut PathDialog, recents: &Recents, missing:
         ui.add_enabled(!dialog.is_browsing, egui::Button::new(text)).clicked().then_some(Choice::Browse)
     });
     if is_accepted { Some(Choice::Accept) } else { choice }
+}
+
+/// The first edit of a proposed path: an absolute path, or one of the home folder, in place of the selected name begins anew.
+fn begin_anew(ctx: &egui::Context, id: egui::Id, dialog: &mut PathDialog, before: &str) {
+    if !std::mem::take(&mut dialog.is_proposed) {
+        return;
+    }
+    let folder = &before[..before.len() - completion::name_of(before).len()];
+    let is_path = |behind: &&str| behind.starts_with(is_separator) || behind.starts_with('~') || Path::new(behind).is_absolute();
+    let Some(behind) = dialog.text.strip_prefix(folder).filter(is_path).map(str::to_owned) else { return };
+    dialog.text = behind;
+    let mut state = TextEditState::load(ctx, id).unwrap_or_default();
+    if let Some(range) = state.cursor.char_range() {
+        let at = range.primary.index.0.saturating_sub(folder.chars().count());
+        state.cursor.set_char_range(Some(CCursorRange::one(CCursor::new(at))));
+        state.store(ctx, id);
+    }
 }
 
 /// Tab completes, the arrows choose a row.
@@ -373,14 +395,18 @@ fn row_ui(ui: &mut Ui, row: &Row, is_chosen: bool, is_missing: bool) -> egui::Re
 }
 
 fn with_extension(path: &Path, extension: Option<&str>) -> PathBuf {
-    match extension {
-        Some(extension) if path.extension().is_none_or(|there| !there.eq_ignore_ascii_case(extension)) => {
+    let Some(extension) = extension else { return path.to_owned() };
+    let has = |path: &Path| path.extension().is_some_and(|there| there.eq_ignore_ascii_case(extension));
+    match path.file_stem() {
+        // Typed in place of the selected name, in front of the extension that stayed.
+        Some(stem) if has(path) && has(Path::new(stem)) => path.with_file_name(stem),
+        _ if has(path) => path.to_owned(),
+        _ => {
             // Appended, so that `preset.v2` keeps its dot.
             let mut name = path.as_os_str().to_owned();
             name.push(format!(".{extension}"));
             name.into()
         }
-        _ => path.to_owned(),
     }
 }
 
@@ -393,6 +419,7 @@ mod tests {
         assert_eq!(with_extension(Path::new("a/preset"), Some("toml")), Path::new("a/preset.toml"));
         assert_eq!(with_extension(Path::new("preset.v2"), Some("toml")), Path::new("preset.v2.toml"));
         assert_eq!(with_extension(Path::new("preset.TOML"), Some("toml")), Path::new("preset.TOML"));
+        assert_eq!(with_extension(Path::new("a/mine.toml.toml"), Some("toml")), Path::new("a/mine.toml"));
     }
 
     #[test]

@@ -1,14 +1,17 @@
 //! The plot: error over milliseconds, both logarithmic, with a line for exact pictures below. egui_plot has no such axes, so
 //! points are plotted by their logarithms and ticks are labeled with the values themselves.
 
-use eframe::egui::{self, Rect, RichText, Sense, Ui, vec2};
-use egui_plot::{GridMark, HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints, Points};
+use eframe::egui::{self, Pos2, Rect, RichText, Sense, Ui, Vec2, vec2};
+use egui_plot::{GridMark, HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints};
 
 use crate::app::{
     text::short,
     theme,
     trade::point::{Metric, Point, Standing, standings},
 };
+
+/// Least distance of two points, so that each can be clicked, points of the screen.
+const APART: f32 = 12.0;
 
 /// How far below the least error zero is drawn, decades.
 const DROP: f64 = 0.8;
@@ -145,21 +148,33 @@ pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
             plot.hline(line.style(LineStyle::dashed_dense()).allow_hover(false));
             plot.line(Line::new("front", along).color(theme::accent().gamma_multiply(0.7)).width(1.5).allow_hover(false));
             for &Plotted { i, at, bar } in &plotted {
-                let (color, filled, radius) = style(i);
-                let at = span.at(at);
-                let ends: PlotPoints<'_> = bar.iter().map(|ms| [ms.log10(), at[1]]).collect();
-                plot.line(Line::new("", ends).color(color.gamma_multiply(0.6)).width(1.5).allow_hover(false));
-                plot.points(Points::new("", vec![at]).color(color).filled(filled).radius(radius).allow_hover(false));
-                if current(&points[i]) {
-                    plot.points(Points::new("", vec![at]).color(theme::amber()).filled(false).radius(8.0).allow_hover(false));
-                }
+                let ends: PlotPoints<'_> = bar.iter().map(|ms| [ms.log10(), span.at(at)[1]]).collect();
+                plot.line(Line::new("", ends).color(style(i).0.gamma_multiply(0.6)).width(1.5).allow_hover(false));
             }
         });
+    let true_places: Vec<Pos2> = plotted
+        .iter()
+        .map(|p| {
+            let [x, y] = span.at(p.at);
+            response.transform.position_from_point(&PlotPoint::new(x, y))
+        })
+        .collect();
+    let places = spread(&true_places);
+    let painter = ui.painter_at(response.response.rect);
+    for ((p, &place), &true_place) in plotted.iter().zip(&places).zip(&true_places) {
+        let (color, filled, radius) = style(p.i);
+        painter.line_segment([true_place, place], (1.0, color.gamma_multiply(0.5)));
+        match filled {
+            true => painter.circle_filled(place, radius, color),
+            false => painter.circle(place, radius, theme::panel(), (1.2, color)),
+        };
+        if current(&points[p.i]) {
+            painter.circle_stroke(place, 7.0, (1.5, theme::amber()));
+        }
+    }
     let mut clicked = None;
-    for &Plotted { i, at, .. } in &plotted {
-        let [x, y] = span.at(at);
-        let at = response.transform.position_from_point(&PlotPoint::new(x, y));
-        let handle = ui.interact(Rect::from_center_size(at, vec2(15.0, 15.0)), egui::Id::unique(("trade point", i)), Sense::click());
+    for (&Plotted { i, .. }, &at) in plotted.iter().zip(&places) {
+        let handle = ui.interact(Rect::from_center_size(at, Vec2::splat(APART)), egui::Id::unique(("trade point", i)), Sense::click());
         let words = points[i].pins.words();
         handle.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Point {words}")));
         if handle.hovered() || handle.has_focus() {
@@ -177,6 +192,21 @@ pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
         }
     }
     clicked
+}
+
+/// Where points are shown that stand at `places`: those that would lie over each other are pushed apart, so that each can be clicked. The
+/// first of them keeps its place.
+fn spread(places: &[Pos2]) -> Vec<Pos2> {
+    let mut shown: Vec<Pos2> = Vec::with_capacity(places.len());
+    for &place in places {
+        // Rings round the place, each with room for one more than the last; the first free place is taken.
+        let ring = |ring: u32| (0..6 * ring).map(move |k| (ring, std::f32::consts::TAU * k as f32 / (6 * ring) as f32));
+        let mut around = (1..).flat_map(ring).map(|(ring, angle)| place + ring as f32 * APART * Vec2::angled(angle));
+        let is_free = |at: &Pos2| shown.iter().all(|other| other.distance(*at) >= 0.98 * APART);
+        let free = std::iter::once(place).chain(around.by_ref()).find(is_free);
+        shown.extend(free);
+    }
+    shown
 }
 
 /// Options and numbers of a point.
@@ -231,6 +261,20 @@ mod tests {
         for (low, high) in [(3.9, 5.3), (0.011, 0.012), (91.0, 180.0), (1.0, 11.0), (999.0, 1001.0)] {
             let ticks = ticks(low, high);
             assert!((2..=8).contains(&ticks.len()) && ticks.iter().all(|t| (low..=high).contains(t)), "{low}..{high}: {ticks:?}");
+        }
+    }
+
+    #[test]
+    fn points_at_one_place_are_spread_and_others_stay() {
+        let one = Pos2::new(40.0, 30.0);
+        let places = [vec![one; 20], vec![Pos2::new(400.0, 30.0), Pos2::new(405.0, 31.0)]].concat();
+        let shown = spread(&places);
+        assert_eq!((shown.len(), shown[0], shown[20]), (22, places[0], places[20]));
+        for (at, place) in shown.iter().enumerate() {
+            assert!(place.distance(places[at]) <= 4.0 * APART, "{at}: {place}");
+            for other in &shown[..at] {
+                assert!(place.distance(*other) >= 0.9 * APART, "{place} and {other} lie over each other");
+            }
         }
     }
 
