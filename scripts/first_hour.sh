@@ -223,8 +223,13 @@ for to in $(seq 198 -2 140); do
 done
 xdotool mouseup 1
 until_true 20 picture_changed
+began="$noted"
 done_step
-echo "   a step of the slider was seen after $(numbers '[0-9] pictures[^,]*: median' | awk '{ all[NR] = $1 } END { print all[int((NR + 1) / 2)] }') ms (median)"
+ended="$noted"
+noted="$began"
+median="$(numbers '[0-9] pictures[^,]*: median' | awk '{ all[NR] = $1 } END { print all[int((NR + 1) / 2)] }')"
+noted="$ended"
+echo "   a step of the slider was seen after $median ms (median)"
 key ctrl+z
 
 begin film
