@@ -86,17 +86,16 @@ until_true() {
     done
 }
 
-# The largest number behind a word in the lines of the log that the step has added.
-largest() {
-    tail -n "+$((noted + 1))" "$log" | sed -nE "s/^timing: .*$1 ([0-9]+) ms.*/\\1/p" | sort -n | tail -n 1
-}
+# The numbers behind a word in the lines of the log that the step has added, the largest last.
+numbers() { tail -n "+$((noted + 1))" "$log" | sed -nE "s/^timing: .*$1 ([0-9]+) ms.*/\\1/p" | sort -n; }
+largest() { numbers "$1" | tail -n 1; }
 
 done_step() {
     # Notes of timings come a second after what they tell of.
     nap 1.5
     shot
     printf '%02d %-22s longest frame %5s ms, slowest picture %5s ms, compiled %5s ms\n' "$number" "$step" "$(largest longest)" \
-        "$(largest '[0-9] pictures, slowest')" "$(largest 'compiled pictures, slowest')"
+        "$(largest '[0-9] pictures[^,]*, slowest')" "$(largest 'compiled pictures[^,]*, slowest')"
     noted="$(wc -l < "$log")"
 }
 
@@ -211,6 +210,27 @@ start
 until_true 30 session_has "path = \"$saved\""
 session_has "running = true" || until_true 10 session_has "running = true"
 done_step
+
+begin slider
+# The first slider of the first effect; on a slow adapter the picture is smaller while it moves.
+middle before
+xdotool mousemove $((width - 200)) 141
+nap 0.3
+xdotool mousedown 1
+for to in $(seq 198 -2 140); do
+    xdotool mousemove $((width - to)) 141
+    sleep 0.1
+done
+xdotool mouseup 1
+until_true 20 picture_changed
+began="$noted"
+done_step
+ended="$noted"
+noted="$began"
+median="$(numbers '[0-9] pictures[^,]*: median' | awk '{ all[NR] = $1 } END { print all[int((NR + 1) / 2)] }')"
+noted="$ended"
+echo "   a step of the slider was seen after $median ms (median)"
+key ctrl+z
 
 begin film
 film="$work/first-hour-film.png"

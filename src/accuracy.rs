@@ -192,8 +192,6 @@ axes! {
         Split32 = "split32",
         /// One 64-bit atomic per sample.
         Packed64 = "packed64",
-        /// Portable: lists of triangles per tile, and one invocation per pixel, without atomics on pixels.
-        Tiled = "tiled",
     }
     /// How attributes are interpolated across a triangle.
     perspective: Perspective, default Exact {
@@ -300,7 +298,7 @@ axes! {
 
 impl Visibility {
     /// The options that find the nearest triangle of every pixel.
-    pub const EXACT: [Self; 3] = [Self::Split32, Self::Packed64, Self::Tiled];
+    pub const EXACT: [Self; 2] = [Self::Split32, Self::Packed64];
 
     /// Does it find the nearest triangle of every pixel?
     pub fn is_exact(self) -> bool {

@@ -210,14 +210,14 @@ class Running(unittest.TestCase):
 
     def test_exit_codes_and_notes_tell_what_happened(self):
         cases = [
-            ("exit 0", "passed"), ("echo 'teapot with tiled: 3 holes' >&2; exit 1", "failed"), ("exit 2", "refused"), ("exit 4", "lost"),
+            ("exit 0", "passed"), ("echo 'teapot with split32: 3 holes' >&2; exit 1", "failed"), ("exit 2", "refused"), ("exit 4", "lost"),
             ("exit 101", "crash"), ("kill -SEGV $$", "crash"), ("echo '  ┌─ wgsl:12:3' >&2; exit 2", "invalid"),
             ("echo 'because shaders/lib/fixed.wgsl:12: error: types differ' >&2; exit 2", "invalid"),
             ("echo 'error: the queues still overflow' >&2; exit 2", "refused"),
         ]  # fmt: skip
         for script, kind in cases:
             self.assertEqual(self.outcome(script).kind, kind, script)
-        self.assertEqual(self.outcome(cases[1][0]).why, "teapot with tiled: 3 holes")
+        self.assertEqual(self.outcome(cases[1][0]).why, "teapot with split32: 3 holes")
 
     def test_a_program_that_does_not_end_is_ended(self):
         self.assertEqual(self.outcome("sleep 60", limit=0.3).kind, "hang")
@@ -251,7 +251,7 @@ class WholeCampaign(unittest.TestCase):
     PROGRAM = """#!/bin/sh
 [ "$1" = --help ] && echo '  fuzz  random' && exit 0
 for word in "$@"; do [ "$word" = --list ] && exit 0; done
-grep -q 'const MOST = 7u;' "$2/lib/seen.wgsl" || { echo 'teapot with tiled: 3 holes' >&2; exit 1; }
+grep -q 'const MOST = 7u;' "$2/lib/seen.wgsl" || { echo 'teapot with split32: 3 holes' >&2; exit 1; }
 """
 
     def run_in(self, folder, *words):

@@ -22,13 +22,13 @@ struct Frame {
     medium_capacity: u32,
     large_capacity: u32,
     tile_capacity: u32,
-    bin_capacity: u32,       // entries that fit the triangle lists of all tiles together
     medium_first: u32,       // first word of each queue in `queues`; the clip queue begins at 0
     large_first: u32,
     tile_first: u32,
     point_radius: u32,       // units of 1/256 px; used only where vertices are drawn as discs
     first_rank: u32,         // first record of triangle ranks, behind the vertices and sample setups
     deform_count: u32,       // draws that are deformed
+    spare_0: u32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -47,7 +47,6 @@ struct Counters {
     marked_tiles: atomic<u32>,
     next_sample_index: atomic<u32>,
     next_sample_index_again: atomic<u32>,
-    bins: atomic<u32>,           // entries of the triangle lists of all tiles
     full_pixels: atomic<u32>,    // pixels with more layers than their sums can hold
     dropped: atomic<u32>,        // triangles dropped instead of clipped
     visible_meshlets: atomic<u32>,
@@ -59,9 +58,10 @@ struct Counters {
     medium_done: atomic<u32>,
     large_done: atomic<u32>,
     tiles_done: atomic<u32>,
-    longest_list: atomic<u32>,   // entries of the longest triangle list of a tile
     spare_0: atomic<u32>,
     spare_1: atomic<u32>,
+    spare_2: atomic<u32>,
+    spare_3: atomic<u32>,
     farthest: array<atomic<u32>>, // a key for every block of 8x8 pixels: see lib/hidden_blocks
 }
 

@@ -6,6 +6,7 @@ use super::{
     state::State,
     ui_frames::{Noted, UiFrames},
 };
+use crate::measure::timing::percentile;
 
 /// A note covers at least this much time, seconds.
 const SPAN_S: f64 = 1.0;
@@ -35,11 +36,13 @@ impl FrameNotes {
     }
 }
 
-/// `12.3 s, 31 frames, longest 58 ms (panels 12, painting 40, waiting 6), 3 pictures, slowest 84 ms after its input`.
+/// `12.3 s, 31 frames, longest 58 ms (panels 12, painting 40, waiting 6), 3 pictures after their inputs: median 50 ms, slowest 84 ms`.
 fn line(Noted { frames, longest, latencies_ms: [drawn, compiled] }: &Noted, now_s: f64) -> String {
-    let of = |latencies: &[f64], what: &str| match latencies.iter().copied().reduce(f64::max) {
-        Some(slowest) => format!(", {} {what}, slowest {slowest:.0} ms after its input", latencies.len()),
-        None => String::new(),
+    let of = |latencies: &[f64], what: &str| match [0.5, 1.0].map(|p| percentile(latencies, p)) {
+        [Some(median), Some(slowest)] => {
+            format!(", {} {what} after their inputs: median {median:.0} ms, slowest {slowest:.0} ms", latencies.len())
+        }
+        _ => String::new(),
     };
     format!(
         "{now_s:.1} s, {frames} frames, longest {:.0} ms (panels {:.0}, painting {:.0}, waiting {:.0}){}{}",
@@ -62,8 +65,8 @@ mod tests {
         let longest = FrameTime { panels: 12.2, painting: 40.0, waiting: 5.6 };
         let noted = Noted { frames: 31, longest, latencies_ms: [vec![30.0, 84.3, 50.0], vec![]] };
         let quiet = "12.3 s, 31 frames, longest 58 ms (panels 12, painting 40, waiting 6)";
-        assert_eq!(line(&noted, 12.34), format!("{quiet}, 3 pictures, slowest 84 ms after its input"));
+        assert_eq!(line(&noted, 12.34), format!("{quiet}, 3 pictures after their inputs: median 50 ms, slowest 84 ms"));
         let noted = Noted { latencies_ms: [vec![], vec![900.0]], ..noted };
-        assert_eq!(line(&noted, 12.34), format!("{quiet}, 1 compiled pictures, slowest 900 ms after its input"));
+        assert_eq!(line(&noted, 12.34), format!("{quiet}, 1 compiled pictures after their inputs: median 900 ms, slowest 900 ms"));
     }
 }

@@ -14,7 +14,7 @@ use super::{
     resource_id::{BufferId, ClearedBy},
 };
 use crate::{
-    accuracy::{Culling, DotCulling, Visibility},
+    accuracy::{Culling, DotCulling},
     effects::{draw_order::Mode, hooks::Layers},
     math::{rounded_columns, srgb_byte},
     scene::view::View,
@@ -112,10 +112,6 @@ pub enum Region {
     TileList,
     /// The strongest dot on every pixel; behind the picture.
     DotStrengths,
-    /// Two words for each tile.
-    TileHeads,
-    /// The triangles on the lists of all tiles; behind the heads.
-    TileEntries,
     ClipQueue,
     MediumQueue,
     LargeQueue,
@@ -150,8 +146,8 @@ pub struct BufferSpec {
 /// How many workgroups a pass takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dispatch {
-    /// So many, `times` over.
-    Direct { groups: [u32; 2], times: u32 },
+    /// So many.
+    Direct { groups: [u32; 2] },
     /// As many as a buffer says at this byte.
     Indirect { buffer: BufferId, offset: u64 },
 }
@@ -167,8 +163,6 @@ const VISIBLE_MESHLET: u64 = 16;
 const RESOLVE_TILE: u32 = 8;
 /// Side of a block of pixels that hides what lies behind it, pixels.
 const HIDDEN_BLOCK: u32 = 8;
-/// Side of a tile of the tiled rasterizer, pixels.
-const RASTER_TILE: u32 = 16;
 /// Side of a block of Hi-Z depths, pixels.
 const HIZ_BLOCK: u32 = 64;
 
@@ -421,12 +415,6 @@ impl FrameLayout {
         if key.framebuffer.layers == Some(Layers::Overdraw) {
             self.add(BufferId::LayerCounts, WORD * pixels);
         }
-        if key.options.visibility == Visibility::Tiled {
-            let heads = 2 * WORD * self.tile_count(RASTER_TILE);
-            let entries = WORD * u64::from(self.capacities.bins);
-            self.add_regions(BufferId::Bins, &[(Region::TileHeads, heads), (Region::TileEntries, entries)]);
-            self.clear_only(BufferId::Bins, Some(Region::TileHeads));
-        }
     }
 
     /// The picture, and what its resolve reads and writes.
@@ -485,7 +473,6 @@ impl FrameLayout {
             medium_capacity: room.medium,
             large_capacity: room.large,
             tile_capacity: room.tiles,
-            bin_capacity: room.bins,
             medium_first: self.first_word(Region::MediumQueue),
             large_first: self.first_word(Region::LargeQueue),
             tile_first: self.first_word(Region::TileQueue),
@@ -503,8 +490,6 @@ impl FrameLayout {
             Pass::Clip => room.clip.div_ceil(64),
             // Large triangles are few, as a rule, and workgroups that find none cost a little too.
             Pass::TileLarge => room.large.div_ceil(4),
-            Pass::BinLarge(_) => room.large,
-            Pass::BinMedium(_) => room.medium,
             // Several workgroups may share an entry.
             Pass::RasterMedium(_) => room.medium.saturating_mul(MOST_PARTS),
             _ => room.tiles.div_ceil(8),
@@ -540,27 +525,18 @@ impl FrameLayout {
             Pass::DepthReduce => Dispatch::once(self.tiles(HIZ_BLOCK)),
             Pass::ProjectMeshlets => Dispatch::args(offset_of!(DispatchArgs, meshlets)),
             Pass::RasterSmall(_) if key.culls() => Dispatch::args(offset_of!(DispatchArgs, meshlets)),
-            Pass::RasterPoints(phase) if !phase.is_bin() => over(triangles.saturating_mul(key.work.invocations_per_triangle)),
-            Pass::RasterSmall(_) | Pass::RasterPoints(_) | Pass::SampleSetup(TriangleSource::Triangles) => over(triangles),
+            Pass::RasterPoints(_) => over(triangles.saturating_mul(key.work.invocations_per_triangle)),
+            Pass::RasterSmall(_) | Pass::SampleSetup(TriangleSource::Triangles) => over(triangles),
             Pass::SampleSetup(TriangleSource::ClippedTriangles) => Dispatch::args(offset_of!(DispatchArgs, clipped_triangles)),
             Pass::OrderSums | Pass::OrderRanks => Dispatch::once(folded(triangles.div_ceil(ORDER_BLOCK as u32))),
-            Pass::OrderLimit | Pass::OrderCut | Pass::Args | Pass::AdvanceQueues { .. } | Pass::BinScan | Pass::DotsArgs => {
-                Dispatch::once([1, 1])
-            }
-            Pass::Clip | Pass::TileLarge | Pass::RasterMedium(_) | Pass::BinMedium(_) | Pass::RasterLarge(_) | Pass::BinLarge(_)
-                if key.work.queue_groups > 0 =>
-            {
+            Pass::OrderLimit | Pass::OrderCut | Pass::Args | Pass::AdvanceQueues { .. } | Pass::DotsArgs => Dispatch::once([1, 1]),
+            Pass::Clip | Pass::TileLarge | Pass::RasterMedium(_) | Pass::RasterLarge(_) if key.work.queue_groups > 0 => {
                 Dispatch::once([key.work.queue_groups.min(self.most_queued(pass)).max(1), 1])
             }
             Pass::Clip => Dispatch::args(offset_of!(DispatchArgs, clip)),
-            Pass::RasterMedium(_) | Pass::BinMedium(_) => Dispatch::args(offset_of!(DispatchArgs, medium)),
-            Pass::TileLarge | Pass::BinLarge(_) => Dispatch::args(offset_of!(DispatchArgs, large)),
+            Pass::RasterMedium(_) => Dispatch::args(offset_of!(DispatchArgs, medium)),
+            Pass::TileLarge => Dispatch::args(offset_of!(DispatchArgs, large)),
             Pass::RasterLarge(_) => Dispatch::args(offset_of!(DispatchArgs, tiles)),
-            // A list may be longer than one dispatch walks.
-            Pass::RasterTiles => Dispatch::Direct {
-                groups: self.tiles(RASTER_TILE),
-                times: self.capacities.listed.div_ceil(key.work.max_list_entries).max(1),
-            },
             Pass::DotsEnds => over_dots(dots.segments),
             Pass::DotsCull => over_dots(dots.runs),
             Pass::DotsDraw | Pass::DotsProbe => match key.options.dot_culling {
@@ -583,7 +559,7 @@ const TILE_GROUP: u32 = 64;
 
 impl Dispatch {
     fn once(groups: [u32; 2]) -> Self {
-        Self::Direct { groups, times: 1 }
+        Self::Direct { groups }
     }
 
     /// By a member of [`DispatchArgs`].

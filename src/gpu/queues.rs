@@ -2,7 +2,7 @@
 //! frame demanded.
 
 use super::records::CounterRecord;
-use crate::{accuracy::Visibility, frame::Counters, scene::Scene, shader::key::KernelKey};
+use crate::{frame::Counters, scene::Scene, shader::key::KernelKey};
 
 /// Entries that fit each queue.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -12,22 +12,18 @@ pub struct Capacities {
     pub medium: u32,
     pub large: u32,
     pub tiles: u32,
-    /// Entries on the lists of all tiles of a picture that is drawn tile by tile.
-    pub bins: u32,
-    /// Entries of the longest such list that are walked: as many dispatches as that takes, at least one.
-    pub listed: u32,
 }
 
 impl Capacities {
     /// Room for an entry everywhere: no binding may be empty.
     pub fn at_least_one(self) -> Self {
-        let Self { clip, clipped_triangles, medium, large, tiles, bins, listed } = self;
-        let [clip, clipped_triangles, medium, large, tiles, bins] =
-            [clip, clipped_triangles, medium, large, tiles, bins].map(|capacity| capacity.max(1));
-        Self { clip, clipped_triangles, medium, large, tiles, bins, listed }
+        let Self { clip, clipped_triangles, medium, large, tiles } = self;
+        let [clip, clipped_triangles, medium, large, tiles] =
+            [clip, clipped_triangles, medium, large, tiles].map(|capacity| capacity.max(1));
+        Self { clip, clipped_triangles, medium, large, tiles }
     }
 
-    /// Grows every queue that the demand exceeded, by powers of two, the lists of tiles by a quarter; true if anything grew.
+    /// Grows every queue that the demand exceeded, by powers of two; true if anything grew.
     pub fn grow(&mut self, demand: &CounterRecord) -> bool {
         let pairs = [
             (&mut self.clip, demand.clip),
@@ -35,7 +31,6 @@ impl Capacities {
             (&mut self.medium, demand.medium),
             (&mut self.large, demand.large),
             (&mut self.tiles, demand.tiles),
-            (&mut self.listed, demand.longest_list),
         ];
         let mut grew = false;
         for (capacity, demand) in pairs {
@@ -43,10 +38,6 @@ impl Capacities {
                 *capacity = demand.checked_next_power_of_two().unwrap_or(u32::MAX);
                 grew = true;
             }
-        }
-        if demand.bins > self.bins {
-            self.bins = demand.bins.saturating_add(demand.bins / 4);
-            grew = true;
         }
         grew
     }
@@ -61,8 +52,6 @@ pub fn recorded_capacities(key: &KernelKey, all: &Capacities) -> Capacities {
         medium: kept(key.paths.has_medium, all.medium),
         large: kept(key.paths.has_large, all.large),
         tiles: kept(key.paths.has_large, all.tiles),
-        bins: kept(key.options.visibility == Visibility::Tiled, all.bins),
-        listed: kept(key.options.visibility == Visibility::Tiled, all.listed.max(key.work.max_list_entries)),
     }
 }
 
@@ -70,15 +59,7 @@ pub fn recorded_capacities(key: &KernelKey, all: &Capacities) -> Capacities {
 pub fn first_capacities(scene: &Scene) -> Capacities {
     let triangles = scene.triangle_count().min(u64::from(u32::MAX)) as u32;
     let room = |most: u32| triangles.clamp(16, most).next_power_of_two();
-    Capacities {
-        clip: room(4096),
-        clipped_triangles: 2 * room(4096),
-        medium: room(65_536),
-        large: room(16_384),
-        tiles: 16 * room(4096),
-        bins: 4 * triangles.clamp(1024, 1 << 20),
-        listed: 0,
-    }
+    Capacities { clip: room(4096), clipped_triangles: 2 * room(4096), medium: room(65_536), large: room(16_384), tiles: 16 * room(4096) }
 }
 
 impl CounterRecord {
@@ -90,8 +71,6 @@ impl CounterRecord {
             self.medium.saturating_sub(capacities.medium),
             self.large.saturating_sub(capacities.large),
             self.tiles.saturating_sub(capacities.tiles),
-            // Both may lose the same entries.
-            self.bins.saturating_sub(capacities.bins).max(self.longest_list.saturating_sub(capacities.listed)),
         ];
         Counters {
             rejected_nonfinite: self.rejected_nonfinite,

@@ -105,7 +105,7 @@ impl Command {
         pass.set_pipeline(&self.pipeline.pipeline);
         pass.set_bind_group(0, &self.group, &[]);
         match dispatch {
-            Dispatch::Direct { groups: [x, y], times } => (0..times).for_each(|_| pass.dispatch_workgroups(x, y, 1)),
+            Dispatch::Direct { groups: [x, y] } => pass.dispatch_workgroups(x, y, 1),
             Dispatch::Indirect { buffer, offset } => pass.dispatch_workgroups_indirect(buffers.get(buffer)?, offset),
         }
         Ok(())

@@ -31,13 +31,13 @@ gpu_record! {
         pub medium_capacity: u32,
         pub large_capacity: u32,
         pub tile_capacity: u32,
-        pub bin_capacity: u32,
         pub medium_first: u32,
         pub large_first: u32,
         pub tile_first: u32,
         pub point_radius: u32,
         pub first_rank: u32,
         pub deform_count: u32,
+        pub spare_0: u32,
     }
 }
 
@@ -89,7 +89,6 @@ gpu_record! {
         pub marked_tiles: u32,
         pub next_sample_index: u32,
         pub next_sample_index_again: u32,
-        pub bins: u32,
         pub full_pixels: u32,
         pub dropped: u32,
         pub visible_meshlets: u32,
@@ -101,9 +100,10 @@ gpu_record! {
         pub medium_done: u32,
         pub large_done: u32,
         pub tiles_done: u32,
-        pub longest_list: u32,
         pub spare_0: u32,
         pub spare_1: u32,
+        pub spare_2: u32,
+        pub spare_3: u32,
     }
 }
 

@@ -40,7 +40,6 @@ impl Caps {
             max_small_samples,
             max_small_side,
             group_size,
-            max_list_entries: u32::MAX,
             listed_tiles: self.software,
             early_load: self.software,
             queue_groups: if self.software { 0 } else { 8192 },
@@ -61,8 +60,6 @@ pub struct Tuning {
     pub max_small_side: u32,
     /// Invocations in a workgroup of the passes over vertices and triangles, 1 to 256.
     pub group_size: u32,
-    /// Most entries of a tile's list that one dispatch walks, at least 1 (visibility `tiled` alone).
-    pub max_list_entries: u32,
     /// The resolve visits only tiles that a triangle's box touches, without branches.
     pub listed_tiles: bool,
     /// Load before the depth atomic (visibility `split32` alone).

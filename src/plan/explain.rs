@@ -2,7 +2,7 @@
 
 use super::{AccuracyRequest, Note, Plan, PlanError, StackTraits, Tuning, costs, options::Cause, predict::predict};
 use crate::{
-    accuracy::{AXES, Axis, AxisOption, Culling, Visibility},
+    accuracy::{AXES, Axis, AxisOption, Culling},
     effects::{
         Stack,
         dots::LineSource,
@@ -23,7 +23,6 @@ impl Plan {
             self.shape_reason(),
             Some(self.fetch_reason()),
             Some(self.small_reason()),
-            self.list_reason(),
             self.culling_reason(),
             self.vertex_effects_reason(),
             self.scopes_reason(),
@@ -108,13 +107,6 @@ impl Plan {
             (true, false) => "a workgroup takes over early on a GPU",
         };
         note("small", format!("one invocation walks up to {} samples: {why}", self.key.paths.max_small_samples))
-    }
-
-    fn list_reason(&self) -> Option<Note> {
-        let most = self.key.work.max_list_entries;
-        let is_split = self.key.options.visibility == Visibility::Tiled && most < u32::MAX;
-        let why = || format!("a list of more than {most} triangles takes another dispatch, since drivers end long loops");
-        is_split.then(|| note("lists of tiles", why()))
     }
 
     fn culling_reason(&self) -> Option<Note> {

@@ -40,7 +40,6 @@ pub(super) fn key_of(
         work: WorkSharing {
             group_size: tuning.group_size,
             invocations_per_triangle: loops::invocations_per_triangle(caps, stack.shape, loops),
-            max_list_entries: tuning.max_list_entries.min(loops::samples(caps, loops::of_an_entry(has_mask, needs.draws, &options))).max(1),
             listed_tiles: tuning.listed_tiles && !stack.finishes_pixels() && stack.dots.is_none(),
             early_load: tuning.early_load,
             queue_groups: if options.culling == Culling::None { tuning.queue_groups.min(65_535) } else { 0 },

@@ -29,11 +29,6 @@ pub fn of_a_sample(has_mask: bool, layers: Option<Layers>, options: &AccuracyOpt
     1 + mask + EFFECT_ITERATIONS + shading
 }
 
-/// Most iterations that a tile makes for a triangle on its list: it tests a sample, and searches for the triangle's draw.
-pub fn of_an_entry(has_mask: bool, draws: usize, options: &AccuracyOptions) -> u32 {
-    of_a_sample(has_mask, None, options) + if draws > 1 { 32 } else { 0 }
-}
-
 /// Most samples that one invocation walks on this adapter.
 pub fn samples(caps: &Caps, loops: u32) -> u32 {
     if caps.software { MAX_ITERATIONS / loops } else { u32::MAX }

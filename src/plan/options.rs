@@ -174,7 +174,6 @@ fn culling_limit(options: &AccuracyOptions, inputs: &Inputs) -> Option<(Culling,
         (Some(Layers::Race), _) | (_, Visibility::Race) => (Culling::None, "a race shows what happens to every triangle"),
         (Some(Layers::Xray { .. } | Layers::Overdraw), _) => (Culling::Frustum, "layers that are hidden count too"),
         (_, Visibility::Packed32) => (Culling::Frustum, "packed32 stores too little of a depth to cull against"),
-        (_, Visibility::Tiled) => (Culling::Frustum, "tiles are drawn once, whole"),
         _ => return None,
     };
     (options.culling > most).then_some((most, why))

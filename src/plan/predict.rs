@@ -138,7 +138,7 @@ fn visibility(option: Visibility, needs: &Needs) -> Prediction {
             Prediction::wrong(1e6 * (step_m / (farthest - nearest).max(f64::MIN_POSITIVE)).min(1.0))
         }
         Visibility::Race => Prediction::wrong(f64::INFINITY),
-        Visibility::Split32 | Visibility::Packed64 | Visibility::Tiled => Prediction::default(),
+        Visibility::Split32 | Visibility::Packed64 => Prediction::default(),
     }
 }
 

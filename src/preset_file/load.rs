@@ -39,8 +39,11 @@ pub fn parse_with(text: &str, id: &str, file: &str, catalog: &Catalog) -> Result
     let mut warnings = Vec::new();
     let schema = schema(&original, file, &mut warnings)?;
     // A migration changes names inside their lines, so the lines of the migrated text are those of the file.
-    let current =
-        if schema < migrate::CURRENT { document(&migrate::migrate(original.into_mut(), schema).to_string(), file)? } else { original };
+    let current = if migrate::is_outdated(original.as_table(), schema) {
+        document(&migrate::migrate(original.into_mut(), schema).to_string(), file)?
+    } else {
+        original
+    };
     let read = read::read(&current, file, catalog)?;
     warnings.extend(read.warnings);
     let (preset, is_newer) = (read.preset, schema > migrate::CURRENT);
@@ -97,7 +100,8 @@ pub fn migrated(path: &Path) -> Result<Migrated, PresetError> {
     parse_file(&before, &stem(path), &file)?;
     let document = document(&before, &file)?;
     let from = schema(&document, &file, &mut Vec::new())?;
-    let after = if from < migrate::CURRENT { migrate::migrate(document.into_mut(), from).to_string() } else { before.clone() };
+    let is_outdated = migrate::is_outdated(document.as_table(), from);
+    let after = if is_outdated { migrate::migrate(document.into_mut(), from).to_string() } else { before.clone() };
     Ok(Migrated { from, before, after })
 }
 

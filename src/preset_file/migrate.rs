@@ -12,9 +12,22 @@ pub const MIGRATIONS: &[fn(DocumentMut) -> DocumentMut] = &[to_schema_2];
 /// The schema that this program writes.
 pub const CURRENT: i64 = 1 + MIGRATIONS.len() as i64;
 
+/// Does a document of this schema have keys or words of before?
+pub fn is_outdated(document: &Table, schema: i64) -> bool {
+    let has_word = |(section, key, old, _): &(&str, &str, &str, &str)| {
+        document.get(section).and_then(Item::as_table_like).and_then(|table| table.get(key)).and_then(Item::as_str) == Some(old)
+    };
+    schema < CURRENT || schema == CURRENT && WITHDRAWN_WORDS.iter().any(has_word)
+}
+
 /// Brings a document of schema `from`, 1 to [`CURRENT`], up to date.
 pub fn migrate(document: DocumentMut, from: i64) -> DocumentMut {
     let mut document = MIGRATIONS.iter().skip((from - 1).max(0) as usize).fold(document, |document, step| step(document));
+    for (section, key, old, new) in WITHDRAWN_WORDS {
+        if let Some(item) = document.get_mut(section).and_then(Item::as_table_like_mut).and_then(|table| table.get_mut(key)) {
+            rename_word(item, old, new);
+        }
+    }
     if let Some(value) = document.get_mut("schema").and_then(|item| item.as_value_mut()) {
         let decor = value.decor().clone();
         *value = CURRENT.into();
@@ -67,6 +80,9 @@ pub const RENAMED_KEYS: &[(&str, &str, &str)] = &[
 /// Words that schema 2 renames: section or effect, new name of the key, old word, new word.
 pub const RENAMED_WORDS: &[(&str, &str, &str, &str)] =
     &[("accuracy", "render_scale", "whole", "full"), ("draw_order", "unit", "share", "fraction")];
+
+/// Words that no schema has any more, since another draws the same picture faster: section, key, old word, new word.
+pub const WITHDRAWN_WORDS: &[(&str, &str, &str, &str)] = &[("accuracy", "visibility", "tiled", "split32")];
 
 /// Names in the vocabulary of computer graphics.
 fn to_schema_2(mut document: DocumentMut) -> DocumentMut {
@@ -165,7 +181,7 @@ pub fn renamed_key(path: &str) -> Option<String> {
 
 /// The current word for `written`, where an older schema had that and `words` are allowed now.
 pub fn renamed_word(written: &str, words: &[&'static str]) -> Option<&'static str> {
-    let mut renamed = RENAMED_WORDS.iter().filter(|(.., old, _)| *old == written);
+    let mut renamed = RENAMED_WORDS.iter().chain(WITHDRAWN_WORDS).filter(|(.., old, _)| *old == written);
     renamed.find_map(|(.., new)| words.iter().copied().find(|word| word == new))
 }
 

@@ -42,7 +42,6 @@ impl KernelKey {
             (_, Visibility::Packed32) => &[RasterPhase::Packed32],
             (_, Visibility::Split32) => &[RasterPhase::Depth, RasterPhase::TriangleId],
             (_, Visibility::Packed64) => &[RasterPhase::Packed],
-            (_, Visibility::Tiled) => &[RasterPhase::BinCount, RasterPhase::BinFill, RasterPhase::Tiles],
         };
         let layers: &[RasterPhase] = match self.framebuffer.layers {
             Some(Layers::Xray { .. }) => &[RasterPhase::Sum],
@@ -78,7 +77,6 @@ impl KernelKey {
         if self.sample_setups() > 0 {
             passes.push(Pass::SampleSetup(TriangleSource::Triangles));
         }
-        let walks_samples = phases.iter().any(|phase| !phase.is_tiled());
         let Some((&first, others)) = phases.split_first() else { return passes };
         for &cull_phase in self.cull_phases() {
             if cull_phase == CullPhase::Late {
@@ -88,15 +86,15 @@ impl KernelKey {
             if !projects_all {
                 passes.push(Pass::ProjectMeshlets);
             }
-            passes.extend(self.raster_passes(first, true, walks_samples));
+            passes.extend(self.raster_passes(first, true));
         }
         if !self.culls() {
-            passes.extend(self.raster_passes(first, true, walks_samples));
+            passes.extend(self.raster_passes(first, true));
         }
         if self.options.culling == Culling::TwoPass && !others.is_empty() {
             passes.extend([Pass::AdvanceQueues { reopens_queues: true }, Pass::Args]);
         }
-        passes.extend(others.iter().flat_map(|&phase| self.raster_passes(phase, false, walks_samples)));
+        passes.extend(others.iter().flat_map(|&phase| self.raster_passes(phase, false)));
         passes
     }
 
@@ -111,34 +109,30 @@ impl KernelKey {
     }
 
     /// The passes of a raster phase; the first phase of a frame fills the queues.
-    fn raster_passes(&self, phase: RasterPhase, is_first: bool, walks_samples: bool) -> Vec<Pass> {
-        if phase == RasterPhase::Tiles {
-            return vec![Pass::RasterTiles];
-        }
+    fn raster_passes(&self, phase: RasterPhase, is_first: bool) -> Vec<Pass> {
         let mut passes = vec![match self.samples.shape {
             Shape::Points => Pass::RasterPoints(phase),
             Shape::Triangles | Shape::Boxes => Pass::RasterSmall(phase),
         }];
         if is_first {
-            passes.extend(self.queue_passes(walks_samples));
+            passes.extend(self.queue_passes());
         }
         if self.paths.has_medium {
-            passes.push(if phase.is_bin() { Pass::BinMedium(phase) } else { Pass::RasterMedium(phase) });
+            passes.push(Pass::RasterMedium(phase));
         }
         if self.paths.has_large {
-            passes.push(if phase.is_bin() { Pass::BinLarge(phase) } else { Pass::RasterLarge(phase) });
+            passes.push(Pass::RasterLarge(phase));
         }
         match phase {
             RasterPhase::CountSamples => passes.extend([Pass::OrderSums, Pass::OrderLimit, Pass::OrderRanks]),
             RasterPhase::BoundaryTriangle => passes.push(Pass::OrderCut),
-            RasterPhase::BinCount => passes.push(Pass::BinScan),
             _ => {}
         }
         passes
     }
 
     /// The passes that clip and divide the triangles which the first raster pass has queued.
-    fn queue_passes(&self, walks_samples: bool) -> Vec<Pass> {
+    fn queue_passes(&self) -> Vec<Pass> {
         let mut passes = Vec::new();
         // Passes of a fixed size need no arguments.
         let is_indirect = self.work.queue_groups == 0;
@@ -153,7 +147,7 @@ impl KernelKey {
         if sets_up_clipped {
             passes.push(Pass::SampleSetup(TriangleSource::ClippedTriangles));
         }
-        if self.paths.has_large && walks_samples {
+        if self.paths.has_large {
             passes.push(Pass::TileLarge);
             passes.extend(is_indirect.then_some(Pass::Args));
         }
@@ -174,7 +168,7 @@ impl KernelKey {
         match self.order_phases().first() {
             Some(&first) => pass.phase() == Some(first),
             None => {
-                let is_second_visit = matches!(pass.phase(), Some(RasterPhase::TriangleId | RasterPhase::BinFill));
+                let is_second_visit = pass.phase() == Some(RasterPhase::TriangleId);
                 !is_second_visit && !self.uses_second_counter(pass)
             }
         }

@@ -115,8 +115,6 @@ pub struct WorkSharing {
     pub group_size: u32,
     /// Among how many invocations the discs of one triangle are divided, at least 1.
     pub invocations_per_triangle: u32,
-    /// Most entries of a tile's list that one dispatch walks.
-    pub max_list_entries: u32,
     /// The resolve visits only tiles that a triangle's box touches, without branches.
     pub listed_tiles: bool,
     /// Load before the depth atomic.
@@ -223,7 +221,6 @@ impl KernelKey {
             work: WorkSharing {
                 group_size: 64,
                 invocations_per_triangle: 1,
-                max_list_entries: u32::MAX,
                 listed_tiles: true,
                 early_load: true,
                 queue_groups: 0,
@@ -323,7 +320,7 @@ impl KernelKey {
         match self.options.visibility {
             Visibility::Split32 => FramebufferLayout::Split32,
             Visibility::Packed32 => FramebufferLayout::Packed32,
-            Visibility::Race | Visibility::Packed64 | Visibility::Tiled => FramebufferLayout::Packed64,
+            Visibility::Race | Visibility::Packed64 => FramebufferLayout::Packed64,
         }
     }
 }

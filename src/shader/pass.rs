@@ -40,14 +40,6 @@ pub enum Pass {
     TileLarge,
     RasterMedium(RasterPhase),
     RasterLarge(RasterPhase),
-    /// Lists the tiles that medium triangles touch.
-    BinMedium(RasterPhase),
-    /// Lists the tiles that large triangles touch.
-    BinLarge(RasterPhase),
-    /// Finds where the list of each tile begins.
-    BinScan,
-    /// Draws every tile from its list.
-    RasterTiles,
     /// Projects the ends of the segments along which dots lie.
     DotsEnds,
     /// Lists the dots that may be visible.
@@ -108,29 +100,13 @@ pub enum RasterPhase {
     CountSamples,
     /// The samples of the triangle in which drawing stops.
     BoundaryTriangle,
-    /// How many triangles each tile lists.
-    BinCount,
-    /// The triangles that each tile lists.
-    BinFill,
-    /// Depth key and triangle id, tile by tile.
-    Tiles,
 }
 
 impl RasterPhase {
-    /// Does it list triangles by tile instead of visiting their samples?
-    pub const fn is_bin(self) -> bool {
-        matches!(self, Self::BinCount | Self::BinFill)
-    }
-
-    /// Is it one of the three phases that find triangle ids tile by tile?
-    pub const fn is_tiled(self) -> bool {
-        self.is_bin() || matches!(self, Self::Tiles)
-    }
-
     /// What tells its passes apart from those of other phases in a label.
     const fn label(self) -> &'static str {
         match self {
-            Self::Packed | Self::Packed32 | Self::Tiles => "",
+            Self::Packed | Self::Packed32 => "",
             Self::Depth => "depth",
             Self::TriangleId => "triangle id",
             Self::Count => "count",
@@ -138,8 +114,6 @@ impl RasterPhase {
             Self::Race => "race",
             Self::CountSamples => "count samples",
             Self::BoundaryTriangle => "boundary triangle",
-            Self::BinCount => "count tiles",
-            Self::BinFill => "list tiles",
         }
     }
 }
@@ -167,9 +141,6 @@ impl Pass {
             Self::TileLarge => "tile_large",
             Self::RasterMedium(_) => "raster_medium",
             Self::RasterLarge(_) => "raster_large",
-            Self::BinMedium(_) | Self::BinLarge(_) => "bin_queued",
-            Self::BinScan => "bin_scan",
-            Self::RasterTiles => "raster_tiles",
             Self::DotsEnds => "dots_ends",
             Self::DotsCull => "dots_cull",
             Self::DotsArgs => "dots_args",
@@ -187,7 +158,6 @@ impl Pass {
             Self::Particles | Self::Skin | Self::Project | Self::ProjectMeshlets | Self::Cull(_) | Self::DepthReduce => "geometry",
             Self::AdvanceQueues { .. } | Self::SampleSetup(_) | Self::Args | Self::Clip => "geometry",
             Self::RasterSmall(_) | Self::RasterPoints(_) | Self::RasterMedium(_) | Self::RasterLarge(_) | Self::TileLarge => "raster",
-            Self::BinMedium(_) | Self::BinLarge(_) | Self::BinScan | Self::RasterTiles => "raster",
             Self::OrderSums | Self::OrderLimit | Self::OrderRanks | Self::OrderCut => "order",
             Self::DotsEnds | Self::DotsCull | Self::DotsArgs | Self::DotsDraw | Self::DotsProbe => "lines",
             Self::ListTiles | Self::Resolve | Self::Scale => "shade",
@@ -204,19 +174,13 @@ impl Pass {
     pub const fn phase(self) -> Option<RasterPhase> {
         match self {
             Self::RasterSmall(phase) | Self::RasterPoints(phase) | Self::RasterMedium(phase) | Self::RasterLarge(phase) => Some(phase),
-            Self::BinMedium(phase) | Self::BinLarge(phase) => Some(phase),
-            Self::RasterTiles => Some(RasterPhase::Tiles),
             _ => None,
         }
     }
 
     /// Label for profilers and tables: the stem, and what tells the pass apart from others of the same file.
     pub fn label(self) -> String {
-        let stem = match self {
-            Self::BinMedium(_) => "bin_medium",
-            Self::BinLarge(_) => "bin_large",
-            _ => self.stem(),
-        };
+        let stem = self.stem();
         let detail = match self {
             Self::SampleSetup(TriangleSource::ClippedTriangles) => "clipped triangles",
             Self::Cull(CullPhase::Early) => "early",

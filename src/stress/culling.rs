@@ -12,7 +12,7 @@ use super::{
     scenes::Rng,
 };
 use crate::{
-    accuracy::{Culling, PinnedOptions, Visibility},
+    accuracy::{Culling, PinnedOptions},
     plan::AccuracyRequest,
     scene::{
         Scene,
@@ -56,8 +56,7 @@ pub fn walk(scene: &Scene, rng: &mut Rng, steps: usize, size: [u32; 2]) -> Vec<V
 }
 
 fn culled_walk(context: &mut CaseContext) -> Result<(), EarlyEnd> {
-    // Tiles sort triangles and have no depth to hide behind.
-    let options: Vec<Visibility> = context.options().into_iter().filter(|option| *option != Visibility::Tiled).collect();
+    let options = context.options();
     let mut rng = context.rng(0x3a1);
     let mut hidden = 0;
     // A town is one large mesh, whose meshlets lie far from its origin.

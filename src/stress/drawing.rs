@@ -52,7 +52,6 @@ impl WorkDistribution {
         Tuning {
             max_small_samples,
             group_size: if is_card { 256 } else { 64 },
-            max_list_entries: if is_card { 100 } else { u32::MAX },
             max_small_side,
             listed_tiles,
             early_load: listed_tiles,

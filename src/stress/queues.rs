@@ -169,7 +169,7 @@ fn workgroups_indirect(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     context.renderer.set_scene(&scene)?;
     context.renderer.set_capacities(Capacities { large: 65_600, tiles: 65_600, ..Capacities::default() });
     context.exact(&scene, &pixel_view(64, 64), &stack(&[]), &option, "65,600 large triangles")?;
-    let foreseen = Capacities { clip: 1, clipped_triangles: 1, medium: 1, large: 65_600, tiles: 65_600, bins: 1, listed: 0 };
+    let foreseen = Capacities { clip: 1, clipped_triangles: 1, medium: 1, large: 65_600, tiles: 65_600 };
     equal(&context.renderer.capacities(), &foreseen, "65,600 large triangles: room in the queues")?;
     // Tiles of the resolve: 66,048 of 8 x 8 pixels.
     let [a, b, c, d] = [[0, 0], [2048 * 256, 0], [2048 * 256, 2064 * 256], [0, 2064 * 256]];
@@ -194,8 +194,7 @@ struct Demand {
 
 impl Demand {
     fn new(queue: &'static str, entries: u32, scene: &Arc<Scene>, capacity: fn(&mut Capacities) -> &mut u32) -> Self {
-        let mut capacities =
-            Capacities { clip: 4096, clipped_triangles: 4096, medium: 4096, large: 4096, tiles: 4096, bins: 65_536, listed: 0 };
+        let mut capacities = Capacities { clip: 4096, clipped_triangles: 4096, medium: 4096, large: 4096, tiles: 4096 };
         *capacity(&mut capacities) = entries;
         Self { queue, capacities, scene: scene.clone(), capacity }
     }
@@ -220,8 +219,6 @@ fn demands() -> Vec<Demand> {
         Demand::new("large", n, &large, |c| &mut c.large),
         // A picture of 128 x 128 has four tiles.
         Demand::new("tiles", 4 * n, &large, |c| &mut c.tiles),
-        // And 64 of the tiles that have lists.
-        Demand::new("bins", 64 * n, &large, |c| &mut c.bins),
     ]
 }
 
@@ -229,9 +226,7 @@ fn queues(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let view = pixel_view(128, 128);
     context.renderer.set_tuning(WorkDistribution::WorkgroupEach.tuning());
     for option in context.options() {
-        // The tiled option has lists per tile, the others have a queue of large triangles' tiles.
-        let has = |queue: &str| queue != if option == Visibility::Tiled { "tiles" } else { "bins" };
-        for Demand { queue, capacities, scene, capacity: field } in demands().into_iter().filter(|demand| has(demand.queue)) {
+        for Demand { queue, capacities, scene, capacity: field } in demands() {
             let demand = *field(&mut capacities.clone());
             for capacity in [demand, demand - 1, demand / 10, 1] {
                 let what = format!("{queue} on {}: demand {demand}, capacity {capacity}", option.name());
@@ -277,14 +272,7 @@ fn ten_million_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     if room < 12 * u64::from(count) {
         return Err(EarlyEnd::Skipped(format!("the index list needs {} bytes, and this adapter binds at most {room}", 12 * count)));
     }
-    let is_software = caps.software;
     for option in context.options() {
-        // Every pixel of a tile tests every triangle on its list: 2.6 billion tests take minutes on a software adapter.
-        let is_fewer = is_software && option == Visibility::Tiled;
-        let count = if is_fewer { count / 10 } else { count };
-        if is_fewer {
-            context.note(format!("{} with {count} triangles, since this is a software adapter", option.name()));
-        }
         let tiny = TinyTriangles { count, instances: 1, vertices: Vertices::Shared };
         let (scene, view) = tiny.scene();
         let what = format!("{count} triangles on {}", option.name());

@@ -342,6 +342,14 @@ fn mutants() -> Vec<Mutant> {
             HOLES,
         ),
         mutant(
+            "a tile of a large triangle is given up too soon",
+            "lib/queued_triangle",
+            "fixed_edge(a, b, innermost)) < fixed_bias(d)",
+            "fixed_edge(a, b, innermost)) < 1 + fixed_bias(d)",
+            sizes(),
+            HOLES,
+        ),
+        mutant(
             "a tile is forgotten",
             "stages/raster/tile_large",
             "let tiles = pixels.zw / 64 - first + 1;",
@@ -357,7 +365,6 @@ const GRAPHICS_CARD: Tuning = Tuning {
     max_small_samples: 64,
     max_small_side: 32,
     group_size: 256,
-    max_list_entries: u32::MAX,
     listed_tiles: false,
     early_load: true,
     queue_groups: 0,

@@ -4,12 +4,11 @@
 use std::sync::Arc;
 
 use crate::common::*;
-use glam::{DMat4, DVec3};
 use rasterlab::{
     accuracy::Visibility,
     effects::{Stack, dots},
     frame::{Frame, NO_TRIANGLE},
-    gpu::{Capacities, Capture, Renderer},
+    gpu::{Capture, Renderer},
     measure::compare,
     oracle,
     plan::{AccuracyRequest, Tuning},
@@ -50,7 +49,6 @@ const GRAPHICS_CARD: Tuning = Tuning {
     max_small_samples: 32,
     max_small_side: 32,
     group_size: 256,
-    max_list_entries: u32::MAX,
     listed_tiles: false,
     early_load: false,
     queue_groups: 64,
@@ -58,9 +56,6 @@ const GRAPHICS_CARD: Tuning = Tuning {
     hides_blocks: true,
     specialized: true,
 };
-
-/// What only the tiled option has.
-const TILED: &[&str] = &["bin_queued", "bin_scan", "raster_tiles"];
 
 fn is_drawn_by(renderer: &Renderer, stems: &[&str]) {
     let passes = renderer.key().expect("something was drawn").frame();
@@ -184,71 +179,6 @@ fn all_layers_are_the_same_with_every_option() {
     }
 }
 
-/// Lists of tiles that are exactly as long as they must be, and shorter: then they grow, and nothing is missing.
-#[test]
-fn lists_of_tiles_hold_their_demand_to_the_last_entry() {
-    let Some(mut renderer) = renderer() else { return };
-    let (scene, view) = hall();
-    let reference = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
-    let tiled = |renderer: &mut Renderer, bins: u32| {
-        renderer.set_scene(&scene).expect("a builtin fits");
-        let room = renderer.capacities();
-        renderer.set_capacities(Capacities { bins, ..room });
-        renderer.draw(&view, &stack(&[]), &pinned(Visibility::Tiled)).expect("drawn");
-        let report = renderer.finish().expect("finished");
-        (report, captured(renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Tiled)).frame)
-    };
-    let (report, _) = tiled(&mut renderer, 1);
-    let demand = report.counters.overflow + 1;
-    assert!(demand > 1000 && report.redraw, "{report:?}");
-    for bins in [demand, demand - 1, demand / 10, 1] {
-        let (report, frame) = tiled(&mut renderer, bins);
-        assert_eq!((report.counters.overflow, report.redraw), (demand - bins, bins < demand), "room for {bins} of {demand}");
-        assert_same(&frame, &reference, &format!("room for {bins} of {demand}"));
-    }
-    let library = mutated("stages/raster/raster_tiles", "vec2u(frame.bin_capacity)", "vec2u(frame.bin_capacity / 2u)");
-    let mut wrong = Renderer::with_library(renderer.gpu().clone(), library.shaders());
-    let (_, frame) = tiled(&mut wrong, demand);
-    assert_ne!(
-        compare::triangle_ids(&frame.triangle_id, &reference.triangle_id).different
-            + compare::triangle_ids(&frame.depth_key, &reference.depth_key).different,
-        0
-    );
-}
-
-/// Some drivers end a loop after so many turns: then several dispatches walk a list, and the last of 70,000 layers shows.
-#[test]
-fn long_lists_of_tiles_are_walked_to_their_end() {
-    let Some(mut renderer) = renderer() else { return };
-    let usual = renderer.gpu().caps.tuning();
-    for (query, max_list_entries) in [("near", 7), ("near", 100), ("stack?layers=70000&gap=0.0001", u32::MAX)] {
-        let mut scene = scene(query);
-        if query.starts_with("stack") {
-            // Turned inside out, so that the last layer is the nearest.
-            Arc::make_mut(&mut scene).instances[0].world_from_object *= DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0));
-        }
-        let view = view(&scene, [80, 60]);
-        renderer.set_tuning(usual);
-        let reference = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
-        renderer.set_tuning(Tuning { max_list_entries, ..usual });
-        let frame = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Tiled)).frame;
-        assert_same(&frame, &reference, &format!("{query}, {max_list_entries} entries at once"));
-    }
-    let (scene, view) = hall();
-    let reference = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
-    for (from, to) in [
-        ("bins[tiles_count() + tile] += list.y - list.x", "bins[tiles_count() + tile] += 0u"),
-        ("list.x + bins[tiles_count() + tile]", "list.x + 0u"),
-        ("if MAX_LIST_ENTRIES != 0xffffffffu && range.x", "if MAX_LIST_ENTRIES == 0u && range.x"),
-    ] {
-        let library = mutated("stages/raster/raster_tiles", from, to);
-        let mut wrong = Renderer::with_library(renderer.gpu().clone(), library.shaders());
-        wrong.set_tuning(Tuning { max_list_entries: 100, ..usual });
-        let frame = captured(&mut wrong, &scene, &view, &stack(&[]), &pinned(Visibility::Tiled)).frame;
-        assert_ne!(compare::triangle_ids(&frame.triangle_id, &reference.triangle_id).different, 0, "{to}");
-    }
-}
-
 /// The case hundred-equal-frames of `rasterlab stress` repeats more often.
 #[test]
 fn repeated_frames_are_equal_to_the_bit() {
@@ -268,8 +198,7 @@ fn repeated_frames_are_equal_to_the_bit() {
             assert_eq!(again.layers, first.layers, "{what}: layers");
             assert_eq!(again.frame.counters, first.frame.counters, "{what}: counters");
         }
-        is_drawn_by(&renderer, &["project", "raster_small", "clip", "resolve"]);
-        is_drawn_by(&renderer, if option == Visibility::Tiled { TILED } else { &["tile_large", "raster_medium", "raster_large"] });
+        is_drawn_by(&renderer, &["project", "raster_small", "clip", "tile_large", "raster_medium", "raster_large", "resolve"]);
     }
 }
 
@@ -425,80 +354,4 @@ fn a_picture_begins_with_nothing_of_the_one_before() {
         assert_same(&cleared_by_passes.frame, &cleared_before.frame, option.name());
         assert_eq!(cleared_by_passes.frame.counters, cleared_before.frame.counters, "{}: counters", option.name());
     }
-}
-
-/// A picture that is drawn from lists of tiles lists no tiles of large triangles before the judge counts its layers.
-#[test]
-fn the_layers_of_a_tiled_picture_are_counted_in_queues_that_grow() {
-    let Some(mut renderer) = renderer() else { return };
-    renderer.set_tuning(GRAPHICS_CARD);
-    let (scene, view) = hall();
-    let expected = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32));
-    renderer.set_scene(&scene).expect("a builtin fits");
-    let room = renderer.capacities();
-    renderer.set_capacities(Capacities { tiles: 1, ..room });
-    let capture = renderer.capture(&view, &stack(&[]), &pinned(Visibility::Tiled)).expect("drawn");
-    assert!(renderer.capacities().tiles > 1, "a queue of one tile is enough");
-    assert_eq!(capture.layers, expected.layers);
-    assert_same(&capture.frame, &expected.frame, "tiled");
-}
-
-/// Mistakes in the tiled kernels that a picture must show: file, what stands there, what stands there instead, scene.
-const TILED_MUTANTS: &[[&str; 5]] = &[
-    [
-        "a tile is forgotten",
-        "lib/tile_lists",
-        "pixels.zw / 16 - first + 1",
-        "max(pixels.zw / 16 - first, vec2i(1))",
-        "sphere?triangles=200",
-    ],
-    ["a tile is given up too soon", "lib/tile_lists", "(d.y < 0), (d.x > 0)", "(d.y > 0), (d.x < 0)", "sphere?triangles=200"],
-    [
-        "the same of large triangles",
-        "lib/queued_triangle",
-        "fixed_edge(a, b, innermost)) < fixed_bias(d)",
-        "fixed_edge(a, b, innermost)) < 1 + fixed_bias(d)",
-        "sizes",
-    ],
-    ["the larger id wins ties", "stages/raster/raster_tiles", "sample.x > nearest.x", "sample.x < nearest.x", "stack?layers=5"],
-    ["the farther one wins", "stages/raster/raster_tiles", "sample.y > nearest.y", "nearest.y == 0u", "near"],
-    [
-        "the last of a list is left out",
-        "stages/raster/raster_tiles",
-        "list = min(vec2u(begin, bins[tile])",
-        "list = min(vec2u(begin, max(bins[tile], 1u) - 1u)",
-        "near",
-    ],
-    ["a list begins at its neighbor's", "stages/raster/raster_tiles", "bins[max(tile, 1u) - 1u], 0u", "bins[tile], 0u", "near"],
-    ["the last column of a box is left out", "lib/tile_box", "(box.z << 8u)", "((max(box.z, 1u) - 1u) << 8u)", "sphere?triangles=200"],
-    [
-        "edges of large triangles from elsewhere",
-        "variants/tile_triangle/all",
-        "let p = grid_sample(first);",
-        "let p = grid_sample(first + 1);",
-        "sizes",
-    ],
-];
-
-#[test]
-fn tiles_with_a_mistake_are_caught() {
-    let Some(mut renderer) = renderer() else { return };
-    renderer.set_tuning(GRAPHICS_CARD);
-    let mut failures = Vec::new();
-    for [what, file, from, to, query] in TILED_MUTANTS {
-        let scene = scene(query);
-        let view = view(&scene, SIZE);
-        let reference = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
-        let library = mutated(file, from, to);
-        let mut wrong = Renderer::with_library(renderer.gpu().clone(), library.shaders());
-        wrong.set_tuning(Tuning { specialized: false, ..GRAPHICS_CARD });
-        let frame = captured(&mut wrong, &scene, &view, &stack(&[]), &pinned(Visibility::Tiled)).frame;
-        let [triangle_ids, keys] = [(&frame.triangle_id, &reference.triangle_id), (&frame.depth_key, &reference.depth_key)]
-            .map(|(a, b)| compare::triangle_ids(a, b).different);
-        eprintln!("{what}: {triangle_ids} triangle ids, {keys} keys differ");
-        if triangle_ids + keys == 0 {
-            failures.push(*what);
-        }
-    }
-    assert!(failures.is_empty(), "these do not show: {failures:?}");
 }

@@ -81,7 +81,6 @@ fn both_tunings(renderer: &Renderer) -> [Tuning; 2] {
         max_small_samples: 32,
         max_small_side: 32,
         group_size: 256,
-        max_list_entries: u32::MAX,
         listed_tiles: false,
         early_load: false,
         queue_groups: 64,
@@ -154,8 +153,7 @@ fn whole(renderer: &Renderer, scene: &Arc<Scene>, view: &View, pins: PinnedOptio
 
 /// AccuracyOptions that two passes can hide behind.
 fn hiding(renderer: &Renderer) -> Vec<PinnedOptions> {
-    let options = options(renderer).into_iter().filter(|option| *option != Visibility::Tiled);
-    options.map(|option| PinnedOptions::of(option).with(Culling::TwoPass)).collect()
+    options(renderer).into_iter().map(|option| PinnedOptions::of(option).with(Culling::TwoPass)).collect()
 }
 
 #[test]
@@ -434,7 +432,6 @@ fn a_picture_that_cannot_be_culled_says_why_and_is_drawn() {
         (&["race"], Visibility::Split32, "none instead of two-pass: a race"),
         (&["xray"], Visibility::Split32, "frustum instead of two-pass: layers"),
         (&["overdraw"], Visibility::Split32, "frustum instead of two-pass: layers"),
-        (&[], Visibility::Tiled, "frustum instead of two-pass: tiles"),
         (&[], Visibility::Packed32, "frustum instead of two-pass: packed32"),
         (&["dissolve"], Visibility::Split32, "two-pass: pinned"),
     ] {

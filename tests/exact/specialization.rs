@@ -118,7 +118,6 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles() {
         max_small_samples: 64,
         max_small_side: 32,
         group_size: 256,
-        max_list_entries: u32::MAX,
         listed_tiles: false,
         early_load: false,
         queue_groups: 0,

@@ -47,7 +47,6 @@ fn keys() -> Vec<KernelKey> {
         one(&rasterlab::effects::shadow::EFFECT),
         one(&rasterlab::effects::overdraw::EFFECT),
         one(&rasterlab::effects::xray::EFFECT),
-        whole(Visibility::Tiled, &[]),
         whole(Visibility::Packed32, &[]),
     ]
 }

@@ -91,14 +91,14 @@ fn every_variant_links_and_validates_within_eight_storage_buffers() {
     }
 }
 
-/// The pass with the most variants: what a tile knows of a triangle differs by shape, its sample tests by order and by effects.
+/// Sample tests differ by shape, by order and by effects.
 #[test]
-fn tiles_validate_within_eight_storage_buffers_for_every_shape_and_order() {
+fn every_shape_and_order_validates_within_eight_storage_buffers() {
     for shape in [Shape::Triangles, Shape::Boxes, Shape::Points] {
         for draw_order in [None, Some(Mode::Submission), Some(Mode::Scheduler)] {
             for has_large in [false, true] {
                 let effects = ["dissolve", "draw_order", "xray"].map(|name| Effect::find(name).expect("a listed effect")).to_vec();
-                let mut key = key(Fetch::Indexed, Visibility::Tiled, true, effects);
+                let mut key = key(Fetch::Indexed, Visibility::Split32, true, effects);
                 (key.samples.shape, key.samples.draw_order, key.paths.has_large) = (shape, draw_order, has_large);
                 for pass in all_passes(&key) {
                     let storage = validate(&key, pass);
@@ -291,13 +291,11 @@ fn every_use_line_is_needed_and_a_missing_one_is_refused() {
     let effects = ["dissolve", "explode", "shadow", "outline"].map(|name| Effect::find(name).expect("an effect")).to_vec();
     let mut full = key(Fetch::Indexed, Visibility::Split32, true, effects);
     full.samples.has_mask = true;
-    let mut tiled = key(Fetch::Indexed, Visibility::Tiled, true, vec![]);
-    tiled.work.listed_tiles = false;
     let mut seen = std::collections::BTreeSet::new();
     let (mut refused_by_linker, mut needless) = (0, std::collections::BTreeSet::new());
     let mut unmasked = full.clone();
     unmasked.samples.has_mask = false;
-    for key in [plain_key(), unmasked, full, tiled] {
+    for key in [plain_key(), unmasked, full] {
         let passes = key.frame();
         for pass in passes {
             for name in linked(&key, pass).sources().map(str::to_owned).collect::<Vec<_>>() {

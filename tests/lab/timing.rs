@@ -124,7 +124,7 @@ fn the_file_of_the_log_tells_the_longest_frame_and_the_slowest_picture_and_a_win
     };
     let written = notes();
     assert!(!written.is_empty() && written.iter().all(|line| line.contains(" frames, longest ")), "{written:#?}");
-    assert!(written.iter().any(|line| line.contains(" pictures, slowest ")), "{written:#?}");
+    assert!(written.iter().any(|line| line.contains(" pictures after their inputs: median ")), "{written:#?}");
     assert!(!lab.state().log_text().contains("timing: "), "the log of the window is for messages");
     // The frame that writes a note asks for no other.
     let rests = (0..12).any(|_| {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::common::*;
 use rasterlab::{
-    accuracy::{Parameters, Visibility},
+    accuracy::Parameters,
     effects::{Effect, Stack},
     frame::NO_TRIANGLE,
     gpu::{Capture, Renderer},
@@ -186,7 +186,7 @@ fn skinned_animals_in_a_room_are_told_apart() {
     enable(&mut stack, effect("toon"), &["node:walker ?"], &[]);
     enable(&mut stack, effect("dissolve"), &["node:walker 2"], &[("fill", 0.6)]);
     enable(&mut stack, effect("shadow"), &[], &[]);
-    for visibility in [Visibility::Split32, Visibility::Tiled] {
+    for visibility in options(&renderer) {
         let accuracy = AccuracyRequest { pins: PinnedOptions::of(visibility), ..AccuracyRequest::default() };
         exact(&mut renderer, &scene, &view, &stack, &accuracy, visibility.name());
     }

@@ -402,7 +402,7 @@ fn mistakes_in_the_light_are_found() {
         let mutated = mutated(file, from, to);
         let mut renderer = Renderer::with_library(gpu.clone(), mutated.shaders());
         let view = on(&view(&scene, [120, 90]), ShadowMapSize::Side512, ShadowTaps::Nine);
-        let option = if options(&renderer).contains(&Visibility::Packed64) { Visibility::Packed64 } else { Visibility::Tiled };
+        let option = if options(&renderer).contains(&Visibility::Packed64) { Visibility::Packed64 } else { Visibility::Split32 };
         let (_, verdict) = judged(&mut renderer, &scene, &view, stack, &pinned(option));
         assert!(exactness(&verdict.report).is_err(), "{from:?} as {to:?} in {file} passes: {:?}", verdict.report);
     }

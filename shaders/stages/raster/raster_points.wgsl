@@ -4,7 +4,10 @@
 //@ use lib/fixed
 //@ use lib/triangle
 //@ use lib/shape
-//@ use variants/discs
+//@ use variants/depth
+//@ use variants/framebuffer_write
+//@ use steps/sample_test
+//@ use steps/mark_tiles
 
 // This is the first of several passes over the triangles: it counts.
 override IS_FIRST_VISIT: bool = true;
@@ -30,5 +33,22 @@ fn raster_points(
         return;
     }
     if !triangle_is_shown(draws[t.draw].flags, orientation > 0) { return; }
-    discs(t, part);
+    framebuffer_begin(t.id);
+    var corners = array(t.a, t.b, t.c);
+    for (var i = 0u; i < 3u; i += 1u) { draw_disc(t, corners[i], i, part); }
+}
+
+// Draws the samples of one disc that belong to its corner, in the rows of this part.
+fn draw_disc(t: Triangle, corner: vec4u, index: u32, part: u32) {
+    let pixels = disc_pixels(corner);
+    if any(pixels.zw < pixels.xy) { return; }
+    mark_tiles(pixels);
+    for (var y = pixels.y + i32(part); y <= pixels.w; y += i32(INVOCATIONS_PER_TRIANGLE)) {
+        for (var x = pixels.x; x <= pixels.z; x += 1) {
+            let pixel = u32(y) * frame.size.x + u32(x);
+            if disc_corner(t.a, t.b, t.c, grid_sample(vec2i(x, y))) == index && sample_test(t, vec2u(vec2i(x, y)), pixel) {
+                framebuffer_write(pixel, depth_key(bitcast<f32>(corner.z)), t.id);
+            }
+        }
+    }
 }

@@ -1,12 +1,14 @@
-// raster_small: one invocation per triangle fetches, culls and classifies it. Small triangles are drawn at once, or put on the
-// lists of the tiles that they touch; the others wait in a queue for the pass of their size. Classifying and drawing in one
-// pass saves a second fetch of the small triangles.
+// raster_small: one invocation per triangle fetches, culls and classifies it. Small triangles are drawn at once; the others wait in a
+// queue for the pass of their size. Classifying and drawing in one pass saves a second fetch of the small triangles.
 //@ use lib/frame
 //@ use lib/fixed
 //@ use lib/triangle
 //@ use lib/queues
 //@ use variants/triangle_source
-//@ use variants/small_triangle
+//@ use variants/coverage
+//@ use variants/framebuffer_write
+//@ use steps/sample_test
+//@ use steps/mark_tiles
 
 // Most candidate samples, and most pixels per side, of a small triangle; chosen for the adapter.
 override MAX_SMALL_SAMPLES: i32 = 128;
@@ -58,7 +60,38 @@ fn raster_small(
         if IS_FIRST_VISIT { queues_push_medium(id); }
         return;
     }
-    small_triangle(t, area, pixels);
+    draw_small(t, area, pixels);
+}
+
+// `area` is twice the signed area; `pixels` is the first and the last candidate pixel.
+fn draw_small(t: Triangle, area: i32, pixels: vec4i) {
+    mark_tiles(pixels);
+    framebuffer_begin(t.id);
+    let is_reversed = area < 0;
+    let coverage = coverage_begin(t.a, select(t.b, t.c, is_reversed), select(t.c, t.b, is_reversed), abs(area), pixels.xy);
+    let width = pixels.z - pixels.x + 1;
+    let count = width * (pixels.w - pixels.y + 1);
+    var row = coverage.row;
+    var edges = row;
+    var pixel = u32(pixels.y) * frame.size.x + u32(pixels.x);
+    var x = 0;
+    var y = pixels.y;
+    // One flat loop over the box, so that neighboring invocations stay together for boxes of all shapes.
+    for (var i = 0; i < count; i += 1) {
+        if coverage_contains(coverage, edges) && sample_test(t, vec2u(vec2i(pixels.x + x, y)), pixel) {
+            framebuffer_write(pixel, coverage_key(coverage, edges), t.id);
+        }
+        x += 1;
+        edges += coverage.step_x;
+        pixel += 1u;
+        if x == width {
+            x = 0;
+            y += 1;
+            row += coverage.step_y;
+            edges = row;
+            pixel += frame.size.x - u32(width);
+        }
+    }
 }
 
 // A corner was rejected, or lies between the eye and the near plane or outside the guard band.

@@ -17,7 +17,6 @@ fn clear_step_counters(index: u32, count: u32) {
     atomicStore(&counters.marked_tiles, 0u);
     atomicStore(&counters.next_sample_index, 0u);
     atomicStore(&counters.next_sample_index_again, 0u);
-    atomicStore(&counters.bins, 0u);
     atomicStore(&counters.full_pixels, 0u);
     atomicStore(&counters.dropped, 0u);
     atomicStore(&counters.visible_meshlets, 0u);
@@ -29,7 +28,8 @@ fn clear_step_counters(index: u32, count: u32) {
     atomicStore(&counters.medium_done, 0u);
     atomicStore(&counters.large_done, 0u);
     atomicStore(&counters.tiles_done, 0u);
-    atomicStore(&counters.longest_list, 0u);
     atomicStore(&counters.spare_0, 0u);
     atomicStore(&counters.spare_1, 0u);
+    atomicStore(&counters.spare_2, 0u);
+    atomicStore(&counters.spare_3, 0u);
 }

@@ -8,10 +8,6 @@ struct BlockDepth { plane: DepthPlane }
 fn large_depth_prepare(index: u32, begin: vec2i, end: vec2i, p: vec2i) {
 }
 
-fn block_depth(plane: DepthPlane, a: vec2i, b: vec2i, c: vec2i, p: vec2i) -> BlockDepth {
-    return BlockDepth(plane);
-}
-
 fn block_depth_prepared(plane: DepthPlane, index: u32) -> BlockDepth {
     return BlockDepth(plane);
 }

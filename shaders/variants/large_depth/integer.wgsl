@@ -17,10 +17,6 @@ fn large_depth_prepare(index: u32, begin: vec2i, end: vec2i, p: vec2i) {
     large_depth_exact[index] = fixed_edge(begin, end, p);
 }
 
-fn block_depth(plane: DepthPlane, a: vec2i, b: vec2i, c: vec2i, p: vec2i) -> BlockDepth {
-    return BlockDepth(plane, fixed_edge(b, c, p), fixed_edge(c, a, p), fixed_edge(a, b, p));
-}
-
 fn block_depth_prepared(plane: DepthPlane, index: u32) -> BlockDepth {
     return BlockDepth(plane, large_depth_exact[index], large_depth_exact[index + 1u], large_depth_exact[index + 2u]);
 }

@@ -16,7 +16,7 @@ use crate::{
 pub(super) const BASIS: &[Feature] = &[FETCH, COVERAGE, FRAMEBUFFER, SMALL_PATH, OTHER_OPTIONS, DEPTH];
 
 pub(super) const FEATURES: &[Feature] =
-    &[CLEARS, HIDDEN_BLOCKS, QUEUES, MEDIUM_PATH, LARGE_PATH, BINS, TILE_LIST, SHAPE, SAMPLE_SETUPS, DRAW_ORDER, COUNTERS, SAMPLE_EFFECTS];
+    &[CLEARS, HIDDEN_BLOCKS, QUEUES, MEDIUM_PATH, LARGE_PATH, TILE_LIST, SHAPE, SAMPLE_SETUPS, DRAW_ORDER, COUNTERS, SAMPLE_EFFECTS];
 
 const FETCH: Feature = Feature {
     label: |key| if key.vertices.fetch == Fetch::Direct { "fetch=direct".into() } else { "fetch=indexed".into() },
@@ -64,7 +64,7 @@ fn framebuffer_layout(key: &KernelKey, _: Pass) -> &'static str {
     }
 }
 
-/// What a raster pass does with a sample. Passes that list triangles by tile write none.
+/// What a raster pass does with a sample.
 fn framebuffer_write(_: &KernelKey, pass: Pass) -> &'static str {
     match pass.phase() {
         Some(RasterPhase::Packed) => "packed64",
@@ -76,7 +76,7 @@ fn framebuffer_write(_: &KernelKey, pass: Pass) -> &'static str {
         Some(RasterPhase::BoundaryTriangle) => "boundary_samples",
         Some(RasterPhase::Sum) => "xray",
         Some(RasterPhase::Race) => "race",
-        Some(RasterPhase::BinCount | RasterPhase::BinFill | RasterPhase::Tiles) | None => NO_STEP,
+        None => NO_STEP,
     }
 }
 
@@ -165,28 +165,6 @@ fn largest_triangle(needs: &Needs) -> String {
     format!("no triangle exceeds {:.1} px", needs.largest_px)
 }
 
-const BINS: Feature = Feature {
-    variants: &[
-        ("small_triangle", drawn_or_listed),
-        ("discs", drawn_or_listed),
-        ("tile_triangle", |key, _| match key.samples.shape {
-            Shape::Points => "points",
-            Shape::Triangles if key.paths.has_large => "all",
-            Shape::Triangles | Shape::Boxes => "small",
-        }),
-    ],
-    constants: &[
-        ("FILLS_LISTS", |_, pass| flag(pass.phase() == Some(RasterPhase::BinFill))),
-        ("IS_LARGE", |_, pass| flag(matches!(pass, Pass::BinLarge(_)))),
-        ("MAX_LIST_ENTRIES", |key, _| key.work.max_list_entries.into()),
-    ],
-    ..Feature::NONE
-};
-
-fn drawn_or_listed(_: &KernelKey, pass: Pass) -> &'static str {
-    stem_if(pass.phase().is_some_and(RasterPhase::is_bin), "tiles")
-}
-
 /// The list of the tiles that a triangle touches, which the resolve then visits.
 const TILE_LIST: Feature = Feature {
     variants: &[("mark_tiles", |key, pass| {
@@ -206,9 +184,7 @@ const SHAPE: Feature = Feature {
     },
     constants: &[
         ("SHAPE", |key, _| (key.samples.shape as u32).into()),
-        ("INVOCATIONS_PER_TRIANGLE", |key, pass| {
-            if pass.phase().is_some_and(RasterPhase::is_bin) { 1.0 } else { key.work.invocations_per_triangle.into() }
-        }),
+        ("INVOCATIONS_PER_TRIANGLE", |key, _| key.work.invocations_per_triangle.into()),
     ],
     ..Feature::NONE
 };

@@ -1,6 +1,7 @@
 //! Promise: a preset of every older schema loads, and is written in the newest one.
 
 use rasterlab::{
+    accuracy::Visibility,
     preset::Preset,
     preset_file::{self, PresetFile},
 };
@@ -88,4 +89,16 @@ fn set_with_a_name_of_an_older_schema_suggests_the_new_one() {
         assert!(error.contains(wanted), "{error}");
     }
     assert_eq!(preset_file.preset, Preset::default());
+}
+
+/// Pictures of the tiled rasterizer were those of split32, which is faster on every adapter that was measured.
+#[test]
+fn a_withdrawn_word_becomes_the_one_that_draws_the_same() {
+    for schema in 1..=2 {
+        let text = format!("schema = {schema}\n\n[accuracy]\nvisibility = \"tiled\" # by tiles\n");
+        let loaded = parse(&text);
+        assert_eq!(loaded.preset.accuracy.pins.option::<Visibility>(), Some(Visibility::Split32));
+        assert_eq!(loaded.warnings, Vec::<String>::new());
+        assert_eq!(preset_file::to_toml(&loaded), "schema = 2\n\n[accuracy]\nvisibility = \"split32\" # by tiles\n");
+    }
 }
