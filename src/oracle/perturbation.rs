@@ -5,6 +5,8 @@
 //! bound; answers between those pictures are right (`docs/exactness.md` §9). The bounds themselves stand where the quantity is
 //! computed.
 
+use glam::DVec3;
+
 /// By how much a picture differs from the straight one, in error bounds. Zero draws the picture itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Perturbation {
@@ -19,18 +21,15 @@ pub struct Perturbation {
 /// from which the place is computed.
 pub type PlacePerturbation = [f64; 4];
 
-/// Offset of what is interpolated from corners: the normal in x, y and z of world space, and the depth, each in error bounds.
-pub type InterpolatedPerturbation = [f64; 4];
-
-/// How far what is interpolated at a sample may err.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Doubt {
-    /// Not so far that a color shows it.
-    None,
-    /// So little that colors change in proportion.
-    Narrow,
-    /// So far that first-order bounds say nothing of colors.
-    Wide,
+/// Offsets of what is interpolated from corners.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct InterpolatedPerturbation {
+    /// Added to the unit normal, world space.
+    pub normal: DVec3,
+    /// Added to the unit normal of the triangle's plane.
+    pub plane: DVec3,
+    /// Of the depth, as a fraction of it.
+    pub depth: f64,
 }
 
 /// Offset of texture lookups: across, down, and in the level of detail, each in error bounds.

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::{
     super::{
-        perturbation::{Doubt, Perturbation},
+        perturbation::Perturbation,
         render::{
             draw_order::ranks,
             layers::LayerImage,
@@ -25,6 +25,7 @@ use super::{
     },
     layers::LayerBounds,
     perturbations::{WIDE_SLACK, color_steps, has_textures, interpolations, is_far, perturbations},
+    surface::{CornerErrors, Doubt},
 };
 use crate::{effects::Surface, frame::Geometry};
 
@@ -82,15 +83,16 @@ impl AcceptedColors {
             let id = input.triangle_ids[i];
             let triangle = SurfaceTriangle::new(shot, geometry, id)?;
             let (x, y) = (i % shot.view.width as usize, i / shot.view.width as usize);
-            let doubt = triangle.doubt(x, y);
+            let errors = CornerErrors::of(shot, id, geometry.packed_bits).at(&triangle, x, y);
             let rank = ranks.get(id as usize).copied().unwrap_or(0.0);
             let finished = |perturbation: Perturbation| {
                 let surface = triangle.surface(x, y, &perturbation);
                 let color = shaded(shot, &triangle, Surface { rank, ..surface }, light.as_ref(), perturbation.color_step);
                 finish.pixel(i, color, perturbation.color_step)
             };
-            let [least, most] = span(interpolations(shot.stack, doubt).map(finished))?;
-            let slack = |c: usize| if doubt == Doubt::Wide { (f64::from(most[c] - least[c]) * WIDE_SLACK).ceil() as u8 } else { 0 };
+            let [least, most] = span(interpolations(shot.stack, errors).map(finished))?;
+            let slack =
+                |c: usize| if errors.doubt() == Doubt::Wide { (f64::from(most[c] - least[c]) * WIDE_SLACK).ceil() as u8 } else { 0 };
             let wide = [[0, 1, 2, 3].map(|c| least[c].saturating_sub(slack(c))), [0, 1, 2, 3].map(|c| most[c].saturating_add(slack(c)))];
             Some((i, span(self.pictures.iter().map(|picture| picture[i]).chain(wide))?))
         };

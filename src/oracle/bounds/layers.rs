@@ -6,7 +6,7 @@ use glam::{DVec3, DVec4};
 
 use super::{
     super::{
-        perturbation::{Doubt, Perturbation},
+        perturbation::Perturbation,
         render::{
             coverage::{Hit, scatter},
             draw_order::ranks,
@@ -17,6 +17,7 @@ use super::{
     },
     coverage::depth_interval,
     perturbations::{WIDE_SLACK, interpolations, perturbations},
+    surface::{CornerErrors, Doubt},
 };
 use crate::effects::{Surface, xray, xray::Xray};
 
@@ -80,7 +81,7 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<SumBounds> {
     let perturbations = perturbations(input.shot.scene, view, stack);
     let (ranks, light, perturbations) = (&ranks, light.as_ref(), &perturbations);
     scatter(input.tests, input.triangles, view, &mut sums, |triangle| {
-        let mut surface: Option<Option<SurfaceTriangle<'_>>> = None;
+        let mut surface: Option<Option<(SurfaceTriangle<'_>, CornerErrors)>> = None;
         let rank = ranks.get(triangle.id as usize).copied().unwrap_or(0.0);
         move |sum: &mut SumBounds, x: usize, y: usize, hit: Hit| {
             let pixel = y * view.width as usize + x;
@@ -91,10 +92,14 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<SumBounds> {
             if high < threshold && !is_nearest {
                 return;
             }
-            let Some(known) = surface.get_or_insert_with(|| SurfaceTriangle::new(&input.shot, input.geometry, triangle.id)) else { return };
+            let of_triangle = || {
+                let known = SurfaceTriangle::new(&input.shot, input.geometry, triangle.id)?;
+                Some((known, CornerErrors::of(&input.shot, triangle.id, input.geometry.packed_bits)))
+            };
+            let Some((known, errors)) = surface.get_or_insert_with(of_triangle) else { return };
             let lit_point = known.lit_point(&known.surface(x, y, &Perturbation::default()));
-            let doubt = known.doubt(x, y);
-            let mut shaded = perturbations.iter().copied().chain(interpolations(stack, doubt)).map(|perturbation| {
+            let errors = errors.at(known, x, y);
+            let mut shaded = perturbations.iter().copied().chain(interpolations(stack, errors)).map(|perturbation| {
                 let step = perturbation.color_step;
                 let lit = light.map_or(0.0, |light| light.arrives(&lit_point, triangle.id, step));
                 let surface = Surface { rank, lit, step_offset: step, ..known.surface(x, y, &perturbation) };
@@ -107,7 +112,7 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<SumBounds> {
                 let (color, weight) = (shaded.color.truncate(), params.weight_of(&shaded));
                 ([least.min(color), most.max(color)], [lightest.min(weight), heaviest.max(weight)])
             });
-            let slack = if doubt == Doubt::Wide { WIDE_SLACK } else { 0.0 };
+            let slack = if errors.doubt() == Doubt::Wide { WIDE_SLACK } else { 0.0 };
             let (color_slack, weight_slack) = ((colors[1] - colors[0]) * slack, (weights[1] - weights[0]) * slack);
             let colors = [(colors[0] - color_slack).max(DVec3::ZERO), colors[1] + color_slack];
             let weights = [(weights[0] - weight_slack).max(0.0), (weights[1] + weight_slack).min(f64::from(params.unit()))];

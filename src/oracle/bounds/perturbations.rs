@@ -4,7 +4,10 @@ use std::sync::LazyLock;
 
 use glam::DVec3;
 
-use super::super::perturbation::{Doubt, InterpolatedPerturbation, Perturbation, PlacePerturbation, TexturePerturbation};
+use super::{
+    super::perturbation::{Perturbation, PlacePerturbation, TexturePerturbation},
+    surface::{Doubt, SampleErrors},
+};
 use crate::{
     effects::{Stack, hooks::Slot},
     scene::{Scene, view::View},
@@ -36,8 +39,9 @@ const PLACES: [PlacePerturbation; 9] = {
 /// color by at most √3 + 1 times as much as the one of these four numbers that matters most does alone.
 const INTERPOLATED: f64 = 2.75;
 
-/// All perturbations of what is interpolated, where colors change in proportion.
-const INTERPOLATIONS: [InterpolatedPerturbation; 8] = {
+/// All perturbations of what is interpolated, where colors change in proportion: of the normal in x, y and z, and of the depth, each in
+/// error bounds.
+const INTERPOLATIONS: [[f64; 4]; 8] = {
     let mut interpolations = [[0.0; 4]; 8];
     let mut axis = 0;
     while axis < 4 {
@@ -50,7 +54,7 @@ const INTERPOLATIONS: [InterpolatedPerturbation; 8] = {
 
 /// Perturbations of what is interpolated where colors do not change in proportion: normals all over the cone in which they lie, depths
 /// all over their interval, and both together.
-static WIDE_INTERPOLATIONS: LazyLock<Vec<InterpolatedPerturbation>> = LazyLock::new(|| {
+static WIDE_INTERPOLATIONS: LazyLock<Vec<[f64; 4]>> = LazyLock::new(|| {
     const DIRECTIONS: u32 = 96;
     // Interval of a direction in z, and the golden angle: directions that are evenly spread on a sphere.
     let direction = |i: u32| {
@@ -100,15 +104,15 @@ pub fn perturbations(scene: &Scene, view: &View, stack: &Stack) -> Vec<Perturbat
     color_steps(stack).iter().flat_map(with_step).collect()
 }
 
-/// The perturbations of what is interpolated, for each perturbation of color steps.
-pub fn interpolations(stack: &Stack, doubt: Doubt) -> impl Iterator<Item = Perturbation> {
-    let offsets = match doubt {
+/// The perturbations of what is interpolated with these errors, for each perturbation of color steps.
+pub fn interpolations(stack: &Stack, errors: SampleErrors) -> impl Iterator<Item = Perturbation> {
+    let offsets = match errors.doubt() {
         Doubt::None => &[],
         Doubt::Narrow => INTERPOLATIONS.as_slice(),
         Doubt::Wide => WIDE_INTERPOLATIONS.as_slice(),
     };
     let with_step = move |&color_step: &f64| {
-        offsets.iter().map(move |&interpolated| Perturbation { color_step, interpolated, ..Perturbation::default() })
+        offsets.iter().map(move |&times| Perturbation { color_step, interpolated: errors.times(times), ..Perturbation::default() })
     };
     color_steps(stack).iter().flat_map(with_step)
 }

@@ -7,7 +7,11 @@ use glam::DVec3;
 
 use super::{
     super::{
-        render::vertex::{Corner, VertexEvaluator},
+        perturbation::InterpolatedPerturbation,
+        render::{
+            surface::{Interpolation, SurfaceTriangle},
+            vertex::{Corner, VertexEvaluator},
+        },
         shot::Shot,
     },
     vertex::VertexBounds,
@@ -21,7 +25,7 @@ const ANY_DIRECTION: f64 = 2.0;
 #[derive(Clone, Copy, Debug)]
 pub struct CornerErrors {
     /// Of x, y and w in clip space.
-    pub clip: [DVec3; 3],
+    clip: [DVec3; 3],
     /// Of displacements, meters.
     offsets_m: [f64; 3],
     /// Of the directions of normals.
@@ -32,9 +36,45 @@ pub struct CornerErrors {
 #[derive(Clone, Copy, Debug)]
 pub struct SampleErrors {
     /// Of the direction of the interpolated normal.
-    pub normal: f64,
+    normal: f64,
+    /// Of the direction of the plane.
+    plane: f64,
     /// Of the depth, relative to it.
-    pub depth: f64,
+    depth: f64,
+}
+
+/// How far what is interpolated at a sample may err.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Doubt {
+    /// Not so far that a color shows it.
+    None,
+    /// So little that colors change in proportion.
+    Narrow,
+    /// So far that first-order bounds say nothing of colors.
+    Wide,
+}
+
+impl SampleErrors {
+    pub fn doubt(&self) -> Doubt {
+        // A sixteenth of a step of 255, in the dark, where gamma encoding is 13 times as steep.
+        const VISIBLE: f64 = 1.0 / (1 << 16) as f64;
+        // A color that has its maximum there falls by half of the square: half a step of 255.
+        const LINEAR: f64 = 1.0 / 16.0;
+        match self.normal.max(self.plane).max(self.depth) {
+            error if error > LINEAR => Doubt::Wide,
+            error if error > VISIBLE => Doubt::Narrow,
+            _ => Doubt::None,
+        }
+    }
+
+    /// The normals turned and the depth stretched by so many of these bounds: x, y and z of world space, and the depth.
+    pub fn times(&self, [turn @ .., stretch]: [f64; 4]) -> InterpolatedPerturbation {
+        let turn = DVec3::from(turn);
+        let depth = stretch * self.depth;
+        // As far below as above, in proportion: a depth stays positive.
+        let depth = if depth < 0.0 { depth / (1.0 - depth) } else { depth };
+        InterpolatedPerturbation { normal: turn * self.normal, plane: turn * self.plane, depth }
+    }
 }
 
 impl CornerErrors {
@@ -54,11 +94,12 @@ impl CornerErrors {
         Self { clip, offsets_m: moved.map(|bound| bound.offset_m), normals: moved.map(|bound| bound.normal) }
     }
 
-    /// At a sample with these weights, which err by `errors`. `depths` are those of the corners as parts of that of the sample; `normals`
-    /// are in world space, of any length.
+    /// At the center of a pixel of the same triangle.
     ///
     /// However far the weights err, a renderer clamps them from 0 to 1 with a sum of 1, so what they mix lies between the corners'.
-    pub fn at(&self, weights: [f64; 3], errors: [f64; 3], depths: [f64; 3], normals: Option<[DVec3; 3]>) -> SampleErrors {
+    pub fn at(&self, triangle: &SurfaceTriangle, x: usize, y: usize) -> SampleErrors {
+        let Interpolation { weights, depths, normals, displaced } = triangle.interpolation(x, y);
+        let errors = triangle.weight_errors(x, y, &self.clip);
         let mixed = |differences: [f64; 3]| {
             let sum: f64 = (0..3).map(|k| errors[k] * differences[k]).sum();
             sum.min(largest(differences))
@@ -69,11 +110,12 @@ impl CornerErrors {
             let of_corners = (0..3).map(|k| (weights[k].abs() + errors[k]) * own[k]).sum::<f64>().min(largest(own));
             relative(mixed(normals.map(|normal| (normal - middle).length())) + of_corners, middle.length())
         });
-        SampleErrors { normal, depth: mixed(depths.map(|depth| (depth - 1.0).abs())) }
+        let plane = displaced.map_or(0.0, |corners| self.plane(corners));
+        SampleErrors { normal, plane, depth: mixed(depths.map(|depth| (depth - 1.0).abs())) }
     }
 
     /// Of the direction of the plane through the displaced corners.
-    pub fn plane(&self, [a, b, c]: [DVec3; 3]) -> f64 {
+    fn plane(&self, [a, b, c]: [DVec3; 3]) -> f64 {
         let (ab, ac) = (b - a, c - a);
         let error = |k: usize, edge: DVec3| self.offsets_m[0] + self.offsets_m[k] + 8.0 * ROUNDING * edge.length();
         relative(ab.length() * error(2, ac) + ac.length() * error(1, ab), ab.cross(ac).length())

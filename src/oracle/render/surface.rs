@@ -3,16 +3,13 @@
 use glam::{DMat3, DVec2, DVec3, DVec4};
 use rayon::prelude::*;
 
-use std::cell::OnceCell;
-
 use super::{
     super::{
         arithmetic::{
             bits,
             vector::{DEGENERATE, plane_normal},
         },
-        bounds::surface::CornerErrors,
-        perturbation::{Doubt, Perturbation},
+        perturbation::Perturbation,
         shot::Shot,
         work::checkpoint,
     },
@@ -116,12 +113,19 @@ pub struct SurfaceTriangle<'a> {
     shape: Shape,
     /// If corners are drawn as points: their records, and the radius of their discs in sub-pixel units.
     points: Option<([SnappedVertex; 3], i64)>,
-    shot: Shot<'a>,
-    packed_bits: Option<u32>,
-    /// Asked for only where a picture is in doubt.
-    errors: OnceCell<CornerErrors>,
     /// The plane is that of displaced corners.
     is_deformed: bool,
+}
+
+/// What the corners of a triangle mix at a sample.
+pub struct Interpolation {
+    pub weights: [f64; 3],
+    /// Of the corners, as parts of that of the sample.
+    pub depths: [f64; 3],
+    /// Of the corners, world space, of any length; none if one has no finite normal.
+    pub normals: Option<[DVec3; 3]>,
+    /// The corners, if the plane is that of displaced ones, meters.
+    pub displaced: Option<[DVec3; 3]>,
 }
 
 impl<'a> SurfaceTriangle<'a> {
@@ -162,9 +166,6 @@ impl<'a> SurfaceTriangle<'a> {
             center_screen: screen.center,
             shape: stack.shape(),
             points: (stack.shape() == Shape::Points).then_some((records, stack.point_radius().into())),
-            shot: *shot,
-            packed_bits: geometry.packed_bits,
-            errors: OnceCell::new(),
             is_deformed: false,
         };
         if evaluator.moves {
@@ -202,13 +203,10 @@ impl<'a> SurfaceTriangle<'a> {
         let weights = self.weights.at(&point);
         let (barycentrics, edge_distance_px) = self.weights.on_screen(&point, view);
         let [x, y, z, along] = perturbation.place.map(|roundings| roundings * ROUNDING);
-        let [turn @ .., stretch] = perturbation.interpolated;
-        let depth_m = mixed(weights, self.depths_m) * (1.0 + along);
-        let [normal_error, plane_error, depth_error] =
-            if perturbation.interpolated == [0.0; 4] { [0.0; 3] } else { self.errors(&point, weights) };
-        let depth_m = if stretch < 0.0 { depth_m / (1.0 - stretch * depth_error) } else { depth_m * (1.0 + stretch * depth_error) };
+        let moved = perturbation.interpolated;
+        let depth_m = mixed(weights, self.depths_m) * (1.0 + along) * (1.0 + moved.depth);
         // Where nothing is turned, the normal keeps its bits.
-        let turned = |normal: DVec3, error: f64| match DVec3::from(turn) * error {
+        let turned = |normal: DVec3, turn: DVec3| match turn {
             DVec3::ZERO => normal,
             turn => (normal + turn).try_normalize().unwrap_or(normal),
         };
@@ -221,8 +219,8 @@ impl<'a> SurfaceTriangle<'a> {
             None => -(view.forward + across(view, point.screen)).normalize(),
         };
         let smooth = self.normals.and_then(|normals| self.smooth_normal(weights, normals));
-        let flat_normal = self.flat_normal.map(|normal| turned(normal, plane_error));
-        let normal = smooth.map(|normal| turned(normal, normal_error)).or(flat_normal).unwrap_or(toward_eye);
+        let flat_normal = self.flat_normal.map(|normal| turned(normal, moved.plane));
+        let normal = smooth.map(|normal| turned(normal, moved.normal)).or(flat_normal).unwrap_or(toward_eye);
         let base = mixed(weights, self.colors);
         let textured = self
             .material
@@ -254,28 +252,23 @@ impl<'a> SurfaceTriangle<'a> {
         }
     }
 
-    /// Bounds of the errors in f32 of the directions of the interpolated normal and of the plane's, and of the depth, relative to it.
-    fn errors(&self, point: &SamplePoint, weights: [f64; 3]) -> [f64; 3] {
-        let corners = self.errors.get_or_init(|| CornerErrors::of(&self.shot, self.id, self.packed_bits));
+    /// What is interpolated at the center of a pixel, and from what.
+    pub fn interpolation(&self, x: usize, y: usize) -> Interpolation {
+        let point = self.sample_point(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+        let weights = self.weights.at(&point);
         let depth_m = mixed(weights, self.depths_m);
-        let normals = self.normals.map(|normals| normals.map(|normal| self.world_from_normal * normal));
-        let of_weights = self.weights.errors_from(&corners.clip, weights, point);
-        let at = corners.at(weights, of_weights, self.depths_m.map(|depth| depth / depth_m), normals);
-        [at.normal, if self.is_deformed { corners.plane(self.positions) } else { 0.0 }, at.depth]
+        Interpolation {
+            weights,
+            depths: self.depths_m.map(|depth| depth / depth_m),
+            normals: self.normals.map(|normals| normals.map(|normal| self.world_from_normal * normal)),
+            displaced: self.is_deformed.then_some(self.positions),
+        }
     }
 
-    /// How far the interpolated normal, the plane and the depth at a pixel may err in f32.
-    pub fn doubt(&self, x: usize, y: usize) -> Doubt {
-        // A sixteenth of a step of 255, in the dark, where gamma encoding is 13 times as steep.
-        const VISIBLE: f64 = 1.0 / (1 << 16) as f64;
-        // A color that has its maximum there falls by half of the square: half a step of 255.
-        const LINEAR: f64 = 1.0 / 16.0;
+    /// How far the weights at the center of a pixel may err, where the corners err by so much in x, y and w of clip space.
+    pub fn weight_errors(&self, x: usize, y: usize, clip_errors: &[DVec3; 3]) -> [f64; 3] {
         let point = self.sample_point(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
-        match self.errors(&point, self.weights.at(&point)).into_iter().fold(0.0, f64::max) {
-            error if error > LINEAR => Doubt::Wide,
-            error if error > VISIBLE => Doubt::Narrow,
-            _ => Doubt::None,
-        }
+        self.weights.errors_from(clip_errors, self.weights.at(&point), &point)
     }
 
     fn sample_point(&self, pixel: DVec2) -> SamplePoint {
