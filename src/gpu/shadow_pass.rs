@@ -17,7 +17,7 @@ use super::{
     view_resources::{Request, ViewResources},
 };
 use crate::{
-    accuracy::{Culling, PinnedOptions, Visibility},
+    accuracy::{Coverage, Culling, DepthFormat, PinnedOptions, VertexTransform, Visibility},
     effects::Stack,
     plan::{AccuracyRequest, Note},
     scene::view::View,
@@ -52,8 +52,7 @@ impl ShadowPass {
             Some(Self { resources, uniform, map, .. }) => (resources, uniform, Some(map)),
             None => (ViewResources::new(Target::ShadowMap, Some(scene.scene())), Buffers::default(), None),
         };
-        let pins = PinnedOptions::of(Visibility::Split32).with(Culling::None);
-        let accuracy = AccuracyRequest { pins, ..AccuracyRequest::default() };
+        let accuracy = AccuracyRequest { pins: pins(), ..AccuracyRequest::default() };
         let shown = [view.width, view.height];
         let request = Request { view: &view, stack: &stack.shadow_casters(), accuracy: &accuracy, shown, fewer_bits: None };
         resources.prepare(device, scene, &request)?;
@@ -105,6 +104,16 @@ impl ShadowPass {
     }
 }
 
+/// The options that every shadow map is drawn with, as the oracle takes for granted. A planner would choose cheaper ones where a light sees its
+/// scene edge-on: nothing is covered then, and nothing can be wrong.
+fn pins() -> PinnedOptions {
+    PinnedOptions::of(Visibility::Split32)
+        .with(Culling::None)
+        .with(Coverage::Fixed8)
+        .with(VertexTransform::Snapped)
+        .with(DepthFormat::Reversed)
+}
+
 fn new_map(gpu: &Gpu, side: u32) -> Result<WordTexture, RenderError> {
     let size = wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 };
     WordTexture::new(gpu, TextureId::ShadowMap, size, wgpu::TextureViewDimension::D2)
@@ -127,5 +136,42 @@ impl ShadowMapUniform {
             side: view.width,
             spare: 0,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use glam::{DMat4, DVec3};
+
+    use super::*;
+    use crate::{
+        accuracy::AccuracyOptions,
+        plan::{Caps, Planner},
+        scene::{builtin, camera::Camera, light::light_view, needs::Needs},
+    };
+
+    #[test]
+    fn a_scene_seen_edge_on_is_drawn_with_the_options_of_every_shadow_map() {
+        let scene = builtin::build("slivers").unwrap();
+        let picture = View::new(&Camera::default(), 64, 64, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
+        let light = light_view(DVec3::Y, &scene, &picture, 0.0);
+        let stack = Stack::default();
+        let needs = Arc::new(Needs::of(&scene, &stack.draws(&scene, &light).unwrap(), &light));
+        let options = |pins: PinnedOptions| -> AccuracyOptions {
+            let request = AccuracyRequest { pins, ..AccuracyRequest::default() };
+            Planner::default().plan(&needs, &stack, &Caps::ALL, &Caps::ALL.tuning(), &request).unwrap().key.options
+        };
+        assert_eq!(
+            options(PinnedOptions::of(Visibility::Split32)).coverage,
+            Coverage::Fixed4,
+            "nothing is covered, so nothing can be wrong"
+        );
+        let drawn = options(pins());
+        assert_eq!(
+            (drawn.coverage, drawn.vertex_transform, drawn.depth),
+            (Coverage::Fixed8, VertexTransform::Snapped, DepthFormat::Reversed)
+        );
     }
 }
