@@ -1,11 +1,9 @@
-//! Background work: threads that yield the processor to the window, and a pool of their own for the oracle's pictures.
+//! Background work: threads that yield the processor to the window, and pools of their own for the oracle's pictures.
 //!
 //! The window's thread uses the common pool for moments (a pick, the image of an overlay). A picture of the oracle there would keep it
 //! waiting, for seconds with a large one.
 
-use std::sync::OnceLock;
-
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::ThreadPoolBuilder;
 
 /// Who goes first when the processor is short, most urgent first. The window itself comes before all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,23 +48,22 @@ pub fn started_as<T: Send>(urgency: Urgency, work: impl FnOnce() -> T + Send) ->
     })
 }
 
-/// Runs `work` in the pool for background work and waits for it; never on the thread of the window.
+/// Runs `work` in a pool of its own and waits for it; never on the thread of the window.
+///
+/// In a pool that all work shares, a thread that waits for the parts of one picture takes up other work meanwhile; that work may wait for a
+/// lock which the same thread holds.
 pub fn compute<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    static POOL: OnceLock<Option<ThreadPool>> = OnceLock::new();
-    let pool = POOL.get_or_init(|| {
-        let builder = ThreadPoolBuilder::new().thread_name(|i| format!("background {i}"));
-        builder.start_handler(|_| yield_processor(Urgency::Later)).build().ok()
-    });
-    match pool {
-        Some(pool) => pool.install(work),
-        None => work(),
+    let builder = ThreadPoolBuilder::new().thread_name(|i| format!("background {i}"));
+    match builder.start_handler(|_| yield_processor(Urgency::Later)).build() {
+        Ok(pool) => pool.install(work),
+        Err(_) => work(),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use std::{
-        sync::mpsc,
+        sync::{Arc, Mutex, mpsc},
         thread::ThreadId,
         time::{Duration, Instant},
     };
@@ -90,8 +87,7 @@ mod tests {
                     });
                 });
             }
-            // Every thread of the background pool is busy now.
-            for _ in 0..threads {
+            for _ in 0..2 * threads {
                 release.1.recv_timeout(Duration::from_secs(20)).expect("it begins");
             }
             let begun = Instant::now();
@@ -99,6 +95,27 @@ mod tests {
             assert!(threads.len() == 1000 && begun.elapsed() < Duration::from_secs(10), "the common pool waits for the background");
             drop(held);
         });
+    }
+
+    #[test]
+    fn work_that_holds_a_lock_waits_for_no_other_work() {
+        let (lock, (end, ended)) = (Arc::new(Mutex::new(0)), mpsc::channel());
+        for _ in 0..8 {
+            let (lock, end) = (lock.clone(), end.clone());
+            // Detached, so that the test fails instead of waiting for ever.
+            std::thread::spawn(move || {
+                for _ in 0..20 {
+                    compute(|| {
+                        *lock.lock().expect("a lock") += (0..1000).into_par_iter().map(|i: u64| std::hint::black_box(i) % 2).sum::<u64>()
+                    });
+                }
+                let _ = end.send(());
+            });
+        }
+        for _ in 0..8 {
+            ended.recv_timeout(Duration::from_secs(60)).expect("the work ends");
+        }
+        assert_eq!(*lock.lock().expect("a lock"), 8 * 20 * 500);
     }
 
     #[cfg(target_os = "linux")]
