@@ -2,7 +2,7 @@
 // Mirrors `gpu::records::{FrameUniform, CounterRecord}`.
 
 struct Frame {
-    background: vec4f,       // gamma-encoded
+    background: vec4f,       // gamma-encoded; of a gradient the top row's
     eye: vec4f,              // world space; w is 1 for a perspective projection, 0 for an orthographic one
     forward: vec4f,          // viewing direction, unit length, world space
     ndc_x: vec4f,            // world-space vector of one unit of NDC x, per meter of depth for a perspective projection
@@ -28,7 +28,7 @@ struct Frame {
     point_radius: u32,       // units of 1/256 px; used only where vertices are drawn as discs
     first_rank: u32,         // first record of triangle ranks, behind the vertices and sample setups
     deform_count: u32,       // draws that are deformed
-    spare_0: u32,
+    background_first: u32,   // first row of a gradient, a word of the color buffer; 0 without one
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

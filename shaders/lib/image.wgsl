@@ -24,8 +24,9 @@ fn image_size() -> vec2u {
     return frame.size;
 }
 
+// Of the row of the pixel that is finished.
 fn image_background() -> vec4f {
-    return frame.background;
+    return background;
 }
 
 // Triangle id, depth bits and draw of a pixel; those of the nearest pixel of the picture for one outside.

@@ -34,7 +34,7 @@ impl ImageEffect for Smear {
         if triangle_id.is_some() {
             return pixel;
         }
-        let background = picture.background.to_array().map(|c| (255.0 * c + 0.5).floor() as i64);
+        let background = picture.background[pixel.y as usize].map(i64::from);
         let index = pixel.y as usize * picture.width as usize + pixel.x as usize;
         let previous = picture.previous.map_or(background, |previous| previous[index].map(i64::from));
         // In units of 2^-16; a trail that fades takes at least one step, so it ends.

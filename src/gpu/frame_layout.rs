@@ -16,7 +16,7 @@ use super::{
 use crate::{
     accuracy::{Culling, DotCulling},
     effects::{draw_order::Mode, hooks::Layers},
-    math::{rounded_columns, srgb_byte},
+    math::rounded_columns,
     scene::view::View,
     shader::{
         key::{FramebufferLayout, KernelKey},
@@ -81,6 +81,8 @@ pub struct LayoutInputs<'a> {
     pub size: [u32; 2],
     /// Width and height that are shown, pixels.
     pub shown: [u32; 2],
+    /// The background has a color for every row.
+    pub has_gradient: bool,
     pub scene: SceneCounts,
     pub dots: Option<DotCounts>,
     /// Bytes of the effects' parameters; 0 where no uniform carries them.
@@ -112,6 +114,8 @@ pub enum Region {
     TileList,
     /// The strongest dot on every pixel; behind the picture.
     DotStrengths,
+    /// A color for every row of a gradient; behind all else of the picture.
+    BackgroundRows,
     ClipQueue,
     MediumQueue,
     LargeQueue,
@@ -177,8 +181,8 @@ const MOST_PARTS: u32 = 4;
 /// Most pixels that an invocation of the first pass clears.
 const CLEARED_PIXELS: u64 = 4;
 
-/// Rows of the background that are kept, to be copied all over the picture.
-pub const BACKGROUND_ROWS: u32 = 32;
+/// Rows of a background of one color that are kept, to be copied all over the picture.
+const BACKGROUND_ROWS: u32 = 32;
 
 /// The layout of a frame: its buffers, their regions and cleared bytes, and the workgroups of every pass.
 #[derive(Clone, Debug, PartialEq)]
@@ -188,6 +192,7 @@ pub struct FrameLayout {
     pub target: Target,
     pub size: [u32; 2],
     pub shown: [u32; 2],
+    pub has_gradient: bool,
     pub scene: SceneCounts,
     pub dots: Option<DotCounts>,
     /// Capacity of the queues that the key's passes have.
@@ -196,8 +201,9 @@ pub struct FrameLayout {
 
 impl FrameLayout {
     pub fn new(inputs: &LayoutInputs<'_>) -> Self {
-        let LayoutInputs { key, target, size, shown, scene, dots, effect_bytes, capacities } = inputs.clone();
-        let mut layout = Self { buffers: BTreeMap::new(), regions: BTreeMap::new(), target, size, shown, scene, dots, capacities };
+        let LayoutInputs { key, target, size, shown, has_gradient, scene, dots, effect_bytes, capacities } = inputs.clone();
+        let (buffers, regions) = (BTreeMap::new(), BTreeMap::new());
+        let mut layout = Self { buffers, regions, target, size, shown, has_gradient, scene, dots, capacities };
         layout.add_uniforms(key, effect_bytes);
         layout.add_geometry(key);
         layout.add_queues(key);
@@ -422,12 +428,15 @@ impl FrameLayout {
         let rows = |[width, height]: [u32; 2]| WORD * u64::from(color_stride(width)) * u64::from(height);
         let picture = rows(self.size);
         let tiles = if key.work.listed_tiles { WORD * self.tile_count(RESOLVE_TILE) } else { 0 };
+        let gradient = if self.has_gradient { vec![(Region::BackgroundRows, WORD * u64::from(self.size[1]))] } else { Vec::new() };
+        let with_gradient = |regions: [(Region, u64); 2]| [&regions[..], &gradient].concat();
         if key.effects.dots.is_some() {
-            self.add_regions(BufferId::Color, &[(Region::Pixels, picture), (Region::DotStrengths, WORD * self.pixels())]);
+            let strengths = WORD * self.pixels();
+            self.add_regions(BufferId::Color, &with_gradient([(Region::Pixels, picture), (Region::DotStrengths, strengths)]));
             self.describe(BufferId::Color, "the picture, 4 bytes per pixel, and as many for the strongest dot on each");
             self.clear_only(BufferId::Color, Some(Region::DotStrengths));
         } else {
-            self.add_regions(BufferId::Color, &[(Region::Pixels, picture), (Region::TileList, tiles)]);
+            self.add_regions(BufferId::Color, &with_gradient([(Region::Pixels, picture), (Region::TileList, tiles)]));
             self.describe(BufferId::Color, "the picture, 4 bytes per pixel, and the list of tiles to resolve");
             self.clear_only(BufferId::Color, None);
         }
@@ -438,8 +447,13 @@ impl FrameLayout {
             self.add(BufferId::Previous, picture);
         }
         if key.work.listed_tiles || key.reads_previous() {
-            self.add(BufferId::Background, rows([self.size[0], BACKGROUND_ROWS]));
+            self.add(BufferId::Background, rows([self.size[0], self.background_rows()]));
         }
+    }
+
+    /// Rows of the background that are kept, to be copied all over the picture.
+    pub fn background_rows(&self) -> u32 {
+        if self.has_gradient { self.size[1] } else { BACKGROUND_ROWS }
     }
 
     fn add_dots(&mut self, key: &KernelKey) {
@@ -479,6 +493,7 @@ impl FrameLayout {
             point_radius,
             first_rank: self.first_record(Region::TriangleRanks),
             deform_count: self.scene.deforms as u32,
+            background_first: self.first_word(Region::BackgroundRows),
             ..FrameUniform::of_view(view)
         }
     }
@@ -582,11 +597,9 @@ impl FrameUniform {
     /// Size and viewpoint of a picture; what its layout adds is 0.
     pub fn of_view(view: &View) -> Self {
         let is_perspective = view.linear_depth_m.is_none();
-        let [r, g, b, alpha] = view.background;
-        let encoded = [r, g, b].map(|c| f32::from(srgb_byte(f64::from(c))) / 255.0);
         let wide = |v: glam::DVec3, w: f32| [v.x as f32, v.y as f32, v.z as f32, w];
         Self {
-            background: [encoded[0], encoded[1], encoded[2], alpha],
+            background: view.background.row(0, view.height).map(|byte| f32::from(byte) / 255.0),
             eye: wide(view.eye, f32::from(u8::from(is_perspective))),
             forward: wide(view.forward, 0.0),
             ndc_x: wide(view.ndc_axes[0], 0.0),

@@ -3,7 +3,7 @@
 use super::{
     buffers::Buffers,
     error::RenderError,
-    frame_layout::{BACKGROUND_ROWS, FrameLayout, Region},
+    frame_layout::{FrameLayout, Region},
     resource_id::{BufferId, ClearedBy},
     view_resources::ViewResources,
 };
@@ -121,7 +121,7 @@ pub fn fill_background(encoder: &mut wgpu::CommandEncoder, buffers: &Buffers, la
     let (from, to) = (buffers.get(BufferId::Background)?, buffers.get(BufferId::Color)?);
     let bytes = layout.region(Region::Pixels).map_or(0, |span| span.bytes.end);
     let height = u64::from(layout.size[1].max(1));
-    let step = bytes / height * u64::from(BACKGROUND_ROWS);
+    let step = bytes / height * u64::from(layout.background_rows());
     for first in (0..bytes).step_by(step.max(1) as usize) {
         encoder.copy_buffer_to_buffer(from, 0, to, first, step.min(bytes - first));
     }

@@ -37,7 +37,7 @@ gpu_record! {
         pub point_radius: u32,
         pub first_rank: u32,
         pub deform_count: u32,
-        pub spare_0: u32,
+        pub background_first: u32,
     }
 }
 

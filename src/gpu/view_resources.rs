@@ -9,7 +9,7 @@ use super::{
     dots::DotStore,
     draws::{DrawData, DrawInputs},
     error::RenderError,
-    frame_layout::{BACKGROUND_ROWS, FrameLayout, LayoutInputs, Target},
+    frame_layout::{FrameLayout, LayoutInputs, Region, Span, Target},
     queues::{Capacities, first_capacities, recorded_capacities},
     recording::{CommandList, Device, Resources, Timing},
     records::{CounterRecord, ScalingUniform},
@@ -19,9 +19,9 @@ use super::{
 use crate::{
     accuracy::PositionFormat,
     effects::{Stack, hooks::Layers},
-    math::{SUBPIXEL_BITS, srgb_byte},
+    math::SUBPIXEL_BITS,
     plan::{AccuracyRequest, Plan, Planner, Tuning},
-    scene::{Scene, draw::Draw, needs::Needs, parts::Scope, view::View},
+    scene::{Background, Scene, draw::Draw, needs::Needs, parts::Scope, view::View},
     shader::{glue::uniform_bytes, key::KernelKey, pass::Pass},
 };
 
@@ -73,8 +73,8 @@ pub struct ViewResources {
     planner: Planner,
     draw_data: Option<DrawData>,
     pub dots: Option<DotStore>,
-    /// Color and width of the rows in the background buffer.
-    background: Option<([u8; 4], u32)>,
+    /// The background whose rows the buffers hold, the size of the picture, and where the rows lie that the resolve reads.
+    background: Option<(Background, [u32; 2], Option<Span>)>,
     frame: Option<PreparedFrame>,
     commands: Option<CommandList>,
     /// The last call of `prepare` succeeded.
@@ -165,6 +165,7 @@ impl ViewResources {
             target: self.target,
             size: [view.width, view.height],
             shown: request.shown,
+            has_gradient: view.background.is_gradient(),
             scene: self.draw_data.as_ref().map(|data| data.counts).unwrap_or_default(),
             dots: self.dots.as_ref().map(DotStore::counts),
             effect_bytes: if has_parameters { parameters.len() as u64 } else { 0 },
@@ -173,7 +174,7 @@ impl ViewResources {
         let new = self.allocate(gpu, &layout)?;
         self.write_draw_data(gpu, scene, &layout, &new, is_changed)?;
         self.write_uniforms(gpu, &layout, &view, request.stack.point_radius(), &parameters)?;
-        self.write_background(gpu, &layout, &view, new.contains(&BufferId::Background))?;
+        self.write_background(gpu, &layout, &view, |id| new.contains(&id))?;
         if let Some(dots) = &mut self.dots {
             dots.write(gpu, &self.buffers, |id| new.contains(&id))?;
         }
@@ -308,20 +309,28 @@ impl ViewResources {
         uniforms.into_iter().filter(|(id, _)| layout.has(*id)).try_for_each(|(id, bytes)| self.buffers.write_at(gpu, id, 0, bytes))
     }
 
-    /// Writes the rows of background that are copied over the picture, where they changed.
-    fn write_background(&mut self, gpu: &Gpu, layout: &FrameLayout, view: &View, is_new: bool) -> Result<(), RenderError> {
-        if !layout.has(BufferId::Background) {
-            return Ok(());
+    /// Writes the rows of background that are copied over the picture, and those that the resolve reads, where they changed.
+    fn write_background(
+        &mut self,
+        gpu: &Gpu,
+        layout: &FrameLayout,
+        view: &View,
+        is_new: impl Fn(BufferId) -> bool,
+    ) -> Result<(), RenderError> {
+        let background = Some((view.background, layout.size, layout.region(Region::BackgroundRows).cloned()));
+        let is_changed = self.background != background;
+        if layout.has(BufferId::Background) && (is_changed || is_new(BufferId::Background)) {
+            let stride = color_stride(view.width) as usize;
+            let words: Vec<u8> = view.background.rows(layout.background_rows()).iter().flat_map(|row| row.repeat(stride)).collect();
+            self.buffers.write_at(gpu, BufferId::Background, 0, &words)?;
         }
-        let [r, g, b, alpha] = view.background.map(f64::from);
-        // As the resolve packs it.
-        let word = [srgb_byte(r), srgb_byte(g), srgb_byte(b), (alpha.clamp(0.0, 1.0) * 255.0 + 0.5) as u8];
-        let background = (word, color_stride(view.width));
-        if is_new || self.background != Some(background) {
-            let rows = word.repeat((background.1 * BACKGROUND_ROWS) as usize);
-            self.buffers.write_at(gpu, BufferId::Background, 0, &rows)?;
-            self.background = Some(background);
+        if let Some(span) = layout.region(Region::BackgroundRows)
+            && (is_changed || is_new(span.buffer))
+        {
+            let rows = view.background.rows(view.height);
+            self.buffers.write_at(gpu, span.buffer, span.bytes.start, bytemuck::cast_slice(&rows))?;
         }
+        self.background = background;
         Ok(())
     }
 

@@ -13,8 +13,7 @@ impl Preset {
     pub fn applied_to(&self, own: &Self) -> Self {
         // Every field is named, so that a new one must be given to the scene or to the look.
         let Self { scene, room, spin_deg_per_s, playback, camera, scene_camera, output: Output { size, .. }, .. } = own.clone();
-        let Self { name, about, tags, unit, polyline, clock, stack, animation, accuracy, output: Output { background, .. }, .. } =
-            self.clone();
+        let Self { name, about, tags, unit, polyline, clock, stack, animation, accuracy, output, .. } = self.clone();
         Self {
             name,
             about,
@@ -31,7 +30,7 @@ impl Preset {
             stack,
             animation,
             accuracy,
-            output: Output { size, background },
+            output: Output { size, ..output },
             test: None,
         }
     }

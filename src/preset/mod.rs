@@ -23,7 +23,7 @@ use crate::{
     effects::Stack,
     math::rotation_y,
     scene::{
-        Bounds, Scene,
+        Background, Bounds, Scene,
         camera::Camera,
         pose::{Motion, Pose, scene_from_nodes},
         shadow_resolution::ShadowResolution,
@@ -148,13 +148,22 @@ impl Clock {
 pub struct Output {
     /// Width and height in pixels, each 0 to 16,384.
     pub size: [u32; 2],
-    /// Linear RGBA.
+    /// Linear RGBA; of a gradient that of the top edge.
     pub background: [f32; 4],
+    /// Linear RGBA of the bottom edge; none: the background is one color.
+    pub background_bottom: Option<[f32; 4]>,
+}
+
+impl Output {
+    /// What pixels without a triangle show.
+    pub fn backdrop(&self) -> Background {
+        Background { top: self.background, bottom: self.background_bottom.unwrap_or(self.background) }
+    }
 }
 
 impl Default for Output {
     fn default() -> Self {
-        Self { size: [320, 240], background: [0.012, 0.014, 0.02, 1.0] }
+        Self { size: [320, 240], background: [0.012, 0.014, 0.02, 1.0], background_bottom: None }
     }
 }
 
@@ -357,7 +366,7 @@ impl Preset {
         let shadow = ShadowResolution::of(pins.option().unwrap_or_default(), pins.option().unwrap_or_default());
         let scene_state =
             SceneState { world_from_scene: spin, pose, polyline: preset.polyline.clone(), particles: preset.particle_timeline() };
-        let view = View::new(&preset.camera_for(scene, aspect), width, height, &bounds, spin, preset.output.background);
+        let view = View::new(&preset.camera_for(scene, aspect), width, height, &bounds, spin, preset.output.backdrop());
         View { scene_state, ..view }.with_shadow(shadow)
     }
 }

@@ -303,6 +303,12 @@ pub static OUTPUT: Section = Section {
         [
             Setting::new("size", ValueType::Size, "Width and height in pixels", field!(output.size)).range(0.0, 16_384.0),
             Setting::new("background", ValueType::Color, "Color where there is no triangle, linear RGBA", field!(output.background)),
+            Setting::new(
+                "background_bottom",
+                ValueType::Color,
+                "Color at the bottom edge: the background is a vertical gradient from background to it, in linear light",
+                option!(output.background_bottom),
+            ),
         ],
     ),
     presence: None,

@@ -4,6 +4,7 @@
 //! oracle both read it from there. Attributes that a file lacks (normals) are appended as more bytes by the loader.
 
 pub mod accessor;
+pub mod background;
 pub mod bounds;
 pub mod builtin;
 pub mod camera;
@@ -31,6 +32,7 @@ pub mod texture;
 pub mod view;
 
 pub use accessor::{Accessor, ComponentType};
+pub use background::Background;
 pub use bounds::Bounds;
 pub use material::Material;
 pub use model::{Instance, Primitive, Scene, SceneCamera, Topology};

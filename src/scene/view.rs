@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3, DVec4};
 
 use super::{
+    background::Background,
     bounds::Bounds,
     camera::{Camera, Projection},
     particle_discs::ParticleTimeline,
@@ -31,8 +32,8 @@ pub struct View {
     pub linear_depth_m: Option<[f64; 2]>,
     /// Nearest and farthest distance along `forward` of the scene's box; in a perspective not nearer than the near plane.
     pub depth_range_m: [f64; 2],
-    /// Linear RGBA of pixels without a triangle.
-    pub background: [f32; 4],
+    /// What pixels without a triangle show.
+    pub background: Background,
     /// Positions in the picture for which this view, a light's, draws a shadow map; none in a picture itself. A light sees back
     /// faces too, since they stop it as well.
     pub picture_from_world: Option<DMat4>,
@@ -71,7 +72,14 @@ impl Default for ViewPrecision {
 
 impl View {
     /// The view of `camera` with `width` x `height` pixels, given the scene's world-space box before its spin.
-    pub fn new(camera: &Camera, width: u32, height: u32, bounds: &Bounds, world_from_scene: DMat4, background: [f32; 4]) -> Self {
+    pub fn new(
+        camera: &Camera,
+        width: u32,
+        height: u32,
+        bounds: &Bounds,
+        world_from_scene: DMat4,
+        background: impl Into<Background>,
+    ) -> Self {
         let aspect = if height == 0 || width == 0 { 1.0 } else { f64::from(width) / f64::from(height) };
         let forward = camera.forward();
         let distances = bounds.corners().map(|c| (world_from_scene.transform_point3(c) - camera.eye).dot(forward));
@@ -104,7 +112,7 @@ impl View {
             ndc_axes,
             linear_depth_m,
             depth_range_m: [from, farthest.max(from + margin)],
-            background,
+            background: background.into(),
             picture_from_world: None,
             scene_state: SceneState { world_from_scene, ..SceneState::default() },
             precision: ViewPrecision::default(),

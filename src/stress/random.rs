@@ -8,6 +8,7 @@ use super::scenes::Rng;
 use crate::{
     accuracy::{AXES, Visibility},
     effects::{EFFECTS, Stack},
+    math::hash_unit,
     params::{Field, Param, ValueType},
     plan::Tier,
     preset::{ClipPlayback, Preset, SceneSource, settings::Setting},
@@ -171,6 +172,10 @@ pub fn preset(seed: u32) -> Preset {
     let mut preset = Preset { name: format!("random {seed}"), scene: SceneSource::Builtin(query), ..Preset::default() };
     preset.output.size = [rng.between(1, MAX_SIDE + 1) as u32, rng.between(1, MAX_SIDE * 3 / 4 + 1) as u32];
     preset.output.background = std::array::from_fn(|_| rng.real(0.0, 1.0) as f32);
+    if seed % 3 == 1 {
+        // Not a turn of `rng`, so that seeds keep what else they draw.
+        preset.output.background_bottom = Some(std::array::from_fn(|c| hash_unit(seed.wrapping_mul(4).wrapping_add(c as u32)) as f32));
+    }
     preset.stack = stack(rng, Values::Allowed);
     if rng.one_in(6) {
         limit_an_effect(rng, &mut preset.stack, &scene);

@@ -122,7 +122,7 @@ pub fn pixel_view(width: u32, height: u32) -> View {
         ndc_axes: [DVec3::X * w / 2.0, DVec3::NEG_Y * h / 2.0],
         linear_depth_m: Some([0.0, 1.0]),
         depth_range_m: [0.0, 1.0],
-        background: [0.0; 4],
+        background: Default::default(),
         picture_from_world: None,
         scene_state: Default::default(),
         precision: Default::default(),

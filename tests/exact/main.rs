@@ -6,6 +6,7 @@ mod common;
 mod accuracy;
 mod accuracy_axes;
 mod backends;
+mod backgrounds;
 mod culling;
 mod evaluator_gpu;
 mod extremes;

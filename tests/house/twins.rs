@@ -1,7 +1,7 @@
 //! Promise: the WGSL of every built-in effect, evaluated in f64, says what its function in Rust says: integers and booleans exactly,
 //! floats within 1e-9, over random inputs and parameters. Needs no adapter.
 
-use glam::{DVec2, DVec3, DVec4};
+use glam::{DVec2, DVec3};
 use rasterlab::{
     effect_files::{duplicate, evaluated, read},
     effects::{
@@ -238,7 +238,7 @@ fn image_functions_agree() {
                 let key = |id: &u32, rng: &mut Rng| if *id == u32::MAX { 0 } else { 1 + whole(rng, 0x3f80_0000) };
                 let keys: Vec<u32> = triangle_ids.iter().map(|id| key(id, &mut rng)).collect();
                 let previous: Vec<[u8; 4]> = (0..pixels).map(|_| std::array::from_fn(|_| whole(&mut rng, 256) as u8)).collect();
-                let background = DVec4::from_array([3.0, 77.0, 200.0, 255.0]) / 255.0;
+                let background: Vec<[u8; 4]> = (0..height).map(|y| [3 + 9 * y as u8, 77, 200 - 7 * y as u8, 255]).collect();
                 let picture = Picture {
                     width,
                     height,
@@ -246,10 +246,11 @@ fn image_functions_agree() {
                     keys: &keys,
                     draws: &[0, 20, 40],
                     previous: (turn % 3 != 0).then_some(&previous),
-                    background,
+                    background: &background,
                 };
                 for index in 0..width * height {
-                    let color = if rng.real(0.0, 1.0) < 0.2 { background } else { vector(&mut rng, 0.0, 1.0).extend(1.0) };
+                    let color =
+                        if rng.real(0.0, 1.0) < 0.2 { picture.background(index / width) } else { vector(&mut rng, 0.0, 1.0).extend(1.0) };
                     let q = Pixel { color, x: index % width, y: index / width, step_offset: 0.0 };
                     let of = |hooks: &Hooks| (hooks.image.expect("it is on the hook").finish)(q, &picture, &words);
                     let (given, expected) = (of(hooks), of(&effect.hooks));

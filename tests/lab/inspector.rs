@@ -204,3 +204,32 @@ fn the_title_of_an_effect_folds_it_and_only_its_box_removes_it() {
     click(&mut lab, Role::CheckBox, "facet");
     assert!(!enabled(&lab));
 }
+
+#[test]
+fn the_tick_of_the_gradient_adds_a_color_at_the_bottom_and_removes_it() {
+    let Some(mut lab) = lab("lambert") else { return };
+    let bottom = |lab: &Lab| lab.state().preset_file().preset.output.background_bottom;
+    let corners = |lab: &mut Lab| {
+        let seen = picture(lab);
+        [[4, 4], [4, seen.height() - 5]].map(|[x, y]| *seen.get_pixel(x, y))
+    };
+    assert_eq!(bottom(&lab), None);
+    assert!(lab.query_by_label("output.background_bottom").is_none());
+    let [top, below] = corners(&mut lab);
+    assert_eq!(top, below, "one color");
+
+    click(&mut lab, Role::CheckBox, "gradient");
+    settle(&mut lab);
+    let preset = &lab.state().preset_file().preset;
+    assert!(bottom(&lab).is_some_and(|bottom| bottom != preset.output.background), "a gradient that can be seen");
+    lab.get_by_label("output.background_bottom");
+    let [top_after, below_after] = corners(&mut lab);
+    assert!(below_after != below && top_after.0[0].abs_diff(top.0[0]) < 12, "{top_after:?} {below_after:?}");
+    assert_eq!(lab.state().undo_steps(), 1);
+
+    click(&mut lab, Role::CheckBox, "gradient");
+    settle(&mut lab);
+    assert_eq!((bottom(&lab), corners(&mut lab)), (None, [top, below]));
+    undo(&mut lab);
+    assert!(bottom(&lab).is_some());
+}

@@ -245,7 +245,7 @@ fn hatch_is_darker_where_the_tone_is_and_bare_where_it_is_bright() {
 
 /// A picture without any triangle id.
 fn empty(side: u32, triangle_ids: &[u32]) -> Picture<'_> {
-    Picture { width: side, height: side, triangle_ids, keys: triangle_ids, draws: &[0], previous: None, background: DVec4::ZERO }
+    Picture { width: side, height: side, triangle_ids, keys: triangle_ids, draws: &[0], previous: None, background: &[[0; 4]; 64] }
 }
 
 fn finished(stack: &Stack, color: DVec4, x: u32, y: u32) -> DVec4 {
@@ -314,7 +314,7 @@ fn outlines_of_a_mirrored_picture_are_mirrored_and_as_wide_as_asked() {
     let draws: Vec<u32> = rasterlab::scene::draw::draws(&scene, &view).expect("it fits").iter().map(|draw| draw.first_triangle).collect();
     let lines = |triangle_ids: &[u32], keys: &[u32], stack: &Stack| -> Vec<u32> {
         let [width, height] = SIZE;
-        let picture = Picture { width, height, triangle_ids, keys, draws: &draws, previous: None, background: DVec4::ONE };
+        let picture = Picture { width, height, triangle_ids, keys, draws: &draws, previous: None, background: &[[255; 4]; 128] };
         let pixel = |i: u32| Pixel { color: DVec4::ONE, x: i % width, y: i / width, step_offset: 0.0 };
         (0..width * height).map(|i| u32::from(stack.finish(pixel(i), &picture).color.x < 0.5)).collect()
     };
@@ -347,8 +347,15 @@ fn a_slope_is_no_jump_and_a_step_of_depth_is() {
     let triangle_ids = [1u32; 64];
     let line = |depth: fn(u32) -> f32, jump: f64| -> Vec<u32> {
         let keys: Vec<u32> = (0..64).map(|i| depth(i % 8).to_bits()).collect();
-        let picture =
-            Picture { width: 8, height: 8, triangle_ids: &triangle_ids, keys: &keys, draws: &[0], previous: None, background: DVec4::ONE };
+        let picture = Picture {
+            width: 8,
+            height: 8,
+            triangle_ids: &triangle_ids,
+            keys: &keys,
+            draws: &[0],
+            previous: None,
+            background: &[[255; 4]; 128],
+        };
         let stack = with(&[("outline", "width_px", 1.0), ("outline", "depth_threshold", jump)]);
         (0..8).filter(|&x| stack.finish(Pixel { color: DVec4::ONE, x, y: 4, step_offset: 0.0 }, &picture).color.x < 0.5).collect()
     };

@@ -23,7 +23,8 @@ fn resolve(
     let pixel = min(at, frame.size - 1u);
     let found = framebuffer_load(pixel.y * frame.size.x + pixel.x);
     let has_triangle = found.x != 0u;
-    var encoded = frame.background;
+    background = background_of_row(pixel.y);
+    var encoded = background;
     if IS_BRANCHLESS || (is_inside && has_triangle) {
         let shaded = shading_color(select(0u, ~found.x, has_triangle), pixel);
         encoded = select(encoded, vec4f(color_encode(shaded.rgb), shaded.a), has_triangle);
@@ -39,4 +40,11 @@ fn resolved_pixel(workgroup: vec3u, workgroups: vec3u, local: vec2u) -> vec2u {
     let tile = color[color_end() + workgroup.y * workgroups.x + workgroup.x];
     let width = (frame.size.x + TILE_SIDE - 1u) / TILE_SIDE;
     return vec2u(tile % width, tile / width) * TILE_SIDE + local;
+}
+
+// The rows of a gradient are bytes that the CPU computed, so that they are the same on every adapter.
+fn background_of_row(y: u32) -> vec4f {
+    if frame.background_first == 0u { return frame.background; }
+    let word = color[frame.background_first + y];
+    return vec4f((vec4u(word) >> vec4u(0u, 8u, 16u, 24u)) & vec4u(255u)) / 255.0;
 }

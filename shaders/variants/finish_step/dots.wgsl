@@ -5,6 +5,6 @@
 
 fn finish_step_dots(encoded: vec4f, pixel: vec2u) -> vec4f {
     let strength = f32(color[color_end() + pixel.y * frame.size.x + pixel.x]) / 256.0;
-    let beneath = select(frame.background, encoded, dot_frame.model != 0u);
+    let beneath = select(background, encoded, dot_frame.model != 0u);
     return mix(beneath, vec4f(dot_frame.ink.rgb, 1.0), strength * dot_frame.ink.a);
 }

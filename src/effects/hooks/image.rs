@@ -27,11 +27,16 @@ pub struct Picture<'a> {
     pub draws: &'a [u32],
     /// The previous picture, gamma-encoded; none for the first.
     pub previous: Option<&'a [[u8; 4]]>,
-    /// Gamma-encoded RGBA of the background; its color is that of whole bytes.
-    pub background: DVec4,
+    /// Gamma-encoded RGBA of the background in every row, in whole bytes.
+    pub background: &'a [[u8; 4]],
 }
 
 impl Picture<'_> {
+    /// The background in row `y`, gamma-encoded RGBA, each 0 to 1.
+    pub fn background(&self, y: u32) -> DVec4 {
+        DVec4::from_array(self.background[y as usize].map(f64::from)) / 255.0
+    }
+
     /// Does the pixel lie in the picture?
     pub fn has(&self, x: i64, y: i64) -> bool {
         (0..i64::from(self.width)).contains(&x) && (0..i64::from(self.height)).contains(&y)

@@ -16,7 +16,7 @@ use super::{
         render::{
             draw_order::ranks,
             layers::LayerImage,
-            resolve::{Finish, ResolveInput, finish, first_triangles, shade_perturbed},
+            resolve::{Finish, PictureTables, ResolveInput, finish, shade_perturbed},
             shadow::Light,
             surface::{SurfaceTriangle, shaded},
         },
@@ -75,8 +75,8 @@ impl AcceptedColors {
             return self;
         }
         let (ranks, light) = (ranks(shot, geometry), Light::of(shot, geometry));
-        let first_triangles = first_triangles(shot);
-        let finish = Finish::new(shot, input, &first_triangles);
+        let tables = PictureTables::of(shot);
+        let finish = Finish::new(shot, input, &tables);
         let checkpoint = checkpoint();
         let right = |&i: &usize| {
             checkpoint.pass();

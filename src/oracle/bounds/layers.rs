@@ -8,6 +8,7 @@ use super::{
     super::{
         perturbation::Perturbation,
         render::{
+            background::background,
             coverage::{Hit, scatter},
             draw_order::ranks,
             layers::{LayerImage, LayerInput, LayerMode, fixed_color, fixed_weight, steps, window_depth, xray_color},
@@ -42,9 +43,10 @@ pub fn layer_bounds(input: &LayerInput, image: &LayerImage) -> LayerBounds {
         return LayerBounds { colors, counted: image.counted.iter().map(|&layers| [layers.into(); 2]).collect() };
     };
     let sums = sums(input, params, *bits);
+    let (background, width) = (background(input.shot.view), input.shot.view.width as usize);
     let color = |(i, sum): (usize, &SumBounds)| match image.counted[i] {
         0 => [image.colors[i]; 2],
-        _ => sum.colors(input, params, *bits),
+        _ => sum.colors(background[i / width], params, *bits),
     };
     LayerBounds { colors: sums.iter().enumerate().map(color).collect(), counted: sums.iter().map(SumBounds::weights).collect() }
 }
@@ -157,9 +159,9 @@ impl SumBounds {
     }
 
     /// Colors between which every right answer lies: both ends of the average with both ends of the weight.
-    fn colors(&self, input: &LayerInput, params: &Xray, bits: u32) -> [DVec4; 2] {
+    fn colors(&self, background: DVec4, params: &Xray, bits: u32) -> [DVec4; 2] {
         let average = |end: End| DVec3::from_array([0, 1, 2].map(|channel| self.average(channel, end) / steps(bits)));
-        let corners = [End::Least, End::Most].map(|end| self.weights().map(|weight| xray_color(input, params, average(end), weight)));
+        let corners = [End::Least, End::Most].map(|end| self.weights().map(|weight| xray_color(background, params, average(end), weight)));
         let all = corners.as_flattened();
         let fold = |pick: fn(DVec4, DVec4) -> DVec4| all.iter().copied().reduce(pick).expect("four corners");
         [fold(DVec4::min), fold(DVec4::max)]

@@ -70,7 +70,7 @@ pub fn shadow_errors(
     let (Some(mapped), false) = (Light::of(&shot, geometry), leaves_samples_out(stack)) else { return Ok(None) };
     let (Some(rays), Some(light)) = (Rays::of(&shot), stack.light()) else { return Ok(None) };
     let toward = light.toward();
-    let errors = each_surface(&shot, triangle_ids, geometry, &Perturbation::default(), |found| {
+    let errors = each_surface(&shot, triangle_ids, geometry, &Perturbation::default(), |_, found| {
         let (triangle, surface) = found.filter(|(_, surface)| surface.normal.dot(toward) > 0.0)?;
         let point = triangle.lit_point(&surface);
         let reference = f64::from(u8::from(rays.reach(point.on_triangle, surface.triangle_id)));

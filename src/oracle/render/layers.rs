@@ -5,9 +5,9 @@ use glam::{DVec3, DVec4};
 
 use super::{
     super::{perturbation::Perturbation, shot::Shot},
+    background::background,
     coverage::{Hit, scatter},
     draw_order::ranks,
-    resolve::background,
     sample_tests::SampleTests,
     shadow::Light,
     surface::{SurfaceTriangle, encoded},
@@ -60,8 +60,12 @@ pub fn layer_image(input: &LayerInput, layers: impl FnOnce() -> Vec<u32>) -> Opt
 
 fn heat(input: &LayerInput, layers: Vec<u32>, params: &Overdraw) -> LayerImage {
     let background = background(input.shot.view);
-    let color = |layers: u32| if layers == 0 { background } else { params.color(params.heat(layers)).extend(1.0) };
-    LayerImage { colors: layers.iter().map(|&layers| color(layers)).collect(), counted: layers, mode: LayerMode::Overdraw }
+    let width = input.shot.view.width as usize;
+    let color = |(pixel, &layers): (usize, &u32)| match layers {
+        0 => background[pixel / width],
+        _ => params.color(params.heat(layers)).extend(1.0),
+    };
+    LayerImage { colors: layers.iter().enumerate().map(color).collect(), counted: layers, mode: LayerMode::Overdraw }
 }
 
 fn averaged(input: &LayerInput, params: Xray, bits: u32) -> LayerImage {
@@ -71,26 +75,25 @@ fn averaged(input: &LayerInput, params: Xray, bits: u32) -> LayerImage {
     if let (true, Some(fewer)) = (largest > xray::capacity(bits).into(), xray::fewer(bits)) {
         return averaged(input, params, fewer);
     }
-    let pixel = |sum: &LayerSum| match sum.weight {
-        0 => background(input.shot.view),
+    let (background, width) = (background(input.shot.view), input.shot.view.width as usize);
+    let pixel = |(pixel, sum): (usize, &LayerSum)| match sum.weight {
+        0 => background[pixel / width],
         weight => {
             let average = sum.sums.map(|channel| xray::average(channel, weight) as f64 / steps(bits));
-            xray_color(input, &params, DVec3::from_array(average), weight)
+            xray_color(background[pixel / width], &params, DVec3::from_array(average), weight)
         }
     };
     LayerImage {
-        colors: sums.iter().map(pixel).collect(),
+        colors: sums.iter().enumerate().map(pixel).collect(),
         counted: sums.iter().map(|sum| u32::try_from(sum.weight).unwrap_or(u32::MAX)).collect(),
         mode: LayerMode::Xray { params, bits },
     }
 }
 
-/// The gamma-encoded color of a pixel whose layers have this average and sum of weights.
-pub fn xray_color(input: &LayerInput, params: &Xray, average: DVec3, weight: u64) -> DVec4 {
-    // Pictures hold the background in bytes, and so it shines through.
-    let bytes = background(input.shot.view);
-    let [red, green, blue] = [bytes.x, bytes.y, bytes.z].map(linear_light);
-    encoded(params.seen(average, DVec4::new(red, green, blue, bytes.w), weight as f64))
+/// The gamma-encoded color of a pixel whose layers have this average and sum of weights, over a gamma-encoded background.
+pub fn xray_color(background: DVec4, params: &Xray, average: DVec3, weight: u64) -> DVec4 {
+    let [red, green, blue] = [background.x, background.y, background.z].map(linear_light);
+    encoded(params.seen(average, DVec4::new(red, green, blue, background.w), weight as f64))
 }
 
 /// Largest value of a channel in fixed point.

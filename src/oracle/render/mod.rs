@@ -17,6 +17,7 @@ pub mod sample_setup;
 pub mod sample_tests;
 pub mod screen;
 
+pub mod background;
 pub mod dots;
 pub mod layers;
 pub mod material;

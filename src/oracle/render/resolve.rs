@@ -14,8 +14,6 @@ use crate::{
         hooks::{Picture, Pixel, tone::encoded},
     },
     frame::Geometry,
-    math::srgb_byte,
-    scene::view::View,
 };
 
 /// The images that a picture is colored from, row-major.
@@ -38,14 +36,14 @@ pub fn shade(shot: &Shot, input: &ResolveInput, geometry: &Geometry) -> Vec<[u8;
 
 /// The same under a perturbation.
 pub fn shade_perturbed(shot: &Shot, input: &ResolveInput, geometry: &Geometry, perturbation: &Perturbation) -> Vec<[u8; 4]> {
-    let colors = surface_colors(shot, input.triangle_ids, background(shot.view), geometry, perturbation);
+    let colors = surface_colors(shot, input.triangle_ids, geometry, perturbation);
     finish(shot, input, &colors, perturbation.color_step)
 }
 
 /// Bytes of a picture from its gamma-encoded surface colors: dots and image effects, whose steps are moved by `color_step`.
 pub fn finish(shot: &Shot, input: &ResolveInput, colors: &[DVec4], color_step: f64) -> Vec<[u8; 4]> {
-    let first_triangles = first_triangles(shot);
-    let finish = Finish::new(shot, input, &first_triangles);
+    let tables = PictureTables::of(shot);
+    let finish = Finish::new(shot, input, &tables);
     let checkpoint = checkpoint();
     let finished = |(i, &color): (usize, &DVec4)| {
         checkpoint.pass();
@@ -54,9 +52,19 @@ pub fn finish(shot: &Shot, input: &ResolveInput, colors: &[DVec4], color_step: f
     colors.par_iter().enumerate().map(finished).collect()
 }
 
-/// First triangle of every draw.
-pub fn first_triangles(shot: &Shot) -> Vec<u32> {
-    shot.draws.iter().map(|draw| draw.first_triangle).collect()
+/// What image effects read beside the images.
+pub struct PictureTables {
+    /// First triangle of every draw.
+    draws: Vec<u32>,
+    /// The background of every row.
+    background: Vec<[u8; 4]>,
+}
+
+impl PictureTables {
+    pub fn of(shot: &Shot) -> Self {
+        let draws = shot.draws.iter().map(|draw| draw.first_triangle).collect();
+        Self { draws, background: shot.view.background.rows(shot.view.height) }
+    }
 }
 
 /// Dots and image effects, pixel by pixel.
@@ -68,16 +76,16 @@ pub struct Finish<'a> {
 }
 
 impl<'a> Finish<'a> {
-    /// Over the images of `input`; `draws` are the first triangles of every draw.
-    pub fn new(shot: &Shot<'a>, input: &ResolveInput<'a>, draws: &'a [u32]) -> Self {
+    /// Over the images of `input`.
+    pub fn new(shot: &Shot<'a>, input: &ResolveInput<'a>, tables: &'a PictureTables) -> Self {
         let picture = Picture {
             width: shot.view.width,
             height: shot.view.height,
             triangle_ids: input.triangle_ids,
             keys: input.depth_keys,
-            draws,
+            draws: &tables.draws,
             previous: input.previous,
-            background: background(shot.view),
+            background: &tables.background,
         };
         let dots = shot.stack.dots().filter(|_| !input.dots.is_empty());
         Self { stack: shot.stack, dots, strengths: input.dots, picture }
@@ -85,8 +93,9 @@ impl<'a> Finish<'a> {
 
     /// Bytes of the pixel with this index, from its gamma-encoded surface color.
     pub fn pixel(&self, i: usize, color: DVec4, color_step: f64) -> [u8; 4] {
-        let color = self.dots.as_ref().map_or(color, |dots| dotted(dots, color, self.picture.background, self.strengths[i]));
-        let pixel = Pixel { color, x: i as u32 % self.picture.width, y: i as u32 / self.picture.width, step_offset: color_step };
+        let (x, y) = (i as u32 % self.picture.width, i as u32 / self.picture.width);
+        let color = self.dots.as_ref().map_or(color, |dots| dotted(dots, color, self.picture.background(y), self.strengths[i]));
+        let pixel = Pixel { color, x, y, step_offset: color_step };
         bytes(if self.stack.finishes() { self.stack.finish(pixel, &self.picture).color } else { color })
     }
 }
@@ -96,13 +105,6 @@ fn dotted(dots: &Dots, color: DVec4, background: DVec4, strength: u32) -> DVec4 
     let beneath = if dots.show_model != 0 { color } else { background };
     let opacity = f64::from(strength) / f64::from(FULL) * f64::from(dots.color[3]);
     beneath + (encoded(dots.color).truncate().extend(1.0) - beneath) * opacity
-}
-
-/// The background, gamma-encoded and rounded to the bytes that a picture holds.
-pub fn background(view: &View) -> DVec4 {
-    let [r, g, b, alpha] = view.background.map(f64::from);
-    let [r, g, b] = [r, g, b].map(|c| f64::from(srgb_byte(c)) / 255.0);
-    DVec4::new(r, g, b, alpha.clamp(0.0, 1.0))
 }
 
 /// Rounds to bytes, halves away from zero.

@@ -13,6 +13,7 @@ use super::{
         shot::Shot,
         work::checkpoint,
     },
+    background::background,
     deform,
     draw_order::ranks,
     material::{SampleWeights, TriangleMaterial},
@@ -32,20 +33,15 @@ use crate::{
     scene::{Accessor, Scene, view::View},
 };
 
-/// Surface colors of all pixels, given the triangle of each; `background` without one. Row-major, gamma-encoded.
+/// Surface colors of all pixels, given the triangle of each; the background without one. Row-major, gamma-encoded.
 ///
 /// `geometry` supplies the snapped corners from which weights follow; triangles that were clipped are weighted in clip space.
-pub fn surface_colors(
-    shot: &Shot,
-    triangle_ids: &[u32],
-    background: DVec4,
-    geometry: &Geometry,
-    perturbation: &Perturbation,
-) -> Vec<DVec4> {
+pub fn surface_colors(shot: &Shot, triangle_ids: &[u32], geometry: &Geometry, perturbation: &Perturbation) -> Vec<DVec4> {
+    let background = background(shot.view);
     let ranks = ranks(shot, geometry);
     let light = Light::of(shot, geometry);
-    each_surface(shot, triangle_ids, geometry, perturbation, |found| {
-        let Some((triangle, surface)) = found else { return background };
+    each_surface(shot, triangle_ids, geometry, perturbation, |y, found| {
+        let Some((triangle, surface)) = found else { return background[y] };
         let id = surface.triangle_id;
         let rank = ranks.get(id as usize).copied().unwrap_or(0.0);
         shaded(shot, triangle, Surface { rank, ..surface }, light.as_ref(), perturbation.color_step)
@@ -58,13 +54,13 @@ pub fn shaded(shot: &Shot, triangle: &SurfaceTriangle, surface: Surface, light: 
     encoded(shot.stack.shade(Surface { lit, step_offset: color_step, ..surface }, triangle.scopes).color)
 }
 
-/// Visits the surface of every pixel before any surface effect, given the triangle of each; none without one. Row-major.
+/// Visits the row and the surface of every pixel before any surface effect, given the triangle of each; none without one. Row-major.
 pub fn each_surface<T: Send>(
     shot: &Shot,
     triangle_ids: &[u32],
     geometry: &Geometry,
     perturbation: &Perturbation,
-    visit: impl Fn(Option<(&SurfaceTriangle, Surface)>) -> T + Sync,
+    visit: impl Fn(usize, Option<(&SurfaceTriangle, Surface)>) -> T + Sync,
 ) -> Vec<T> {
     let width = shot.view.width.max(1) as usize;
     let checkpoint = checkpoint();
@@ -76,7 +72,7 @@ pub fn each_surface<T: Send>(
             if triangle.as_ref().is_none_or(|triangle| triangle.id != id) {
                 triangle = SurfaceTriangle::new(shot, geometry, id);
             }
-            visit(triangle.as_ref().map(|triangle| (triangle, triangle.surface(x, y, perturbation))))
+            visit(y, triangle.as_ref().map(|triangle| (triangle, triangle.surface(x, y, perturbation))))
         };
         ids.iter().enumerate().map(pixel).collect::<Vec<_>>()
     };

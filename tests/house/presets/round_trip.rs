@@ -131,6 +131,7 @@ prop_compose! {
         visibility in prop::option::of(0..2usize),
         size in prop::array::uniform2(0..=16_384u32),
         background in prop::array::uniform4(0.0..=1.0f32),
+        background_bottom in prop::option::of(prop::array::uniform4(0.0..=1.0f32)),
         test in prop::option::of((any::<u8>(), any::<u32>())),
     ) -> Preset {
         let [name, about, why] = texts;
@@ -156,7 +157,7 @@ prop_compose! {
             animation: animated(&stack, tracks),
             stack,
             accuracy: AccuracyRequest { tier: Tier::ALL[tier], pins: visibility.map_or(PinnedOptions::default(), |i| PinnedOptions::of(Visibility::EXACT[i])), ..AccuracyRequest::default() },
-            output: Output { size, background },
+            output: Output { size, background, background_bottom },
             test: test.map(|(max_channel, max_pixels)| GoldenTest { max_channel, max_pixels, max_wrong_triangles: 0, why: format!("because {why}") }),
         }
     }

@@ -5,11 +5,12 @@ use eframe::egui::{ComboBox, Ui};
 use super::rows::{folder, setting_ui};
 use crate::{
     app::{
-        command::{Commands, Edit},
+        command::{Command, Commands, Edit, RowCommand},
         state::State,
         text, theme,
     },
-    preset::Preset,
+    params::Stored as _,
+    preset::{Preset, settings::Setting},
     scene::{Scene, texture::Image},
 };
 
@@ -19,6 +20,8 @@ pub fn scene_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         setting_ui(ui, state, commands, "scene.room");
         setting_ui(ui, state, commands, "scene.spin_deg_per_s");
         setting_ui(ui, state, commands, "output.background");
+        gradient_ui(ui, preset, commands);
+        setting_ui(ui, state, commands, BOTTOM);
         if preset.stack.0.iter().any(|enabled| enabled.effect.hooks.has_lines) {
             setting_ui(ui, state, commands, "scene.polyline");
         }
@@ -39,6 +42,33 @@ pub fn scene_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             });
         }
     });
+}
+
+/// The setting that makes the background a gradient.
+const BOTTOM: &str = "output.background_bottom";
+
+/// The tick of the gradient, which adds the color at the bottom or removes it.
+fn gradient_ui(ui: &mut Ui, preset: &Preset, commands: &Commands) {
+    let Some(setting) = Setting::find(BOTTOM) else { return };
+    ui.horizontal(|ui| {
+        ui.set_min_height(theme::ROW);
+        ui.add_space(theme::GAP);
+        let mut is_on = preset.output.background_bottom.is_some();
+        let tick =
+            ui.checkbox(&mut is_on, "gradient").on_hover_text("The background changes from this color at the top to another at the bottom");
+        if tick.changed() && is_on {
+            commands.edit(Edit::Setting(setting, first_bottom(preset.output.background).to_value()));
+        } else if tick.changed() {
+            commands.send(Command::Row(RowCommand::Reset(BOTTOM.into())));
+        }
+    });
+}
+
+/// The color at the bottom of a new gradient: darker than that of a light background, lighter than that of a dark one.
+fn first_bottom([r, g, b, alpha]: [f32; 4]) -> [f32; 4] {
+    let is_light = 0.2126 * r + 0.7152 * g + 0.0722 * b > 0.18;
+    let [r, g, b] = [r, g, b].map(|c| if is_light { 0.3 * c } else { c + 0.25 * (1.0 - c) });
+    [r, g, b, alpha]
 }
 
 /// A menu of the scene's cameras. A camera of the preset takes precedence.
