@@ -23,7 +23,7 @@ pub struct ErrorReport {
     pub step_band_pixels: u64,
     /// Different sets of right colors among them: a flat area on a step is one.
     pub step_band_colors: u64,
-    /// Pixels whose color only the errors of interpolated normals and depths explain.
+    /// Pixels whose color only the errors of places and of interpolated normals and depths explain.
     #[serde(skip_serializing_if = "is_zero")]
     pub interpolation_pixels: u64,
     /// Samples that a triangle covers and that were not drawn.

@@ -24,7 +24,7 @@ use super::{
         work::checkpoint,
     },
     layers::LayerBounds,
-    perturbations::{WIDE_SLACK, color_steps, has_textures, interpolations, is_far, perturbations},
+    perturbations::{WIDE_SLACK, color_steps, interpolations, of_pictures, places},
     surface::{CornerErrors, Doubt},
 };
 use crate::{effects::Surface, frame::Geometry};
@@ -37,7 +37,7 @@ pub struct AcceptedColors {
     is_span: bool,
     /// Pictures that belong to the same perturbation of color steps.
     per_step: usize,
-    /// Smallest and largest right color of pixels where what is interpolated is in doubt and the adapter has another color.
+    /// Smallest and largest right color of pixels where the adapter has another color than all pictures.
     unsure: HashMap<usize, [[u8; 4]; 2]>,
 }
 
@@ -52,8 +52,8 @@ impl AcceptedColors {
     pub fn of_surfaces(shot: &Shot, input: &ResolveInput, geometry: &Geometry) -> Self {
         let shaded = |perturbation: &Perturbation| shade_perturbed(shot, input, geometry, perturbation);
         // Taps of a shadow map change one by one, so any fraction between the extremes is right.
-        let is_span = has_textures(shot.scene) || is_far(shot.view) || shot.stack.light().is_some();
-        let pictures: Vec<_> = perturbations(shot.scene, shot.view, shot.stack).iter().map(shaded).collect();
+        let is_span = !shot.scene.images.is_empty() || shot.stack.light().is_some();
+        let pictures: Vec<_> = of_pictures(shot.scene, shot.stack).iter().map(shaded).collect();
         let per_step = pictures.len() / color_steps(shot.stack).len();
         Self { pictures, is_span, per_step, unsure: HashMap::new() }
     }
@@ -65,8 +65,8 @@ impl AcceptedColors {
         Self { pictures: color_steps(shot.stack).iter().flat_map(finished).collect(), is_span: true, per_step: 3, unsure: HashMap::new() }
     }
 
-    /// Adds what is right where interpolated normals and depths err, at the pixels where `adapter` has another color. Those of other
-    /// pixels are not asked for, which saves most of the work.
+    /// Adds what is right where places and interpolated normals and depths err, at the pixels where `adapter` has another color. Those
+    /// of other pixels are not asked for, which saves most of the work.
     pub fn with_interpolations(mut self, shot: &Shot, input: &ResolveInput, geometry: &Geometry, adapter: &[[u8; 4]]) -> Self {
         let nearest = self.nearest(adapter);
         let differs = |i: &usize| (0..4).any(|c| nearest[*i][c].abs_diff(adapter[*i][c]) > 1);
@@ -90,17 +90,19 @@ impl AcceptedColors {
                 let color = shaded(shot, &triangle, Surface { rank, ..surface }, light.as_ref(), perturbation.color_step);
                 finish.pixel(i, color, perturbation.color_step)
             };
-            let [least, most] = span(interpolations(shot.stack, errors).map(finished))?;
+            let [least, most] = span(interpolations(shot.stack, errors).map(&finished)).unwrap_or([self.pictures[0][i]; 2]);
             let slack =
                 |c: usize| if errors.doubt() == Doubt::Wide { (f64::from(most[c] - least[c]) * WIDE_SLACK).ceil() as u8 } else { 0 };
             let wide = [[0, 1, 2, 3].map(|c| least[c].saturating_sub(slack(c))), [0, 1, 2, 3].map(|c| most[c].saturating_add(slack(c)))];
-            Some((i, span(self.pictures.iter().map(|picture| picture[i]).chain(wide))?))
+            let known = span(self.pictures.iter().map(|picture| picture[i]))?;
+            let all = span(known.into_iter().chain(wide).chain(places(shot.stack).map(finished)))?;
+            (all != known).then_some((i, all))
         };
         self.unsure = pixels.par_iter().filter_map(right).collect();
         self
     }
 
-    /// Number of pixels whose color only the errors of interpolated normals and depths explain.
+    /// Number of pixels whose color only the errors of places and of interpolated normals and depths explain.
     pub fn unsure_pixels(&self) -> u64 {
         self.unsure.len() as u64
     }

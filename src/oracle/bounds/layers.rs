@@ -11,13 +11,13 @@ use super::{
             background::background,
             coverage::{Hit, scatter},
             draw_order::ranks,
-            layers::{LayerImage, LayerInput, LayerMode, fixed_color, fixed_weight, steps, window_depth, xray_color},
+            layers::{LayerImage, LayerInput, LayerMode, fixed_color, fixed_weight, is_front, steps, window_depth, xray_color},
             shadow::Light,
             surface::SurfaceTriangle,
         },
     },
     coverage::depth_interval,
-    perturbations::{WIDE_SLACK, interpolations, perturbations},
+    perturbations::{WIDE_SLACK, interpolations, of_layers},
     surface::{CornerErrors, Doubt},
 };
 use crate::effects::{Surface, xray, xray::Xray};
@@ -80,7 +80,7 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<SumBounds> {
     let (view, stack) = (input.shot.view, input.shot.stack);
     let mut sums: Vec<SumBounds> = (0..view.pixels()).map(|_| SumBounds::default()).collect();
     let (ranks, light) = (ranks(&input.shot, input.geometry), Light::of(&input.shot, input.geometry));
-    let perturbations = perturbations(input.shot.scene, view, stack);
+    let perturbations = of_layers(input.shot.scene, view, stack);
     let (ranks, light, perturbations) = (&ranks, light.as_ref(), &perturbations);
     scatter(input.tests, input.triangles, view, &mut sums, |triangle| {
         let mut surface: Option<Option<(SurfaceTriangle<'_>, CornerErrors)>> = None;
@@ -88,10 +88,10 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<SumBounds> {
         move |sum: &mut SumBounds, x: usize, y: usize, hit: Hit| {
             let pixel = y * view.width as usize + x;
             let threshold = window_depth(input, params, pixel);
-            let is_nearest = input.triangle_ids[pixel] == triangle.id;
             // A depth too small for a normal float has key 1.
             let [low, high] = depth_interval(triangle, &hit).map(|depth| depth.max(f64::from(f32::from_bits(1))));
-            if high < threshold && !is_nearest {
+            let is_front = is_front(input, pixel, triangle.id, high);
+            if high < threshold && !is_front {
                 return;
             }
             let of_triangle = || {
@@ -129,7 +129,7 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<SumBounds> {
                     colors,
                     weight: 0.5 * (weights[0] + weights[1]),
                     weight_error: weight_error + 0.5 * (weights[1] - weights[0]) / f64::from(xray::FULL_WEIGHT),
-                    is_certain: is_nearest || low >= threshold,
+                    is_certain: is_front || low >= threshold,
                 },
                 bits,
             );

@@ -23,17 +23,21 @@ const TEXTURE: [TexturePerturbation; 5] = [[0.0; 3], [1.0; 3], [-1.0; 3], [1.0, 
 /// Roundings of a place, of 2^-24 each: the depth is a quotient of sums of three products, and the place a sum of four.
 const ROUNDINGS: f64 = 16.0;
 
-/// All perturbations of places, none first.
-const PLACES: [PlacePerturbation; 9] = {
-    let mut places = [[0.0; 4]; 9];
+/// All perturbations of places.
+const PLACES: [PlacePerturbation; 8] = {
+    let mut places = [[0.0; 4]; 8];
     let mut axis = 0;
     while axis < 4 {
-        places[1 + 2 * axis][axis] = ROUNDINGS;
-        places[2 + 2 * axis][axis] = -ROUNDINGS;
+        places[2 * axis][axis] = ROUNDINGS;
+        places[2 * axis + 1][axis] = -ROUNDINGS;
         axis += 1;
     }
     places
 };
+
+/// From so far away that the depth of the scene is less than this fraction of the distances that are added, the places of layers are
+/// perturbed.
+const FAR: f64 = 1.0 / 256.0;
 
 /// In error bounds. A normal errs by a vector of at most one bound, and the depth by at most one beside it. To first order that changes a
 /// color by at most √3 + 1 times as much as the one of these four numbers that matters most does alone.
@@ -72,17 +76,6 @@ static WIDE_INTERPOLATIONS: LazyLock<Vec<[f64; 4]>> = LazyLock::new(|| {
 /// How far answers between [`WIDE_INTERPOLATIONS`] may lie outside theirs, as a fraction of their span.
 pub const WIDE_SLACK: f64 = 0.25;
 
-/// From so far away that the depth of the scene is less than this fraction of the distances that are added, their roundings are seen in
-/// colors that change with the place, like fog.
-const FAR: f64 = 1.0 / 256.0;
-
-/// Perturbations of the places of samples of `view`, none first.
-fn places(view: &View) -> &'static [PlacePerturbation] {
-    let [near_m, far_m] = view.depth_range_m;
-    let is_far = far_m - near_m < FAR * (view.eye.abs().max_element() + far_m.abs());
-    if is_far { &PLACES } else { &PLACES[..1] }
-}
-
 /// Perturbations of color steps, none first.
 pub fn color_steps(stack: &Stack) -> &'static [f64] {
     // Layers are summed in linear light, and gamma encoding, which is 13 times as steep in the dark, precedes a step.
@@ -94,35 +87,38 @@ pub fn color_steps(stack: &Stack) -> &'static [f64] {
     }
 }
 
-/// All perturbations of a picture of `scene` for each perturbation of color steps, none first.
-pub fn perturbations(scene: &Scene, view: &View, stack: &Stack) -> Vec<Perturbation> {
-    let textures = if has_textures(scene) { &TEXTURE[..] } else { &TEXTURE[..1] };
-    let textures = textures.iter().map(|&texture| Perturbation { texture, ..Perturbation::default() });
-    let places = places(view)[1..].iter().map(|&place| Perturbation { place, ..Perturbation::default() });
-    let unstepped: Vec<Perturbation> = textures.chain(places).collect();
-    let with_step = |&color_step: &f64| unstepped.iter().map(move |&perturbation| Perturbation { color_step, ..perturbation });
-    color_steps(stack).iter().flat_map(with_step).collect()
+/// Perturbations that a whole picture of `scene` is shaded with: of texture lookups, for each perturbation of color steps; none first.
+pub fn of_pictures(scene: &Scene, stack: &Stack) -> Vec<Perturbation> {
+    let textures = if scene.images.is_empty() { &TEXTURE[..1] } else { &TEXTURE[..] };
+    let at_step = |&color_step: &f64| textures.iter().map(move |&texture| Perturbation { texture, color_step, ..Perturbation::default() });
+    color_steps(stack).iter().flat_map(at_step).collect()
 }
 
-/// The perturbations of what is interpolated with these errors, for each perturbation of color steps.
+/// Perturbations of layers: those of pictures, none first, and those of places in views from far away.
+///
+/// Samples of layers are too many to perturb the places of all; from near by their roundings are not seen in averages.
+pub fn of_layers(scene: &Scene, view: &View, stack: &Stack) -> Vec<Perturbation> {
+    let [near_m, far_m] = view.depth_range_m;
+    let is_far = far_m - near_m < FAR * (view.eye.abs().max_element() + far_m.abs());
+    of_pictures(scene, stack).into_iter().chain(places(stack).filter(|_| is_far)).collect()
+}
+
+/// Perturbations of the place of a sample, for each perturbation of color steps. They are seen in colors that change with the place,
+/// like fog, where coordinates are large.
+pub fn places(stack: &Stack) -> impl Iterator<Item = Perturbation> {
+    let at_step = |&color_step: &f64| PLACES.iter().map(move |&place| Perturbation { place, color_step, ..Perturbation::default() });
+    color_steps(stack).iter().flat_map(at_step)
+}
+
+/// Perturbations of what is interpolated with these errors, for each perturbation of color steps.
 pub fn interpolations(stack: &Stack, errors: SampleErrors) -> impl Iterator<Item = Perturbation> {
     let offsets = match errors.doubt() {
         Doubt::None => &[],
         Doubt::Narrow => INTERPOLATIONS.as_slice(),
         Doubt::Wide => WIDE_INTERPOLATIONS.as_slice(),
     };
-    let with_step = move |&color_step: &f64| {
+    let at_step = move |&color_step: &f64| {
         offsets.iter().map(move |&times| Perturbation { color_step, interpolated: errors.times(times), ..Perturbation::default() })
     };
-    color_steps(stack).iter().flat_map(with_step)
-}
-
-/// Returns true if the places of samples are perturbed.
-pub fn is_far(view: &View) -> bool {
-    places(view).len() > 1
-}
-
-/// Returns true if a picture looks up textures.
-pub fn has_textures(scene: &Scene) -> bool {
-    !scene.images.is_empty()
+    color_steps(stack).iter().flat_map(at_step)
 }

@@ -106,6 +106,15 @@ pub fn window_depth(input: &LayerInput, params: &Xray, pixel: usize) -> f64 {
     f64::from(f32::from_bits(params.threshold(input.depth_keys[pixel], input.shot.view.linear_depth_m.is_none())))
 }
 
+/// How far the depth of the front may lie above the exact one, as a fraction of it.
+const FRONT: f64 = 1.0 / 1024.0;
+
+/// Returns true for the hit whose depth is that of a pixel's front, which the depth window always contains; `depth` is the largest that a
+/// renderer may compute for it. A clipped triangle that is drawn as boxes may have other hits, farther behind.
+pub fn is_front(input: &LayerInput, pixel: usize, id: u32, depth: f64) -> bool {
+    input.triangle_ids[pixel] == id && depth >= f64::from(f32::from_bits(input.depth_keys[pixel]))
+}
+
 /// Sums of one pixel.
 #[derive(Clone, Default)]
 struct LayerSum {
@@ -123,8 +132,7 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<LayerSum> {
         let rank = ranks.get(triangle.id as usize).copied().unwrap_or(0.0);
         move |sum: &mut LayerSum, x: usize, y: usize, hit: Hit| {
             let pixel = y * view.width as usize + x;
-            let is_nearest = input.triangle_ids[pixel] == triangle.id;
-            if !is_nearest && hit.depth < window_depth(input, params, pixel) {
+            if hit.depth < window_depth(input, params, pixel) && !is_front(input, pixel, triangle.id, hit.depth * (1.0 + FRONT)) {
                 return;
             }
             let Some(known) = surface.get_or_insert_with(|| SurfaceTriangle::new(&input.shot, input.geometry, triangle.id)) else { return };
