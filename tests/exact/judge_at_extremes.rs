@@ -34,6 +34,32 @@ fn edges_that_reach_far_behind_the_eye_move_by_their_corners_errors() {
 }
 
 #[test]
+fn colors_follow_places_and_depths_as_far_as_floats_have_them() {
+    let Some(mut renderer) = renderer() else { return };
+    // Coordinates of 10⁷ m have roundings of half a meter, in which fog changes by a factor of 7.
+    let camera = "eye = [7374058.418809221, 1329874.6336635372, 5580748.5448456155]\northographic_height_m = 214860.24534349842";
+    exact_preset(
+        &mut renderer,
+        &format!(
+            "scene.builtin = \"near?reach=126680.02275335086\"\noutput.size = [3, 21]\n[camera]\n{camera}\n[effects.fog]\nfalloff = 3.8830113"
+        ),
+    );
+    // Depths of 2 cm, mixed of corners 500 km before and behind the eye, have either sign.
+    let camera = "eye = [-0.3753949679065174, 0.17225348024402232, 0.14648751406236715]
+target = [0.4934496261266421, 0.1380689030792961, -0.35075775310289736]
+fov_y_deg = 170.0";
+    let depth = "[effects.depth]\nfit = false\nscale = 13840.0";
+    exact_preset(&mut renderer, &format!("scene.builtin = \"near?reach=1000000\"\noutput.size = [84, 3]\n[camera]\n{camera}\n{depth}"));
+    // The depth window's front is one box of a clipped triangle; others of the same triangle lie behind the window.
+    for size in ["[1, 1]", "[64, 48]"] {
+        exact_preset(
+            &mut renderer,
+            &format!("scene.builtin = \"near\"\noutput.size = {size}\n[effects.boxes]\n[effects.xray]\nlayers = \"window\""),
+        );
+    }
+}
+
+#[test]
 fn overlapping_boxes_of_one_clipped_triangle_have_the_nearest_depth() {
     let Some(mut renderer) = renderer() else { return };
     let camera = "[camera]\ntarget = [0.155594989, -0.760247648, -0.299653268]\nup = [-0.634883838, 0.745447538, -0.370145453]";

@@ -68,7 +68,7 @@ static WIDE_INTERPOLATIONS: LazyLock<Vec<[f64; 4]>> = LazyLock::new(|| {
     };
     let turns = (0..DIRECTIONS).flat_map(|i| [0.4, 1.1].map(|length| direction(i) * length));
     // In powers, because an error may be a multiple of the depth.
-    let stretches = (0..16).flat_map(|i| [1.0, -1.0].map(|sign| sign * 1.1 * 0.5f64.powi(i)));
+    let stretches = (0..24).flat_map(|i| [1.0, -1.0].map(|sign| sign * 1.1 * 0.5f64.powi(i)));
     let turned = turns.flat_map(|turn| [0.0, 1.1, -1.1].map(|stretch| [turn.x, turn.y, turn.z, stretch]));
     turned.chain(stretches.map(|stretch| [0.0, 0.0, 0.0, stretch])).collect()
 });

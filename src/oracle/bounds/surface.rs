@@ -67,13 +67,11 @@ impl SampleErrors {
         }
     }
 
-    /// The normals turned and the depth stretched by so many of these bounds: x, y and z of world space, and the depth.
+    /// The normals turned and the depth stretched by so many of these bounds: x, y and z of world space, and the depth. Of corners that
+    /// lie far before and far behind the eye a renderer may mix a depth of either sign.
     pub fn times(&self, [turn @ .., stretch]: [f64; 4]) -> InterpolatedPerturbation {
         let turn = DVec3::from(turn);
-        let depth = stretch * self.depth;
-        // As far below as above, in proportion: a depth stays positive.
-        let depth = if depth < 0.0 { depth / (1.0 - depth) } else { depth };
-        InterpolatedPerturbation { normal: turn * self.normal, plane: turn * self.plane, depth }
+        InterpolatedPerturbation { normal: turn * self.normal, plane: turn * self.plane, depth: stretch * self.depth }
     }
 }
 
