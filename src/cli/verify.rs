@@ -245,6 +245,9 @@ fn failures(accuracy: &ErrorReport, test: &GoldenTest, pixels_over_tolerance: u6
     let forgiven = pixels_over_tolerance <= u64::from(test.max_pixels);
     let max_color_delta = if forgiven { u8::MAX } else { test.max_channel };
     let mut budget = Budget { max_color_delta, max_wrong_triangles: test.max_wrong_triangles.into(), ..Budget::default() };
+    if test.max_channel > 1 {
+        budget.max_rounding_fraction = 1.0;
+    }
     if allows_any_band {
         budget = Budget { max_depth_band_pixels: u64::MAX, max_step_band_fraction: f64::INFINITY, ..budget };
     }

@@ -91,7 +91,9 @@ pub struct ErrorReport {
     pub counters_wrong: u64,
     /// Largest difference of a color channel from the nearest right answer, of 255.
     pub max_color_delta: u8,
-    /// Root mean square of that over all channels, of 255.
+    /// Pixels whose color is one step of 255 away, which rounding alone does to few.
+    pub rounding_pixels: u64,
+    /// Root mean square of the difference over all channels, of 255.
     pub rms_color_delta: f64,
 }
 
@@ -207,6 +209,8 @@ pub struct Budget {
     pub max_explained: u64,
     /// Most different colors in the step band, as a fraction of the pixels.
     pub max_step_band_fraction: f64,
+    /// Most pixels whose color is one step away, as a fraction of the pixels, beside [`Budget::ROUNDING_PIXELS`].
+    pub max_rounding_fraction: f64,
 }
 
 impl Default for Budget {
@@ -218,8 +222,14 @@ impl Default for Budget {
             max_depth_band_pixels: u64::MAX,
             max_explained: u64::MAX,
             max_step_band_fraction: 0.03,
+            max_rounding_fraction: 0.01,
         }
     }
+}
+
+impl Budget {
+    /// Pixels of any picture, however small, whose color may be one step away.
+    pub const ROUNDING_PIXELS: u64 = 8;
 }
 
 impl ErrorReport {
@@ -250,6 +260,11 @@ impl ErrorReport {
             (self.depth_band_pixels, budget.max_depth_band_pixels, "pixels lie in the depth band"),
             (self.step_band_colors, (self.pixels as f64 * budget.max_step_band_fraction) as u64, "colors lie in the step band"),
             (self.max_color_delta.into(), budget.max_color_delta.into(), "of 255 is the largest color difference"),
+            (
+                self.rounding_pixels,
+                Budget::ROUNDING_PIXELS + (self.pixels as f64 * budget.max_rounding_fraction) as u64,
+                "pixels have a color that is one step of 255 away",
+            ),
         ];
         let sentence = |&(count, limit, what): &(u64, u64, &str)| {
             (count > limit).then(|| if limit == 0 { format!("{count} {what}") } else { format!("{count} {what} (at most {limit})") })

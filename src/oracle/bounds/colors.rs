@@ -39,6 +39,7 @@ pub struct AcceptedColors {
     per_step: usize,
     /// Smallest and largest right color of pixels where the adapter has another color than all pictures.
     unsure: HashMap<usize, [[u8; 4]; 2]>,
+    unsure_pixels: u64,
 }
 
 /// Smallest and largest value of every channel; none of no colors.
@@ -55,22 +56,28 @@ impl AcceptedColors {
         let is_span = !shot.scene.images.is_empty() || shot.stack.light().is_some();
         let pictures: Vec<_> = of_pictures(shot.scene, shot.stack).iter().map(shaded).collect();
         let per_step = pictures.len() / color_steps(shot.stack).len();
-        Self { pictures, is_span, per_step, unsure: HashMap::new() }
+        Self { pictures, is_span, per_step, unsure: HashMap::new(), unsure_pixels: 0 }
     }
 
     /// Of a picture of layers.
     pub fn of_layers(shot: &Shot, input: &ResolveInput, image: &LayerImage, bounds: &LayerBounds) -> Self {
         let ends = [0, 1].map(|end| bounds.colors.iter().map(|bounds| bounds[end]).collect::<Vec<_>>());
         let finished = |&step: &f64| [&image.colors, &ends[0], &ends[1]].map(|colors| finish(shot, input, colors, step));
-        Self { pictures: color_steps(shot.stack).iter().flat_map(finished).collect(), is_span: true, per_step: 3, unsure: HashMap::new() }
+        Self {
+            pictures: color_steps(shot.stack).iter().flat_map(finished).collect(),
+            is_span: true,
+            per_step: 3,
+            unsure: HashMap::new(),
+            unsure_pixels: 0,
+        }
     }
 
     /// Adds what is right where places and interpolated normals and depths err, at the pixels where `adapter` has another color. Those
     /// of other pixels are not asked for, which saves most of the work.
     pub fn with_interpolations(mut self, shot: &Shot, input: &ResolveInput, geometry: &Geometry, adapter: &[[u8; 4]]) -> Self {
         let nearest = self.nearest(adapter);
-        let differs = |i: &usize| (0..4).any(|c| nearest[*i][c].abs_diff(adapter[*i][c]) > 1);
-        let pixels: Vec<usize> = (0..adapter.len()).filter(differs).collect();
+        let difference = |i: usize| (0..4).map(|c| nearest[i][c].abs_diff(adapter[i][c])).max().unwrap_or(0);
+        let pixels: Vec<usize> = (0..adapter.len()).filter(|&i| difference(i) > 0).collect();
         if pixels.is_empty() {
             return self;
         }
@@ -99,12 +106,14 @@ impl AcceptedColors {
             (all != known).then_some((i, all))
         };
         self.unsure = pixels.par_iter().filter_map(right).collect();
+        self.unsure_pixels = self.unsure.keys().filter(|&&i| difference(i) > 1).count() as u64;
         self
     }
 
-    /// Number of pixels whose color only the errors of places and of interpolated normals and depths explain.
+    /// Number of pixels whose color, more than a step of 255 away, only the errors of places and of interpolated normals and depths
+    /// explain.
     pub fn unsure_pixels(&self) -> u64 {
-        self.unsure.len() as u64
+        self.unsure_pixels
     }
 
     /// The exact picture.

@@ -180,8 +180,9 @@ impl JudgedColors {
         if let (Some((_, bounds)), false) = (&self.layers, freedom.is_scheduled()) {
             judge_layers(report, bounds, picture);
         }
-        let delta = compare::pictures(&nearest, &frame.color, 0);
+        let [delta, beyond] = [0, 1].map(|step| compare::pictures(&nearest, &frame.color, step));
         (report.max_color_delta, report.rms_color_delta) = (delta.max_delta, delta.rms);
+        report.rounding_pixels = delta.pixels_over_tolerance - beyond.pixels_over_tolerance;
         report.interpolation_pixels = self.accepted.unsure_pixels();
         report.step_band_colors = self.accepted.step_band_colors();
         report.step_band_pixels = self.accepted.step_band().iter().filter(|is_band| **is_band).count() as u64;
