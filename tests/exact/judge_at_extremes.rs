@@ -94,6 +94,22 @@ fn dots_and_outlines_read_the_depth_that_a_rounded_key_stands_for() {
 }
 
 #[test]
+fn colors_that_are_all_a_little_wrong_are_wrong() {
+    let Some(renderer) = renderer() else { return };
+    let scene = scene("knot?tess=6");
+    let view = view(&scene, [96, 72]);
+    let (stack, accuracy) = (stack(&["lambert"]), AccuracyRequest::default());
+    let report = |renderer: &mut Renderer| judged(renderer, &scene, &view, &stack, &accuracy).1.report;
+    assert_eq!(exactness(&report(&mut Renderer::new(renderer.gpu().clone()))), Ok(()));
+    // Less than a third of a step of 255.
+    let shaders = mutated("effects/lambert", "let up = 0.5 + 0.5 * s.normal.y;", "let up = 0.503 + 0.5 * s.normal.y;");
+    let mistaken = report(&mut Renderer::with_library(renderer.gpu().clone(), shaders.shaders()));
+    assert_eq!(mistaken.max_color_delta, 1, "{mistaken:?}");
+    let fault = mistaken.within(&Budget::default()).expect_err("it is caught");
+    assert!(fault.contains("pixels have a color that is one step of 255 away (at most "), "{fault}");
+}
+
+#[test]
 fn rounded_keys_are_judged() {
     let Some(renderer) = renderer() else { return };
     let scene = scene("knot?tess=4");
