@@ -5,6 +5,7 @@ use super::{
     error::{EffectError, Text},
     tokens::{Token, closing, open_comment},
 };
+use crate::params::is_hidden;
 
 /// Most brackets, and branches of one `else if` chain, inside each other.
 pub const MAX_DEPTH: usize = 64;
@@ -34,8 +35,7 @@ fn check_characters(text: &Text<'_>) -> Result<(), EffectError> {
             '\n' | '\t' => true,
             '\r' => characters.peek().is_some_and(|(_, next)| *next == '\n'),
             '\u{feff}' => offset == 0,
-            '\u{2028}' | '\u{2029}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => false,
-            other => !other.is_control(),
+            other => !is_hidden(other),
         };
         if !is_allowed {
             let message = format!("the character U+{:04X} cannot stand in an effect file; remove it", u32::from(c));

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::params::{is_hidden, legible_line};
+
 /// A fault in an effect file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EffectError {
@@ -51,9 +53,18 @@ impl Place {
             line: text[..offset].matches('\n').count() as u32 + 1,
             column: before as u32 + 1,
             length: marked as u32,
-            text: shown.map(|c| if c == '\t' { ' ' } else { c }).collect(),
+            text: shown.map(shown_character).collect(),
             skipped: skipped as u32,
         }
+    }
+}
+
+/// As a message shows a character of a file: in one column, and without effect on the others.
+fn shown_character(c: char) -> char {
+    match c {
+        '\t' => ' ',
+        c if is_hidden(c) => char::REPLACEMENT_CHARACTER,
+        c => c,
     }
 }
 
@@ -73,9 +84,9 @@ impl fmt::Display for EffectError {
 
 impl std::error::Error for EffectError {}
 
-/// A message in one line, without control characters and without a period at its end.
+/// A message in one line, without characters that steer a terminal or reorder text, and without a period at its end.
 fn sentence(message: &str) -> String {
-    let words = message.split(|c: char| c.is_whitespace() || c.is_control()).filter(|word| !word.is_empty());
+    let words = message.split(|c: char| c.is_whitespace() || is_hidden(c)).filter(|word| !word.is_empty());
     let joined = words.collect::<Vec<_>>().join(" ");
     let kept: String = joined.chars().take(MAX_MESSAGE).collect();
     kept.trim_end_matches('.').to_owned()
@@ -92,7 +103,7 @@ pub struct Text<'a> {
 impl Text<'_> {
     /// An error about `length` bytes at byte `offset`.
     pub fn error(&self, offset: usize, length: usize, message: impl Into<String>) -> EffectError {
-        EffectError { file: self.file.into(), place: Some(Place::of(self.text, offset, length)), message: sentence(&message.into()) }
+        EffectError { file: legible_line(self.file), place: Some(Place::of(self.text, offset, length)), message: sentence(&message.into()) }
     }
 
     /// The line, from 1, of byte `offset`.
@@ -102,6 +113,6 @@ impl Text<'_> {
 
     /// An error about the file as a whole.
     pub fn whole(&self, message: impl Into<String>) -> EffectError {
-        EffectError { file: self.file.into(), place: None, message: sentence(&message.into()) }
+        EffectError { file: legible_line(self.file), place: None, message: sentence(&message.into()) }
     }
 }

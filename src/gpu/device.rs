@@ -1,8 +1,11 @@
 //! Adapters and devices: what is there, what it can do, and one way to open it for window, command line and tests.
 
-use std::sync::{
-    Arc, Mutex,
-    atomic::{AtomicBool, Ordering},
+use std::{
+    cell::RefCell,
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicBool, Ordering},
+    },
 };
 
 use super::pipeline_store::PipelineStore;
@@ -142,6 +145,14 @@ fn wanted_limits(adapter: &wgpu::Adapter) -> wgpu::Limits {
     }
 }
 
+/// Is called with each device that is opened.
+type Watcher = Box<dyn Fn(&wgpu::Device)>;
+
+thread_local! {
+    /// Who is told of devices that the thread opens.
+    static OPENED: RefCell<Option<Watcher>> = const { RefCell::new(None) };
+}
+
 impl Gpu {
     /// Opens an adapter without a window; waits for it.
     pub fn open(choice: &AdapterChoice) -> Result<Arc<Self>, OpenError> {
@@ -150,7 +161,13 @@ impl Gpu {
         let adapter = &adapters[choose(choice, &names)?];
         let (device, queue) = pollster::block_on(adapter.request_device(&Self::descriptor(adapter)))
             .map_err(|error| OpenError::Device { adapter: adapter.get_info().name, reason: error.to_string() })?;
+        OPENED.with_borrow(|seen| seen.iter().for_each(|seen| seen(&device)));
         Ok(Self::adopt(adapter, device, queue))
+    }
+
+    /// Calls `seen` with every device that this thread opens from now on. Tests lose devices of commands with it.
+    pub fn watch_opened(seen: impl Fn(&wgpu::Device) + 'static) {
+        OPENED.set(Some(Box::new(seen)));
     }
 
     /// What we ask of an adapter: all that helps of what it has, and no more.

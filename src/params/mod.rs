@@ -4,12 +4,14 @@
 //! [`params!`](crate::params!), which also lays the struct out as WGSL has it; settings of a preset and accuracy axes wrap the same
 //! type. Sliders, preset files, `--set`, listings, the JSON schema and uniform bytes all read these entries.
 
+mod legible;
 mod measure;
 mod suggest;
 mod value;
 
 use std::ops::{Deref, RangeInclusive};
 
+pub use legible::{is_hidden, legible, legible_line};
 pub use measure::Measure;
 pub use suggest::{did_you_mean, suggestion};
 pub use value::{Stored, Value, ValueError, ValueType, format_number};

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::params::{legible, legible_line};
+
 /// A line of a file; `file` may also be `stdin` or an argument such as `--set facet.amount=2`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Position {
@@ -56,6 +58,6 @@ impl PresetError {
     }
 
     pub(super) fn value(at: Position, key: impl Into<String>, reason: impl Into<String>) -> Self {
-        Self::Value { at, key: key.into(), reason: reason.into() }
+        Self::Value { at, key: legible_line(&key.into()), reason: legible(&reason.into()) }
     }
 }

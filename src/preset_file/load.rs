@@ -9,7 +9,7 @@ use super::{
     file::{PresetFile, stem},
     migrate, read, reader,
 };
-use crate::effect_files::Catalog;
+use crate::{effect_files::Catalog, params::legible_line};
 
 /// Longest preset that is read, bytes.
 pub const MAX_BYTES: usize = 1 << 20;
@@ -135,7 +135,7 @@ fn document(text: &str, file: &str) -> Result<Document<String>, PresetError> {
     }
     Document::parse(text.to_owned()).map_err(|error| {
         let line = error.span().map(|span| reader::line_of(text, span.start));
-        PresetError::Syntax { at: at(line), reason: error.message().trim().replace('\n', ", ") }
+        PresetError::Syntax { at: at(line), reason: legible_line(&error.message().trim().replace('\n', ", ")) }
     })
 }
 

@@ -12,7 +12,7 @@ use super::{
     load::{MAX_BYTES, parse_file, read_capped},
     share::stays_inside,
 };
-use crate::{frame::Frame, preset::SceneSource};
+use crate::{frame::Frame, params::legible_line, preset::SceneSource};
 
 const PRESET: &str = "rasterlab preset";
 /// The keyword of the preset in pictures of schema 1.
@@ -113,7 +113,7 @@ pub fn load_picture(path: &Path) -> Result<PresetFile, PresetError> {
     if let SceneSource::File(model) = &preset_file.preset.scene
         && !stays_inside(model)
     {
-        let shown = model.display();
+        let shown = legible_line(&model.to_string_lossy());
         let name = model.file_name().map(Path::new).filter(|name| stays_inside(name) && path.with_file_name(name).is_file());
         let Some(name) = name else {
             let reason = format!("its model {shown} lies outside of the folder of the picture; put a copy of the model beside the picture");

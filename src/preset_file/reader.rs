@@ -9,7 +9,7 @@ use super::{
 use crate::{
     effect_files::Catalog,
     effects::Effect,
-    params::{Param, Value, did_you_mean},
+    params::{Param, Value, did_you_mean, legible_line},
 };
 
 /// In an effect's table: the effect that it is an instance of.
@@ -39,7 +39,7 @@ impl<'a> Reader<'a> {
     /// Adds a warning while there is room for it.
     pub fn warn(&mut self, warning: impl FnOnce(&Self) -> String) {
         if self.warnings.len() < MAX_WARNINGS {
-            self.warnings.push(warning(self));
+            self.warnings.push(legible_line(&warning(self)));
         } else {
             self.unnamed += 1;
         }

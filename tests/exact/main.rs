@@ -8,6 +8,7 @@ mod accuracy_axes;
 mod backends;
 mod backgrounds;
 mod culling;
+mod device_lost;
 mod evaluator_gpu;
 mod extremes;
 mod judge_at_extremes;

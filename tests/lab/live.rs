@@ -334,3 +334,54 @@ fn shaders_of_a_folder_are_reloaded() {
     let said = String::from_utf8_lossy(&child.stdout).into_owned() + &String::from_utf8_lossy(&child.stderr);
     assert!(child.status.success(), "{said}");
 }
+
+#[test]
+fn of_two_windows_on_one_preset_the_second_to_save_asks() {
+    use eframe::egui::{Key, Modifiers, vec2};
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("mine.toml");
+    let text = "schema = 2\nname = \"Mine\"\n[scene]\nbuiltin = \"teapot\"\n[effects.facet]\namount = 0.25\n[effects.lambert]\n";
+    let Some(mut first) = lab_of(folder.path(), text) else { return };
+    let mut second = lab_in(&file.to_string_lossy(), Some(folder.path())).expect("the first has an adapter");
+    let change = |lab: &mut Lab, to: f32| {
+        let rail = slider(lab, "facet.amount").rect();
+        drag(lab, rail.left_center() + vec2(8.0, 0.0), rail.left_center() + vec2(to * rail.width(), 0.0));
+        value(lab, "facet", "amount")[0]
+    };
+    let amount_in_file = || {
+        let saved = rasterlab::preset_file::load(&file).expect("a preset").preset;
+        let facet = saved.stack.get("facet").expect("the effect is enabled").clone();
+        facet.effect.field("amount").expect("a parameter").get(&facet.words)[0]
+    };
+    let (ours, theirs) = (change(&mut first, 0.5), change(&mut second, 0.75));
+    assert_ne!(ours, theirs);
+    press(&mut first, Modifiers::COMMAND, Key::S);
+    assert_eq!(amount_in_file(), ours);
+    press(&mut second, Modifiers::COMMAND, Key::S);
+    wait_for(&mut second, "the question is asked", |lab| lab.query_by_label("Take theirs").is_some());
+    assert_eq!(amount_in_file(), ours, "the second window overwrites what the first has saved");
+    click(&mut second, Role::Button, "Take theirs");
+    assert_eq!(value(&second, "facet", "amount")[0], ours);
+    // The first window, which is not asked, saves on.
+    let ours = change(&mut first, 0.125);
+    press(&mut first, Modifiers::COMMAND, Key::S);
+    assert_eq!(amount_in_file(), ours);
+}
+
+/// What a program writes after the clock was set back seems older than what was read, and may be as long.
+#[test]
+fn an_edit_that_seems_older_than_what_is_shown_is_seen() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("mine.toml");
+    let text = "schema = 2\nname = \"Mine\"\n[scene]\nbuiltin = \"teapot\"\n[effects.facet]\namount = 0.25\n";
+    let Some(mut lab) = lab_of(folder.path(), text) else { return };
+    for (number, (amount, hours)) in [("0.50", 1), ("0.75", 48), ("0.25", 2)].into_iter().enumerate() {
+        let other = folder.path().join("other.tmp");
+        write(&other, &text.replace("0.25", amount));
+        let then = std::time::SystemTime::now() - Duration::from_secs(3600 * hours);
+        std::fs::File::options().write(true).open(&other).expect("a file").set_modified(then).expect("a time");
+        std::fs::rename(&other, &file).expect("the same folder");
+        wait_for(&mut lab, "the file is read again", |lab| times(lab, "Mine was reloaded") == number as u32 + 1);
+        assert_eq!(value(&lab, "facet", "amount")[0], amount.parse::<f64>().expect("a number"));
+    }
+}

@@ -168,3 +168,29 @@ fn broken_settings_are_one_line_of_the_log_and_the_window_opens() {
     let Some(lab) = lab_at(config.path(), None) else { return };
     assert!(lab.state().has_picture());
 }
+
+/// As in a home that is read-only; a file in the folder's place stops root too.
+#[test]
+fn without_a_folder_for_settings_the_window_says_so_once_and_works() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("file");
+    std::fs::write(&file, "no folder").expect("a file");
+    let config = file.join("rasterlab");
+    let Some(mut lab) = lab_at(&config, Some("facet-sweep")) else { return };
+    assert!(lab.state().has_picture());
+    let amount = edit(&mut lab);
+    press(&mut lab, Modifiers::COMMAND, Key::Comma);
+    click(&mut lab, Role::Button, "Light");
+    press(&mut lab, Modifiers::NONE, Key::Escape);
+    for _ in 0..200 {
+        lab.step();
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert_eq!((lab.ctx.theme(), value(&lab, "facet", "amount")), (Theme::Light, amount));
+    let log = lab.state().log_text();
+    let said: Vec<&str> = log.lines().filter(|line| line.contains(&*config.to_string_lossy())).collect();
+    // Of the settings that are read, of the session, and of the settings that are written: a sentence each, once.
+    assert!((1..=3).contains(&said.len()) && said.iter().all(|line| line.starts_with("warning") && !line.contains(" ×")), "{said:#?}");
+    drop(lab);
+    assert_eq!(std::fs::read_to_string(&file).expect("the file"), "no folder");
+}

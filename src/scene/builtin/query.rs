@@ -77,7 +77,7 @@ pub fn parse(builtins: &'static [Builtin], query: &str) -> Result<(&'static Buil
     let mut values: Vec<Option<f64>> = vec![None; builtin.params.len()];
     for pair in pairs.split('&').filter(|pair| !pair.is_empty()) {
         let (key, text) =
-            pair.split_once('=').ok_or_else(|| BuiltinError(format!("{name}: \"{pair}\" must have the form parameter=value")))?;
+            pair.split_once('=').ok_or_else(|| BuiltinError(format!("{name}: {} must have the form parameter=value", quoted(pair))))?;
         let Some(at) = builtin.params.iter().position(|param| param.name == key) else {
             let known = builtin.params.iter().map(|param| param.name).collect();
             return Err(BuiltinError(unknown(&format!("{name} has no parameter"), key, known)));
@@ -92,25 +92,34 @@ pub fn parse(builtins: &'static [Builtin], query: &str) -> Result<(&'static Buil
 
 fn checked(builtin: &str, param: &BuiltinParam, text: &str) -> Result<f64, BuiltinError> {
     let kind = if param.whole { "a whole number" } else { "a number" };
+    let shown = quoted(text);
+    let shown = shown.trim_matches('"');
     let (low, high) = (param.range.start(), param.range.end());
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && !(param.whole && value.fract() != 0.0) => {
             if param.range.contains(&value) {
                 return Ok(value);
             }
-            Err(BuiltinError(format!("{builtin}: {}={text} must be {kind} from {low} to {high}", param.name)))
+            Err(BuiltinError(format!("{builtin}: {}={} must be {kind} from {low} to {high}", param.name, shown)))
         }
-        _ => Err(BuiltinError(format!("{builtin}: {}={text} must be {kind} from {low} to {high}", param.name))),
+        _ => Err(BuiltinError(format!("{builtin}: {}={} must be {kind} from {low} to {high}", param.name, shown))),
     }
 }
 
 /// A sentence with the unknown name, the most similar known one, and all known names.
 fn unknown(what: &str, requested: &str, known: Vec<&str>) -> String {
+    let requested: String = requested.chars().take(60).collect();
+    let requested = requested.as_str();
     let near = known.iter().map(|name| (strsim::damerau_levenshtein(name, requested), name)).min();
     let hint = match near {
         Some((distance, name)) if distance <= 2.max(name.len() / 3) => format!("; did you mean \"{name}\"?"),
         _ => String::new(),
     };
     let list = if known.is_empty() { "none".into() } else { known.join(", ") };
-    format!("{what} \"{requested}\"{hint} (known: {list})")
+    format!("{what} {}{hint} (known: {list})", quoted(requested))
+}
+
+/// A piece of a query as a message shows it: in quotes, without control characters, at most 60 characters.
+fn quoted(text: &str) -> String {
+    format!("{:?}", text.chars().take(60).collect::<String>())
 }

@@ -1,6 +1,7 @@
 //! Promise: stdout carries data only, exit codes mean what they say, nothing is overwritten unasked, a closed pipe is no error.
 
 mod effects;
+mod faults;
 mod files_kept;
 mod films;
 mod limits;

@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 use rasterlab::{
     effect_files::{EffectError, read},
     effects::Effect,
+    params::is_hidden,
 };
 
 /// Longest time that reading one file may take.
@@ -46,6 +47,9 @@ fn check_telling(error: &EffectError, text: &str) {
     if error.message.len() < 10 {
         fail("the message says too little");
     }
+    if shown.chars().any(|c| c != '\n' && is_hidden(c)) {
+        fail("the message has characters that steer a terminal or reorder text");
+    }
     let lines: Vec<&str> = shown.split('\n').collect();
     let Some(place) = &error.place else {
         assert_eq!(lines.len(), 1, "{shown}");
@@ -61,7 +65,17 @@ fn check_telling(error: &EffectError, text: &str) {
         fail("the column is not on a character of the line");
     }
     let caret = carets.find('^').unwrap_or_else(|| panic!("no caret:\n{shown}"));
-    if line.chars().nth(caret) != at.map(|c| if c == '\t' { ' ' } else { c }) {
+    // A tab takes one column, and what steers a terminal or reorders text is not shown.
+    let shown_as = |c: char| {
+        if c == '\t' {
+            ' '
+        } else if is_hidden(c) {
+            char::REPLACEMENT_CHARACTER
+        } else {
+            c
+        }
+    };
+    if line.chars().nth(caret) != at.map(shown_as) {
         fail("the caret is not below its place");
     }
     if line.chars().count() > 200 || carets.len() > 200 {

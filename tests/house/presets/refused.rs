@@ -178,3 +178,24 @@ fn a_file_full_of_unknown_keys_is_read_in_a_moment() {
     }
     assert!(began.elapsed().as_secs() < 30, "{:?}", began.elapsed());
 }
+
+/// What a preset of anyone says must not clear the terminal that shows it, nor fill it.
+#[test]
+fn messages_quote_no_control_characters_and_no_long_values() {
+    let key = "\"a\\u001b[2J\\u202e\\nb\"";
+    let warned = parse(&format!("schema = 2\n{key} = 1\n[effects.facet]\n{key} = 1\n[effects.{key}]\n[animation.{key}]\n"));
+    assert_eq!(warned.warnings.len(), 4, "{:?}", warned.warnings);
+    let refused = [
+        refusal(&format!("schema = 2\nstack = [{key}]\n")),
+        refusal(&format!("schema = 2\n[effects.{key}]\neffect = \"facet\"\n")),
+        refusal(&format!("schema = 2\n[effects.facet]\non = [{key}]\n")),
+        refusal(&format!("schema = 2\n[effect_files]\n{key} = \"\"\n[effects.{key}]\n")),
+    ];
+    for message in warned.warnings.iter().chain(&refused) {
+        assert!(!message.chars().any(rasterlab::params::is_hidden), "{message:?}");
+        assert!(message.contains("u{1b}[2J"), "{message}");
+    }
+    let long = refusal(&format!("schema = 2\n[scene]\nunit = \"{}\"\n", "ab ".repeat(10_000)));
+    assert!(long.chars().count() < 1100, "{} characters", long.chars().count());
+    assert!(long.starts_with("preset.toml:3: scene.unit \"ab ab") && long.contains(" … ") && long.ends_with("scene"), "{long}");
+}

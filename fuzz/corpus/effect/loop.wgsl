@@ -1,0 +1,16 @@
+//@ use lib/surface
+
+struct Ink {
+    /// Strength.
+    @range(0.0, 1.0, 0.5) amount: f32,
+}
+
+fn helper(x: f32) -> f32 {
+    return 2.0 * x;
+}
+
+fn ink(surface: Surface, p: Ink) -> Surface {
+    var s = surface;
+    for (var i = 0u; i < 10u; i++) { s.color *= 0.99; if i == 7u { continue; } }
+    return s;
+}

@@ -1,0 +1,16 @@
+//@ use lib/surface
+
+struct Ink {
+    /// Strength.
+    @range(0.0, 1.0, 0.5) amount: f32,
+}
+
+fn helper(x: f32) -> f32 {
+    return 2.0 * x;
+}
+
+fn ink(surface: Surface, p: Ink) -> Surface {
+    var s = surface;
+    let m = mat3x3<f32>(s.color, s.color, s.color); s.color = transpose(m) * s.color;
+    return s;
+}

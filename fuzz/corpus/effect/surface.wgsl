@@ -1,0 +1,21 @@
+// Ink: tints the surface where it faces away from the viewer.
+//
+// A surface effect says what color a visible sample has. `Surface` has its position, normals, depth, barycentric
+// coordinates and more; docs/effects.md lists them. Save this file, and the picture changes.
+//@ use lib/surface
+
+struct Ink {
+    /// Color of the rim.
+    @color(0.95, 0.45, 0.15) tint: vec4f,
+    /// Strength of the tint.
+    @range(0.0, 1.0, 0.8) amount: f32,
+    /// How narrow the rim is.
+    @range(0.5, 8.0, 2.0) @log falloff: f32,
+}
+
+fn ink(surface: Surface, p: Ink) -> Surface {
+    var s = surface;
+    let rim = pow(1.0 - clamp(dot(s.normal, s.view), 0.0, 1.0), p.falloff);
+    s.color = vec4f(mix(s.color.rgb, p.tint.rgb, rim * p.amount), s.color.a);
+    return s;
+}

@@ -1,0 +1,137 @@
+//! glTF and GLB models: read, posed, planned, and where they are small drawn by the oracle.
+
+use rasterlab::{
+    oracle,
+    plan::{Caps, Planner},
+    preset::{Preset, SceneSource},
+    preset_file::PresetFile,
+    scene::{
+        Scene,
+        draw::{draws, totals},
+        gltf::{self, LoadError},
+        meshlets::Meshlets,
+        needs::Needs,
+        parts::parts,
+    },
+};
+
+use super::{Outcome, Target, assert_told};
+use crate::{guard::Limit, views};
+
+pub const TARGET: Target = Target {
+    name: "model",
+    about: "glTF and GLB models",
+    views: &[views::GLB_JSON, views::GLB_JSON, views::GLB_BINARY],
+    words: WORDS,
+    limit: Limit::new(20, 2048),
+    check,
+};
+
+const WORDS: &[&str] = &[
+    "\"accessors\"",
+    "\"animations\"",
+    "\"bufferViews\"",
+    "\"buffers\"",
+    "\"byteLength\"",
+    "\"byteOffset\"",
+    "\"byteStride\"",
+    "\"cameras\"",
+    "\"children\"",
+    "\"componentType\"",
+    "\"count\"",
+    "\"extensions\"",
+    "\"extras\"",
+    "\"images\"",
+    "\"indices\"",
+    "\"matrix\"",
+    "\"materials\"",
+    "\"max\"",
+    "\"meshes\"",
+    "\"min\"",
+    "\"mode\"",
+    "\"nodes\"",
+    "\"normalized\"",
+    "\"primitives\"",
+    "\"rotation\"",
+    "\"samplers\"",
+    "\"scale\"",
+    "\"scenes\"",
+    "\"skins\"",
+    "\"sparse\"",
+    "\"targets\"",
+    "\"textures\"",
+    "\"translation\"",
+    "\"type\"",
+    "\"uri\"",
+    "\"weights\"",
+    "\"yfov\"",
+    "\"POSITION\"",
+    "\"NORMAL\"",
+    "\"COLOR_0\"",
+    "\"TEXCOORD_0\"",
+    "\"JOINTS_0\"",
+    "\"WEIGHTS_0\"",
+    "\"MASK\"",
+    "\"VEC3\"",
+    "\"MAT4\"",
+    "\"SCALAR\"",
+    "\"CUBICSPLINE\"",
+    "\"STEP\"",
+    "\"data:;base64,AAAA\"",
+    "\"../a.bin\"",
+    "\"KHR_texture_transform\"",
+    "\"KHR_lights_punctual\"",
+    "\"EXT_meshopt_compression\"",
+    "\"KHR_draco_mesh_compression\"",
+    "5120",
+    "5121",
+    "5122",
+    "5123",
+    "5125",
+    "5126",
+    "null",
+    "{}",
+    "[]",
+];
+
+fn check(bytes: &[u8]) -> Outcome {
+    use_scene(&read(bytes).map_err(|LoadError(error)| error)?);
+    Ok(())
+}
+
+/// The model; the files that it refers to are not there.
+pub fn read(bytes: &[u8]) -> Result<Scene, LoadError> {
+    gltf::parse(bytes, &mut |_, _| Err(LoadError("no files here".into())))
+}
+
+/// Everything that a model goes through until it is drawn.
+pub fn use_scene(scene: &Scene) {
+    scene.notes.iter().chain(&scene.faults).for_each(|note| assert_told(note));
+    parts(scene);
+    let mut preset = PresetFile::of_scene("fuzz", SceneSource::File("fuzz.glb".into())).preset;
+    let clips = scene.rig.clips.iter().map(|clip| clip.name.clone()).take(2);
+    for clip in [String::new()].into_iter().chain(clips) {
+        preset.playback.clip = clip;
+        for time_s in [0.0, 0.7, -3.5, 1e9] {
+            preset.clock.time_s = time_s;
+            let view = preset.view(scene, [16, 12]);
+            let Ok(all) = draws(scene, &view) else { return };
+            let needs = Needs::of(scene, &all, &view).into();
+            let caps = Caps::ALL;
+            let _ = Planner::default().plan(&needs, &preset.stack_on(scene), &caps, &caps.tuning(), &preset.accuracy);
+            let [vertices, triangles] = totals(scene, &all);
+            if vertices + triangles < 3_000 && scene.instances.len() < 200 {
+                draw(&preset, scene);
+            }
+        }
+    }
+    scene.primitives.iter().filter(|primitive| primitive.triangle_count() < 3_000).for_each(|primitive| {
+        Meshlets::of(scene, primitive);
+    });
+}
+
+fn draw(preset: &Preset, scene: &Scene) {
+    if let Err(error) = oracle::render_scaled(scene, &preset.moments(scene, [16, 12]), 1.0) {
+        assert_told(&error.to_string());
+    }
+}

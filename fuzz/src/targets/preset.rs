@@ -1,0 +1,124 @@
+//! Preset files: what loads is written and loads again the same.
+
+use rasterlab::{
+    effect_files::Catalog,
+    preset_file::{self, EffectValues, PresetError, PresetFile},
+};
+
+use super::{Outcome, Target, assert_told_with_place};
+use crate::guard::Limit;
+
+pub const TARGET: Target = Target {
+    name: "preset",
+    about: "presets, and values of an effect, as TOML",
+    views: &[],
+    words: WORDS,
+    limit: Limit::new(5, 256),
+    check,
+};
+
+pub const WORDS: &[&str] = &[
+    "schema",
+    "name",
+    "about",
+    "tags",
+    "stack",
+    "[scene]",
+    "builtin",
+    "path",
+    "room",
+    "spin_deg_per_s",
+    "[camera]",
+    "eye",
+    "target",
+    "up",
+    "fov_y_deg",
+    "height_m",
+    "near_m",
+    "[clock]",
+    "time_s",
+    "range_s",
+    "loop",
+    "speed",
+    "[playback]",
+    "clip",
+    "[accuracy]",
+    "tier",
+    "wrong_ppm",
+    "depth",
+    "[output]",
+    "size",
+    "background",
+    "[test]",
+    "max_channel",
+    "max_pixels",
+    "why",
+    "[effects.facet]",
+    "[effects.fog]",
+    "effects.dots",
+    "amount",
+    "pattern",
+    "on",
+    "effect = \"facet\"",
+    "[animation.facet]",
+    "[{ time_s = 0, value = 0 }]",
+    "ease",
+    "[effect_files]",
+    "\"material:*\"",
+    "\"node:a?\"",
+    "\"mesh:[\"",
+    "[polyline]",
+    "points",
+    "1979-05-27T07:32:00Z",
+    "0x",
+    "inf",
+    "-nan",
+    "'''",
+    "\"\"\"",
+    "[[",
+    "true",
+];
+
+fn check(bytes: &[u8]) -> Outcome {
+    let Ok(text) = std::str::from_utf8(bytes) else { return Err("it is no UTF-8".into()) };
+    let outcome = opens(preset_file::parse(text, "fuzz"));
+    let catalog = Catalog::default();
+    match EffectValues::parse(text, "fuzz", &catalog) {
+        Ok(values) => {
+            let written = values.to_text(&catalog);
+            let again = EffectValues::parse(&written, "fuzz", &catalog)
+                .unwrap_or_else(|error| panic!("written values are refused: {error}\n{written}"));
+            assert_eq!(format!("{:?}", again), format!("{values:?}"), "{written}");
+        }
+        Err(error) => assert_told_with_place(&error.to_string()),
+    }
+    outcome
+}
+
+/// What is read also comes back.
+pub fn opens(read: Result<PresetFile, PresetError>) -> Outcome {
+    comes_back(&read.map_err(|error| error.to_string())?);
+    Ok(())
+}
+
+/// What was read is written, and read again as the same.
+pub fn comes_back(preset_file: &PresetFile) {
+    preset_file.remarks().iter().for_each(|remark| assert_told_with_place(remark));
+    let preset = &preset_file.preset;
+    for time_s in [-1e9, 0.0, 0.3, 1e300] {
+        assert!(preset.stack_at(time_s).0.len() == preset.stack.0.len());
+    }
+    let text = preset_file::to_toml(preset_file);
+    let again = preset_file::parse(&text, &preset_file.id).unwrap_or_else(|error| panic!("the written preset is refused: {error}\n{text}"));
+    assert_eq!(format!("{:?}", again.preset), format!("{preset:?}"), "the written preset differs\n{text}");
+    assert_eq!(preset_file::to_toml(&again), text, "it is written differently the second time");
+    // The same state on a text of its own, without what the file had.
+    let mut fresh = PresetFile::new("fuzz", preset.clone());
+    fresh.effects = preset_file.effects.clone();
+    if fresh.check_savable().is_ok() {
+        let shared = preset_file::to_shared_toml(&fresh);
+        let again =
+            preset_file::parse(&shared, "fuzz").unwrap_or_else(|error| panic!("the preset written anew is refused: {error}\n{shared}"));
+        assert_eq!(format!("{:?}", again.preset), format!("{preset:?}"), "the preset written anew differs\n{shared}");
+    }
+}
