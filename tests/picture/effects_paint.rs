@@ -16,6 +16,7 @@ use rasterlab::{
     measure::{Budget, compare::pictures},
     oracle,
     params::ValueType,
+    plan::AccuracyRequest,
     preset::{Clock, Preset, SceneSource},
     scene::{Scene, view::View},
 };
@@ -304,6 +305,41 @@ fn a_matrix_holds_every_threshold_once_and_a_checkerboard_first() {
 /// A scene seen in a mirror: every column from the right.
 fn mirrored(values: &[u32], width: usize) -> Vec<u32> {
     values.chunks(width).flat_map(|row| row.iter().rev().copied()).collect()
+}
+
+#[test]
+fn a_step_of_depth_of_exactly_the_threshold_is_no_line() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("knot?tess=6");
+    let view = view(&scene, SIZE);
+    let frame = captured(&mut renderer, &scene, &view, &Stack::default(), &AccuracyRequest::default()).frame;
+    let width = SIZE[0] as usize;
+    let curvature = |i: usize, step: usize| {
+        let covered = [i - step, i, i + step].iter().all(|&i| frame.triangle_id[i] != NO_TRIANGLE);
+        let [before, here, after] = [i - step, i, i + step].map(|i| i64::from(frame.depth_key[i]));
+        covered.then_some(before + after - 2 * here)
+    };
+    let sides = [
+        (0.0, "return curvature > jump;", "return curvature >= jump;"),
+        (1.0, "return curvature < -jump;", "return curvature <= -jump;"),
+        (2.0, "return abs(curvature) > jump;", "return abs(curvature) >= jump;"),
+    ];
+    for (side, right, wrong) in sides {
+        // A pixel with a step across that the effect's range contains, and with less down.
+        let steps = (width + 1..frame.depth_key.len() - width - 1).filter(|i| ![0, width - 1].contains(&(i % width))).filter_map(|i| {
+            let (across, down) = (curvature(i, 1)?, curvature(i, width)?);
+            let is_of_side = if side == 0.0 { across > 0 } else { side == 2.0 || across < 0 };
+            (is_of_side && across.abs() > down.abs() && (839..1 << 23).contains(&across.abs())).then_some(across.abs())
+        });
+        let step = steps.min().expect("the knot has a step");
+        let threshold = step as f64 / f64::from(1 << 23);
+        let stack = with(&[("outline", "side", side), ("outline", "width_px", 1.0), ("outline", "depth_threshold", threshold)]);
+        exact(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default(), &format!("side {side}, a step of {step}"));
+        let shaders = mutated("effects/outline", right, wrong);
+        let mut mistaken = Renderer::with_library(renderer.gpu().clone(), shaders.shaders());
+        let report = judged(&mut mistaken, &scene, &view, &stack, &AccuracyRequest::default()).1.report;
+        assert!(report.max_color_delta > 1, "side {side}, a step of {step}: {wrong:?} is not caught");
+    }
 }
 
 #[test]
