@@ -144,7 +144,7 @@ impl Jobs {
 
     pub fn load_scene(&self, key: SceneKey) {
         self.spawn_urgent("scene", move || {
-            let preset = Preset { scene: key.source.clone(), room: key.room, ..Preset::default() };
+            let preset = Preset { scene: key.source.clone(), room: key.room, ground: key.ground, ..Preset::default() };
             let scene = caught("loading the scene", || preset_file::load_scene(&preset, None).map_err(|e| e.to_string()));
             Done::Scene(key, scene)
         });
@@ -388,7 +388,11 @@ fn thumbnail_on(look: &PresetFile, own: &PresetFile, scene: &Scene, size: [u32; 
         false => None,
     };
     // The whole model is shown, so that the picture stays right when the camera moves.
-    thumbnail_of(&Preset { camera: None, ..look.landed_on(own, fit.as_ref()).preset }, scene, size)
+    let preset = Preset { camera: None, ..look.landed_on(own, fit.as_ref()).preset };
+    if preset.ground == own.preset.ground {
+        return thumbnail_of(&preset, scene, size);
+    }
+    thumbnail_of(&preset, &*preset_file::load_scene(&preset, None).ok()?, size)
 }
 
 /// The picture of a preset on `scene`; none if the scene is too large or the preset cannot be drawn.

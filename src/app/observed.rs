@@ -26,6 +26,11 @@ impl App {
         self.state.screen.draws()
     }
 
+    /// Triangles of the scene that is shown; 0 without one.
+    pub fn scene_triangles(&self) -> u64 {
+        self.state.session.scene().map_or(0, |scene| scene.triangle_count())
+    }
+
     /// Number of steps that undo can take back.
     pub fn undo_steps(&self) -> usize {
         self.state.history.steps()

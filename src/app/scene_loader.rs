@@ -5,20 +5,21 @@ use std::{collections::VecDeque, sync::Arc};
 use crate::{
     preset::SceneSource,
     preset_file::PresetFile,
-    scene::{Bounds, Scene},
+    scene::{Bounds, Ground, Scene},
 };
 
-/// Identifies a scene: its source, with the path of a model as it is read, and the room round it.
+/// Identifies a scene: its source, with the path of a model as it is read, the room round it, and the ground under it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneKey {
     pub source: SceneSource,
     /// Width of the room over that of the scene; 0 for none.
     pub room: f64,
+    pub ground: Option<Ground>,
 }
 
 impl SceneKey {
     pub fn of(preset_file: &PresetFile) -> Self {
-        Self { source: preset_file.scene_source(), room: preset_file.preset.room }
+        Self { source: preset_file.scene_source(), room: preset_file.preset.room, ground: preset_file.preset.ground }
     }
 }
 
@@ -78,7 +79,7 @@ impl SceneLoader {
         self.shown_for(key).or_else(recent)
     }
 
-    /// The box of a scene that is in memory, without a room.
+    /// The box of a scene that is in memory, without ground and room.
     pub fn bounds(&self, source: &SceneSource) -> Option<Bounds> {
         let mut known = self.shown.iter().chain(&self.recent);
         known.find(|(key, _)| key.source == *source).map(|(_, scene)| scene.content_bounds())

@@ -20,7 +20,7 @@ use crate::{
         self, PresetFile,
         sweep::{Sheet, Variation},
     },
-    scene::Scene,
+    scene::{Ground, Scene},
 };
 
 /// Largest side of a sheet, pixels: what the decoders of pictures and most programs take.
@@ -115,15 +115,16 @@ fn open_with_flags(common: &Common, args: &Sweep) -> Result<PresetFile, CliError
 struct Shown {
     source: SceneSource,
     room: f64,
+    ground: Option<Ground>,
     scene: Arc<Scene>,
 }
 
 impl Shown {
     fn new(preset: &Preset, scene: Arc<Scene>) -> Self {
-        Self { source: preset.scene.clone(), room: preset.room, scene }
+        Self { source: preset.scene.clone(), room: preset.room, ground: preset.ground, scene }
     }
 
     fn is_of(&self, preset: &Preset) -> bool {
-        self.source == preset.scene && self.room == preset.room
+        self.source == preset.scene && self.room == preset.room && self.ground == preset.ground
     }
 }

@@ -25,7 +25,7 @@ pub const MAX_LOOPED_INSTRUCTIONS: usize = 8192;
 /// Longest name of an effect.
 const MAX_NAME_CHARS: usize = 40;
 /// Names that mean something else in preset files, on the command line or in effect files.
-pub const RESERVED_NAMES: [&str; 22] = [
+pub const RESERVED_NAMES: [&str; 23] = [
     "about",
     "accuracy",
     "animation",
@@ -34,6 +34,7 @@ pub const RESERVED_NAMES: [&str; 22] = [
     "clock",
     "effect_files",
     "effects",
+    "ground",
     "light",
     "name",
     "output",

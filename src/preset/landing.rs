@@ -2,7 +2,7 @@
 //!
 //! To the scene belong: what is shown (`scene.builtin` or `scene.path`), `room`, `spin_deg_per_s`, the clips and how they play, the
 //! cameras, and the size of the picture, whose frame the camera fills. To the look belongs everything else: the effects with their
-//! parameters (lights among them), keyframes, polyline and unit, the clock, the accuracy, and the background. A golden is a picture of
+//! parameters (lights among them), keyframes, polyline and unit, the clock, the accuracy, the background and the ground. A golden is a picture of
 //! both, so what has landed has none.
 
 use super::{Output, Preset};
@@ -13,13 +13,14 @@ impl Preset {
     pub fn applied_to(&self, own: &Self) -> Self {
         // Every field is named, so that a new one must be given to the scene or to the look.
         let Self { scene, room, spin_deg_per_s, playback, camera, scene_camera, output: Output { size, .. }, .. } = own.clone();
-        let Self { name, about, tags, unit, polyline, clock, stack, animation, accuracy, output, .. } = self.clone();
+        let Self { name, about, tags, unit, polyline, clock, stack, animation, accuracy, output, ground, .. } = self.clone();
         Self {
             name,
             about,
             tags,
             scene,
             room,
+            ground,
             spin_deg_per_s,
             playback,
             unit,

@@ -23,7 +23,7 @@ use crate::{
     effects::Stack,
     math::rotation_y,
     scene::{
-        Background, Bounds, Scene,
+        Background, Bounds, Ground, Scene,
         camera::Camera,
         pose::{Motion, Pose, scene_from_nodes},
         shadow_resolution::ShadowResolution,
@@ -196,6 +196,8 @@ pub struct Preset {
     pub scene: SceneSource,
     /// Distance of the walls of a room around the scene, as a multiple of the scene's width; 0: no room.
     pub room: f64,
+    /// What the scene stands on; none: nothing.
+    pub ground: Option<Ground>,
     /// Turns the whole scene about +y.
     pub spin_deg_per_s: f64,
     /// The animation clips of the scene.
@@ -226,6 +228,7 @@ impl Default for Preset {
             tags: Vec::new(),
             scene: SceneSource::Builtin("teapot".into()),
             room: 0.0,
+            ground: None,
             spin_deg_per_s: 0.0,
             playback: ClipPlayback::default(),
             unit: LengthUnit::default(),
@@ -349,7 +352,7 @@ impl Preset {
         let turns = preset.spin_deg_per_s * preset.clock.time_s / 360.0;
         let spin = if turns == 0.0 { DMat4::IDENTITY } else { rotation_y(turns.fract() * std::f64::consts::TAU) };
         let pose = preset.pose(scene);
-        let mut bounds = preset.with_particles(pose.as_ref().map_or_else(|| scene.bounds(), |pose| pose.bounds(scene)));
+        let mut bounds = preset.with_particles(pose.as_ref().map_or_else(|| scene.bounds_with_ground(), |pose| pose.bounds(scene)));
         if preset.stack.0.iter().any(|enabled| enabled.effect.hooks.has_lines) {
             preset.polyline.iter().for_each(|point| bounds.include(DVec3::from(point.map(f64::from))));
         }

@@ -16,7 +16,11 @@ use crate::{
     accuracy::AXES,
     params::{Stored, Value, ValueError, ValueType},
     plan::Tier,
-    scene::camera::{Camera, MIN_NEAR_M, Projection},
+    scene::{
+        GroundShape,
+        camera::{Camera, MIN_NEAR_M, Projection},
+        ground::MAX_CELLS,
+    },
 };
 
 impl Setting {
@@ -123,7 +127,7 @@ const TIERS: &[&str] = &{
 };
 
 /// The top of the file, then every table of settings.
-pub static SECTIONS: &[&Section] = &[&TOP, &SCENE, &CAMERA, &CLOCK, &ACCURACY, &OUTPUT, &TEST];
+pub static SECTIONS: &[&Section] = &[&TOP, &SCENE, &GROUND, &CAMERA, &CLOCK, &ACCURACY, &OUTPUT, &TEST];
 
 const fn in_section<const N: usize>(section: &'static str, mut settings: [Setting; N]) -> [Setting; N] {
     let mut index = 0;
@@ -206,6 +210,34 @@ pub static SCENE: Section = Section {
         ],
     ),
     presence: None,
+};
+
+pub static GROUND: Section = Section {
+    name: "ground",
+    doc: "A flat mesh under the scene, which receives shadows and casts none; without this table there is none",
+    settings: &in_section(
+        "ground",
+        [
+            Setting::new("shape", ValueType::Choice(GroundShape::WORDS), "Outline of the ground", GROUND_SHAPE),
+            Setting::new("size", ValueType::F64, "From the center to the edge, in radii of the scene's box", section_field!(ground.size))
+                .range(0.1, 1000.0)
+                .slider(0.5, 10.0),
+            Setting::new("color", ValueType::Color, "Color of the ground, linear RGBA", section_field!(ground.color)),
+            Setting::new(
+                "cells",
+                ValueType::U32,
+                "Rings of triangles of a disc, or squares of two triangles from the center of a square to its edge",
+                section_field!(ground.cells),
+            )
+            .range(1.0, MAX_CELLS as f64)
+            .slider(1.0, 48.0),
+        ],
+    ),
+    presence: Some(Presence {
+        is_present: |preset| preset.ground.is_some(),
+        add: |preset| _ = preset.ground.get_or_insert_default(),
+        remove: |preset| preset.ground = None,
+    }),
 };
 
 pub static CAMERA: Section = Section {
@@ -367,6 +399,17 @@ const POLYLINE: Storage = Storage::State {
     clear: None,
 };
 
+const GROUND_SHAPE: Storage = Storage::State {
+    get: |preset| Some(Value::Choice(preset.ground?.shape as usize)),
+    set: |preset, value| {
+        if let Value::Choice(index) = value {
+            preset.ground.get_or_insert_default().shape = GroundShape::ALL[*index];
+        }
+        Ok(())
+    },
+    clear: None,
+};
+
 const FOV_Y: Storage = Storage::State {
     get: |preset| match preset.camera?.projection {
         Projection::Perspective { fov_y_deg } => Some(fov_y_deg.to_value()),
@@ -406,7 +449,12 @@ mod tests {
 
     #[test]
     fn every_setting_reads_back_its_default_and_no_two_share_a_path() {
-        let mut preset = Preset { camera: Some(Camera::default()), test: Some(GoldenTest::default()), ..Preset::default() };
+        let mut preset = Preset {
+            camera: Some(Camera::default()),
+            ground: Some(Default::default()),
+            test: Some(GoldenTest::default()),
+            ..Preset::default()
+        };
         let before = preset.clone();
         let mut paths = std::collections::BTreeSet::new();
         for setting in settings() {

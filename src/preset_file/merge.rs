@@ -51,6 +51,9 @@ impl Merged {
         if mine.camera.is_none() && base.camera.is_some() {
             self.preset.camera = None;
         }
+        if mine.ground.is_none() && base.ground.is_some() {
+            self.preset.ground = None;
+        }
         if mine.test.is_none() && base.test.is_some() {
             self.preset.test = None;
         }

@@ -15,7 +15,7 @@ use crate::{
     params::{Param, Value},
     preset::{
         Preset,
-        settings::{ACCURACY, CAMERA, CLOCK, OUTPUT, SCENE, Section, TEST, TOP, baseline},
+        settings::{ACCURACY, CAMERA, CLOCK, GROUND, OUTPUT, SCENE, Section, TEST, TOP, baseline},
     },
 };
 
@@ -28,10 +28,11 @@ enum Part {
 }
 
 /// The order in which a new file has its parts.
-static PARTS: [Part; 10] = [
+static PARTS: [Part; 11] = [
     Part::Section(&TOP),
     Part::Stack,
     Part::Section(&SCENE),
+    Part::Section(&GROUND),
     Part::Section(&CAMERA),
     Part::Section(&CLOCK),
     Part::Effects,

@@ -116,15 +116,15 @@ pub fn scoped_draws(scene: &Scene, view: &View, scopes: &[Scope]) -> Result<Vec<
     }
     let at_rest = if view.scene_state.pose.is_none() { Pose::at_rest(scene) } else { None };
     let pose = view.scene_state.pose.as_deref().or(at_rest.as_ref());
-    let shadow_casters = scene.shadow_casters().len();
-    // The view of a light leaves out the walls, which are last in the list.
+    let turning = scene.instances.len() - scene.walls;
+    // The view of a light leaves out ground and walls, which are last in the list.
     let drawn = if view.is_light() { scene.shadow_casters() } else { &scene.instances };
     let masks = if scopes.is_empty() { Vec::new() } else { scope_masks(scene, scopes) };
     let (mut first_vertex, mut first_triangle, mut first_deformable) = (0, 0, 0);
     let make_draw = |(index, instance): (usize, &Instance)| {
         let primitive = &scene.primitives[instance.primitive];
         let deform = pose.and_then(|pose| pose.deform(index)).cloned();
-        let world_from_scene = if index < shadow_casters { view.scene_state.world_from_scene } else { DMat4::IDENTITY };
+        let world_from_scene = if index < turning { view.scene_state.world_from_scene } else { DMat4::IDENTITY };
         let world_from_object = world_from_scene * pose.map_or(instance.world_from_object, |pose| pose.instance_transform(index));
         let bounds = deform.as_ref().map_or(primitive.bounds, |deform| deform.bounds(primitive));
         let origin =

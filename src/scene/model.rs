@@ -190,6 +190,8 @@ pub struct Scene {
     pub instances: Vec<Instance>,
     /// The number of instances at the end of the list that are walls around the others. Walls cast no shadow and do not spin.
     pub walls: usize,
+    /// The number of instances before the walls that are a ground under the others. It casts no shadow.
+    pub grounds: usize,
     /// The box of what the walls surround; none without walls.
     pub content: Option<Bounds>,
     /// Cameras that come with the scene.
@@ -235,21 +237,22 @@ impl Scene {
         soft.map(|primitive| u64::from(primitive.vertex_count())).sum()
     }
 
-    /// World-space box of all instances. Of a scene with a rig, [`Rig::motion_bounds`].
+    /// World-space box of all instances but the ground. Of a scene with a rig, [`Rig::motion_bounds`].
     pub fn bounds(&self) -> Bounds {
         if !self.rig.is_empty() {
             return self.rig.motion_bounds;
         }
-        self.bounds_of(&self.instances)
+        let walls = &self.instances[self.instances.len() - self.walls..];
+        self.bounds_of(self.shadow_casters().iter().chain(walls))
     }
 
-    /// [`Scene::bounds`] without the walls of a room.
+    /// [`Scene::bounds`] without the walls of a room: the box of the scene itself.
     pub fn content_bounds(&self) -> Bounds {
         self.content.unwrap_or_else(|| self.bounds())
     }
 
     /// World-space box of `instances` in their rest pose.
-    pub fn bounds_of(&self, instances: &[Instance]) -> Bounds {
+    pub fn bounds_of<'a>(&self, instances: impl IntoIterator<Item = &'a Instance>) -> Bounds {
         let mut bounds = Bounds::EMPTY;
         for instance in instances {
             bounds.include_transformed(&instance.world_from_object, &self.primitives[instance.primitive].bounds, 0.0);

@@ -76,7 +76,7 @@ impl ParticleTimeline {
 }
 
 impl Scene {
-    /// The scene with particles beside its meshes, as its last instance but for walls. Their bytes are zeros until a pass writes them.
+    /// The scene with particles beside its meshes, as its last instance but for ground and walls. Their bytes are zeros until a pass writes them.
     pub fn with_particles(&self, particle_settings: Option<&ParticleSettings>) -> Cow<'_, Self> {
         let Some(particle_settings) = particle_settings.filter(|particle_settings| particle_settings.count > 0) else {
             return Cow::Borrowed(self);
@@ -94,8 +94,8 @@ impl Scene {
             count: corners as u32,
         };
         scene.particle_discs = Some(scene.primitives.len());
-        // Walls come last, since they cast no shadows.
-        let index = scene.instances.len() - scene.walls;
+        // Ground and walls come last, since they cast no shadows.
+        let index = scene.shadow_casters().len();
         let named_node = Some(scene.add_named_node(PARTICLES));
         scene.instances.insert(index, Instance { named_node, ..Instance::fixed(scene.primitives.len(), DMat4::IDENTITY) });
         scene.primitives.push(Primitive {

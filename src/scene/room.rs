@@ -43,9 +43,9 @@ impl Scene {
         self
     }
 
-    /// The instances that cast shadows: all but the walls.
+    /// The instances that cast shadows: all but ground and walls.
     pub fn shadow_casters(&self) -> &[Instance] {
-        &self.instances[..self.instances.len() - self.walls]
+        &self.instances[..self.instances.len() - self.walls - self.grounds]
     }
 }
 

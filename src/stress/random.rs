@@ -13,7 +13,7 @@ use crate::{
     plan::Tier,
     preset::{ClipPlayback, Preset, SceneSource, settings::Setting},
     scene::{
-        Bounds, Scene,
+        Bounds, Ground, GroundShape, Scene,
         builtin::{self, BUILTINS, BuiltinParam},
         camera::{Camera, MIN_NEAR_M, Projection},
         parts::{Scope, parts},
@@ -185,6 +185,10 @@ pub fn preset(seed: u32) -> Preset {
     }
     if rng.one_in(10) {
         preset.room = rng.real(1.0, 4.0);
+    }
+    if seed % 5 == 2 {
+        let shape = GroundShape::ALL[(seed / 5 % 2) as usize];
+        preset.ground = Some(Ground { shape, size: 0.5 + 4.0 * hash_unit(seed), cells: 1 + seed % 7, ..Ground::default() });
     }
     if rng.one_in(2) {
         preset.clock.time_s = rng.real(0.0, 4.0);

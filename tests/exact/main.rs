@@ -11,6 +11,7 @@ mod culling;
 mod device_lost;
 mod evaluator_gpu;
 mod extremes;
+mod grounds;
 mod judge_at_extremes;
 mod oracle;
 mod specialization;

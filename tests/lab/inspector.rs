@@ -233,3 +233,28 @@ fn the_tick_of_the_gradient_adds_a_color_at_the_bottom_and_removes_it() {
     undo(&mut lab);
     assert!(bottom(&lab).is_some());
 }
+
+#[test]
+fn the_tick_of_the_ground_puts_one_under_the_scene_and_shows_its_rows() {
+    let Some(mut lab) = lab("lambert") else { return };
+    let triangles = |lab: &Lab| lab.state().scene_triangles();
+    let (before, camera) = (triangles(&lab), lab.state().preset_file().preset.camera);
+    assert!(!has_slider(&lab, "ground.size"));
+    click(&mut lab, Role::CheckBox, "ground");
+    settle(&mut lab);
+    let ground = lab.state().preset_file().preset.ground.expect("it has a ground");
+    assert_eq!(ground, rasterlab::scene::Ground::default());
+    assert_eq!(triangles(&lab), before + u64::from(6 * ground.cells * ground.cells));
+    assert_eq!((lab.state().preset_file().preset.camera, lab.state().undo_steps()), (camera, 1));
+    for row in ["ground.shape", "ground.color"] {
+        lab.get_by_label(row);
+    }
+    assert!(has_slider(&lab, "ground.size") && has_slider(&lab, "ground.cells"));
+
+    click(&mut lab, Role::CheckBox, "ground");
+    settle(&mut lab);
+    assert_eq!((lab.state().preset_file().preset.ground, triangles(&lab)), (None, before));
+    undo(&mut lab);
+    settle(&mut lab);
+    assert_eq!(triangles(&lab), before + u64::from(6 * ground.cells * ground.cells));
+}

@@ -290,3 +290,19 @@ fn thumbnails_show_the_presets_on_the_users_model() {
     click(&mut lab, Role::CheckBox, "Thumbnails on tri");
     assert!(thumbnail(&mut lab) != own, "the large picture shows another scene");
 }
+
+#[test]
+fn a_look_brings_its_ground_and_its_gradient_to_the_model() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab(&model(folder.path()).to_string_lossy()) else { return };
+    let alone = lab.state().scene_triangles();
+    let plinth = gallery("plinth");
+    choose(&mut lab, plinth.title(), Modifiers::NONE);
+    let landed = &lab.state().preset_file().preset;
+    assert_eq!((landed.ground, landed.output.background_bottom), (plinth.preset.ground, plinth.preset.output.background_bottom));
+    let ground = plinth.preset.ground.expect("it stands on a ground");
+    assert_eq!(lab.state().scene_triangles(), alone + u64::from(6 * ground.cells * ground.cells));
+    undo(&mut lab);
+    settle(&mut lab);
+    assert_eq!((lab.state().preset_file().preset.ground, lab.state().scene_triangles()), (None, alone));
+}

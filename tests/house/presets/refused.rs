@@ -28,6 +28,13 @@ fn errors_name_line_key_value_and_range() {
         ),
         ("schema = 2\n[effects.depth]\nfit = 1\n", "preset.toml:3: effects.depth.fit must be true or false, not a number"),
         ("schema = 2\n[output]\nsize = [16385, 1]\n", "preset.toml:3: output.size 16385 lies outside 0..=16384"),
+        ("schema = 2\n[ground]\nsize = 0\n", "preset.toml:3: ground.size 0 lies outside 0.1..=1e3"),
+        ("schema = 2\n[ground]\ncells = 129\n", "preset.toml:3: ground.cells 129 lies outside 1..=128"),
+        (
+            "schema = 2\n[ground]\nshape = \"dics\"\n",
+            "preset.toml:3: ground.shape \"dics\" is not one of disc, square; did you mean \"disc\"?",
+        ),
+        ("schema = 2\n[output]\nbackground_bottom = [0, 0, 2, 1]\n", "preset.toml:3: output.background_bottom 2 lies outside 0..=1"),
         ("schema = 2\n[camera]\nfov_y_deg = 180\n", "preset.toml:3: camera.fov_y_deg 180 lies outside 1..=179"),
         ("schema = 2\n[camera]\neye = [0, inf, 0]\n", "preset.toml:3: camera.eye inf is not a finite number"),
         ("schema = 2\n[camera]\neye = [0, 1e10, 0]\n", "preset.toml:3: camera.eye 1e10 lies outside -1e9..=1e9"),

@@ -11,6 +11,7 @@ use rasterlab::{
     },
     preset_file::{self, PresetFile},
     scene::{
+        Ground, GroundShape,
         camera::{Camera, MIN_NEAR_M, Projection},
         parts::Scope,
     },
@@ -114,12 +115,24 @@ prop_compose! {
 }
 
 prop_compose! {
+    fn any_ground()(
+        is_square in any::<bool>(),
+        size in within(0.1, 1000.0),
+        color in prop::array::uniform4(0.0..=1.0f32),
+        cells in 1..=128u32,
+    ) -> Ground {
+        Ground { shape: if is_square { GroundShape::Square } else { GroundShape::Disc }, size, color, cells }
+    }
+}
+
+prop_compose! {
     pub fn any_preset()(
         texts in prop::array::uniform3("[^\\p{Cc}]{0,40}"),
         tags in prop::collection::vec("[a-z \"\\\\#']{0,12}", 0..4),
         scene in prop_oneof![Just(SceneSource::Builtin("knot?tess=8".into())), Just(SceneSource::File("a b/fox.glb".into())), Just(Preset::default().scene)],
         room in prop_oneof![Just(0.0), within(1.0, 100.0)],
         spin_deg_per_s in within(-1e6, 1e6),
+        ground in prop::option::of(any_ground()),
         playback in any_playback(),
         camera in prop::option::of(any_camera()),
         clock in any_clock(),
@@ -149,7 +162,7 @@ prop_compose! {
             stack.0.reverse();
         }
         Preset {
-            name, about, tags, scene, room, spin_deg_per_s, playback, camera,
+            name, about, tags, scene, room, ground, spin_deg_per_s, playback, camera,
             polyline: if reversed { [[background[0], -background[1], 1.0], [1e9, background[2], 1e-9], [0.0; 3]].into() } else { [].into() },
             unit: if size[0] % 2 == 0 { LengthUnit::Meter } else { LengthUnit::Scene },
             scene_camera: if reversed { "from above".into() } else { String::new() },

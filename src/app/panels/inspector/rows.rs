@@ -15,7 +15,19 @@ use crate::{
 
 /// Folders, and the settings that each always has a row of, where they apply to the preset.
 const FOLDERS: &[(&str, &[&str])] = &[
-    ("Scene", &["scene.room", "scene.spin_deg_per_s", "output.background", "output.background_bottom"]),
+    (
+        "Scene",
+        &[
+            "scene.room",
+            "scene.spin_deg_per_s",
+            "output.background",
+            "output.background_bottom",
+            "ground.shape",
+            "ground.size",
+            "ground.color",
+            "ground.cells",
+        ],
+    ),
     ("Camera", &["camera.eye", "camera.target", "camera.fov_y_deg", "camera.orthographic_height_m", "camera.near_m"]),
     ("Clock", &["clock.time_s", "clock.range_s", "clock.loop", "clock.speed"]),
     ("Preset", &["name", "about", "output.size"]),

@@ -9,8 +9,11 @@ use crate::{
         state::State,
         text, theme,
     },
-    params::Stored as _,
-    preset::{Preset, settings::Setting},
+    params::{Stored as _, Value},
+    preset::{
+        Preset,
+        settings::{GROUND, Setting},
+    },
     scene::{Scene, texture::Image},
 };
 
@@ -22,6 +25,8 @@ pub fn scene_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         setting_ui(ui, state, commands, "output.background");
         gradient_ui(ui, preset, commands);
         setting_ui(ui, state, commands, BOTTOM);
+        ground_ui(ui, preset, commands);
+        GROUND.settings.iter().for_each(|setting| setting_ui(ui, state, commands, &setting.path()));
         if preset.stack.0.iter().any(|enabled| enabled.effect.hooks.has_lines) {
             setting_ui(ui, state, commands, "scene.polyline");
         }
@@ -60,6 +65,23 @@ fn gradient_ui(ui: &mut Ui, preset: &Preset, commands: &Commands) {
             commands.edit(Edit::Setting(setting, first_bottom(preset.output.background).to_value()));
         } else if tick.changed() {
             commands.send(Command::Row(RowCommand::Reset(BOTTOM.into())));
+        }
+    });
+}
+
+/// The tick of the ground, which adds it or removes it.
+fn ground_ui(ui: &mut Ui, preset: &Preset, commands: &Commands) {
+    ui.horizontal(|ui| {
+        ui.set_min_height(theme::ROW);
+        ui.add_space(theme::GAP);
+        let mut is_on = preset.ground.is_some();
+        let tick = ui.checkbox(&mut is_on, "ground").on_hover_text("The scene stands on a disc or a square that receives its shadow");
+        if tick.changed() && is_on {
+            // Any setting of the table adds it.
+            let first = &GROUND.settings[0];
+            commands.edit(Edit::Setting(first, Value::Choice(0)));
+        } else if tick.changed() {
+            commands.send(Command::Row(RowCommand::ResetGroup(GROUND.name.into())));
         }
     });
 }
