@@ -98,7 +98,8 @@ fn vary(preset_file: &PresetFile, texts: &[String]) {
     let variations: Result<Vec<Variation>, String> = texts.iter().map(|text| Variation::parse(text)).collect();
     match variations.and_then(|variations| Sheet::new(preset_file, &variations)) {
         Ok(sheet) => sheet.cells.iter().for_each(|cell| drop(cell.caption())),
-        Err(error) => assert_told(&error),
+        // It repeats what was typed.
+        Err(error) => assert_told(&legible_line(&error)),
     }
 }
 
