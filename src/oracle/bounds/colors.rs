@@ -27,7 +27,7 @@ use super::{
     perturbations::{WIDE_SLACK, color_steps, interpolations, of_pictures, places},
     surface::{CornerErrors, Doubt},
 };
-use crate::{effects::Surface, frame::Geometry};
+use crate::{effects::Surface, frame::Geometry, measure::Budget};
 
 /// The pictures that are right.
 pub struct AcceptedColors {
@@ -77,7 +77,10 @@ impl AcceptedColors {
     pub fn with_interpolations(mut self, shot: &Shot, input: &ResolveInput, geometry: &Geometry, adapter: &[[u8; 4]]) -> Self {
         let nearest = self.nearest(adapter);
         let difference = |i: usize| (0..4).map(|c| nearest[i][c].abs_diff(adapter[i][c])).max().unwrap_or(0);
-        let pixels: Vec<usize> = (0..adapter.len()).filter(|&i| difference(i) > 0).collect();
+        // Of one step, only where they are more than any picture may have.
+        let of_one_step = (0..adapter.len()).filter(|&i| difference(i) == 1).count() as u64;
+        let least = if of_one_step > Budget::ROUNDING_PIXELS { 1 } else { 2 };
+        let pixels: Vec<usize> = (0..adapter.len()).filter(|&i| difference(i) >= least).collect();
         if pixels.is_empty() {
             return self;
         }
