@@ -124,6 +124,7 @@ pub const POINTER: &[(&str, &str)] = &[
     ("Frame the scene", "double click"),
     ("Attract particles", "Ctrl + left drag, if the preset has particles"),
     ("Turn the light", "drag the ball in the corner"),
+    ("Move a point of an effect", "drag its ring in the picture; with Shift onto the model"),
     ("Open a preset with its scene", "Shift + click, where presets land on a model of yours"),
     ("Reset a value", "double click its label"),
     ("Animate a value", "click the diamond beside it, at two times"),

@@ -329,6 +329,11 @@ pub fn wait_for_toasts(lab: &mut Lab) {
     }
 }
 
+/// Is this pixel of the picture clear of the buttons over its top and of the ball in its corner that turns the light?
+pub fn is_clear(picture: &image::RgbaImage, x: u32, y: u32) -> bool {
+    y >= 48 && (x + 96 < picture.width() || y + 96 < picture.height())
+}
+
 /// The middle of the picture, clear of everything that lies over its borders.
 pub fn middle(lab: &mut Lab) -> image::RgbaImage {
     lab.remove_cursor();

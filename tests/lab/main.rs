@@ -15,6 +15,7 @@ mod files;
 mod films;
 mod first_use;
 mod goldens;
+mod handles;
 mod harness;
 mod inspector;
 mod keys;

@@ -1,18 +1,18 @@
-//! The ball in the corner of the picture: it is lit from the direction of the light that casts shadows, and a drag turns that light.
+//! The ball in the corner of the picture: it is lit from the direction of the preset's light, and a drag turns that light.
 
 use eframe::egui::{self, Color32, Mesh, Pos2, Rect, Sense, Stroke, Ui, Vec2, vec2};
 use glam::{DQuat, DVec3};
 
 use crate::{
     app::{
-        command::{Commands, Edit},
+        command::{Commands, Edit, Parameter},
         orbit,
         session::Session,
         theme,
     },
-    effects::shadow::{self, Shadow},
+    effects::{Stack, shadow},
     math::srgb_byte,
-    params::Value,
+    params::{Stored as _, Value, ValueType},
     scene::camera::Camera,
 };
 
@@ -24,9 +24,63 @@ const MARGIN: f32 = 14.0;
 const RINGS: u32 = 8;
 const SPOKES: u32 = 40;
 
-/// The ball at the lower right of the picture at `at`, if the preset has a light that casts shadows.
+/// Name of the parameter by which an effect without shadows says where its light comes from: the built-in Lambert, and effects of the
+/// user's own that have the same parameter.
+const DIRECTION: &str = "sun_direction";
+
+/// The light that the ball turns.
+struct Light {
+    /// Unit vector, world space.
+    toward: DVec3,
+    /// Linear.
+    color: [f32; 4],
+    turns: Turns,
+}
+
+/// What turns a light.
+enum Turns {
+    /// The angles of the light that casts shadows.
+    Angles,
+    /// A parameter that holds a direction of any length.
+    Direction(Parameter),
+}
+
+impl Light {
+    /// The light that casts shadows, else the first sun of the stack.
+    fn of(stack: &Stack) -> Option<Self> {
+        if let Some(shadow) = stack.light() {
+            return Some(Self { toward: shadow.toward(), color: shadow.light, turns: Turns::Angles });
+        }
+        stack.0.iter().find_map(|enabled| {
+            let effect = enabled.effect;
+            let field = effect.field(DIRECTION).filter(|field| field.value_type == ValueType::Point)?;
+            let [x, y, z] = <[f64; 3]>::try_from(field.get(&enabled.words)).ok()?;
+            // As the effect does, which takes a light from straight above where the direction has no length.
+            let toward = DVec3::new(x, y, z).normalize_or(DVec3::Y);
+            let sun = effect.field("sun").map_or_else(Vec::new, |field| field.get(&enabled.words));
+            let color = [0, 1, 2, 3].map(|channel| sun.get(channel).map_or(1.0, |&value| value as f32));
+            Some(Self { toward, color, turns: Turns::Direction((effect, field)) })
+        })
+    }
+
+    /// What turns the light towards this direction.
+    fn turn(&self, toward: DVec3, commands: &Commands) {
+        match self.turns {
+            Turns::Angles => {
+                for (name, degrees) in ["azimuth_deg", "elevation_deg"].into_iter().zip(angles(toward)) {
+                    if let Some(field) = shadow::EFFECT.field(name) {
+                        commands.edit(Edit::Parameter((&shadow::EFFECT, field), Value::number(degrees)));
+                    }
+                }
+            }
+            Turns::Direction(parameter) => commands.edit(Edit::Parameter(parameter, toward.to_value())),
+        }
+    }
+}
+
+/// The ball at the lower right of the picture at `at`, if the preset has a light.
 pub fn light_ui(ui: &mut Ui, session: &Session, commands: &Commands, at: Rect) {
-    let (Some(light), Some(camera)) = (session.visible_stack().light(), session.camera()) else { return };
+    let (Some(light), Some(camera)) = (Light::of(&session.visible_stack()), session.camera()) else { return };
     let center = at.right_bottom() - Vec2::splat(RADIUS + MARGIN);
     if at.width().min(at.height()) < 6.0 * RADIUS {
         return;
@@ -34,16 +88,12 @@ pub fn light_ui(ui: &mut Ui, session: &Session, commands: &Commands, at: Rect) {
     let rect = Rect::from_center_size(center, Vec2::splat(2.0 * RADIUS));
     let response = ui.interact(rect, egui::Id::unique("light direction"), Sense::drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Light direction"));
-    let toward = light.toward();
+    let toward = light.toward;
     ball_ui(ui, center, &light, &camera, response.hovered() || response.dragged());
     let drag = response.drag_delta();
     if drag != Vec2::ZERO {
         let [right, down] = [drag.x, drag.y].map(|points| f64::from(points / RADIUS));
-        for (name, degrees) in ["azimuth_deg", "elevation_deg"].into_iter().zip(angles(turned(toward, &camera, right, down))) {
-            if let Some(field) = shadow::EFFECT.field(name) {
-                commands.edit(Edit::Parameter((&shadow::EFFECT, field), Value::number(degrees)));
-            }
-        }
+        light.turn(turned(toward, &camera, right, down), commands);
     }
     let [azimuth, elevation] = angles(toward);
     response.on_hover_text(format!("Drag to turn the light\nazimuth {azimuth:.1}°, elevation {elevation:.1}°"));
@@ -61,11 +111,11 @@ fn turned(toward: DVec3, camera: &Camera, right: f64, down: f64) -> DVec3 {
 }
 
 /// The ball as the camera sees it, with a mark in the direction of the light: a disc in front, a ring behind.
-fn ball_ui(ui: &Ui, center: Pos2, light: &Shadow, camera: &Camera, is_active: bool) {
+fn ball_ui(ui: &Ui, center: Pos2, light: &Light, camera: &Camera, is_active: bool) {
     let (x, y) = orbit::axes(camera);
-    let (back, toward) = (-camera.forward(), light.toward());
+    let (back, toward) = (-camera.forward(), light.toward);
     let tint = |brightness: f64, alpha: u8| {
-        let [r, g, b] = [0, 1, 2].map(|channel| srgb_byte(f64::from(light.light[channel]) * brightness));
+        let [r, g, b] = [0, 1, 2].map(|channel| srgb_byte(f64::from(light.color[channel]) * brightness));
         Color32::from_rgba_unmultiplied(r, g, b, alpha)
     };
     let position = |right: f64, up: f64| center + vec2(right as f32, -up as f32) * RADIUS;
@@ -99,6 +149,7 @@ fn ball_ui(ui: &Ui, center: Pos2, light: &Shadow, camera: &Camera, is_active: bo
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::shadow::Shadow;
 
     #[test]
     fn a_ball_follows_the_pointer_and_angles_read_back() {

@@ -8,6 +8,7 @@ mod compare_bar;
 mod compare_plates;
 mod compare_ui;
 mod compiling;
+mod handles;
 mod heat_legend;
 mod layout;
 mod light;
@@ -17,6 +18,7 @@ mod overlay_legend;
 mod overlays;
 mod particle_input;
 mod pick_input;
+mod points;
 
 use std::sync::Arc;
 
@@ -185,6 +187,7 @@ impl Viewport {
         chips::chips_ui(ui, state, commands, rect, self.compare.is_open());
         if !self.compare.hides_b() {
             marker::marker_ui(ui, state, at);
+            handles::handles_ui(ui, state, commands, rect, at);
         }
         light::light_ui(ui, &state.session, commands, at);
         let free = if self.compare.hides_b() { free } else { overlay_legend::legend_ui(ui, state, free, at) };

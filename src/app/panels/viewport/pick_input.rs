@@ -3,7 +3,10 @@
 use eframe::egui::{Rect, Response};
 use glam::DVec2;
 
-use super::layout::{fitted, whole_size};
+use super::{
+    layout::{fitted, whole_size},
+    points::PointSpace,
+};
 use crate::{
     app::{
         command::{Command, Commands, Edit, Picking, ViewCommand},
@@ -45,8 +48,8 @@ fn edit(picking: Picking, state: &State, scene: &Scene, view: &View, uv: DVec2) 
     match picking {
         Picking::Point(parameter) => {
             let point = pick::pick(scene, view, uv)?;
-            let in_unit = state.session.unit_fit().map_or(point, |fit| fit.inverse().point(point));
-            Some(Edit::Parameter(parameter, in_unit.to_value()))
+            let value = PointSpace::of(parameter.0, &state.session, view).value(point);
+            Some(Edit::Parameter(parameter, value.to_value()))
         }
         Picking::Part(effect, kind) => {
             let instance = &scene.instances[pick::pick_instance(scene, view, uv)?];
