@@ -2,6 +2,7 @@
 //!
 //! Modules in dependency order; `tests/house/architecture.rs` holds the arrows.
 //!
+//! * [`work`]: watching and canceling long work
 //! * [`math`], [`frame`]: snapping and exact comparisons, and the picture with its integer buffers
 //! * [`accuracy`]: every axis on which speed is traded for accuracy, and its options
 //! * [`measure`]: compares frames, summarizes timings
@@ -42,6 +43,7 @@ pub mod preset_file;
 pub mod scene;
 pub mod shader;
 pub mod stress;
+pub mod work;
 
 /// The arithmetic that the kernels and the oracle implement: the page `docs/exactness.md`, to which doc comments refer by section.
 #[cfg(doc)]

@@ -93,6 +93,7 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
         Command::Library(command) => library::library(ctx, state, panels, command),
         Command::Verify => verify(state, panels),
         Command::CancelVerify => state.verification.cancel(),
+        Command::CancelLoading => open::cancel_loading(state, panels),
         Command::Mute(effect, true) => drop(state.session.muted.insert(effect.name)),
         Command::Mute(effect, false) => drop(state.session.muted.remove(effect.name)),
         Command::HoverRow { path, value } => state.clipboard.hovered_row = Some((path, value)),

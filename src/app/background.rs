@@ -53,8 +53,17 @@ pub fn started_as<T: Send>(urgency: Urgency, work: impl FnOnce() -> T + Send) ->
 /// In a pool that all work shares, a thread that waits for the parts of one picture takes up other work meanwhile; that work may wait for a
 /// lock which the same thread holds.
 pub fn compute<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    in_pool(Some(Urgency::Later), work)
+}
+
+/// As [`compute`], for what the user waits for: it does not yield to the window.
+pub fn compute_urgently<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    in_pool(None, work)
+}
+
+fn in_pool<T: Send>(urgency: Option<Urgency>, work: impl FnOnce() -> T + Send) -> T {
     let builder = ThreadPoolBuilder::new().thread_name(|i| format!("background {i}"));
-    match builder.start_handler(|_| yield_processor(Urgency::Later)).build() {
+    match builder.start_handler(move |_| urgency.into_iter().for_each(yield_processor)).build() {
         Ok(pool) => pool.install(work),
         Err(_) => work(),
     }

@@ -88,6 +88,8 @@ pub enum Command {
     Verify,
     /// Ends the judgements under way.
     CancelVerify,
+    /// Stops loading a scene.
+    CancelLoading,
     /// Hides an effect (true) or shows it again. Muting is a viewing aid and is not saved.
     Mute(&'static Effect, bool),
     /// The pointer is over the row of this parameter or setting: copy and paste apply to its value.

@@ -1,4 +1,4 @@
-//! Escape closes what is open, the innermost first: a menu or dialog, the field that is typed into, a choice in the picture, a window, a panel.
+//! Escape closes what is open, the innermost first: a menu or dialog, a scene that is loading, the field that is typed into, a choice in the picture, a window, a panel.
 
 use eframe::egui::{self, Key, Modifiers};
 
@@ -11,6 +11,7 @@ use super::{
 /// What Escape closes next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Closing {
+    Loading,
     Picking,
     Marker,
     Film,
@@ -43,6 +44,7 @@ pub fn escape(ctx: &egui::Context, state: &State, panels: &mut Panels, was_typin
     }
     ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape));
     match closing {
+        Closing::Loading => commands.send(Command::CancelLoading),
         Closing::Picking => commands.send(Command::View(ViewCommand::Pick(None))),
         Closing::Marker => commands.send(Command::View(ViewCommand::Mark(None))),
         Closing::Film => commands.send(Command::Toggle(Toggle::Film)),
@@ -60,6 +62,7 @@ pub fn escape(ctx: &egui::Context, state: &State, panels: &mut Panels, was_typin
 
 fn innermost(state: &State, panels: &Panels) -> Option<Closing> {
     [
+        (state.session.scenes.is_loading(), Closing::Loading),
         (state.picking.is_some(), Closing::Picking),
         (panels.film.is_open(), Closing::Film),
         (panels.sweep.is_open(), Closing::Sweep),

@@ -41,6 +41,7 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
                 state.notify(Level::Error, error);
             }
         }
+        Done::Canceled => {}
         Done::SceneBox(source, bounds) => open::bounds_arrived(state, panels, source, bounds),
         Done::Verdict(inputs, work, findings) => {
             if state.verification.ended(&work) {

@@ -38,15 +38,18 @@ use crate::{
     effect_files,
     effects::Stack,
     gpu::{Gpu, Renderer},
-    oracle::{self, Work},
+    oracle,
     preset::{AccuracyRequest, Fit, Preset, SceneSource},
     preset_file::{self, Existing, PresetFile, Provenance},
     scene::{Bounds, Scene, view::View},
+    work::Work,
 };
 
 /// Finished work. Errors are sentences for people.
 pub enum Done {
     Scene(SceneKey, Result<Arc<Scene>, String>),
+    /// A scene whose loading was canceled.
+    Canceled,
     /// The box of a scene, without a room.
     SceneBox(SceneSource, Result<Bounds, String>),
     /// The verdict on a picture; none if the judgement was canceled.
@@ -142,11 +145,16 @@ impl Jobs {
         }
     }
 
-    pub fn load_scene(&self, key: SceneKey) {
+    /// Loads a scene as `work`.
+    pub fn load_scene(&self, key: SceneKey, work: Arc<Work>) {
         self.spawn_urgent("scene", move || {
             let preset = Preset { scene: key.source.clone(), room: key.room, ground: key.ground, ..Preset::default() };
-            let scene = caught("loading the scene", || preset_file::load_scene(&preset, None).map_err(|e| e.to_string()));
-            Done::Scene(key, scene)
+            let load = || preset_file::load_scene(&preset, None).map_err(|e| e.to_string());
+            let scene = caught("loading the scene", || background::compute_urgently(|| work.run(load)).transpose());
+            match scene.transpose() {
+                Some(scene) => Done::Scene(key, scene),
+                None => Done::Canceled,
+            }
         });
     }
 

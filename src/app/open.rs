@@ -74,8 +74,8 @@ fn go_on(state: &mut State, panels: &mut Panels) {
     let key = SceneKey::of(&request.opened);
     let is_new_file = request.manner != Manner::Look && matches!(key.source, SceneSource::File(_)) && !state.session.scenes.has(&key);
     if is_new_file {
-        state.session.scenes.reload(&key);
-        state.jobs.load_scene(key.clone());
+        let work = state.session.scenes.reload(&key);
+        state.jobs.load_scene(key.clone(), work);
         request.loading = Some(key);
         state.opening.waiting = Some(request);
         return;
@@ -182,6 +182,15 @@ pub fn scene_arrived(state: &mut State, panels: &mut Panels, key: &SceneKey, is_
         state.opening.waiting = None;
     }
     true
+}
+
+/// Stops loading a scene. What is shown stays; where nothing is, another scene must be chosen.
+pub fn cancel_loading(state: &mut State, panels: &mut Panels) {
+    let Some(key) = state.session.scenes.cancel() else { return };
+    if !scene_arrived(state, panels, &key, false) && state.session.scenes.shown_for(&key).is_none() {
+        state.session.scenes.arrived(key, None);
+    }
+    state.notify(Level::Info, "Loading was stopped");
 }
 
 /// The box of a scene has been found, or cannot be: opens what waits for it.

@@ -307,8 +307,8 @@ fn model_changed(state: &mut State, path: &Path) {
     }
     let key = SceneKey::of(&state.session.preset_file);
     state.opening.forget_models();
-    state.session.scenes.reload(&key);
-    state.jobs.load_scene(key);
+    let work = state.session.scenes.reload(&key);
+    state.jobs.load_scene(key, work);
 }
 
 /// Notes the outcome of loading a model again. Returns false if it was loaded for the first time.

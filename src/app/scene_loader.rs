@@ -5,7 +5,8 @@ use std::{collections::VecDeque, sync::Arc};
 use crate::{
     preset::SceneSource,
     preset_file::PresetFile,
-    scene::{Bounds, Ground, Scene},
+    scene::{Bounds, Ground, Scene, memory::MemoryBudget},
+    work::{Progress, Work},
 };
 
 /// Identifies a scene: its source, with the path of a model as it is read, the room round it, and the ground under it.
@@ -23,14 +24,15 @@ impl SceneKey {
     }
 }
 
-/// Number of recent scenes that are kept in memory.
+/// Number of recent scenes that are kept in memory, as far as the memory budget has room for them.
 const MAX_RECENT: usize = 4;
 
 /// The scene that is shown, the one that is loading, and recent ones that are kept in memory.
 #[derive(Default)]
 pub struct SceneLoader {
     shown: Option<(SceneKey, Arc<Scene>)>,
-    loading: Option<SceneKey>,
+    /// The scene that is loading, and the work that loads it.
+    loading: Option<(SceneKey, Arc<Work>)>,
     failed: Option<SceneKey>,
     recent: VecDeque<(SceneKey, Arc<Scene>)>,
 }
@@ -49,23 +51,40 @@ impl SceneLoader {
         self.loading.is_some()
     }
 
+    /// How far loading has come; none before bytes are read, and where the scene is built.
+    pub fn progress(&self) -> Option<Progress> {
+        self.loading.as_ref()?.1.progress()
+    }
+
+    /// Ends loading, and returns the scene that was loading. Whoever waits for it must be told.
+    pub fn cancel(&mut self) -> Option<SceneKey> {
+        let (key, work) = self.loading.take()?;
+        work.cancel();
+        Some(key)
+    }
+
     /// True if the scene of the preset cannot be loaded.
     pub fn has_failed(&self) -> bool {
         self.failed.is_some()
     }
 
-    /// Shows the scene of `key` if it is in memory. Otherwise returns true the first time: the scene must be loaded then.
-    pub fn request(&mut self, key: &SceneKey) -> bool {
+    /// Shows the scene of `key` if it is in memory. Otherwise returns the work of loading it the first time, which the caller starts.
+    pub fn request(&mut self, key: &SceneKey) -> Option<Arc<Work>> {
         if self.shown_for(key).is_some() {
             self.failed = None;
         } else if let Some(found) = self.recent.iter().find(|(recent, _)| recent == key) {
             self.shown = Some(found.clone());
             self.failed = None;
-        } else if self.loading.as_ref() != Some(key) && self.failed.as_ref() != Some(key) {
-            self.loading = Some(key.clone());
-            return true;
+        } else if self.loading.as_ref().is_none_or(|(loading, _)| loading != key) && self.failed.as_ref() != Some(key) {
+            return Some(self.begin(key));
         }
-        false
+        None
+    }
+
+    fn begin(&mut self, key: &SceneKey) -> Arc<Work> {
+        let work = Arc::new(Work::default());
+        self.loading = Some((key.clone(), work.clone()));
+        work
     }
 
     /// True if the scene of `key` is in memory.
@@ -92,31 +111,42 @@ impl SceneLoader {
 
     /// Forgets that the scene of `key`, which no preset shows, is loading.
     pub fn abandon(&mut self, key: &SceneKey) {
-        self.loading.take_if(|loading| loading == key);
+        self.loading.take_if(|(loading, _)| loading == key);
     }
 
-    /// Loads the scene of `key` again, since its file has changed; the caller starts that. What is shown stays until it has loaded.
-    pub fn reload(&mut self, key: &SceneKey) {
+    /// Loads the scene of `key` again, since its file has changed; the caller starts the work. What is shown stays until it has loaded.
+    pub fn reload(&mut self, key: &SceneKey) -> Arc<Work> {
         self.recent.retain(|(recent, _)| recent != key);
         self.failed = None;
-        self.loading = Some(key.clone());
+        self.begin(key)
     }
 
     /// Takes a scene that was loaded; none if that failed.
     pub fn arrived(&mut self, key: SceneKey, scene: Option<Arc<Scene>>) {
-        if self.loading.as_ref() == Some(&key) {
-            self.loading = None;
-        }
+        self.abandon(&key);
         match scene {
             Some(scene) => {
                 if let Some((_, shown)) = self.shown.as_mut().filter(|(shown, _)| *shown == key) {
                     *shown = scene.clone();
                 }
                 self.recent.push_front((key, scene));
-                self.recent.truncate(MAX_RECENT);
+                self.forget(MemoryBudget::of_process());
             }
             None => self.failed = Some(key),
         }
+    }
+}
+
+impl SceneLoader {
+    /// Forgets the oldest scenes that are too many, or too large together. The newest stays.
+    fn forget(&mut self, budget: MemoryBudget) {
+        let mut bytes = 0;
+        let mut fits = |(_, scene): &(SceneKey, Arc<Scene>)| {
+            bytes += scene.byte_count();
+            bytes <= budget.decoded()
+        };
+        let kept = self.recent.iter().take(MAX_RECENT).take_while(|recent| fits(recent)).count();
+        self.recent.truncate(kept.max(1));
     }
 }
 
@@ -124,4 +154,40 @@ impl SceneLoader {
 pub fn clip_id(scene: &Scene, index: usize) -> String {
     let name = &scene.rig.clips[index].name;
     if scene.rig.clip(name) == Some(index) { name.clone() } else { format!("#{index}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn key(query: &str) -> SceneKey {
+        SceneKey { source: SceneSource::Builtin(query.into()), room: 0.0, ground: None }
+    }
+
+    #[test]
+    fn recent_scenes_stay_within_the_memory_budget() {
+        let mib = 1 << 20;
+        let scene = |mib_of_vertices: usize| Some(Arc::new(Scene { vertex_bytes: vec![0; mib_of_vertices * mib], ..Scene::default() }));
+        let mut loader = SceneLoader::default();
+        for (name, size) in [("a", 200), ("b", 0), ("c", 200), ("d", 200)] {
+            loader.arrived(key(name), scene(size));
+        }
+        loader.forget(MemoryBudget::LEAST);
+        assert_eq!(["a", "b", "c", "d"].map(|name| loader.has(&key(name))), [false, true, true, true], "512 MiB of scenes are kept");
+        loader.arrived(key("e"), scene(600));
+        loader.forget(MemoryBudget::LEAST);
+        assert_eq!(["d", "e"].map(|name| loader.has(&key(name))), [false, true], "the newest is kept however large it is");
+    }
+
+    #[test]
+    fn canceled_loading_ends_its_work_and_is_not_begun_again() {
+        let mut loader = SceneLoader::default();
+        let work = loader.request(&key("a")).expect("it is not in memory");
+        assert!(loader.is_loading() && loader.request(&key("a")).is_none());
+        assert_eq!(loader.cancel(), Some(key("a")));
+        assert!(work.is_canceled() && !loader.is_loading() && loader.cancel().is_none());
+        loader.arrived(key("a"), None);
+        assert!(loader.has_failed() && loader.request(&key("a")).is_none());
+        assert!(!loader.reload(&key("a")).is_canceled(), "opening it again loads it");
+    }
 }

@@ -3,7 +3,7 @@
 use std::{sync::Arc, time::Instant};
 
 use super::{findings::Findings, screen::Inputs};
-use crate::oracle::{JUDGE_STAGES, Work};
+use crate::{oracle::JUDGE_STAGES, work::Work};
 
 /// The oracle's verdict on a picture.
 #[derive(Clone)]

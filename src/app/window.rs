@@ -236,8 +236,8 @@ impl App {
     /// Shows the scene of the preset, or loads it.
     fn request_scene(&mut self) {
         let key = SceneKey::of(&self.state.session.preset_file);
-        if self.state.session.scenes.request(&key) {
-            self.state.jobs.load_scene(key);
+        if let Some(work) = self.state.session.scenes.request(&key) {
+            self.state.jobs.load_scene(key, work);
         }
         open::announce(&mut self.state);
     }

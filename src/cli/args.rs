@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use crate::{effect_files::Hook, film::Turntable, preset_file::Folders};
+use crate::{effect_files::Hook, film::Turntable, preset_file::Folders, scene::memory::MemoryBudget};
 
 /// An effects lab around a compute-shader rasterizer, judged by an exact oracle.
 #[derive(Parser, Debug)]
@@ -52,6 +52,9 @@ pub struct Common {
     /// Reset one value to its default; the name of an effect disables it
     #[arg(long, global = true, value_name = "PATH")]
     pub unset: Vec<String>,
+    /// Most memory that opening a scene may take, e.g. 8GiB [default: half of the machine's] [env: RASTERLAB_MEMORY]
+    #[arg(long, global = true, value_name = "SIZE")]
+    pub memory: Option<String>,
     /// Print one JSON object to stdout
     #[arg(long, global = true)]
     pub json: bool,
@@ -80,6 +83,17 @@ impl Common {
     /// Where presets and effects are looked for.
     pub fn folders(&self) -> Folders {
         Folders::new(self.presets_dir(), &self.effects_dir())
+    }
+
+    /// `--memory`, or `RASTERLAB_MEMORY`.
+    ///
+    /// # Errors
+    /// It is no size, or too small.
+    pub fn memory_budget(&self) -> Result<Option<MemoryBudget>, String> {
+        let variable = || std::env::var("RASTERLAB_MEMORY").ok().filter(|size| !size.is_empty());
+        let given = self.memory.clone().map(|size| ("--memory", size)).or_else(|| Some(("RASTERLAB_MEMORY", variable()?)));
+        let read = |(name, size): (&str, String)| size.parse().map_err(|error| format!("{name} {size}: {error}"));
+        given.map(read).transpose()
     }
 
     /// `--adapter`, or `RASTERLAB_ADAPTER`.

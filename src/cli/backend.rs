@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use super::{args::Common, error::CliError, streams::Streams};
+use super::{args::Common, error::CliError, loading, streams::Streams};
 use crate::{
     effects::Stack,
     frame::Frame,
@@ -173,7 +173,7 @@ pub fn adapter_json(summary: &AdapterSummary, caps: &Caps) -> Value {
 /// # Errors
 /// The scene is not available, or `--strict` makes a warning, or a model that breaks its standard, an error.
 pub fn scene_of(common: &Common, preset_file: &PresetFile, streams: &Streams) -> Result<Arc<Scene>, CliError> {
-    let (scene, warnings) = scene_with_warnings(common, preset_file)?;
+    let (scene, warnings) = loading::watched(streams, || scene_with_warnings(common, preset_file))?;
     warnings.iter().for_each(|warning| streams.note(&format!("warning: {warning}")));
     Ok(scene)
 }

@@ -14,6 +14,7 @@ use super::{
 use crate::{
     effects::{EFFECTS, EnabledEffect, Stack},
     gpu::bench::{BenchOptions, BenchRow, bench, bench_stacks},
+    oracle,
 };
 
 pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit, CliError> {
@@ -37,8 +38,13 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
             bar.set_position(done as u64);
             bar.set_message(what.to_owned());
         };
+        let stacks = if args.every_effect { each_effect(common)? } else { vec![(String::new(), preset.stack.clone())] };
+        for (_, stack) in &stacks {
+            let judged = oracle::can_judge(scene, &view, stack, preset.accuracy.scale().factor());
+            judged.map_err(|error| CliError::from(error).during(format!("preset {}", preset_file.id)))?;
+        }
         rows.extend(match args.every_effect {
-            true => bench_stacks(gpu, preset, scene, &each_effect(common)?, &options, &mut progress, &judge)?,
+            true => bench_stacks(gpu, preset, scene, &stacks, &options, &mut progress, &judge)?,
             false => bench(gpu, preset, scene, &preset_file.id, &options, &mut progress, &judge)?,
         });
     }

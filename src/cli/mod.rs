@@ -18,6 +18,7 @@ mod fuzz;
 pub mod gallery;
 pub mod golden;
 mod list;
+mod loading;
 mod man;
 mod measured;
 mod migrate;
@@ -55,6 +56,9 @@ pub fn run(cli: &Cli) -> Result<Exit, CliError> {
             return Err(CliError::usage(format!("--shaders {}: there is no such folder", folder.display())));
         }
         Library::choose(folder.clone());
+    }
+    if let Some(budget) = cli.common.memory_budget().map_err(CliError::usage)? {
+        budget.choose();
     }
     if let Some(folder) = cli.common.presets_dir().filter(|folder| !folder.is_dir()) {
         return Err(CliError::usage(format!("--presets or RASTERLAB_PRESETS: there is no folder {}", folder.display())));

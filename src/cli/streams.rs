@@ -2,7 +2,7 @@
 
 use std::io::{self, BufWriter, IsTerminal as _, StdoutLock, Write as _};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
 
 /// Version of the JSON output.
@@ -12,13 +12,15 @@ pub const JSON_SCHEMA: u32 = 2;
 pub struct Streams {
     out: BufWriter<StdoutLock<'static>>,
     quiet: bool,
+    /// Bars that are shown at the same time, one below the other.
+    bars: MultiProgress,
     /// stdout carries one JSON object.
     pub json: bool,
 }
 
 impl Streams {
     pub fn new(quiet: bool, json: bool) -> Self {
-        Self { out: BufWriter::new(io::stdout().lock()), quiet, json }
+        Self { out: BufWriter::new(io::stdout().lock()), quiet, bars: MultiProgress::new(), json }
     }
 
     /// Data, to stdout.
@@ -52,7 +54,13 @@ impl Streams {
         }
         let style =
             ProgressStyle::with_template("{bar:32} {pos}/{len}  {eta} left  {msg}").unwrap_or_else(|_| ProgressStyle::default_bar());
-        ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr()).with_style(style)
+        self.bars.add(ProgressBar::new(steps).with_style(style))
+    }
+
+    /// A progress bar of bytes on stderr, as [`Self::progress`]. It appears where the work takes longer than a moment.
+    pub fn byte_progress(&self) -> ProgressBar {
+        let style = ProgressStyle::with_template("{bar:32} {msg}").unwrap_or_else(|_| ProgressStyle::default_bar());
+        self.progress(0).with_style(style)
     }
 
     /// Data that is written at once, without buffering.

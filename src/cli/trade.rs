@@ -36,7 +36,9 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
         let preset = &preset_file.preset.in_meters(scene).evaluated();
         bar.set_message("the oracle draws");
         let view = preset.view(scene, args.size);
-        let references = oracle::references(scene, &view, &preset.stack, &factors(preset, &options.axes))?;
+        let factors = factors(preset, &options.axes);
+        factors.iter().try_for_each(|factor| oracle::can_judge(scene, &view, &preset.stack, *factor))?;
+        let references = oracle::references(scene, &view, &preset.stack, &factors)?;
         let mut progress = Progress(&bar);
         rows.extend(trade(
             gpu,

@@ -128,7 +128,8 @@ fn caps(adapter: &wgpu::Adapter) -> Caps {
     Caps {
         int64_atomics: features.contains(wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX),
         timestamps: features.contains(wgpu::Features::TIMESTAMP_QUERY),
-        max_storage_binding_bytes: limits.max_storage_buffer_binding_size,
+        // Kernels count bytes in 32 bits.
+        max_storage_binding_bytes: limits.max_storage_buffer_binding_size.min(u64::from(u32::MAX)),
         max_buffer_bytes: limits.max_buffer_size,
         max_texture_side: limits.max_texture_dimension_2d,
         software: adapter.get_info().device_type == wgpu::DeviceType::Cpu,

@@ -14,7 +14,9 @@ pub enum RenderError {
     Draw(#[from] DrawError),
     #[error(transparent)]
     Plan(#[from] PlanError),
-    #[error("the buffer {buffer} would take {bytes} bytes; this adapter binds at most {limit}")]
+    #[error(
+        "the buffer {buffer} would take {bytes} bytes; this adapter binds at most {limit}; take another adapter, or fewer triangles or pixels"
+    )]
     TooLarge { buffer: &'static str, bytes: u64, limit: u64 },
     #[error("the picture is {width} x {height}; this adapter's textures end at {limit} pixels a side")]
     TooWide { width: u32, height: u32, limit: u32 },

@@ -3,7 +3,14 @@
 use std::sync::OnceLock;
 
 use super::shot::Shot;
-use crate::scene::draw::{Draw, DrawError, totals};
+use crate::{
+    effects::Stack,
+    scene::{
+        Scene,
+        draw::{Draw, DrawError, totals},
+        view::View,
+    },
+};
 
 /// Memory of a picture, GiB, unless the environment says otherwise.
 const MEMORY_GIB: f64 = 4.0;
@@ -47,6 +54,15 @@ pub fn check(shot: &Shot, purpose: Purpose) -> Result<(), DrawError> {
         return Err(DrawError::OracleWork { positions, limit: MAX_POSITIONS });
     }
     Ok(())
+}
+
+/// Can a picture of `scene` at so many times the size of `view` be judged? A measurement that needs verdicts asks before it begins.
+///
+/// # Errors
+/// As [`judge`](crate::oracle::judge).
+pub fn can_judge(scene: &Scene, view: &View, stack: &Stack, scale: f64) -> Result<(), DrawError> {
+    let (view, stack) = (&view.scaled(scale), &stack.scaled(scale));
+    check(&Shot::new(scene, &stack.draws(scene, view)?, view, stack), Purpose::Judge)
 }
 
 /// Memory of the picture at its peak, bytes, if no triangle is turned away.

@@ -8,7 +8,6 @@
 //! Imports run one way, from each of these to those before it:
 //!
 //! * `arithmetic`, `perturbation`, `shot`: exact arithmetic, and what a picture shows
-//! * `work`: watching and canceling long work
 //! * `budget`: how much memory and work a picture may take
 //! * `render`: draws exact pictures
 //! * `bounds`: how far an f32 renderer may be from them
@@ -26,13 +25,13 @@ mod judge;
 mod perturbation;
 mod render;
 mod shot;
-mod work;
 
 pub use arithmetic::{depth_key::depth_bound, edge::owns, ftz};
 pub use bounds::{
     coverage::{BoundedCoverage, BoundedSample, cover_claims},
     vertex::snap_bounds,
 };
+pub use budget::can_judge;
 pub use judge::{
     picture::{JUDGE_STAGES, judge},
     shadow::shadow_errors,
@@ -55,4 +54,3 @@ pub use render::{
     triangles::{OrientedTriangle, triangles},
 };
 pub use shot::Shot;
-pub use work::{Work, is_cancellation};

@@ -80,6 +80,17 @@ impl Accessor {
         }
     }
 
+    /// The first three components in f64, as [`Self::value`] gives them.
+    pub fn vector(&self, bytes: &[u8], element: u32) -> [f64; 3] {
+        if self.component_type == ComponentType::F32 {
+            // One bounds check for all three.
+            let at = self.offset as usize + element as usize * self.stride as usize;
+            let [x, y, z] = bytes[at..at + 12].as_chunks::<4>().0 else { panic!("twelve bytes are three words") };
+            return [x, y, z].map(|word| f32::from_le_bytes(*word).into());
+        }
+        [0, 1, 2].map(|component| self.value(bytes, element, component))
+    }
+
     /// A component in f64, normalized where the accessor says so.
     pub fn value(&self, bytes: &[u8], element: u32, component: u32) -> f64 {
         if self.component_type == ComponentType::F32 {

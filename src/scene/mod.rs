@@ -16,6 +16,7 @@ pub mod joint_transforms;
 pub mod light;
 pub mod lines;
 pub mod material;
+pub mod memory;
 pub mod mesh_builder;
 pub mod meshlets;
 pub mod model;

@@ -11,6 +11,7 @@ use super::{
     rig::Rig,
     texture::Image,
 };
+use crate::work::map_parts;
 
 /// How consecutive corners form triangles. A corner is a position in the index list, or in the vertex list without indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -95,12 +96,13 @@ impl Primitive {
     /// Returns true if all normals are finite, have a length between 1/2 and 2, and lie within 90 degrees of each other in every
     /// triangle. Their interpolations are then at least 1/4 long and never need a substitute.
     pub fn normals_agree(&self, scene: &Scene) -> bool {
-        let normal = |vertex: u32| DVec3::from([0, 1, 2].map(|component| self.normals.value(&scene.vertex_bytes, vertex, component)));
+        let normal = |vertex: u32| DVec3::from(self.normals.vector(&scene.vertex_bytes, vertex));
         let is_sound = |n: DVec3| (0.25..=4.0).contains(&n.length_squared());
-        (0..self.triangle_count()).all(|t| {
+        let agree = |t: u32| {
             let [a, b, c] = self.corners(scene, t).map(normal);
             is_sound(a) && is_sound(b) && is_sound(c) && a.dot(b) >= 0.0 && b.dot(c) >= 0.0 && c.dot(a) >= 0.0
-        })
+        };
+        map_parts(self.triangle_count(), |mut part| part.all(agree)).into_iter().all(|agree| agree)
     }
 
     /// The box of all positions that can be drawn: finite, and below the largest magnitude.
@@ -117,7 +119,7 @@ impl Primitive {
 
     /// Position of a vertex in object space as it is stored, normalized where the accessor says so.
     pub fn position(&self, scene: &Scene, vertex: u32) -> [f32; 3] {
-        [0, 1, 2].map(|component| self.positions.value(&scene.vertex_bytes, vertex, component) as f32)
+        self.positions.vector(&scene.vertex_bytes, vertex).map(|value| value as f32)
     }
 }
 
@@ -213,6 +215,12 @@ impl Scene {
     pub fn camera(&self, name: &str) -> Option<usize> {
         let by_index = || name.strip_prefix('#')?.parse().ok().filter(|&index: &usize| index < self.cameras.len());
         self.cameras.iter().position(|camera| camera.name == name).or_else(by_index)
+    }
+
+    /// Bytes of its attributes, index lists and images.
+    pub fn byte_count(&self) -> u64 {
+        let texels: usize = self.images.iter().flat_map(|image| &image.levels).map(|level| level.texels.len()).sum();
+        (self.vertex_bytes.len() + self.index_bytes.len() + 4 * texels) as u64
     }
 
     /// The number of triangles of all instances.

@@ -9,11 +9,12 @@ use std::{
 
 /// Room, and the rooms it may name. `tests` inside a room obey the same arrows.
 const MAY_KNOW: &[(&str, &[&str])] = &[
+    ("work", &[]),
     ("math", &[]),
     ("frame", &["math"]),
     ("accuracy", &[]),
     ("measure", &["frame", "math"]),
-    ("scene", &["accuracy", "math"]),
+    ("scene", &["accuracy", "math", "work"]),
     ("params", &[]),
     ("effects", &["math", "params", "scene"]),
     ("shader", &["effects", "frame", "accuracy", "math", "params", "scene"]),
@@ -21,12 +22,12 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
     ("evaluator", &[]),
     ("effect_files", &["effects", "evaluator", "math", "params", "shader"]),
     ("preset", &["effects", "accuracy", "math", "params", "plan", "scene", "shader"]),
-    ("oracle", &["effects", "frame", "math", "measure", "params", "scene"]),
+    ("oracle", &["effects", "frame", "math", "measure", "params", "scene", "work"]),
     ("gpu", &["effects", "frame", "accuracy", "math", "measure", "params", "plan", "scene", "preset", "shader"]),
     ("preset_file", &["effect_files", "effects", "frame", "accuracy", "math", "params", "plan", "scene", "preset", "shader"]),
     // A film names neither `gpu` nor `oracle`: whoever asks for one says who draws it.
     ("film", &["frame", "math", "scene", "preset", "preset_file"]),
-    ("stress", &["effects", "frame", "gpu", "accuracy", "math", "measure", "oracle", "params", "plan", "scene", "preset"]),
+    ("stress", &["effects", "frame", "gpu", "accuracy", "math", "measure", "oracle", "params", "plan", "scene", "preset", "work"]),
     (
         "app",
         &[
@@ -46,6 +47,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
             "preset",
             "shader",
             "stress",
+            "work",
         ],
     ),
     (
@@ -68,6 +70,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
             "preset",
             "shader",
             "stress",
+            "work",
         ],
     ),
 ];

@@ -106,6 +106,66 @@ fn a_dropped_file_that_is_malformed_keeps_the_picture_and_is_one_sentence() {
     assert!(below(&before) == below(&picture(&mut lab)), "the last good picture went away");
 }
 
+/// A model that takes a while to load: a strip of so many triangles.
+fn long_glb(triangles: u32) -> Vec<u8> {
+    let count = triangles + 2;
+    let mut json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"mode":5}}]}}],"buffers":[{{"byteLength":{0}}}],
+        "bufferViews":[{{"buffer":0,"byteLength":{0}}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"count":{count},"type":"VEC3","min":[0,0,0],"max":[1,1,1]}}]}}"#,
+        12 * count
+    );
+    json.extend(std::iter::repeat_n(' ', json.len().next_multiple_of(4) - json.len()));
+    let mut bytes = b"glTF\x02\0\0\0".to_vec();
+    bytes.extend((12 + 8 + json.len() as u32 + 8 + 12 * count).to_le_bytes());
+    bytes.extend((json.len() as u32).to_le_bytes());
+    bytes.extend(b"JSON");
+    bytes.extend(json.as_bytes());
+    bytes.extend((12 * count).to_le_bytes());
+    bytes.extend(b"BIN\0");
+    (0..count).for_each(|i| [i as f32 / count as f32, (i % 2) as f32, 0.0].iter().for_each(|value| bytes.extend(value.to_le_bytes())));
+    bytes
+}
+
+#[test]
+fn loading_a_model_shows_its_progress_and_can_be_stopped_while_the_picture_stays() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("long.glb");
+    std::fs::write(&path, long_glb(3_000_000)).expect("a file");
+    let Some(mut lab) = lab("lambert") else { return };
+    let (before, draws) = (lab.state().preset_file().preset.clone(), lab.state().draws());
+    for by_key in [false, true] {
+        lab.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(path.clone())) as egui::DroppedFileHandle);
+        lab.step();
+        wait_for_label(&mut lab, " MB");
+        let stopped = Instant::now();
+        match by_key {
+            true => lab.key_press(Key::Escape),
+            false => lab.get_by_role_and_label(Role::Button, "Stop loading").click(),
+        }
+        lab.run_steps(2);
+        assert!(lab.query_by_role_and_label(Role::Button, "Stop loading").is_none(), "it goes on loading");
+        assert!(stopped.elapsed() < Duration::from_secs(2), "{:?}", stopped.elapsed());
+        settle(&mut lab);
+        assert!(lab.state().log_text().contains("Loading was stopped"), "{}", lab.state().log_text());
+        assert_eq!((&lab.state().preset_file().preset, lab.state().draws()), (&before, draws), "the picture changed");
+    }
+    assert!(error_lines(&lab).is_empty(), "{}", lab.state().log_text());
+    // It can be opened later.
+    drop_files(&mut lab, &[&path]);
+    assert_eq!(lab.state().preset_file().preset.scene, SceneSource::File(path));
+}
+
+/// Steps until a label with this text is there.
+fn wait_for_label(lab: &mut Lab, text: &str) {
+    let patience = Instant::now() + Duration::from_secs(30);
+    while lab.query_all_by_label_contains(text).next().is_none() {
+        assert!(Instant::now() < patience, "there is no label with {text:?}\n{}", lab.state().log_text());
+        lab.step();
+    }
+}
+
 #[test]
 fn a_model_that_cannot_be_read_leaves_preset_scene_and_title_and_is_not_said_to_be_open() {
     let folder = tempfile::tempdir().expect("a temporary folder");

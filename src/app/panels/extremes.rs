@@ -20,8 +20,8 @@ use crate::{
         trade::pace::about,
     },
     gpu::{Gpu, Renderer, device::AdapterChoice},
-    oracle::Work,
     stress::{self, Case, Outcome, Report},
+    work::Work,
 };
 
 /// The window, and the run that it started last.

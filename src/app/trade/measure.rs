@@ -34,7 +34,9 @@ pub fn measure(adapter: String, scene: &Arc<Scene>, request: &Request, progress:
     let gpu = Gpu::open(&AdapterChoice::Named(adapter)).map_err(|e| e.to_string())?;
     let view = preset.view(scene, *size);
     let began = Instant::now();
-    let references = progress.work.run(|| oracle::references(scene, &view, &preset.stack, &factors(preset, axes)));
+    let factors = factors(preset, axes);
+    factors.iter().try_for_each(|factor| oracle::can_judge(scene, &view, &preset.stack, *factor)).map_err(|e| e.to_string())?;
+    let references = progress.work.run(|| oracle::references(scene, &view, &preset.stack, &factors));
     let Some(references) = references else { return Ok(Vec::new()) };
     let references = references.map_err(|e| e.to_string())?;
     progress.report("", |pace| pace.add(Kind::Reference, began.elapsed().as_secs_f64()));

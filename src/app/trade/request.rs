@@ -6,7 +6,7 @@ use std::sync::{
 };
 
 use super::pace::Pace;
-use crate::{accuracy::Axis, oracle::Work, preset::Preset};
+use crate::{accuracy::Axis, preset::Preset, work::Work};
 
 /// Frames that every combination is drawn for.
 pub const SAMPLES: usize = 30;

@@ -21,13 +21,12 @@ use super::{
             surface::{SurfaceTriangle, shaded},
         },
         shot::Shot,
-        work::checkpoint,
     },
     layers::LayerBounds,
     perturbations::{WIDE_SLACK, color_steps, interpolations, of_pictures, places},
     surface::{CornerErrors, Doubt},
 };
-use crate::{effects::Surface, frame::Geometry, measure::Budget};
+use crate::{effects::Surface, frame::Geometry, measure::Budget, work::checkpoint};
 
 /// The pictures that are right.
 pub struct AcceptedColors {

@@ -12,7 +12,6 @@ use super::{
             triangles::triangles,
         },
         shot::Shot,
-        work::checkpoint,
     },
     freedom::Freedom,
     outline::{Drawn, Outline, SamplePosition},
@@ -22,6 +21,7 @@ use crate::{
     effects::hooks::Shape,
     frame::{BitExact, Frame, Geometry},
     measure::ErrorReport,
+    work::checkpoint,
 };
 
 /// An adapter's picture beside the oracle's own.

@@ -25,7 +25,6 @@ use super::{
             triangles::triangles,
         },
         shot::{Shot, drawn_view},
-        work::stage,
     },
     clips::wrong_clips,
     deform::judge_deformed,
@@ -44,9 +43,10 @@ use crate::{
     frame::{AdapterPicture, BitExact, Counters, Frame, Geometry},
     measure::{ErrorReport, Verdict, compare},
     scene::{Scene, draw::DrawError, view::View},
+    work::stage,
 };
 
-/// Stages of [`judge`], as [`Work::stage`](crate::oracle::Work::stage) counts them.
+/// Stages of [`judge`], as [`Work::stage`](crate::work::Work::stage) counts them.
 pub const JUDGE_STAGES: u32 = 5;
 
 /// Judges a picture that an adapter drew of `scene`.

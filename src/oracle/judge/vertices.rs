@@ -9,13 +9,13 @@ use super::super::{
     },
     render::vertex::{Corner, VertexEvaluator},
     shot::Shot,
-    work::checkpoint,
 };
 use crate::{
     frame::{Geometry, SnappedVertex, vertex_flags},
     math::GUARD_BAND,
     measure::ErrorReport,
     scene::draw::Draw,
+    work::checkpoint,
 };
 
 /// What was found about one record.

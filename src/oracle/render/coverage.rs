@@ -7,12 +7,9 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::{
-    super::{
-        arithmetic::{
-            depth_key::{depth_key, integer_key},
-            edge::{edge, owns},
-        },
-        work::checkpoint,
+    super::arithmetic::{
+        depth_key::{depth_key, integer_key},
+        edge::{edge, owns},
     },
     sample_tests::SampleTests,
     triangles::OrientedTriangle,
@@ -21,6 +18,7 @@ use crate::{
     effects::hooks::Shape,
     frame::{NO_TRIANGLE, SnappedVertex},
     scene::view::View,
+    work::checkpoint,
 };
 
 /// What is visible at the sample of one pixel.

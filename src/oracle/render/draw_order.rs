@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::{
-    super::{shot::Shot, work::checkpoint},
+    super::shot::Shot,
     sample_tests::{DrawLimit, SampleTests},
     triangles::{OrientedTriangle, triangles},
 };
@@ -12,6 +12,7 @@ use crate::{
     effects::{Stack, draw_order::Mode},
     frame::Geometry,
     scene::view::View,
+    work::checkpoint,
 };
 
 /// Returns true if the adapter may choose which samples it draws.

@@ -6,7 +6,6 @@ use std::borrow::Cow;
 use glam::{DVec3, I64Vec3};
 use rayon::prelude::*;
 
-use super::super::work::checkpoint;
 use crate::{
     effects::{
         Stack,
@@ -20,6 +19,7 @@ use crate::{
         particle_discs::{PARTICLE_DISC_WORDS, ParticleTimeline},
         view::View,
     },
+    work::checkpoint,
 };
 
 /// A particle between two steps.

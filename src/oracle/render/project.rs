@@ -2,15 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::{
-    super::{shot::Shot, work::checkpoint},
-    clip, deform,
-    snap::snap,
-    vertex::VertexEvaluator,
-};
+use super::{super::shot::Shot, clip, deform, snap::snap, vertex::VertexEvaluator};
 use crate::{
     frame::{Geometry, SnappedVertex},
     scene::draw::totals,
+    work::checkpoint,
 };
 
 /// Everything between the stored scene and integer coverage: one record per vertex of each draw, or three per triangle if the

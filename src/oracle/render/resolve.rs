@@ -4,7 +4,7 @@ use glam::DVec4;
 use rayon::prelude::*;
 
 use super::{
-    super::{perturbation::Perturbation, shot::Shot, work::checkpoint},
+    super::{perturbation::Perturbation, shot::Shot},
     surface::surface_colors,
 };
 use crate::{
@@ -14,6 +14,7 @@ use crate::{
         hooks::{Picture, Pixel, tone::encoded},
     },
     frame::Geometry,
+    work::checkpoint,
 };
 
 /// The images that a picture is colored from, row-major.

@@ -11,7 +11,6 @@ use super::{
         },
         perturbation::Perturbation,
         shot::Shot,
-        work::checkpoint,
     },
     background::background,
     deform,
@@ -31,6 +30,7 @@ use crate::{
     frame::{Geometry, SnappedVertex},
     math::srgb,
     scene::{Accessor, Scene, view::View},
+    work::checkpoint,
 };
 
 /// Surface colors of all pixels, given the triangle of each; the background without one. Row-major, gamma-encoded.

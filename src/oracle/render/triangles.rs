@@ -3,12 +3,13 @@
 use rayon::prelude::*;
 
 use super::{
-    super::{arithmetic::edge::doubled_area, shot::Shot, work::checkpoint},
+    super::{arithmetic::edge::doubled_area, shot::Shot},
     clip::is_cut,
 };
 use crate::{
     frame::{ClippedTriangle, Counters, Geometry, SnappedVertex, vertex_flags},
     scene::draw::{Draw, totals},
+    work::checkpoint,
 };
 
 /// A triangle to be drawn, wound clockwise on the screen (positive doubled area with y down).

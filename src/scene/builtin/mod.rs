@@ -17,7 +17,7 @@ mod town;
 mod walker;
 mod weights;
 
-pub use query::{Builtin, BuiltinError, BuiltinParam, MAX_TRIANGLES};
+pub use query::{Builtin, BuiltinError, BuiltinParam, MAX_TRIANGLES, MAX_TRIANGLES_OF_SPHERE};
 use query::{real, whole};
 
 use super::model::Scene;
@@ -35,7 +35,12 @@ pub const BUILTINS: &[Builtin] = &[
     Builtin {
         name: "sphere",
         about: "a closed sphere with smooth bumps",
-        params: &[whole("triangles", "number of triangles; an odd number is rounded down", 20_000.0, 100.0..=MAX_TRIANGLES as f64)],
+        params: &[whole(
+            "triangles",
+            "number of triangles; an odd number is rounded down",
+            20_000.0,
+            100.0..=MAX_TRIANGLES_OF_SPHERE as f64,
+        )],
         build: shapes::sphere,
     },
     Builtin {

@@ -35,6 +35,9 @@ pub struct BuiltinError(pub String);
 /// The most triangles of a built-in scene: its indices and its vertices stay below 128 MiB each.
 pub const MAX_TRIANGLES: u64 = 10_000_000;
 
+/// The most triangles of a sphere, which measures how large scenes are drawn; the memory budget may allow fewer.
+pub const MAX_TRIANGLES_OF_SPHERE: u64 = 100_000_000;
+
 /// A parameter of whole numbers.
 pub(super) const fn whole(name: &'static str, doc: &'static str, default: f64, range: RangeInclusive<f64>) -> BuiltinParam {
     BuiltinParam { name, doc, default, range, whole: true }

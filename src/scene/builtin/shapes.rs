@@ -5,7 +5,10 @@ use std::f64::consts::{PI, TAU};
 use glam::{DMat4, DVec3};
 
 use super::query::{BuiltinError, Values};
-use crate::scene::mesh_builder::{MeshBuilder, Ring};
+use crate::scene::{
+    memory::MemoryBudget,
+    mesh_builder::{MeshBuilder, Ring},
+};
 use crate::{
     math::hash_unit,
     scene::{
@@ -28,6 +31,12 @@ const WAVES: [(DVec3, f64, f64); 4] = [
 /// (Euler). Two vertices are the poles, so the rings have V - 2 = triangles / 2 vertices.
 pub fn sphere(values: &Values) -> Result<Scene, BuiltinError> {
     let on_rings = values.whole("triangles") / 2;
+    // Two triangles for each vertex: twelve bytes each of indices, and 24 of attributes.
+    let (bytes, budget) = (48 * u64::from(on_rings), MemoryBudget::of_process());
+    if bytes > budget.decoded() {
+        let most = budget.decoded() / 24;
+        return Err(BuiltinError(format!("sphere: {} triangles; allowed: at most {most} {}", 2 * on_rings, budget.remedy())));
+    }
     // Rows of equilateral triangles of height h cover the sphere when h^2 = 4 pi sqrt(3) / triangles.
     let height = (TAU * 3.0f64.sqrt() / f64::from(on_rings)).sqrt();
     let step = PI / (PI / height).round().max(4.0);

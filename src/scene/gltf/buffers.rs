@@ -9,12 +9,20 @@ use super::{
     document,
     element::{component_of, lanes_of},
     error::{LoadError, ReadFile},
-    limits, uri,
+    limits::Limits,
+    uri,
 };
-use crate::scene::{
-    accessor::{Accessor, ComponentType},
-    model::Scene,
+use crate::{
+    scene::{
+        accessor::{Accessor, ComponentType},
+        memory::MemoryBudget,
+        model::Scene,
+    },
+    work::checkpoint,
 };
+
+/// Bytes that are read or copied between two looks at whether loading was canceled.
+pub const PART_BYTES: usize = 4 << 20;
 
 /// All buffers, in memory.
 pub struct Buffers<'a> {
@@ -23,6 +31,8 @@ pub struct Buffers<'a> {
     bytes: Vec<Cow<'a, [u8]>>,
     /// The buffer views that were compressed.
     decoded: DecodedViews,
+    /// What the model may have.
+    pub limits: Limits,
     /// Bytes that the model may still read from files.
     pub left: u64,
 }
@@ -40,14 +50,16 @@ pub struct Layout {
 
 impl<'a> Buffers<'a> {
     /// Reads every buffer, and decodes what is compressed. A buffer without a URI is the binary chunk of a GLB, or has no bytes
-    /// because all its views are compressed.
+    /// because all its views are compressed. `file` is the size of the model file.
     pub fn read(
         root: &'a mut json::Root,
         binary: Option<&'a [u8]>,
         compression: &Compression,
+        (file, budget): (u64, MemoryBudget),
         read: &mut ReadFile,
     ) -> Result<Self, LoadError> {
-        let mut left = limits::TOTAL_BYTES;
+        let limits = Limits::of_files(budget);
+        let mut left = limits.total_bytes;
         let mut bytes = Vec::with_capacity(root.buffers.len());
         for (index, buffer) in root.buffers.iter().enumerate() {
             if buffer.uri.is_none() && compression.is_fallback(index) {
@@ -55,7 +67,7 @@ impl<'a> Buffers<'a> {
                 continue;
             }
             let content = match (&buffer.uri, binary) {
-                (Some(uri), _) => uri::resolve(uri, left.min(limits::FILE_BYTES), read).map(Cow::Owned),
+                (Some(uri), _) => uri::resolve(uri, left.min(limits.file_bytes), read).map(Cow::Owned),
                 (None, Some(binary)) if index == 0 => Ok(Cow::Borrowed(binary)),
                 (None, _) => Err(LoadError::new("it has no URI, and the file has no binary chunk for it")),
             };
@@ -69,8 +81,9 @@ impl<'a> Buffers<'a> {
             }
             bytes.push(content);
         }
-        let decoded = compression.decode(root, &bytes)?;
-        Ok(Self { root, bytes, decoded, left })
+        let limits = Limits::of_model(budget, file + (limits.total_bytes - left));
+        let decoded = compression.decode(root, &bytes, &limits)?;
+        Ok(Self { root, bytes, decoded, limits, left })
     }
 
     /// The bytes of a buffer view. Fails if it does not exist or exceeds its buffer.
@@ -106,8 +119,11 @@ impl<'a> Buffers<'a> {
         let (size, element) = (u64::from(component_type.bytes()), u64::from(component_type.bytes() * components));
         let (count, offset) = (accessor.count.0, accessor.byte_offset.unwrap_or_default().0);
         // Checked before any allocation: a sparse accessor can claim any count without having bytes.
-        if count == 0 || count > 3 * limits::TRIANGLES {
-            return Err(LoadError::new(format!("count is {count}; allowed: 1 to {}", 3 * limits::TRIANGLES)));
+        if count == 0 {
+            return Err(LoadError::new("count is 0; it must be at least 1"));
+        }
+        if count > 3 * self.limits.triangles {
+            return Err(self.limits.exceeded(format_args!("count is {count}"), 3 * self.limits.triangles));
         }
         let mut stride = element;
         if let Some(index) = accessor.buffer_view {
@@ -132,14 +148,12 @@ impl<'a> Buffers<'a> {
         } else if accessor.sparse.is_none() {
             return Err(LoadError::new("has neither a bufferView nor sparse values; add one of them"));
         }
-        let accessor_in_view = Accessor {
-            offset: offset as u32,
-            stride: stride as u32,
-            component_type,
-            components,
-            normalized: accessor.normalized,
-            count: count as u32,
+        // A sparse accessor may lie in a view that is larger than what 32 bits address; all others are copied with their view.
+        let (Ok(offset), Ok(stride)) = (u32::try_from(offset), u32::try_from(stride)) else {
+            return Err(LoadError::new(format!("byteOffset {offset} exceeds 32 bits; put the elements into a bufferView of their own")));
         };
+        let accessor_in_view =
+            Accessor { offset, stride, component_type, components, normalized: accessor.normalized, count: count as u32 };
         Ok(Layout { accessor: accessor_in_view, view: accessor.buffer_view.map(|view| view.value()), is_sparse: accessor.sparse.is_some() })
     }
 
@@ -147,8 +161,9 @@ impl<'a> Buffers<'a> {
     pub fn materialized(&self, index: usize, layout: &Layout) -> Result<Vec<u8>, LoadError> {
         let Accessor { offset, stride, component_type, components, count, .. } = layout.accessor;
         let element = (component_type.bytes() * components) as usize;
-        if u64::from(count) * element as u64 > limits::BINDING_BYTES {
-            return Err(LoadError::new(format!("accessor {index}: {count} elements exceed the limit of {} bytes", limits::BINDING_BYTES)));
+        let needed = u64::from(count) * element as u64;
+        if needed > self.limits.buffer_bytes {
+            return Err(self.limits.exceeded(format_args!("accessor {index}: its elements take {needed} bytes"), self.limits.buffer_bytes));
         }
         let mut bytes = vec![0; element * count as usize];
         if let Some(view) = layout.view {
@@ -288,9 +303,11 @@ impl<'a> SceneWriter<'a> {
     }
 
     /// Appends an attribute that the file does not have.
-    pub fn append_vectors(&mut self, vectors: &[[f32; 3]]) -> Result<Accessor, LoadError> {
-        let offset = append(&mut self.scene.vertex_bytes, bytemuck::cast_slice(vectors))?;
-        Ok(Accessor::packed_f32(offset as usize, 3, vectors.len()))
+    pub fn append_vectors(&mut self, count: usize, vectors: impl Iterator<Item = [f32; 3]>) -> Result<Accessor, LoadError> {
+        let bytes = &mut self.scene.vertex_bytes;
+        let offset = reserve(&self.buffers.limits, bytes, 12 * count)?;
+        vectors.take(count).for_each(|vector| bytes.extend_from_slice(bytemuck::bytes_of(&vector)));
+        Ok(Accessor::packed_f32(offset as usize, 3, count))
     }
 }
 
@@ -312,8 +329,8 @@ fn copy(buffers: &Buffers, index: usize, offsets: &mut HashMap<Source, u32>, byt
         Some(&start) => start,
         None => {
             let start = match source {
-                Source::View(view) => append(bytes, buffers.view(view)?)?,
-                Source::Accessor(_) => append(bytes, &buffers.materialized(index, &layout)?)?,
+                Source::View(view) => append(&buffers.limits, bytes, buffers.view(view)?)?,
+                Source::Accessor(_) => append(&buffers.limits, bytes, &buffers.materialized(index, &layout)?)?,
             };
             offsets.insert(source, start);
             start
@@ -322,26 +339,29 @@ fn copy(buffers: &Buffers, index: usize, offsets: &mut HashMap<Source, u32>, byt
     Ok(Accessor { offset: start + copied.offset, ..copied })
 }
 
-/// Appends at a multiple of 4 bytes and pads to one; returns the offset.
-fn append(bytes: &mut Vec<u8>, more: &[u8]) -> Result<u32, LoadError> {
-    let total = bytes.len() as u64 + more.len().next_multiple_of(4) as u64;
-    if total > limits::BINDING_BYTES {
-        return Err(LoadError::new(format!(
-            "the model needs {total} bytes or more in one buffer; allowed: at most {}",
-            limits::BINDING_BYTES
-        )));
+/// Makes room for so many bytes, padded to a multiple of 4; returns the offset.
+fn reserve(limits: &Limits, bytes: &mut Vec<u8>, more: usize) -> Result<u32, LoadError> {
+    let total = bytes.len() as u64 + more.next_multiple_of(4) as u64;
+    if total > limits.buffer_bytes {
+        return Err(limits.exceeded(format_args!("the model needs {total} bytes or more in one buffer"), limits.buffer_bytes));
     }
-    let start = bytes.len() as u32;
-    bytes.extend_from_slice(more);
-    bytes.resize(total as usize, 0);
-    Ok(start)
+    // Exactly, since what doubling reserves would count as well. Small pieces are many, as a rule.
+    if more >= PART_BYTES {
+        bytes
+            .try_reserve_exact(total as usize - bytes.len())
+            .map_err(|_| LoadError::new(format!("the system has no memory for {total} bytes")))?;
+    }
+    Ok(bytes.len() as u32)
 }
 
-/// Checks that all values of a copied attribute are finite.
-pub fn check_finite(scene: &Scene, accessor: &Accessor) -> Result<(), LoadError> {
-    let value = |vertex, component| accessor.value(&scene.vertex_bytes, vertex, component);
-    match (0..accessor.count).find(|&vertex| (0..accessor.components).any(|component| !value(vertex, component).is_finite())) {
-        Some(vertex) => Err(LoadError::new(format!("vertex {vertex} has a value that is not finite"))),
-        None => Ok(()),
+/// Appends at a multiple of 4 bytes and pads to one; returns the offset.
+fn append(limits: &Limits, bytes: &mut Vec<u8>, more: &[u8]) -> Result<u32, LoadError> {
+    let start = reserve(limits, bytes, more.len())?;
+    let checkpoint = checkpoint();
+    for part in more.chunks(PART_BYTES) {
+        bytes.extend_from_slice(part);
+        checkpoint.pass();
     }
+    bytes.resize(bytes.len().next_multiple_of(4), 0);
+    Ok(start)
 }

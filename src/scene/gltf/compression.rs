@@ -12,7 +12,7 @@ use super::{
     draco::{CompressedPrimitive, Decoded},
     element::{component_of, lanes_of},
     error::LoadError,
-    limits,
+    limits::Limits,
     meshopt::CompressedView,
 };
 use crate::scene::accessor::ComponentType;
@@ -93,9 +93,9 @@ impl Compression {
     /// Decodes everything that is compressed. Accessors without bytes receive buffer views, which are added to `root`.
     ///
     /// # Errors
-    /// Malformed data, or more than [`limits`] allow.
-    pub fn decode(&self, root: &mut json::Root, buffers: &[impl AsRef<[u8]>]) -> Result<DecodedViews, LoadError> {
-        let mut decoded = Views { root, buffers, views: HashMap::new(), bytes: 0 };
+    /// Malformed data, or more than `limits` allow.
+    pub fn decode(&self, root: &mut json::Root, buffers: &[impl AsRef<[u8]>], limits: &Limits) -> Result<DecodedViews, LoadError> {
+        let mut decoded = Views { root, buffers, limits, views: HashMap::new(), bytes: 0 };
         for (index, view) in self.buffer_views.iter().enumerate() {
             if let Some(view) = view.extensions.as_ref().and_then(|extensions| extensions.meshopt.as_ref()) {
                 decoded.meshopt(index, view).map_err(|error| error.within(format!("bufferView {index}: {MESHOPT}")))?;
@@ -116,6 +116,7 @@ impl Compression {
 struct Views<'a, T> {
     root: &'a mut json::Root,
     buffers: &'a [T],
+    limits: &'a Limits,
     views: DecodedViews,
     /// Size of all decoded views.
     bytes: u64,
@@ -134,13 +135,13 @@ impl<T: AsRef<[u8]>> Views<'_, T> {
     /// Counts decoded bytes before they are allocated.
     fn count(&mut self, bytes: u64) -> Result<(), LoadError> {
         self.bytes = self.bytes.saturating_add(bytes);
-        if bytes > limits::BINDING_BYTES || self.bytes > limits::TOTAL_BYTES {
-            return Err(LoadError::new(format!(
-                "it unpacks to {bytes} bytes, {} with those before; allowed: at most {} and {}",
-                self.bytes,
-                limits::BINDING_BYTES,
-                limits::TOTAL_BYTES
-            )));
+        let Limits { buffer_bytes, total_bytes, .. } = *self.limits;
+        if bytes > buffer_bytes {
+            return Err(self.limits.exceeded(format_args!("it unpacks to {bytes} bytes"), buffer_bytes));
+        }
+        if self.bytes > total_bytes {
+            let what = format_args!("it unpacks to {bytes} bytes, {} with those before", self.bytes);
+            return Err(self.limits.exceeded(what, total_bytes));
         }
         Ok(())
     }
@@ -177,7 +178,7 @@ impl<T: AsRef<[u8]>> Views<'_, T> {
         let (buffer, start, length) = (view.buffer.value(), view.byte_offset.unwrap_or_default().0, view.byte_length.0);
         // The data is decoded again for every primitive that names it.
         self.count(length)?;
-        let decoded = Decoded::of(self.part(buffer, start, length)?)?;
+        let decoded = Decoded::of(self.part(buffer, start, length)?, self.limits)?;
         self.count(4 * (decoded.vertices() + decoded.indices()) as u64)?;
         for (name, accessor) in attributes {
             let Some(&id) = about.attributes.get(&name).filter(|_| self.root.accessors[accessor].buffer_view.is_none()) else { continue };

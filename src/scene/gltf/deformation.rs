@@ -3,7 +3,8 @@
 use gltf::json::{self, mesh::Semantic, validation::Checked};
 
 use super::{
-    buffers::{FLOAT, Format, SceneWriter, check_finite},
+    buffers::{FLOAT, Format, SceneWriter},
+    checks::check_finite,
     error::LoadError,
     skin,
 };

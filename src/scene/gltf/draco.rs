@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, Mesh, MeshDecoder, PointAttribute, PointIndex};
 use serde::Deserialize;
 
-use super::{error::LoadError, limits};
+use super::{error::LoadError, limits::Limits};
 use crate::scene::accessor::ComponentType;
 
 /// A compressed primitive.
@@ -21,15 +21,15 @@ pub struct CompressedPrimitive {
 pub struct Decoded(Mesh);
 
 impl Decoded {
-    /// Decodes a stream within [`limits`].
+    /// Decodes a stream within `limits`.
     ///
     /// # Errors
     /// The stream is malformed, or holds more than a model may.
-    pub fn of(bytes: &[u8]) -> Result<Self, LoadError> {
+    pub fn of(bytes: &[u8], limits: &Limits) -> Result<Self, LoadError> {
         let allowed = DecodeLimits::default()
-            .with_max_points(limits::VERTICES)
-            .with_max_faces(limits::TRIANGLES)
-            .with_max_decoded_bytes(limits::BINDING_BYTES);
+            .with_max_points(limits.vertices)
+            .with_max_faces(limits.triangles)
+            .with_max_decoded_bytes(limits.buffer_bytes);
         let mut mesh = Mesh::new();
         let decoded = MeshDecoder::new().decode(&mut DecoderBuffer::new(bytes).with_limits(allowed), &mut mesh);
         decoded.map_err(|error| LoadError::new(format!("its Draco data cannot be decoded: {}", error.to_string().replace('\n', " "))))?;

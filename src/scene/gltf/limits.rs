@@ -1,22 +1,18 @@
 //! Upper limits of everything that a model file can demand.
+//!
+//! The constants hold for every model. [`Limits`] grow with the memory budget and with the bytes of the files, so that a small file never
+//! takes much memory, and a large one is loaded where the machine has room for it.
+
+use super::error::LoadError;
+use crate::scene::{draw, memory::MemoryBudget};
 
 const MIB: u64 = 1 << 20;
-/// Size of the model file, and of each file that it refers to.
-pub const FILE_BYTES: u64 = 256 * MIB;
-/// Total size of all files of a model.
-pub const TOTAL_BYTES: u64 = 512 * MIB;
 /// Size of the JSON.
 pub const JSON_BYTES: u64 = 64 * MIB;
 /// JSON objects; each may need hundreds of bytes once parsed.
 pub const JSON_OBJECTS: usize = 1_000_000;
 /// Commas of the JSON, which separate its values; each value may need 64 bytes once parsed.
 pub const JSON_VALUES: usize = 10_000_000;
-/// Size of the largest storage binding that every adapter supports.
-pub const BINDING_BYTES: u64 = 128 * MIB;
-/// Vertices of all primitives, each counted once however often it is instanced.
-pub const VERTICES: u64 = 4_000_000;
-/// Triangles of all primitives, each counted once however often it is instanced.
-pub const TRIANGLES: u64 = 10_000_000;
 /// Instances of primitives.
 pub const INSTANCES: usize = 65_536;
 /// Nodes from a root to a leaf.
@@ -39,3 +35,70 @@ pub const IMAGE_SIDE: u32 = 8192;
 pub const IMAGES_BYTES: u64 = 512 * MIB;
 /// Messages to the user.
 pub const NOTES: usize = 32;
+
+/// Decoded bytes for each byte of the files, beyond what every model may take: a higher compression is none that is in use.
+const MOST_GROWTH: u64 = 32;
+
+/// Limits that follow from the memory budget and from the size of the files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Size of the model file, and of each file that it refers to.
+    pub file_bytes: u64,
+    /// Total size of all files of a model, and of all that is compressed in them once it is decoded.
+    pub total_bytes: u64,
+    /// Size of the attributes of all primitives, and of their index lists.
+    pub buffer_bytes: u64,
+    /// Vertices of all primitives, each counted once however often it is instanced.
+    pub vertices: u64,
+    /// Triangles of all primitives, each counted once however often it is instanced.
+    pub triangles: u64,
+    /// What to do where a limit is exceeded; nothing where every model has it.
+    remedy: Remedy,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Remedy {
+    /// Raise the budget.
+    Budget(MemoryBudget),
+    /// None: the files have only so many bytes.
+    Growth(u64),
+}
+
+impl Limits {
+    /// Limits that hold while the sizes of the files are unknown.
+    pub fn of_files(budget: MemoryBudget) -> Self {
+        Self::of(budget.decoded(), Remedy::Budget(budget))
+    }
+
+    /// Limits of a model whose files have so many bytes.
+    pub fn of_model(budget: MemoryBudget, files: u64) -> Self {
+        let grown = files.saturating_mul(MOST_GROWTH);
+        if grown < budget.decoded() {
+            Self { file_bytes: Self::of_files(budget).file_bytes, ..Self::of(grown, Remedy::Growth(files)) }
+        } else {
+            Self::of_files(budget)
+        }
+    }
+
+    /// As much as `decoded` bytes allow, and no less than every model may have. A list of triangles has at least two bytes for each.
+    fn of(decoded: u64, remedy: Remedy) -> Self {
+        // Kernels address bytes of a buffer with 32 bits.
+        let addressable = (1 << 32) - 4;
+        Self {
+            file_bytes: decoded.max(256 * MIB),
+            total_bytes: decoded.max(512 * MIB),
+            buffer_bytes: decoded.clamp(128 * MIB, addressable),
+            vertices: (decoded / 12).clamp(4_000_000, draw::MAX_TRIANGLES),
+            triangles: (decoded / 6).clamp(10_000_000, draw::MAX_TRIANGLES / 3),
+            remedy,
+        }
+    }
+
+    /// `what` exceeds `most`, a limit of these.
+    pub(super) fn exceeded(&self, what: impl std::fmt::Display, most: u64) -> LoadError {
+        LoadError::new(match self.remedy {
+            Remedy::Budget(budget) => format!("{what}; allowed: at most {most} {}", budget.remedy()),
+            Remedy::Growth(files) => format!("{what}; allowed: at most {most}, because its files have only {files} bytes"),
+        })
+    }
+}

@@ -3,36 +3,51 @@
 use std::{
     fs,
     io::Read,
-    panic::{AssertUnwindSafe, catch_unwind},
+    panic::{AssertUnwindSafe, catch_unwind, resume_unwind},
     path::Path,
 };
 
 use gltf::json;
 
 use super::{
-    buffers::Buffers,
+    buffers::{Buffers, PART_BYTES},
     clips,
     compression::Compression,
     deformation, document,
     error::{LoadError, ReadFile, quoted},
-    limits, materials,
+    limits::Limits,
+    materials,
     meshes::Loader,
     nodes::Tree,
     notes::Notes,
     skin,
 };
-use crate::scene::{model::Scene, pose, rig::Rig};
+use crate::{
+    scene::{memory::MemoryBudget, model::Scene, pose, rig::Rig},
+    work::{checkpoint, is_cancellation},
+};
 
-/// Loads a `.gltf` or `.glb` file. Only files in its folder and below are read.
+/// Loads a `.gltf` or `.glb` file within the memory budget of the process. Only files in its folder and below are read.
+///
+/// Within [`Work`](crate::work::Work) it counts its bytes, and unwinds where that was canceled.
 ///
 /// # Errors
-/// If a file cannot be read, is malformed, or exceeds [`limits`]; the sentence begins with the file name.
+/// If a file cannot be read, is malformed, or exceeds [`limits`](super::limits); the sentence begins with the file name.
 pub fn load(path: &Path) -> Result<Scene, LoadError> {
+    load_within(path, MemoryBudget::of_process())
+}
+
+/// [`load`] within another memory budget.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_within(path: &Path, budget: MemoryBudget) -> Result<Scene, LoadError> {
     let file = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
     let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let open = || {
-        let bytes = read_regular(path, limits::FILE_BYTES)?;
-        parse(&bytes, &mut |beside, most| read_beside(path, beside, most))
+        let limits = Limits::of_files(budget);
+        let bytes = read_regular(path, limits.file_bytes, &limits)?;
+        parse_within(&bytes, budget, &mut |beside, most| read_beside(path, beside, most, &limits))
     };
     match open() {
         Ok(scene) => Ok(Scene { name, ..scene }),
@@ -40,35 +55,59 @@ pub fn load(path: &Path) -> Result<Scene, LoadError> {
     }
 }
 
-/// Loads a model from memory. `read` supplies the files that it refers to, by relative paths without `..`.
+/// Loads a model from memory, within the least memory budget. `read` supplies the files that it refers to, by relative paths without `..`.
 ///
 /// # Errors
-/// If the model is malformed, exceeds [`limits`], or `read` fails.
+/// If the model is malformed, exceeds [`limits`](super::limits), or `read` fails.
 pub fn parse(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
+    parse_within(bytes, MemoryBudget::LEAST, read)
+}
+
+/// [`parse`] within another memory budget.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_within(bytes: &[u8], budget: MemoryBudget, read: &mut ReadFile) -> Result<Scene, LoadError> {
     // A panic in the validation of the crate `gltf` must not close the window.
-    catch_unwind(AssertUnwindSafe(|| read_model(bytes, read)))
-        .unwrap_or_else(|_| Err(LoadError::new("the loader failed on this file, which is a bug: please report it")))
+    catch_unwind(AssertUnwindSafe(|| read_model(bytes, budget, read))).unwrap_or_else(|payload| match is_cancellation(&*payload) {
+        true => resume_unwind(payload),
+        false => Err(LoadError::new("the loader failed on this file, which is a bug: please report it")),
+    })
 }
 
 /// Reads a regular file of at most `most` bytes. Pipes, devices and folders are refused before they are opened.
-fn read_regular(path: &Path, most: u64) -> Result<Vec<u8>, LoadError> {
+///
+/// A file is read, not mapped: one that is cut short by another program while it is mapped would end the program.
+fn read_regular(path: &Path, most: u64, limits: &Limits) -> Result<Vec<u8>, LoadError> {
     let failed = |error: std::io::Error| LoadError::new(format!("cannot read the file: {error}"));
     let about = fs::metadata(path).map_err(failed)?;
     if !about.is_file() {
         return Err(LoadError::new("it is not a regular file"));
     }
-    let too_large = |bytes: u64| LoadError::new(format!("it has {bytes} bytes; allowed: at most {most}"));
+    let too_large = |bytes: u64| limits.exceeded(format_args!("it has {bytes} bytes"), most);
     if about.len() > most {
         return Err(too_large(about.len()));
     }
-    let mut bytes = Vec::with_capacity(about.len() as usize);
+    let checkpoint = checkpoint();
+    checkpoint.expect(about.len());
+    let mut bytes = Vec::new();
+    bytes
+        .try_reserve_exact(about.len() as usize)
+        .map_err(|_| LoadError::new(format!("the system has no memory for its {} bytes", about.len())))?;
+    let mut file = fs::File::open(path).map_err(failed)?;
     // The file may grow while it is read.
-    fs::File::open(path).and_then(|file| file.take(most + 1).read_to_end(&mut bytes)).map_err(failed)?;
-    if bytes.len() as u64 > most { Err(too_large(bytes.len() as u64)) } else { Ok(bytes) }
+    while bytes.len() as u64 <= most {
+        let read = file.by_ref().take(PART_BYTES as u64).read_to_end(&mut bytes).map_err(failed)?;
+        checkpoint.advance(read as u64);
+        if read == 0 {
+            return Ok(bytes);
+        }
+    }
+    Err(too_large(bytes.len() as u64))
 }
 
 /// Reads `beside`, a relative path without `..`, from the folder of `model`. Symbolic links must not lead out of the folder.
-fn read_beside(model: &Path, beside: &Path, most: u64) -> Result<Vec<u8>, LoadError> {
+fn read_beside(model: &Path, beside: &Path, most: u64, limits: &Limits) -> Result<Vec<u8>, LoadError> {
     let folder = model.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let failed = |error: std::io::Error| LoadError::new(format!("cannot read the file: {error}"));
     let folder = folder.canonicalize().map_err(failed)?;
@@ -76,7 +115,7 @@ fn read_beside(model: &Path, beside: &Path, most: u64) -> Result<Vec<u8>, LoadEr
     if !file.starts_with(&folder) {
         return Err(LoadError::new("it lies outside the model's folder; copy it there"));
     }
-    read_regular(&file, most)
+    read_regular(&file, most, limits)
 }
 
 /// The JSON and, of a GLB, the binary chunk.
@@ -113,11 +152,11 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), LoadError> {
 }
 
 /// Reads a whole model.
-fn read_model(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
+fn read_model(bytes: &[u8], budget: MemoryBudget, read: &mut ReadFile) -> Result<Scene, LoadError> {
     let (json, binary) = split(bytes)?;
     let mut left_out = Vec::new();
     let mut root = document::parse_document(json, &mut left_out)?;
-    let mut buffers = Buffers::read(&mut root, binary, &Compression::of(json)?, read)?;
+    let mut buffers = Buffers::read(&mut root, binary, &Compression::of(json)?, (bytes.len() as u64, budget), read)?;
     let root = buffers.root;
     materials::check_images(&buffers)?;
     let tree = Tree::walk(root)?;
@@ -130,6 +169,7 @@ fn read_model(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
         clips::read(&buffers, &tree, &mut rig, &mut repairs)?;
     }
     let mut loader = Loader::new(&buffers, &tree, Scene { materials, images, ..Scene::default() });
+    loader.expect();
     for &node in &tree.shown {
         loader.add_instances(node, &rig)?;
     }

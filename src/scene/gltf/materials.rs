@@ -200,7 +200,7 @@ impl Reader<'_, '_, '_> {
         let bytes = match (about.buffer_view, &about.uri) {
             (Some(view), None) => self.buffers.view(view.value())?.to_vec(),
             (None, Some(uri)) => {
-                let bytes = uri::resolve(uri, self.buffers.left.min(limits::FILE_BYTES), self.read)?;
+                let bytes = uri::resolve(uri, self.buffers.left.min(self.buffers.limits.file_bytes), self.read)?;
                 self.buffers.left -= bytes.len() as u64;
                 bytes
             }

@@ -5,7 +5,7 @@ use std::{
     ops::Range,
 };
 
-use glam::{DMat4, DVec3};
+use glam::DMat4;
 use gltf::json::{
     self,
     mesh::{Mode, Semantic},
@@ -13,26 +13,34 @@ use gltf::json::{
 };
 
 use super::{
-    buffers::{Buffers, FLOAT, FLOAT_OR_UNORM, QUANTIZED, QUANTIZED_NORMALS, SceneWriter, check_finite},
+    buffers::{Buffers, FLOAT, FLOAT_OR_UNORM, QUANTIZED, QUANTIZED_NORMALS, SceneWriter},
+    checks::{check_finite, check_indices, check_repeats, measure, normal, smooth_normals},
     deformation,
     error::{LoadError, called, part_name},
-    limits, materials,
+    limits::{self, Limits},
+    materials,
     nodes::{Tree, node_name},
 };
-use crate::scene::{
-    accessor::Accessor,
-    bounds::Bounds,
-    deformation::Deformation,
-    material::Material,
-    model::{Instance, Primitive, Scene, Topology},
-    rig::Rig,
-    texture::{MAX_REPEATS, texcoord},
+use crate::{
+    scene::{
+        accessor::Accessor,
+        bounds::Bounds,
+        deformation::Deformation,
+        material::Material,
+        model::{Instance, Primitive, Scene, Topology},
+        rig::Rig,
+    },
+    work::checkpoint,
 };
+
+/// Steps of reading a primitive after which progress is counted.
+const STEPS: u64 = 4;
 
 /// Reads meshes into a scene.
 pub struct Loader<'a> {
     root: &'a json::Root,
     tree: &'a Tree,
+    limits: &'a Limits,
     pub writer: SceneWriter<'a>,
     /// Messages about what was skipped or repaired, each once.
     pub notes: BTreeSet<String>,
@@ -51,6 +59,7 @@ impl<'a> Loader<'a> {
         Self {
             root: buffers.root,
             tree,
+            limits: &buffers.limits,
             writer: SceneWriter::new(buffers, scene),
             notes: BTreeSet::new(),
             sources: Vec::new(),
@@ -59,6 +68,23 @@ impl<'a> Loader<'a> {
             vertices: 0,
             triangles: 0,
         }
+    }
+
+    /// Says how many bytes are to be decoded.
+    pub fn expect(&self) {
+        let shown: BTreeSet<usize> = self.tree.shown.iter().filter_map(|&node| Some(self.root.nodes[node].mesh?.value())).collect();
+        let primitives = shown.iter().filter_map(|&mesh| self.root.meshes.get(mesh)).flat_map(|mesh| &mesh.primitives);
+        checkpoint().expect(primitives.map(|primitive| STEPS * self.step_bytes(primitive)).sum());
+    }
+
+    /// Bytes that count as done after each step of reading a primitive.
+    fn step_bytes(&self, about: &json::mesh::Primitive) -> u64 {
+        let accessors = about.attributes.values().chain(&about.indices).filter_map(|accessor| self.root.accessors.get(accessor.value()));
+        let size = |accessor: &json::Accessor| match (accessor.component_type, accessor.type_) {
+            (Checked::Valid(component), Checked::Valid(kind)) => (component.0.size() * kind.multiplicity()) as u64,
+            _ => 0,
+        };
+        accessors.fold(0, |sum: u64, accessor| sum.saturating_add(accessor.count.0.saturating_mul(size(accessor)))).min(1 << 40) / STEPS
     }
 
     /// Adds the instances of a node. A skinned mesh ignores the transform of its node: its joints place it.
@@ -162,14 +188,19 @@ impl<'a> Loader<'a> {
                 ..Deformation::default()
             },
         };
+        let (checkpoint, step) = (checkpoint(), self.step_bytes(about));
+        checkpoint.advance(step);
         check_indices(&self.writer.scene, &primitive).map_err(at("indices"))?;
+        checkpoint.advance(step);
         measure(&self.writer.scene, &mut primitive).map_err(at("POSITION"))?;
+        checkpoint.advance(step);
         if normals.is_none() {
             let smooth = smooth_normals(&self.writer.scene, &primitive);
-            primitive.normals = self.writer.append_vectors(&smooth).map_err(at("NORMAL"))?;
+            primitive.normals = self.writer.append_vectors(smooth.len(), smooth.iter().copied().map(normal)).map_err(at("NORMAL"))?;
         } else {
             check_finite(&self.writer.scene, &primitive.normals).map_err(at("NORMAL"))?;
         }
+        checkpoint.advance(step);
         primitive.normals_agree = primitive.normals_agree(&self.writer.scene);
         if let Some(colors) = &primitive.colors {
             check_finite(&self.writer.scene, colors).map_err(at("COLOR_0"))?;
@@ -204,15 +235,7 @@ impl<'a> Loader<'a> {
             let formats = if self.writer.is_quantized { QUANTIZED } else { FLOAT_OR_UNORM };
             let accessor = self.writer.attribute(index.value(), count, &[2], formats).map_err(at)?;
             check_finite(&self.writer.scene, &accessor).map_err(at)?;
-            let coordinates = |vertex| texture.image_coordinates(texcoord(&accessor, &self.writer.scene.vertex_bytes, vertex));
-            if let Some(vertex) = (0..count).find(|&vertex| coordinates(vertex).abs().max_element() > MAX_REPEATS) {
-                let coordinates = coordinates(vertex);
-                let reason = format!(
-                    "vertex {vertex} has the image coordinates {} {}; allowed: magnitudes up to {MAX_REPEATS}",
-                    coordinates.x, coordinates.y
-                );
-                return Err(at(LoadError::new(reason)));
-            }
+            check_repeats(&self.writer.scene, &accessor, &texture).map_err(at)?;
             *texcoords = Some(accessor);
         }
         Ok(texcoords)
@@ -220,10 +243,10 @@ impl<'a> Loader<'a> {
 
     fn budget_vertices(&mut self, more: u64) -> Result<(), LoadError> {
         self.vertices += more;
-        if self.vertices > limits::VERTICES {
-            return Err(LoadError::new(format!("the model has {} vertices or more; allowed: at most {}", self.vertices, limits::VERTICES)));
+        match self.vertices > self.limits.vertices {
+            true => Err(self.limits.exceeded(format_args!("the model has {} vertices or more", self.vertices), self.limits.vertices)),
+            false => Ok(()),
         }
-        Ok(())
     }
 
     fn budget_triangles(&mut self, topology: Topology, corners: u32) -> Result<(), LoadError> {
@@ -235,61 +258,13 @@ impl<'a> Loader<'a> {
             return Err(LoadError::new(format!("{corners} corners do not form whole triangles; their number must be {expected}")));
         }
         self.triangles += u64::from(topology.triangles(corners));
-        if self.triangles > limits::TRIANGLES {
-            return Err(LoadError::new(format!(
-                "the model has {} triangles or more; allowed: at most {}",
-                self.triangles,
-                limits::TRIANGLES
-            )));
+        match self.triangles > self.limits.triangles {
+            true => Err(self.limits.exceeded(format_args!("the model has {} triangles or more", self.triangles), self.limits.triangles)),
+            false => Ok(()),
         }
-        Ok(())
     }
 }
 
 fn primitive_name(root: &json::Root, mesh: usize, primitive: usize) -> String {
     format!("{} primitive {primitive}", called("mesh", mesh, root.meshes[mesh].name.as_deref()))
-}
-
-fn check_indices(scene: &Scene, primitive: &Primitive) -> Result<(), LoadError> {
-    let Some(indices) = &primitive.indices else { return Ok(()) };
-    let count = primitive.vertex_count();
-    let beyond = |corner: &u32| indices.integer(&scene.index_bytes, *corner, 0) >= i64::from(count);
-    match (0..indices.count).find(beyond) {
-        Some(corner) => {
-            let index = indices.integer(&scene.index_bytes, corner, 0);
-            Err(LoadError::new(format!("corner {corner} refers to vertex {index}, but there are only {count}")))
-        }
-        None => Ok(()),
-    }
-}
-
-/// Computes the bounds and the longest edge. Positions must be finite.
-fn measure(scene: &Scene, primitive: &mut Primitive) -> Result<(), LoadError> {
-    check_finite(scene, &primitive.positions)?;
-    let at = |vertex: u32| DVec3::from(primitive.position(scene, vertex).map(f64::from));
-    let mut bounds = Bounds::EMPTY;
-    (0..primitive.vertex_count()).for_each(|vertex| bounds.include(at(vertex)));
-    let mut longest: f64 = 0.0;
-    for t in 0..primitive.triangle_count() {
-        let [a, b, c] = primitive.corners(scene, t).map(at);
-        longest = longest.max(a.distance_squared(b)).max(b.distance_squared(c)).max(c.distance_squared(a));
-    }
-    (primitive.bounds, primitive.longest_edge) = (bounds, longest.sqrt());
-    Ok(())
-}
-
-/// Computes missing normals: the mean of the normals of the adjoining triangles, weighted by area.
-///
-/// glTF asks for flat normals. Without indices the result is flat. Shared vertices would have to be split first, so theirs
-/// are smooth instead and the bytes of the file stay as they are.
-fn smooth_normals(scene: &Scene, primitive: &Primitive) -> Vec<[f32; 3]> {
-    let at = |vertex: u32| DVec3::from(primitive.position(scene, vertex).map(f64::from));
-    let mut sums = vec![DVec3::ZERO; primitive.vertex_count() as usize];
-    for t in 0..primitive.triangle_count() {
-        let corners = primitive.corners(scene, t);
-        let [a, b, c] = corners.map(at);
-        let twice_area = (b - a).cross(c - a);
-        corners.into_iter().for_each(|corner| sums[corner as usize] += twice_area);
-    }
-    sums.into_iter().map(|sum| sum.normalize_or(DVec3::Y).as_vec3().into()).collect()
 }

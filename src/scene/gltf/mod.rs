@@ -9,6 +9,7 @@
 //! Skipped with an entry in [`Scene::notes`](crate::scene::Scene::notes): points, lines, normal maps and the rest of physically based shading.
 
 mod buffers;
+mod checks;
 mod clips;
 mod compression;
 mod deformation;
@@ -28,4 +29,4 @@ mod skin;
 mod uri;
 
 pub use error::{LoadError, ReadFile};
-pub use load::{load, parse};
+pub use load::{load, load_within, parse, parse_within};

@@ -8,8 +8,8 @@ use std::{
 
 use rasterlab::{
     effects::{Effect, EnabledEffect},
-    oracle::Work,
     preset::Preset,
+    work::Work,
 };
 
 use super::*;

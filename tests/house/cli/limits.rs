@@ -32,6 +32,47 @@ fn crowd(nodes: usize, vertices: usize, triangles: usize, targets: usize) -> Vec
 }
 
 #[test]
+fn the_memory_budget_is_a_flag_or_a_variable_and_names_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("crowd.gltf"), crowd(1, 3, 1, 0)).unwrap();
+    let args = ["parts", "crowd.gltf", "--memory", "2GiB"];
+    assert_eq!(run_in(folder.path(), &args).code, 0);
+    for (size, wanted) in [
+        ("1MiB", "--memory 1MiB: it must be at least 1280 MiB"),
+        ("8", "--memory 8: it must be a number with a unit, for instance 8GiB or 1500MiB"),
+    ] {
+        let run = run_in(folder.path(), &["parts", "crowd.gltf", "--memory", size]);
+        assert!(run.code == 2 && run.err.contains(wanted), "{}", run.err);
+    }
+    let with_variable =
+        |args: &[&str], size: &str| finished(command(folder.path()).args(args).env("RASTERLAB_MEMORY", size).output().unwrap());
+    let run = with_variable(&["parts", "crowd.gltf"], "much");
+    assert!(run.code == 2 && run.err.contains("RASTERLAB_MEMORY much: it must be a number with a unit"), "{}", run.err);
+    // A built-in scene counts as a model does.
+    let run = with_variable(&["parts", "builtin:sphere?triangles=100000000"], "1280MiB");
+    let wanted = "sphere: 100000000 triangles; allowed: at most 22369621 within the memory budget of 1280 MiB; raise it with --memory";
+    assert!(run.code == 2 && run.err.contains(wanted), "{}", run.err);
+    // Beyond the budget, beyond the flag.
+    fs::File::create(folder.path().join("huge.glb")).unwrap().set_len(600 << 20).unwrap();
+    let run = with_variable(&["parts", "huge.glb"], "1300MiB");
+    assert!(run.code == 2 && run.err.contains("within the memory budget of 1300 MiB; raise it with --memory"), "{}", run.err);
+}
+
+#[test]
+fn what_the_oracle_cannot_judge_is_not_measured_and_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    for more in [&[][..], &["--axes", "visibility"], &["--every-effect"]] {
+        let args = [&["bench", "--scene", "sphere?triangles=20000", "--size", "64x48", "--samples", "2"][..], more].concat();
+        let run = finished(command(folder.path()).args(&args).env("RASTERLAB_ORACLE_GIB", "0.001").output().unwrap());
+        if run.code == 3 {
+            return eprintln!("skipped: no adapter is here");
+        }
+        assert!(run.code == 2 && run.err.contains("and the oracle may take 0.001;"), "{args:?}: {}", run.err);
+        assert!(run.err.contains("set RASTERLAB_ORACLE_GIB") && !run.err.contains("panicked"), "{}", run.err);
+    }
+}
+
+#[test]
 fn a_picture_that_is_too_large_for_the_oracle_is_refused_in_a_moment() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("crowd.gltf"), crowd(1_000, 3, 100_000, 0)).unwrap();

@@ -23,7 +23,7 @@ use serde_json::Value;
 /// The program in a clean world: no environment of ours, no presets of the person's own.
 fn command(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_rasterlab"));
-    command.current_dir(folder).env_remove("RASTERLAB_ADAPTER").env_remove("RASTERLAB_PRESETS");
+    command.current_dir(folder).env_remove("RASTERLAB_ADAPTER").env_remove("RASTERLAB_PRESETS").env_remove("RASTERLAB_MEMORY");
     command.env("XDG_CONFIG_HOME", folder.join("config")).env("APPDATA", folder.join("config")).env("HOME", folder);
     command
 }

@@ -11,4 +11,5 @@ mod materials;
 mod model;
 mod motion;
 mod refused;
+mod scale;
 mod tolerated;

@@ -5,7 +5,7 @@ use eframe::egui::{self, Align2, Color32, FontId, Rect, RichText, Ui, pos2};
 use crate::{
     app::{
         action::Action,
-        command::{Commands, Picking},
+        command::{Command, Commands, Picking},
         golden_check::Outcome,
         icons::{Icon, icon_button},
         session::FileId,
@@ -22,6 +22,7 @@ pub fn chips_ui(ui: &mut Ui, state: &State, commands: &Commands, rect: Rect, is_
     let corner = Rect::from_min_max(rect.min + egui::vec2(12.0, below), rect.max - egui::vec2(beside, 0.0));
     let mut left = ui.new_child(egui::UiBuilder::new().id_salt("state").max_rect(corner));
     left.horizontal_wrapped(|ui| {
+        loading_ui(ui, state, commands);
         for (color, text) in states(state) {
             theme::toast_frame(theme::line())
                 .inner_margin(egui::Margin::symmetric(8, 4))
@@ -45,6 +46,25 @@ pub fn chips_ui(ui: &mut Ui, state: &State, commands: &Commands, rect: Rect, is_
     }
 }
 
+/// Between two looks at how far loading has come, seconds.
+const LOOK_S: f32 = 0.1;
+
+/// How far loading a scene has come, and a button that stops it.
+fn loading_ui(ui: &mut Ui, state: &State, commands: &Commands) {
+    let scenes = &state.session.scenes;
+    if !scenes.is_loading() {
+        return;
+    }
+    ui.ctx().request_repaint_after_secs(LOOK_S);
+    let text = scenes.progress().map_or("loading the scene".into(), |progress| format!("loading the scene: {progress}"));
+    theme::toast_frame(theme::line()).inner_margin(egui::Margin::symmetric(8, 4)).show(ui, |ui| {
+        ui.label(RichText::new(text).size(12.0).color(theme::text()));
+        if ui.small_button("Stop").on_hover_text("Stop loading (Esc)").accessible_name("Stop loading").clicked() {
+            commands.send(Command::CancelLoading);
+        }
+    });
+}
+
 /// Whether the preset still gives its golden, after a file was reloaded.
 fn golden_ui(ui: &mut Ui, state: &State) {
     let open = FileId::of(&state.session.preset_file);
@@ -60,9 +80,6 @@ fn states(state: &State) -> Vec<(Color32, String)> {
     let (session, screen) = (&state.session, &state.screen);
     let mut states = Vec::new();
     if screen.picture().is_some() {
-        if session.scenes.is_loading() {
-            states.push((theme::text(), "loading the scene".into()));
-        }
         if session.scenes.has_failed() {
             states.push((theme::red(), "last good picture: this scene cannot be shown".into()));
         } else if screen.is_refused() {
