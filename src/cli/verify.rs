@@ -155,6 +155,10 @@ pub fn check(
     preset.output.size = options.size.unwrap_or(preset.output.size);
     let (view, stack) = (preset.view(scene, preset.output.size), preset.stack_on(scene));
     let budget = preset.test.clone().unwrap_or_default();
+    if let Backend::Gpu(..) = backend {
+        // Before anything is drawn.
+        oracle::can_judge(scene, &view, &stack, preset.accuracy.scale().factor())?;
+    }
     let volume = volume_fraction(&preset, scene)?;
     let (mut rows, mut first): (Vec<Row>, Option<(&str, Frame)>) = (Vec::new(), None);
     for option in backend.options(&preset) {

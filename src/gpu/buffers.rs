@@ -29,6 +29,9 @@ pub struct Buffers {
     revision: u64,
 }
 
+/// Most bytes that are written to a buffer at a time: a large scene must not lie in memory twice while it is uploaded.
+const UPLOAD: usize = 64 << 20;
+
 /// A number that was never given before.
 pub fn next_revision() -> u64 {
     static NEXT: AtomicU64 = AtomicU64::new(1);
@@ -89,8 +92,13 @@ impl Buffers {
     /// When there is no such buffer.
     pub fn write_at(&self, gpu: &Gpu, id: BufferId, offset: u64, data: &[u8]) -> Result<(), RenderError> {
         let buffer = self.get(id)?;
-        if !data.is_empty() {
-            gpu.queue.write_buffer(buffer, offset, data);
+        for (at, part) in (offset..).step_by(UPLOAD).zip(data.chunks(UPLOAD)) {
+            gpu.queue.write_buffer(buffer, at, part);
+            if part.len() == UPLOAD {
+                // What is written waits in memory of its own until it is submitted and done.
+                gpu.queue.submit([]);
+                wait(gpu)?;
+            }
         }
         Ok(())
     }

@@ -47,7 +47,8 @@ impl MeshletBuffers {
             meshlet_buffers.spans[primitive] = (meshlet_buffers.records.len() as u32, meshlets.list.len() as u32);
             meshlet_buffers.records.extend(meshlets.list.iter().map(|meshlet| record(meshlet, first_triangle, first_vertex)));
         }
-        meshlet_buffers.count = scene.instances.iter().map(|instance| meshlet_buffers.spans[instance.primitive].1).sum();
+        meshlet_buffers.count =
+            scene.instances.iter().fold(0, |sum: u32, instance| sum.saturating_add(meshlet_buffers.spans[instance.primitive].1));
         meshlet_buffers
     }
 

@@ -56,6 +56,7 @@ impl Accessor {
         }
     }
 
+    #[inline]
     fn raw<const N: usize>(&self, bytes: &[u8], element: u32, component: u32) -> [u8; N] {
         let at = self.offset as usize + element as usize * self.stride as usize + component as usize * N;
         bytes[at..at + N].try_into().expect("an accessor lies inside its buffer")
@@ -70,6 +71,7 @@ impl Accessor {
     }
 
     /// An integer component, not normalized. Of an f32 component it returns the bits.
+    #[inline]
     pub fn integer(&self, bytes: &[u8], element: u32, component: u32) -> i64 {
         match self.component_type {
             ComponentType::I8 => i8::from_le_bytes(self.raw(bytes, element, component)).into(),
@@ -81,6 +83,7 @@ impl Accessor {
     }
 
     /// The first three components in f64, as [`Self::value`] gives them.
+    #[inline]
     pub fn vector(&self, bytes: &[u8], element: u32) -> [f64; 3] {
         if self.component_type == ComponentType::F32 {
             // One bounds check for all three.

@@ -85,6 +85,7 @@ impl Primitive {
     }
 
     /// The three vertex indices of triangle `t`.
+    #[inline]
     pub fn corners(&self, scene: &Scene, t: u32) -> [u32; 3] {
         let corners = self.topology.corners(t);
         match &self.indices {
@@ -118,6 +119,7 @@ impl Primitive {
     }
 
     /// Position of a vertex in object space as it is stored, normalized where the accessor says so.
+    #[inline]
     pub fn position(&self, scene: &Scene, vertex: u32) -> [f32; 3] {
         self.positions.vector(&scene.vertex_bytes, vertex).map(|value| value as f32)
     }

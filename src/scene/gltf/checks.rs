@@ -1,6 +1,7 @@
 //! What is checked and measured about every vertex and triangle of a primitive, on all threads.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::error::LoadError;
 use crate::{
@@ -12,6 +13,11 @@ use crate::{
     },
     work::{checkpoint, map_parts},
 };
+
+/// Below this a single thread adds up normals.
+const FEW_VERTICES: usize = 1 << 16;
+/// More threads than this would mostly look at triangles of others.
+const MOST_THREADS: usize = 8;
 
 /// The first of `count` elements of which `is_wrong` is true.
 fn first(count: u32, is_wrong: impl Fn(u32) -> bool + Sync) -> Option<u32> {
@@ -90,20 +96,55 @@ pub fn smooth_normals(scene: &Scene, primitive: &Primitive) -> Vec<DVec3> {
     let at = |vertex: u32| DVec3::from(primitive.position(scene, vertex).map(f64::from));
     let mut sums = vec![DVec3::ZERO; primitive.vertex_count() as usize];
     let checkpoint = checkpoint();
-    // One after another: the order of a sum is seen in its last bits.
-    for t in 0..primitive.triangle_count() {
-        if t.is_multiple_of(1 << 16) {
-            checkpoint.pass();
+    // Each thread looks at all triangles and adds up the normals of its own vertices, in the order of the triangles: the order of a sum is
+    // seen in its last bits.
+    let threads = if sums.len() < FEW_VERTICES { 1 } else { rayon::current_num_threads().min(MOST_THREADS) };
+    let share = sums.len().div_ceil(threads).max(1);
+    sums.par_chunks_mut(share).enumerate().for_each(|(part, sums)| {
+        let first = part * share;
+        let own = |corner: u32| (corner as usize).wrapping_sub(first);
+        for t in 0..primitive.triangle_count() {
+            if t.is_multiple_of(1 << 16) {
+                checkpoint.pass();
+            }
+            let corners = primitive.corners(scene, t);
+            if corners.iter().all(|&corner| own(corner) >= sums.len()) {
+                continue;
+            }
+            let [a, b, c] = corners.map(at);
+            let twice_area = (b - a).cross(c - a);
+            for corner in corners {
+                if let Some(sum) = sums.get_mut(own(corner)) {
+                    *sum += twice_area;
+                }
+            }
         }
-        let corners = primitive.corners(scene, t);
-        let [a, b, c] = corners.map(at);
-        let twice_area = (b - a).cross(c - a);
-        corners.into_iter().for_each(|corner| sums[corner as usize] += twice_area);
-    }
+    });
     sums
 }
 
 /// The normal from a sum of normals.
 pub fn normal(sum: DVec3) -> [f32; 3] {
     sum.normalize_or(DVec3::Y).as_vec3().into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::builtin;
+
+    #[test]
+    fn normals_do_not_depend_on_the_number_of_threads() {
+        let scene = builtin::build("sphere?triangles=200000").expect("a builtin");
+        let normals = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+            pool.install(|| smooth_normals(&scene, &scene.primitives[0]))
+        };
+        let alone = normals(1);
+        assert!(alone.len() > FEW_VERTICES && alone.iter().all(|sum| sum.length() > 0.0));
+        let bits = |sums: &[DVec3]| sums.iter().flat_map(|sum| sum.to_array()).map(f64::to_bits).collect::<Vec<_>>();
+        for threads in [2, 3, 5] {
+            assert!(bits(&normals(threads)) == bits(&alone), "{threads} threads");
+        }
+    }
 }
