@@ -1,6 +1,6 @@
 //! Buffers: the bytes of a model, its accessors after all bounds checks, and how both are copied into a scene.
 
-use std::{borrow::Cow, collections::HashMap};
+use std::{borrow::Cow, collections::HashMap, ops::Range};
 
 use gltf::json::{self, validation::Checked};
 
@@ -10,6 +10,7 @@ use super::{
     element::{component_of, lanes_of},
     error::{LoadError, ReadFile},
     limits::Limits,
+    source::{Bytes, PART_BYTES, reserve},
     uri,
 };
 use crate::{
@@ -21,14 +22,11 @@ use crate::{
     work::checkpoint,
 };
 
-/// Bytes that are read or copied between two looks at whether loading was canceled.
-pub const PART_BYTES: usize = 4 << 20;
-
-/// All buffers, in memory.
+/// All buffers.
 pub struct Buffers<'a> {
     /// The parsed JSON.
     pub root: &'a json::Root,
-    bytes: Vec<Cow<'a, [u8]>>,
+    bytes: Vec<Bytes<'a>>,
     /// The buffer views that were compressed.
     decoded: DecodedViews,
     /// What the model may have.
@@ -53,7 +51,7 @@ impl<'a> Buffers<'a> {
     /// because all its views are compressed. `file` is the size of the model file.
     pub fn read(
         root: &'a mut json::Root,
-        binary: Option<&'a [u8]>,
+        mut binary: Option<Bytes<'a>>,
         compression: &Compression,
         (file, budget): (u64, MemoryBudget),
         read: &mut ReadFile,
@@ -63,46 +61,75 @@ impl<'a> Buffers<'a> {
         let mut bytes = Vec::with_capacity(root.buffers.len());
         for (index, buffer) in root.buffers.iter().enumerate() {
             if buffer.uri.is_none() && compression.is_fallback(index) {
-                bytes.push(Cow::Borrowed(&[][..]));
+                bytes.push(Bytes::Memory(Cow::Borrowed(&[])));
                 continue;
             }
-            let content = match (&buffer.uri, binary) {
-                (Some(uri), _) => uri::resolve(uri, left.min(limits.file_bytes), read).map(Cow::Owned),
-                (None, Some(binary)) if index == 0 => Ok(Cow::Borrowed(binary)),
-                (None, _) => Err(LoadError::new("it has no URI, and the file has no binary chunk for it")),
+            let content = match (&buffer.uri, binary.take().filter(|_| index == 0)) {
+                (Some(uri), _) => uri::resolve(uri, left.min(limits.file_bytes), read).map(|bytes| Bytes::Memory(Cow::Owned(bytes))),
+                (None, Some(binary)) => Ok(binary),
+                (None, None) => Err(LoadError::new("it has no URI, and the file has no binary chunk for it")),
             };
-            let content: Cow<[u8]> = content.map_err(|error| error.within(format!("buffer {index}")))?;
-            if buffer.byte_length.0 > content.len() as u64 {
+            let content = content.map_err(|error| error.within(format!("buffer {index}")))?;
+            if buffer.byte_length.0 > content.len() {
                 let reason = format!("byteLength is {}, but the buffer has only {} bytes", buffer.byte_length.0, content.len());
                 return Err(LoadError::new(reason).within(format!("buffer {index}")));
             }
-            if matches!(content, Cow::Owned(_)) {
-                left -= content.len() as u64;
+            if matches!(content, Bytes::Memory(Cow::Owned(_))) {
+                left -= content.len();
             }
             bytes.push(content);
         }
         let limits = Limits::of_model(budget, file + (limits.total_bytes - left));
-        let decoded = compression.decode(root, &bytes, &limits)?;
+        let decoded = match compression.is_none() {
+            true => DecodedViews::new(),
+            false => compression.decode(root, &bytes.iter().map(Bytes::all).collect::<Result<Vec<_>, _>>()?, &limits)?,
+        };
         Ok(Self { root, bytes, decoded, limits, left })
     }
 
-    /// The bytes of a buffer view. Fails if it does not exist or exceeds its buffer.
+    /// The bytes of a buffer view. Fails if it does not exist or exceeds its buffer, or cannot be read.
     pub fn view(&self, index: usize) -> Result<&[u8], LoadError> {
         if let Some(decoded) = self.decoded.get(&index) {
             return Ok(decoded);
         }
+        let (buffer, range) = self.range(index)?;
+        Ok(&self.bytes[buffer].all()?[range.start as usize..range.end as usize])
+    }
+
+    /// Length of a buffer view, which is not read. Fails as [`Self::view`] does.
+    pub fn view_length(&self, index: usize) -> Result<u64, LoadError> {
+        match self.decoded.get(&index) {
+            Some(decoded) => Ok(decoded.len() as u64),
+            None => self.range(index).map(|(_, range)| range.end - range.start),
+        }
+    }
+
+    /// The buffer of a view that is not compressed, and the range of its bytes there.
+    fn range(&self, index: usize) -> Result<(usize, Range<u64>), LoadError> {
         let view = self.root.buffer_views.get(index).ok_or_else(|| LoadError::new(format!("bufferView {index} does not exist")))?;
         let (buffer, start) = (view.buffer.value(), view.byte_offset.unwrap_or_default().0);
         let length = self.root.buffers.get(buffer).map_or(0, |b| b.byte_length.0);
-        let bytes = self.bytes.get(buffer).map_or(&[][..], |bytes| bytes);
-        let end = start.checked_add(view.byte_length.0).filter(|&end| end <= length && end <= bytes.len() as u64);
+        let there = self.bytes.get(buffer).map_or(0, Bytes::len);
+        let end = start.checked_add(view.byte_length.0).filter(|&end| end <= length && end <= there);
         let end = end.ok_or_else(|| {
             LoadError::new(format!(
                 "bufferView {index} ({} bytes from byte {start}) exceeds buffer {buffer}, which has {length} bytes",
                 view.byte_length.0
             ))
         })?;
-        Ok(&bytes[start as usize..end as usize])
+        Ok((buffer, start..end))
+    }
+
+    /// Appends a buffer view at a multiple of 4 bytes and pads to one; returns the offset.
+    fn append_view(&self, index: usize, bytes: &mut Vec<u8>) -> Result<u32, LoadError> {
+        if let Some(decoded) = self.decoded.get(&index) {
+            return append(&self.limits, bytes, decoded);
+        }
+        let (buffer, range) = self.range(index)?;
+        let start = make_room(&self.limits, bytes, (range.end - range.start) as usize)?;
+        self.bytes[buffer].append_to(bytes, range)?;
+        bytes.resize(bytes.len().next_multiple_of(4), 0);
+        Ok(start)
     }
 
     /// Checks an accessor and its buffer view, in 64-bit arithmetic.
@@ -138,7 +165,7 @@ impl<'a> Buffers<'a> {
                     "byteOffset {offset}, added to that of its bufferView, must be a multiple of the component size, {size}"
                 )));
             }
-            let length = self.view(index.value())?.len() as u64;
+            let length = self.view_length(index.value())?;
             let end = (count - 1).checked_mul(stride).and_then(|last| last.checked_add(offset)?.checked_add(element));
             if end.is_none_or(|end| end > length) {
                 let reason =
@@ -305,7 +332,7 @@ impl<'a> SceneWriter<'a> {
     /// Appends an attribute that the file does not have.
     pub fn append_vectors(&mut self, count: usize, vectors: impl Iterator<Item = [f32; 3]>) -> Result<Accessor, LoadError> {
         let bytes = &mut self.scene.vertex_bytes;
-        let offset = reserve(&self.buffers.limits, bytes, 12 * count)?;
+        let offset = make_room(&self.buffers.limits, bytes, 12 * count)?;
         vectors.take(count).for_each(|vector| bytes.extend_from_slice(bytemuck::bytes_of(&vector)));
         Ok(Accessor::packed_f32(offset as usize, 3, count))
     }
@@ -329,7 +356,7 @@ fn copy(buffers: &Buffers, index: usize, offsets: &mut HashMap<Source, u32>, byt
         Some(&start) => start,
         None => {
             let start = match source {
-                Source::View(view) => append(&buffers.limits, bytes, buffers.view(view)?)?,
+                Source::View(view) => buffers.append_view(view, bytes)?,
                 Source::Accessor(_) => append(&buffers.limits, bytes, &buffers.materialized(index, &layout)?)?,
             };
             offsets.insert(source, start);
@@ -340,23 +367,21 @@ fn copy(buffers: &Buffers, index: usize, offsets: &mut HashMap<Source, u32>, byt
 }
 
 /// Makes room for so many bytes, padded to a multiple of 4; returns the offset.
-fn reserve(limits: &Limits, bytes: &mut Vec<u8>, more: usize) -> Result<u32, LoadError> {
+fn make_room(limits: &Limits, bytes: &mut Vec<u8>, more: usize) -> Result<u32, LoadError> {
     let total = bytes.len() as u64 + more.next_multiple_of(4) as u64;
     if total > limits.buffer_bytes {
         return Err(limits.exceeded(format_args!("the model needs {total} bytes or more in one buffer"), limits.buffer_bytes));
     }
     // Exactly, since what doubling reserves would count as well. Small pieces are many, as a rule.
     if more >= PART_BYTES {
-        bytes
-            .try_reserve_exact(total as usize - bytes.len())
-            .map_err(|_| LoadError::new(format!("the system has no memory for {total} bytes")))?;
+        reserve(bytes, total - bytes.len() as u64)?;
     }
     Ok(bytes.len() as u32)
 }
 
 /// Appends at a multiple of 4 bytes and pads to one; returns the offset.
 fn append(limits: &Limits, bytes: &mut Vec<u8>, more: &[u8]) -> Result<u32, LoadError> {
-    let start = reserve(limits, bytes, more.len())?;
+    let start = make_room(limits, bytes, more.len())?;
     let checkpoint = checkpoint();
     for part in more.chunks(PART_BYTES) {
         bytes.extend_from_slice(part);

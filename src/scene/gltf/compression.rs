@@ -84,6 +84,11 @@ impl Compression {
         serde_json::from_slice(json).map_err(|error| LoadError::new(format!("malformed compression extension: {error}")))
     }
 
+    /// Is nothing compressed?
+    pub fn is_none(&self) -> bool {
+        self.buffers.is_empty() && self.buffer_views.is_empty() && self.meshes.is_empty()
+    }
+
     /// Does this buffer have no bytes, because its views are compressed?
     pub fn is_fallback(&self, buffer: usize) -> bool {
         let extension = self.buffers.get(buffer).and_then(|buffer| buffer.extensions.as_ref()?.meshopt.as_ref());

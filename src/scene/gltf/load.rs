@@ -1,8 +1,6 @@
 //! Loads a model: reads its files, follows its parts in order, and assembles the scene.
 
 use std::{
-    fs,
-    io::Read,
     panic::{AssertUnwindSafe, catch_unwind, resume_unwind},
     path::Path,
 };
@@ -10,7 +8,7 @@ use std::{
 use gltf::json;
 
 use super::{
-    buffers::{Buffers, PART_BYTES},
+    buffers::Buffers,
     clips,
     compression::Compression,
     deformation, document,
@@ -21,6 +19,7 @@ use super::{
     nodes::Tree,
     notes::Notes,
     skin,
+    source::{Bytes, ModelFile, read_regular},
 };
 use crate::{
     scene::{memory::MemoryBudget, model::Scene, pose, rig::Rig},
@@ -46,8 +45,15 @@ pub fn load_within(path: &Path, budget: MemoryBudget) -> Result<Scene, LoadError
     let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let open = || {
         let limits = Limits::of_files(budget);
-        let bytes = read_regular(path, limits.file_bytes, &limits)?;
-        parse_within(&bytes, budget, &mut |beside, most| read_beside(path, beside, most, &limits))
+        let read = &mut |beside: &Path, most| read_beside(path, beside, most, &limits);
+        match ModelFile::open(path, limits.file_bytes, &limits)? {
+            ModelFile::Whole(bytes) => parse_within(&bytes, budget, read),
+            ModelFile::Glb { json, binary, size } => {
+                let scene = caught(|| read_model(&json, Some(Bytes::File(&binary)), (size, budget), read))?;
+                checkpoint().advance(binary.unread());
+                Ok(scene)
+            }
+        }
     };
     match open() {
         Ok(scene) => Ok(Scene { name, ..scene }),
@@ -68,42 +74,18 @@ pub fn parse(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
 /// # Errors
 /// As [`parse`].
 pub fn parse_within(bytes: &[u8], budget: MemoryBudget, read: &mut ReadFile) -> Result<Scene, LoadError> {
-    // A panic in the validation of the crate `gltf` must not close the window.
-    catch_unwind(AssertUnwindSafe(|| read_model(bytes, budget, read))).unwrap_or_else(|payload| match is_cancellation(&*payload) {
-        true => resume_unwind(payload),
-        false => Err(LoadError::new("the loader failed on this file, which is a bug: please report it")),
+    caught(|| {
+        let (json, binary) = split(bytes)?;
+        read_model(json, binary.map(|binary| Bytes::Memory(binary.into())), (bytes.len() as u64, budget), read)
     })
 }
 
-/// Reads a regular file of at most `most` bytes. Pipes, devices and folders are refused before they are opened.
-///
-/// A file is read, not mapped: one that is cut short by another program while it is mapped would end the program.
-fn read_regular(path: &Path, most: u64, limits: &Limits) -> Result<Vec<u8>, LoadError> {
-    let failed = |error: std::io::Error| LoadError::new(format!("cannot read the file: {error}"));
-    let about = fs::metadata(path).map_err(failed)?;
-    if !about.is_file() {
-        return Err(LoadError::new("it is not a regular file"));
-    }
-    let too_large = |bytes: u64| limits.exceeded(format_args!("it has {bytes} bytes"), most);
-    if about.len() > most {
-        return Err(too_large(about.len()));
-    }
-    let checkpoint = checkpoint();
-    checkpoint.expect(about.len());
-    let mut bytes = Vec::new();
-    bytes
-        .try_reserve_exact(about.len() as usize)
-        .map_err(|_| LoadError::new(format!("the system has no memory for its {} bytes", about.len())))?;
-    let mut file = fs::File::open(path).map_err(failed)?;
-    // The file may grow while it is read.
-    while bytes.len() as u64 <= most {
-        let read = file.by_ref().take(PART_BYTES as u64).read_to_end(&mut bytes).map_err(failed)?;
-        checkpoint.advance(read as u64);
-        if read == 0 {
-            return Ok(bytes);
-        }
-    }
-    Err(too_large(bytes.len() as u64))
+/// Runs `work`. A panic in the validation of the crate `gltf` must not close the window.
+fn caught(work: impl FnOnce() -> Result<Scene, LoadError>) -> Result<Scene, LoadError> {
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|payload| match is_cancellation(&*payload) {
+        true => resume_unwind(payload),
+        false => Err(LoadError::new("the loader failed on this file, which is a bug: please report it")),
+    })
 }
 
 /// Reads `beside`, a relative path without `..`, from the folder of `model`. Symbolic links must not lead out of the folder.
@@ -151,12 +133,16 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), LoadError> {
     Ok((json, binary))
 }
 
-/// Reads a whole model.
-fn read_model(bytes: &[u8], budget: MemoryBudget, read: &mut ReadFile) -> Result<Scene, LoadError> {
-    let (json, binary) = split(bytes)?;
+/// Reads a whole model. `file` is the size of its file, bytes.
+fn read_model(
+    json: &[u8],
+    binary: Option<Bytes<'_>>,
+    (file, budget): (u64, MemoryBudget),
+    read: &mut ReadFile,
+) -> Result<Scene, LoadError> {
     let mut left_out = Vec::new();
     let mut root = document::parse_document(json, &mut left_out)?;
-    let mut buffers = Buffers::read(&mut root, binary, &Compression::of(json)?, (bytes.len() as u64, budget), read)?;
+    let mut buffers = Buffers::read(&mut root, binary, &Compression::of(json)?, (file, budget), read)?;
     let root = buffers.root;
     materials::check_images(&buffers)?;
     let tree = Tree::walk(root)?;

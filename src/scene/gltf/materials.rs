@@ -67,7 +67,7 @@ pub fn check_images(buffers: &Buffers) -> Result<(), LoadError> {
     for (index, image) in buffers.root.images.iter().enumerate() {
         let in_image = |error: LoadError| error.within(called("image", index, image.name.as_deref()));
         match (image.buffer_view, &image.uri) {
-            (Some(view), _) => drop(buffers.view(view.value()).map_err(in_image)?),
+            (Some(view), _) => drop(buffers.view_length(view.value()).map_err(in_image)?),
             (None, None) => return Err(in_image(LoadError::new("it has neither a URI nor a bufferView"))),
             (None, Some(_)) => {}
         }

@@ -26,6 +26,7 @@ mod nodes;
 mod notes;
 mod repair;
 mod skin;
+mod source;
 mod uri;
 
 pub use error::{LoadError, ReadFile};

@@ -11,6 +11,7 @@ use std::{
 
 use rasterlab::{
     scene::{
+        Scene,
         gltf::{self, LoadError},
         memory::MemoryBudget,
     },
@@ -18,7 +19,10 @@ use rasterlab::{
 };
 use serde_json::json;
 
-use super::model::*;
+use super::{
+    model::*,
+    motion::{morphed, skinned},
+};
 
 /// A wavy cloth of `side` x `side` vertices without normals: 12 bytes for each, and 24 for its two triangles.
 fn cloth(side: u32) -> Model {
@@ -93,6 +97,23 @@ fn a_file_that_is_cut_short_while_it_is_open_is_a_sentence() {
     fs::write(&path, &glb[..glb.len() / 2]).unwrap();
     let error = gltf::load(&path).unwrap_err();
     assert!(error.0.starts_with(&format!("cut.glb: the GLB header states {} bytes, but the file has ", glb.len())), "{error}");
+}
+
+#[test]
+fn a_model_is_the_same_from_its_file_as_from_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.glb");
+    let mut sparse = Model::square();
+    let (at, values) = (sparse.view(&[1, 3]), sparse.view(&[0; 24]));
+    let overlay = json!({ "count": 2, "indices": { "bufferView": at, "componentType": U8 }, "values": { "bufferView": values } });
+    let sparse = sparse.with("/accessors/0/sparse", overlay);
+    for (what, model) in
+        [("cloth", cloth(40)), ("textured", Model::textured()), ("sparse", sparse), ("morphed", morphed()), ("skinned", skinned(0.3))]
+    {
+        fs::write(&path, model.glb()).unwrap();
+        let from_file = gltf::load(&path).unwrap_or_else(|error| panic!("{what}: {error}"));
+        assert!(Scene { name: String::new(), ..from_file } == model.scene(), "{what}");
+    }
 }
 
 #[test]
