@@ -5,6 +5,7 @@
 //! left-over and unconnected triangles together.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::{
     accessor::ComponentType,
@@ -54,8 +55,9 @@ impl Meshlets {
     pub fn of(scene: &Scene, primitive: &Primitive) -> Self {
         let last = primitive.vertex_count().max(1) - 1;
         let corners: Vec<[u32; 3]> =
-            (0..primitive.triangle_count()).map(|t| primitive.corners(scene, t).map(|vertex| vertex.min(last))).collect();
-        let positions: Vec<[f32; 3]> = (0..primitive.vertex_count()).map(|vertex| primitive.position(scene, vertex)).collect();
+            (0..primitive.triangle_count()).into_par_iter().map(|t| primitive.corners(scene, t).map(|vertex| vertex.min(last))).collect();
+        let positions: Vec<[f32; 3]> =
+            (0..primitive.vertex_count()).into_par_iter().map(|vertex| primitive.position(scene, vertex)).collect();
         let builder =
             Builder { positions: &positions, corners: &corners, is_exact: primitive.positions.component_type == ComponentType::F32 };
         let mut meshlets = Self::default();
@@ -163,7 +165,7 @@ impl Builder<'_> {
         let sides = (bounds.max - bounds.min).max(DVec3::splat(f64::MIN_POSITIVE));
         let mut order: Vec<(u64, u32)> = self
             .corners
-            .iter()
+            .par_iter()
             .enumerate()
             .map(|(triangle, corners)| {
                 let position = (to_f64(self.positions[corners[0] as usize]) - bounds.min) / sides * f64::from((1 << 21) - 1);
@@ -172,7 +174,7 @@ impl Builder<'_> {
                 (bits[0] | bits[1] << 1 | bits[2] << 2, triangle as u32)
             })
             .collect();
-        order.sort_unstable();
+        order.par_sort_unstable();
         order.into_iter().map(|(_, triangle)| triangle)
     }
 

@@ -73,6 +73,18 @@ fn what_the_oracle_cannot_judge_is_not_measured_and_says_so() {
 }
 
 #[test]
+fn a_scene_that_the_adapter_cannot_bind_names_its_buffer_and_its_limit() {
+    let adapters = json(&run(&["adapters", "--json"]));
+    let most = adapters["results"][0]["limits"]["max_storage_binding_bytes"].as_u64();
+    if most.is_none_or(|most| most > 128 << 20) {
+        return eprintln!("skipped: the first adapter binds more than the least that every adapter must, or there is none");
+    }
+    let run = run(&["render", "builtin:sphere?triangles=12000000", "--size", "64x48", "-o", "large.png"]);
+    let wanted = "the buffer vertex_bytes would take 144000048 bytes; this adapter binds at most 134217728; take another adapter, or fewer";
+    assert!(run.code == 3 && run.err.contains(wanted), "{}: {}", run.code, run.err);
+}
+
+#[test]
 fn a_picture_that_is_too_large_for_the_oracle_is_refused_in_a_moment() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("crowd.gltf"), crowd(1_000, 3, 100_000, 0)).unwrap();
