@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::{
     args::{Common, Explain},
     backend::{Backend, scene_of},
+    cost::{Cost, PictureCost, kept_costs},
     error::{CliError, Exit},
     open::{named, open},
     streams::{Streams, table},
@@ -32,7 +33,7 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
         }
         Err(error) => return Err(error),
     };
-    let (mut check, mut particles) = (None, None);
+    let (mut check, mut particles, mut cost) = (None, None, None);
     let (adapter, plan) = match backend {
         Some(Backend::Gpu(mut renderer, gpu)) => {
             renderer.set_scene(&scene)?;
@@ -45,7 +46,15 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
             if particles.as_ref().is_none_or(|particles| particles.over_a_pixel == 0) {
                 check = checked(&scene, &view.scaled(factor), &stack.scaled(factor), &capture.frame, &renderer.explain())?;
             }
-            (Backend::Gpu(Box::new(crate::gpu::Renderer::new(gpu.clone())), gpu).json(), Some(renderer.explain()))
+            let plan = renderer.explain();
+            if view.pixels() > 0 {
+                let costs = kept_costs(&gpu, streams);
+                cost = Some(match args.measure {
+                    true => PictureCost::measured(&mut renderer, &view, &stack, &preset.accuracy, costs.as_ref())?,
+                    false => PictureCost::predicted(&renderer, costs.as_ref())?,
+                });
+            }
+            (Backend::Gpu(Box::new(crate::gpu::Renderer::new(gpu.clone())), gpu).json(), Some(plan))
         }
         Some(backend) => (backend.json(), None),
         None => (Value::Null, None),
@@ -54,10 +63,21 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
         let result = json!({
             "scene": scene_json(&scene), "size": preset_file.preset.output.size,
             "effects": effects_json(&preset_file.preset.stack), "plan": plan, "check": check, "particles": particles,
+            "cost": cost,
         });
         streams.object("explain", adapter, vec![named(&preset_file, result)])?;
     } else {
-        streams.text(&text(&preset_file.id, &scene, &preset_file.preset.stack, plan.as_ref(), check.as_ref(), particles.as_ref()))?;
+        streams.text(&text(
+            &preset_file.id,
+            &scene,
+            &preset_file.preset.stack,
+            plan.as_ref(),
+            [
+                cost.as_ref().map(|cost| cost_text(cost, args.measure)),
+                check.as_ref().map(check_text),
+                particles.as_ref().map(particles_text),
+            ],
+        ))?;
     }
     Ok(Exit::failed_if(check.is_some_and(|check| !check.is_within_tolerance)))
 }
@@ -146,20 +166,12 @@ fn effects_json(stack: &Stack) -> Vec<Value> {
     stack.0.iter().map(effect).collect()
 }
 
-fn text(
-    id: &str,
-    scene: &Scene,
-    stack: &Stack,
-    plan: Option<&Explanation>,
-    check: Option<&Check>,
-    particles: Option<&ParticleErrors>,
-) -> String {
+fn text(id: &str, scene: &Scene, stack: &Stack, plan: Option<&Explanation>, [cost, check, particles]: [Option<String>; 3]) -> String {
     let preset = preset_text(id, scene, stack);
     let Some(plan) = plan else { return preset };
-    let particles = particles.map_or_else(String::new, particles_text);
-    let check = check.map_or_else(String::new, check_text);
     let sizes = plan.sizes.as_ref().map_or_else(String::new, chart);
-    format!("{preset}kernel     {}\n{particles}{check}{sizes}{}", plan.key, plan_text(plan))
+    let [cost, check, particles] = [cost, check, particles].map(Option::unwrap_or_default);
+    format!("{preset}kernel     {}\n{particles}{check}{cost}{sizes}{}", plan.key, plan_text(plan))
 }
 
 fn preset_text(id: &str, scene: &Scene, stack: &Stack) -> String {
@@ -197,6 +209,28 @@ fn check_text(check: &Check) -> String {
         "error      at most {:.0} ppm of the pixels with a wrong triangle predicted, {:.0} measured, {:.0} allowed: {verdict}\n",
         check.predicted.wrong_ppm, check.wrong_ppm, check.tolerance.wrong_ppm
     )
+}
+
+/// Predicted and measured milliseconds of the frame and of every pass.
+fn cost_text(cost: &PictureCost, is_measured: bool) -> String {
+    let Cost { predicted_ms, measured_ms, ratio } = cost.frame;
+    let predicted = predicted_ms.map(|ms| format!("{ms:.3} ms predicted"));
+    let measured = measured_ms.map(|ms| format!("{ms:.3} ms measured"));
+    let ratio = ratio.map(|ratio| format!("ratio {ratio:.2}"));
+    let parts: Vec<String> = [predicted, measured, ratio].into_iter().flatten().collect();
+    let hint = match predicted_ms {
+        None => "not predicted: this adapter has no calibration, which rasterlab calibrate makes",
+        Some(_) if !is_measured => "--measure times it",
+        Some(_) => "",
+    };
+    let all: Vec<&str> = parts.iter().map(String::as_str).chain(Some(hint).filter(|hint| !hint.is_empty())).collect();
+    let mut text = format!("time       {}\n", all.join(", "));
+    if predicted_ms.is_some() || is_measured {
+        let mut rows = vec![["PASS", "PREDICTED MS", "MEASURED MS", "RATIO"].map(str::to_owned).to_vec()];
+        rows.extend(cost.passes.iter().map(|(label, cost)| std::iter::once(label.clone()).chain(cost.cells()).collect()));
+        text += &format!("\n{}", table(&rows));
+    }
+    text
 }
 
 fn plan_text(plan: &Explanation) -> String {

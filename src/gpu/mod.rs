@@ -48,12 +48,14 @@ mod readback;
 
 mod hardware_ids;
 mod renderer;
+mod workload;
 
 mod capture;
 pub mod hardware;
 pub mod naive;
 
 pub mod bench;
+pub mod calibration;
 pub mod trade;
 
 pub use buffers::BufferNote;

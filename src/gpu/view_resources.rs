@@ -46,6 +46,8 @@ pub struct PreparedFrame {
     /// The view that was asked for, on the grid and with the origin that the plan takes.
     pub view: View,
     pub layout: FrameLayout,
+    /// Radius of discs about corners, units of 1/256 px; 0 without them.
+    pub point_radius: u32,
 }
 
 /// The draws of a scene as a view has them, and what they require of the kernels.
@@ -178,7 +180,7 @@ impl ViewResources {
         if let Some(dots) = &mut self.dots {
             dots.write(gpu, &self.buffers, |id| new.contains(&id))?;
         }
-        self.frame = Some(PreparedFrame { plan, view, layout });
+        self.frame = Some(PreparedFrame { plan, view, layout, point_radius: request.stack.point_radius() });
         self.is_prepared = true;
         Ok(())
     }

@@ -1,10 +1,12 @@
 //! The planner: the cheapest kernel that scene, stack and tolerance allow on this adapter.
 
 mod caps;
+pub mod cost_model;
 mod costs;
 mod error;
 mod explain;
 mod key;
+mod least_squares;
 mod loops;
 mod options;
 pub mod predict;

@@ -21,6 +21,8 @@ pub struct TriangleSizes {
     pub near_clipped: u32,
     /// The sampled triangles that lie behind the near plane, face the viewer and are inside the picture.
     visible: Arc<[VisibleTriangle]>,
+    /// What the near plane leaves of sampled triangles that cross it, where that reaches the picture.
+    cut: Arc<[VisibleTriangle]>,
 }
 
 /// A sampled triangle that is visible.
@@ -30,6 +32,8 @@ struct VisibleTriangle {
     extent_px: f32,
     /// Sample columns and rows inside the picture that its bounding box covers.
     samples: [u32; 2],
+    /// The first of those columns and rows.
+    first: [u32; 2],
     /// The part of its area inside the picture, square pixels.
     area: f32,
     /// The part of its perimeter inside the picture, pixels.
@@ -49,12 +53,42 @@ pub struct SizeClasses {
     pub error_bound: f64,
 }
 
+/// Estimated work of a raster path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct PathWork {
+    /// Triangles that cover a box with a sample.
+    pub triangles: f64,
+    /// Samples in the boxes of those triangles.
+    pub candidates: f64,
+    /// Samples that the triangles cover, whatever hides them.
+    pub covered: f64,
+}
+
+/// Estimated work of all raster paths.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct SizeWork {
+    pub small: PathWork,
+    pub medium: PathWork,
+    pub large: PathWork,
+    /// Triangles that cross the near plane and reach the picture.
+    pub cut: f64,
+}
+
+impl PathWork {
+    fn add(&mut self, triangle: &VisibleTriangle, times: f64) {
+        let [columns, rows] = triangle.samples;
+        self.triangles += times;
+        self.candidates += times * f64::from(columns) * f64::from(rows);
+        self.covered += times * f64::from(triangle.area);
+    }
+}
+
 impl TriangleSizes {
     /// Samples triangles of `scene` as `view` sees it through `draws`, spread evenly over their list.
     pub fn of(scene: &Scene, draws: &[Draw], view: &View) -> Self {
         let triangles: u64 = draws.iter().map(|draw| u64::from(scene.primitives[draw.primitive].triangle_count())).sum();
         let count = triangles.min(MAX_SAMPLES);
-        let (mut visible, mut near_clipped) = (Vec::new(), 0);
+        let (mut visible, mut cut, mut near_clipped) = (Vec::new(), Vec::new(), 0);
         for k in 0..count {
             // One random position per stratum: a fixed step would alias with the order of a strip.
             let within = if triangles > MAX_SAMPLES { hash_unit(k as u32) } else { 0.0 };
@@ -62,11 +96,14 @@ impl TriangleSizes {
             let draw = &draws[draws.partition_point(|draw| u64::from(draw.first_triangle) <= id) - 1];
             match classify(scene, draw, view, id as u32 - draw.first_triangle) {
                 Sampled::Visible(one) => visible.push(one),
-                Sampled::CrossesNear => near_clipped += 1,
+                Sampled::CrossesNear(rest) => {
+                    near_clipped += 1;
+                    cut.extend(rest);
+                }
                 Sampled::Hidden => {}
             }
         }
-        Self { triangles, sampled: count as u32, near_clipped, visible: visible.into() }
+        Self { triangles, sampled: count as u32, near_clipped, visible: visible.into(), cut: cut.into() }
     }
 
     /// The number of sampled triangles that are visible and not cut by the near plane.
@@ -104,6 +141,45 @@ impl TriangleSizes {
         SizeClasses { small: classes.small * each, medium: classes.medium * each, large: classes.large * each, error_bound }
     }
 
+    /// Estimated work of each raster path, with the limits of [`Self::classes`].
+    pub fn work(&self, max_small_samples: u32, max_small_side: u32, large_px: f64) -> SizeWork {
+        let each = self.triangles as f64 / f64::from(self.sampled.max(1));
+        let mut work = SizeWork { cut: self.cut.len() as f64 * each, ..SizeWork::default() };
+        for visible in self.visible.iter().filter(|visible| visible.samples.iter().all(|count| *count > 0)) {
+            let [columns, rows] = visible.samples;
+            let path = match () {
+                () if f64::from(visible.extent_px) > large_px => &mut work.large,
+                () if columns * rows > max_small_samples || columns.max(rows) > max_small_side => &mut work.medium,
+                () => &mut work.small,
+            };
+            path.add(visible, each);
+        }
+        // What was cut is queued by its size, and no invocation draws it alone.
+        for rest in self.cut.iter() {
+            let path = if f64::from(rest.extent_px) > large_px { &mut work.large } else { &mut work.medium };
+            path.add(rest, each);
+        }
+        work
+    }
+
+    /// Estimated fraction of the picture that lies in squares of `side` pixels or more which the box of some triangle touches.
+    pub fn touched_fraction(&self, [width, height]: [u32; 2], side: u32) -> f64 {
+        // Where triangles are sampled, squares must be large enough that each holds a sampled one.
+        let spared = self.triangles as f64 / f64::from(self.sampled.max(1));
+        let side = f64::from(side.max(1)).max((f64::from(width) * f64::from(height) * 1e-5).sqrt()) * spared.sqrt();
+        let squares = |pixels: u32| (f64::from(pixels) / side).ceil().max(1.0) as usize;
+        let (columns, rows) = (squares(width), squares(height));
+        let mut touched = vec![false; columns * rows];
+        for visible in self.visible.iter().chain(self.cut.iter()).filter(|visible| visible.samples.iter().all(|count| *count > 0)) {
+            let [x, y] = [0, 1].map(|axis| {
+                let (first, count) = (visible.first[axis], visible.samples[axis]);
+                (f64::from(first) / side) as usize..=(f64::from(first + count - 1) / side) as usize
+            });
+            y.for_each(|row| x.clone().for_each(|column| touched[row.min(rows - 1) * columns + column.min(columns - 1)] = true));
+        }
+        touched.iter().filter(|is_touched| **is_touched).count() as f64 / touched.len() as f64
+    }
+
     /// Estimated fraction of the picture's pixels that show another triangle when every edge moves by `shift_px`. An edge
     /// passes over samples in proportion to its length, and two triangles share it.
     pub fn changed_fraction(&self, shift_px: f64, pixels: f64) -> f64 {
@@ -123,10 +199,40 @@ impl TriangleSizes {
 /// What is known of a sampled triangle.
 enum Sampled {
     Visible(VisibleTriangle),
-    /// Crosses the near plane.
-    CrossesNear,
+    /// Crosses the near plane; with what is left of it in the picture.
+    CrossesNear(Option<VisibleTriangle>),
     /// Facing away, or outside the picture.
     Hidden,
+}
+
+/// What lies behind the near plane of a triangle that crosses it, as the box of its corners; none outside the picture.
+fn behind_near(clip: [DVec4; 3], view: &View) -> Option<VisibleTriangle> {
+    let depth = |c: DVec4| c.w - c.z;
+    let mut corners = Vec::with_capacity(4);
+    for (a, b) in [(clip[0], clip[1]), (clip[1], clip[2]), (clip[2], clip[0])] {
+        if depth(a) >= 0.0 {
+            corners.push(a);
+        }
+        if (depth(a) >= 0.0) != (depth(b) >= 0.0) {
+            corners.push(a + (b - a) * (depth(a) / (depth(a) - depth(b))));
+        }
+    }
+    let size = DVec2::new(view.width.into(), view.height.into());
+    let points = corners.iter().filter(|c| c.w > 0.0).map(|c| DVec2::new(0.5 + 0.5 * c.x / c.w, 0.5 - 0.5 * c.y / c.w) * size);
+    let (low, high) = points.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), point| (low.min(point), high.max(point)));
+    if !low.is_finite() || !high.is_finite() || high.x <= 0.0 || high.y <= 0.0 || low.x >= size.x || low.y >= size.y {
+        return None;
+    }
+    let (inside_low, inside_high) = (low.max(DVec2::ZERO), high.min(size));
+    let inside = inside_high - inside_low;
+    Some(VisibleTriangle {
+        extent_px: (high - low).max_element() as f32,
+        samples: [inside.x.ceil() as u32, inside.y.ceil() as u32],
+        first: [inside_low.x as u32, inside_low.y as u32],
+        // A triangle has half the area of its box, as a rule.
+        area: (0.5 * inside.x * inside.y) as f32,
+        perimeter: (2.0 * (inside.x + inside.y)) as f32,
+    })
 }
 
 fn classify(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Sampled {
@@ -143,7 +249,7 @@ fn classify(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Sampled {
     match clip.iter().filter(is_before_near).count() {
         0 => {}
         3 => return Sampled::Hidden,
-        _ => return Sampled::CrossesNear,
+        _ => return Sampled::CrossesNear(behind_near(clip, view)),
     }
     let size = DVec2::new(view.width.into(), view.height.into());
     let [a, b, c] = clip.map(|c| DVec2::new(0.5 + 0.5 * c.x / c.w, 0.5 - 0.5 * c.y / c.w) * size);
@@ -155,15 +261,14 @@ fn classify(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Sampled {
     if is_outside || doubled == 0.0 || is_back && !scene.materials[primitive.material].double_sided {
         return Sampled::Hidden;
     }
-    let samples = [0, 1].map(|axis| {
-        let (first, last) = ((low[axis] - 0.5).ceil().max(0.0), (high[axis] - 0.5).floor().min(size[axis] - 1.0));
-        (last - first + 1.0).max(0.0) as u32
-    });
+    let first = [0, 1].map(|axis| (low[axis] - 0.5).ceil().max(0.0));
+    let samples = [0, 1].map(|axis| ((high[axis] - 0.5).floor().min(size[axis] - 1.0) - first[axis] + 1.0).max(0.0) as u32);
     let inside = (high.min(size) - low.max(DVec2::ZERO)) / (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
     let fraction = inside.x * inside.y;
     Sampled::Visible(VisibleTriangle {
         extent_px: (high - low).max_element() as f32,
         samples,
+        first: first.map(|first| first as u32),
         area: (0.5 * doubled.abs() * fraction) as f32,
         perimeter: ((a.distance(b) + b.distance(c) + c.distance(a)) * fraction.sqrt()) as f32,
     })
@@ -214,6 +319,18 @@ mod tests {
         let small = many.changed_fraction(1.0 / 256.0, 640.0 * 480.0);
         let large = many.changed_fraction(1.0 / 64.0, 640.0 * 480.0);
         assert!((large / small - 4.0).abs() < 0.2, "what moves is in proportion to how far: {small} {large}");
+    }
+
+    #[test]
+    fn the_work_of_the_paths_adds_up_to_what_is_seen() {
+        let sizes = sizes("teapot?tess=4", [640, 480]);
+        let (classes, work) = (sizes.classes(32, 32, 128.0), sizes.work(32, 32, 128.0));
+        assert_eq!([classes.small, classes.medium], [work.small.triangles, work.medium.triangles]);
+        assert!(work.medium.covered < work.medium.candidates && work.medium.candidates > 32.0 * work.medium.triangles, "{work:?}");
+        // The teapot fills the middle of the picture, and no corner.
+        let touched = sizes.touched_fraction([640, 480], 8);
+        let covered = (work.small.covered + work.medium.covered) / (640.0 * 480.0);
+        assert!((0.2..0.8).contains(&touched) && touched > 0.4 * covered, "{touched} touched, {covered} covered");
     }
 
     #[test]

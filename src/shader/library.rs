@@ -1,6 +1,6 @@
 //! The WGSL files: embedded in the program, or read from a folder while one edits them.
 
-use std::{borrow::Cow, path::PathBuf, sync::OnceLock};
+use std::{borrow::Cow, collections::BTreeSet, path::PathBuf, sync::OnceLock};
 
 use include_dir::{Dir, include_dir};
 
@@ -44,6 +44,12 @@ impl Library {
         let mut found = Vec::new();
         files(&EMBEDDED, &mut found);
         found.into_iter()
+    }
+
+    /// The text of every file, always in the same order.
+    pub fn texts(&self) -> impl Iterator<Item = Cow<'static, str>> {
+        let names: BTreeSet<String> = Self::embedded().map(|(name, _)| name).collect();
+        names.into_iter().filter_map(|name| self.text(&name))
     }
 
     /// Text of `name` (a path below `shaders`, without `.wgsl`), if there is such a file.

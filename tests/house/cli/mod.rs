@@ -1,5 +1,6 @@
 //! Promise: stdout carries data only, exit codes mean what they say, nothing is overwritten unasked, a closed pipe is no error.
 
+mod calibrations;
 mod effects;
 mod faults;
 mod files_kept;
@@ -111,7 +112,7 @@ fn adapters_always_end_with_cpu() {
 
 #[test]
 fn usage_errors_exit_with_2_and_leave_stdout_empty() {
-    let cases: [&[&str]; 21] = [
+    let cases: [&[&str]; 24] = [
         &["--no-such-flag"],
         &["--log", "no-such-folder/window.log"],
         &["--log", "window.log", "list"],
@@ -130,6 +131,9 @@ fn usage_errors_exit_with_2_and_leave_stdout_empty() {
         &["bench", "--adapter", "cpu"],
         &["stress", "--adapter", "cpu"],
         &["fuzz", "--adapter", "cpu", "--set", "facet"],
+        &["calibrate", "--adapter", "cpu"],
+        &["calibrate", "--adapter", "cpu", "--set", "facet"],
+        &["calibrate", "--check", "0"],
         &["stress", "--filter", "no-such-case"],
         &["bless", "facet", "--adapter", "cpu"],
         &["facet", "list"],

@@ -1,0 +1,151 @@
+//! `calibrate`: measures what units of work cost on an adapter and keeps it; with `--check` predicts and measures random presets.
+
+use std::{path::PathBuf, sync::Arc};
+
+use serde_json::{Value, json};
+
+use super::{
+    args::{Calibrate, Common},
+    backend::Backend,
+    cost::{Cost, PictureCost, calibration_key, kept_costs},
+    error::{CliError, Exit},
+    streams::{Streams, table},
+};
+use crate::{
+    gpu::{Gpu, RenderError, Renderer, calibration},
+    plan::cost_model::{Unit, UnitCosts},
+    preset_file::{self, calibrations_folder},
+    stress::random,
+};
+
+/// How far a predicted time may be from the measured one to count as right, as a fraction of the measured one.
+const NEAR: f64 = 0.25;
+
+pub fn run(common: &Common, args: &Calibrate, streams: &mut Streams) -> Result<Exit, CliError> {
+    if !(common.set.is_empty() && common.unset.is_empty()) {
+        return Err(CliError::usage("calibrate takes no --set and no --unset: its pictures are built in"));
+    }
+    let mut backend = Backend::open(common, streams)?;
+    let adapter = backend.json();
+    let Backend::Gpu(renderer, gpu) = &mut backend else {
+        return Err(CliError::usage("calibrate needs a GPU adapter; the oracle is not measured"));
+    };
+    let kept = if common.force { None } else { kept_costs(gpu, streams) };
+    let costs = match kept {
+        Some(costs) => {
+            streams.note("the calibration that was kept for this adapter, driver and version; --force measures again");
+            costs
+        }
+        None => calibrated(gpu, streams)?,
+    };
+    match args.check {
+        None => print_costs(&costs, adapter, streams)?,
+        Some(count) => {
+            let checked = check(renderer, &costs, count, args.seed, streams)?;
+            print_check(&checked, adapter, streams)?;
+        }
+    }
+    Ok(Exit::Done)
+}
+
+/// Measures and keeps the costs.
+fn calibrated(gpu: &Arc<Gpu>, streams: &Streams) -> Result<UnitCosts, CliError> {
+    let bar = streams.progress(0);
+    let found = calibration::calibrate(gpu, &mut |done, all| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+    })?;
+    bar.finish_and_clear();
+    streams.note(&format!(
+        "{} pictures were measured in {:.2} s; compiling their kernels and making them ready took {:.1} s more",
+        found.pictures, found.measuring_s, found.preparing_s
+    ));
+    match kept_in(gpu, &found.costs) {
+        Some(Ok(path)) => streams.note(&format!("kept in {}", path.display())),
+        Some(Err(error)) => streams.note(&format!("the calibration is not kept: {error}")),
+        None => streams.note("the calibration is not kept: there is no folder for the user's configuration"),
+    }
+    Ok(found.costs)
+}
+
+fn kept_in(gpu: &Arc<Gpu>, costs: &UnitCosts) -> Option<Result<PathBuf, preset_file::PresetError>> {
+    Some(calibration_key(gpu).write(&calibrations_folder()?, costs))
+}
+
+fn print_costs(costs: &UnitCosts, adapter: Value, streams: &mut Streams) -> Result<(), CliError> {
+    if streams.json {
+        let result = |(unit, name, about): &(Unit, &str, &str)| json!({ "unit": name, "ms": costs.of(*unit), "what": about });
+        streams.object("calibrate", adapter, Unit::ALL.iter().map(result).collect())?;
+        return Ok(());
+    }
+    let mut rows = vec![["UNIT", "NANOSECONDS", "WHAT"].map(str::to_owned).to_vec()];
+    rows.extend(Unit::ALL.iter().map(|(unit, name, about)| vec![(*name).into(), format!("{:.5}", costs.of(*unit) * 1e6), (*about).into()]));
+    streams.text(&table(&rows))?;
+    Ok(())
+}
+
+/// A random preset, predicted and measured.
+struct Checked {
+    seed: u32,
+    /// What it draws, in a few words.
+    what: String,
+    cost: PictureCost,
+}
+
+/// Predicts and measures the first `count` random presets from `seed` on that can be drawn and show pixels.
+fn check(renderer: &mut Renderer, costs: &UnitCosts, count: u32, seed: u32, streams: &Streams) -> Result<Vec<Checked>, CliError> {
+    let bar = streams.progress(count.into());
+    let (mut checked, mut refused) = (Vec::new(), 0);
+    for seed in (0..).map(|n| seed.wrapping_add(n)) {
+        bar.set_message(format!("seed {seed}"));
+        let preset = random::preset(seed);
+        let scene = preset_file::load_scene(&preset, None)?;
+        renderer.set_scene(&scene)?;
+        let moments = preset.moments(&scene, preset.output.size);
+        let Some((view, stack)) = moments.last() else { continue };
+        match PictureCost::measured(renderer, view, stack, &preset.accuracy, Some(costs)) {
+            Ok(cost) if cost.frame.ratio.is_some() => {
+                let names: Vec<&str> = stack.0.iter().map(|enabled| enabled.effect.name).collect();
+                let what = format!("{} triangles, {}x{}, {}", scene.triangle_count(), view.width, view.height, names.join(" "));
+                checked.push(Checked { seed, what, cost });
+                bar.inc(1);
+            }
+            Err(error) if error.error.downcast_ref::<RenderError>().is_some_and(|error| matches!(error, RenderError::Lost)) => {
+                return Err(error);
+            }
+            Ok(_) | Err(_) => refused += 1,
+        }
+        if checked.len() >= count as usize || refused > 10 * (count + 1) {
+            break;
+        }
+    }
+    bar.finish_and_clear();
+    if refused > 0 {
+        streams.note(&format!("{refused} more presets cannot be drawn or could not be timed"));
+    }
+    Ok(checked)
+}
+
+fn print_check(checked: &[Checked], adapter: Value, streams: &mut Streams) -> Result<(), CliError> {
+    let is_near = |cost: &Cost| cost.ratio.is_some_and(|ratio| (ratio - 1.0).abs() <= NEAR);
+    let near = checked.iter().filter(|one| is_near(&one.cost.frame)).count();
+    if streams.json {
+        let result = |one: &Checked| {
+            json!({
+                "seed": one.seed, "what": one.what, "cost": one.cost.frame, "is_near": is_near(&one.cost.frame),
+                "passes": one.cost.passes.iter().map(|(label, cost)| json!({ "name": label, "cost": cost })).collect::<Vec<_>>(),
+            })
+        };
+        streams.object("calibrate", adapter, checked.iter().map(result).collect())?;
+        return Ok(());
+    }
+    let mut rows = vec![["SEED", "PREDICTED MS", "MEASURED MS", "RATIO", "PRESET"].map(str::to_owned).to_vec()];
+    rows.extend(checked.iter().map(|one| {
+        let [predicted, measured, ratio] = one.cost.frame.cells();
+        vec![one.seed.to_string(), predicted, measured, ratio, one.what.clone()]
+    }));
+    streams.text(&table(&rows))?;
+    let share = 100.0 * near as f64 / checked.len().max(1) as f64;
+    streams.text(&format!("{near} of {} predictions within {:.0} % of the measured time: {share:.0} %\n", checked.len(), 100.0 * NEAR))?;
+    Ok(())
+}

@@ -1,0 +1,212 @@
+//! The calibration of an adapter: a few small pictures of built-in scenes, each with much of another kind of work, are timed, and the unit
+//! costs that explain the times best are computed.
+
+use std::{
+    collections::HashMap,
+    sync::Arc,
+    time::{Duration, Instant},
+};
+
+use super::{device::Gpu, error::RenderError, particles::Wait, renderer::Renderer, timer::Detail};
+use crate::{
+    effects::{Effect, Stack},
+    measure::timing,
+    plan::{
+        AccuracyRequest,
+        cost_model::{FrameWork, MeasuredWork, UnitCosts},
+    },
+    preset::{Preset, SceneSource},
+    scene::{Scene, builtin, view::View},
+};
+
+/// Times of one picture, medians, milliseconds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameTimes {
+    /// The whole frame: by timestamps, or the time that passed on the CPU where the adapter has none.
+    pub whole_ms: f64,
+    /// Every pass by its label; empty without timestamps.
+    pub passes: Vec<(String, f64)>,
+    /// Frames that were timed as a whole.
+    pub frames: usize,
+}
+
+/// What a calibration found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Calibrated {
+    pub costs: UnitCosts,
+    /// Pictures that were timed.
+    pub pictures: usize,
+    /// Seconds in which frames were timed.
+    pub measuring_s: f64,
+    /// Seconds in which kernels were compiled and everything was made ready.
+    pub preparing_s: f64,
+}
+
+/// A picture of the calibration: scene, effects and size in pixels.
+type Picture = (&'static str, &'static [&'static str], [u32; 2]);
+
+const PICTURES: &[Picture] = &[
+    ("sphere?triangles=200", &["lambert"], [16, 12]),
+    ("sphere?triangles=20000", &["lambert"], [160, 120]),
+    ("sphere?triangles=2000", &["outline", "fog"], [320, 240]),
+    ("teapot?tess=4", &["hatch", "normals"], [120, 90]),
+    ("stack?layers=24", &["depth"], [256, 256]),
+    ("near", &["facet"], [160, 120]),
+    ("chamber", &["toon"], [96, 96]),
+    ("globe?tess=6", &["wireframe"], [128, 96]),
+    ("leaves?n=200", &["dither"], [160, 120]),
+    ("tentacle?instances=6", &["posterize"], [96, 72]),
+    ("teapot?tess=6", &["points"], [120, 120]),
+    ("knot?tess=3", &["dots"], [160, 120]),
+    ("chamber", &["particles"], [120, 90]),
+    ("sphere?triangles=6000", &["draw_order"], [80, 60]),
+    ("knot?tess=4", &["xray"], [120, 90]),
+    ("sphere?triangles=3000", &["explode", "stipple"], [120, 90]),
+    ("knot?tess=6", &["wobble", "triangle_id"], [100, 75]),
+    ("still-life?tess=1", &["shadow"], [96, 72]),
+    ("cube-wall?columns=4&rows=3", &["boxes", "smear"], [100, 80]),
+    ("sphere?triangles=4000", &["dissolve"], [100, 75]),
+];
+
+/// Frames of a picture that are drawn before any is timed.
+const WARM_UP: usize = 2;
+/// Frames that are timed, at least and at most; each is drawn once as a whole and once pass by pass.
+const FRAMES: [usize; 2] = [3, 9];
+/// Time for the frames of a picture beyond the least number of them.
+const PICTURE_BUDGET: Duration = Duration::from_millis(40);
+
+/// Times the pictures of the calibration on a device and computes the unit costs. `progress` is told the number of the next picture and of
+/// all.
+///
+/// # Errors
+/// When a picture cannot be drawn, or the device is lost.
+pub fn calibrate(gpu: &Arc<Gpu>, progress: &mut dyn FnMut(usize, usize)) -> Result<Calibrated, RenderError> {
+    let begin = Instant::now();
+    let (mut measured, mut measuring) = (Vec::new(), Duration::ZERO);
+    let mut renderer = Renderer::new(gpu.clone());
+    for (index, picture) in PICTURES.iter().enumerate() {
+        progress(index, PICTURES.len());
+        let (scene, view, stack) = made(picture);
+        renderer.set_scene(&scene)?;
+        let accuracy = AccuracyRequest::default();
+        warm_up(&mut renderer, &view, &stack, &accuracy)?;
+        let work = renderer.work()?;
+        let start = Instant::now();
+        let times = time(&mut renderer, &view, &stack, &accuracy)?;
+        measuring += start.elapsed();
+        measured.extend(observations(&work, &times));
+    }
+    let (measuring_s, all_s) = (measuring.as_secs_f64(), begin.elapsed().as_secs_f64());
+    Ok(Calibrated { costs: UnitCosts::fitted(&measured), pictures: PICTURES.len(), measuring_s, preparing_s: all_s - measuring_s })
+}
+
+/// The scene, view and stack of a picture; effects have their default values.
+fn made((query, effects, size): &Picture) -> (Arc<Scene>, View, Stack) {
+    let scene = Arc::new(builtin::build(query).expect("a built-in scene"));
+    let mut preset = Preset { scene: SceneSource::Builtin((*query).into()), ..Preset::default() };
+    for name in *effects {
+        preset.stack.enable(Effect::find(name).expect("a built-in effect"));
+    }
+    preset.clock.time_s = if preset.stack.has_steps() { 0.5 } else { 0.0 };
+    let (view, stack) = preset.moments(&scene, *size).pop().expect("a preset has at least one frame");
+    (scene, view, stack)
+}
+
+/// Draws until kernels are compiled and queues are large enough.
+///
+/// # Errors
+/// When the picture cannot be drawn, or the device is lost.
+pub fn warm_up(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<(), RenderError> {
+    let mut left = WARM_UP;
+    // Queues grow a few times at most.
+    for _ in 0..16 {
+        renderer.draw_timed(view, stack, accuracy, Detail::Whole, Wait::Simulation)?;
+        left -= usize::from(!renderer.finish()?.redraw);
+        if left == 0 {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// Times a picture that was drawn before: as a whole and pass by pass in turn.
+///
+/// # Errors
+/// When the picture cannot be drawn, or the device is lost.
+pub fn time(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<FrameTimes, RenderError> {
+    let has_timestamps = renderer.gpu().caps.timestamps;
+    let (mut whole, mut passes): (Vec<f64>, Vec<(String, Vec<f64>)>) = (Vec::new(), Vec::new());
+    let [least, most] = FRAMES;
+    let begin = Instant::now();
+    while whole.len() < least || whole.len() < most && begin.elapsed() < PICTURE_BUDGET {
+        let start = Instant::now();
+        renderer.draw_timed(view, stack, accuracy, Detail::Whole, Wait::Simulation)?;
+        let report = renderer.finish()?;
+        let passed_ms = start.elapsed().as_secs_f64() * 1e3;
+        // A stamp that was not written leaves no time.
+        whole.extend(if has_timestamps { report.gpu_ms } else { Some(passed_ms) });
+        if !has_timestamps {
+            continue;
+        }
+        renderer.draw_timed(view, stack, accuracy, Detail::Passes, Wait::Simulation)?;
+        let mut seen = HashMap::new();
+        for (label, ms) in renderer.finish()?.passes {
+            // A label may occur several times in a frame.
+            let turn = seen.entry(label.clone()).and_modify(|turn| *turn += 1).or_insert(0usize);
+            match passes.iter_mut().filter(|(known, _)| *known == label).nth(*turn) {
+                Some((_, times)) => times.push(ms),
+                None => passes.push((label, vec![ms])),
+            }
+        }
+        if begin.elapsed() > 20 * PICTURE_BUDGET {
+            break;
+        }
+    }
+    let median = |times: &[f64]| timing::percentile(times, 0.5).unwrap_or(0.0);
+    Ok(FrameTimes {
+        whole_ms: median(&whole),
+        frames: whole.len(),
+        passes: passes.iter().map(|(label, times)| (label.clone(), median(times))).collect(),
+    })
+}
+
+/// Times beside the work that was done in them: the whole frame, and every pass in proportion to its part of the frame.
+fn observations(work: &FrameWork, times: &FrameTimes) -> Vec<MeasuredWork> {
+    let mut measured = vec![MeasuredWork { counts: work.counts(), ms: times.whole_ms, weight: 1.0 }];
+    let all: f64 = times.passes.iter().map(|(_, ms)| ms).sum();
+    for (pass, ms) in paired(work, times) {
+        measured.extend(ms.map(|ms| MeasuredWork { counts: pass.counts.clone(), ms, weight: (ms / all).max(0.02) }));
+    }
+    measured
+}
+
+/// Every pass of a frame with its measured milliseconds, where they are known.
+pub fn paired<'a>(work: &'a FrameWork, times: &FrameTimes) -> Vec<(&'a crate::plan::cost_model::PassWork, Option<f64>)> {
+    let mut left = times.passes.clone();
+    let mut take = |label: &str| left.iter().position(|(name, _)| name == label).map(|at| left.remove(at).1);
+    work.passes.iter().map(|pass| (pass, take(&pass.label))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::cost_model::{PassWork, Unit};
+
+    #[test]
+    fn every_picture_of_the_calibration_can_be_made() {
+        for picture in PICTURES {
+            let (scene, view, stack) = made(picture);
+            assert!(scene.triangle_count() > 0 && view.pixels() > 0 && stack.check().is_ok(), "{picture:?}");
+        }
+    }
+
+    #[test]
+    fn passes_of_one_name_are_paired_in_their_order() {
+        let pass = |label: &str, count: f64| PassWork { label: label.into(), counts: vec![(Unit::Pass, count)] };
+        let work = FrameWork { passes: vec![pass("clear", 0.0), pass("args", 1.0), pass("clip", 2.0), pass("args", 3.0)] };
+        let passes = [("clear", 0.1), ("args", 0.2), ("args", 0.4)].map(|(label, ms)| (label.to_owned(), ms)).to_vec();
+        let times = FrameTimes { whole_ms: 1.0, passes, frames: 1 };
+        let pairs: Vec<_> = paired(&work, &times).into_iter().map(|(pass, ms)| (pass.counts[0].1, ms)).collect();
+        assert_eq!(pairs, [(0.0, Some(0.1)), (1.0, Some(0.2)), (2.0, None), (3.0, Some(0.4))]);
+    }
+}

@@ -1,0 +1,175 @@
+//! The cost model: milliseconds of a frame as a sum of counted work. The counts follow from the plan; what one unit of each kind costs was
+//! measured on the adapter by a calibration.
+
+use super::least_squares::{self, Observation};
+
+/// A kind of work. Operations are those of [`crate::shader::weight::Weight`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Unit {
+    Frame,
+    Pass,
+    ClearedByte,
+    VertexOperation,
+    DeformOperation,
+    SetupOperation,
+    TriangleOperation,
+    SampleOperation,
+    QueuedOperation,
+    QueuedSampleOperation,
+    CutOperation,
+    DiscOperation,
+    PixelOperation,
+    PixelLoopOperation,
+    PixelVisited,
+    ParticleOperation,
+    LineOperation,
+    DotOperation,
+    OrderedTriangle,
+}
+
+impl Unit {
+    /// Every unit with its name in files, and what it is.
+    pub const ALL: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::Frame, "frame", "a frame, however little it draws"),
+        (Self::Pass, "pass", "a pass, however little it does"),
+        (Self::ClearedByte, "cleared_byte", "a byte that is cleared"),
+        (Self::VertexOperation, "vertex_operation", "an operation on a vertex that is projected, or on a meshlet"),
+        (Self::DeformOperation, "deform_operation", "an operation on a vertex that joints or morph targets deform"),
+        (Self::SetupOperation, "setup_operation", "an operation on what sample tests read once per triangle"),
+        (Self::TriangleOperation, "triangle_operation", "an operation on a triangle in the first raster pass"),
+        (Self::SampleOperation, "sample_operation", "an operation on a candidate sample of a small triangle"),
+        (Self::QueuedOperation, "queued_operation", "an operation on a medium or large triangle"),
+        (Self::QueuedSampleOperation, "queued_sample_operation", "an operation on a candidate sample of a medium or large triangle"),
+        (Self::CutOperation, "cut_operation", "an operation on a triangle that is clipped"),
+        (Self::DiscOperation, "disc_operation", "an operation on a candidate sample of a corner's disc"),
+        (Self::PixelOperation, "pixel_operation", "an operation on a pixel that is shaded, outside loops"),
+        (Self::PixelLoopOperation, "pixel_loop_operation", "an operation on a pixel that is shaded, in a loop"),
+        (Self::PixelVisited, "pixel_visited", "a pixel that the resolve visits"),
+        (Self::ParticleOperation, "particle_operation", "an operation on a particle"),
+        (Self::LineOperation, "line_operation", "an operation on a segment or a run of dots"),
+        (Self::DotOperation, "dot_operation", "an operation on a candidate sample of a dot"),
+        (Self::OrderedTriangle, "ordered_triangle", "a triangle in a draw order, for each pass over the order"),
+    ];
+
+    pub const COUNT: usize = Self::ALL.len();
+
+    /// Its name in files.
+    pub const fn name(self) -> &'static str {
+        Self::ALL[self as usize].1
+    }
+
+    pub const fn about(self) -> &'static str {
+        Self::ALL[self as usize].2
+    }
+}
+
+/// How much of which work a pass does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PassWork {
+    /// As the timer calls it.
+    pub label: String,
+    pub counts: Vec<(Unit, f64)>,
+}
+
+/// The work of a frame: the clears first, then every pass.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FrameWork {
+    pub passes: Vec<PassWork>,
+}
+
+/// A time that was measured, and the work that was done in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasuredWork {
+    pub counts: Vec<(Unit, f64)>,
+    /// Milliseconds, above 0.
+    pub ms: f64,
+    /// How much its error counts beside that of others; 1 as a rule.
+    pub weight: f64,
+}
+
+/// Milliseconds that a unit of each kind of work takes on an adapter, none below 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct UnitCosts {
+    ms: [f64; Unit::COUNT],
+}
+
+impl FrameWork {
+    /// The work of all passes together.
+    pub fn counts(&self) -> Vec<(Unit, f64)> {
+        self.passes.iter().flat_map(|pass| pass.counts.iter().copied()).collect()
+    }
+}
+
+impl UnitCosts {
+    /// Milliseconds of one unit.
+    pub fn of(&self, unit: Unit) -> f64 {
+        self.ms[unit as usize]
+    }
+
+    /// Sets the milliseconds of one unit; below 0 or not finite is 0.
+    pub fn set(&mut self, unit: Unit, ms: f64) {
+        self.ms[unit as usize] = if ms.is_finite() { ms.max(0.0) } else { 0.0 };
+    }
+
+    /// The costs that explain the measured times best, each time by its relative error.
+    pub fn fitted(measured: &[MeasuredWork]) -> Self {
+        let observation = |work: &MeasuredWork| {
+            let mut terms = vec![0.0; Unit::COUNT];
+            work.counts.iter().for_each(|(unit, count)| terms[*unit as usize] += count);
+            Observation { terms, value: work.ms, weight: work.weight }
+        };
+        let observations: Vec<_> = measured.iter().filter(|work| work.ms > 0.0).map(observation).collect();
+        let mut costs = Self::default();
+        for (&(unit, ..), ms) in Unit::ALL.iter().zip(least_squares::nonnegative(&observations, Unit::COUNT)) {
+            costs.set(unit, ms);
+        }
+        costs
+    }
+
+    /// Predicted milliseconds of some work.
+    pub fn ms_of(&self, counts: &[(Unit, f64)]) -> f64 {
+        counts.iter().fold(0.0, |ms, (unit, count)| ms + self.of(*unit) * count)
+    }
+
+    /// Predicted milliseconds of a frame.
+    pub fn ms(&self, work: &FrameWork) -> f64 {
+        work.passes.iter().map(|pass| self.ms_of(&pass.counts)).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_stand_in_the_order_of_their_list() {
+        assert!(Unit::ALL.iter().enumerate().all(|(index, (unit, ..))| *unit as usize == index));
+    }
+
+    #[test]
+    fn the_costs_behind_measured_times_are_found_again() {
+        let mut known = UnitCosts::default();
+        [(Unit::Frame, 0.05), (Unit::Pass, 0.01), (Unit::TriangleOperation, 2e-7), (Unit::PixelOperation, 3e-8)]
+            .into_iter()
+            .for_each(|(unit, ms)| known.set(unit, ms));
+        let measured: Vec<MeasuredWork> = (0..40u32)
+            .map(|i| {
+                let counts = vec![
+                    (Unit::Frame, 1.0),
+                    (Unit::Pass, f64::from(3 + i % 5)),
+                    (Unit::TriangleOperation, f64::from(1 + i * i) * 1e4),
+                    (Unit::PixelOperation, f64::from(1 + i * 7 % 11) * 1e6),
+                ];
+                // Every time is up to 2 % off, and one was disturbed.
+                let noise = 1.0 + 0.02 * (f64::from(i * 37 % 100) / 50.0 - 1.0);
+                let disturbed = if i == 17 { 9.0 } else { 1.0 };
+                MeasuredWork { ms: known.ms_of(&counts) * noise * disturbed, counts, weight: 1.0 }
+            })
+            .collect();
+        let found = UnitCosts::fitted(&measured);
+        for (unit, ..) in Unit::ALL {
+            let (found, known) = (found.of(*unit), known.of(*unit));
+            assert!((found - known).abs() <= 0.1 * known, "{}: {found} instead of {known}", unit.name());
+        }
+    }
+}
