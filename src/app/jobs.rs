@@ -24,6 +24,7 @@ use super::{
     findings::Findings,
     golden_check::{self, GoldenCheck},
     live::Reload,
+    memory,
     precision::{self, Measured},
     scene_loader::SceneKey,
     screen::Inputs,
@@ -122,6 +123,11 @@ impl Jobs {
         self.spawn(name, || background::compute(work));
     }
 
+    /// The same for work that takes much memory; the system gets it back at the end.
+    fn spawn_large_oracle(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
+        self.spawn(name, || giving_back(|| background::compute(work)));
+    }
+
     /// Starts work that keeps the processor busy, as urgent as the window.
     fn spawn_urgent(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
         let computing = self.busy();
@@ -150,7 +156,7 @@ impl Jobs {
         self.spawn_urgent("scene", move || {
             let preset = Preset { scene: key.source.clone(), room: key.room, ground: key.ground, ..Preset::default() };
             let load = || preset_file::load_scene(&preset, None).map_err(|e| e.to_string());
-            let scene = caught("loading the scene", || background::compute_urgently(|| work.run(load)).transpose());
+            let scene = giving_back(|| caught("loading the scene", || background::compute_urgently(|| work.run(load)).transpose()));
             match scene.transpose() {
                 Some(scene) => Done::Scene(key, scene),
                 None => Done::Canceled,
@@ -168,7 +174,7 @@ impl Jobs {
 
     /// Draws `inputs` with a second renderer, reads everything back and judges it with the oracle.
     pub fn verify(&self, gpu: Arc<Gpu>, inputs: Inputs, work: Arc<Work>) {
-        self.spawn_oracle("verify", move || {
+        self.spawn_large_oracle("verify", move || {
             let verdict = caught("judging the picture", || work.run(|| verify(gpu, &inputs, &work)).transpose());
             Done::Verdict(Box::new(inputs), work, verdict)
         });
@@ -184,7 +190,7 @@ impl Jobs {
 
     /// Measures the f32 errors of the user's effects with the oracle.
     pub fn measure_precision(&self, inputs: Inputs, cancelled: Arc<AtomicBool>) {
-        self.spawn_oracle("precision", move || {
+        self.spawn_large_oracle("precision", move || {
             let measured =
                 caught("measuring the f32 error", || precision::measure(&inputs, &cancelled).map(|measured| measured.map(Box::new)));
             Done::Precision(Box::new(inputs), measured)
@@ -243,7 +249,7 @@ impl Jobs {
     pub fn measure(&self, adapter: String, scene: Arc<Scene>, request: Request, progress: Arc<Progress>) {
         let work = move || measure::measure(adapter, &scene, &request, &progress);
         // What it measures is time, so it yields to nothing.
-        self.spawn_urgent("trade", || Done::Trade(caught("measuring the trade", work)));
+        self.spawn_urgent("trade", || giving_back(|| Done::Trade(caught("measuring the trade", work))));
     }
 
     /// Writes changes of the favorites.
@@ -323,7 +329,7 @@ impl Jobs {
         let ctx = self.ctx.clone();
         self.spawn("film", move || {
             let work = || Ok(film::export(adapter, scene, preset_file, &request, &progress, &ctx));
-            let ended = caught("drawing the film", work).unwrap_or_else(|bug| Err(film::Failure::Other(bug)));
+            let ended = giving_back(|| caught("drawing the film", work)).unwrap_or_else(|bug| Err(film::Failure::Other(bug)));
             Done::Film(progress, ended)
         });
     }
@@ -348,6 +354,13 @@ impl Jobs {
     pub fn find_missing(&self, files: Vec<PathBuf>) {
         self.spawn_idle("recent files", move || Done::Missing(files.into_iter().filter(|file| !file.exists()).collect()));
     }
+}
+
+/// Runs `work`, and gives back the memory that it has freed.
+fn giving_back<T>(work: impl FnOnce() -> T) -> T {
+    let done = work();
+    memory::give_back();
+    done
 }
 
 /// Runs `work`. A panic becomes an error, so that the window does not wait for a result that never comes.

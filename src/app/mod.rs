@@ -40,6 +40,7 @@ mod live;
 mod log;
 mod loss;
 mod measured;
+mod memory;
 mod new_effect;
 mod numbers;
 mod observed;

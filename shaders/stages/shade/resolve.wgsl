@@ -44,7 +44,7 @@ fn resolved_pixel(workgroup: vec3u, workgroups: vec3u, local: vec2u) -> vec2u {
 
 // The rows of a gradient are bytes that the CPU computed, so that they are the same on every adapter.
 fn background_of_row(y: u32) -> vec4f {
-    if frame.background_first == 0u { return frame.background; }
+    if frame.background_first <= y { return frame.background; }
     let word = color[frame.background_first + y];
     return vec4f((vec4u(word) >> vec4u(0u, 8u, 16u, 24u)) & vec4u(255u)) / 255.0;
 }

@@ -14,6 +14,7 @@ use crate::{
         command::{Command, Commands},
         computing::Computing,
         log::Level,
+        memory,
         panel::Panel,
         state::State,
         theme,
@@ -111,6 +112,7 @@ impl Extremes {
             yield_processor(Urgency::Later);
             let result = catch_unwind(AssertUnwindSafe(|| shared.draw(&cases, adapter, seed, &ctx)))
                 .unwrap_or_else(|_| Err("the run failed because of a bug; see the terminal for details".into()));
+            memory::give_back();
             let mut progress = shared.progress();
             progress.error = result.err();
             progress.is_over = true;
