@@ -4,6 +4,7 @@
 //@ use lib/hash
 //@ use effects/particles
 //@ use variants/curl
+//@ use glue/particle_step
 
 struct ParticleStep {
     right: vec4f,      // unit axes of the picture plane, in the scene
@@ -25,7 +26,6 @@ struct StepParams {
     spare: u32,
 }
 
-@group(0) @binding(20) var<uniform> particle_step: ParticleStep;
 // Behind the parameters of the steps, the parameters with which particles are drawn.
 @group(0) @binding(21) var<storage, read> step_params: array<StepParams>;
 

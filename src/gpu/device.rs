@@ -132,6 +132,7 @@ fn caps(adapter: &wgpu::Adapter) -> Caps {
         max_storage_binding_bytes: limits.max_storage_buffer_binding_size.min(u64::from(u32::MAX)),
         max_buffer_bytes: limits.max_buffer_size,
         max_texture_side: limits.max_texture_dimension_2d,
+        max_storage_buffers: limits.max_storage_buffers_per_shader_stage,
         software: adapter.get_info().device_type == wgpu::DeviceType::Cpu,
     }
 }
@@ -142,6 +143,7 @@ fn wanted_limits(adapter: &wgpu::Adapter) -> wgpu::Limits {
         max_storage_buffer_binding_size: there.max_storage_buffer_binding_size,
         max_buffer_size: there.max_buffer_size,
         max_texture_dimension_2d: there.max_texture_dimension_2d.min(16_384),
+        max_storage_buffers_per_shader_stage: there.max_storage_buffers_per_shader_stage.min(16),
         ..wgpu::Limits::default()
     }
 }

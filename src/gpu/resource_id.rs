@@ -58,7 +58,7 @@ macro_rules! buffers {
 buffers! {
     Frame = "frame", UNIFORM, Nothing, "size, viewpoint, capacities";
     Draws = "draws", STORAGE.union(UNIFORM), Nothing, "matrices and attribute offsets, one record per instance";
-    Effects = "effects", UNIFORM, Nothing, "parameters of the stack";
+    Effects = "effects", UNIFORM.union(STORAGE), Nothing, "parameters of the stack";
     VertexBytes = "vertex_bytes", STORAGE.union(BufferUsages::VERTEX), Nothing, "attributes as the file has them";
     IndexBytes = "index_bytes", STORAGE.union(BufferUsages::INDEX), Nothing, "index lists as the file has them";
     Deforms = "deforms", STORAGE, Nothing, "byte offsets of every mesh that joints or morph targets deform";
@@ -66,7 +66,7 @@ buffers! {
     MorphTargets = "morph_targets", STORAGE, Nothing, "weights and byte offsets of morph targets";
     ParticleStates = "particle_states", STORAGE, Nothing, "particles before and after the last step";
     StepParams = "step_params", STORAGE, Nothing, "parameters of every particle step, and of how particles look";
-    ParticleStep = "particle_step", UNIFORM, Nothing, "which steps the particles take";
+    ParticleStep = "particle_step", UNIFORM.union(STORAGE), Nothing, "which steps the particles take";
     Vertices = "vertices", STORAGE, Nothing, "projected vertices, 16 bytes each";
     Counters = "counters", STORAGE, PictureAndCount, "demand of the queues, and what was not drawn";
     Queues = "queues", STORAGE, Nothing, "triangles waiting for clip, medium, large and tile kernels";

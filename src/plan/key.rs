@@ -44,6 +44,7 @@ pub(super) fn key_of(
             early_load: tuning.early_load,
             queue_groups: if options.culling == Culling::None { tuning.queue_groups.min(65_535) } else { 0 },
             hides_blocks: tuning.hides_blocks,
+            stored_uniforms: tuning.stored_uniforms,
             clears_in_passes: tuning.clears_in_passes && options.culling == Culling::None && !matches!(layers, Some(Layers::Xray { .. })),
         },
         framebuffer: Framebuffer {

@@ -14,7 +14,8 @@ const MEMBER_ALIGN: usize = 16;
 
 /// Constants and the `Effects` struct for the enabled effects, in order. With none there is no struct and no binding; with
 /// `baked` parameters there is a constant instead of a binding.
-pub fn effects(effects: &[&'static Effect], baked: &[Vec<u32>]) -> String {
+pub fn effects(key: &KernelKey) -> String {
+    let EffectList { list: effects, baked, .. } = &key.effects;
     let mut text = String::new();
     let mut files: Vec<&str> = Vec::new();
     for effect in effects {
@@ -39,7 +40,7 @@ pub fn effects(effects: &[&'static Effect], baked: &[Vec<u32>]) -> String {
         }
         text.push_str("}\n");
         if baked.is_empty() {
-            text.push_str("@group(0) @binding(12) var<uniform> effects: Effects;\n");
+            writeln!(text, "@group(0) @binding(12) var<{}> effects: Effects;", uniform(key)).expect("writing to a string");
         } else {
             let values: Vec<String> = effects.iter().zip(baked).map(|(effect, words)| constructor(effect, words)).collect();
             writeln!(text, "const effects = Effects({});", values.join(", ")).expect("writing to a string");
@@ -181,7 +182,7 @@ impl Chain {
 }
 
 /// Buffers that [`binding`] declares.
-pub const BINDINGS: [&str; 4] = ["draws", "index_bytes", "queues", "clipped_triangles"];
+pub const BINDINGS: [&str; 5] = ["draws", "index_bytes", "queues", "clipped_triangles", "particle_step"];
 
 /// Functions that come with the buffer of draws.
 pub const DRAW_FUNCTIONS: [&str; 2] = ["draw_of_triangle", "draw_of_vertex"];
@@ -217,13 +218,19 @@ pub fn binding(name: &str, key: &KernelKey) -> Option<String> {
         false => format!("var<private> {name}: array<{element}, 1>;\n"),
     };
     match name {
-        "draws" if key.vertices.is_single_draw => Some(binding(1, "uniform", "array<Draw, 1>")),
+        "draws" if key.vertices.is_single_draw => Some(binding(1, uniform(key), "array<Draw, 1>")),
         "draws" => Some(binding(1, "storage, read", "array<Draw>")),
         "index_bytes" => Some(or_none(key.vertices.fetch != Fetch::Direct, 3, "storage, read", "u32")),
         "queues" => Some(or_none(key.has_queues(), 8, "storage, read_write", "u32")),
+        "particle_step" => Some(binding(20, uniform(key), "ParticleStep")),
         "clipped_triangles" => Some(or_none(key.paths.has_clipping, 9, "storage, read", "ClippedTriangle")),
         _ => None,
     }
+}
+
+/// The address space of values that conditions read and that all invocations share.
+const fn uniform(key: &KernelKey) -> &'static str {
+    if key.work.stored_uniforms { "storage, read" } else { "uniform" }
 }
 
 /// The struct of an effect's parameters, from its fields.

@@ -125,6 +125,8 @@ pub struct WorkSharing {
     pub clears_in_passes: bool,
     /// Triangles that cover a block of pixels hide what lies behind.
     pub hides_blocks: bool,
+    /// What conditions read of draws, effects and particles lies in storage buffers instead of uniforms; see `plan::Tuning`.
+    pub stored_uniforms: bool,
 }
 
 /// What a pixel holds.
@@ -226,6 +228,7 @@ impl KernelKey {
                 queue_groups: 0,
                 clears_in_passes: true,
                 hides_blocks: true,
+                stored_uniforms: false,
             },
             framebuffer: Framebuffer { layers, triangle_id_bits: if visibility == Visibility::Packed32 { 24 } else { 0 } },
             surface: SurfaceInputs { has_material_atlas: true, has_planes: true },

@@ -280,7 +280,7 @@ impl Linker<'_> {
             return Ok(());
         }
         self.generated.insert("effects".into(), "glue/effects".into());
-        let mut text = glue::effects(&self.key.effects.list, &self.key.effects.baked);
+        let mut text = glue::effects(self.key);
         let mut declared: BTreeSet<&str> = BTreeSet::new();
         for effect in &self.key.effects.list {
             let name = format!("effects/{}", effect.file_stem());

@@ -57,6 +57,7 @@ impl WorkDistribution {
             early_load: listed_tiles,
             queue_groups: if self == Self::Card { 48 } else { 0 },
             hides_blocks: is_card,
+            stored_uniforms: false,
             clears_in_passes: self == Self::Card,
             specialized: true,
         }

@@ -370,6 +370,7 @@ const GRAPHICS_CARD: Tuning = Tuning {
     queue_groups: 0,
     clears_in_passes: false,
     hides_blocks: true,
+    stored_uniforms: false,
     specialized: true,
 };
 

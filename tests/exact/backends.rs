@@ -54,6 +54,7 @@ const GRAPHICS_CARD: Tuning = Tuning {
     queue_groups: 64,
     clears_in_passes: true,
     hides_blocks: true,
+    stored_uniforms: false,
     specialized: true,
 };
 

@@ -86,6 +86,7 @@ fn both_tunings(renderer: &Renderer) -> [Tuning; 2] {
         queue_groups: 64,
         clears_in_passes: true,
         hides_blocks: true,
+        stored_uniforms: false,
         specialized: true,
     };
     [renderer.gpu().caps.tuning(), card]

@@ -7,6 +7,7 @@ mod accuracy;
 mod accuracy_axes;
 mod backends;
 mod backgrounds;
+mod compiled_once;
 mod culling;
 mod device_lost;
 mod evaluator_gpu;

@@ -19,7 +19,7 @@ fn module_of(effect: &'static Effect) -> Module {
     let key = KernelKey::complete(Fetch::Indexed, Visibility::Split32, vec![effect]);
     let root = format!("effects/{}", effect.name);
     let linked = link::link(&Library::Embedded, &root, &key, &key.variants(Pass::Resolve)).expect("every file is there");
-    let text = linked.text + &glue::effects(&[effect], &[]);
+    let text = linked.text + &glue::effects(&key);
     let reflected = reflect::reflect(&Linked { text, files: linked.files }, false);
     reflected.unwrap_or_else(|error| panic!("{}: {error}", effect.name)).module
 }

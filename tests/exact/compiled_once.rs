@@ -1,0 +1,87 @@
+//! Promise: drawing again compiles nothing, so memory does not grow with the number of pictures. lavapipe compiles a kernel anew in every
+//! draw where one of its conditions reads uniforms alone, and frees none of what it compiled; elsewhere there is nothing to see.
+
+use std::process::Command;
+
+use rasterlab::{
+    gpu::{Gpu, Renderer, device::AdapterChoice},
+    plan::Tuning,
+    preset_file::{self, Folders},
+};
+
+/// Presets that together have nearly every effect, particles, shadows, layers, textures, skins and a background of two colors.
+const PRESETS: [&str; 14] = [
+    "boxes",
+    "dither",
+    "explode",
+    "facet-radial",
+    "hero-swarm",
+    "hero-walk",
+    "hero-xray",
+    "inflate",
+    "outline",
+    "particles",
+    "plinth",
+    "shadow",
+    "smear",
+    "stipple",
+];
+
+/// Is set in the process that measures itself.
+const CHILD: &str = "RASTERLAB_TEST_COMPILED_ONCE";
+
+/// How many memory regions of this process hold code that no file contains.
+fn code_regions() -> usize {
+    let maps = std::fs::read_to_string("/proc/self/maps").expect("Linux tells");
+    let is_compiled = |line: &&str| {
+        let fields: Vec<&str> = line.split_whitespace().collect();
+        fields[1].contains('x') && fields.len() == 5
+    };
+    maps.lines().filter(is_compiled).count()
+}
+
+/// Regions that come while `name` is drawn `times` times, after it was drawn often enough to have compiled everything.
+fn regions_of_draws(gpu: &std::sync::Arc<Gpu>, name: &str, times: usize, tuning: Tuning) -> usize {
+    let file = preset_file::open(name, &Folders::default()).expect("a preset of the gallery");
+    let scene = preset_file::load_scene(&file.preset, None).expect("a built-in scene");
+    let view = file.preset.view(&scene, [64, 40]);
+    let mut renderer = Renderer::new(gpu.clone());
+    renderer.set_tuning(tuning);
+    renderer.set_scene(&scene).expect("it fits");
+    let mut draw = || {
+        renderer.draw(&view, &file.preset.stack, &file.preset.accuracy).expect("it draws");
+        renderer.finish().expect("it ends");
+    };
+    (0..3).for_each(|_| draw());
+    let before = code_regions();
+    (0..times).for_each(|_| draw());
+    code_regions().saturating_sub(before)
+}
+
+#[test]
+fn drawing_again_compiles_nothing() {
+    let gpu = Gpu::open(&AdapterChoice::Any).expect("an adapter");
+    if !gpu.summary.name.contains("llvmpipe") {
+        return;
+    }
+    if std::env::var_os(CHILD).is_none() {
+        // Other tests of this process compile meanwhile.
+        let child = Command::new(std::env::current_exe().expect("its path"))
+            .args(["--exact", "compiled_once::drawing_again_compiles_nothing", "--nocapture"])
+            .env(CHILD, "1")
+            .output()
+            .expect("the test starts");
+        assert!(child.status.success(), "{}{}", String::from_utf8_lossy(&child.stdout), String::from_utf8_lossy(&child.stderr));
+        return;
+    }
+    let tuning = gpu.caps.tuning();
+    assert!(tuning.stored_uniforms, "lavapipe binds enough storage buffers");
+    for name in PRESETS {
+        assert_eq!(regions_of_draws(&gpu, name, 4, tuning), 0, "{name}: regions of code that came with four draws");
+    }
+    // What this test sees without the tuning.
+    let grown = regions_of_draws(&gpu, "hero-xray", 4, Tuning { stored_uniforms: false, ..tuning });
+    if gpu.summary.driver.contains("Mesa 22.") {
+        assert!(grown > 0, "uniforms in conditions compile nothing: the test sees nothing");
+    }
+}
