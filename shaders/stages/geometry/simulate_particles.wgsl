@@ -4,7 +4,6 @@
 //@ use lib/frame
 //@ use lib/hash
 //@ use lib/particle
-//@ use glue/particle_step
 //@ use variants/particle_state
 
 @group(0) @binding(2) var<storage, read_write> vertex_bytes: array<u32>;

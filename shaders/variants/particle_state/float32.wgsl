@@ -1,6 +1,5 @@
 // Particle states, float32: eight words per particle, every number unchanged.
 //@ use lib/particle
-//@ use glue/particle_step
 
 @group(0) @binding(19) var<storage, read_write> particle_states: array<vec4u>;
 

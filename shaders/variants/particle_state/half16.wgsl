@@ -1,6 +1,5 @@
 // Particle states, half16: four words per particle. Positions are fractions of the room's half width, velocities are half floats.
 //@ use lib/particle
-//@ use glue/particle_step
 
 @group(0) @binding(19) var<storage, read_write> particle_states: array<vec4u>;
 
