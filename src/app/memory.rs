@@ -5,7 +5,10 @@
 /// job's thread. Elsewhere than on Linux with glibc it does nothing.
 pub fn give_back() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
-    #[allow(unsafe_code, reason = "malloc_trim has no safe form; it takes no pointer, any thread may call it, and it touches nothing in use")]
+    #[allow(
+        unsafe_code,
+        reason = "malloc_trim has no safe form; it takes no pointer, any thread may call it, and it touches nothing in use"
+    )]
     // SAFETY: malloc_trim releases only pages without allocations, under the allocator's own locks.
     unsafe {
         libc::malloc_trim(0);

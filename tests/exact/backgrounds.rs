@@ -153,7 +153,7 @@ fn a_kernel_that_reads_another_row_is_caught() {
     let view = view_of(&scene, GRADIENT);
     let mutants = [
         ("frame.background_first + y", "frame.background_first"),
-        ("frame.background_first == 0u", "frame.background_first != 1u"),
+        ("frame.background_first <= y", "frame.background_first != 1u"),
         ("background_of_row(pixel.y)", "background_of_row(pixel.x)"),
     ];
     for (from, to) in mutants {
