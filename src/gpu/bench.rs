@@ -245,7 +245,13 @@ impl Lab<'_> {
                 missing.push((visibility.name().into(), "packed64 needs 64-bit atomics, which this adapter lacks".into()));
                 continue;
             }
-            let capture = renderer.capture(&self.view, &self.preset.stack, &pinned(visibility))?;
+            let capture = match renderer.capture(&self.view, &self.preset.stack, &pinned(visibility)) {
+                Err(error) if error.is_unsupported() => {
+                    missing.push((visibility.name().into(), error.to_string()));
+                    continue;
+                }
+                capture => capture?,
+            };
             let verdict = judge(&self.preset.stack, &capture);
             entries.push(Entry::new(Contender::Ours(visibility, Box::new(renderer)), (&verdict.report).into()));
             expected = Some(verdict.expected);

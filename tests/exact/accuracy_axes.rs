@@ -208,6 +208,16 @@ fn baked_parameters_and_trusted_shaders_change_no_pixel() {
 }
 
 #[test]
+fn normals_that_a_vertex_effect_turns_are_right_without_checks() {
+    let Some(mut renderer) = renderer() else { return };
+    let scene = scene("knot?tess=6");
+    let view = view(&scene, [96, 72]);
+    for effects in [&["wobble", "lambert"][..], &["explode", "lambert"], &["inflate", "facet", "lambert"]] {
+        exact(&mut renderer, &scene, &view, &stack(effects), &on(PinnedOptions::of(ShaderChecks::Trusted)), &effects.join(", "));
+    }
+}
+
+#[test]
 fn baking_leaves_the_uniform_out() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("teapot?tess=8");

@@ -110,6 +110,25 @@ fn colors_that_are_all_a_little_wrong_are_wrong() {
 }
 
 #[test]
+fn a_color_in_the_middle_between_two_bytes_may_be_either() {
+    let Some(mut renderer) = renderer() else { return };
+    // Normals along z: red and green are 0.5, which is 127.5 of 255.
+    let (scene, stack) = (scene("grid?cell=16"), stack(&[]));
+    let view = view(&scene, [64, 48]);
+    let mut capture = captured(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default());
+    let judged = |capture: &Capture| exactness(&verdict(&scene, &view, &stack, capture).report);
+    assert_eq!(judged(&capture), Ok(()));
+    let replace = |capture: &mut Capture, from: u8, to: u8| {
+        let bytes = capture.frame.color.iter_mut().flatten().filter(|byte| **byte == from);
+        bytes.map(|byte| *byte = to).count()
+    };
+    assert!(replace(&mut capture, 128, 127) > 1000, "a picture of ties");
+    assert_eq!(judged(&capture), Ok(()));
+    assert!(replace(&mut capture, 127, 126) > 1000);
+    judged(&capture).expect_err("126 is wrong");
+}
+
+#[test]
 fn rounded_keys_are_judged() {
     let Some(renderer) = renderer() else { return };
     let scene = scene("knot?tess=4");

@@ -51,13 +51,17 @@ fn vertex_effects_begin(id: u32, draw: u32, at: vec3u) {
     let pa = floats_of_class(position_bits(draw, at.x), 0u);
     let pb = floats_of_class(position_bits(draw, at.y), 0u);
     let pc = floats_of_class(position_bits(draw, at.z), 0u);
-    // A loop, because compilers inline the vertex effects wherever they are called.
-    var corners: array<Vertex, 3>;
-    var positions = array(pa, pb, pc);
-    for (var i = 0u; i < 3u; i += 1u) { corners[i] = vertex_effects_corner(draw, at[i], id, positions[i]); }
-    let a = corners[0];
-    let b = corners[1];
-    let c = corners[2];
+    // A loop, because compilers inline the vertex effects wherever they are called. It fills no array: NVIDIA's driver 580.159 loses
+    // members of array elements that a loop without bounds checks writes.
+    var a: Vertex;
+    var b: Vertex;
+    var c: Vertex;
+    for (var i = 0u; i < 3u; i += 1u) {
+        let p = select(select(pc, pb, i == 1u), pa, i == 0u);
+        let vertex = select(select(at.z, at.y, i == 1u), at.x, i == 0u);
+        let v = vertex_effects_corner(draw, vertex, id, p);
+        if i == 0u { a = v; } else if i == 1u { b = v; } else { c = v; }
+    }
     moved.is_deformed = any(a.offset != b.offset) || any(a.offset != c.offset);
     let m = draws[draw].world_from_object;
     let ab = (m * vec4f(pb - pa, 0.0)).xyz + (b.offset - a.offset);

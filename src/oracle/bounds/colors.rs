@@ -97,14 +97,14 @@ impl AcceptedColors {
             let finished = |perturbation: Perturbation| {
                 let surface = triangle.surface(x, y, &perturbation);
                 let color = shaded(shot, &triangle, Surface { rank, ..surface }, light.as_ref(), perturbation.color_step);
-                finish.pixel(i, color, perturbation.color_step)
+                finish.pixel_at_ties(i, color, perturbation.color_step)
             };
-            let [least, most] = span(interpolations(shot.stack, errors).map(&finished)).unwrap_or([self.pictures[0][i]; 2]);
+            let [least, most] = span(interpolations(shot.stack, errors).flat_map(&finished)).unwrap_or([self.pictures[0][i]; 2]);
             let slack =
                 |c: usize| if errors.doubt() == Doubt::Wide { (f64::from(most[c] - least[c]) * WIDE_SLACK).ceil() as u8 } else { 0 };
             let wide = [[0, 1, 2, 3].map(|c| least[c].saturating_sub(slack(c))), [0, 1, 2, 3].map(|c| most[c].saturating_add(slack(c)))];
             let known = span(self.pictures.iter().map(|picture| picture[i]))?;
-            let all = span(known.into_iter().chain(wide).chain(places(shot.stack).map(finished)))?;
+            let all = span(known.into_iter().chain(wide).chain(places(shot.stack).flat_map(&finished)))?;
             (all != known).then_some((i, all))
         };
         self.unsure = pixels.par_iter().filter_map(right).collect();

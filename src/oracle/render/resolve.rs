@@ -30,6 +30,9 @@ pub struct ResolveInput<'a> {
     pub previous: Option<&'a [[u8; 4]]>,
 }
 
+/// A color that is this close to the middle between two bytes, 1/1024 of a step, may be either in f32.
+const TIE: f64 = 1.0 / (255.0 * 1024.0);
+
 /// Bytes of all pixels, row-major, gamma-encoded.
 pub fn shade(shot: &Shot, input: &ResolveInput, geometry: &Geometry) -> Vec<[u8; 4]> {
     shade_perturbed(shot, input, geometry, &Perturbation::default())
@@ -94,10 +97,21 @@ impl<'a> Finish<'a> {
 
     /// Bytes of the pixel with this index, from its gamma-encoded surface color.
     pub fn pixel(&self, i: usize, color: DVec4, color_step: f64) -> [u8; 4] {
+        bytes(self.color(i, color, color_step))
+    }
+
+    /// The same, with both bytes of each channel whose color lies in the middle between two.
+    pub fn pixel_at_ties(&self, i: usize, color: DVec4, color_step: f64) -> [[u8; 4]; 2] {
+        let color = self.color(i, color, color_step);
+        [-TIE, TIE].map(|offset| bytes(color + offset))
+    }
+
+    /// The color before it is rounded.
+    fn color(&self, i: usize, color: DVec4, color_step: f64) -> DVec4 {
         let (x, y) = (i as u32 % self.picture.width, i as u32 / self.picture.width);
         let color = self.dots.as_ref().map_or(color, |dots| dotted(dots, color, self.picture.background(y), self.strengths[i]));
         let pixel = Pixel { color, x, y, step_offset: color_step };
-        bytes(if self.stack.finishes() { self.stack.finish(pixel, &self.picture).color } else { color })
+        if self.stack.finishes() { self.stack.finish(pixel, &self.picture).color } else { color }
     }
 }
 
