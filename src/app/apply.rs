@@ -221,6 +221,7 @@ fn toggle(state: &mut State, panels: &mut Panels, which: Toggle) {
         Toggle::Trade => open.trade = !open.trade,
         Toggle::Timing => open.timing = !open.timing,
         Toggle::Log => open.log = !open.log,
+        Toggle::Handles => open.handles = !open.handles,
         Toggle::CheatSheet => open.cheat_sheet = !open.cheat_sheet,
         Toggle::Settings => open.settings = !open.settings,
         Toggle::Palette => panels.palette.toggle(&state.session, panels.browser.entries()),

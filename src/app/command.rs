@@ -320,6 +320,8 @@ pub enum Toggle {
     Trade,
     Timing,
     Log,
+    /// The rings in the picture, and the ball of the light.
+    Handles,
     CheatSheet,
     Palette,
     Settings,
@@ -372,6 +374,7 @@ impl From<Action> for Command {
             Action::RemoveKey => Self::RemoveSelectedKey,
             Action::Verify => Self::Verify,
             Action::Overlays => Self::View(ViewCommand::ToggleOverlays),
+            Action::Handles => Self::Toggle(Toggle::Handles),
             Action::Compare => Self::View(ViewCommand::CycleCompare),
             Action::FlipAb => Self::View(ViewCommand::FlipCompare),
             Action::Panels => Self::Toggle(Toggle::Panels),

@@ -195,7 +195,7 @@ struct Judged {
 
 /// What the judge says about a picture. Options and tunings that draw the same picture to the last bit, geometry included, are judged
 /// once: the verdict follows from nothing else.
-fn verdict(scene: &Arc<Scene>, view: &View, stack: &Stack, capture: &Capture) -> Verdict {
+pub fn verdict(scene: &Arc<Scene>, view: &View, stack: &Stack, capture: &Capture) -> Verdict {
     /// Pixels of all stored verdicts together.
     const MOST_PIXELS: usize = 1 << 20;
     static LATEST: Mutex<VecDeque<Judged>> = Mutex::new(VecDeque::new());

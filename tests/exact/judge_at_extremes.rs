@@ -3,7 +3,7 @@
 
 use rasterlab::{
     accuracy::{DepthFormat, PinnedOptions, PositionFormat, Visibility},
-    gpu::Renderer,
+    gpu::{Capture, Renderer},
     measure::Budget,
     plan::AccuracyRequest,
     preset_file,

@@ -1,6 +1,6 @@
 //! Promise: points of effects and the direction of the light are dragged in the picture, and follow the pointer.
 
-use eframe::egui::{Event, Modifiers, Pos2, Role, vec2};
+use eframe::egui::{Event, Key, Modifiers, Pos2, Role, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
 
@@ -72,4 +72,16 @@ fn the_ball_turns_the_sun_of_lambert() {
     assert_eq!(lab.state().undo_steps(), 1);
     undo(&mut lab);
     assert_eq!(point(&lab, "lambert", "sun_direction"), DVec3::new(0.0, 3.0, 4.0));
+}
+
+#[test]
+fn a_key_hides_the_handles_and_the_ball_and_shows_them_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let Some(mut lab) = lab_of(folder.path(), RADIAL) else { return };
+    let is_shown = |lab: &Lab| ["Handle facet.center", "Light direction"].map(|name| lab.query_by_label(name).is_some());
+    assert_eq!(is_shown(&lab), [true; 2]);
+    press(&mut lab, Modifiers::NONE, Key::H);
+    assert_eq!(is_shown(&lab), [false; 2]);
+    press(&mut lab, Modifiers::NONE, Key::H);
+    assert_eq!(is_shown(&lab), [true; 2]);
 }

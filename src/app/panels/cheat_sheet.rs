@@ -83,6 +83,7 @@ fn value_text(action: Action, state: &State) -> Option<String> {
         Action::Randomize => Some(format!("seed {}", state.session.randomizer.seed())),
         Action::Timeline => Some(shown(state.open.timeline)),
         Action::Overlays => Some(shown(state.overlays.is_any())),
+        Action::Handles => Some(shown(state.open.handles)),
         Action::Trade => Some(shown(state.open.trade)),
         Action::Log => Some(shown(state.open.log)),
         _ => None,

@@ -56,6 +56,7 @@ const MENUS: [(&str, &[Option<Action>]); 4] = [
             None,
             Some(Action::Verify),
             Some(Action::Overlays),
+            Some(Action::Handles),
             Some(Action::Compare),
             Some(Action::FlipAb),
             None,

@@ -95,7 +95,7 @@ const NARROW: f32 = 1080.0;
 const NARROW_WIDTHS: [f32; 2] = [216.0, 316.0];
 const MIN_KEPT: f32 = 190.0;
 
-/// Which panels and windows are open.
+/// Which panels, windows and handles are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OpenPanels {
     pub left: bool,
@@ -104,13 +104,25 @@ pub struct OpenPanels {
     pub trade: bool,
     pub timing: bool,
     pub log: bool,
+    /// The rings in the picture, and the ball of the light.
+    pub handles: bool,
     pub cheat_sheet: bool,
     pub settings: bool,
 }
 
 impl Default for OpenPanels {
     fn default() -> Self {
-        Self { left: true, right: true, timeline: true, trade: false, timing: false, log: false, cheat_sheet: false, settings: false }
+        Self {
+            left: true,
+            right: true,
+            timeline: true,
+            trade: false,
+            timing: false,
+            log: false,
+            handles: true,
+            cheat_sheet: false,
+            settings: false,
+        }
     }
 }
 

@@ -51,6 +51,7 @@ pub fn write(settings: &Settings, document: &mut DocumentMut) {
         ("trade", open.trade),
         ("timing", open.timing),
         ("log", open.log),
+        ("handles", open.handles),
     ] {
         set(table, key, value(is_open));
     }
@@ -166,6 +167,7 @@ impl Reader<'_> {
                 ("trade", &mut open.trade),
                 ("timing", &mut open.timing),
                 ("log", &mut open.log),
+                ("handles", &mut open.handles),
             ] {
                 self.flag(table, "panels", key, is_open);
             }

@@ -187,9 +187,13 @@ impl Viewport {
         chips::chips_ui(ui, state, commands, rect, self.compare.is_open());
         if !self.compare.hides_b() {
             marker::marker_ui(ui, state, at);
-            handles::handles_ui(ui, state, commands, rect, at);
+            if state.open.handles {
+                handles::handles_ui(ui, state, commands, rect, at);
+            }
         }
-        light::light_ui(ui, &state.session, commands, at);
+        if state.open.handles {
+            light::light_ui(ui, &state.session, commands, at);
+        }
         let free = if self.compare.hides_b() { free } else { overlay_legend::legend_ui(ui, state, free, at) };
         if let Some(params) = state.session.visible_stack().params("overdraw") {
             heat_legend::heat_ui(ui, free, &params);
