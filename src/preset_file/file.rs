@@ -19,6 +19,9 @@ use crate::{
 /// The table that holds the texts of effects that a shared preset brings.
 pub(super) const EFFECT_FILES: &str = "effect_files";
 
+/// Longest name of a preset, whether it is typed or made, characters.
+pub const MAX_NAME: usize = 100;
+
 /// A preset with its file and the text that it was read from.
 #[derive(Clone, Debug)]
 pub struct PresetFile {
@@ -203,6 +206,11 @@ pub fn save(preset_file: &mut PresetFile, path: &Path) -> Result<(), PresetError
     let mut next = preset_file.clone();
     if let SceneSource::File(model) = &preset_file.preset.scene {
         next.preset.scene = SceneSource::File(rebase(model, preset_file.path.as_deref(), path));
+    }
+    // The name of a look on a chosen scene was made from both; the name of the file was typed.
+    let typed = stem(path);
+    if preset_file.path.is_none() && preset_file.chose_scene && typed != preset_file.id {
+        next.preset.name = typed.chars().take(MAX_NAME).collect();
     }
     let text = to_toml(&next);
     let is_there = preset_file.path.as_deref() == Some(path) && std::fs::read(path).is_ok_and(|there| there == text.as_bytes());

@@ -3,13 +3,10 @@
 use std::path::Path;
 
 use super::{
-    file::{PresetFile, model_path, stem},
+    file::{MAX_NAME, PresetFile, model_path, stem},
     look::Look,
 };
 use crate::preset::{Fit, LengthUnit, SceneSource};
-
-/// Longest id of a preset that has landed, and longest name, characters.
-const MAX_CHARS: usize = 100;
 
 impl PresetFile {
     /// Is the scene the person's own, so that presets land on it: a model, or a built-in scene that was chosen?
@@ -55,7 +52,7 @@ impl PresetFile {
             Some(look) => (format!("{}-{model}", look.id), format!("{} on {model}", look.title)),
             None => (model.clone(), own.title().to_owned()),
         };
-        preset.name = name.chars().take(MAX_CHARS).collect();
+        preset.name = name.chars().take(MAX_NAME).collect();
         let warnings = warnings.into_iter().map(|warning| format!("{}: {warning}", preset.name)).collect();
         Self {
             warnings,
@@ -98,5 +95,5 @@ fn is_same_file(a: Option<&Path>, b: Option<&Path>) -> bool {
 /// A name without characters that a file name could not have.
 fn file_name(name: &str) -> String {
     let kept = name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' });
-    kept.take(MAX_CHARS).collect()
+    kept.take(MAX_NAME).collect()
 }

@@ -8,14 +8,11 @@ use toml_edit::DocumentMut;
 use super::{
     atomic::{Existing, is_taken, write_atomically},
     error::{Position, PresetError},
-    file::{PresetFile, stem, to_toml},
+    file::{MAX_NAME, PresetFile, stem, to_toml},
     goldens::golden_paths,
     load::{load_with, read_text},
     migrate,
 };
-
-/// Longest name of a preset that is typed, characters.
-pub const MAX_NAME: usize = 100;
 
 /// The file stem of a preset called `name`: its letters and digits in lower case, with `-` between words.
 ///

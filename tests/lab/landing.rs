@@ -228,6 +228,21 @@ fn what_is_saved_afterwards_is_a_new_preset() {
 }
 
 #[test]
+fn a_look_on_a_model_that_is_saved_under_another_name_is_called_by_it() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab(&model(folder.path()).to_string_lossy()) else { return };
+    choose(&mut lab, "Comic", Modifiers::NONE);
+    assert_eq!(lab.state().preset_file().title(), "Comic on tri");
+    press(&mut lab, Modifiers::COMMAND, Key::S);
+    lab.run_steps(2);
+    lab.event(Event::Text(folder.path().join("my ink.toml").to_string_lossy().into_owned()));
+    lab.run_steps(2);
+    press(&mut lab, Modifiers::NONE, Key::Enter);
+    assert_eq!((lab.state().preset_file().title(), lab.state().preset_file().is_modified()), ("my ink", false), "{}", lab.state().log_text());
+    assert_eq!(preset_file::load(&folder.path().join("my ink.toml")).expect("a file").preset.name, "my ink");
+}
+
+#[test]
 fn what_is_left_out_is_said_once_and_the_rest_is_shown() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let Some(mut lab) = lab(&model(folder.path()).to_string_lossy()) else { return };
