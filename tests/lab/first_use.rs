@@ -1,10 +1,14 @@
 //! Promise: what a picture needs is compiled beside the window. The tick of an effect shows at once, the last picture stays, words name what is
 //! compiled, a newer request takes its place, and the window does not wait.
 
-use std::time::{Duration, Instant};
+use std::{
+    sync::Arc,
+    time::{Duration, Instant},
+};
 
 use eframe::egui::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use rasterlab::app::Devices;
 
 use crate::harness::*;
 
@@ -109,4 +113,12 @@ fn a_picture_that_is_refused_is_reported_in_words_and_replaced_by_the_next() {
     settle(&mut lab);
     assert!(lab.query_by_label_contains("last good picture").is_none());
     assert_eq!(drawn(&mut lab), before);
+}
+
+#[test]
+fn a_cpu_adapter_compiles_and_draws_on_another_device_than_the_one_that_shows_the_window() {
+    let Some(window) = crate::common::gpu() else { return };
+    let Devices { window, picture } = Devices::of(window);
+    assert_eq!(Arc::ptr_eq(&window, &picture), !window.summary.software, "{}", window.summary.name);
+    assert_eq!(picture.summary.name, window.summary.name);
 }

@@ -321,3 +321,19 @@ fn a_look_brings_its_ground_and_its_gradient_to_the_model() {
     settle(&mut lab);
     assert_eq!((lab.state().preset_file().preset.ground, lab.state().scene_triangles()), (None, alone));
 }
+
+#[test]
+fn lengths_in_radii_of_the_scene_are_drawn_as_those_lengths_in_meters() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let radius = builtin::build("knot?tess=4").expect("a scene").bounds().radius();
+    assert!((radius - 1.0).abs() > 0.2, "a radius of {radius} m tells nothing");
+    let mut drawn = [("scene", 0.25), ("m", 0.25 * radius)].map(|(unit, amount)| {
+        let text = format!(
+            "schema = 2\n[scene]\nbuiltin = \"knot?tess=4\"\nunit = \"{unit}\"\n[effects.inflate]\namount_m = {amount}\n[effects.lambert]\n"
+        );
+        lab_of(folder.path(), &text).map(|mut lab| middle(&mut lab))
+    });
+    let [Some(radii), Some(meters)] = &mut drawn else { return };
+    let differing = radii.pixels().zip(meters.pixels()).filter(|(a, b)| a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 8)).count();
+    assert!(differing < 200, "{differing} pixels differ");
+}

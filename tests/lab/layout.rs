@@ -82,6 +82,78 @@ fn a_click_and_a_drag_within_one_frame_move_a_slider() {
 }
 
 #[test]
+fn long_numbers_stay_in_their_boxes_beside_each_other() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let text = "schema = 2\n[scene]\nbuiltin = \"teapot\"\n[effects.facet]\npattern = \"radial\"\ncenter = [-98765.43, 54321.987, -12345.678]\n\
+        radius_m = 87654.32\n";
+    let Some(lab) = lab_of(folder.path(), text) else { return };
+    let boxes = ["facet.center.x", "facet.center.y", "facet.center.z"].map(|name| lab.get_by_label(name).rect());
+    for (at, rect) in boxes.iter().enumerate() {
+        assert!(rect.right() <= 1280.0 && boxes[..at].iter().all(|left| left.right() < rect.left()), "{boxes:?}");
+    }
+    let (field, reset) = (lab.get_by_label("facet.radius_m value").rect(), lab.get_by_label("Reset facet.radius_m").rect());
+    assert!(field.right() <= reset.left() && slider(&lab, "facet.radius_m").rect().right() <= field.left(), "{field} {reset}");
+}
+
+#[test]
+fn at_most_three_toasts_stand_over_the_picture_and_clear_of_the_timeline() {
+    let Some(mut lab) = lab("facet-knot") else { return };
+    wait_for_toasts(&mut lab);
+    let command = Modifiers::COMMAND;
+    for (modifiers, key) in [(command, Key::Z), (command | Modifiers::SHIFT, Key::Z), (Modifiers::NONE, Key::Delete)] {
+        lab.key_press_modifiers(modifiers, key);
+        lab.step();
+    }
+    lab.event(Event::Paste("no preset".into()));
+    lab.run_steps(3);
+    let picture = lab.get_by_label("Picture").rect();
+    let timeline = lab.get_by_role_and_label(Role::Slider, "Timeline").rect();
+    let said = ["Nothing to undo", "Nothing to redo", "No key is selected", "rasterlab1:"];
+    let toasts: Vec<Rect> = said.iter().flat_map(|text| lab.query_all_by_label_contains(text)).map(|node| node.rect()).collect();
+    assert_eq!(toasts.len(), 3, "{toasts:?}\n{}", lab.state().log_text());
+    for toast in toasts {
+        assert!(picture.contains_rect(toast) && toast.bottom() < picture.center().y && toast.bottom() < timeline.top(), "{toast}");
+    }
+}
+
+/// The largest contrast between two pixels of `area`, as the guidelines for accessible pages count it.
+fn contrast(window: &image::RgbaImage, area: Rect) -> f64 {
+    let linear = |c: u8| {
+        let c = f64::from(c) / 255.0;
+        if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+    };
+    let [x, y, width, height] = [area.min.x, area.min.y, area.width(), area.height()].map(|v| v.round() as u32);
+    let part = image::imageops::crop_imm(window, x, y, width, height).to_image();
+    let lights: Vec<f64> =
+        part.pixels().map(|p| 0.2126 * linear(p.0[0]) + 0.7152 * linear(p.0[1]) + 0.0722 * linear(p.0[2]) + 0.05).collect();
+    lights.iter().copied().fold(0.0, f64::max) / lights.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn icons_show_in_both_themes_and_over_pictures_of_any_color() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for (theme, color) in [("Dark", "1.0"), ("Light", "0.0"), ("Dark", "0.7"), ("Light", "0.3")] {
+        let text = format!(
+            "schema = 2\n[scene]\nbuiltin = \"teapot?tess=4\"\n[effects.facet]\n[output]\nbackground = [{color}, {color}, {color}, 1.0]\n"
+        );
+        let Some(mut lab) = lab_of(folder.path(), &text) else { return };
+        press(&mut lab, Modifiers::COMMAND, Key::Comma);
+        click(&mut lab, Role::Button, theme);
+        press(&mut lab, Modifiers::NONE, Key::Escape);
+        wait_for_toasts(&mut lab);
+        lab.remove_cursor();
+        lab.run_steps(3);
+        let window = lab.screenshot();
+        let names = ["Frame the scene", "Next preset", "Mute facet", "More of facet"];
+        let icons = names.map(|name| lab.query_all_by_label_contains(name).next().unwrap_or_else(|| panic!("no {name}")).rect());
+        for (name, rect) in names.iter().zip(icons) {
+            let contrast = contrast(&window, rect.shrink(3.0));
+            assert!(contrast >= 3.0, "{name}: {contrast:.2} with the {theme} theme over {color}");
+        }
+    }
+}
+
+#[test]
 fn a_number_out_of_range_is_said_to_be_clamped_and_a_word_to_be_none() {
     let Some(mut lab) = lab("facet-sweep") else { return };
     for (typed, said, expected) in [("7", "facet.amount takes 0..=1: 7 became 1", 1.0), ("abc", "\"abc\" is no number, so it stays 1", 1.0)]
@@ -142,6 +214,22 @@ fn escape_closes_the_windows_for_films_sweeps_and_seeds() {
         assert!(lab.query_all_by_label_contains(shown).next().is_none(), "Escape does not close {shown}");
         assert!(lab.query_by_label("Clear the log").is_some(), "Escape closes the log as well");
     }
+}
+
+#[test]
+fn escape_closes_the_extreme_cases_and_the_comparison() {
+    let Some(mut lab) = lab("facet-knot") else { return };
+    press(&mut lab, Modifiers::NONE, Key::L);
+    click(&mut lab, Role::Button, "View");
+    click(&mut lab, Role::Button, "Run extreme cases…");
+    assert!(lab.query_by_role_and_label(Role::TextInput, "Cases").is_some());
+    press(&mut lab, Modifiers::NONE, Key::Escape);
+    assert!(lab.query_by_role_and_label(Role::TextInput, "Cases").is_none(), "Escape does not close the extreme cases");
+    press(&mut lab, Modifiers::SHIFT, Key::Backslash);
+    assert!(lab.state().wipe_split().is_some());
+    press(&mut lab, Modifiers::NONE, Key::Escape);
+    assert!(lab.state().wipe_split().is_none(), "Escape does not close the comparison");
+    assert!(lab.query_by_label("Clear the log").is_some(), "Escape closes the log as well");
 }
 
 #[test]

@@ -111,21 +111,29 @@ fn the_list_and_the_grid_scroll_to_the_open_preset() {
         let rect = lab.get_by_role_and_label(Role::Button, name).rect();
         rect.top() > 60.0 && rect.bottom() < 720.0
     };
+    // The open preset is the one that is marked.
+    let is_marked = |lab: &Lab| {
+        let marked: Vec<String> =
+            lab.query_all_by_role(Role::Button).filter(is_on).filter_map(|node| node.accesskit_node().label()).collect();
+        marked.iter().filter(|label| label.starts_with("Preset ")).eq([&format!("Preset {}", lab.state().preset_file().title())])
+    };
     for layout in ["List", "Large pictures"] {
         click(&mut lab, Role::CheckBox, layout);
+        assert!(is_marked(&lab), "{layout}: at the start");
         press(&mut lab, Modifiers::NONE, Key::OpenBracket);
         lab.run_steps(30);
+        assert!(is_marked(&lab), "{layout}: after a key");
         press(&mut lab, Modifiers::COMMAND, Key::K);
         lab.event(Event::Text("open wobble".into()));
         lab.run_steps(3);
         press(&mut lab, Modifiers::NONE, Key::Enter);
         lab.run_steps(30);
         let open = format!("Preset {}", lab.state().preset_file().title());
-        assert!(lab.state().preset_file().id.starts_with("wobble") && is_seen(&lab, &open), "{layout}: {open}");
+        assert!(lab.state().preset_file().id.starts_with("wobble") && is_seen(&lab, &open) && is_marked(&lab), "{layout}: {open}");
         undo(&mut lab);
         lab.run_steps(30);
         let back = format!("Preset {}", lab.state().preset_file().title());
-        assert!(back != open && is_seen(&lab, &back), "{layout}: {back}");
+        assert!(back != open && is_seen(&lab, &back) && is_marked(&lab), "{layout}: {back}");
     }
 }
 
@@ -283,4 +291,24 @@ fn a_preset_that_another_program_has_changed_is_not_lost_by_deleting_or_renaming
     choose(&mut lab, "Renamed", "Delete");
     click(&mut lab, Role::Button, "Undo the deletion");
     assert_eq!(text(&to), "schema = 2\nname = \"Renamed\"\n# by another program\n");
+}
+
+#[test]
+fn the_star_over_a_picture_shows_on_any_color() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::create_dir_all(folder.path().join("presets")).expect("a folder");
+    let white = TEXT.replace("[effects.facet]", "[output]\nbackground = [1.0, 1.0, 1.0, 1.0]\n[effects.facet]");
+    std::fs::write(first(folder.path()), white).expect("a file");
+    let Some(mut lab) = lab_with("first", Folders { user: Some(folder.path().to_owned()), ..Folders::default() }) else { return };
+    click(&mut lab, Role::CheckBox, "Large pictures");
+    click(&mut lab, Role::CheckBox, "Favorite First");
+    lab.remove_cursor();
+    lab.run_steps(20);
+    settle(&mut lab);
+    let star = lab.get_by_role_and_label(Role::CheckBox, "Favorite First").rect();
+    let window = lab.screenshot();
+    let light = |x: f32, y: f32| window.get_pixel(x.round() as u32, y.round() as u32).0[0];
+    // Left of the star is the picture, and round it a ground of its own.
+    let (picture, ground) = (light(star.left() - 6.0, star.center().y), light(star.center().x, star.bottom() - 2.5));
+    assert!(picture > 240 && ground < 128, "the star lies on {ground} in a picture of {picture}");
 }

@@ -78,6 +78,12 @@ fn header_and_legend_count_the_same_wrong_pixels() {
     let legend = format!("wrong (true): {count} px");
     assert!(lab.query_by_label(&legend).is_some(), "{header} beside {:?}", texts(&lab, "wrong (true)"));
     assert!(texts(&lab, "no errors").is_empty());
+    // What the two counts mean is said on hover.
+    let words = "True: pixels that show another triangle than the exact picture of the true positions";
+    assert!(texts(&lab, words).is_empty());
+    lab.get_all_by_label_contains("wrong: 0 snapped, ").next().expect("the header").hover();
+    lab.run_steps(12);
+    assert!(!texts(&lab, words).is_empty(), "the counts are not explained");
 }
 
 #[test]
@@ -87,10 +93,14 @@ fn the_timing_panel_lists_passes_rest_and_latency() {
         return;
     }
     let draws = lab.state().draws();
+    // The inspector lists passes, too.
+    let rows = ["median", "p5 – p95", "rest", "frame"];
+    let counts = |lab: &Lab| rows.map(|title| lab.query_all_by_label(title).count());
+    let before = counts(&lab);
     press(&mut lab, Modifiers::NONE, Key::G);
     assert!(!texts(&lab, "Times of ").is_empty());
-    for title in ["median", "p5 – p95", "rest", "frame"] {
-        assert!(!texts(&lab, title).is_empty(), "{title} is missing");
+    for ((title, before), after) in rows.iter().zip(before).zip(counts(&lab)) {
+        assert!(after > before, "{title} is missing");
     }
     // The panel makes the picture smaller, which is another picture.
     assert!(lab.state().draws() > draws);

@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use eframe::egui::{self, Key, Modifiers, Pos2, Role};
-use egui_kittest::kittest::Queryable as _;
+use eframe::egui::{self, Key, Modifiers, Pos2, Rect, Role, Shape};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use rasterlab::accuracy::DepthFormat;
 
 use crate::harness::*;
@@ -54,10 +54,57 @@ fn a_measured_combination_is_a_point_and_a_click_on_it_switches_the_preset_in_on
         copied.starts_with("depth,ms p5,ms p50,ms p95,samples,wrong pixels ppm,") && copied.lines().count() == 1 + DepthFormat::ALL.len(),
         "{copied}"
     );
+    spread_is_shown(&lab, &copied);
     // Another camera makes another picture, so the points are stale.
     assert!(lab.query_by_label_contains("stale: ").is_none());
     click(&mut lab, Role::Button, "Top view");
     assert!(lab.query_by_label_contains("stale: ").is_some());
+}
+
+/// Looks for the spread of every row of `csv` in the table and as a bar of the plot, whose time is logarithmic.
+fn spread_is_shown(lab: &Lab, csv: &str) {
+    let rows: Vec<(String, [f64; 3])> = csv
+        .lines()
+        .skip(1)
+        .map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            (format!("Use depth={}", cells[0]), [2, 1, 3].map(|at| cells[at].parse().expect("milliseconds")))
+        })
+        .collect();
+    let mut numbers: Vec<(Rect, f64)> = Vec::new();
+    for node in lab.query_all_by_role(Role::Label) {
+        let text = node.accesskit_node().value().or_else(|| node.accesskit_node().label());
+        if let Some(number) = text.and_then(|text| text.parse().ok()) {
+            numbers.push((node.rect(), number));
+        }
+    }
+    for (name, [median, p5, p95]) in &rows {
+        let button = lab.get_by_role_and_label(Role::Button, name).rect();
+        let is_of_row = |rect: &Rect| rect.left() > button.right() && (rect.center().y - button.center().y).abs() < 4.0;
+        let mut row: Vec<&(Rect, f64)> = numbers.iter().filter(|(rect, _)| is_of_row(rect)).collect();
+        row.sort_by(|a, b| a.0.left().total_cmp(&b.0.left()));
+        let shown: Vec<f64> = row.iter().take(3).map(|(_, number)| *number).collect();
+        let is_near = |(shown, ms): (&f64, &f64)| (shown - ms).abs() <= 0.006 * ms.abs();
+        assert!(shown.len() == 3 && shown.iter().zip([median, p5, p95]).all(is_near), "{name}: {shown:?} for {median}, {p5}, {p95} ms");
+    }
+    // The lines of two ends at one height are the bars.
+    let mut bars: Vec<f64> = Vec::new();
+    for clipped in &lab.output().shapes {
+        if let Shape::Path(path) = &clipped.shape
+            && let [a, b] = path.points[..]
+            && (path.stroke.width - 1.5).abs() < 0.01
+            && (a.y - b.y).abs() < 0.01
+            && a.x < b.x
+        {
+            bars.push(f64::from(b.x - a.x));
+        }
+    }
+    let mut spreads: Vec<f64> = rows.iter().map(|(_, [_, p5, p95])| (p95 / p5).log10()).collect();
+    bars.sort_by(f64::total_cmp);
+    spreads.sort_by(f64::total_cmp);
+    assert_eq!(bars.len(), spreads.len(), "{bars:?} for {spreads:?}");
+    let decade = bars.iter().sum::<f64>() / spreads.iter().sum::<f64>();
+    assert!(bars.iter().zip(&spreads).all(|(bar, spread)| (bar - spread * decade).abs() < 1.0), "{bars:?} for {spreads:?}");
 }
 
 #[test]
