@@ -6,7 +6,7 @@ use std::{
 };
 
 use super::{
-    buffers::{self, Buffers, color_stride},
+    buffers,
     capture::Capture,
     device::Gpu,
     error::RenderError,
@@ -15,7 +15,6 @@ use super::{
     naive::{Naive, Viewport},
     particles::Wait,
     renderer::Renderer,
-    resource_id::BufferId,
     timer::{Detail, Timer, Times},
 };
 use crate::{
@@ -271,12 +270,14 @@ impl Lab<'_> {
                 Err(error) => return Err(error),
             }
         }
-        match Hardware::new(self.gpu, scene, &self.view, &self.preset.stack, &key)? {
-            Ok(hardware) => {
-                let picture = self.hardware_picture(&hardware)?;
+        match Hardware::new(self.gpu, scene, &self.view, &self.preset.stack, &key) {
+            Ok(Ok(hardware)) => {
+                let picture = hardware.picture(self.gpu)?;
                 entries.push(Entry::new(Contender::Hardware(Box::new(hardware)), picture_error(&picture, &expected)));
             }
-            Err(why) => missing.push(("hardware".into(), why)),
+            Ok(Err(why)) => missing.push(("hardware".into(), why)),
+            Err(error) if error.is_unsupported() => missing.push(("hardware".into(), error.to_string())),
+            Err(error) => return Err(error),
         }
         Ok((entries, missing))
     }
@@ -314,18 +315,6 @@ impl Lab<'_> {
         let pending = pending.begin();
         buffers::wait(self.gpu)?;
         pending.read(self.timer.as_ref()).map(|(_, times)| times).ok_or(RenderError::Lost)
-    }
-
-    fn hardware_picture(&self, hardware: &Hardware) -> Result<Vec<[u8; 4]>, RenderError> {
-        let mut held = Buffers::default();
-        let bytes = 4 * u64::from(color_stride(self.view.width)) * u64::from(self.view.height);
-        held.ensure(self.gpu, BufferId::Color, bytes)?;
-        let buffer = held.get(BufferId::Color)?;
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        hardware.record(&mut encoder, None)?;
-        hardware.copy_color(&mut encoder, buffer);
-        self.gpu.queue.submit([encoder.finish()]);
-        buffers::read_picture(self.gpu, buffer, [self.view.width, self.view.height])
     }
 }
 

@@ -1,19 +1,28 @@
-//! The hardware baseline: an ordinary render pipeline that draws the same buffers, kept as a yardstick.
+//! The hardware baseline: ordinary render pipelines that draw the same buffers, kept as a yardstick.
+
+use std::{ops::Range, sync::Arc};
 
 use super::{
     attributes::AttributeLayout,
-    buffers::{Buffers, color_stride},
+    buffers::{self, Buffers, color_stride},
+    deforms::{Deforms, deformed_ranges},
     device::Gpu,
     error::RenderError,
+    frame_layout::folded,
+    hardware_geometry::{COMPONENTS, Fetched, HardwareGeometry, STREAMS},
+    hardware_materials::HardwareMaterials,
     hardware_pipeline::{self, HardwarePipeline},
-    pipelines::layout_entry,
+    meshlets::is_outside,
+    pipeline_store::Pipeline,
+    pipelines::{Pipelines, layout_entry},
+    recording::Resources,
     records::{DrawRecord, FrameUniform},
     resource_id::{BufferId, ResourceId},
     timer::Timer,
 };
 use crate::{
     effects::Stack,
-    scene::{ComponentType, Primitive, Scene, Topology, view::View},
+    scene::{Scene, draw::Draw, view::View},
     shader::{
         glue::uniform_bytes,
         key::{KernelKey, VertexInputs},
@@ -24,71 +33,104 @@ use crate::{
     },
 };
 
+/// Vertex buffers of a material that is a base color and nothing else: position and normal.
+const PLAIN_STREAMS: usize = 2;
+
+/// What makes a pipeline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Recipe {
+    strides: [u64; STREAMS],
+    double_sided: bool,
+    mirrored: bool,
+    /// None: a base color and nothing else.
+    paint: Option<Paint>,
+}
+
+/// What the fragments of a material need.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Paint {
+    has_base_image: bool,
+    has_emission_image: bool,
+    unlit: bool,
+    masked: bool,
+}
+
 /// One indexed or plain draw call.
 struct Call {
-    instance: u32,
+    /// Index of its pipeline.
+    pipeline: usize,
+    /// Index of the material that it binds, if it binds one.
+    material: Option<usize>,
+    fetched: Fetched,
     vertices: u32,
-    position_offset: u64,
-    normal_offset: u64,
-    /// Format, byte range and count of its indices.
-    indices: Option<(wgpu::IndexFormat, std::ops::Range<u64>, u32)>,
+    /// The draws that it draws, as instances.
+    instances: Range<u32>,
+}
+
+/// The kernel that bends meshes, which our own frames run too.
+struct DeformPass {
+    pipeline: Arc<Pipeline>,
+    group: wgpu::BindGroup,
+    groups: [u32; 2],
 }
 
 /// The exhibit, set up for one scene and view.
 pub struct Hardware {
+    size: [u32; 2],
     buffers: Buffers,
-    pipeline: wgpu::RenderPipeline,
+    deform: Option<DeformPass>,
+    /// Opaque ones first.
+    pipelines: Vec<(wgpu::RenderPipeline, Recipe)>,
     group: wgpu::BindGroup,
+    materials: Option<HardwareMaterials>,
     calls: Vec<Call>,
     color: wgpu::Texture,
     depth: wgpu::Texture,
 }
 
 impl Hardware {
-    /// None, with the reason, where a fixed-function pipeline cannot read the scene's bytes as they are.
+    /// None, with the reason, where the baseline cannot draw the scene or the stack.
+    ///
+    /// # Errors
+    /// When the scene does not fit the adapter, or a pipeline is refused.
     pub fn new(gpu: &Gpu, scene: &Scene, view: &View, stack: &Stack, key: &KernelKey) -> Result<Result<Self, String>, RenderError> {
-        if let Some(reason) = scene.primitives.iter().find_map(obstacle) {
+        if let Some(reason) = obstacle(gpu, scene, stack) {
             return Ok(Err(reason));
         }
-        if scene.primitives.iter().any(|p| !scene.materials[p.material].is_plain()) {
-            return Ok(Err("a material looks up an image, shines or is unlit, which it does not know".into()));
-        }
-        if stack.moves() {
-            return Ok(Err("an effect moves vertices, which it does not".into()));
-        }
-        if stack.dots().is_some() {
-            return Ok(Err("an effect strings dots, which it does not".into()));
-        }
-        if stack.light().is_some() {
-            return Ok(Err("an effect asks for shadows, which it does not draw".into()));
-        }
-        if scene.deformable_vertex_count() > 0 {
-            return Ok(Err("meshes bend, which takes a pass that it does not have".into()));
-        }
-        let strides = |p: &Primitive| (p.positions.stride, p.normals.stride, scene.materials[p.material].double_sided);
-        let Some(first) = scene.primitives.first() else { return Ok(Err("the scene is empty".into())) };
-        if scene.primitives.iter().any(|p| strides(p) != strides(first)) {
-            return Ok(Err("the primitives differ in stride or sidedness, which takes several pipelines".into()));
-        }
-        let draws = stack.draws(scene, view)?;
+        let mut draws = stack.draws(scene, view)?;
         let attributes = AttributeLayout::new(scene, None);
+        let deforms = Deforms::of(scene, &attributes, draws.iter().filter(|draw| !is_outside(draw, scene)));
+        let deformable = deformed_ranges(scene, &draws).last().map_or(0, |range| range.end);
+        let geometry = HardwareGeometry::new(scene, attributes);
+        let recipes = sort(scene, &geometry, &mut draws);
         let records: Vec<DrawRecord> = draws.iter().map(|draw| DrawRecord::new(draw, scene, &attributes)).collect();
-        let uniform = FrameUniform { draw_count: draws.len() as u32, ..FrameUniform::of_view(view) };
-        let parameters = uniform_bytes(&stack.0);
+        let counts =
+            FrameUniform { draw_count: draws.len() as u32, deform_count: deforms.records.len() as u32, ..FrameUniform::of_view(view) };
         let mut buffers = Buffers::default();
-        buffers.fill(gpu, BufferId::Frame, bytemuck::bytes_of(&uniform))?;
+        buffers.fill(gpu, BufferId::Frame, bytemuck::bytes_of(&counts))?;
         buffers.fill(gpu, BufferId::Draws, bytemuck::cast_slice(&records))?;
-        buffers.fill(gpu, BufferId::Effects, &parameters)?;
-        buffers.fill(gpu, BufferId::VertexBytes, &scene.vertex_bytes)?;
-        buffers.fill(gpu, BufferId::IndexBytes, &scene.index_bytes)?;
-        let calls = draws.iter().zip(0..).map(|(draw, instance)| call(&scene.primitives[draw.primitive], instance)).collect();
-        let (pipeline, group) = pipeline(gpu, key, &buffers, strides(first))?;
-        let [color, depth] = hardware_pipeline::targets(gpu, [view.width, view.height], wgpu::TextureFormat::Rgba8Unorm);
-        Ok(Ok(Self { buffers, pipeline, group, calls, color, depth }))
+        buffers.fill(gpu, BufferId::Effects, &uniform_bytes(&stack.0))?;
+        upload(gpu, &mut buffers, scene, &geometry)?;
+        let deform = if deformable > 0 { Some(DeformPass::new(gpu, key, &mut buffers, &deforms, deformable)?) } else { None };
+        let is_painted = recipes.iter().any(|recipe| recipe.paint.is_some());
+        let materials = if is_painted { Some(HardwareMaterials::new(gpu, scene)?) } else { None };
+        let (pipelines, group) = pipelines(gpu, key, &buffers, materials.as_ref(), recipes)?;
+        let calls = calls(scene, &geometry, &draws, &pipelines);
+        let size = [view.width, view.height];
+        let [color, depth] = hardware_pipeline::targets(gpu, size, wgpu::TextureFormat::Rgba8Unorm);
+        Ok(Ok(Self { size, buffers, deform, pipelines, group, materials, calls, color, depth }))
+    }
+
+    /// Number of draw calls in a frame.
+    pub fn call_count(&self) -> usize {
+        self.calls.len()
     }
 
     /// Records one frame.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timer: Option<&mut Timer>) -> Result<(), RenderError> {
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, mut timer: Option<&mut Timer>) -> Result<(), RenderError> {
+        if let Some(deform) = &self.deform {
+            deform.record(encoder, timer.as_deref_mut());
+        }
         let view = self.color.create_view(&Default::default());
         let timestamp_writes = timer.and_then(|timer| timer.render("hardware", true));
         let depth = self.depth.create_view(&Default::default());
@@ -101,66 +143,181 @@ impl Hardware {
             timestamp_writes,
             ..Default::default()
         });
-        pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.group, &[]);
         let attributes = self.buffers.get(BufferId::VertexBytes)?;
+        let (mut pipeline, mut material) = (None, None);
         for call in &self.calls {
-            pass.set_vertex_buffer(0, attributes.slice(call.position_offset..));
-            pass.set_vertex_buffer(1, attributes.slice(call.normal_offset..));
-            let instances = call.instance..call.instance + 1;
-            match &call.indices {
-                None => pass.draw(0..call.vertices, instances),
+            let (chosen, recipe) = &self.pipelines[call.pipeline];
+            if pipeline.replace(call.pipeline) != Some(call.pipeline) {
+                pass.set_pipeline(chosen);
+            }
+            if let (Some(materials), Some(needed)) = (&self.materials, call.material)
+                && material.replace(needed) != Some(needed)
+            {
+                pass.set_bind_group(1, &materials.groups[needed], &[]);
+            }
+            for (stream, slot) in call.fetched.streams[..recipe.streams()].iter().zip(0..) {
+                pass.set_vertex_buffer(slot, attributes.slice(stream.offset..));
+            }
+            match &call.fetched.indices {
+                None => pass.draw(0..call.vertices, call.instances.clone()),
                 Some((format, bytes, count)) => {
                     pass.set_index_buffer(self.buffers.get(BufferId::IndexBytes)?.slice(bytes.clone()), *format);
-                    pass.draw_indexed(0..*count, 0, instances);
+                    pass.draw_indexed(0..*count, 0, call.instances.clone());
                 }
             }
         }
         Ok(())
     }
 
-    /// Copies the picture to a buffer, rows `color_stride` apart; alpha is 0 where nothing was drawn.
-    pub fn copy_color(&self, encoder: &mut wgpu::CommandEncoder, to: &wgpu::Buffer) {
-        let size = self.color.size();
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * color_stride(size.width)), rows_per_image: None };
-        encoder.copy_texture_to_buffer(self.color.as_image_copy(), wgpu::TexelCopyBufferInfo { buffer: to, layout }, size);
+    /// Draws once and waits for the picture, row-major; alpha is 0 where nothing was drawn.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn picture(&self, gpu: &Gpu) -> Result<Vec<[u8; 4]>, RenderError> {
+        let [width, height] = self.size;
+        let mut held = Buffers::default();
+        held.ensure(gpu, BufferId::Color, 4 * u64::from(color_stride(width)) * u64::from(height))?;
+        let buffer = held.get(BufferId::Color)?;
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        self.record(&mut encoder, None)?;
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * color_stride(width)), rows_per_image: None };
+        encoder.copy_texture_to_buffer(self.color.as_image_copy(), wgpu::TexelCopyBufferInfo { buffer, layout }, self.color.size());
+        gpu.queue.submit([encoder.finish()]);
+        buffers::read_picture(gpu, buffer, self.size)
     }
 }
 
-/// Why a fixed-function pipeline cannot read this primitive.
-fn obstacle(p: &Primitive) -> Option<String> {
+/// Why the baseline cannot draw this.
+fn obstacle(gpu: &Gpu, scene: &Scene, stack: &Stack) -> Option<String> {
+    let limit = gpu.caps.max_texture_side;
+    let is_wide = |side: &u32| *side > limit;
     let reason = match () {
-        () if p.topology != Topology::List => "is no triangle list",
-        () if p.positions.component_type != ComponentType::F32 || p.normals.component_type != ComponentType::F32 => {
-            "has attributes that are not f32"
+        () if stack.moves() => "an effect moves vertices, which it does not",
+        () if stack.dots().is_some() => "an effect strings dots, which it does not",
+        () if stack.light().is_some() => "an effect asks for shadows, which it does not draw",
+        () if scene.primitives.is_empty() => "the scene is empty",
+        () => {
+            let image = scene.images.iter().find(|image| image.size().iter().any(is_wide))?;
+            return Some(format!("{} has {:?} texels, and textures of this adapter end at {limit} a side", image.name, image.size()));
         }
-        () if p.indices.is_some_and(|i| i.component_type == ComponentType::U8) => "has u8 indices",
-        () if p.colors.is_some() => "has vertex colors",
-        () => return None,
     };
-    Some(format!("{} {reason}", p.name))
+    Some(reason.into())
 }
 
-fn call(p: &Primitive, instance: u32) -> Call {
-    let indices = p.indices.map(|i| {
-        let format = if i.component_type == ComponentType::U16 { wgpu::IndexFormat::Uint16 } else { wgpu::IndexFormat::Uint32 };
-        (format, u64::from(i.offset)..u64::from(i.offset) + u64::from(i.count) * u64::from(i.component_type.bytes()), i.count)
-    });
-    Call {
-        instance,
-        vertices: p.vertex_count(),
-        position_offset: p.positions.offset.into(),
-        normal_offset: p.normals.offset.into(),
-        indices,
+/// Uploads attributes and index lists, with copies of those that cannot be fetched as they are.
+fn upload(gpu: &Gpu, buffers: &mut Buffers, scene: &Scene, geometry: &HardwareGeometry) -> Result<(), RenderError> {
+    let copies: &[u8] = bytemuck::cast_slice(&geometry.vertex_copies);
+    buffers.ensure(gpu, BufferId::VertexBytes, geometry.first_copy() + copies.len() as u64)?;
+    buffers.write_at(gpu, BufferId::VertexBytes, 0, &scene.vertex_bytes)?;
+    buffers.write_at(gpu, BufferId::VertexBytes, geometry.first_copy(), copies)?;
+    let copies: &[u8] = bytemuck::cast_slice(&geometry.index_copies);
+    buffers.ensure(gpu, BufferId::IndexBytes, geometry.first_index_copy + copies.len() as u64)?;
+    buffers.write_at(gpu, BufferId::IndexBytes, 0, &scene.index_bytes)?;
+    buffers.write_at(gpu, BufferId::IndexBytes, geometry.first_index_copy, copies)
+}
+
+impl Recipe {
+    fn of(draw: &Draw, scene: &Scene, geometry: &HardwareGeometry) -> Self {
+        let primitive = &scene.primitives[draw.primitive];
+        let material = &scene.materials[primitive.material];
+        let paint = (!material.is_plain() || primitive.colors.is_some()).then(|| Paint {
+            has_base_image: material.base_texture.is_some(),
+            has_emission_image: material.emission_texture.is_some(),
+            unlit: material.unlit,
+            masked: material.alpha_threshold().is_some(),
+        });
+        let mut strides = geometry.of_draw(draw).streams.map(|stream| stream.stride);
+        let recipe = Self { strides, double_sided: draw.double_sided, mirrored: draw.mirrored, paint };
+        // What is not bound makes no difference.
+        strides[recipe.streams()..].fill(0);
+        Self { strides, ..recipe }
+    }
+
+    /// Vertex buffers that it reads.
+    const fn streams(&self) -> usize {
+        if self.paint.is_some() { STREAMS } else { PLAIN_STREAMS }
+    }
+
+    /// The material that a draw binds. A base color alone is read from its record.
+    fn material(&self, draw: &Draw, scene: &Scene) -> Option<usize> {
+        self.paint.map(|_| scene.primitives[draw.primitive].material)
+    }
+
+    fn is_masked(&self) -> bool {
+        self.paint.is_some_and(|paint| paint.masked)
     }
 }
 
-fn pipeline(
+/// Finds the pipelines that a scene takes, and brings its draws into the order in which an engine draws them: opaque ones first, then
+/// by pipeline, material and mesh; else as they were.
+fn sort(scene: &Scene, geometry: &HardwareGeometry, draws: &mut [Draw]) -> Vec<Recipe> {
+    let mut recipes: Vec<Recipe> = Vec::new();
+    for draw in draws.iter() {
+        let recipe = Recipe::of(draw, scene, geometry);
+        if !recipes.contains(&recipe) {
+            recipes.push(recipe);
+        }
+    }
+    recipes.sort_by_key(Recipe::is_masked);
+    draws.sort_by_cached_key(|draw| {
+        let recipe = Recipe::of(draw, scene, geometry);
+        (recipes.iter().position(|other| *other == recipe), recipe.material(draw, scene), draw.primitive)
+    });
+    recipes
+}
+
+/// One call for neighbors that differ only in their records.
+fn calls(scene: &Scene, geometry: &HardwareGeometry, draws: &[Draw], pipelines: &[(wgpu::RenderPipeline, Recipe)]) -> Vec<Call> {
+    let mut calls: Vec<Call> = Vec::new();
+    for (draw, instance) in draws.iter().zip(0..) {
+        let primitive = &scene.primitives[draw.primitive];
+        let recipe = Recipe::of(draw, scene, geometry);
+        let pipeline = pipelines.iter().position(|(_, other)| *other == recipe).expect("every draw has a pipeline");
+        let fetched = geometry.of_draw(draw);
+        let (material, vertices, instances) = (recipe.material(draw, scene), primitive.vertex_count(), instance..instance + 1);
+        match calls.last_mut() {
+            Some(last)
+                if last.pipeline == pipeline && last.material == material && last.vertices == vertices && last.fetched == fetched =>
+            {
+                last.instances.end += 1;
+            }
+            _ => calls.push(Call { pipeline, material, fetched, vertices, instances }),
+        }
+    }
+    calls
+}
+
+impl DeformPass {
+    fn new(gpu: &Gpu, key: &KernelKey, buffers: &mut Buffers, deforms: &Deforms, deformable: u32) -> Result<Self, RenderError> {
+        buffers.fill(gpu, BufferId::Deforms, bytemuck::cast_slice(&deforms.records))?;
+        buffers.fill(gpu, BufferId::Joints, bytemuck::cast_slice(&deforms.joints))?;
+        buffers.fill(gpu, BufferId::MorphTargets, bytemuck::cast_slice(&deforms.morph_targets))?;
+        let pipeline = Pipelines::new(Library::from_env()).get(gpu, key, Pass::Skin)?;
+        let group = Resources { buffers: vec![buffers], textures: Vec::new() }.bind_group(gpu, &pipeline)?;
+        Ok(Self { pipeline, group, groups: folded(deformable.div_ceil(key.work.group_size)) })
+    }
+
+    fn record(&self, encoder: &mut wgpu::CommandEncoder, timer: Option<&mut Timer>) {
+        let label = &self.pipeline.label;
+        let timestamp_writes = timer.and_then(|timer| timer.compute(label, false));
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes });
+        pass.set_pipeline(&self.pipeline.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        let [x, y] = self.groups;
+        pass.dispatch_workgroups(x, y, 1);
+    }
+}
+
+/// The pipelines of all recipes, and what all of them bind.
+#[allow(clippy::type_complexity, reason = "two results, named in the line above")]
+fn pipelines(
     gpu: &Gpu,
     key: &KernelKey,
     buffers: &Buffers,
-    (position_stride, normal_stride, double_sided): (u32, u32, bool),
-) -> Result<(wgpu::RenderPipeline, wgpu::BindGroup), RenderError> {
+    materials: Option<&HardwareMaterials>,
+    recipes: Vec<Recipe>,
+) -> Result<(Vec<(wgpu::RenderPipeline, Recipe)>, wgpu::BindGroup), RenderError> {
     // Every draw is an instance of a storage buffer here.
     let vertices = VertexInputs { is_single_draw: false, ..key.vertices.clone() };
     let key = KernelKey { vertices, ..key.clone() };
@@ -182,27 +339,55 @@ fn pipeline(
         .map(|binding| Ok(wgpu::BindGroupEntry { binding: binding.index, resource: resource(&binding.name)?.as_entire_binding() }));
     let entries: Vec<_> = entries.collect::<Result<_, RenderError>>()?;
     let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout: &layout, entries: &entries });
-    let bind_group_layouts = [Some(&layout)];
-    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label,
-        bind_group_layouts: &bind_group_layouts,
-        ..Default::default()
-    });
-    let attribute = |location| [wgpu::VertexAttribute { format: wgpu::VertexFormat::Float32x3, offset: 0, shader_location: location }];
-    let (positions, normals) = (attribute(0), attribute(1));
-    let buffer = |stride: u32, attributes| wgpu::VertexBufferLayout {
-        array_stride: stride.into(),
-        step_mode: wgpu::VertexStepMode::Vertex,
-        attributes,
+    let pipeline_layout = |material: Option<&wgpu::BindGroupLayout>| {
+        let groups: Vec<_> = std::iter::once(&layout).chain(material).map(Some).collect();
+        gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor { label, bind_group_layouts: &groups, ..Default::default() })
     };
-    let pipeline = HardwarePipeline {
-        label: "hardware",
-        text: &linked.text,
-        entries: ["hardware_vertex", "hardware_fragment"],
-        layout: Some(&layout),
-        buffers: &[Some(buffer(position_stride, &positions)), Some(buffer(normal_stride, &normals))],
-        cull_mode: (!double_sided).then_some(wgpu::Face::Back),
-        format: wgpu::TextureFormat::Rgba8Unorm,
+    let (plain, painted) = (pipeline_layout(None), pipeline_layout(materials.map(|materials| &materials.layout)));
+    let module = hardware_pipeline::module(gpu, "hardware", &linked.text);
+    let build = |recipe: Recipe| {
+        let layout = if recipe.paint.is_some() { &painted } else { &plain };
+        (recipe.pipeline(gpu, &module, layout), recipe)
     };
-    Ok((pipeline.build(gpu), group))
+    Ok((recipes.into_iter().map(build).collect(), group))
+}
+
+impl Recipe {
+    fn pipeline(&self, gpu: &Gpu, module: &wgpu::ShaderModule, layout: &wgpu::PipelineLayout) -> wgpu::RenderPipeline {
+        let attribute = |slot: usize| {
+            let format = match COMPONENTS[slot] {
+                2 => wgpu::VertexFormat::Float32x2,
+                3 => wgpu::VertexFormat::Float32x3,
+                _ => wgpu::VertexFormat::Float32x4,
+            };
+            [wgpu::VertexAttribute { format, offset: 0, shader_location: slot as u32 }]
+        };
+        let attributes: [_; STREAMS] = std::array::from_fn(attribute);
+        let buffer = |slot: usize| {
+            let step_mode = wgpu::VertexStepMode::Vertex;
+            Some(wgpu::VertexBufferLayout { array_stride: self.strides[slot], step_mode, attributes: &attributes[slot] })
+        };
+        let buffers: Vec<_> = (0..self.streams()).map(buffer).collect();
+        let (entries, constants) = match self.paint {
+            None => (["hardware_vertex", "hardware_fragment"], Vec::new()),
+            Some(paint) => {
+                let fragment = if paint.masked { "hardware_masked" } else { "hardware_painted" };
+                let flags =
+                    [("HAS_BASE_IMAGE", paint.has_base_image), ("HAS_EMISSION_IMAGE", paint.has_emission_image), ("IS_UNLIT", paint.unlit)];
+                (["hardware_painted_vertex", fragment], flags.map(|(name, is_set)| (name, f64::from(u8::from(is_set)))).to_vec())
+            }
+        };
+        let pipeline = HardwarePipeline {
+            label: "hardware",
+            module,
+            entries,
+            constants: &constants,
+            layout: Some(layout),
+            buffers: &buffers,
+            cull_mode: (!self.double_sided).then_some(wgpu::Face::Back),
+            front_face: if self.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
+            format: wgpu::TextureFormat::Rgba8Unorm,
+        };
+        pipeline.build(gpu)
+    }
 }

@@ -4,7 +4,7 @@ use super::{
     buffers::{self, Buffers, color_stride},
     device::Gpu,
     error::RenderError,
-    hardware_pipeline::{HardwarePipeline, cleared, cleared_depth, targets},
+    hardware_pipeline::{HardwarePipeline, cleared, cleared_depth, module, targets},
     resource_id::BufferId,
 };
 use crate::{
@@ -29,11 +29,13 @@ pub fn triangle_ids(gpu: &Gpu, library: &Library, size: [u32; 2], corners: &[[f3
     let corner = wgpu::VertexBufferLayout { array_stride: 12, step_mode: wgpu::VertexStepMode::Vertex, attributes: &attributes };
     let pipeline = HardwarePipeline {
         label: SHADER,
-        text: &text,
+        module: &module(gpu, SHADER, &text),
         entries: ["ids_vertex", "ids_fragment"],
+        constants: &[],
         layout: None,
         buffers: &[Some(corner)],
         cull_mode: None,
+        front_face: wgpu::FrontFace::Ccw,
         format,
     };
     let pipeline = pipeline.build(gpu);

@@ -36,32 +36,40 @@ pub fn cleared_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAt
 /// An ordinary render pipeline over triangle lists.
 pub struct HardwarePipeline<'a> {
     pub label: &'a str,
-    /// WGSL.
-    pub text: &'a str,
+    pub module: &'a wgpu::ShaderModule,
     /// Entry points of the vertex and the fragment stage.
     pub entries: [&'a str; 2],
+    /// Values of overrides of the fragment stage.
+    pub constants: &'a [(&'a str, f64)],
     /// None: as the shaders have it.
     pub layout: Option<&'a wgpu::PipelineLayout>,
     pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     pub cull_mode: Option<wgpu::Face>,
+    /// The winding of front faces, y up.
+    pub front_face: wgpu::FrontFace,
     pub format: wgpu::TextureFormat,
+}
+
+/// A module of WGSL for pipelines.
+pub fn module(gpu: &Gpu, label: &str, text: &str) -> wgpu::ShaderModule {
+    let source = wgpu::ShaderSource::Wgsl(text.into());
+    gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source })
 }
 
 impl HardwarePipeline<'_> {
     pub fn build(&self, gpu: &Gpu) -> wgpu::RenderPipeline {
-        let (label, source) = (Some(self.label), wgpu::ShaderSource::Wgsl(self.text.into()));
-        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor { label, source });
+        let label = Some(self.label);
         let [vertex, fragment] = self.entries;
         gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label,
             layout: self.layout,
             vertex: wgpu::VertexState {
-                module: &module,
+                module: self.module,
                 entry_point: Some(vertex),
                 compilation_options: Default::default(),
                 buffers: self.buffers,
             },
-            primitive: wgpu::PrimitiveState { cull_mode: self.cull_mode, ..Default::default() },
+            primitive: wgpu::PrimitiveState { cull_mode: self.cull_mode, front_face: self.front_face, ..Default::default() },
             depth_stencil: Some(wgpu::DepthStencilState {
                 format: DEPTH,
                 depth_write_enabled: Some(true),
@@ -71,9 +79,9 @@ impl HardwarePipeline<'_> {
             }),
             multisample: Default::default(),
             fragment: Some(wgpu::FragmentState {
-                module: &module,
+                module: self.module,
                 entry_point: Some(fragment),
-                compilation_options: Default::default(),
+                compilation_options: wgpu::PipelineCompilationOptions { constants: self.constants, ..Default::default() },
                 targets: &[Some(self.format.into())],
             }),
             multiview_mask: None,

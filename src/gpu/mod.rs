@@ -43,6 +43,8 @@ mod pass_purpose;
 mod shadow_pass;
 
 mod explain;
+mod hardware_geometry;
+mod hardware_materials;
 mod hardware_pipeline;
 mod readback;
 

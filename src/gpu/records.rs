@@ -135,6 +135,17 @@ gpu_record! {
 }
 
 gpu_record! {
+    /// One material of the hardware baseline. Each member is explained in `shaders/baselines/hardware.wgsl`.
+    pub struct HardwareMaterial = "HardwareMaterial" {
+        pub base_u: [f32; 4],
+        pub base_v: [f32; 4],
+        pub emission_u: [f32; 4],
+        pub emission_v: [f32; 4],
+        pub emission: [f32; 4],
+    }
+}
+
+gpu_record! {
     /// The transform from positions to the shadow map. Each member is explained in `shaders/variants/shade_step/shadow_map.wgsl`.
     pub struct ShadowMapUniform = "ShadowMapView" {
         pub column: [f32; 4],
@@ -385,6 +396,7 @@ pub const RECORDS: &[RecordLayout] = &[
     StepParams::LAYOUT,
     LookupRecord::LAYOUT,
     MaterialRecord::LAYOUT,
+    HardwareMaterial::LAYOUT,
     DispatchSize::LAYOUT,
     DispatchArgs::LAYOUT,
     ClippedTriangleRecord::LAYOUT,

@@ -69,7 +69,7 @@ pub fn reflect(linked: &Linked, int64: bool) -> Result<Reflected, ShaderError> {
 }
 
 impl Reflected {
-    /// Resources that `entry` uses, by binding number.
+    /// Resources of group 0 that `entry` uses, by binding number.
     pub fn bindings(&self, entry: &str) -> Vec<Binding> {
         let Some(index) = self.module.entry_points.iter().position(|e| e.name == entry) else { return Vec::new() };
         let uses = self.info.get_entry_point(index);
@@ -88,7 +88,8 @@ impl Reflected {
                     },
                     _ => return None,
                 };
-                Some(Binding { name: variable.name.clone()?, index: variable.binding.as_ref()?.binding, kind })
+                let binding = variable.binding.as_ref().filter(|binding| binding.group == 0)?;
+                Some(Binding { name: variable.name.clone()?, index: binding.binding, kind })
             })
             .collect();
         bindings.sort_by_key(|binding| binding.index);

@@ -13,6 +13,7 @@ mod device_lost;
 mod evaluator_gpu;
 mod extremes;
 mod grounds;
+mod hardware;
 mod judge_at_extremes;
 mod oracle;
 mod specialization;

@@ -81,6 +81,7 @@ const LONG_FOR_A_REASON: &[(&str, &str)] = &[
     ("src/cli/args.rs", "one list of all commands and flags, as the help shows them"),
     ("src/accuracy.rs", "one list of all axes, with what every option does"),
     ("src/preset/settings.rs", "one list of all settings of a preset, in the order of its file"),
+    ("src/gpu/records.rs", "one list of all structs that Rust and the kernels share"),
     ("src/gpu/frame_layout.rs", "the only place that computes sizes, offsets and dispatches of a frame"),
 ];
 

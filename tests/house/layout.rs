@@ -51,7 +51,7 @@ fn keys() -> Vec<KernelKey> {
     ]
 }
 
-/// Every pass of those keys, with those that only some pictures have, and the naive baseline.
+/// Every pass of those keys, with those that only some pictures have, and the baselines.
 fn modules() -> Vec<(String, Reflected, Vec<reflect::Binding>)> {
     let mut modules = Vec::new();
     for key in keys() {
@@ -71,6 +71,13 @@ fn modules() -> Vec<(String, Reflected, Vec<reflect::Binding>)> {
     let naive = reflect::reflect(&naive, false).expect("validates");
     let bindings = ["naive_clear", "naive_raster", "naive_resolve"].iter().flat_map(|entry| naive.bindings(entry)).collect();
     modules.push(("naive".into(), naive, bindings));
+    let mut key = key;
+    key.vertices.is_single_draw = false;
+    let hardware = link::link(&Library::Embedded, "baselines/hardware", &key, &[]).expect("links");
+    let hardware = reflect::reflect(&hardware, false).expect("validates");
+    let entries = ["hardware_vertex", "hardware_painted_vertex", "hardware_fragment", "hardware_painted", "hardware_masked"];
+    let bindings = entries.iter().flat_map(|entry| hardware.bindings(entry)).collect();
+    modules.push(("hardware".into(), hardware, bindings));
     modules
 }
 
