@@ -77,6 +77,7 @@ cases! {
     case_30_rotations_of_any_length = "rotations-of-any-length",
     case_30_invalid_skins = "invalid-skins",
     case_32_hardware_cross_check = "hardware-cross-check",
+    case_34_slivers_at_the_border = "slivers-at-the-border",
 }
 
 /// Sweeps over many or very large pictures, which take most of the time of all cases together: `rasterlab stress` draws them, as a
@@ -202,6 +203,7 @@ const MUTANTS: &[(&str, &str, &str, &str, &str)] = &[
     ),
     ("one sample of a row too many", "effects/dissolve", "(u32(span.x) + rest)", "(u32(span.x) + rest + 1u)", "fill"),
     ("a limit that is off by one", "variants/sample_test/draw_order", "pixel < order.cut", "pixel <= order.cut", "draw-limit"),
+    ("a box that is too small", "lib/extent", "abs(s0) * h.x + abs(s1) * h.y", "abs(s0) * h.x - abs(s1) * h.y", "slivers-at-the-border"),
     ("another triangle's name", "baselines/hardware_ids", "corner / 3u", "corner / 3u + 1u", "hardware-cross-check"),
     (
         "the witness is moved by a sample",
