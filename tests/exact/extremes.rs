@@ -57,6 +57,7 @@ cases! {
     case_10_w_around_zero = "w-around-zero",
     case_12_non_finite_positions = "non-finite-positions",
     case_12_non_finite_attributes = "non-finite-attributes",
+    case_12_normals_along_axes = "normals-along-axes",
     case_13_depth_range = "depth-range",
     case_14_scales_and_offsets = "scales-and-offsets",
     case_14_relative_positions = "relative-positions",
@@ -75,8 +76,10 @@ cases! {
     case_29_after_a_day = "after-a-day",
     case_30_unusual_skins = "unusual-skins",
     case_30_rotations_of_any_length = "rotations-of-any-length",
+    case_30_skins_beside_other_meshes = "skins-beside-other-meshes",
     case_30_invalid_skins = "invalid-skins",
     case_32_hardware_cross_check = "hardware-cross-check",
+    case_34_slivers_at_the_border = "slivers-at-the-border",
 }
 
 /// Sweeps over many or very large pictures, which take most of the time of all cases together: `rasterlab stress` draws them, as a
