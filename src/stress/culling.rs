@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{DMat4, DQuat, DVec3};
+use glam::{DMat3, DMat4, DQuat, DVec3, EulerRot};
 
 use super::{
     case::{Case, Expectation},
@@ -89,57 +89,89 @@ fn culled_walk(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     Ok(())
 }
 
-/// Triangles a few pixels long along the four borders of the picture of a camera at `eye` that looks along -z, each a mesh of its own, at
-/// most `spread` pixels from the border on either side. `pixel`: the side of a pixel at a distance of 1 m.
-fn slivers(rng: &mut Rng, eye: DVec3, [width, height]: [u32; 2], pixel: f64, spread: f64, distance: f64) -> Arc<Scene> {
-    let sliver = |i: usize| {
-        let half = [0.5 * f64::from(width), 0.5 * f64::from(height)];
-        let aside = i % 2;
-        let side = if i % 4 < 2 { 1.0 } else { -1.0 };
-        let across = side * (half[aside] + rng.real(-spread, spread));
-        let along = rng.real(-half[1 - aside], half[1 - aside]);
-        let corners = [[0.0, 0.0], [8.0, 0.3], [3.0, 0.6]].map(|[far, thick]| {
-            let mut at = [0.0; 2];
-            (at[aside], at[1 - aside]) = (across + thick, along + far);
-            (eye + DVec3::new(at[0] * pixel, at[1] * pixel, -1.0) * distance).as_vec3().to_array()
-        });
-        triangle_soup(corners)
-    };
-    scene_of_meshes(&(0..96).map(sliver).collect::<Vec<_>>())
+/// A view at a distance from the origin, and slivers along its borders.
+struct BorderView {
+    /// Rows: right, up and backward.
+    axes: DMat3,
+    eye: DVec3,
+    size: [u32; 2],
+    projection: Projection,
+    near_m: f64,
+}
+
+impl BorderView {
+    /// Side of a pixel at `distance` meters.
+    fn pixel_m(&self, distance: f64) -> f64 {
+        let height = match self.projection {
+            Projection::Perspective { fov_y_deg } => 2.0 * libm::tan(0.5 * fov_y_deg.to_radians()) * distance,
+            Projection::Orthographic { height_m } => height_m,
+        };
+        height / f64::from(self.size[1])
+    }
+
+    /// How far rounding moves a corner, at least, in meters.
+    fn rounding_m(&self) -> f64 {
+        self.eye.length() * f64::from(f32::EPSILON)
+    }
+
+    /// Triangles a few pixels long, each a mesh of its own: along the four borders and on the near plane, about as far from there on
+    /// either side as rounding moves them, but a pixel at least.
+    fn slivers(&self, rng: &mut Rng) -> Arc<Scene> {
+        let half = self.size.map(|side| 0.5 * f64::from(side));
+        let sliver = |i: usize| {
+            let (aside, border) = (i % 2, i % 5);
+            let distance = if border == 4 { self.near_m + rng.real(-1.0, 1.0) * (0.02 + self.rounding_m()) } else { 10.0 };
+            let pixel = self.pixel_m(distance.max(0.5 * self.near_m));
+            let spread = 1.0 + self.rounding_m() / pixel;
+            let across = match border {
+                0 | 1 => half[aside] + rng.real(-spread, spread),
+                2 | 3 => -half[aside] - rng.real(-spread, spread),
+                _ => rng.real(-half[aside], half[aside]),
+            };
+            let along = rng.real(-half[1 - aside], half[1 - aside]);
+            let corners = [[0.0, 0.0], [8.0, 0.3], [3.0, 0.9]].map(|[far, thick]| {
+                let mut at = [0.0; 2];
+                (at[aside], at[1 - aside]) = (across + thick, along + far);
+                (self.eye + self.axes * DVec3::new(at[0] * pixel, at[1] * pixel, -distance)).as_vec3().to_array()
+            });
+            triangle_soup(corners)
+        };
+        scene_of_meshes(&(0..120).map(sliver).collect::<Vec<_>>())
+    }
+
+    fn view(&self, scene: &Scene) -> View {
+        let Self { axes, eye, size, projection, near_m } = *self;
+        let camera = Camera { eye, target: eye - axes.z_axis, up: axes.y_axis, projection, near_m };
+        View::new(&camera, size[0], size[1], &scene.bounds(), DMat4::IDENTITY, [0.0; 4])
+    }
 }
 
 fn slivers_at_the_border(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let mut rng = context.rng(0xb0d);
-    let size = [64, 48];
     let (mut outside, mut drawn) = (0, 0);
-    for offset in [0.0, 1e4, 1e6] {
-        for projection in [Projection::Perspective { fov_y_deg: 50.0 }, Projection::Orthographic { height_m: 12.0 }] {
-            let (pixel, distance) = match projection {
-                Projection::Perspective { fov_y_deg } => (2.0 * libm::tan(0.5 * fov_y_deg.to_radians()) / f64::from(size[1]), 10.0),
-                Projection::Orthographic { height_m } => (height_m / f64::from(size[1]), 1.0),
+    let projections = [Projection::Perspective { fov_y_deg: 50.0 }, Projection::Orthographic { height_m: 12.0 }];
+    // Boxes around slivers are tight where the view is aligned with the axes; elsewhere every term of a bound counts.
+    let turned = DMat3::from_euler(EulerRot::YXZ, 0.7, -0.5, 0.4);
+    let places = [(0.0, DMat3::IDENTITY), (0.0, turned), (1e4, turned), (1e6, DMat3::IDENTITY), (1e6, turned)];
+    for ((offset, axes), projection) in places.into_iter().flat_map(|place| projections.map(|projection| (place, projection))) {
+        let border = BorderView { axes, eye: DVec3::new(0.7, -0.6, 0.4) * offset, size: [64, 48], projection, near_m: 2.0 };
+        let scene = border.slivers(&mut rng);
+        let view = border.view(&scene);
+        for position in [PositionFormat::Stored, PositionFormat::Relative] {
+            let option = context.quick_option();
+            let accuracy = |culling: Culling| AccuracyRequest {
+                pins: PinnedOptions::of(culling).with(position).with(option),
+                ..AccuracyRequest::default()
             };
-            let eye = DVec3::new(0.7, -0.6, 0.4) * offset;
-            // How far rounding moves a corner, at least.
-            let spread = 1.0 + offset * f64::from(f32::EPSILON) / (pixel * distance);
-            let scene = slivers(&mut rng, eye, size, pixel, spread, distance);
-            let camera = Camera { eye, target: eye + DVec3::NEG_Z, up: DVec3::Y, projection, near_m: 0.5 };
-            let view = View::new(&camera, size[0], size[1], &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
-            for position in [PositionFormat::Stored, PositionFormat::Relative] {
-                let accuracy = |culling| {
-                    let pins = PinnedOptions::of(culling).with(position).with(context.quick_option());
-                    AccuracyRequest { pins, ..AccuracyRequest::default() }
-                };
-                let [whole, frustum, two_pass] = [Culling::None, Culling::Frustum, Culling::TwoPass].map(accuracy);
-                let what = format!("{offset:e} m from the origin, {projection:?}, {} positions", position.name());
-                let reference = context.captured(&scene, &view, &Stack::default(), &whole, &what)?;
-                for (culled, how) in [(frustum, "frustum"), (two_pass, "two-pass")] {
-                    let what = format!("{what}, {how}");
-                    let capture = context.captured(&scene, &view, &Stack::default(), &culled, &what)?;
-                    same(&capture, &reference, &what)?;
-                    outside += context.renderer.culled().unwrap_or_default().outside;
-                }
-                drawn += reference.frame.covered();
+            let what = format!("{offset:e} m from the origin, {projection:?}, {} positions", position.name());
+            let reference = context.captured(&scene, &view, &Stack::default(), &accuracy(Culling::None), &what)?;
+            for culling in [Culling::Frustum, Culling::TwoPass] {
+                let what = format!("{what}, culling {}", culling.name());
+                let capture = context.captured(&scene, &view, &Stack::default(), &accuracy(culling), &what)?;
+                same(&capture, &reference, &what)?;
+                outside += context.renderer.culled().unwrap_or_default().outside;
             }
+            drawn += reference.frame.covered();
         }
     }
     check!(outside > 100 && drawn > 100, "{outside} slivers were culled, and {drawn} pixels show others");

@@ -14,6 +14,7 @@ mod depth;
 mod drawing;
 mod effects;
 mod hardware;
+mod normals;
 mod parameters;
 mod picture_sizes;
 mod published;

@@ -2,15 +2,26 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
 use serde_json::json;
 
 use super::{
     case::{Case, Expectation},
     checks::{EarlyEnd, check, same},
     context::CaseContext,
-    drawing::stack,
+    drawing::{pinned, stack},
 };
-use crate::scene::gltf;
+use crate::{
+    accuracy::{PinnedOptions, Skinning},
+    plan::AccuracyRequest,
+    preset::{ClipPlayback, Clock, Preset},
+    scene::{
+        Accessor, Instance, Scene,
+        deformation::Deformation,
+        gltf, pose,
+        rig::{LocalTransform, Node, Trs},
+    },
+};
 
 pub const CASES: &[Case] = &[
     Case {
@@ -26,6 +37,13 @@ pub const CASES: &[Case] = &[
         about: "rotations of length 3, 10^-3 and 10^18 are normalized, with a note",
         expectation: Expectation::Exact,
         run: rotations_of_any_length,
+    },
+    Case {
+        number: 30,
+        name: "skins-beside-other-meshes",
+        about: "a skin, morph targets alone and meshes that stay as they are, in turn, also with NaN and infinities: each mesh follows what moves it",
+        expectation: Expectation::Exact,
+        run: skins_beside_other_meshes,
     },
     Case {
         number: 30,
@@ -123,6 +141,69 @@ fn rotations_of_any_length(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         check!(says(&scene), "{what} is accepted without a note: {:?}", scene.notes);
         let capture = context.exact_on_all_with(&Arc::new(scene), &view, &stack(&["lambert"]), &what)?;
         same(&capture, &reference, &what)?;
+    }
+    Ok(())
+}
+
+/// Five meshes that can deform, beside one another: one follows joints, two follow morph targets, and two, the first among them, follow
+/// neither in this picture.
+fn mixed_company(tentacle: &Scene) -> Scene {
+    let mut scene = tentacle.clone();
+    let mut boneless = scene.primitives[0].clone();
+    boneless.deformation = Deformation { influences: Vec::new(), joint_bounds: Vec::new(), ..boneless.deformation };
+    scene.primitives.push(boneless);
+    for (place, weight) in [(-2.0, 0.0), (-1.0, 1.5), (1.0, 0.0), (2.0, -0.75)] {
+        let rest = Trs { translation: DVec3::X * place, ..Trs::default() };
+        let node = scene.rig.nodes.len();
+        scene.rig.nodes.push(Node { name: String::new(), parent: None, rest: LocalTransform::Trs(rest), weights: vec![weight] });
+        let rest = LocalTransform::Trs(rest).matrix();
+        scene.instances.push(Instance { node: Some(node), ..Instance::fixed(1, rest) });
+    }
+    // The skin comes third: a mesh that stays lies before and behind it.
+    scene.instances.rotate_left(1);
+    scene.instances.swap(4, 2);
+    scene.rig.motion_bounds = pose::motion_bounds(&scene);
+    scene
+}
+
+/// Writes values into a component of every seventh vertex, beginning with `first`.
+fn spoil(scene: &mut Scene, accessor: &Accessor, first: u32) {
+    let values = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -f32::NAN, 1e-40];
+    for (i, vertex) in (first..accessor.count).step_by(7).enumerate() {
+        let at = (accessor.offset + vertex * accessor.stride) as usize + 4 * (i % 3);
+        scene.vertex_bytes[at..at + 4].copy_from_slice(&values[i / 3 % values.len()].to_le_bytes());
+    }
+}
+
+fn skins_beside_other_meshes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let sound = mixed_company(&*context.scene("tentacle?tess=3&joints=5")?);
+    let mut spoiled = sound.clone();
+    let primitive = sound.primitives[0].clone();
+    let target = &primitive.deformation.morph_targets[0];
+    for (first, accessor) in [(0, Some(primitive.positions)), (2, Some(primitive.normals)), (4, target.positions), (5, target.normals)] {
+        if let Some(accessor) = accessor {
+            spoil(&mut spoiled, &accessor, first);
+        }
+    }
+    for skinning in Skinning::ALL {
+        for (what, scene) in [("sound", &sound), ("with NaN and infinities", &spoiled)] {
+            let what = format!("{what}, {} skinning", skinning.name());
+            let preset = Preset {
+                playback: ClipPlayback { clip: "Curl".into(), ..ClipPlayback::default() },
+                clock: Clock { time_s: 1.25, ..Clock::default() },
+                accuracy: AccuracyRequest { pins: PinnedOptions::of(*skinning), ..AccuracyRequest::default() },
+                ..Preset::default()
+            };
+            let (scene, view) = (Arc::new(scene.clone()), preset.view(scene, [160, 96]));
+            let accuracy = pinned(context.quick_option());
+            for effects in [&["normals"][..], &["wobble", "lambert"]] {
+                let what = format!("{what}, {}", effects.join(" and "));
+                let (capture, verdict) = context.exact(&scene, &view, &stack(effects), &accuracy, &what)?;
+                check!(capture.frame.covered() > 800, "{what}: {} pixels", capture.frame.covered());
+                let bent = 3 * u64::from(primitive.vertex_count());
+                check!(verdict.report.deformed_vertices == bent, "{what}: {} of {bent} vertices bend", verdict.report.deformed_vertices);
+            }
+        }
     }
     Ok(())
 }

@@ -1,7 +1,8 @@
 //! The table of stress cases, except [`super::strict`], which runs the others again.
 
 use super::{
-    case::Case, clipping, coverage, culling, depth, effects, hardware, parameters, picture_sizes, published, queues, skins, time, values,
+    case::Case, clipping, coverage, culling, depth, effects, hardware, normals, parameters, picture_sizes, published, queues, skins, time,
+    values,
 };
 
 /// All cases by kind, except those that run other cases.
@@ -10,6 +11,7 @@ const CASES: &[&[Case]] = &[
     coverage::CASES,
     clipping::CASES,
     values::CASES,
+    normals::CASES,
     depth::CASES,
     queues::CASES,
     picture_sizes::CASES,

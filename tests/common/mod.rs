@@ -264,17 +264,23 @@ impl Mutated {
     pub fn shaders(&self) -> Library {
         Library::Folder(self.0.path().into())
     }
+
+    /// One more mistake, as in [`mutated`].
+    #[must_use]
+    pub fn and(self, file: &str, from: &str, to: &str) -> Self {
+        let path = self.0.path().join(format!("{file}.wgsl"));
+        let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{file}: {error}"));
+        assert_eq!(text.matches(from).count(), 1, "{from:?} is not once in {file}");
+        fs::write(&path, text.replace(from, to)).expect("a shader is written");
+        self
+    }
 }
 
 /// The project's shaders with `from`, which stands in `file` exactly once, replaced by `to`.
 pub fn mutated(file: &str, from: &str, to: &str) -> Mutated {
     let folder = tempfile::tempdir().expect("a temporary folder");
     copy_folder(&Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders"), folder.path());
-    let path = folder.path().join(format!("{file}.wgsl"));
-    let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{file}: {error}"));
-    assert_eq!(text.matches(from).count(), 1, "{from:?} is not once in {file}");
-    fs::write(&path, text.replace(from, to)).expect("a shader is written");
-    Mutated(folder)
+    Mutated(folder).and(file, from, to)
 }
 
 fn copy_folder(from: &Path, to: &Path) {

@@ -6,7 +6,7 @@ use rasterlab::{
     gpu::{Capture, Renderer},
     measure::Budget,
     plan::AccuracyRequest,
-    preset_file,
+    preset_file::{self, Folders},
 };
 
 use crate::common::*;
@@ -126,6 +126,17 @@ fn a_color_in_the_middle_between_two_bytes_may_be_either() {
     assert_eq!(judged(&capture), Ok(()));
     assert!(replace(&mut capture, 127, 126) > 1000);
     judged(&capture).expect_err("126 is wrong");
+}
+
+#[test]
+fn dots_before_the_background_may_be_either_byte_at_a_tie() {
+    let Some(mut renderer) = renderer() else { return };
+    // The background's blue is 63 of 255 and the dots' is 255: a dot of 162 of 256 makes it 184.5.
+    let mut preset = preset_file::open("dots-route", &Folders::default()).expect("a preset of the gallery").preset;
+    preset.output.size = [96, 72];
+    let scene = preset_file::load_scene(&preset, None).expect("a built-in scene");
+    let (_, verdict) = judged_preset(&mut renderer, &scene, &preset, &preset.accuracy);
+    assert_eq!(exactness(&verdict.report), Ok(()));
 }
 
 #[test]

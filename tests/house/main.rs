@@ -20,3 +20,4 @@ mod scopes;
 mod shaders;
 mod surface_inputs;
 mod twins;
+mod weights;

@@ -238,7 +238,12 @@ fn a_look_on_a_model_that_is_saved_under_another_name_is_called_by_it() {
     lab.event(Event::Text(folder.path().join("my ink.toml").to_string_lossy().into_owned()));
     lab.run_steps(2);
     press(&mut lab, Modifiers::NONE, Key::Enter);
-    assert_eq!((lab.state().preset_file().title(), lab.state().preset_file().is_modified()), ("my ink", false), "{}", lab.state().log_text());
+    assert_eq!(
+        (lab.state().preset_file().title(), lab.state().preset_file().is_modified()),
+        ("my ink", false),
+        "{}",
+        lab.state().log_text()
+    );
     assert_eq!(preset_file::load(&folder.path().join("my ink.toml")).expect("a file").preset.name, "my ink");
 }
 

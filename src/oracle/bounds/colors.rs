@@ -14,6 +14,7 @@ use super::{
     super::{
         perturbation::Perturbation,
         render::{
+            background::background,
             draw_order::ranks,
             layers::LayerImage,
             resolve::{Finish, PictureTables, ResolveInput, finish, shade_perturbed},
@@ -85,13 +86,18 @@ impl AcceptedColors {
         }
         let (ranks, light) = (ranks(shot, geometry), Light::of(shot, geometry));
         let tables = PictureTables::of(shot);
-        let finish = Finish::new(shot, input, &tables);
+        let (finish, background) = (Finish::new(shot, input, &tables), background(shot.view));
         let checkpoint = checkpoint();
         let right = |&i: &usize| {
             checkpoint.pass();
             let id = input.triangle_ids[i];
-            let triangle = SurfaceTriangle::new(shot, geometry, id)?;
             let (x, y) = (i % shot.view.width as usize, i / shot.view.width as usize);
+            let known = span(self.pictures.iter().map(|picture| picture[i]))?;
+            let Some(triangle) = SurfaceTriangle::new(shot, geometry, id) else {
+                let at_ties = color_steps(shot.stack).iter().flat_map(|&step| finish.pixel_at_ties(i, background[y], step));
+                let all = span(known.into_iter().chain(at_ties))?;
+                return (all != known).then_some((i, all));
+            };
             let errors = CornerErrors::of(shot, id, geometry.packed_bits).at(&triangle, x, y);
             let rank = ranks.get(id as usize).copied().unwrap_or(0.0);
             let finished = |perturbation: Perturbation| {
@@ -103,7 +109,6 @@ impl AcceptedColors {
             let slack =
                 |c: usize| if errors.doubt() == Doubt::Wide { (f64::from(most[c] - least[c]) * WIDE_SLACK).ceil() as u8 } else { 0 };
             let wide = [[0, 1, 2, 3].map(|c| least[c].saturating_sub(slack(c))), [0, 1, 2, 3].map(|c| most[c].saturating_add(slack(c)))];
-            let known = span(self.pictures.iter().map(|picture| picture[i]))?;
             let all = span(known.into_iter().chain(wide).chain(places(shot.stack).flat_map(&finished)))?;
             (all != known).then_some((i, all))
         };

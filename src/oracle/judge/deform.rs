@@ -48,9 +48,9 @@ pub fn judge_deformed(report: &mut ErrorReport, shot: &Shot, deformed: &[[f32; 6
 fn deform_error(shot: &Shot, draw: &Draw, vertex: u32, given: &[f32; 6]) -> DeformError {
     let [px, py, pz, nx, ny, nz] = given.map(f64::from);
     let (position, normal) = (DVec3::new(px, py, pz), DVec3::new(nx, ny, nz));
-    // A vertex that is refused must be out of range, with any bits.
+    // A vertex that is refused must be out of range in some component, with any bits: NaN is below no limit.
     let Ok(reference) = deform::position(shot.scene, draw, vertex) else {
-        return DeformError { is_outside: position.abs().max_element() < MAX_MAGNITUDE, ..DeformError::default() };
+        return DeformError { is_outside: position.abs().cmplt(DVec3::splat(MAX_MAGNITUDE)).all(), ..DeformError::default() };
     };
     let reference_normal = deform::normal(shot.scene, draw, vertex);
     let is_outside = !is_near(position, &reference) || reference_normal.is_some_and(|reference| !is_near(normal, &reference));
