@@ -4,8 +4,8 @@
 use std::collections::HashMap;
 
 use naga::{
-    AddressSpace, BinaryOperator, Block, Expression, Function, Handle, Literal, MathFunction, Module, Statement, TypeInner, UnaryOperator,
-    valid::FunctionInfo,
+    AddressSpace, BinaryOperator, Block, Expression, Function, Handle, Literal, LocalVariable, MathFunction, Module, Statement, TypeInner,
+    UnaryOperator, valid::FunctionInfo,
 };
 
 use super::reflect::Reflected;
@@ -33,7 +33,7 @@ impl Reflected {
     /// module has no such entry point.
     pub fn weight(&self, entry: &str, constants: &[(String, f64)]) -> Option<Weight> {
         let index = self.module.entry_points.iter().position(|point| point.name == entry)?;
-        let mut counter = Counter { reflected: self, constants, known: HashMap::new() };
+        let mut counter = Counter { reflected: self, constants, known: HashMap::new(), locals: HashMap::new() };
         let (function, info) = (&self.module.entry_points[index].function, self.info.get_entry_point(index));
         Some(counter.function(function, info))
     }
@@ -43,6 +43,8 @@ struct Counter<'a> {
     reflected: &'a Reflected,
     constants: &'a [(String, f64)],
     known: HashMap<Handle<Function>, Weight>,
+    /// Values that variables of the function hold here on every way. `a && b` is a variable that a branch sets.
+    locals: HashMap<Handle<LocalVariable>, f64>,
 }
 
 /// A function while it is counted.
@@ -55,7 +57,9 @@ struct Context<'a> {
 impl Counter<'_> {
     fn function(&mut self, function: &Function, info: &FunctionInfo) -> Weight {
         let mut weight = Weight::default();
+        let outer = std::mem::take(&mut self.locals);
         self.block(&function.body, Context { function, info }, false, &mut weight);
+        self.locals = outer;
         weight
     }
 
@@ -63,7 +67,10 @@ impl Counter<'_> {
         for statement in block {
             let own = match statement {
                 Statement::Emit(range) => range.clone().map(|handle| self.expression(handle, context)).sum(),
-                Statement::Store { pointer, .. } => self.access(*pointer, context),
+                Statement::Store { pointer, value } => {
+                    self.stored(*pointer, *value, context);
+                    self.access(*pointer, context)
+                }
                 Statement::Atomic { .. } => ATOMIC,
                 Statement::ControlBarrier(_) | Statement::MemoryBarrier(_) | Statement::WorkGroupUniformLoad { .. } => BARRIER,
                 Statement::Block(inner) => {
@@ -72,21 +79,34 @@ impl Counter<'_> {
                 }
                 Statement::If { condition, accept, reject } => {
                     let known = self.value(*condition, context);
+                    let before = self.locals.clone();
                     if known != Some(0.0) {
                         self.block(accept, context, is_looped, weight);
                     }
+                    let accepted = std::mem::replace(&mut self.locals, before);
                     if known.is_none_or(|value| value == 0.0) {
                         self.block(reject, context, is_looped, weight);
+                    }
+                    match known {
+                        Some(0.0) => {}
+                        Some(_) => self.locals = accepted,
+                        None => self.locals.retain(|local, value| accepted.get(local) == Some(value)),
                     }
                     1.0
                 }
                 Statement::Switch { cases, .. } => {
-                    cases.iter().for_each(|case| self.block(&case.body, context, is_looped, weight));
+                    for case in cases {
+                        self.locals.clear();
+                        self.block(&case.body, context, is_looped, weight);
+                    }
+                    self.locals.clear();
                     1.0
                 }
                 Statement::Loop { body, continuing, .. } => {
+                    self.locals.clear();
                     self.block(body, context, true, weight);
                     self.block(continuing, context, true, weight);
+                    self.locals.clear();
                     1.0
                 }
                 Statement::Call { function, .. } => {
@@ -107,6 +127,15 @@ impl Counter<'_> {
                 weight.once += own;
             }
         }
+    }
+
+    /// Notes what a variable of the function holds from here on.
+    fn stored(&mut self, pointer: Handle<Expression>, value: Handle<Expression>, context: Context<'_>) {
+        let Expression::LocalVariable(local) = context.function.expressions[pointer] else { return };
+        match self.value(value, context) {
+            Some(value) => self.locals.insert(local, value),
+            None => self.locals.remove(&local),
+        };
     }
 
     /// WGSL has no recursion, so every function is counted once.
@@ -172,6 +201,10 @@ impl Counter<'_> {
                 let given = self.constants.iter().find(|(other, _)| other == name).map(|(_, value)| *value);
                 given.or_else(|| self.global(declared.init?))
             }
+            Expression::Load { pointer } => match context.function.expressions[*pointer] {
+                Expression::LocalVariable(local) => self.locals.get(&local).copied(),
+                _ => None,
+            },
             Expression::Constant(constant) => self.global(self.module().constants[*constant].init),
             Expression::Unary { op: UnaryOperator::LogicalNot, expr } => bool(self.value(*expr, context)? == 0.0),
             Expression::Binary { op, left, right } => {

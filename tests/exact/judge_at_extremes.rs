@@ -3,6 +3,7 @@
 
 use rasterlab::{
     accuracy::{DepthFormat, PinnedOptions, PositionFormat, Visibility},
+    effects::Effect,
     gpu::{Capture, Renderer},
     measure::Budget,
     plan::AccuracyRequest,
@@ -112,8 +113,10 @@ fn colors_that_are_all_a_little_wrong_are_wrong() {
 #[test]
 fn a_color_in_the_middle_between_two_bytes_may_be_either() {
     let Some(mut renderer) = renderer() else { return };
-    // Normals along z: red and green are 0.5, which is 127.5 of 255.
-    let (scene, stack) = (scene("grid?cell=16"), stack(&[]));
+    // With three levels, red and green of normals along z are 0.5, which is 127.5 of 255.
+    let (scene, mut stack) = (scene("grid?cell=16"), stack(&["normals"]));
+    let posterize = Effect::find("posterize").expect("a built-in effect");
+    posterize.field("levels").expect("a parameter").set(&mut stack.enable(posterize).words, &[3.0]).expect("a number of levels");
     let view = view(&scene, [64, 48]);
     let mut capture = captured(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default());
     let judged = |capture: &Capture| exactness(&verdict(&scene, &view, &stack, capture).report);

@@ -216,7 +216,13 @@ fn saving_never_overwrites_what_another_program_wrote_unasked_and_both_can_be_me
     write(&file, &theirs);
     press(&mut lab, Modifiers::COMMAND, Key::S);
     assert_eq!(read(), theirs, "the change of the other program is overwritten");
-    click(&mut lab, Role::Button, "Merge and save");
+    if lab.query_by_role_and_label(Role::Button, "Merge and save").is_some() {
+        click(&mut lab, Role::Button, "Merge and save");
+    } else {
+        // On a slow machine the watcher was faster than the key.
+        click(&mut lab, Role::Button, "Merge");
+        press(&mut lab, Modifiers::COMMAND, Key::S);
+    }
     let merged = rasterlab::preset_file::load(&file).expect("a preset").preset;
     assert_eq!((value(&lab, "facet", "amount")[0], lab.state().preset_file().preset.spin_deg_per_s), (mine, 30.0));
     assert_eq!(merged, lab.state().preset_file().preset);
