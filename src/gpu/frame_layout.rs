@@ -178,6 +178,8 @@ const CLEARED_IN_PASSES: &[BufferId] =
     &[BufferId::Counters, BufferId::DepthKeys, BufferId::TriangleIds, BufferId::DepthAndId, BufferId::PackedDepthId];
 /// Most workgroups that share a medium triangle, as the kernel has it.
 const MOST_PARTS: u32 = 4;
+/// Invocations of a workgroup of the passes over queues.
+const QUEUE_GROUP: u32 = 64;
 /// Most pixels that an invocation of the first pass clears.
 const CLEARED_PIXELS: u64 = 4;
 
@@ -501,12 +503,14 @@ impl FrameLayout {
     /// Most workgroups that the entries of a pass's queue can keep busy.
     fn most_queued(&self, pass: Pass) -> u32 {
         let room = &self.capacities;
+        // Large triangles are few, as a rule, and workgroups that find none cost a little too.
+        let most_large = room.large.div_ceil(4);
         match pass {
             Pass::Clip => room.clip.div_ceil(64),
-            // Large triangles are few, as a rule, and workgroups that find none cost a little too.
-            Pass::TileLarge => room.large.div_ceil(4),
+            Pass::TileLarge => most_large,
             // Several workgroups may share an entry.
-            Pass::RasterMedium(_) => room.medium.saturating_mul(MOST_PARTS),
+            Pass::RasterMedium(_) => room.medium.saturating_mul(MOST_PARTS).max(most_large),
+            Pass::RasterAll(_) => room.medium.saturating_mul(MOST_PARTS).max(room.tiles.div_ceil(8)),
             _ => room.tiles.div_ceil(8),
         }
     }
@@ -547,6 +551,10 @@ impl FrameLayout {
             Pass::OrderLimit | Pass::OrderCut | Pass::Args | Pass::AdvanceQueues { .. } | Pass::DotsArgs => Dispatch::once([1, 1]),
             Pass::Clip | Pass::TileLarge | Pass::RasterMedium(_) | Pass::RasterLarge(_) if key.work.queue_groups > 0 => {
                 Dispatch::once([key.work.queue_groups.min(self.most_queued(pass)).max(1), 1])
+            }
+            Pass::RasterAll(_) => {
+                let of_queues = key.work.queue_groups.min(self.most_queued(pass));
+                Dispatch::once(folded(triangles.div_ceil(QUEUE_GROUP) + of_queues.max(1)))
             }
             Pass::Clip => Dispatch::args(offset_of!(DispatchArgs, clip)),
             Pass::RasterMedium(_) => Dispatch::args(offset_of!(DispatchArgs, medium)),

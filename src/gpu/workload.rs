@@ -133,7 +133,7 @@ impl<'a> FrameCounts<'a> {
         let few_turns = once + TURNS * looped;
         let sizes = &self.sizes;
         // A workgroup visits squares of 64 pixels that a triangle touches: those inside, and those along its edges.
-        let queued = |path: PathWork| {
+        let queued = |path: PathWork, once: f64, looped: f64| {
             let visited = path.covered + 16.0 * (path.candidates * path.triangles).sqrt() + 64.0 * path.triangles;
             vec![(Unit::QueuedOperation, path.triangles * once), (Unit::QueuedSampleOperation, visited * looped)]
         };
@@ -151,13 +151,21 @@ impl<'a> FrameCounts<'a> {
                 let triangles = self.invocations(pass).unwrap_or(0.5 * self.triangles());
                 vec![(Unit::TriangleOperation, triangles * once), (Unit::SampleOperation, sizes.small.candidates * looped)]
             }
+            // Its text holds the code of three paths, each about as long as the others.
+            Pass::RasterAll(_) => {
+                let (once, looped) = (once / 3.0, looped / 3.0);
+                let mut counts = vec![(Unit::TriangleOperation, self.triangles() * once), (Unit::SampleOperation, sizes.small.candidates * looped)];
+                counts.extend(queued(sizes.medium, once, looped));
+                counts.extend(queued(sizes.large, once, looped));
+                counts
+            }
             Pass::RasterPoints(_) => {
                 let triangles = self.invocations(pass).unwrap_or_else(|| self.triangles());
                 let seen = f64::from(self.needs.sizes.visible()) / f64::from(self.needs.sizes.sampled.max(1));
                 vec![(Unit::TriangleOperation, triangles * once), (Unit::DiscOperation, 3.0 * seen * self.triangles() * self.disc * looped)]
             }
-            Pass::RasterMedium(_) => queued(sizes.medium),
-            Pass::RasterLarge(_) => queued(sizes.large),
+            Pass::RasterMedium(_) => queued(sizes.medium, once, looped),
+            Pass::RasterLarge(_) => queued(sizes.large, once, looped),
             Pass::OrderSums | Pass::OrderRanks => vec![(Unit::OrderedTriangle, self.triangles())],
             Pass::DotsEnds => vec![(Unit::LineOperation, self.layout.dots.map_or(0.0, |dots| dots.segments.into()) * few_turns)],
             Pass::DotsCull => vec![(Unit::LineOperation, self.layout.dots.map_or(0.0, |dots| dots.runs.into()) * few_turns)],

@@ -110,18 +110,18 @@ impl KernelKey {
 
     /// The passes of a raster phase; the first phase of a frame fills the queues.
     fn raster_passes(&self, phase: RasterPhase, is_first: bool) -> Vec<Pass> {
-        let mut passes = vec![match self.samples.shape {
-            Shape::Points => Pass::RasterPoints(phase),
-            Shape::Triangles | Shape::Boxes => Pass::RasterSmall(phase),
-        }];
+        let mut passes = Vec::new();
+        match self.samples.shape {
+            Shape::Triangles | Shape::Boxes if self.draws_all_at_once() && !is_first => passes.push(Pass::RasterAll(phase)),
+            Shape::Triangles | Shape::Boxes => passes.push(Pass::RasterSmall(phase)),
+            Shape::Points => passes.push(Pass::RasterPoints(phase)),
+        }
         if is_first {
             passes.extend(self.queue_passes());
         }
-        if self.paths.has_medium {
-            passes.push(Pass::RasterMedium(phase));
-        }
-        if self.paths.has_large {
-            passes.push(Pass::RasterLarge(phase));
+        if passes != [Pass::RasterAll(phase)] {
+            passes.extend(self.paths.has_medium.then_some(Pass::RasterMedium(phase)));
+            passes.extend(self.paths.has_large.then_some(Pass::RasterLarge(phase)));
         }
         match phase {
             RasterPhase::CountSamples => passes.extend([Pass::OrderSums, Pass::OrderLimit, Pass::OrderRanks]),
@@ -147,11 +147,21 @@ impl KernelKey {
         if sets_up_clipped {
             passes.push(Pass::SampleSetup(TriangleSource::ClippedTriangles));
         }
-        if self.paths.has_large {
+        if self.paths.has_large && !self.divides_in_medium() {
             passes.push(Pass::TileLarge);
             passes.extend(is_indirect.then_some(Pass::Args));
         }
         passes
+    }
+
+    /// Does the first pass over the medium queue find the tiles of large triangles, too? No count decides how many workgroups it has.
+    pub const fn divides_in_medium(&self) -> bool {
+        self.paths.has_medium && self.paths.has_large && self.work.queue_groups > 0
+    }
+
+    /// Does each raster phase but the first draw the triangles of all queues in one pass? No count decides how many workgroups that has.
+    const fn draws_all_at_once(&self) -> bool {
+        (self.paths.has_medium || self.paths.has_large) && self.work.queue_groups > 0
     }
 
     /// The passes that draw dots, after those that find the nearest depths.

@@ -40,6 +40,8 @@ pub enum Pass {
     TileLarge,
     RasterMedium(RasterPhase),
     RasterLarge(RasterPhase),
+    /// Draws triangles of all sizes, after a phase that has filled the queues.
+    RasterAll(RasterPhase),
     /// Projects the ends of the segments along which dots lie.
     DotsEnds,
     /// Lists the dots that may be visible.
@@ -141,6 +143,7 @@ impl Pass {
             Self::TileLarge => "tile_large",
             Self::RasterMedium(_) => "raster_medium",
             Self::RasterLarge(_) => "raster_large",
+            Self::RasterAll(_) => "raster_all",
             Self::DotsEnds => "dots_ends",
             Self::DotsCull => "dots_cull",
             Self::DotsArgs => "dots_args",
@@ -157,7 +160,8 @@ impl Pass {
         let folder = match self {
             Self::Particles | Self::Skin | Self::Project | Self::ProjectMeshlets | Self::Cull(_) | Self::DepthReduce => "geometry",
             Self::AdvanceQueues { .. } | Self::SampleSetup(_) | Self::Args | Self::Clip => "geometry",
-            Self::RasterSmall(_) | Self::RasterPoints(_) | Self::RasterMedium(_) | Self::RasterLarge(_) | Self::TileLarge => "raster",
+            Self::RasterSmall(_) | Self::RasterPoints(_) | Self::RasterMedium(_) | Self::RasterLarge(_) => "raster",
+            Self::RasterAll(_) | Self::TileLarge => "raster",
             Self::OrderSums | Self::OrderLimit | Self::OrderRanks | Self::OrderCut => "order",
             Self::DotsEnds | Self::DotsCull | Self::DotsArgs | Self::DotsDraw | Self::DotsProbe => "lines",
             Self::ListTiles | Self::Resolve | Self::Scale => "shade",
@@ -173,7 +177,8 @@ impl Pass {
     /// What it writes, if it is a raster pass.
     pub const fn phase(self) -> Option<RasterPhase> {
         match self {
-            Self::RasterSmall(phase) | Self::RasterPoints(phase) | Self::RasterMedium(phase) | Self::RasterLarge(phase) => Some(phase),
+            Self::RasterSmall(phase) | Self::RasterPoints(phase) => Some(phase),
+            Self::RasterMedium(phase) | Self::RasterLarge(phase) | Self::RasterAll(phase) => Some(phase),
             _ => None,
         }
     }

@@ -69,15 +69,21 @@ pub(super) fn equal<T: PartialEq + std::fmt::Debug>(found: &T, expected: &T, wha
 
 /// Fails where two pictures differ in a triangle id, a depth key or a number of hits.
 pub(super) fn same(found: &Capture, expected: &Capture, what: &str) -> Result<(), EarlyEnd> {
-    let images = [
-        ("triangle ids", compare::triangle_ids(&found.frame.triangle_id, &expected.frame.triangle_id)),
-        ("depth keys", compare::triangle_ids(&found.frame.depth_key, &expected.frame.depth_key)),
-        ("numbers of hits", compare::triangle_ids(layers(found), layers(expected))),
-    ];
-    match images.iter().find(|(_, delta)| delta.different > 0) {
-        None => Ok(()),
-        Some((which, delta)) => {
+    same_nearest(found, expected, what)?;
+    same_values("numbers of hits", layers(found), layers(expected), what)
+}
+
+/// Fails where two pictures differ in a triangle id or a depth key.
+pub(super) fn same_nearest(found: &Capture, expected: &Capture, what: &str) -> Result<(), EarlyEnd> {
+    same_values("triangle ids", &found.frame.triangle_id, &expected.frame.triangle_id, what)?;
+    same_values("depth keys", &found.frame.depth_key, &expected.frame.depth_key, what)
+}
+
+fn same_values(which: &str, found: &[u32], expected: &[u32], what: &str) -> Result<(), EarlyEnd> {
+    match compare::triangle_ids(found, expected) {
+        delta if delta.different > 0 => {
             Err(EarlyEnd::Failed(format!("{what}: {} pixels have other {which}: {:?}", delta.different, delta.mismatches)))
         }
+        _ => Ok(()),
     }
 }

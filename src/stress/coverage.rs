@@ -47,6 +47,13 @@ pub const CASES: &[Case] = &[
         run: size_class_borders,
     },
     Case {
+        number: 8,
+        name: "edges-beside-axes",
+        about: "large triangles with an edge that leaves an axis by 0 to 2 units and ends at a sample on the border of a tile",
+        expectation: Expectation::Exact,
+        run: edges_beside_axes,
+    },
+    Case {
         number: 23,
         name: "near-misses",
         about: "a million random triangles, each with an edge through a sample or one step beside it",
@@ -61,6 +68,22 @@ pub const CASES: &[Case] = &[
         run: near_ties,
     },
 ];
+
+fn edges_beside_axes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let mut triangles = Vec::new();
+    // The edge goes from `along` 0 to the far side, and from `across` to `across + lean`; the third corner lies on either side of it.
+    for (sample, beside, lean) in [63, 64, 127, 128].into_iter().flat_map(|s| (-1..=1).flat_map(move |b| (-2..=2).map(move |l| (s, b, l)))) {
+        let across = 256 * sample + 128 + beside;
+        for (is_upright, third) in [(false, -20_000), (false, 80_000), (true, -20_000), (true, 80_000)] {
+            let place = |along: i32, across: i32| if is_upright { [across, along] } else { [along, across] };
+            // Both ends lie at samples, so the edge comes closest to the samples of the border at one of them.
+            let corners = [place(128, across), place(256 * 190 + 128, across + lean), place(256 * 95, third)];
+            triangles.push((corners, 0.1 + 0.001 * triangles.len() as f32));
+        }
+    }
+    let scene = scene_of_meshes(&[triangle_soup_in_units(&triangles)]);
+    context.exact_on_all(&scene, &pixel_view(192, 192), "edges that leave an axis by at most 2 units").map(drop)
+}
 
 fn translation(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let mut rng = context.rng(11);

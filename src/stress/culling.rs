@@ -6,7 +6,7 @@ use glam::{DMat3, DMat4, DQuat, DVec3, EulerRot};
 
 use super::{
     case::{Case, Expectation},
-    checks::{EarlyEnd, check, equal, same},
+    checks::{EarlyEnd, check, equal, same, same_nearest},
     context::CaseContext,
     drawing::stack,
     scenes::{Rng, scene_of_meshes, triangle_soup},
@@ -29,6 +29,13 @@ pub const CASES: &[Case] = &[
         about: "a walk with two-pass culling, where each picture hides behind what the one before it showed: every picture is complete",
         expectation: Expectation::Exact,
         run: culled_walk,
+    },
+    Case {
+        number: 34,
+        name: "culled-cameras",
+        about: "cameras anywhere in a scene, in any direction, with near planes up to the size of a mesh: culling loses nothing, and leaves out much",
+        expectation: Expectation::Bounded("the same triangle ids and depth keys as without culling"),
+        run: culled_cameras,
     },
     Case {
         number: 34,
@@ -86,6 +93,52 @@ fn culled_walk(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         }
     }
     check!(hidden > 0, "nothing was hidden on the whole walk");
+    Ok(())
+}
+
+/// A camera inside or just outside a scene, in a random direction.
+fn camera_anywhere(scene: &Scene, rng: &mut Rng, step: usize) -> Camera {
+    let bounds = scene.bounds();
+    let mut random = |reach: f64| DVec3::new(rng.real(-reach, reach), rng.real(-reach, reach), rng.real(-reach, reach));
+    let radius = bounds.radius();
+    let (eye, way, up) = (bounds.center() + random(0.7 * radius), random(1.0), random(1.0));
+    let projection = match step % 4 {
+        3 => Projection::Orthographic { height_m: radius * rng.real(0.02, 1.5) },
+        _ => Projection::Perspective { fov_y_deg: rng.real(10.0, 130.0) },
+    };
+    let near_m = [0.001, 0.02, 0.1, 0.3][rng.between(0, 3) as usize] * radius;
+    Camera { eye, target: eye + way.normalize_or(DVec3::X), up, projection, near_m }
+}
+
+fn culled_cameras(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let mut rng = context.rng(0xca3);
+    let (mut outside, mut backfacing, mut covered) = (0, 0, 0);
+    let option = context.quick_option();
+    let steps = if context.is_slow() { 8 } else { 32 };
+    for query in ["field?count=27&triangles=400", "town", "knot"] {
+        let scene = context.scene(query)?;
+        for step in 0..steps {
+            let camera = camera_anywhere(&scene, &mut rng, step);
+            let view = View::new(&camera, 64, 48, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
+            let accuracy =
+                |culling: Culling| AccuracyRequest { pins: PinnedOptions::of(culling).with(option), ..AccuracyRequest::default() };
+            let what = format!("{query}, {camera:?}");
+            let reference = context.captured(&scene, &view, &Stack::default(), &accuracy(Culling::None), &what)?;
+            covered += reference.frame.covered();
+            for culling in [Culling::Frustum, Culling::TwoPass] {
+                let what = format!("{what}, culling {}", culling.name());
+                let capture = context.captured(&scene, &view, &Stack::default(), &accuracy(culling), &what)?;
+                same_nearest(&capture, &reference, &what)?;
+                let culled = context.renderer.culled().unwrap_or_default();
+                outside += culled.outside;
+                backfacing += culled.backfacing;
+            }
+        }
+    }
+    check!(
+        outside > 1000 && backfacing > 1000 && covered > 10_000,
+        "{outside} meshlets were left out outside, {backfacing} as facing away, and {covered} pixels show others"
+    );
     Ok(())
 }
 

@@ -15,6 +15,7 @@ use crate::{
     accuracy::Visibility,
     frame::vertex_flags,
     gpu::{Capacities, Capture},
+    math::GUARD_BAND,
     plan::Tuning,
     scene::{Scene, view::View},
 };
@@ -40,6 +41,13 @@ pub const CASES: &[Case] = &[
         about: "each queue with capacities of its demand n, of n - 1, n / 10 and 1: overflow is counted, the queue grows, and the redraw is exact",
         expectation: Expectation::Exact,
         run: queues,
+    },
+    Case {
+        number: 19,
+        name: "clipped-in-turns",
+        about: "more triangles to clip than a dispatch of 48 workgroups has invocations: each is clipped, in turns",
+        expectation: Expectation::Exact,
+        run: clipped_in_turns,
     },
     Case {
         number: 27,
@@ -179,6 +187,18 @@ fn workgroups_indirect(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let what = "66,048 tiles of the picture";
     let (capture, _) = context.exact(&scene, &view, &stack(&["triangle_id"]), &pinned(Visibility::Split32), what)?;
     equal(&capture.frame.covered(), &(2048 * 2064), &format!("{what}: pixels"))
+}
+
+fn clipped_in_turns(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    // Needles through the pixels of a picture, each with one corner beyond the guard band.
+    let needle = |i: i32| {
+        let [x, y] = [i % 64, i / 64 % 64].map(|k| 256 * k + 128);
+        [[x - 60, y - 60], [x + 60, y], [x, y + GUARD_BAND + 70_000]]
+    };
+    let triangles: Vec<_> = (0..3_500).map(|i| (needle(i), 0.25 + 1e-4 * i as f32)).collect();
+    let scene = scene_of_meshes(&[triangle_soup_in_units(&triangles)]);
+    let capture = context.exact_on_all(&scene, &pixel_view(64, 64), "3,500 triangles to clip")?;
+    equal(&capture.frame.counters.clipped, &3_500, "triangles that were clipped")
 }
 
 /// A known demand on one queue.

@@ -286,7 +286,7 @@ fn mutants() -> Vec<Mutant> {
         ),
         mutant(
             "one triangle is missing",
-            "stages/raster/raster_small",
+            "lib/small_triangle",
             "if id >= frame.triangle_count { return; }",
             "if id >= frame.triangle_count || id == 7u { return; }",
             builtin("fan?n=13", [128, 128]),
@@ -351,7 +351,7 @@ fn mutants() -> Vec<Mutant> {
         ),
         mutant(
             "a tile is forgotten",
-            "stages/raster/tile_large",
+            "lib/large_queue",
             "let tiles = pixels.zw / 64 - first + 1;",
             "let tiles = max(pixels.zw / 64 - first, vec2i(1));",
             sizes(),

@@ -199,7 +199,10 @@ fn repeated_frames_are_equal_to_the_bit() {
             assert_eq!(again.layers, first.layers, "{what}: layers");
             assert_eq!(again.frame.counters, first.frame.counters, "{what}: counters");
         }
-        is_drawn_by(&renderer, &["project", "raster_small", "clip", "tile_large", "raster_medium", "raster_large", "resolve"]);
+        is_drawn_by(&renderer, &["project", "raster_small", "clip", "raster_medium", "raster_large", "resolve"]);
+        if option == Visibility::Split32 {
+            is_drawn_by(&renderer, &["raster_all"]);
+        }
     }
 }
 

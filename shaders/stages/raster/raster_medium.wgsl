@@ -1,11 +1,15 @@
 // raster_medium: draws queued triangles of at most 128 px extent. The 64 invocations of a workgroup are a block of 8x8 pixels that moves
 // over a triangle's box.
 //@ use variants/medium_boxes
+//@ use steps/divide_step
 
 @compute @workgroup_size(64)
 fn raster_medium(
     @builtin(workgroup_id) workgroup: vec3u, @builtin(num_workgroups) workgroups: vec3u,
     @builtin(local_invocation_index) invocation_index: u32
 ) {
-    medium_boxes(workgroup.y * workgroups.x + workgroup.x, workgroups.x * workgroups.y, invocation_index);
+    let group = workgroup.y * workgroups.x + workgroup.x;
+    let groups = workgroups.x * workgroups.y;
+    divide_step(group, groups, invocation_index);
+    medium_boxes(group, groups, invocation_index);
 }

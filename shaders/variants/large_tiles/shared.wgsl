@@ -13,18 +13,18 @@
 //@ use steps/sample_test
 
 // Most workgroups that share a tile.
-const MAX_PARTS = 4u;
+const MAX_TILE_PARTS = 4u;
 
 // First and last slot of the queue.
-var<workgroup> slots: vec2u;
+var<workgroup> tile_slots: vec2u;
 // A bit for every block of 8x8 pixels that is drawn.
 var<workgroup> drawn: array<atomic<u32>, 2>;
 
 fn large_tiles(group: u32, groups: u32, invocation_index: u32) {
-    if invocation_index == 0u { slots = vec2u(queues_tiles_done(), queues_tiles_count()); }
-    let range = workgroupUniformLoad(&slots);
+    if invocation_index == 0u { tile_slots = vec2u(queues_tiles_done(), queues_tiles_count()); }
+    let range = workgroupUniformLoad(&tile_slots);
     let count = range.y - range.x;
-    let parts = clamp(groups / max(count, 1u), 1u, MAX_PARTS);
+    let parts = clamp(groups / max(count, 1u), 1u, MAX_TILE_PARTS);
     for (var item = group; item < count * parts; item += groups) {
         draw_tile(range.x + item / parts, item % parts, parts, invocation_index);
     }
@@ -49,7 +49,7 @@ fn draw_tile(slot: u32, part: u32, parts: u32, invocation_index: u32) {
     let plane = depth_plane_wide(large.z, large.area);
     let nearest = depth_key(bitcast<f32>(max(max(large.z.x, large.z.y), large.z.z)));
     let mine = vec2i(vec2u(invocation_index % 8u, invocation_index / 8u));
-    if block_is_drawn(large, plane, pixels, tile, mine * 8) && u32(mine.y) % parts == part {
+    if tile_block_is_drawn(large, plane, pixels, tile, mine * 8) && u32(mine.y) % parts == part {
         atomicOr(&drawn[invocation_index / 32u], 1u << (invocation_index % 32u));
     }
     workgroupBarrier();
@@ -84,7 +84,7 @@ fn block_edges(from_tile: vec2i) -> u32 {
 }
 
 // Does the triangle touch the block of 8x8 pixels at `from_tile`, and may it show there?
-fn block_is_drawn(t: ClockwiseTriangle, plane: DepthPlane, pixels: vec4i, tile: vec2i, from_tile: vec2i) -> bool {
+fn tile_block_is_drawn(t: ClockwiseTriangle, plane: DepthPlane, pixels: vec4i, tile: vec2i, from_tile: vec2i) -> bool {
     let first = tile + from_tile;
     if any(first > pixels.zw) || any(first + 7 < pixels.xy) { return false; }
     if SHAPE == SHAPE_BOXES { return true; }

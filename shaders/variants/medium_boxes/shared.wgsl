@@ -12,12 +12,12 @@
 //@ use steps/mark_tiles
 
 // Most workgroups that share a triangle.
-const MAX_PARTS = 4u;
+const MAX_BOX_PARTS = 4u;
 // Blocks in a box from which on examining them pays.
 const MIN_EXAMINED = 16u;
 
 // First and last slot of the queue.
-var<workgroup> slots: vec2u;
+var<workgroup> box_slots: vec2u;
 // Blocks of the triangle's box.
 var<workgroup> blocks: u32;
 // Of up to 64 blocks those that are drawn: how many, and for each the distance from the first, in blocks, across and down.
@@ -25,10 +25,10 @@ var<workgroup> listed: atomic<u32>;
 var<workgroup> list: array<u32, 64>;
 
 fn medium_boxes(group: u32, groups: u32, invocation_index: u32) {
-    if invocation_index == 0u { slots = vec2u(queues_medium_done(), queues_medium_count()); }
-    let range = workgroupUniformLoad(&slots);
+    if invocation_index == 0u { box_slots = vec2u(queues_medium_done(), queues_medium_count()); }
+    let range = workgroupUniformLoad(&box_slots);
     let count = range.y - range.x;
-    let parts = clamp(groups / max(count, 1u), 1u, MAX_PARTS);
+    let parts = clamp(groups / max(count, 1u), 1u, MAX_BOX_PARTS);
     for (var item = group; item < count * parts; item += groups) {
         draw_triangle(range.x + item / parts, item % parts, parts, invocation_index);
     }
@@ -63,7 +63,7 @@ fn draw_triangle(slot: u32, part: u32, parts: u32, invocation_index: u32) {
         workgroupBarrier();
         let number = (begin + invocation_index) * parts + part;
         let place = vec2i(vec2u(number % u32(sides.x), number / u32(sides.x)));
-        if number < count && block_is_drawn(coverage, first, place * 8) {
+        if number < count && box_block_is_drawn(coverage, first, place * 8) {
             list[atomicAdd(&listed, 1u)] = u32(place.x) | (u32(place.y) << 16u);
         }
         workgroupBarrier();
@@ -104,7 +104,7 @@ fn coverage_of(t: Triangle, first: vec2i) -> Coverage {
 }
 
 // Does the triangle touch the block that begins so many pixels from the first, and may it show there?
-fn block_is_drawn(coverage: Coverage, first: vec2i, from_first: vec2i) -> bool {
+fn box_block_is_drawn(coverage: Coverage, first: vec2i, from_first: vec2i) -> bool {
     let edges = coverage_at(coverage, from_first);
     if !coverage_touches(coverage, edges) { return false; }
     return !hidden_block_test(first + from_first, coverage_range(coverage), coverage_fills(coverage, edges));

@@ -16,10 +16,10 @@ fn vertex_effects_stored_normal(draw: u32, vertex: u32) -> vec3f {
 
 // A corner after the effects.
 fn vertex_effects_corner(draw: u32, vertex: u32, id: u32, p: vec3f) -> Vertex {
-    var v: Vertex;
-    v.position = clamp_world((draws[draw].world_from_object * vec4f(p, 1.0)).xyz);
-    v.normal = normal_direction(vertex_effects_stored_normal(draw, vertex));
-    v.center = v.position;
+    let position = clamp_world((draws[draw].world_from_object * vec4f(p, 1.0)).xyz);
+    let normal = normal_direction(vertex_effects_stored_normal(draw, vertex));
+    // Every member is written, because NVIDIA's driver 580.159 initializes a variable once if it inlines this function into a loop.
+    let v = Vertex(position, vec3f(0.0), normal, vec3f(0.0), position, vec3f(0.0), vec2f(0.0), 0u);
     return glue_vertex(corner_step(v, draw, id, p), draw);
 }
 

@@ -151,14 +151,18 @@ const MEDIUM_PATH: Feature = Feature {
     label: |key| word_if(key.paths.has_medium, "medium"),
     part: Some(Part { name: "raster_medium", is_used: |key| key.paths.has_medium, why_omitted: largest_triangle }),
     variants: &[("medium_boxes", |key, _| stem_if(key.shares_entries(), "shared"))],
+    constants: &[("DRAWS_MEDIUM", |key, _| flag(key.paths.has_medium))],
     ..Feature::NONE
 };
 
 const LARGE_PATH: Feature = Feature {
     label: |key| word_if(key.paths.has_large, "large"),
     part: Some(Part { name: "tile_large, raster_large", is_used: |key| key.paths.has_large, why_omitted: largest_triangle }),
-    variants: &[("large_tiles", |key, _| stem_if(key.shares_entries(), "shared"))],
-    constants: &[("HAS_LARGE", |key, _| flag(key.paths.has_large))],
+    variants: &[
+        ("large_tiles", |key, _| stem_if(key.shares_entries(), "shared")),
+        ("divide_step", |key, pass| step_if(key.divides_in_medium() && key.is_first_visit(pass), "large_queue")),
+    ],
+    constants: &[("HAS_LARGE", |key, _| flag(key.paths.has_large)), ("DRAWS_LARGE", |key, _| flag(key.paths.has_large))],
 };
 
 fn largest_triangle(needs: &Needs) -> String {
