@@ -95,4 +95,5 @@ def main():
         soup(folder, count, size)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -247,6 +247,12 @@ pub struct Render {
     /// Leave preset, version, adapter and driver out of the PNG
     #[arg(long)]
     pub bare: bool,
+    /// Also write the id of the visible triangle of every pixel, 4294967295 for none, as a NumPy array of u32; placeholders as in --output
+    #[arg(long, value_name = "FILE")]
+    pub triangle_ids: Option<String>,
+    /// Also write the depth of the visible sample of every pixel, in meters along the view, NaN for none, as a NumPy array of f32
+    #[arg(long, value_name = "FILE")]
+    pub depths: Option<String>,
 }
 
 #[derive(Args, Debug)]

@@ -4,6 +4,7 @@
 
 mod adapters;
 mod args;
+mod arrays;
 mod backend;
 mod bench;
 mod bless;

@@ -1,9 +1,10 @@
-//! `render`: one picture of each preset.
+//! `render`: one picture of each preset, and arrays of its triangle ids and depths.
 
 use serde_json::json;
 
 use super::{
     args::{Common, Render},
+    arrays,
     backend::{Backend, scene_of},
     error::{CliError, Exit},
     files::{self, Names},
@@ -20,14 +21,18 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
     if args.inputs.len() > 1 && !(files::has_preset(&args.output)? || files::has_number(&args.output)?) {
         return Err(CliError::usage(format!("{}: put {{preset}} or {{n}} into the name, since there are several presets", args.output)));
     }
+    check_arrays(args)?;
     let preset_files = args.inputs.iter().map(|what| open_with_flags(common, args, what)).collect::<Result<Vec<_>, _>>()?;
     preset_files.iter().flat_map(PresetFile::remarks).for_each(|remark| streams.note(&remark));
     let mut backend = Backend::open(common, streams)?;
-    if !to_stdout {
-        // Existing files are reported before anything is drawn.
-        preset_files
-            .iter()
-            .try_for_each(|preset_file| files::target(&args.output, &names(preset_file, &backend), common.force).map(drop))?;
+    // Existing files are reported before anything is drawn.
+    let picture = (!to_stdout).then_some(&args.output);
+    for (template, preset_file) in [picture, args.triangle_ids.as_ref(), args.depths.as_ref()]
+        .into_iter()
+        .flatten()
+        .flat_map(|template| preset_files.iter().map(move |file| (template, file)))
+    {
+        files::target(template, &names(preset_file, &backend), common.force)?;
     }
     let bar = streams.progress(preset_files.len() as u64);
     let mut results = Vec::new();
@@ -45,24 +50,56 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
             preset_file::png_with_preset(&frame, &saved, &backend.provenance())?
         };
         bar.inc(1);
+        let mut written = Vec::new();
+        if !to_stdout {
+            written.push(("file", files::create(&args.output, &names, common.force, &png)?));
+        }
+        if let Some(template) = &args.triangle_ids {
+            written.push(("triangle_ids", files::create(template, &names, common.force, &arrays::triangle_ids(&frame))?));
+        }
+        if let Some(template) = &args.depths {
+            let view = preset_file.preset.view(&scene, preset_file.preset.output.size);
+            written.push(("depths", files::create(template, &names, common.force, &arrays::depths(&frame, &view))?));
+        }
         if to_stdout {
             streams.bytes(&png)?;
             continue;
         }
-        let path = files::create(&args.output, &names, common.force, &png)?;
-        let result = json!({
-            "file": path.to_string_lossy(), "size": [frame.width, frame.height], "covered": frame.covered(), "counters": frame.counters,
-        });
-        results.push(named(preset_file, result));
-        if !streams.json {
-            streams.text(&format!("{}\n", path.display()))?;
+        let mut result = json!({ "size": [frame.width, frame.height], "covered": frame.covered(), "counters": frame.counters });
+        for (what, path) in &written {
+            result[what] = path.to_string_lossy().into();
+            if !streams.json {
+                streams.text(&format!("{}\n", path.display()))?;
+            }
         }
+        results.push(named(preset_file, result));
     }
     bar.finish_and_clear();
     if streams.json {
         streams.object("render", backend.json(), results)?;
     }
     Ok(Exit::Done)
+}
+
+/// Refuses names of arrays that cannot hold one array for each preset.
+fn check_arrays(args: &Render) -> Result<(), CliError> {
+    let arrays = [("--triangle-ids", &args.triangle_ids), ("--depths", &args.depths)];
+    let mut taken = vec![("-o", &args.output)];
+    for (flag, template) in arrays.iter().filter_map(|(flag, template)| Some((*flag, template.as_ref()?))) {
+        if template == "-" {
+            return Err(CliError::usage(format!("{flag} -: arrays are written to files; name one, such as {{preset}}.npy")));
+        }
+        if args.inputs.len() > 1 && !(files::has_preset(template)? || files::has_number(template)?) {
+            return Err(CliError::usage(format!(
+                "{flag} {template}: put {{preset}} or {{n}} into the name, since there are several presets"
+            )));
+        }
+        if let Some((other, _)) = taken.iter().find(|(_, name)| *name == template) {
+            return Err(CliError::usage(format!("{flag} {template}: {other} names the same file; give each its own")));
+        }
+        taken.push((flag, template));
+    }
+    Ok(())
 }
 
 /// Opens a preset with `--size`, `--time` and `--tier`, which are short for `--set`.

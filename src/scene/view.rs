@@ -143,6 +143,15 @@ impl View {
         Self { precision: ViewPrecision { shadow, ..self.precision }, ..self.clone() }
     }
 
+    /// Distance from the eye along `forward`, in meters, of a reversed depth above 0.
+    pub fn depth_m(&self, depth: f64) -> f64 {
+        match self.linear_depth_m {
+            Some([near, far]) => far + depth * (near - far),
+            // The third row of the matrix is (0, 0, 0, near).
+            None => self.clip_from_world.w_axis.z / depth,
+        }
+    }
+
     /// Is it a light's view?
     pub const fn is_light(&self) -> bool {
         self.picture_from_world.is_some()

@@ -71,5 +71,5 @@ pub fn center_screen(evaluator: &VertexEvaluator, view: &View, records: &[Snappe
 
 /// Depth in meters from an orthographic depth; none in perspective.
 fn linear_depth(view: &View, depth: f64) -> Option<f64> {
-    view.linear_depth_m.map(|[near, far]| far + depth * (near - far))
+    view.linear_depth_m.map(|_| view.depth_m(depth))
 }

@@ -1,5 +1,6 @@
 //! Promise: stdout carries data only, exit codes mean what they say, nothing is overwritten unasked, a closed pipe is no error.
 
+mod arrays;
 mod calibrations;
 mod effects;
 mod faults;
