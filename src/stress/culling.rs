@@ -136,7 +136,7 @@ fn culled_cameras(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         }
     }
     check!(
-        outside > 1000 && backfacing > 1000 && covered > 10_000,
+        outside > 1000 && backfacing > 50 && covered > 5_000,
         "{outside} meshlets were left out outside, {backfacing} as facing away, and {covered} pixels show others"
     );
     Ok(())
