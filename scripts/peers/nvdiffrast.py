@@ -7,8 +7,10 @@ usage: scripts/peers/nvdiffrast.py FOLDER --program target/release/rasterlab
 
 Needs numpy, and without --self-test a CUDA card, torch and nvdiffrast:
 
-    TORCH_CUDA_ARCH_LIST=9.0 MAX_JOBS=8 python3 -m pip install --no-build-isolation --no-deps --target DIR NVDIFFRAST
+    TORCH_CUDA_ARCH_LIST=9.0 MAX_JOBS=8 python3 -m pip install --no-build-isolation --no-deps --target DIR SOURCE
     PYTHONPATH=DIR python3 scripts/peers/nvdiffrast.py FOLDER --program target/release/rasterlab
+
+or, offline and without pip, inside its source: python3 setup.py build_ext --inplace, and DIR is the source.
 
 Both snap to 1/16 px (`accuracy.coverage=fixed4`). The rows say how rasterlab projected and which way up nvdiffrast drew:
   exact, row 0 on top     strict vertex stage, y negated for nvdiffrast: both snap the same bits by the same operations, and its rule for
@@ -171,6 +173,7 @@ def compare_with_rules(glbs, peer):
 
 
 def measure_all(glbs, program, peer, size, samples):
+    print("\nA call of rasterize ends with a wait of the CPU for the card, as nvdiffrast is written; that wait is in its time.")
     print("\n| scene | rasterlab packed64, whole frame, ms | nvdiffrast, raster pass, ms | ratio |\n|---|--:|--:|--:|")
     for glb in glbs:
         model, camera = scene.read_glb(glb), camera_of(glb)

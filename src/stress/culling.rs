@@ -40,7 +40,7 @@ pub const CASES: &[Case] = &[
     Case {
         number: 34,
         name: "slivers-at-the-border",
-        about: "slivers along each border of the picture, far from the origin, where rounding moves them in or out: culling loses none",
+        about: "slivers along each border of the picture, far from the origin, where rounding moves them in or out, and spikes out of it: culling loses none",
         expectation: Expectation::Bounded("the same triangle ids, depth keys and numbers of hits as without culling"),
         run: slivers_at_the_border,
     },
@@ -192,11 +192,48 @@ impl BorderView {
         scene_of_meshes(&(0..120).map(sliver).collect::<Vec<_>>())
     }
 
+    /// Triangles that begin in the picture and reach far along an axis of the scene, most of them out of it: each a mesh of its own, whose
+    /// box is long along one axis.
+    fn spikes(&self, rng: &mut Rng) -> Arc<Scene> {
+        let distance = 10.0;
+        let pixel = self.pixel_m(distance);
+        let spike = |i: usize| {
+            let [across, up] = self.size.map(|side| rng.real(-0.5, 0.5) * f64::from(side) * pixel);
+            let begin = self.eye + self.axes * DVec3::new(across, up, -distance);
+            let length = if i % 6 < 3 { 4.0 * distance } else { -4.0 * distance };
+            let corners = [DVec3::ZERO, self.axes * DVec3::new(4.0, 3.0, 0.0) * pixel, DVec3::AXES[i % 3] * length];
+            triangle_soup(corners.map(|corner| (begin + corner).as_vec3().to_array()))
+        };
+        scene_of_meshes(&(0..60).map(spike).collect::<Vec<_>>())
+    }
+
     fn view(&self, scene: &Scene) -> View {
         let Self { axes, eye, size, projection, near_m } = *self;
         let camera = Camera { eye, target: eye - axes.z_axis, up: axes.y_axis, projection, near_m };
         View::new(&camera, size[0], size[1], &scene.bounds(), DMat4::IDENTITY, [0.0; 4])
     }
+}
+
+/// Draws with and without culling, which must be the same; returns how many meshes were culled and how many pixels were drawn.
+fn compared(context: &mut CaseContext, scene: &Arc<Scene>, view: &View, what: &str) -> Result<(u32, usize), EarlyEnd> {
+    let (mut outside, mut drawn) = (0, 0);
+    for position in [PositionFormat::Stored, PositionFormat::Relative] {
+        let option = context.quick_option();
+        let accuracy = |culling: Culling| AccuracyRequest {
+            pins: PinnedOptions::of(culling).with(position).with(option),
+            ..AccuracyRequest::default()
+        };
+        let what = format!("{what}, {} positions", position.name());
+        let reference = context.captured(scene, view, &Stack::default(), &accuracy(Culling::None), &what)?;
+        for culling in [Culling::Frustum, Culling::TwoPass] {
+            let what = format!("{what}, culling {}", culling.name());
+            let capture = context.captured(scene, view, &Stack::default(), &accuracy(culling), &what)?;
+            same(&capture, &reference, &what)?;
+            outside += context.renderer.culled().unwrap_or_default().outside;
+        }
+        drawn += reference.frame.covered();
+    }
+    Ok((outside, drawn))
 }
 
 fn slivers_at_the_border(context: &mut CaseContext) -> Result<(), EarlyEnd> {
@@ -210,22 +247,16 @@ fn slivers_at_the_border(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let border = BorderView { axes, eye: DVec3::new(0.7, -0.6, 0.4) * offset, size: [64, 48], projection, near_m: 2.0 };
         let scene = border.slivers(&mut rng);
         let view = border.view(&scene);
-        for position in [PositionFormat::Stored, PositionFormat::Relative] {
-            let option = context.quick_option();
-            let accuracy = |culling: Culling| AccuracyRequest {
-                pins: PinnedOptions::of(culling).with(position).with(option),
-                ..AccuracyRequest::default()
-            };
-            let what = format!("{offset:e} m from the origin, {projection:?}, {} positions", position.name());
-            let reference = context.captured(&scene, &view, &Stack::default(), &accuracy(Culling::None), &what)?;
-            for culling in [Culling::Frustum, Culling::TwoPass] {
-                let what = format!("{what}, culling {}", culling.name());
-                let capture = context.captured(&scene, &view, &Stack::default(), &accuracy(culling), &what)?;
-                same(&capture, &reference, &what)?;
-                outside += context.renderer.culled().unwrap_or_default().outside;
-            }
-            drawn += reference.frame.covered();
-        }
+        let (culled, pixels) = compared(context, &scene, &view, &format!("{offset:e} m from the origin, {projection:?}"))?;
+        (outside, drawn) = (outside + culled, drawn + pixels);
+    }
+    for (axes, fov_y_deg) in [(turned, 15.0), (turned.transpose(), 15.0), (turned, 50.0)] {
+        let projection = Projection::Perspective { fov_y_deg };
+        let border = BorderView { axes, eye: DVec3::ZERO, size: [64, 48], projection, near_m: 2.0 };
+        let scene = border.spikes(&mut rng);
+        let view = border.view(&scene);
+        let (_, pixels) = compared(context, &scene, &view, &format!("spikes, {projection:?}"))?;
+        check!(pixels > 500, "spikes, {projection:?}: {pixels} pixels");
     }
     check!(outside > 100 && drawn > 100, "{outside} slivers were culled, and {drawn} pixels show others");
     Ok(())

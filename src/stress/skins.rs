@@ -17,7 +17,7 @@ use crate::{
     preset::{ClipPlayback, Clock, Preset},
     scene::{
         Accessor, Instance, Scene,
-        deformation::Deformation,
+        deformation::{Deformation, MorphTarget},
         gltf, pose,
         rig::{LocalTransform, Node, Trs},
     },
@@ -145,17 +145,19 @@ fn rotations_of_any_length(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     Ok(())
 }
 
-/// Five meshes that can deform, beside one another: one follows joints, two follow morph targets, and two, the first among them, follow
-/// neither in this picture.
+/// Five meshes that can deform, beside one another: one follows joints, two follow morph targets, of which some move positions or normals
+/// alone, and two, the first among them, follow neither in this picture.
 fn mixed_company(tentacle: &Scene) -> Scene {
     let mut scene = tentacle.clone();
     let mut boneless = scene.primitives[0].clone();
     boneless.deformation = Deformation { influences: Vec::new(), joint_bounds: Vec::new(), ..boneless.deformation };
+    let whole = boneless.deformation.morph_targets[0];
+    boneless.deformation.morph_targets.extend([MorphTarget { normals: None, ..whole }, MorphTarget { positions: None, ..whole }]);
     scene.primitives.push(boneless);
-    for (place, weight) in [(-2.0, 0.0), (-1.0, 1.5), (1.0, 0.0), (2.0, -0.75)] {
+    for (place, weights) in [(-2.0, [0.0; 3]), (-1.0, [1.5, 0.25, -0.5]), (1.0, [0.0; 3]), (2.0, [-0.75, -0.125, 1.0])] {
         let rest = Trs { translation: DVec3::X * place, ..Trs::default() };
         let node = scene.rig.nodes.len();
-        scene.rig.nodes.push(Node { name: String::new(), parent: None, rest: LocalTransform::Trs(rest), weights: vec![weight] });
+        scene.rig.nodes.push(Node { name: String::new(), parent: None, rest: LocalTransform::Trs(rest), weights: weights.to_vec() });
         let rest = LocalTransform::Trs(rest).matrix();
         scene.instances.push(Instance { node: Some(node), ..Instance::fixed(1, rest) });
     }
