@@ -289,7 +289,7 @@ axes! {
     }
     /// Whether the compiler adds checks to the kernels.
     shader_checks: ShaderChecks, default Checked {
-        /// None: loops and indices are trusted.
+        /// None: loops and indices are trusted, except where pixels are shaded whose corners an effect has moved.
         Trusted = "trusted",
         /// Loops are bounded, indices clamped.
         Checked = "checked",

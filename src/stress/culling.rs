@@ -115,7 +115,8 @@ fn culled_cameras(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let (mut outside, mut backfacing, mut covered) = (0, 0, 0);
     let option = context.quick_option();
     let steps = if context.is_slow() { 8 } else { 32 };
-    for query in ["field?count=27&triangles=400", "town", "knot"] {
+    // Panels have two sides.
+    for query in ["field?count=27&triangles=400", "town", "knot", "panels"] {
         let scene = context.scene(query)?;
         for step in 0..steps {
             let camera = camera_anywhere(&scene, &mut rng, step);
