@@ -31,7 +31,9 @@ pub fn pass_purpose(pass: Pass) -> &'static str {
         Pass::Args => "turns queue demand into dispatch sizes",
         Pass::Clip => "cuts triangles at the near plane and the guard band",
         Pass::TileLarge => "finds the tiles of each large triangle",
-        Pass::RasterMedium(_) => "draws triangles of up to 128 px, at least one workgroup each; if no pass of its own does so, finds the tiles of large ones",
+        Pass::RasterMedium(_) => {
+            "draws triangles of up to 128 px, at least one workgroup each; if no pass of its own does so, finds the tiles of large ones"
+        }
         Pass::RasterLarge(_) => "draws large triangles, at least one workgroup for each tile of 64 x 64 pixels",
         Pass::RasterAll(RasterPhase::TriangleId) => "visits triangles of all sizes again for the triangle id of each nearest key",
         Pass::RasterAll(_) => "visits triangles of all sizes again",

@@ -154,7 +154,8 @@ impl<'a> FrameCounts<'a> {
             // Its text holds the code of three paths, each about as long as the others.
             Pass::RasterAll(_) => {
                 let (once, looped) = (once / 3.0, looped / 3.0);
-                let mut counts = vec![(Unit::TriangleOperation, self.triangles() * once), (Unit::SampleOperation, sizes.small.candidates * looped)];
+                let mut counts =
+                    vec![(Unit::TriangleOperation, self.triangles() * once), (Unit::SampleOperation, sizes.small.candidates * looped)];
                 counts.extend(queued(sizes.medium, once, looped));
                 counts.extend(queued(sizes.large, once, looped));
                 counts

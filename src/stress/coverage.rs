@@ -72,7 +72,8 @@ pub const CASES: &[Case] = &[
 fn edges_beside_axes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let mut triangles = Vec::new();
     // The edge goes from `along` 0 to the far side, and from `across` to `across + lean`; the third corner lies on either side of it.
-    for (sample, beside, lean) in [63, 64, 127, 128].into_iter().flat_map(|s| (-1..=1).flat_map(move |b| (-2..=2).map(move |l| (s, b, l)))) {
+    for (sample, beside, lean) in [63, 64, 127, 128].into_iter().flat_map(|s| (-1..=1).flat_map(move |b| (-2..=2).map(move |l| (s, b, l))))
+    {
         let across = 256 * sample + 128 + beside;
         for (is_upright, third) in [(false, -20_000), (false, 80_000), (true, -20_000), (true, 80_000)] {
             let place = |along: i32, across: i32| if is_upright { [across, along] } else { [along, across] };
