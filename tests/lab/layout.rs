@@ -43,6 +43,35 @@ fn in_a_small_window_no_control_is_cut_off_or_covered() {
     assert!(lab.query_by_label_contains("Compare:").is_some());
 }
 
+#[test]
+fn in_a_small_window_no_word_of_the_top_bar_covers_another_when_there_is_most_to_say() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("all.toml");
+    let text = "schema = 2\nname = \"A name of some length\"\n[scene]\nbuiltin = \"teapot\"\n[effects.facet]\n[accuracy]\ncoverage = \"fixed4\"\ndepth = \"log16\"\n";
+    std::fs::write(&path, text).expect("a file");
+    let size = [900.0, 600.0];
+    let Some(mut lab) = created(Some(&path.to_string_lossy()), Folders::default(), None, size) else { return };
+    settle(&mut lab);
+    lab.state_mut().preset_mut().spin_deg_per_s = 20.0;
+    click(&mut lab, Role::Button, "Verify");
+    let window = Rect::from_min_size(Pos2::ZERO, size.into());
+    let top = Rect::from_min_max(Pos2::ZERO, lower_right(window, lab.get_by_label("Picture").rect()));
+    let mut shown = controls(&lab, top.shrink(1.0));
+    let labels = lab.query_all_by_role(Role::Label);
+    let text = |node: &egui_kittest::Node<'_>| node.accesskit_node().label().or_else(|| node.accesskit_node().value()).unwrap_or_default();
+    shown.extend(labels.map(|node| (text(&node), node.rect())).filter(|(_, rect)| top.contains(rect.center())));
+    shown.retain(|(name, _)| !name.starts_with("Picture") && !name.starts_with("Preset "));
+    assert!(shown.iter().any(|(name, _)| name.contains(" true")), "{shown:?}");
+    for (at, (name, rect)) in shown.iter().enumerate() {
+        assert!(window.expand(0.5).contains_rect(*rect), "{name} at {rect} is cut off");
+        for (other, other_rect) in &shown[..at] {
+            assert!(!rect.shrink(1.0).intersects(other_rect.shrink(1.0)), "{name} at {rect} covers {other} at {other_rect}");
+        }
+    }
+    let title = shown.iter().find(|(name, _)| name.starts_with("A name")).expect("the name of the preset");
+    assert!(title.1.width() >= 24.0, "{title:?}"); // It is cut where there is no room.
+}
+
 /// The notes on the picture lie beside the buttons or below them, whatever the width, and never over each other.
 #[test]
 fn notes_on_the_picture_cover_no_button_and_no_other_note() {
@@ -59,7 +88,10 @@ fn notes_on_the_picture_cover_no_button_and_no_other_note() {
         let picture = lab.get_by_label("Picture").rect();
         let notes = ["muted: facet", "drew ", "not reproducible"].map(|text| {
             let found = lab.query_all_by_label_contains(text).map(|node| node.rect());
-            found.into_iter().find(|rect| picture.contains(rect.center())).unwrap_or_else(|| panic!("no note {text:?} at {size:?}\n{}", lab.state().log_text()))
+            found
+                .into_iter()
+                .find(|rect| picture.contains(rect.center()))
+                .unwrap_or_else(|| panic!("no note {text:?} at {size:?}\n{}", lab.state().log_text()))
         });
         let over_picture = Rect::from_min_max(picture.min, picture.right_top() + vec2(0.0, 46.0));
         let buttons: Vec<_> = controls(&lab, over_picture).into_iter().filter(|(name, _)| !name.starts_with("Picture")).collect();

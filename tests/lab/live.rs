@@ -397,7 +397,8 @@ fn an_edit_that_seems_older_than_what_is_shown_is_seen() {
 fn a_preset_whose_file_or_folder_is_gone_stays_open_and_is_read_again_when_it_returns() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let presets = folder.path().join("presets");
-    std::fs::create_dir(&presets).expect("a folder");
+    // With a folder of effects nothing is missing at first, so that the system alone reports changes.
+    std::fs::create_dir_all(presets.join("effects")).expect("a folder");
     let file = presets.join("mine.toml");
     let text = "schema = 2\nname = \"Mine\"\n[scene]\nbuiltin = \"teapot\"\n[effects.facet]\namount = 0.25\n";
     let Some(mut lab) = lab_of(&presets, text) else { return };

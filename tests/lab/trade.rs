@@ -212,7 +212,8 @@ fn a_measurement_that_is_canceled_while_pictures_are_timed_ends_with_the_samples
     lab.run_steps(2);
     settle(&mut lab);
     let table = copied_table(&mut lab);
-    let samples: Vec<u32> = table.lines().skip(1).map(|line| line.split(',').nth(4).and_then(|n| n.parse().ok()).expect("samples")).collect();
+    let samples: Vec<u32> =
+        table.lines().skip(1).map(|line| line.split(',').nth(4).and_then(|n| n.parse().ok()).expect("samples")).collect();
     assert_eq!(samples.len(), DepthFormat::ALL.len(), "{table}");
     assert!(samples.iter().all(|samples| (1..30).contains(samples)), "all was timed after the cancel: {samples:?}");
 }
@@ -319,6 +320,27 @@ fn a_picture_that_plays_is_paused_when_a_measurement_begins() {
     let paused_s = lab.state().shown_time_s();
     lab.run_steps(6);
     assert!(paused_s >= playing_s && lab.state().shown_time_s() == paused_s, "{playing_s} {paused_s}");
+    lab.get_by_role_and_label(Role::Button, "Cancel").click();
+    lab.run_steps(2);
+    settle(&mut lab);
+}
+
+/// Nobody touches the window, but its device is busy.
+#[test]
+fn a_measurement_waits_as_long_as_a_picture_plays() {
+    let Some(mut lab) = lab("facet-motion") else { return };
+    measure_depth(&mut lab);
+    lab.key_press(Key::Space);
+    lab.run_steps(3);
+    let (begun, time_s) = (Instant::now(), lab.state().shown_time_s());
+    // Longer than the measurement waits after a key.
+    while begun.elapsed() < Duration::from_millis(2500) {
+        lab.step();
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    assert_ne!(lab.state().shown_time_s(), time_s, "the picture does not play");
+    assert!(lab.query_by_label_contains("Waiting while you work").is_some(), "it goes on: {:?}", progress(&lab));
+    lab.key_press(Key::Space);
     lab.get_by_role_and_label(Role::Button, "Cancel").click();
     lab.run_steps(2);
     settle(&mut lab);
