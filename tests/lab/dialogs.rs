@@ -83,6 +83,58 @@ fn a_save_that_fails_keeps_the_dialog_its_path_and_the_reason() {
 }
 
 #[test]
+fn an_export_that_fails_keeps_its_size() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("file");
+    std::fs::write(&file, "in the way").expect("a file");
+    let Some(mut lab) = lab("lambert") else { return };
+    press(&mut lab, Modifiers::COMMAND, Key::E);
+    press(&mut lab, Modifiers::COMMAND, Key::A);
+    type_text(&mut lab, &file.join("mine.png").display().to_string());
+    // What is below the list moves when the folder is listed.
+    for _ in 0..20 {
+        lab.step();
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let width = |lab: &Lab| lab.get_by_label("Width").accesskit_node().value().unwrap_or_default();
+    lab.get_by_label("Width").click();
+    lab.run_steps(3);
+    press(&mut lab, Modifiers::COMMAND, Key::A);
+    type_text(&mut lab, "123");
+    assert_eq!(path_of(&lab), file.join("mine.png").display().to_string(), "the number was typed into the path");
+    press(&mut lab, Modifiers::NONE, Key::Enter);
+    let typed = width(&lab);
+    assert!(typed.contains("123"), "{typed}");
+    lab.get_by_role_and_label(Role::Button, "Save").click();
+    wait_for(&mut lab, "the export fails", |lab| !error_lines(lab).is_empty());
+    lab.run_steps(3);
+    assert_eq!((path_of(&lab), width(&lab)), (file.join("mine.png").display().to_string(), typed));
+}
+
+#[test]
+fn the_first_save_of_a_built_in_preset_asks_for_a_name_and_writes_nothing_before() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let files = || std::fs::read_dir(folder.path()).expect("a folder").count();
+    let Some(mut lab) = lab_in("lambert", Some(folder.path())) else { return };
+    for (modifiers, name) in [(Modifiers::COMMAND, "mine"), (Modifiers::COMMAND | Modifiers::SHIFT, "other")] {
+        let before = files();
+        press(&mut lab, modifiers, Key::S);
+        assert_eq!(files(), before, "it is saved before a name is given");
+        let proposed = if name == "mine" { "my-lambert.toml" } else { "mine.toml" };
+        assert_eq!(path_of(&lab), folder.path().join(proposed).display().to_string());
+        press(&mut lab, Modifiers::NONE, Key::Escape);
+        assert_eq!(files(), before, "Escape saves");
+        press(&mut lab, modifiers, Key::S);
+        type_text(&mut lab, name);
+        press(&mut lab, Modifiers::NONE, Key::Enter);
+        assert!(folder.path().join(format!("{name}.toml")).exists() && lab.state().preset_file().id == name, "{}", lab.state().log_text());
+    }
+    // It has a name now, so that it is saved there.
+    press(&mut lab, Modifiers::COMMAND, Key::S);
+    assert!(lab.query_by_role_and_label(Role::TextInput, "Path").is_none());
+}
+
+#[test]
 fn typing_replaces_the_proposed_name_and_keeps_folder_and_extension() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let Some(mut lab) = lab_in("lambert", Some(folder.path())) else { return };

@@ -6,7 +6,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use eframe::egui::Role;
+use eframe::egui::{Pos2, Role, Shape};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use rasterlab::app::Devices;
 
@@ -19,7 +19,7 @@ fn drawn(lab: &mut Lab) -> image::RgbaImage {
 }
 
 /// Clicks the box of an effect, and shows the window once.
-fn tick(lab: &mut Lab, effect: &str) {
+pub fn tick(lab: &mut Lab, effect: &str) {
     lab.get_by_role_and_label(Role::CheckBox, effect).scroll_to_me();
     lab.run_steps(3);
     lab.get_by_role_and_label(Role::CheckBox, effect).click();
@@ -32,7 +32,7 @@ fn is_ticked(lab: &Lab, effect: &str) -> bool {
 }
 
 /// Shows the window until the thread of the picture says that it compiles.
-fn until_compiling(lab: &mut Lab) -> String {
+pub fn until_compiling(lab: &mut Lab) -> String {
     let patience = Instant::now() + Duration::from_secs(60);
     loop {
         lab.step();
@@ -45,17 +45,37 @@ fn until_compiling(lab: &mut Lab) -> String {
     }
 }
 
+/// Where the dot of the spinner left of this label is.
+fn spinner(lab: &Lab, label: &str) -> Option<Pos2> {
+    let words = lab.get_by_label(label).rect();
+    lab.output().shapes.iter().find_map(|clipped| match &clipped.shape {
+        Shape::Circle(circle) if (circle.center.y - words.center().y).abs() < 12.0 => {
+            let left = words.left() - circle.center.x;
+            ((0.0..40.0).contains(&left) && circle.radius < 4.0).then_some(circle.center)
+        }
+        _ => None,
+    })
+}
+
 #[test]
 fn the_window_goes_on_while_the_kernels_of_an_effect_are_compiled() {
     let Some(mut lab) = lab_on_new_devices("lambert") else { return };
     let (before, draws) = (drawn(&mut lab), lab.state().draws());
     // Compiling takes as long as the test wants; a window that waits for it would never come back.
     lab.state_mut().hold_compiling(true);
+    let begun = Instant::now();
     tick(&mut lab, "hatch");
     lab.step();
     assert!(is_ticked(&lab, "hatch"), "the tick waits for the kernels");
     assert_eq!(until_compiling(&mut lab), "Compiling hatch…");
+    assert!(begun.elapsed() < Duration::from_secs(15), "a few frames took {:?}", begun.elapsed());
     assert!(lab.query_by_label("Compiling hatch…").is_some(), "the window does not say it");
+    let mut dots = Vec::new();
+    for _ in 0..8 {
+        lab.step();
+        dots.extend(spinner(&lab, "Compiling hatch…").filter(|dot| !dots.contains(dot)));
+    }
+    assert!(dots.len() >= 2, "nothing turns beside the words: {dots:?}");
     assert!(!lab.state().is_idle());
     assert_eq!(drawn(&mut lab), before, "the last picture went away");
     lab.run_steps(40);

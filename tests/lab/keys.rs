@@ -1,5 +1,7 @@
 //! Promise: what is typed into a text field or a search is text, from the first letter after the key that opened it, and never a shortcut.
 
+use std::time::{Duration, Instant};
+
 use eframe::egui::{Event, Key, Modifiers, Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
@@ -78,4 +80,56 @@ fn letters_typed_while_a_dialog_opens_are_in_its_field() {
     send(&mut lab, [vec![pressed(Key::Questionmark, Modifiers::SHIFT), Event::Text("?".into())], typed("log")].concat());
     assert_eq!(text_of(&lab, "Search actions and keys"), "log");
     assert_eq!((&lab.state().preset_file().preset, error_lines(&lab)), (&before, vec![]));
+}
+
+/// The key that saves opens a dialog only for a preset without a file.
+#[test]
+fn letters_typed_for_a_dialog_that_does_not_open_do_not_come_into_the_next() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab_of(folder.path(), "schema = 2\n[scene]\nbuiltin = \"teapot?tess=4\"\n[effects.facet]\n") else { return };
+    let before = lab.state().preset_file().preset.clone();
+    send(&mut lab, [vec![pressed(Key::S, Modifiers::COMMAND)], typed("rover")].concat());
+    assert!(lab.query_by_role_and_label(Role::TextInput, "Path").is_none());
+    send(&mut lab, vec![pressed(Key::O, Modifiers::COMMAND)]);
+    assert_eq!(text_of(&lab, "Path"), "");
+    press(&mut lab, Modifiers::NONE, Key::Escape);
+    assert_eq!((&lab.state().preset_file().preset, error_lines(&lab)), (&before, vec![]));
+}
+
+/// A dialog that comes back by itself has the focus a frame later than it is there.
+#[test]
+fn a_letter_typed_in_the_frame_in_which_a_dialog_comes_back_is_in_its_field() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("file");
+    std::fs::write(&file, "in the way").expect("a file");
+    let Some(mut lab) = lab("lambert") else { return };
+    press(&mut lab, Modifiers::COMMAND, Key::E);
+    press(&mut lab, Modifiers::COMMAND, Key::A);
+    let path = file.join("mine.png").display().to_string();
+    lab.event(Event::Text(path.clone()));
+    // The button moves when the folder is listed.
+    for _ in 0..20 {
+        lab.step();
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    lab.get_by_role_and_label(Role::Button, "Save").click();
+    let is_gone = |lab: &Lab| lab.query_by_role_and_label(Role::TextInput, "Path").is_none();
+    if !(0..20).any(|_| {
+        lab.step();
+        is_gone(&lab)
+    }) {
+        return; // It was back before a frame without it was shown.
+    }
+    let patience = Instant::now() + Duration::from_secs(60);
+    loop {
+        lab.event(Event::Text("z".into())); // No shortcut.
+        lab.step();
+        if !is_gone(&lab) {
+            break;
+        }
+        assert!(Instant::now() < patience, "the dialog does not come back\n{}", lab.state().log_text());
+    }
+    lab.run_steps(4);
+    let shown = text_of(&lab, "Path");
+    assert_eq!((shown.len(), shown.matches('z').count()), (path.len() + 1, path.matches('z').count() + 1), "{shown}");
 }

@@ -24,7 +24,7 @@ fn in_a_small_window_no_control_is_cut_off_or_covered() {
     settle(&mut lab);
     let window = Rect::from_min_size(Pos2::ZERO, size.into());
     let picture = lab.get_by_label("Picture").rect();
-    assert!(picture.width() > 150.0 && picture.height() > 200.0, "{picture}");
+    assert!(picture.width() > size[0] / 3.0 && picture.height() > 200.0, "{picture}");
     let top = Rect::from_min_max(Pos2::ZERO, lower_right(window, picture));
     let over_picture = Rect::from_min_max(picture.min, picture.right_top() + vec2(0.0, 46.0));
     for (what, area) in [("top bar", top), ("picture", over_picture)] {
@@ -41,6 +41,68 @@ fn in_a_small_window_no_control_is_cut_off_or_covered() {
         }
     }
     assert!(lab.query_by_label_contains("Compare:").is_some());
+}
+
+#[test]
+fn in_a_small_window_no_word_of_the_top_bar_covers_another_when_there_is_most_to_say() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("all.toml");
+    let text = "schema = 2\nname = \"A name of some length\"\n[scene]\nbuiltin = \"teapot\"\n[effects.facet]\n[accuracy]\ncoverage = \"fixed4\"\ndepth = \"log16\"\n";
+    std::fs::write(&path, text).expect("a file");
+    let size = [900.0, 600.0];
+    let Some(mut lab) = created(Some(&path.to_string_lossy()), Folders::default(), None, size) else { return };
+    settle(&mut lab);
+    lab.state_mut().preset_mut().spin_deg_per_s = 20.0;
+    click(&mut lab, Role::Button, "Verify");
+    let window = Rect::from_min_size(Pos2::ZERO, size.into());
+    let top = Rect::from_min_max(Pos2::ZERO, lower_right(window, lab.get_by_label("Picture").rect()));
+    let mut shown = controls(&lab, top.shrink(1.0));
+    let labels = lab.query_all_by_role(Role::Label);
+    let text = |node: &egui_kittest::Node<'_>| node.accesskit_node().label().or_else(|| node.accesskit_node().value()).unwrap_or_default();
+    shown.extend(labels.map(|node| (text(&node), node.rect())).filter(|(_, rect)| top.contains(rect.center())));
+    shown.retain(|(name, _)| !name.starts_with("Picture") && !name.starts_with("Preset "));
+    assert!(shown.iter().any(|(name, _)| name.contains(" true")), "{shown:?}");
+    for (at, (name, rect)) in shown.iter().enumerate() {
+        assert!(window.expand(0.5).contains_rect(*rect), "{name} at {rect} is cut off");
+        for (other, other_rect) in &shown[..at] {
+            assert!(!rect.shrink(1.0).intersects(other_rect.shrink(1.0)), "{name} at {rect} covers {other} at {other_rect}");
+        }
+    }
+    let title = shown.iter().find(|(name, _)| name.starts_with("A name")).expect("the name of the preset");
+    assert!(title.1.width() >= 24.0, "{title:?}"); // It is cut where there is no room.
+}
+
+/// The notes on the picture lie beside the buttons or below them, whatever the width, and never over each other.
+#[test]
+fn notes_on_the_picture_cover_no_button_and_no_other_note() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("notes.toml");
+    let text = "schema = 2\n[scene]\nbuiltin = \"teapot?tess=4\"\n[effects.draw_order]\n[effects.race]\n[effects.facet]\n";
+    std::fs::write(&path, text).expect("a file");
+    for size in [[900.0, 600.0], [1280.0, 800.0], [1600.0, 1000.0]] {
+        let Some(mut lab) = created(Some(&path.to_string_lossy()), Folders::default(), None, size) else { return };
+        settle(&mut lab);
+        click(&mut lab, Role::Button, "Mute facet");
+        wait_for_toasts(&mut lab);
+        lab.run_steps(2);
+        let picture = lab.get_by_label("Picture").rect();
+        let notes = ["muted: facet", "drew ", "not reproducible"].map(|text| {
+            let found = lab.query_all_by_label_contains(text).map(|node| node.rect());
+            found
+                .into_iter()
+                .find(|rect| picture.contains(rect.center()))
+                .unwrap_or_else(|| panic!("no note {text:?} at {size:?}\n{}", lab.state().log_text()))
+        });
+        let over_picture = Rect::from_min_max(picture.min, picture.right_top() + vec2(0.0, 46.0));
+        let buttons: Vec<_> = controls(&lab, over_picture).into_iter().filter(|(name, _)| !name.starts_with("Picture")).collect();
+        assert!(buttons.len() >= 4, "{buttons:?}");
+        for (at, note) in notes.iter().enumerate() {
+            assert!(picture.contains_rect(*note), "{note} leaves the picture {picture} at {size:?}");
+            let covered = buttons.iter().find(|(_, rect)| rect.intersects(note.expand(4.0)));
+            assert!(covered.is_none(), "{note} covers {covered:?} at {size:?}");
+            assert!(notes[..at].iter().all(|other| !other.intersects(*note)), "{notes:?} at {size:?}");
+        }
+    }
 }
 
 /// The lower right corner of the top bar.
@@ -229,6 +291,20 @@ fn escape_closes_the_extreme_cases_and_the_comparison() {
     assert!(lab.state().wipe_split().is_some());
     press(&mut lab, Modifiers::NONE, Key::Escape);
     assert!(lab.state().wipe_split().is_none(), "Escape does not close the comparison");
+    assert!(lab.query_by_label("Clear the log").is_some(), "Escape closes the log as well");
+}
+
+#[test]
+fn escape_ends_a_choice_in_the_picture_and_leaves_the_panels() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let text = "schema = 2\n[scene]\nbuiltin = \"teapot?tess=4\"\n[effects.facet]\npattern = \"radial\"\n";
+    let Some(mut lab) = lab_of(folder.path(), text) else { return };
+    press(&mut lab, Modifiers::NONE, Key::L);
+    click(&mut lab, Role::Button, "Pick facet.center");
+    let asks = |lab: &Lab| lab.query_by_label_contains("click a point of the model").is_some();
+    assert!(asks(&lab));
+    press(&mut lab, Modifiers::NONE, Key::Escape);
+    assert!(!asks(&lab), "Escape does not end the choice");
     assert!(lab.query_by_label("Clear the log").is_some(), "Escape closes the log as well");
 }
 

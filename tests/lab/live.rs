@@ -391,3 +391,40 @@ fn an_edit_that_seems_older_than_what_is_shown_is_seen() {
         assert_eq!(value(&lab, "facet", "amount")[0], amount.parse::<f64>().expect("a number"));
     }
 }
+
+/// Some editors delete a file before they write it again, and version control removes whole folders.
+#[test]
+fn a_preset_whose_file_or_folder_is_gone_stays_open_and_is_read_again_when_it_returns() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let presets = folder.path().join("presets");
+    // With a folder of effects nothing is missing at first, so that the system alone reports changes.
+    std::fs::create_dir_all(presets.join("effects")).expect("a folder");
+    let file = presets.join("mine.toml");
+    let text = "schema = 2\nname = \"Mine\"\n[scene]\nbuiltin = \"teapot\"\n[effects.facet]\namount = 0.25\n";
+    let Some(mut lab) = lab_of(&presets, text) else { return };
+    let amount = |lab: &Lab| value(lab, "facet", "amount")[0];
+    // Long enough for the thread that watches to see that something is gone.
+    let look = |lab: &mut Lab| {
+        let begun = Instant::now();
+        while begun.elapsed() < Duration::from_secs(2) {
+            lab.step();
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    };
+    std::fs::remove_file(&file).expect("a file");
+    look(&mut lab);
+    assert!(amount(&lab) == 0.25 && !has_badge(&lab, "is faulty"), "{}", lab.state().log_text());
+    write(&file, &text.replace("0.25", "0.5"));
+    wait_for(&mut lab, "the file that has returned is read", |lab| amount(lab) == 0.5);
+
+    std::fs::remove_dir_all(&presets).expect("a folder");
+    look(&mut lab);
+    assert!(amount(&lab) == 0.5 && !has_badge(&lab, "is faulty"), "{}", lab.state().log_text());
+    write(&file, &text.replace("0.25", "0.75"));
+    wait_for(&mut lab, "the folder that has returned is read", |lab| amount(lab) == 0.75);
+    // It is watched as before.
+    look(&mut lab);
+    write(&file, &text.replace("0.25", "0.125"));
+    wait_for(&mut lab, "the folder that has returned is watched", |lab| amount(lab) == 0.125);
+    assert_eq!(error_lines(&lab), [""; 0]);
+}

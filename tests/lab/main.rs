@@ -22,6 +22,7 @@ mod keys;
 mod landing;
 mod layout;
 mod live;
+mod memory;
 mod numerics;
 mod palette;
 mod preset_browser;

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use eframe::egui::{Event, Key, Modifiers, Role, Theme, vec2};
+use eframe::egui::{Event, Key, Modifiers, Pos2, Rect, Role, Theme, ViewportId, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use rasterlab::preset_file::Folders;
 
@@ -50,6 +50,34 @@ fn theme_size_keys_and_panels_are_there_at_the_next_start() {
     assert!(!lab.state().log_text().contains("Randomized"), "R was bound to nothing");
     press(&mut lab, Modifiers::NONE, Key::J);
     assert!(lab.state().log_text().contains("Randomized"));
+}
+
+/// Where the side panels end, points.
+fn borders(lab: &Lab) -> [f32; 2] {
+    let picture = lab.get_by_label("Picture").rect();
+    [picture.left(), picture.right()]
+}
+
+#[test]
+fn widths_of_the_panels_and_the_size_of_the_window_are_there_at_the_next_start() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab_at(folder.path(), Some("facet-knot")) else { return };
+    let before = borders(&lab);
+    for (border, grip, by) in [(0, -2.0, 70.0), (1, 2.0, -60.0)] {
+        let from = Pos2::new(borders(&lab)[border] + grip, 400.0);
+        drag(&mut lab, from, from + vec2(by, 0.0));
+    }
+    let dragged = borders(&lab);
+    assert!(dragged[0] > before[0] + 40.0 && dragged[1] < before[1] - 30.0, "{before:?} became {dragged:?}");
+    let window = lab.input_mut().viewports.entry(ViewportId::ROOT).or_default();
+    window.inner_rect = Some(Rect::from_min_size(Pos2::new(10.0, 20.0), vec2(1111.0, 777.0)));
+    lab.run_steps(2);
+    drop(lab);
+    let text = settings_text(folder.path());
+    assert!(text.contains("1111") && text.contains("777"), "{text}");
+    let Some(lab) = lab_at(folder.path(), Some("facet-knot")) else { return };
+    let again = borders(&lab);
+    assert!(again.iter().zip(dragged).all(|(a, b)| (a - b).abs() < 2.0), "{dragged:?} became {again:?}");
 }
 
 #[test]

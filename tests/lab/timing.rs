@@ -7,7 +7,10 @@ use std::time::Duration;
 use eframe::egui::{self, Key, Modifiers, Role, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
-use crate::harness::*;
+use crate::{
+    first_use::{tick, until_compiling},
+    harness::*,
+};
 
 /// The texts of the window that contain `part`. What a label says is its value.
 fn texts(lab: &Lab, part: &str) -> Vec<String> {
@@ -40,6 +43,55 @@ fn the_cost_is_a_median_at_rest_and_then_nothing_is_drawn() {
     settle(&mut lab);
     assert!(!texts(&lab, " ms GPU").is_empty());
     assert!(lab.state().draws() >= draws + 6);
+}
+
+/// The next picture is held back, so that nothing but the change itself can take the old time away.
+#[test]
+fn the_time_of_the_picture_before_is_gone_before_the_next_is_drawn() {
+    let Some(mut lab) = lab_on_new_devices("lambert") else { return };
+    if !has_timer(&lab) {
+        return;
+    }
+    assert!(!texts(&lab, " ms GPU").is_empty());
+    lab.state_mut().hold_compiling(true);
+    tick(&mut lab, "hatch");
+    until_compiling(&mut lab);
+    lab.run_steps(3);
+    assert!(texts(&lab, " ms GPU").is_empty(), "an old time stands beside a changed preset: {:?}", texts(&lab, " ms GPU"));
+    assert!(!texts(&lab, "timing…").is_empty());
+    lab.state_mut().hold_compiling(false);
+    settle(&mut lab);
+    assert!(!texts(&lab, " ms GPU").is_empty());
+}
+
+/// A picture in motion is timed by the median of its newest frames; those of another preset with the same kernels do not count.
+#[test]
+fn frames_of_the_preset_before_do_not_count_for_the_next() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for (id, amount) in [("aa1", 0.25), ("aa2", 0.75)] {
+        let text = format!("schema = 2\n[scene]\nbuiltin = \"teapot?tess=4\"\n[effects.facet]\namount = {amount}\n");
+        std::fs::write(folder.path().join(format!("{id}.toml")), text).expect("a file");
+    }
+    let Some(mut lab) = lab_in("aa1", Some(folder.path())) else { return };
+    if !has_timer(&lab) {
+        return;
+    }
+    let view = lab.get_by_label("Picture").rect();
+    for by in [60.0, -60.0] {
+        drag(&mut lab, view.center(), view.center() + vec2(by, 20.0));
+    }
+    for _ in 0..4 {
+        press(&mut lab, Modifiers::NONE, Key::Num7);
+        press(&mut lab, Modifiers::NONE, Key::Num1);
+    }
+    lab.key_press(Key::CloseBracket);
+    let before = lab.state().draws();
+    while lab.state().draws() < before + 2 {
+        lab.step();
+        assert!(texts(&lab, "≈").is_empty(), "{:?} is of the preset before", texts(&lab, "≈"));
+    }
+    settle(&mut lab);
+    assert_eq!(lab.state().preset_file().id, "aa2");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Key, Modifiers, Pos2, Rect, Role, Shape};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use rasterlab::accuracy::DepthFormat;
+use rasterlab::{accuracy::DepthFormat, preset_file::Folders};
 
 use crate::harness::*;
 
@@ -43,13 +43,7 @@ fn a_measured_combination_is_a_point_and_a_click_on_it_switches_the_preset_in_on
     // Under another metric the points stay the same.
     click(&mut lab, Role::Button, "holes and doubles");
     assert!(lab.query_by_label("Point depth=log16").is_some());
-    lab.get_by_role_and_label(Role::Button, "Copy as CSV").click();
-    lab.step();
-    let copied = lab.output().platform_output.commands.iter().find_map(|command| match command {
-        egui::OutputCommand::CopyText(text) => Some(text.clone()),
-        _ => None,
-    });
-    let copied = copied.expect("a table on the clipboard");
+    let copied = copied_table(&mut lab);
     assert!(
         copied.starts_with("depth,ms p5,ms p50,ms p95,samples,wrong pixels ppm,") && copied.lines().count() == 1 + DepthFormat::ALL.len(),
         "{copied}"
@@ -59,6 +53,17 @@ fn a_measured_combination_is_a_point_and_a_click_on_it_switches_the_preset_in_on
     assert!(lab.query_by_label_contains("stale: ").is_none());
     click(&mut lab, Role::Button, "Top view");
     assert!(lab.query_by_label_contains("stale: ").is_some());
+}
+
+/// The table as comma-separated values, from the clipboard.
+fn copied_table(lab: &mut Lab) -> String {
+    lab.get_by_role_and_label(Role::Button, "Copy as CSV").click();
+    lab.step();
+    let copied = lab.output().platform_output.commands.iter().find_map(|command| match command {
+        egui::OutputCommand::CopyText(text) => Some(text.clone()),
+        _ => None,
+    });
+    copied.expect("a table on the clipboard")
 }
 
 /// Looks for the spread of every row of `csv` in the table and as a bar of the plot, whose time is logarithmic.
@@ -134,6 +139,17 @@ fn measure_depth(lab: &mut Lab) {
     lab.run_steps(2);
 }
 
+/// The text in the bar of a measurement under way, as `12 %  about 5 s left`.
+fn progress(lab: &Lab) -> Option<String> {
+    let bars = lab.query_all_by_role(Role::ProgressIndicator).filter_map(|bar| bar.accesskit_node().label());
+    bars.into_iter().find(|text| text.contains(" %  "))
+}
+
+/// The combination that is being measured; none before the first.
+fn measured_now(lab: &Lab) -> Option<&'static str> {
+    DepthFormat::ALL.iter().map(|format| format.name()).find(|name| lab.query_by_label(&format!("depth={name}")).is_some())
+}
+
 /// Shows frames until something is there.
 fn until(lab: &mut Lab, what: &str, mut is_there: impl FnMut(&mut Lab) -> bool) {
     let patience = Instant::now() + Duration::from_secs(120);
@@ -149,8 +165,14 @@ fn what_was_timed_before_a_measurement_was_canceled_is_kept() {
     let Some(mut lab) = lab("facet-sweep") else { return };
     measure_depth(&mut lab);
     // The first is measured when the third begins.
-    until(&mut lab, "the third combination", |lab| lab.query_by_label(&format!("depth={}", DepthFormat::ALL[2].name())).is_some());
-    assert!(lab.query_by_label_contains(" left").is_some() || lab.query_by_label_contains("Waiting").is_some());
+    let mut said = Vec::new();
+    until(&mut lab, "the third combination", |lab| {
+        said.extend(progress(lab));
+        lab.query_by_label(&format!("depth={}", DepthFormat::ALL[2].name())).is_some()
+    });
+    assert!(said.iter().any(|text| text.contains(" %  about ") && text.ends_with(" left")), "no time left is said: {said:?}");
+    let percent = |text: &String| text.split(' ').next().and_then(|percent| percent.parse::<u32>().ok()).expect("a percentage");
+    assert!(said.is_sorted_by_key(percent) && percent(&said[0]) < percent(&said[said.len() - 1]), "no progress is shown: {said:?}");
     lab.get_by_role_and_label(Role::Button, "Cancel").click();
     lab.run_steps(2);
     settle(&mut lab);
@@ -178,6 +200,117 @@ fn a_measurement_waits_while_the_person_works_in_the_window() {
 }
 
 #[test]
+fn a_measurement_that_is_canceled_while_pictures_are_timed_ends_with_the_samples_that_it_has() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    measure_depth(&mut lab);
+    let [first, last] = [DepthFormat::ALL[0].name(), DepthFormat::ALL[DepthFormat::ALL.len() - 1].name()];
+    until(&mut lab, "the last combination", |lab| measured_now(lab) == Some(last));
+    // All are set up now, and timed in turn.
+    until(&mut lab, "the first sample", |lab| measured_now(lab) == Some(first) || lab.state().is_idle());
+    let Some(cancel) = lab.query_by_role_and_label(Role::Button, "Cancel") else { return }; // All was timed within a frame.
+    cancel.click();
+    lab.run_steps(2);
+    settle(&mut lab);
+    let table = copied_table(&mut lab);
+    let samples: Vec<u32> =
+        table.lines().skip(1).map(|line| line.split(',').nth(4).and_then(|n| n.parse().ok()).expect("samples")).collect();
+    assert_eq!(samples.len(), DepthFormat::ALL.len(), "{table}");
+    assert!(samples.iter().all(|samples| (1..30).contains(samples)), "all was timed after the cancel: {samples:?}");
+}
+
+/// The words say that it waits; this says that it does. A measurement that went on would come to its third combination in this time, on any machine.
+#[test]
+fn nothing_is_measured_while_the_person_works_however_long_that_takes() {
+    let Some(mut lab) = lab("facet-sweep") else { return };
+    let begun = Instant::now();
+    measure_depth(&mut lab);
+    until(&mut lab, "the third combination", |lab| measured_now(lab) == Some(DepthFormat::ALL[2].name()));
+    let undisturbed = begun.elapsed();
+    lab.get_by_role_and_label(Role::Button, "Cancel").click();
+    lab.run_steps(2);
+    settle(&mut lab);
+
+    let mut lab = self::lab("facet-sweep").expect("there was one");
+    measure_depth(&mut lab);
+    let (begun, mut last, mut longest, mut seen, mut x) = (Instant::now(), Instant::now(), Duration::ZERO, Vec::new(), 400.0);
+    while begun.elapsed() < 2 * undisturbed {
+        x = if x > 600.0 { 400.0 } else { x + 1.0 };
+        lab.hover_at(Pos2::new(x, 300.0));
+        lab.step();
+        longest = longest.max(std::mem::replace(&mut last, Instant::now()).elapsed());
+        seen.extend(measured_now(&lab).filter(|now| !seen.contains(now)));
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(lab.query_by_label_contains("Waiting while you work").is_some());
+    // Where the machine showed no frame for a second, nobody seemed to work.
+    assert!(seen.len() <= 1 || longest > Duration::from_millis(900), "{seen:?} were measured meanwhile, frames took at most {longest:?}");
+    lab.get_by_role_and_label(Role::Button, "Cancel").click();
+    lab.run_steps(2);
+    settle(&mut lab);
+}
+
+/// A window of this size in which the options of depth are being measured, and when that began.
+fn measuring(size: [f32; 2]) -> Option<(Lab, Instant)> {
+    let mut lab = created(Some("facet-sweep"), Folders::default(), None, size)?;
+    settle(&mut lab);
+    let begun = Instant::now();
+    measure_depth(&mut lab);
+    Some((lab, begun))
+}
+
+/// Cancels, and returns after how long the measurement has ended.
+fn cancel(lab: &mut Lab) -> Duration {
+    lab.get_by_role_and_label(Role::Button, "Cancel").click();
+    lab.step();
+    let canceled = Instant::now();
+    until(lab, "the end", |lab| lab.query_by_role_and_label(Role::Button, "Measure").is_some());
+    canceled.elapsed()
+}
+
+/// How long the reference picture and the first combination take in a window of this size.
+fn durations(size: [f32; 2]) -> Option<[Duration; 2]> {
+    let (mut lab, begun) = measuring(size)?;
+    until(&mut lab, "the first combination", |lab| measured_now(lab).is_some());
+    let reference = begun.elapsed();
+    until(&mut lab, "the second combination", |lab| measured_now(lab) == Some(DepthFormat::ALL[1].name()));
+    let both = begun.elapsed();
+    cancel(&mut lab);
+    Some([reference, both - reference])
+}
+
+/// Times are compared with those of the same work that was not canceled, on the same machine.
+#[test]
+fn a_canceled_measurement_does_not_wait_for_the_oracle() {
+    const LARGE: [f32; 2] = [1600.0, 1000.0];
+    let Some([_, set_up]) = durations([900.0, 600.0]) else { return };
+    let [reference, combination] = durations(LARGE).expect("there was an adapter");
+    let fault = |whole: Duration, took: Duration| took >= (whole / 3).max(Duration::from_millis(300));
+
+    let (mut lab, begun) = measuring(LARGE).expect("there was an adapter");
+    while begun.elapsed() < reference / 8 {
+        lab.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let took = cancel(&mut lab);
+    assert!(!fault(reference, took), "the reference picture takes {reference:?}, and went on for {took:?}");
+
+    // Compiling takes as long in a small window, so that the rest is the oracle's.
+    let judging = combination.saturating_sub(set_up);
+    if judging < combination / 3 {
+        return; // The device takes longer, which is not canceled.
+    }
+    let (mut lab, _) = measuring(LARGE).expect("there was an adapter");
+    until(&mut lab, "the first combination", |lab| measured_now(lab).is_some());
+    let begun = Instant::now();
+    while begun.elapsed() < combination - judging * 3 / 4 {
+        lab.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let took = cancel(&mut lab);
+    assert!(!fault(judging, took), "the oracle judges a combination in {judging:?}, and went on for {took:?}");
+}
+
+#[test]
 fn a_picture_that_plays_is_paused_when_a_measurement_begins() {
     let Some(mut lab) = lab("facet-motion") else { return };
     lab.key_press(Key::Space);
@@ -187,6 +320,27 @@ fn a_picture_that_plays_is_paused_when_a_measurement_begins() {
     let paused_s = lab.state().shown_time_s();
     lab.run_steps(6);
     assert!(paused_s >= playing_s && lab.state().shown_time_s() == paused_s, "{playing_s} {paused_s}");
+    lab.get_by_role_and_label(Role::Button, "Cancel").click();
+    lab.run_steps(2);
+    settle(&mut lab);
+}
+
+/// Nobody touches the window, but its device is busy.
+#[test]
+fn a_measurement_waits_as_long_as_a_picture_plays() {
+    let Some(mut lab) = lab("facet-motion") else { return };
+    measure_depth(&mut lab);
+    lab.key_press(Key::Space);
+    lab.run_steps(3);
+    let (begun, time_s) = (Instant::now(), lab.state().shown_time_s());
+    // Longer than the measurement waits after a key.
+    while begun.elapsed() < Duration::from_millis(2500) {
+        lab.step();
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    assert_ne!(lab.state().shown_time_s(), time_s, "the picture does not play");
+    assert!(lab.query_by_label_contains("Waiting while you work").is_some(), "it goes on: {:?}", progress(&lab));
+    lab.key_press(Key::Space);
     lab.get_by_role_and_label(Role::Button, "Cancel").click();
     lab.run_steps(2);
     settle(&mut lab);

@@ -3,7 +3,8 @@
 use std::time::{Duration, Instant};
 
 use eframe::egui::{Key, Modifiers, Role};
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use rasterlab::preset_file::Folders;
 
 use crate::harness::*;
 
@@ -33,6 +34,55 @@ fn verifying_can_be_canceled_and_leaves_the_picture_unjudged() {
     assert!(lab.state().accuracy().is_none() && error_lines(&lab).is_empty(), "{}", lab.state().log_text());
     click(&mut lab, Role::Button, "Verify");
     assert!(lab.state().accuracy().is_some(), "it can be judged afterwards");
+}
+
+/// What the bar of work under way says, and how full it is, percent.
+fn bar(lab: &Lab) -> Option<(String, f64)> {
+    let bar = lab.query_all_by_role(Role::ProgressIndicator).next()?;
+    let node = bar.accesskit_node();
+    Some((node.label().unwrap_or_default(), node.numeric_value().unwrap_or(f64::NAN)))
+}
+
+#[test]
+fn verifying_shows_how_far_it_is_and_ends_in_the_middle_when_it_is_canceled() {
+    let Some(mut lab) = created(Some("facet-sweep"), Folders::default(), None, [1600.0, 1000.0]) else { return };
+    settle(&mut lab);
+    let begin = |lab: &mut Lab| {
+        lab.get_by_role_and_label(Role::Button, "Verify").click();
+        lab.run_steps(2);
+        Instant::now()
+    };
+    let begun = begin(&mut lab);
+    let mut said = Vec::new();
+    while !lab.state().is_idle() {
+        said.extend(bar(&lab));
+        lab.step();
+        std::thread::sleep(Duration::from_millis(5));
+        assert!(begun.elapsed() < Duration::from_secs(120), "{}", lab.state().log_text());
+    }
+    let whole = begun.elapsed();
+    assert!(lab.state().accuracy().is_some());
+    assert!(!said.is_empty() && said.iter().all(|(text, _)| text.starts_with("about ") && text.ends_with(" left")), "{said:?}");
+    let most = said.iter().map(|(_, percent)| *percent).fold(0.0, f64::max);
+    assert!(said[0].1 < most && most <= 100.0, "no progress is shown: {said:?}");
+
+    click(&mut lab, Role::Button, "Top view");
+    let begun = begin(&mut lab);
+    while begun.elapsed() < whole / 2 {
+        lab.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let Some(cancel) = lab.query_by_role_and_label(Role::Button, "Cancel verifying") else { return }; // It was much quicker.
+    cancel.click();
+    lab.step();
+    let canceled = Instant::now();
+    while lab.query_by_role_and_label(Role::Button, "Verify").is_none() {
+        lab.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let took = canceled.elapsed();
+    assert!(took < (whole / 4).max(Duration::from_millis(200)), "judging takes {whole:?}, and went on for {took:?}");
+    assert!(lab.state().accuracy().is_none());
 }
 
 #[test]
@@ -68,6 +118,14 @@ fn the_extremes_run_beside_the_window_and_can_be_stopped() {
     until(&mut lab, "the first picture", &|lab| lab.query_by_label_contains("near-plane-sweep: step").is_some());
     click(&mut lab, Role::Button, "Stop the run");
     until(&mut lab, "the end", &|lab| lab.state().log_text().contains("Extreme cases: 1 case: 1 stopped"));
+
+    // As soon as one case is done, the time of the others is known.
+    run(&mut lab, "d3d-rectangle,near-plane-sweep", "Run 2 cases");
+    until(&mut lab, "the time that is left", &|lab| {
+        bar(lab).is_some_and(|(text, percent)| text.starts_with("1 of 2, about ") && text.ends_with(" left") && percent == 50.0)
+    });
+    click(&mut lab, Role::Button, "Stop the run");
+    until(&mut lab, "the end", &|lab| lab.state().log_text().contains("Extreme cases: 2 cases: 1 passed, 1 stopped"));
 }
 
 /// Switches an overlay on in its folder of the inspector.

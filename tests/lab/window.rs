@@ -114,6 +114,12 @@ impl Display {
         *children.iter().find(|w| viewable(w)).expect("the lab's window")
     }
 
+    /// Width and height of the lab's window.
+    fn size(&self) -> [u16; 2] {
+        let geometry = self.x.get_geometry(self.window()).expect("a request").reply().expect("the window's geometry");
+        [geometry.width, geometry.height]
+    }
+
     /// Gives the keyboard to the window, as a window manager would.
     fn focus(&self) {
         let window = self.window();
@@ -227,9 +233,14 @@ fn a_window_closes_when_its_frame_is_closed() {
         return;
     }
     let home = tempfile::tempdir().expect("a temporary folder");
+    // It has the size that it had.
+    let settings = home.path().join(".config/rasterlab/settings.toml");
+    std::fs::create_dir_all(settings.parent().expect("a folder")).expect("a folder");
+    std::fs::write(&settings, "[window]\nsize = [1100, 700]\n").expect("a file");
     let display = Display::open();
     let mut lab = start(&display, home.path(), &["builtin:cube-wall"]);
     wait_for("the picture appeared", &mut lab, || drawn(&display.view()) > 5_000);
+    assert_eq!(display.size(), [1100, 700]);
     display.ask_to_close();
     assert!(wait_for_exit(&mut lab).success(), "the lab closes with status 0");
 }

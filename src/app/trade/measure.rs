@@ -120,3 +120,22 @@ fn point(row: TradeRow, axes: &[&'static Axis]) -> Point {
     });
     Point { pins, ms: row.spread, samples: row.samples, errors, more: more.collect(), note: row.note }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::trade::pace::{Pace, Rates};
+
+    #[test]
+    fn a_sample_during_which_the_person_worked_does_not_count() {
+        let progress = Progress::new(Pace::of(2, 3, 1e4, 1e4, 1.0, &Rates::default()));
+        let mut watch = Watched { progress: &progress, step: None };
+        let step = Step { what: "depth=log16", phase: Phase::Time, done: 0, all: 6 };
+        assert!(watch.goes_on(&step) && watch.was_undisturbed());
+        assert!(watch.goes_on(&step));
+        progress.pause();
+        assert!(!watch.was_undisturbed(), "the sample counts");
+        progress.cancel();
+        assert!(!watch.goes_on(&step), "it waits for the person although it is canceled");
+    }
+}

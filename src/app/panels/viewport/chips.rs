@@ -21,14 +21,10 @@ pub fn chips_ui(ui: &mut Ui, state: &State, commands: &Commands, rect: Rect, is_
     let (below, beside) = if is_wide { (10.0, VIEWS + 12.0) } else { (46.0, 12.0) };
     let corner = Rect::from_min_max(rect.min + egui::vec2(12.0, below), rect.max - egui::vec2(beside, 0.0));
     let mut left = ui.new_child(egui::UiBuilder::new().id_salt("state").max_rect(corner));
-    left.horizontal_wrapped(|ui| {
+    left.vertical(|ui| {
         loading_ui(ui, state, commands);
-        for (color, text) in states(state) {
-            theme::toast_frame(theme::line())
-                .inner_margin(egui::Margin::symmetric(8, 4))
-                .show(ui, |ui| ui.label(RichText::new(text).size(12.0).color(color)));
-        }
-        golden_ui(ui, state);
+        let notes = states(state).into_iter().map(|(color, text)| Note { color, text, hint: None });
+        notes_ui(ui, notes.chain(golden(state)));
     });
     let corner = Rect::from_min_max(pos2(rect.right() - VIEWS, rect.top() + 8.0), pos2(rect.right() - 12.0, rect.top() + 36.0));
     let layout = egui::Layout::right_to_left(egui::Align::Center);
@@ -57,22 +53,65 @@ fn loading_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     }
     ui.ctx().request_repaint_after_secs(LOOK_S);
     let text = scenes.progress().map_or("loading the scene".into(), |progress| format!("loading the scene: {progress}"));
-    theme::toast_frame(theme::line()).inner_margin(egui::Margin::symmetric(8, 4)).show(ui, |ui| {
-        ui.label(RichText::new(text).size(12.0).color(theme::text()));
-        if ui.small_button("Stop").on_hover_text("Stop loading (Esc)").accessible_name("Stop loading").clicked() {
-            commands.send(Command::CancelLoading);
-        }
+    let frame = theme::toast_frame(theme::line()).inner_margin(egui::Margin::symmetric(NOTE_MARGIN, 4));
+    ui.horizontal(|ui| {
+        frame.show(ui, |ui| {
+            ui.label(RichText::new(text).size(NOTE_TEXT).color(theme::text()));
+            if ui.small_button("Stop").on_hover_text("Stop loading (Esc)").accessible_name("Stop loading").clicked() {
+                commands.send(Command::CancelLoading);
+            }
+        });
     });
 }
 
+/// A note on the picture.
+struct Note {
+    color: Color32,
+    text: String,
+    /// Shown on hover.
+    hint: Option<String>,
+}
+
+/// Size of the texts of notes, and the margin left and right of them, points.
+const NOTE_TEXT: f32 = 12.0;
+const NOTE_MARGIN: i8 = 8;
+
+/// Shows notes from left to right, in as many rows as they need. A note that is wider than a row has a row of its own and is wrapped.
+fn notes_ui(ui: &mut Ui, notes: impl Iterator<Item = Note>) {
+    let (all, gap) = (ui.available_width(), ui.spacing().item_spacing.x);
+    let mut rows: Vec<(f32, Vec<Note>)> = Vec::new();
+    for note in notes {
+        let galley = ui.painter().layout_no_wrap(note.text.clone(), FontId::proportional(NOTE_TEXT), note.color);
+        // With the margins and the line round it.
+        let width = galley.size().x + 2.0 * f32::from(NOTE_MARGIN) + 4.0;
+        match rows.last_mut().filter(|(taken, _)| taken + gap + width <= all) {
+            Some((taken, row)) => {
+                *taken += gap + width;
+                row.push(note);
+            }
+            None => rows.push((width, vec![note])),
+        }
+    }
+    for (_, row) in rows {
+        ui.horizontal(|ui| row.iter().for_each(|note| note_ui(ui, note)));
+    }
+}
+
+fn note_ui(ui: &mut Ui, note: &Note) {
+    let text = RichText::new(&note.text).size(NOTE_TEXT).color(note.color);
+    let frame = theme::toast_frame(theme::line()).inner_margin(egui::Margin::symmetric(NOTE_MARGIN, 4));
+    let shown = frame.show(ui, |ui| ui.add(egui::Label::new(text).wrap())).inner;
+    if let Some(hint) = &note.hint {
+        shown.on_hover_text(hint);
+    }
+}
+
 /// Whether the preset still gives its golden, after a file was reloaded.
-fn golden_ui(ui: &mut Ui, state: &State) {
+fn golden(state: &State) -> Option<Note> {
     let open = FileId::of(&state.session.preset_file);
-    let Some(check) = state.live.golden.as_ref().filter(|check| check.file == open) else { return };
+    let check = state.live.golden.as_ref().filter(|check| check.file == open)?;
     let color = if check.outcome == Outcome::Same { theme::green() } else { theme::amber() };
-    let frame = theme::toast_frame(theme::line()).inner_margin(egui::Margin::symmetric(8, 4));
-    let badge = frame.show(ui, |ui| ui.label(RichText::new(check.text()).size(12.0).color(color)));
-    badge.inner.on_hover_text(check.hint());
+    Some(Note { color, text: check.text(), hint: Some(check.hint()) })
 }
 
 /// What is unusual about the picture, each with its color.
