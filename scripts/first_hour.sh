@@ -23,7 +23,7 @@ if [ "${FIRST_HOUR:-}" != inside ]; then
     done
     here="$(cd "$(dirname "$0")/.." && pwd)"
     FIRST_HOUR=inside RASTERLAB="${RASTERLAB:-$here/target/release/rasterlab}" WAYLAND_DISPLAY='' \
-        exec xvfb-run -a -s "-screen 0 ${SIZE:-1280x800}x24" sh "$0" "$@"
+        exec xvfb-run -a -s "-screen 0 ${SIZE:-1280x800}x24 -noreset" sh "$0" "$@"
 fi
 
 model="${2:-/usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb}"

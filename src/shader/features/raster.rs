@@ -152,7 +152,6 @@ const MEDIUM_PATH: Feature = Feature {
     part: Some(Part { name: "raster_medium", is_used: |key| key.paths.has_medium, why_omitted: largest_triangle }),
     variants: &[("medium_boxes", |key, _| stem_if(key.shares_entries(), "shared"))],
     constants: &[("DRAWS_MEDIUM", |key, _| flag(key.paths.has_medium))],
-    ..Feature::NONE
 };
 
 const LARGE_PATH: Feature = Feature {
