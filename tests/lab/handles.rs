@@ -85,3 +85,15 @@ fn a_key_hides_the_handles_and_the_ball_and_shows_them_again() {
     press(&mut lab, Modifiers::NONE, Key::H);
     assert_eq!(is_shown(&lab), [true; 2]);
 }
+
+#[test]
+fn the_ball_makes_room_for_the_numbers_of_a_comparison() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let Some(mut lab) = lab_of(folder.path(), RADIAL) else { return };
+    // The last press closes the comparison.
+    for is_compared in [true, true, true, false] {
+        press(&mut lab, Modifiers::SHIFT, Key::Backslash);
+        assert_eq!(lab.query_by_label("Compare: wipe").is_some(), is_compared);
+        assert_eq!(lab.query_by_label("Light direction").is_none(), is_compared);
+    }
+}

@@ -191,7 +191,8 @@ impl Viewport {
                 handles::handles_ui(ui, state, commands, rect, at);
             }
         }
-        if state.open.handles {
+        // A comparison shows its numbers in the ball's corner.
+        if state.open.handles && !self.compare.is_open() {
             light::light_ui(ui, &state.session, commands, at);
         }
         let free = if self.compare.hides_b() { free } else { overlay_legend::legend_ui(ui, state, free, at) };
