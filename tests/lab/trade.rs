@@ -192,7 +192,7 @@ fn a_measurement_waits_while_the_person_works_in_the_window() {
         lab.hover_at(Pos2::new(x, 300.0));
         lab.query_by_label_contains("Waiting while you work").is_some()
     });
-    // Nobody touches the window any more.
+    // The window gets no more input.
     until(&mut lab, "the end of the pause", |lab| lab.query_by_label_contains("Waiting while you work").is_none());
     lab.get_by_role_and_label(Role::Button, "Cancel").click();
     lab.run_steps(2);
@@ -242,7 +242,7 @@ fn nothing_is_measured_while_the_person_works_however_long_that_takes() {
         std::thread::sleep(Duration::from_millis(5));
     }
     assert!(lab.query_by_label_contains("Waiting while you work").is_some());
-    // Where the machine showed no frame for a second, nobody seemed to work.
+    // Where the machine showed no frame for a second, no input arrived.
     assert!(seen.len() <= 1 || longest > Duration::from_millis(900), "{seen:?} were measured meanwhile, frames took at most {longest:?}");
     lab.get_by_role_and_label(Role::Button, "Cancel").click();
     lab.run_steps(2);
@@ -325,7 +325,7 @@ fn a_picture_that_plays_is_paused_when_a_measurement_begins() {
     settle(&mut lab);
 }
 
-/// Nobody touches the window, but its device is busy.
+/// The window gets no input, but its device is busy.
 #[test]
 fn a_measurement_waits_as_long_as_a_picture_plays() {
     let Some(mut lab) = lab("facet-motion") else { return };

@@ -18,7 +18,6 @@ fn vertex_effects_stored_normal(draw: u32, vertex: u32) -> vec3f {
 fn vertex_effects_corner(draw: u32, vertex: u32, id: u32, p: vec3f) -> Vertex {
     let position = clamp_world((draws[draw].world_from_object * vec4f(p, 1.0)).xyz);
     let normal = normal_direction(vertex_effects_stored_normal(draw, vertex));
-    // Every member is written, because NVIDIA's driver 580.159 initializes a variable once if it inlines this function into a loop.
     let v = Vertex(position, vec3f(0.0), normal, vec3f(0.0), position, vec3f(0.0), vec2f(0.0), 0u);
     return glue_vertex(corner_step(v, draw, id, p), draw);
 }
