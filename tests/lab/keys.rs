@@ -96,7 +96,7 @@ fn letters_typed_for_a_dialog_that_does_not_open_do_not_come_into_the_next() {
     assert_eq!((&lab.state().preset_file().preset, error_lines(&lab)), (&before, vec![]));
 }
 
-/// A dialog that comes back by itself has the focus a frame later than it is there.
+/// A dialog that comes back after a failed save is shown one frame before its field has the focus.
 #[test]
 fn a_letter_typed_in_the_frame_in_which_a_dialog_comes_back_is_in_its_field() {
     let folder = tempfile::tempdir().expect("a temporary folder");

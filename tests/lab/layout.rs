@@ -72,7 +72,7 @@ fn in_a_small_window_no_word_of_the_top_bar_covers_another_when_there_is_most_to
     assert!(title.1.width() >= 24.0, "{title:?}"); // It is cut where there is no room.
 }
 
-/// The notes on the picture lie beside the buttons or below them, whatever the width, and never over each other.
+/// At every width of the picture, its notes lie beside the buttons or below them, and never over each other.
 #[test]
 fn notes_on_the_picture_cover_no_button_and_no_other_note() {
     let folder = tempfile::tempdir().expect("a temporary folder");
