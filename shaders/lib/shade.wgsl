@@ -57,7 +57,8 @@ fn sample_unclipped(t: Triangle, pixel: vec2u) -> SamplePosition {
 // Edge functions of a sample that may lie outside its triangle: clamped in a box; in a disc, those of the disc's corner.
 fn sample_in_shape(e: vec3f, t: Triangle, p: vec2i) -> vec3f {
     if SHAPE == SHAPE_TRIANGLES { return e; }
-    let orientation = sign(e.x + e.y + e.z);
+    // Not from the sum of e: its roundings may exceed the area, since the sample may lie far outside the triangle.
+    let orientation = f32(fixed_sign(fixed_edge(vertex_at(t.a), vertex_at(t.b), vertex_at(t.c))));
     if SHAPE == SHAPE_BOXES { return max(e * orientation, vec3f(0.0)) * orientation; }
     let corner = disc_corner(t.a, t.b, t.c, p);
     return orientation * vec3f(vec3<bool>(corner == 0u, corner == 1u, corner == 2u));

@@ -243,7 +243,16 @@ fn slivers_at_the_border(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let projections = [Projection::Perspective { fov_y_deg: 50.0 }, Projection::Orthographic { height_m: 12.0 }];
     // Boxes around slivers are tight where the view is aligned with the axes; elsewhere every term of a bound counts.
     let turned = DMat3::from_euler(EulerRot::YXZ, 0.7, -0.5, 0.4);
-    let places = [(0.0, DMat3::IDENTITY), (0.0, turned), (1e4, turned), (1e6, DMat3::IDENTITY), (1e6, turned)];
+    let opposite = DMat3::from_euler(EulerRot::YXZ, 0.7 + std::f64::consts::PI, 0.5, -0.4);
+    let places = [
+        (0.0, DMat3::IDENTITY),
+        (0.0, turned),
+        (1e4, turned),
+        (1e6, DMat3::IDENTITY),
+        (1e6, turned),
+        (1e6, turned.transpose()),
+        (1e6, opposite),
+    ];
     for ((offset, axes), projection) in places.into_iter().flat_map(|place| projections.map(|projection| (place, projection))) {
         let border = BorderView { axes, eye: DVec3::new(0.7, -0.6, 0.4) * offset, size: [64, 48], projection, near_m: 2.0 };
         let scene = border.slivers(&mut rng);

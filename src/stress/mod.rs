@@ -15,6 +15,7 @@ mod drawing;
 mod effects;
 mod hardware;
 mod normals;
+mod occlusion;
 mod parameters;
 mod picture_sizes;
 mod published;

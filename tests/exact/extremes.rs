@@ -82,6 +82,7 @@ cases! {
     case_30_invalid_skins = "invalid-skins",
     case_32_hardware_cross_check = "hardware-cross-check",
     case_34_slivers_at_the_border = "slivers-at-the-border",
+    case_34_culled_behind_holes = "culled-behind-holes",
 }
 
 /// Sweeps over many or very large pictures, which take most of the time of all cases together: `rasterlab stress` draws them, as a
@@ -218,6 +219,14 @@ const MUTANTS: &[(&str, &str, &str, &str, &str)] = &[
         "clipped-in-turns",
     ),
     ("a near plane that leans", "lib/extent", "n.x * c.x + n.y * c.y", "n.x * c.x + n.x * c.y", "culled-cameras"),
+    (
+        "the farthest of other pixels",
+        "stages/geometry/depth_reduce",
+        "tile * 8u + vec2u(i % 8u, i / 8u)",
+        "tile * 8u - vec2u(i % 8u, i / 8u)",
+        "culled-behind-holes",
+    ),
+    ("a box that is moved", "lib/hiz", "middle + box.half * side", "middle + box.half + side", "culled-behind-holes"),
     ("another triangle's name", "baselines/hardware_ids", "corner / 3u", "corner / 3u + 1u", "hardware-cross-check"),
     (
         "the witness is moved by a sample",
