@@ -45,7 +45,7 @@ pub struct Screen {
     report: Option<Report>,
     options: Option<AccuracyOptions>,
     plan: Option<Arc<Plan>>,
-    explanation: Option<Explanation>,
+    explanation: Option<Arc<Explanation>>,
     timings: Timings,
 }
 
@@ -160,7 +160,7 @@ impl Screen {
 
     /// What the newest picture ran, and why.
     pub fn explanation(&self) -> Option<&Explanation> {
-        self.explanation.as_ref()
+        self.explanation.as_deref()
     }
 
     /// True if the requested picture was tried and could not be drawn.

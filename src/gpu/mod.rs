@@ -7,6 +7,7 @@ pub mod records;
 mod resource_id;
 
 mod compile_watch;
+pub mod preparations;
 mod pipeline_store;
 
 pub mod device;
