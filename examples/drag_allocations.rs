@@ -70,7 +70,7 @@ fn site(stack: &str) -> (String, bool) {
             of_wgpu = true;
         }
         if name.contains("rasterlab::") {
-            return (name.split('<').next().unwrap_or(name).to_owned() + &name[name.split('<').next().map_or(0, str::len)..], of_wgpu);
+            return (name.to_owned(), of_wgpu);
         }
     }
     ("the example".into(), of_wgpu)

@@ -84,14 +84,9 @@ impl App {
         self.state.session.scene().map(|scene| self.state.session.view_at(scene, size))
     }
 
-    /// True while a picture that was asked for is not finished.
-    pub fn is_waiting(&self) -> bool {
-        self.state.screen.is_waiting()
-    }
-
-    /// Width and height of the newest picture, pixels; none before the first.
-    pub fn drawn_size(&self) -> Option<[u32; 2]> {
-        self.state.screen.drawn().map(|inputs| [inputs.view.width, inputs.view.height])
+    /// Width and height in pixels of the picture that was asked for last; none before the first.
+    pub fn ordered_size(&self) -> Option<[u32; 2]> {
+        self.state.screen.ordered_size()
     }
 
     pub fn gpu(&self) -> &Arc<Gpu> {

@@ -201,6 +201,11 @@ impl Screen {
         self.thread.hold_compiling(is_held);
     }
 
+    /// Width and height in pixels of the picture that was asked for last, reduced while it moves; none before the first.
+    pub fn ordered_size(&self) -> Option<[u32; 2]> {
+        self.ordered.as_ref().map(|inputs| [inputs.view.width, inputs.view.height])
+    }
+
     /// Full pixels per drawn pixel along a side; above 1 while the picture moves on a slow adapter.
     pub fn divisor(&self) -> u32 {
         self.divisor

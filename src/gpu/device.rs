@@ -195,7 +195,16 @@ impl Gpu {
         device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| {
             slot.lock().unwrap_or_else(|p| p.into_inner()).get_or_insert(e.to_string());
         }));
-        Arc::new(Self { device, queue, summary: summary(adapter), caps: caps(adapter), pipelines: PipelineStore::default(), prepared: Preparations::default(), lost, error })
+        Arc::new(Self {
+            device,
+            queue,
+            summary: summary(adapter),
+            caps: caps(adapter),
+            pipelines: PipelineStore::default(),
+            prepared: Preparations::default(),
+            lost,
+            error,
+        })
     }
 
     /// Has the device been lost? Then everything made from it is dead.

@@ -7,8 +7,8 @@ pub mod records;
 mod resource_id;
 
 mod compile_watch;
-pub mod preparations;
 mod pipeline_store;
+pub mod preparations;
 
 pub mod device;
 
