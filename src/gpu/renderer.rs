@@ -7,8 +7,8 @@ use super::{
     compile_watch::CompileWatch,
     device::Gpu,
     error::RenderError,
-    explain::Explanation,
-    frame_layout::{DotCounts, Target},
+    explain::{Explained, Explanation},
+    frame_layout::Target,
     frame_stats::{Pending, StatSources},
     hardware_ids,
     history::{History, fill_background},
@@ -57,31 +57,6 @@ struct Presentation {
     view: wgpu::TextureView,
 }
 
-/// What an explanation speaks of.
-struct Subject {
-    plan: Option<Arc<Plan>>,
-    /// Of the picture's and the light's command list, which change with their buffers.
-    commands: [Option<u64>; 2],
-    dots: Option<(DotCounts, usize)>,
-    demand: Option<[u32; 2]>,
-}
-
-impl PartialEq for Subject {
-    fn eq(&self, other: &Self) -> bool {
-        let is_same_plan = match (&self.plan, &other.plan) {
-            (Some(plan), Some(other)) => Arc::ptr_eq(plan, other),
-            (plan, other) => plan.is_none() && other.is_none(),
-        };
-        is_same_plan && (self.commands, self.dots, self.demand) == (other.commands, other.dots, other.demand)
-    }
-}
-
-/// The newest explanation.
-struct Explained {
-    subject: Subject,
-    explanation: Arc<Explanation>,
-}
-
 /// Draws scenes on one device.
 pub struct Renderer {
     pub(super) device: Device,
@@ -97,7 +72,7 @@ pub struct Renderer {
     spare_stats: Vec<wgpu::Buffer>,
     /// Through which shown pictures are read.
     shown_staging: Option<wgpu::Buffer>,
-    explained: Option<Explained>,
+    explained: Explained,
     /// Medium and large triangles of the newest finished frame.
     demand: Option<[u32; 2]>,
     culled: Option<CullingStats>,
@@ -123,7 +98,7 @@ impl Renderer {
             pending: VecDeque::new(),
             spare_stats: Vec::new(),
             shown_staging: None,
-            explained: None,
+            explained: Explained::default(),
             demand: None,
             culled: None,
             presentation: None,
@@ -419,20 +394,11 @@ impl Renderer {
 
     /// [`Self::explain`], kept while nothing that it says has changed.
     pub fn explained(&mut self) -> Arc<Explanation> {
-        let revision = |commands: Option<&ViewResources>| commands.and_then(ViewResources::commands_revision);
-        let subject = Subject {
-            plan: self.plan().cloned(),
-            commands: [revision(Some(&self.picture)), revision(self.shadow.as_ref().map(|shadow| &shadow.resources))],
-            dots: self.picture.dots.as_ref().map(|dots| (dots.counts(), dots.line_count())),
-            demand: self.demand,
-        };
-        if let Some(explained) = self.explained.as_ref().filter(|explained| explained.subject == subject) {
-            return explained.explanation.clone();
-        }
-        self.device.gpu.prepared.count(Preparation::Explanation);
-        let explanation = Arc::new(self.explain());
-        self.explained = Some(Explained { subject, explanation: explanation.clone() });
-        explanation
+        let Self { device, scene, picture, shadow, particles, explained, demand, .. } = self;
+        explained.of(&device.gpu, picture, shadow.as_ref(), *demand, || match scene {
+            Some(scene) => shared(scene, particles, shadow.as_ref()),
+            None => Resources::default(),
+        })
     }
 
     /// Passes and buffers of the last picture, what it does without, and why.
