@@ -1,5 +1,5 @@
-// Loads, wide: two words at a time. lavapipe gathers in a loop over the invocations of a vector, one for every component of at
-// most 64 bits. Buffers are multiples of 16 bytes long, so every word has its pair.
+// Loads, wide: two words at a time. On lavapipe a gathered component of 64 bits costs about as much as one of 32 (docs/benchmarks.md).
+// Buffers are multiples of 16 bytes long, so every word has its pair.
 //@ binding @group(0) @binding(2) var<storage, read> vertex_bytes: array<u64>;
 //@ binding @group(0) @binding(4) var<storage, read> vertices: array<vec2<u64>>;
 
