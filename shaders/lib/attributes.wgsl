@@ -1,7 +1,7 @@
 // Vertex attributes, pulled from the bytes of the file by offset, stride and component type.
 // Format word: component type - 5120 in bits 0 to 2 (glTF's numbers), normalized in bit 3, component count from bit 8 on.
 //@ use lib/triangle
-//@ binding @group(0) @binding(2) var<storage, read> vertex_bytes: array<u32>;
+//@ use variants/loads
 
 const PULL_I8 = 0u;
 const PULL_U8 = 1u;
@@ -19,7 +19,7 @@ fn pull_bytes(format: u32) -> u32 {
 
 // One component as a float; the bits of an f32 component do not change.
 fn pull_component(format: u32, byte: u32) -> f32 {
-    let word = vertex_bytes[byte / 4u];
+    let word = load_word(byte / 4u);
     let component = format & 7u;
     if component == PULL_F32 { return bitcast<f32>(word); }
     let shift = (byte % 4u) * 8u;
@@ -70,8 +70,7 @@ fn position_bits(draw: u32, vertex: u32) -> vec3u {
     if PACKED_POSITION_BITS == 16u { return position_packed16(draw, vertex); }
     let byte = draws[draw].position_offset + vertex * draws[draw].position_stride;
     if F32_POSITIONS {
-        let word = byte / 4u;
-        return vec3u(vertex_bytes[word], vertex_bytes[word + 1u], vertex_bytes[word + 2u]);
+        return load_words3(byte / 4u);
     }
     return pull_bits3(draws[draw].position_format, byte);
 }
@@ -79,7 +78,7 @@ fn position_bits(draw: u32, vertex: u32) -> vec3u {
 // One word per vertex: ten bits per component, x lowest, in steps of the primitive's box. The two bits above tell that the
 // file's position is rejected: 1 for NaN or infinity, 2 for out of range.
 fn position_packed10(draw: u32, vertex: u32) -> vec3u {
-    let word = vertex_bytes[draws[draw].position_offset / 4u + vertex];
+    let word = load_word(draws[draw].position_offset / 4u + vertex);
     let steps = vec3f((vec3u(word) >> vec3u(0u, 10u, 20u)) & vec3u(1023u));
     let position = draws[draw].origin.xyz + draws[draw].step.xyz * steps;
     // NaN, or 2^127.
@@ -91,7 +90,7 @@ fn position_packed10(draw: u32, vertex: u32) -> vec3u {
 // that the file's position is rejected, as above.
 fn position_packed16(draw: u32, vertex: u32) -> vec3u {
     let at = draws[draw].position_offset / 4u + 2u * vertex;
-    let words = vec2u(vertex_bytes[at], vertex_bytes[at + 1u]);
+    let words = vec2u(load_word(at), load_word(at + 1u));
     let steps = vec3f(vec3u(words.x & 0xffffu, words.x >> 16u, words.y & 0xffffu));
     let position = draws[draw].origin.xyz + draws[draw].step.xyz * steps;
     // NaN, or 2^127.
@@ -106,8 +105,7 @@ override F32_NORMALS: bool = false;
 fn normal_bits(draw: u32, vertex: u32) -> vec3u {
     let byte = draws[draw].normal_offset + vertex * draws[draw].normal_stride;
     if F32_NORMALS {
-        let word = byte / 4u;
-        return vec3u(vertex_bytes[word], vertex_bytes[word + 1u], vertex_bytes[word + 2u]);
+        return load_words3(byte / 4u);
     }
     return pull_bits3(draws[draw].normal_format, byte);
 }

@@ -1,7 +1,7 @@
 // Sample setups: the integers that sample tests need of a triangle. Every triangle and, behind them, every clipped triangle
 // has SAMPLE_SETUPS records, which stand behind the snapped vertices.
 //@ use lib/frame
-//@ use lib/triangle
+//@ use variants/loads
 
 override SAMPLE_SETUPS: u32 = 1u;
 
@@ -11,5 +11,5 @@ fn sample_setup_index(entry: u32, index: u32) -> u32 {
 }
 
 fn sample_setup_load(entry: u32, index: u32) -> vec4u {
-    return vertices[sample_setup_index(entry, index)];
+    return load_record(sample_setup_index(entry, index));
 }

@@ -1,5 +1,5 @@
 // Storing sample setups: for the pass sample_setup, which declares `vertices` as writable, and the glue that it calls.
-//@ use lib/triangle
+//@ use variants/loads
 //@ use lib/sample_setup
 
 // The setups of clipped triangles are computed, instead of those of the scene's triangles.

@@ -7,6 +7,7 @@
 //@ use lib/geometry
 //@ use lib/shape
 //@ use lib/surface
+//@ use variants/loads
 //@ use variants/vertex_effects
 //@ use steps/shade_step
 
@@ -105,7 +106,7 @@ fn shade_is_clipped(t: Triangle) -> bool {
 // Fraction of all samples that come before a triangle; four ranks to a record.
 fn shade_rank(id: u32) -> f32 {
     if !HAS_RANKS { return 0.0; }
-    return bitcast<f32>(vertices[frame.first_rank + id / 4u][id % 4u]);
+    return bitcast<f32>(load_record(frame.first_rank + id / 4u)[id % 4u]);
 }
 
 // The triangle whose samples are shaded, and its vertices within the draw.

@@ -4,7 +4,7 @@
 //@ use lib/fixed
 //@ use glue/draws
 //@ use glue/index_bytes
-//@ binding @group(0) @binding(4) var<storage, read> vertices: array<vec4u>;
+//@ use variants/loads
 
 // ---- Draws. `draws` is a uniform where the scene has one draw, else a storage buffer: the glue declares it.
 
@@ -118,7 +118,7 @@ fn triangle_load(id: u32) -> Triangle {
 fn triangle_of(draw: u32, id: u32) -> Triangle {
     var at = 3u * id + vec3u(0u, 1u, 2u);
     if !UNSHARES_VERTICES { at = draws[draw].first_vertex + triangle_vertices(draw, id - draws[draw].first_triangle); }
-    return Triangle(vertices[at.x], vertices[at.y], vertices[at.z], id, draw, id, 7u);
+    return Triangle(load_record(at.x), load_record(at.y), load_record(at.z), id, draw, id, 7u);
 }
 
 // Is a triangle of this orientation drawn, given the flags of its draw? Clockwise on screen (area > 0) is the back of a glTF

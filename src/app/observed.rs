@@ -84,6 +84,11 @@ impl App {
         self.state.session.scene().map(|scene| self.state.session.view_at(scene, size))
     }
 
+    /// Width and height in pixels of the picture that was asked for last; none before the first.
+    pub fn ordered_size(&self) -> Option<[u32; 2]> {
+        self.state.screen.ordered_size()
+    }
+
     pub fn gpu(&self) -> &Arc<Gpu> {
         &self.state.screen.gpu
     }

@@ -27,7 +27,7 @@ use super::{
 };
 use crate::{
     accuracy::AccuracyOptions,
-    gpu::{CompileWatch, Explanation, Gpu, RenderError, Renderer, Report},
+    gpu::{CompileWatch, Explanation, Gpu, RenderError, Renderer, Report, preparations::Preparation},
     plan::Plan,
 };
 
@@ -60,7 +60,7 @@ pub struct Drawn {
     pub report: Option<Report>,
     pub options: Option<AccuracyOptions>,
     pub plan: Option<Arc<Plan>>,
-    pub explanation: Explanation,
+    pub explanation: Arc<Explanation>,
     /// Something was compiled for it.
     pub is_compiled: bool,
     /// More of it is to come: queues grow, or particles are still simulated.
@@ -365,8 +365,8 @@ impl Worker {
         if self.shared.is_outdated(inputs) {
             return Ok(None);
         }
-        let Some(renderer) = &self.renderer else { return Err(RenderError::NoScene) };
-        let (options, plan, explanation) = (renderer.key().map(|key| key.options), renderer.plan().cloned(), renderer.explain());
+        let Some(renderer) = &mut self.renderer else { return Err(RenderError::NoScene) };
+        let (options, plan, explanation) = (renderer.key().map(|key| key.options), renderer.plan().cloned(), renderer.explained());
         let size = [inputs.view.width, inputs.view.height];
         let view = if Arc::ptr_eq(&self.gpu, &self.window) {
             renderer.texture_view().cloned()
@@ -380,8 +380,9 @@ impl Worker {
     /// Writes pixels to a texture of the window's device.
     fn upload(&mut self, pixels: &[[u8; 4]], [width, height]: [u32; 2]) -> wgpu::TextureView {
         let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
-        let device = &self.window.device;
+        let (device, drawing) = (&self.window.device, &self.gpu);
         let (texture, view) = self.texture.take().filter(|(texture, _)| texture.size() == size).unwrap_or_else(|| {
+            drawing.prepared.count(Preparation::Texture);
             let texture = device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("picture"),
                 size,

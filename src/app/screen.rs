@@ -45,7 +45,7 @@ pub struct Screen {
     report: Option<Report>,
     options: Option<AccuracyOptions>,
     plan: Option<Arc<Plan>>,
-    explanation: Option<Explanation>,
+    explanation: Option<Arc<Explanation>>,
     timings: Timings,
 }
 
@@ -160,7 +160,7 @@ impl Screen {
 
     /// What the newest picture ran, and why.
     pub fn explanation(&self) -> Option<&Explanation> {
-        self.explanation.as_ref()
+        self.explanation.as_deref()
     }
 
     /// True if the requested picture was tried and could not be drawn.
@@ -199,6 +199,11 @@ impl Screen {
     /// Holds the thread when it is next about to compile, or lets it go on. For tests.
     pub fn hold_compiling(&self, is_held: bool) {
         self.thread.hold_compiling(is_held);
+    }
+
+    /// Width and height in pixels of the picture that was asked for last, reduced while it moves; none before the first.
+    pub fn ordered_size(&self) -> Option<[u32; 2]> {
+        self.ordered.as_ref().map(|inputs| [inputs.view.width, inputs.view.height])
     }
 
     /// Full pixels per drawn pixel along a side; above 1 while the picture moves on a slow adapter.

@@ -310,7 +310,7 @@ impl Lab<'_> {
             Contender::Hardware(hardware) => hardware.record(&mut encoder, self.timer.as_mut())?,
             Contender::Ours(..) | Contender::Stacked(..) => {}
         }
-        let pending = Pending::stage(self.gpu, &mut encoder, StatSources::default(), self.timer.as_ref());
+        let pending = Pending::stage(self.gpu, &mut encoder, StatSources::default(), self.timer.as_ref(), None);
         self.gpu.queue.submit([encoder.finish()]);
         let pending = pending.begin();
         buffers::wait(self.gpu)?;

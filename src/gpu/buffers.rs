@@ -5,7 +5,7 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
-use super::{device::Gpu, error::RenderError, resource_id::BufferId};
+use super::{device::Gpu, error::RenderError, preparations::Preparation, resource_id::BufferId};
 
 /// One buffer of the picture, for `explain`.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -70,6 +70,7 @@ impl Buffers {
         let usage = id.usage() | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
         let descriptor = wgpu::BufferDescriptor { label: Some(id.name()), size: bytes, usage, mapped_at_creation: false };
         let buffer = gpu.device.create_buffer(&descriptor);
+        gpu.prepared.count(Preparation::Buffer);
         if pollster::block_on(scope.pop()).is_some() {
             return Err(RenderError::OutOfMemory { buffer: id.name(), bytes });
         }
@@ -143,25 +144,48 @@ pub fn color_stride(width: u32) -> u32 {
 
 /// Copies a buffer back and waits for it.
 pub fn read(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, RenderError> {
-    if bytes == 0 {
-        return Ok(Vec::new());
-    }
-    let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("readback"),
+    read_through(gpu, buffer, bytes, &mut None)
+}
+
+/// A buffer that the program can map and read.
+pub fn new_staging(gpu: &Gpu, label: &str, bytes: u64) -> wgpu::Buffer {
+    gpu.prepared.count(Preparation::Buffer);
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
         size: bytes,
         usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
-    });
+    })
+}
+
+/// [`read`] through a buffer that the caller keeps for the next time.
+fn read_through(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: u64, kept: &mut Option<wgpu::Buffer>) -> Result<Vec<u8>, RenderError> {
+    if bytes == 0 {
+        return Ok(Vec::new());
+    }
+    let staging = kept.take().filter(|staging| staging.size() == bytes).unwrap_or_else(|| new_staging(gpu, "readback", bytes));
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, bytes);
     gpu.queue.submit([encoder.finish()]);
-    read_staging(gpu, &staging)
+    let read = read_staging(gpu, &staging)?;
+    *kept = Some(staging);
+    Ok(read)
 }
 
 /// Copies back a picture whose rows stand `color_stride` apart, row-major.
-pub fn read_picture(gpu: &Gpu, buffer: &wgpu::Buffer, [width, height]: [u32; 2]) -> Result<Vec<[u8; 4]>, RenderError> {
+pub fn read_picture(gpu: &Gpu, buffer: &wgpu::Buffer, size: [u32; 2]) -> Result<Vec<[u8; 4]>, RenderError> {
+    read_picture_through(gpu, buffer, size, &mut None)
+}
+
+/// [`read_picture`] through a buffer that the caller keeps for the next picture.
+pub fn read_picture_through(
+    gpu: &Gpu,
+    buffer: &wgpu::Buffer,
+    [width, height]: [u32; 2],
+    kept: &mut Option<wgpu::Buffer>,
+) -> Result<Vec<[u8; 4]>, RenderError> {
     let row = 4 * color_stride(width) as usize;
-    let bytes = read(gpu, buffer, row as u64 * u64::from(height))?;
+    let bytes = read_through(gpu, buffer, row as u64 * u64::from(height), kept)?;
     let pixels = |row: &[u8]| bytemuck::pod_collect_to_vec::<u8, [u8; 4]>(&row[..4 * width as usize]);
     Ok(bytes.chunks_exact(row.max(1)).flat_map(pixels).collect())
 }
@@ -170,8 +194,9 @@ pub fn read_picture(gpu: &Gpu, buffer: &wgpu::Buffer, [width, height]: [u32; 2])
 pub fn read_staging(gpu: &Gpu, staging: &wgpu::Buffer) -> Result<Vec<u8>, RenderError> {
     staging.map_async(wgpu::MapMode::Read, .., |_| {});
     wait(gpu)?;
-    let view = staging.get_mapped_range(..).map_err(|_| RenderError::Lost)?;
-    Ok(view.to_vec())
+    let bytes = staging.get_mapped_range(..).map_err(|_| RenderError::Lost)?.to_vec();
+    staging.unmap();
+    Ok(bytes)
 }
 
 /// Waits until the queue is idle. A minute without an answer counts as a lost device: software adapters have no watchdog.

@@ -8,7 +8,7 @@ use std::{
     },
 };
 
-use super::pipeline_store::PipelineStore;
+use super::{pipeline_store::PipelineStore, preparations::Preparations};
 pub use crate::plan::Caps;
 
 /// Which adapter a person asked for.
@@ -53,6 +53,8 @@ pub struct Gpu {
     pub caps: Caps,
     /// What its renderers compiled.
     pub(super) pipelines: PipelineStore,
+    /// What its renderers prepared.
+    pub prepared: Preparations,
     lost: Arc<AtomicBool>,
     /// First error that no scope caught.
     error: Arc<Mutex<Option<String>>>,
@@ -193,7 +195,16 @@ impl Gpu {
         device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| {
             slot.lock().unwrap_or_else(|p| p.into_inner()).get_or_insert(e.to_string());
         }));
-        Arc::new(Self { device, queue, summary: summary(adapter), caps: caps(adapter), pipelines: PipelineStore::default(), lost, error })
+        Arc::new(Self {
+            device,
+            queue,
+            summary: summary(adapter),
+            caps: caps(adapter),
+            pipelines: PipelineStore::default(),
+            prepared: Preparations::default(),
+            lost,
+            error,
+        })
     }
 
     /// Has the device been lost? Then everything made from it is dead.

@@ -1,7 +1,10 @@
 //! Explanation: which passes and buffers the last picture has, which it does without, and why.
 
+use std::sync::Arc;
+
 use super::{
-    buffers::BufferNote, pass_purpose::pass_purpose, recording::Resources, shadow_pass::ShadowPass, view_resources::ViewResources,
+    buffers::BufferNote, device::Gpu, frame_layout::DotCounts, pass_purpose::pass_purpose, preparations::Preparation, recording::Resources,
+    shadow_pass::ShadowPass, view_resources::ViewResources,
 };
 use crate::{
     plan::{Note, Plan, Tolerance, predict::Prediction},
@@ -104,5 +107,54 @@ impl Explanation {
             prediction: Some(plan.prediction),
             tolerance: Some(plan.tolerance),
         }
+    }
+}
+
+/// The newest explanation, and what it speaks of.
+#[derive(Default)]
+pub struct Explained(Option<(Subject, Arc<Explanation>)>);
+
+/// What an explanation speaks of.
+struct Subject {
+    plan: Option<Arc<Plan>>,
+    /// Of the picture's and the light's command list, which change with their buffers.
+    commands: [Option<u64>; 2],
+    dots: Option<(DotCounts, usize)>,
+    counted: Option<[u32; 2]>,
+}
+
+impl Subject {
+    fn is_same(&self, other: &Self) -> bool {
+        let is_same_plan = match (&self.plan, &other.plan) {
+            (Some(plan), Some(other)) => Arc::ptr_eq(plan, other),
+            (plan, other) => plan.is_none() && other.is_none(),
+        };
+        is_same_plan && (self.commands, self.dots, self.counted) == (other.commands, other.dots, other.counted)
+    }
+}
+
+impl Explained {
+    /// [`Explanation::new`], or the same as before where nothing that it says has changed.
+    pub fn of<'a>(
+        &mut self,
+        gpu: &Gpu,
+        picture: &ViewResources,
+        shadow: Option<&ShadowPass>,
+        counted: Option<[u32; 2]>,
+        others: impl FnOnce() -> Resources<'a>,
+    ) -> Arc<Explanation> {
+        let subject = Subject {
+            plan: picture.frame().ok().map(|frame| frame.plan.clone()),
+            commands: [picture.commands_revision(), shadow.and_then(|shadow| shadow.resources.commands_revision())],
+            dots: picture.dots.as_ref().map(|dots| (dots.counts(), dots.line_count())),
+            counted,
+        };
+        if let Some((_, explanation)) = self.0.as_ref().filter(|(known, _)| known.is_same(&subject)) {
+            return explanation.clone();
+        }
+        gpu.prepared.count(Preparation::Explanation);
+        let explanation = Arc::new(Explanation::new(picture, &others(), shadow, counted));
+        self.0 = Some((subject, explanation.clone()));
+        explanation
     }
 }

@@ -9,6 +9,7 @@ use std::{
 };
 
 use super::{
+    buffers,
     device::Gpu,
     records::{CounterRecord, OrderRecord},
     timer::{Timer, Times},
@@ -43,14 +44,15 @@ pub struct Pending {
 const FIRST_STAMP: u64 = size_of::<FrameStats>() as u64;
 
 impl Pending {
-    /// Records the copies that end a frame.
-    pub fn stage(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, sources: StatSources<'_>, timer: Option<&Timer>) -> Self {
-        let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("frame stats"),
-            size: FIRST_STAMP + Timer::BYTES,
-            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+    /// Records the copies that end a frame. `spare` is the buffer of an earlier frame, if there is one.
+    pub fn stage(
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        sources: StatSources<'_>,
+        timer: Option<&Timer>,
+        spare: Option<wgpu::Buffer>,
+    ) -> Self {
+        let staging = spare.unwrap_or_else(|| buffers::new_staging(gpu, "frame stats", FIRST_STAMP + Timer::BYTES));
         let copies = [
             (sources.picture, offset_of!(FrameStats, picture), size_of::<CounterRecord>()),
             (sources.shadow, offset_of!(FrameStats, shadow), size_of::<CounterRecord>()),
@@ -84,6 +86,12 @@ impl Pending {
         let (stats, stamps) = bytes.split_at(FIRST_STAMP as usize);
         let times = timer.map(|timer| timer.times(stamps, &self.labels)).unwrap_or_default();
         Some((bytemuck::pod_read_unaligned(stats), times))
+    }
+
+    /// The buffer of a frame that is ready, for another frame.
+    pub fn into_spare(self) -> wgpu::Buffer {
+        self.staging.unmap();
+        self.staging
     }
 }
 

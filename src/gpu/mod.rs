@@ -8,6 +8,7 @@ mod resource_id;
 
 mod compile_watch;
 mod pipeline_store;
+pub mod preparations;
 
 pub mod device;
 

@@ -13,6 +13,7 @@ use super::{
     device::Gpu,
     error::RenderError,
     pipeline_store::{Identity, Pipeline},
+    preparations::Preparation,
     resource_id::ResourceId,
 };
 use crate::{
@@ -182,6 +183,7 @@ impl Pipelines {
         if is_trusted && !matches!(self.library, Library::Embedded) {
             return Err(RenderError::Untrusted);
         }
+        gpu.prepared.count(Preparation::Text);
         let linked = link::link(&self.library, root, key, variants)?;
         let interface = gpu.pipelines.interface(&linked, entry, gpu.caps.int64_atomics)?;
         let declared = constants.iter().filter(|(name, _)| interface.overrides.iter().any(|declared| declared == name));
@@ -197,6 +199,7 @@ impl Pipelines {
 
     fn keep(&mut self, gpu: &Gpu, identity: Identity, pipeline: Pipeline) -> Arc<Pipeline> {
         self.compiled += 1;
+        gpu.prepared.count(Preparation::Pipeline);
         gpu.pipelines.keep(identity, pipeline, MOST_KEPT[usize::from(gpu.caps.software)])
     }
 }

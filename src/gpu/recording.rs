@@ -4,12 +4,13 @@
 use std::{ops::Range, sync::Arc};
 
 use super::{
-    buffers::{BufferNote, Buffers},
+    buffers::{BufferNote, Buffers, next_revision},
     device::Gpu,
     error::RenderError,
     frame_layout::{Dispatch, FrameLayout},
     pipeline_store::{Pipeline, PipelineStore},
     pipelines::Pipelines,
+    preparations::Preparation,
     resource_id::{ResourceId, TextureId},
     scene_resources::SceneResources,
     textures::WordTexture,
@@ -83,6 +84,7 @@ impl<'a> Resources<'a> {
         let entry = |&(binding, id): &(u32, ResourceId)| Ok(wgpu::BindGroupEntry { binding, resource: self.get(id)? });
         let entries: Vec<_> = pipeline.bindings.iter().map(entry).collect::<Result<_, RenderError>>()?;
         let descriptor = wgpu::BindGroupDescriptor { label: Some(&pipeline.label), layout: &pipeline.layout, entries: &entries };
+        gpu.prepared.count(Preparation::BindGroup);
         Ok(gpu.device.create_bind_group(&descriptor))
     }
 
@@ -118,6 +120,8 @@ pub struct CommandList {
     passes: Vec<Pass>,
     revisions: Vec<u64>,
     commands: Vec<Command>,
+    /// No two lists have the same.
+    pub revision: u64,
 }
 
 /// How the passes of a list are timed.
@@ -147,7 +151,7 @@ impl CommandList {
             Ok(Command { pass, label: format!("{prefix}{}", pass.label()), pipeline, group })
         };
         let commands = passes.iter().map(command).collect::<Result<_, RenderError>>()?;
-        Ok(Self { key: key.clone(), passes, revisions: resources.revisions(), commands })
+        Ok(Self { key: key.clone(), passes, revisions: resources.revisions(), commands, revision: next_revision() })
     }
 
     /// Is it still the list for these passes and resources?

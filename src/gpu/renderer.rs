@@ -7,13 +7,14 @@ use super::{
     compile_watch::CompileWatch,
     device::Gpu,
     error::RenderError,
-    explain::Explanation,
+    explain::{Explained, Explanation},
     frame_layout::Target,
     frame_stats::{Pending, StatSources},
     hardware_ids,
     history::{History, fill_background},
     particles::{ParticleSimulation, Wait},
     pipelines::Pipelines,
+    preparations::Preparation,
     queues::{Capacities, recorded_capacities},
     recording::{Device, Resources, Timing},
     resource_id::{BufferId, ClearedBy, TextureId},
@@ -67,6 +68,11 @@ pub struct Renderer {
     pub(super) history: History,
     /// Statistics of frames in flight, oldest first.
     pending: VecDeque<Pending>,
+    /// Buffers of finished frames, for the statistics of the next.
+    spare_stats: Vec<wgpu::Buffer>,
+    /// Through which shown pictures are read.
+    shown_staging: Option<wgpu::Buffer>,
+    explained: Explained,
     /// Medium and large triangles of the newest finished frame.
     demand: Option<[u32; 2]>,
     culled: Option<CullingStats>,
@@ -90,6 +96,9 @@ impl Renderer {
             particles: ParticleSimulation::default(),
             history: History::default(),
             pending: VecDeque::new(),
+            spare_stats: Vec::new(),
+            shown_staging: None,
+            explained: Explained::default(),
             demand: None,
             culled: None,
             presentation: None,
@@ -220,7 +229,7 @@ impl Renderer {
         let shadow = self.shadow.as_ref().map(|shadow| shadow.resources.buffers.get(BufferId::Counters)).transpose()?;
         let buffers = &self.picture.buffers;
         let sources = StatSources { picture: Some(buffers.get(BufferId::Counters)?), shadow, order: buffers.get(BufferId::DrawOrder).ok() };
-        let pending = Pending::stage(&gpu, &mut encoder, sources, self.device.timer.as_ref());
+        let pending = Pending::stage(&gpu, &mut encoder, sources, self.device.timer.as_ref(), self.spare_stats.pop());
         gpu.queue.submit([encoder.finish()]);
         self.pending.push_back(pending.begin());
         self.history.finish(view, stack);
@@ -294,6 +303,7 @@ impl Renderer {
                 usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING,
                 view_formats: &[],
             });
+            self.device.gpu.prepared.count(Preparation::Texture);
             let view = texture.create_view(&Default::default());
             Presentation { texture, view }
         });
@@ -318,10 +328,11 @@ impl Renderer {
     ///
     /// # Errors
     /// When the device is lost.
-    pub fn read_shown(&self) -> Result<Option<Vec<[u8; 4]>>, RenderError> {
+    pub fn read_shown(&mut self) -> Result<Option<Vec<[u8; 4]>>, RenderError> {
         let Some(presentation) = &self.presentation else { return Ok(None) };
         let size = [presentation.texture.width(), presentation.texture.height()];
-        buffers::read_picture(&self.device.gpu, self.picture.buffers.get(self.shown_buffer())?, size).map(Some)
+        let shown = self.picture.buffers.get(self.shown_buffer())?;
+        buffers::read_picture_through(&self.device.gpu, shown, size, &mut self.shown_staging).map(Some)
     }
 
     /// Statistics of the newest finished frame, or none yet; does not wait.
@@ -329,9 +340,9 @@ impl Renderer {
         let _ = self.device.gpu.device.poll(wgpu::PollType::Poll);
         let mut newest = None;
         while self.pending.front().is_some_and(Pending::is_ready) {
-            newest = self.pending.pop_front();
+            self.spare_stats.extend(newest.replace(self.pending.pop_front()?).map(Pending::into_spare));
         }
-        newest.and_then(|finished| self.collect_stats(&finished))
+        self.collect_stats(newest?)
     }
 
     /// Are statistics of a submitted frame still to come?
@@ -345,12 +356,14 @@ impl Renderer {
     /// When nothing was drawn, or the device is lost.
     pub fn finish(&mut self) -> Result<Report, RenderError> {
         buffers::wait(&self.device.gpu)?;
-        let finished = self.pending.drain(..).next_back().ok_or(RenderError::NoScene)?;
-        self.collect_stats(&finished).ok_or(RenderError::Lost)
+        let finished = self.pending.pop_back().ok_or(RenderError::NoScene)?;
+        self.spare_stats.extend(self.pending.drain(..).map(Pending::into_spare));
+        self.collect_stats(finished).ok_or(RenderError::Lost)
     }
 
-    fn collect_stats(&mut self, finished: &Pending) -> Option<Report> {
+    fn collect_stats(&mut self, finished: Pending) -> Option<Report> {
         let (stats, times) = finished.read(self.device.timer.as_ref())?;
+        self.spare_stats.push(finished.into_spare());
         let record = &stats.picture;
         self.demand = Some([record.medium, record.large]);
         let key = self.picture.frame().ok()?.plan.key.clone();
@@ -377,6 +390,15 @@ impl Renderer {
     /// Forgets what the next picture would start from: background comes before it.
     pub fn clear_history(&mut self) {
         self.history.clear();
+    }
+
+    /// [`Self::explain`], kept while nothing that it says has changed.
+    pub fn explained(&mut self) -> Arc<Explanation> {
+        let Self { device, scene, picture, shadow, particles, explained, demand, .. } = self;
+        explained.of(&device.gpu, picture, shadow.as_ref(), *demand, || match scene {
+            Some(scene) => shared(scene, particles, shadow.as_ref()),
+            None => Resources::default(),
+        })
     }
 
     /// Passes and buffers of the last picture, what it does without, and why.

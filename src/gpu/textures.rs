@@ -1,6 +1,6 @@
 //! Textures of 32-bit words, which kernels read texel by texel: they take none of the few storage buffers that a pass may bind.
 
-use super::{buffers::next_revision, device::Gpu, error::RenderError, resource_id::TextureId};
+use super::{buffers::next_revision, device::Gpu, error::RenderError, preparations::Preparation, resource_id::TextureId};
 
 /// A texture on the device.
 pub struct WordTexture {
@@ -27,6 +27,7 @@ impl WordTexture {
             usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING,
             view_formats: &[],
         });
+        gpu.prepared.count(Preparation::Texture);
         let view = texture.create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() });
         if pollster::block_on(scope.pop()).is_some() {
             return Err(RenderError::OutOfMemory { buffer: id.name(), bytes: bytes_of(size) });

@@ -10,6 +10,7 @@ use super::{
     draws::{DrawData, DrawInputs},
     error::RenderError,
     frame_layout::{FrameLayout, LayoutInputs, Region, Span, Target},
+    preparations::Preparation,
     queues::{Capacities, first_capacities, recorded_capacities},
     recording::{CommandList, Device, Resources, Timing},
     records::{CounterRecord, ScalingUniform},
@@ -125,6 +126,11 @@ impl ViewResources {
         self.seen.clear();
     }
 
+    /// Changes whenever passes, pipelines or bound buffers do; none before the passes were prepared.
+    pub fn commands_revision(&self) -> Option<u64> {
+        self.commands.as_ref().map(|commands| commands.revision)
+    }
+
     /// Drops bind groups, which would hold buffers that are about to be made anew.
     pub fn release_commands(&mut self) {
         self.commands = None;
@@ -188,14 +194,14 @@ impl ViewResources {
     /// The plan of a frame, with the view on its grid and that view's draws.
     fn plan(&mut self, device: &Device, scene: &Arc<Scene>, request: &Request<'_>) -> Result<PlannedView, RenderError> {
         let mut view = request.view.clone();
-        let mut seen = self.see(scene, &view, request.stack)?;
+        let mut seen = self.see(&device.gpu, scene, &view, request.stack)?;
         let mut plan = self.plan_of(device, seen, request)?;
         // Another grid has its guard band elsewhere, and another origin its matrices, so their needs are their own.
         let options = &plan.key.options;
         let (subpixel_bits, is_relative) = (options.coverage.subpixel_bits(), options.position_format == PositionFormat::Relative);
         view = view.with_grid(subpixel_bits, is_relative);
         if is_relative || subpixel_bits != SUBPIXEL_BITS {
-            seen = self.see(scene, &view, request.stack)?;
+            seen = self.see(&device.gpu, scene, &view, request.stack)?;
             plan = self.plan_of(device, seen, request)?;
         }
         if let (Some(Layers::Xray { bits }), Some(fewer)) = (plan.key.framebuffer.layers, request.fewer_bits) {
@@ -205,12 +211,13 @@ impl ViewResources {
     }
 
     /// Position in `seen` of a scene as a view sees it, with the scopes of a stack.
-    fn see(&mut self, scene: &Arc<Scene>, view: &View, stack: &Stack) -> Result<usize, RenderError> {
+    fn see(&mut self, gpu: &Gpu, scene: &Arc<Scene>, view: &View, stack: &Stack) -> Result<usize, RenderError> {
         let scopes = stack.scopes();
         let is_known = |seen: &Seen| Arc::ptr_eq(&seen.scene, scene) && seen.view == *view && seen.scopes == scopes;
         if let Some(known) = self.seen.iter().position(is_known) {
             return Ok(known);
         }
+        gpu.prepared.count(Preparation::View);
         let draws: Arc<[Draw]> = stack.draws(scene, view)?.into();
         let needs = Needs::of(scene, &draws, view);
         let needs_all_paths = Arc::new(Needs { clipping: true, largest_px: f64::INFINITY, ..needs.clone() });
@@ -226,7 +233,12 @@ impl ViewResources {
         // A shadow map has no picture whose tiles could be listed.
         let listed_tiles = device.tuning.listed_tiles && self.target != Target::ShadowMap;
         let tuning = Tuning { listed_tiles, ..device.tuning };
-        Ok(self.planner.plan(needs, request.stack, &device.gpu.caps, &tuning, request.accuracy)?)
+        let made = self.planner.made();
+        let plan = self.planner.plan(needs, request.stack, &device.gpu.caps, &tuning, request.accuracy)?;
+        if self.planner.made() > made {
+            device.gpu.prepared.count(Preparation::Plan);
+        }
+        Ok(plan)
     }
 
     /// Computes what the passes read about every instance, unless it is known; true if it changed.

@@ -52,6 +52,7 @@ impl Caps {
             clears_in_passes: !self.software,
             hides_blocks: !self.software,
             stored_uniforms: self.software && self.max_storage_buffers >= MANY_STORAGE_BUFFERS,
+            wide_loads: self.software && self.int64_atomics,
             specialized: true,
         }
     }
@@ -82,6 +83,9 @@ pub struct Tuning {
     /// anew, in every draw, with the values of the uniforms that its conditions read, and frees none of them: some 170 KB a draw
     /// (Mesa 22.3).
     pub stored_uniforms: bool,
+    /// The resolve gathers two words at a time, as 64-bit integers, which the adapter must have. On lavapipe a gathered
+    /// component of 64 bits costs about as much as one of 32; it was not tried on a card.
+    pub wide_loads: bool,
     /// Omit what the scene does not need; else keep every path and every branch.
     pub specialized: bool,
 }

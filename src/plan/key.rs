@@ -45,6 +45,7 @@ pub(super) fn key_of(
             queue_groups: if options.culling == Culling::None { tuning.queue_groups.min(65_535) } else { 0 },
             hides_blocks: tuning.hides_blocks,
             stored_uniforms: tuning.stored_uniforms,
+            wide_loads: tuning.wide_loads,
             clears_in_passes: tuning.clears_in_passes && options.culling == Culling::None && !matches!(layers, Some(Layers::Xray { .. })),
         },
         framebuffer: Framebuffer {

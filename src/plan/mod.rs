@@ -109,6 +109,8 @@ fn needs_of_stack(needs: &Arc<Needs>, stack: &StackTraits, tuning: &Tuning) -> A
 /// changes uniform bytes alone.
 #[derive(Debug, Default)]
 pub struct Planner {
+    /// Number of plans that were made.
+    made: u64,
     latest: Vec<(PlanInputs, Arc<Plan>)>,
 }
 
@@ -123,6 +125,11 @@ struct PlanInputs {
 }
 
 impl Planner {
+    /// Number of plans that it made; those that it had kept do not count.
+    pub fn made(&self) -> u64 {
+        self.made
+    }
+
     /// Most plans that are kept: those of a picture and of its shadow map, on two grids each.
     const KEPT: usize = 4;
 
@@ -146,6 +153,7 @@ impl Planner {
         if let Some(index) = self.latest.iter().position(is_same) {
             return Ok(self.latest[index].1.clone());
         }
+        self.made += 1;
         let planned = Arc::new(plan(needs, &stack, caps, tuning, request)?);
         self.latest.truncate(Self::KEPT - 1);
         let inputs = PlanInputs { needs: needs.clone(), stack, caps: *caps, tuning: *tuning, request: *request };

@@ -127,6 +127,8 @@ pub struct WorkSharing {
     pub hides_blocks: bool,
     /// What conditions read of draws, effects and particles lies in storage buffers instead of uniforms; see `plan::Tuning`.
     pub stored_uniforms: bool,
+    /// The resolve gathers two words at a time; see `plan::Tuning`.
+    pub wide_loads: bool,
 }
 
 /// What a pixel holds.
@@ -229,6 +231,7 @@ impl KernelKey {
                 clears_in_passes: true,
                 hides_blocks: true,
                 stored_uniforms: false,
+                wide_loads: false,
             },
             framebuffer: Framebuffer { layers, triangle_id_bits: if visibility == Visibility::Packed32 { 24 } else { 0 } },
             surface: SurfaceInputs { has_material_atlas: true, has_planes: true },

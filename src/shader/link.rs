@@ -343,6 +343,7 @@ impl Linker<'_> {
                         Directive::Declare(signature) | Directive::MayDeclare(signature) => Some(signature.name.clone()),
                         _ => None,
                     }));
+                    visible.extend(binding_names(&interface.source).map(str::to_owned));
                 }
                 "steps" | "glue" => {
                     visible.extend(self.generated.iter().filter(|(_, part)| *part == used).map(|(name, _)| name.clone()));

@@ -58,6 +58,7 @@ impl WorkDistribution {
             queue_groups: if self == Self::Card { 48 } else { 0 },
             hides_blocks: is_card,
             stored_uniforms: false,
+            wide_loads: false,
             clears_in_passes: self == Self::Card,
             specialized: true,
         }

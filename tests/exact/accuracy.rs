@@ -371,6 +371,7 @@ const GRAPHICS_CARD: Tuning = Tuning {
     clears_in_passes: false,
     hides_blocks: true,
     stored_uniforms: false,
+    wide_loads: false,
     specialized: true,
 };
 

@@ -55,6 +55,7 @@ const GRAPHICS_CARD: Tuning = Tuning {
     clears_in_passes: true,
     hides_blocks: true,
     stored_uniforms: false,
+    wide_loads: false,
     specialized: true,
 };
 

@@ -87,6 +87,7 @@ fn both_tunings(renderer: &Renderer) -> [Tuning; 2] {
         clears_in_passes: true,
         hides_blocks: true,
         stored_uniforms: false,
+        wide_loads: false,
         specialized: true,
     };
     [renderer.gpu().caps.tuning(), card]

@@ -73,7 +73,7 @@ fn modules() -> Vec<(String, Reflected, Vec<reflect::Binding>)> {
     modules.push(("naive".into(), naive, bindings));
     let mut key = key;
     key.vertices.is_single_draw = false;
-    let hardware = link::link(&Library::Embedded, "baselines/hardware", &key, &[]).expect("links");
+    let hardware = link::link(&Library::Embedded, "baselines/hardware", &key, &key.variants(Pass::Resolve)).expect("links");
     let hardware = reflect::reflect(&hardware, false).expect("validates");
     let entries = ["hardware_vertex", "hardware_painted_vertex", "hardware_fragment", "hardware_painted", "hardware_masked"];
     let bindings = entries.iter().flat_map(|entry| hardware.bindings(entry)).collect();

@@ -25,6 +25,7 @@ mod live;
 mod memory;
 mod numerics;
 mod palette;
+mod preparing;
 mod preset_browser;
 mod scopes;
 mod settings;

@@ -46,7 +46,7 @@ const FRAMEBUFFER: Feature = Feature {
         Visibility::Packed32 => format!("visibility=packed32/{}", key.framebuffer.triangle_id_bits),
         other => format!("visibility={}", other.name()),
     },
-    variants: &[("framebuffer_write", framebuffer_write), ("framebuffer_read", framebuffer_layout), ("xray_buffer", framebuffer_layout)],
+    variants: &[("framebuffer_write", framebuffer_write), ("framebuffer_read", framebuffer_read), ("xray_buffer", framebuffer_layout)],
     constants: &[
         ("EARLY_LOAD", |key, _| flag(key.work.early_load)),
         ("ID_BITS", |key, _| key.framebuffer.triangle_id_bits.into()),
@@ -62,6 +62,12 @@ fn framebuffer_layout(key: &KernelKey, _: Pass) -> &'static str {
         FramebufferLayout::Packed32 => "packed32",
         FramebufferLayout::Packed64 => "packed64",
     }
+}
+
+/// How a pass reads the finished pixels.
+fn framebuffer_read(key: &KernelKey, pass: Pass) -> &'static str {
+    let is_wide = key.work.wide_loads && pass == Pass::Resolve && key.framebuffer_layout() == FramebufferLayout::Packed64;
+    if is_wide { "packed64_wide" } else { framebuffer_layout(key, pass) }
 }
 
 /// What a raster pass does with a sample.
