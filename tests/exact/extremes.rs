@@ -220,7 +220,7 @@ const MUTANTS: &[(&str, &str, &str, &str, &str)] = &[
     ),
     ("a near plane that leans", "lib/extent", "n.x * c.x + n.y * c.y", "n.x * c.x + n.x * c.y", "culled-cameras"),
     (
-        "the farthest of other pixels",
+        "depths of the tile before",
         "stages/geometry/depth_reduce",
         "tile * 8u + vec2u(i % 8u, i / 8u)",
         "tile * 8u - vec2u(i % 8u, i / 8u)",
