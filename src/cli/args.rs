@@ -449,7 +449,7 @@ pub struct Fuzz {
     /// Number of presets
     #[arg(long, value_name = "M", default_value_t = 100)]
     pub count: u32,
-    /// Folder for the presets that failed, shrunk
+    /// Folder for the presets that failed, shrunk, and as they are for those that took long or lost the device
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 }

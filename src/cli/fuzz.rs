@@ -2,7 +2,6 @@
 
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
-    path::Path,
     time::Instant,
 };
 
@@ -70,7 +69,13 @@ pub fn run(common: &Common, args: &Fuzz, streams: &mut Streams) -> Result<Exit, 
     for seed in (0..args.count).map(|n| args.seed.wrapping_add(n)) {
         bar.set_message(format!("seed {seed}"));
         let begin = Instant::now();
-        let outcome = outcome(common, &random::preset(seed), &mut backend)?;
+        let outcome = match outcome(common, &random::preset(seed), &mut backend) {
+            Ok(outcome) => outcome,
+            Err(error) => {
+                keep(args, &format!("lost-{seed}"), random::preset(seed), common.force)?;
+                return Err(error.during(format!("seed {seed}")));
+            }
+        };
         let seconds = begin.elapsed().as_secs_f64();
         bar.inc(1);
         counts[match outcome {
@@ -81,6 +86,7 @@ pub fn run(common: &Common, args: &Fuzz, streams: &mut Streams) -> Result<Exit, 
         }] += 1;
         if seconds > SLOW_S {
             bar.suspend(|| streams.note(&format!("seed {seed} took {seconds:.0} s")));
+            keep(args, &format!("slow-{seed}"), random::preset(seed), common.force)?;
         }
         let smallest = match &outcome {
             Outcome::Failed(reasons) => {
@@ -118,20 +124,21 @@ fn shrunk(common: &Common, args: &Fuzz, seed: u32, backend: &mut Backend, stream
         return Err(error);
     }
     let reasons = outcome(common, &smallest, backend)?.reasons().join("; ");
-    let id = format!("random-{seed}");
-    let toml = preset_file::to_toml(&PresetFile::new(&id, smallest));
-    if let Some(folder) = &args.output {
-        store(folder, &id, &toml, common.force)?;
-    }
+    let toml = keep(args, &format!("random-{seed}"), smallest, common.force)?;
     if !streams.json {
         streams.text_now(&format!("# seed {seed}: {reasons}\n{toml}\n"))?;
     }
     Ok(toml)
 }
 
-fn store(folder: &Path, id: &str, toml: &str, force: bool) -> Result<(), CliError> {
-    let (template, names) = (folder.join("{preset}.toml"), Names { preset: id.into(), ..Names::default() });
-    files::create(&template.to_string_lossy(), &names, force, toml.as_bytes()).map(drop)
+/// A preset as TOML, which is stored in the output folder if there is one.
+fn keep(args: &Fuzz, id: &str, preset: Preset, is_forced: bool) -> Result<String, CliError> {
+    let toml = preset_file::to_toml(&PresetFile::new(id, preset));
+    if let Some(folder) = &args.output {
+        let (template, names) = (folder.join("{preset}.toml"), Names { preset: id.into(), ..Names::default() });
+        files::create(&template.to_string_lossy(), &names, is_forced, toml.as_bytes())?;
+    }
+    Ok(toml)
 }
 
 /// Verifies a preset with every option that it allows.

@@ -16,6 +16,7 @@ use super::{
     particles::Wait,
     renderer::Renderer,
     timer::{Detail, Timer, Times},
+    warm_up::{self, FRAMES_PER_SAMPLE},
 };
 use crate::{
     accuracy::{PinnedOptions, Visibility},
@@ -181,7 +182,7 @@ impl<'a> Lab<'a> {
             let detail = if round < samples { Detail::Whole } else { Detail::Passes };
             for (i, at) in in_turn(entries.len(), round).enumerate() {
                 let entry = &mut entries[at];
-                let times = self.sample(&mut entry.contender, detail)?;
+                let times = self.sample(&mut entry.contender, detail, FRAMES_PER_SAMPLE)?;
                 entry.keep(times, detail);
                 progress(&entry.contender.option(), round * entries.len() + i + 1, all);
             }
@@ -210,15 +211,18 @@ impl<'a> Lab<'a> {
 }
 
 impl Lab<'_> {
-    /// Draws all contenders in turn until the time of a round has settled: the clock of an idle device takes a while to rise. Returns
-    /// false if it does not settle.
+    /// Keeps the device busy, then draws all contenders in turn until the time of a round has settled. Returns false if it does not
+    /// settle.
     fn warm_up(&mut self, entries: &mut [Entry]) -> Result<bool, RenderError> {
+        warm_up::warm_up(self.gpu, entries.len(), |at, frames| {
+            self.sample(&mut entries[at].contender, Detail::Whole, frames).map(|_| true)
+        })?;
         let begin = Instant::now();
         let mut rounds = Vec::new();
         while rounds.len() < MIN_WARM_UP_ROUNDS || rounds.len() < MAX_WARM_UP_ROUNDS && begin.elapsed() < MAX_WARM_UP {
             let mut round_ms = Some(0.0);
             for at in in_turn(entries.len(), rounds.len()) {
-                let times = self.sample(&mut entries[at].contender, Detail::Whole)?;
+                let times = self.sample(&mut entries[at].contender, Detail::Whole, FRAMES_PER_SAMPLE)?;
                 round_ms = round_ms.zip(times.total_ms).map(|(sum, ms)| sum + ms);
             }
             // Without timestamps there is nothing to wait for.
@@ -289,26 +293,31 @@ impl Lab<'_> {
         })
     }
 
-    /// Draws once and waits.
-    fn sample(&mut self, contender: &mut Contender, detail: Detail) -> Result<Times, RenderError> {
+    /// Draws so many frames without a pause, waits, and times the last.
+    fn sample(&mut self, contender: &mut Contender, detail: Detail, frames: usize) -> Result<Times, RenderError> {
         let ours = match contender {
             Contender::Ours(visibility, renderer) => Some((renderer.as_mut(), &self.preset.stack, pinned(*visibility))),
             Contender::Stacked(_, own) => Some((&mut own.1, &own.0, AccuracyRequest::default())),
             _ => None,
         };
         if let Some((renderer, stack, accuracy)) = ours {
-            renderer.draw_timed(&self.view, stack, &accuracy, detail, Wait::Simulation)?;
+            for _ in 0..frames {
+                renderer.draw_timed(&self.view, stack, &accuracy, detail, Wait::Simulation)?;
+            }
             let report = renderer.finish()?;
             return Ok(Times { total_ms: report.gpu_ms, passes: report.passes });
         }
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        if let Some(timer) = &mut self.timer {
-            timer.begin(&mut encoder, detail);
-        }
-        match contender {
-            Contender::Naive(_, naive) => naive.record(&mut encoder, self.timer.as_mut()),
-            Contender::Hardware(hardware) => hardware.record(&mut encoder, self.timer.as_mut())?,
-            Contender::Ours(..) | Contender::Stacked(..) => {}
+        for frame in 1..=frames {
+            let mut timer = self.timer.as_mut().filter(|_| frame == frames);
+            if let Some(timer) = &mut timer {
+                timer.begin(&mut encoder, detail);
+            }
+            match contender {
+                Contender::Naive(_, naive) => naive.record(&mut encoder, timer),
+                Contender::Hardware(hardware) => hardware.record(&mut encoder, timer)?,
+                Contender::Ours(..) | Contender::Stacked(..) => {}
+            }
         }
         let pending = Pending::stage(self.gpu, &mut encoder, StatSources::default(), self.timer.as_ref(), None);
         self.gpu.queue.submit([encoder.finish()]);

@@ -51,6 +51,7 @@ mod readback;
 
 mod hardware_ids;
 mod renderer;
+mod warm_up;
 mod workload;
 
 mod capture;

@@ -9,7 +9,14 @@ pub use self::{
     error::{Judged, Reference, TradeError},
     watch::{Phase, Step, Watch},
 };
-use super::{device::Gpu, error::RenderError, particles::Wait, renderer::Renderer, timer::Detail};
+use super::{
+    device::Gpu,
+    error::RenderError,
+    particles::Wait,
+    renderer::Renderer,
+    timer::Detail,
+    warm_up::{self, FRAMES_PER_SAMPLE},
+};
 use crate::{
     accuracy::{AXES, Axis, AxisOption, PinnedOptions, RenderScale},
     frame::{CullingStats, NO_TRIANGLE},
@@ -133,7 +140,7 @@ pub fn trade(
         match Entry::new(gpu, preset, scene, pinned.view(scene, options.size), pins, reference) {
             Ok(Some(mut entry)) => {
                 for _ in 0..WARM_UP {
-                    entry.sample(preset, Kept::Alone)?;
+                    entry.sample(preset, Kept::Alone, FRAMES_PER_SAMPLE)?;
                     is_wanted = watch.is_wanted();
                     if !is_wanted {
                         break;
@@ -145,6 +152,13 @@ pub fn trade(
             Err(error) if error.is_unsupported() => lacking.push((pins, error.to_string())),
             Err(error) => return Err(error),
         }
+    }
+    if is_wanted {
+        warm_up::warm_up(gpu, entries.len(), |at, frames| {
+            entries[at].sample(preset, Kept::Alone, frames)?;
+            is_wanted = watch.is_wanted();
+            Ok(is_wanted)
+        })?;
     }
     let steps = entries.len() * options.samples;
     for round in 0..options.samples {
@@ -158,7 +172,7 @@ pub fn trade(
                     break;
                 }
                 let before = entries[at].marks();
-                entries[at].sample(preset, Kept::Interleaved)?;
+                entries[at].sample(preset, Kept::Interleaved, FRAMES_PER_SAMPLE)?;
                 if watch.was_undisturbed() {
                     break;
                 }
@@ -247,11 +261,12 @@ impl Entry {
         Ok(Some(Self { pins, view, renderer, error, triangle_ids, bytes, alone, ms, cpu_ms, invalid: 0 }))
     }
 
-    /// Draws twice without a pause and waits for the second: an idle device lowers its clocks, and others' frames empty its caches.
-    fn sample(&mut self, preset: &Preset, kept: Kept) -> Result<(), RenderError> {
+    /// Draws so many frames without a pause, waits, and times the last.
+    fn sample(&mut self, preset: &Preset, kept: Kept, frames: usize) -> Result<(), RenderError> {
         let accuracy = AccuracyRequest { pins: self.pins, ..preset.accuracy };
-        self.renderer.draw_timed(&self.view, &preset.stack, &accuracy, Detail::Whole, Wait::Simulation)?;
-        self.renderer.draw_timed(&self.view, &preset.stack, &accuracy, Detail::Whole, Wait::Simulation)?;
+        for _ in 0..frames {
+            self.renderer.draw_timed(&self.view, &preset.stack, &accuracy, Detail::Whole, Wait::Simulation)?;
+        }
         let report = self.renderer.finish()?;
         match report.gpu_ms {
             Some(ms) if kept == Kept::Alone => self.alone.push(ms + report.cpu_ms.unwrap_or(0.0)),
