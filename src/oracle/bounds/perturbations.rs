@@ -56,6 +56,17 @@ const INTERPOLATIONS: [[f64; 4]; 8] = {
     interpolations
 };
 
+/// Depths within their interval, of the colors that change periodically with the place, like lines on a surface: between the ends of the
+/// interval they may be darker and brighter than at either. In powers too, because an error may be a multiple of the depth.
+static STRETCHES: LazyLock<Vec<[f64; 4]>> = LazyLock::new(|| {
+    let even = (1..8).map(|i| f64::from(i) / 8.0);
+    let powers = (0..24).map(|i| 1.1 * 0.5f64.powi(i));
+    even.chain(powers).flat_map(|stretch| [stretch, -stretch]).map(|stretch| [0.0, 0.0, 0.0, stretch]).collect()
+});
+
+/// Perturbations of what is interpolated where colors change in proportion, and depths within their interval.
+static NARROW_INTERPOLATIONS: LazyLock<Vec<[f64; 4]>> = LazyLock::new(|| [&INTERPOLATIONS[..], &STRETCHES[..]].concat());
+
 /// Perturbations of what is interpolated where colors do not change in proportion: normals all over the cone in which they lie, depths
 /// all over their interval, and both together.
 static WIDE_INTERPOLATIONS: LazyLock<Vec<[f64; 4]>> = LazyLock::new(|| {
@@ -67,10 +78,8 @@ static WIDE_INTERPOLATIONS: LazyLock<Vec<[f64; 4]>> = LazyLock::new(|| {
         DVec3::new(cos * (1.0 - z * z).sqrt(), sin * (1.0 - z * z).sqrt(), z)
     };
     let turns = (0..DIRECTIONS).flat_map(|i| [0.4, 1.1].map(|length| direction(i) * length));
-    // In powers, because an error may be a multiple of the depth.
-    let stretches = (0..24).flat_map(|i| [1.0, -1.0].map(|sign| sign * 1.1 * 0.5f64.powi(i)));
     let turned = turns.flat_map(|turn| [0.0, 1.1, -1.1].map(|stretch| [turn.x, turn.y, turn.z, stretch]));
-    turned.chain(stretches.map(|stretch| [0.0, 0.0, 0.0, stretch])).collect()
+    turned.chain(STRETCHES.iter().copied()).collect()
 });
 
 /// How far answers between [`WIDE_INTERPOLATIONS`] may lie outside theirs, as a fraction of their span.
@@ -114,7 +123,7 @@ pub fn places(stack: &Stack) -> impl Iterator<Item = Perturbation> {
 pub fn interpolations(stack: &Stack, errors: SampleErrors) -> impl Iterator<Item = Perturbation> {
     let offsets = match errors.doubt() {
         Doubt::None => &[],
-        Doubt::Narrow => INTERPOLATIONS.as_slice(),
+        Doubt::Narrow => NARROW_INTERPOLATIONS.as_slice(),
         Doubt::Wide => WIDE_INTERPOLATIONS.as_slice(),
     };
     let at_step = move |&color_step: &f64| {

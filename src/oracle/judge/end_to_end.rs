@@ -6,7 +6,8 @@ use super::{
         bounds::coverage::{BoundedCoverage, cover_claims},
         render::{
             draw_order::limited,
-            sample_setup::effects_with_setup,
+            mask::is_masked,
+            sample_setup::{effects_with_setup, mask_records},
             sample_tests::{DrawLimit, SampleTests},
             snap::half_size,
             triangles::triangles,
@@ -21,6 +22,7 @@ use crate::{
     effects::hooks::Shape,
     frame::{BitExact, Frame, Geometry},
     measure::ErrorReport,
+    scene::draw::Draw,
     work::checkpoint,
 };
 
@@ -91,18 +93,28 @@ impl EndToEnd<'_> {
         if outlines.iter().any(|outline| outline.may_pass(&at)) {
             return true;
         }
-        // Sample effects test the inside of triangles, where a moved corner or another setup may change the result.
+        // Sample effects and alpha masks test the inside of triangles, where a moved corner or another setup may change the result.
+        let has_sample_effects = self.shot.stack.each(|hooks| hooks.sample).next().is_some();
+        let is_tested = |id: u32| has_sample_effects || self.is_masked(id);
         let may_test_differently = |id: u32| self.outline(id).is_some_and(|outline| outline.may_move()) || self.has_other_setup(id);
-        if self.shot.stack.each(|hooks| hooks.sample).next().is_some() && [a, b].into_iter().any(may_test_differently) {
+        if [a, b].into_iter().any(|id| is_tested(id) && may_test_differently(id)) {
             return true;
         }
         let depths: Option<Vec<[f64; 2]>> = outlines.iter().map(|outline| outline.depths(&at)).collect();
         matches!(depths.as_deref(), Some([a, b]) if a[0] <= b[1] && b[0] <= a[1])
     }
 
+    /// Returns true if an alpha mask may leave out samples of a triangle.
+    fn is_masked(&self, id: u32) -> bool {
+        let scene = self.shot.scene;
+        let material = |draw: &Draw| scene.primitives[draw.primitive].material;
+        is_masked(scene, self.shot.stack)
+            && self.shot.draw_of(id).is_some_and(|draw| scene.materials[material(draw)].alpha_threshold().is_some())
+    }
+
     /// Returns true if the adapter's sample setups of a triangle are not the oracle's.
     fn has_other_setup(&self, id: u32) -> bool {
-        let setups = effects_with_setup(self.shot.stack).len();
+        let setups = effects_with_setup(self.shot.stack).len() + mask_records(self.shot.scene, self.shot.stack);
         let of = |geometry: &Geometry| geometry.sample_setups.get(id as usize * setups..(id as usize + 1) * setups).map(<[_]>::to_vec);
         of(self.adapter) != of(self.own)
     }
