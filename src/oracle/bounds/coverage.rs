@@ -12,7 +12,7 @@ use super::super::{
         triangles::OrientedTriangle,
     },
 };
-use crate::scene::view::View;
+use crate::{frame::NO_TRIANGLE, scene::view::View};
 
 /// What is visible at the sample of one pixel, and what a float renderer may find instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +25,8 @@ pub struct BoundedSample {
     pub rival: f64,
     /// Largest low end of all: a triangle that does not reach this depth is certainly hidden.
     pub floor: f64,
+    /// Smallest id of those with this low end: of equal keys the smaller id wins.
+    pub floor_id: u32,
     /// Depth interval of the triangle that is claimed for this pixel, if it covers the sample.
     pub claimed: Option<[f64; 2]>,
 }
@@ -35,6 +37,7 @@ impl BoundedSample {
         interval: [f64::NEG_INFINITY; 2],
         rival: f64::NEG_INFINITY,
         floor: f64::NEG_INFINITY,
+        floor_id: NO_TRIANGLE,
         claimed: None,
     };
 
@@ -43,18 +46,17 @@ impl BoundedSample {
         self.nearest.layers > 1 && self.rival > self.interval[0]
     }
 
-    /// Returns true if the claimed triangle may be in front: it covers the sample and reaches the [`Self::floor`].
-    pub fn claim_is_possible(&self) -> bool {
-        self.claimed.is_some_and(|[_, high]| high >= self.floor)
-    }
-
-    /// Returns true if a triangle id is right: the nearest, or in the depth band the claimed one.
+    /// Returns true if a triangle id, which is the claimed one, is right: that of the nearest triangle, or of one that covers the sample
+    /// and may be in front of all others, beyond the [`Self::floor`] or at it with the smallest id.
     pub fn allows(&self, triangle_id: u32) -> bool {
-        triangle_id == self.nearest.triangle_id || self.is_band() && self.claim_is_possible()
+        let may_win = |[_, high]: [f64; 2]| high > self.floor || high == self.floor && triangle_id <= self.floor_id;
+        triangle_id == self.nearest.triangle_id || self.claimed.is_some_and(may_win)
     }
 
     fn add(&mut self, id: u32, depth: f64, interval: [f64; 2], claim: u32) {
-        self.floor = self.floor.max(interval[0]);
+        if interval[0] > self.floor || interval[0] == self.floor && id < self.floor_id {
+            (self.floor, self.floor_id) = (interval[0], id);
+        }
         if id == claim {
             // Boxes of the clipped triangles of one triangle overlap: the nearest decides.
             self.claimed = Some(self.claimed.map_or(interval, |other| [other[0].max(interval[0]), other[1].max(interval[1])]));
@@ -118,4 +120,27 @@ pub fn depth_interval(triangle: &OrientedTriangle, hit: &Hit) -> [f64; 2] {
     let [low, high] = triangle.depth_range();
     let error = hit.depth.abs() * depth_bound(&triangle.corners);
     [(hit.depth - error).max(low), (hit.depth + error).min(high)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::BoundedSample;
+
+    /// What a sample covered by triangles 4 and 7 with these depths allows of the claimed one.
+    fn allows(claimed: u32, of_4: [f64; 2], of_7: [f64; 2]) -> bool {
+        let mut sample = BoundedSample::EMPTY;
+        for (id, interval) in [(4, of_4), (7, of_7)] {
+            sample.add(id, (interval[0] + interval[1]) / 2.0, interval, claimed);
+        }
+        sample.allows(claimed)
+    }
+
+    #[test]
+    fn a_tie_at_the_end_of_an_interval_goes_to_the_smaller_id() {
+        assert!(allows(4, [1.0, 1.0], [1.0, 1.5]), "7 may round to 1, and 4 wins the tie");
+        assert!(!allows(7, [1.0, 1.5], [1.0, 1.0]), "4 wins at 1 too");
+        assert!(!allows(7, [1.0, 1.0], [1.0, 1.0]), "an exact tie has one winner");
+        assert!(!allows(4, [0.5, 0.9], [1.0, 1.5]), "hidden for certain");
+        assert!(allows(7, [1.0, 1.5], [0.9, 1.1]), "the intervals overlap");
+    }
 }
