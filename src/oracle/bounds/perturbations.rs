@@ -56,10 +56,10 @@ const INTERPOLATIONS: [[f64; 4]; 8] = {
     interpolations
 };
 
-/// Depths within their interval, of the colors that change periodically with the place, like lines on a surface: between the ends of the
-/// interval they may be darker and brighter than at either. In powers too, because an error may be a multiple of the depth.
+/// Depths within their interval. A color that changes periodically with the place, like that of lines on a surface, may be darker or
+/// brighter there than at the ends of the interval. In powers too, because an error may be a multiple of the depth.
 static STRETCHES: LazyLock<Vec<[f64; 4]>> = LazyLock::new(|| {
-    let even = (1..8).map(|i| f64::from(i) / 8.0);
+    let even = (1..32).map(|i| f64::from(i) / 32.0);
     let powers = (0..24).map(|i| 1.1 * 0.5f64.powi(i));
     even.chain(powers).flat_map(|stretch| [stretch, -stretch]).map(|stretch| [0.0, 0.0, 0.0, stretch]).collect()
 });
