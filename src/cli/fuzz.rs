@@ -5,6 +5,7 @@ use std::{
     time::Instant,
 };
 
+use indicatif::ProgressBar;
 use serde_json::{Value, json};
 
 use super::{
@@ -72,7 +73,7 @@ pub fn run(common: &Common, args: &Fuzz, streams: &mut Streams) -> Result<Exit, 
         let outcome = match outcome(common, &random::preset(seed), &mut backend) {
             Ok(outcome) => outcome,
             Err(error) => {
-                keep(args, &format!("lost-{seed}"), random::preset(seed), common.force)?;
+                note_kept(&bar, streams, keep(args, &format!("lost-{seed}"), random::preset(seed), common.force));
                 return Err(error.during(format!("seed {seed}")));
             }
         };
@@ -86,7 +87,7 @@ pub fn run(common: &Common, args: &Fuzz, streams: &mut Streams) -> Result<Exit, 
         }] += 1;
         if seconds > SLOW_S {
             bar.suspend(|| streams.note(&format!("seed {seed} took {seconds:.0} s")));
-            keep(args, &format!("slow-{seed}"), random::preset(seed), common.force)?;
+            note_kept(&bar, streams, keep(args, &format!("slow-{seed}"), random::preset(seed), common.force));
         }
         let smallest = match &outcome {
             Outcome::Failed(reasons) => {
@@ -139,6 +140,13 @@ fn keep(args: &Fuzz, id: &str, preset: Preset, is_forced: bool) -> Result<String
         files::create(&template.to_string_lossy(), &names, is_forced, toml.as_bytes())?;
     }
     Ok(toml)
+}
+
+/// Says why a preset was not stored. What is wrong with the preset counts for more than where it is stored, so the run goes on.
+fn note_kept(bar: &ProgressBar, streams: &mut Streams, kept: Result<String, CliError>) {
+    if let Err(error) = kept {
+        bar.suspend(|| streams.note(&format!("the preset is not stored: {}", error.sentence())));
+    }
 }
 
 /// Verifies a preset with every option that it allows.

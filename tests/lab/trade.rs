@@ -284,30 +284,46 @@ fn a_canceled_measurement_does_not_wait_for_the_oracle() {
     const LARGE: [f32; 2] = [1600.0, 1000.0];
     let Some([_, set_up]) = durations([900.0, 600.0]) else { return };
     let [reference, combination] = durations(LARGE).expect("there was an adapter");
-    let fault = |whole: Duration, took: Duration| took >= (whole / 3).max(Duration::from_millis(300));
-
-    let (mut lab, begun) = measuring(LARGE).expect("there was an adapter");
-    while begun.elapsed() < reference / 8 {
-        lab.step();
-        std::thread::sleep(Duration::from_millis(5));
+    /// The shortest of a few waits, each after `begin` has opened a window: one wait may be the machine's, which had other work.
+    fn shortest_wait(whole: Duration, begin: impl Fn() -> Lab) -> Result<(), Duration> {
+        let enough = (whole / 3).max(Duration::from_millis(300));
+        let mut shortest = Duration::MAX;
+        for _ in 0..4 {
+            shortest = shortest.min(cancel(&mut begin()));
+            if shortest < enough {
+                return Ok(());
+            }
+        }
+        Err(shortest)
     }
-    let took = cancel(&mut lab);
-    assert!(!fault(reference, took), "the reference picture takes {reference:?}, and went on for {took:?}");
+    fn step_until(lab: &mut Lab, begun: Instant, duration: Duration) {
+        while begun.elapsed() < duration {
+            lab.step();
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    let at_the_reference = || {
+        let (mut lab, begun) = measuring(LARGE).expect("there was an adapter");
+        step_until(&mut lab, begun, reference / 8);
+        lab
+    };
+    let wait = shortest_wait(reference, at_the_reference);
+    assert_eq!(wait, Ok(()), "the reference picture takes {reference:?}, and goes on after it was canceled");
 
     // Compiling takes as long in a small window, so that the rest is the oracle's.
     let judging = combination.saturating_sub(set_up);
     if judging < combination / 3 {
         return; // The device takes longer, which is not canceled.
     }
-    let (mut lab, _) = measuring(LARGE).expect("there was an adapter");
-    until(&mut lab, "the first combination", |lab| measured_now(lab).is_some());
-    let begun = Instant::now();
-    while begun.elapsed() < combination - judging * 3 / 4 {
-        lab.step();
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    let took = cancel(&mut lab);
-    assert!(!fault(judging, took), "the oracle judges a combination in {judging:?}, and went on for {took:?}");
+    let at_the_judge = || {
+        let (mut lab, _) = measuring(LARGE).expect("there was an adapter");
+        until(&mut lab, "the first combination", |lab| measured_now(lab).is_some());
+        step_until(&mut lab, Instant::now(), combination - judging * 3 / 4);
+        lab
+    };
+    let wait = shortest_wait(judging, at_the_judge);
+    assert_eq!(wait, Ok(()), "the oracle judges a combination in {judging:?}, and goes on after it was canceled");
 }
 
 #[test]

@@ -17,7 +17,7 @@ use super::{
             background::background,
             draw_order::ranks,
             layers::LayerImage,
-            resolve::{Finish, PictureTables, ResolveInput, finish, shade_perturbed},
+            resolve::{Finish, PictureTables, ResolveInput, finish, finish_at_ties, shade_perturbed},
             shadow::Light,
             surface::{SurfaceTriangle, shaded},
         },
@@ -62,11 +62,15 @@ impl AcceptedColors {
     /// Of a picture of layers.
     pub fn of_layers(shot: &Shot, input: &ResolveInput, image: &LayerImage, bounds: &LayerBounds) -> Self {
         let ends = [0, 1].map(|end| bounds.colors.iter().map(|bounds| bounds[end]).collect::<Vec<_>>());
-        let finished = |&step: &f64| [&image.colors, &ends[0], &ends[1]].map(|colors| finish(shot, input, colors, step));
+        // The exact picture comes first, then those between which every right one lies.
+        let finished = |&step: &f64| {
+            let spanned = [&image.colors, &ends[0], &ends[1]].map(|colors| finish_at_ties(shot, input, colors, step));
+            std::iter::once(finish(shot, input, &image.colors, step)).chain(spanned.into_iter().flatten())
+        };
         Self {
             pictures: color_steps(shot.stack).iter().flat_map(finished).collect(),
             is_span: true,
-            per_step: 3,
+            per_step: 7,
             unsure: HashMap::new(),
             unsure_pixels: 0,
         }

@@ -46,12 +46,28 @@ pub fn shade_perturbed(shot: &Shot, input: &ResolveInput, geometry: &Geometry, p
 
 /// Bytes of a picture from its gamma-encoded surface colors: dots and image effects, whose steps are moved by `color_step`.
 pub fn finish(shot: &Shot, input: &ResolveInput, colors: &[DVec4], color_step: f64) -> Vec<[u8; 4]> {
+    finished_each(shot, input, colors, |finish, i, color| finish.pixel(i, color, color_step))
+}
+
+/// The same with both bytes of each channel whose color lies in the middle between two: all lower ones, and all upper ones.
+pub fn finish_at_ties(shot: &Shot, input: &ResolveInput, colors: &[DVec4], color_step: f64) -> [Vec<[u8; 4]>; 2] {
+    let both = finished_each(shot, input, colors, |finish, i, color| finish.pixel_at_ties(i, color, color_step));
+    both.into_iter().map(|[lower, upper]| (lower, upper)).unzip::<_, _, Vec<_>, Vec<_>>().into()
+}
+
+/// What `pixel` makes of every pixel's gamma-encoded color.
+fn finished_each<T: Send>(
+    shot: &Shot,
+    input: &ResolveInput,
+    colors: &[DVec4],
+    pixel: impl Fn(&Finish, usize, DVec4) -> T + Sync,
+) -> Vec<T> {
     let tables = PictureTables::of(shot);
     let finish = Finish::new(shot, input, &tables);
     let checkpoint = checkpoint();
     let finished = |(i, &color): (usize, &DVec4)| {
         checkpoint.pass();
-        finish.pixel(i, color, color_step)
+        pixel(&finish, i, color)
     };
     colors.par_iter().enumerate().map(finished).collect()
 }
