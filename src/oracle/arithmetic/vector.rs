@@ -36,6 +36,12 @@ pub fn cross_terms(v: &[DVec3; 3]) -> [DVec3; 3] {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j): (usize, usize)| cross_magnitudes(v[i].abs(), v[j].abs()))
 }
 
+/// For every corner, how far the cross product of the next two corners may err where the corners err by `errors`.
+pub fn cross_errors(v: &[DVec3; 3], errors: &[DVec3; 3]) -> [DVec3; 3] {
+    let largest = [0, 1, 2].map(|k| v[k].abs() + errors[k]);
+    [(1, 2), (2, 0), (0, 1)].map(|(i, j): (usize, usize)| cross_magnitudes(largest[i], errors[j]) + cross_magnitudes(errors[i], largest[j]))
+}
+
 /// The unit vector in the direction of `v`; zero if it has none.
 pub fn direction(v: DVec3) -> DVec3 {
     v.try_normalize().unwrap_or(DVec3::ZERO)

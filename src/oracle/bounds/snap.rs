@@ -1,6 +1,8 @@
 //! Forward error bounds of snapped records: how far a float renderer's position, depth and 1/w may be from the exact ones
 //! (`docs/exactness.md` §9).
 
+use glam::DVec3;
+
 use super::super::render::snap::{ClipPosition, half_size};
 use crate::{effects::hooks::ROUNDING, frame::SnappedVertex, scene::view::View};
 
@@ -11,6 +13,14 @@ pub struct ClipErrors {
     pub errors: [f64; 4],
     /// Sums of magnitudes of the terms of x, y, z and w.
     pub magnitudes: [f64; 4],
+}
+
+impl ClipErrors {
+    /// Bounds of the errors of x, y and w.
+    pub fn homogeneous(&self) -> DVec3 {
+        let [x, y, _, w] = self.errors;
+        DVec3::new(x, y, w)
+    }
 }
 
 /// Bound of a snapped position before it is rounded, in sub-pixel units; none if w is not known to a sixteenth, so that rounding

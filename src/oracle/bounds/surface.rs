@@ -10,7 +10,7 @@ use super::{
         perturbation::InterpolatedPerturbation,
         render::{
             surface::{Interpolation, SurfaceTriangle},
-            vertex::{Corner, VertexEvaluator},
+            vertex::VertexEvaluator,
         },
         shot::Shot,
     },
@@ -81,14 +81,9 @@ impl CornerErrors {
         let draw = shot.draw_of(id).expect("a triangle of the shot");
         let evaluator = VertexEvaluator::new(shot.scene, draw, shot.view, shot.stack);
         let bounds = VertexBounds::new(&evaluator, packed_bits);
-        let triangle = id - draw.first_triangle;
-        let vertices = shot.scene.primitives[draw.primitive].corners(shot.scene, triangle);
-        let corners = vertices.map(|vertex| Corner { vertex, triangle });
+        let corners = evaluator.triangle_corners(id - draw.first_triangle);
         let moved = corners.map(|corner| bounds.moved(corner));
-        let clip = corners.map(|corner| {
-            let [x, y, _, w] = bounds.clip(corner).errors;
-            DVec3::new(x, y, w)
-        });
+        let clip = corners.map(|corner| bounds.clip(corner).homogeneous());
         Self { clip, offsets_m: moved.map(|bound| bound.offset_m), normals: moved.map(|bound| bound.normal) }
     }
 

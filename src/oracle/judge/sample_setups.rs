@@ -1,10 +1,14 @@
 //! Judges the sample setups of an adapter.
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::super::{
-    bounds::{mask, sample_setup::with_center_error},
-    render::sample_setup::{SetupEntry, effects_with_setup, entries, mask_records},
+    bounds::{mask, sample_setup::with_center_error, vertex::VertexBounds},
+    render::{
+        sample_setup::{SetupEntry, effects_with_setup, entries, mask_records},
+        vertex::VertexEvaluator,
+    },
     shot::Shot,
 };
 use crate::{
@@ -31,12 +35,20 @@ pub fn wrong_setups(shot: &Shot, geometry: &Geometry) -> u64 {
         let mask_is_wrong = match (masks, mask) {
             (0, _) => false,
             (_, None) => given[records - 1][2] != 0,
-            (_, Some((_, coords))) => !mask::allows(&coords, &given[effects.len()..]),
+            (_, Some((_, coords))) => !mask::allows(&coords, &clip_errors(shot, setup.triangle), &given[effects.len()..]),
         };
         let wrong = effects.iter().zip(given).filter(|(effect, given)| is_wrong(&setup, effect, **given)).count();
         (wrong + usize::from(mask_is_wrong)) as u64
     };
     entries(shot, geometry).zip(geometry.sample_setups.par_chunks(records)).map(wrong).sum()
+}
+
+/// Bounds of the errors of a triangle's corners in x, y and w of clip space.
+fn clip_errors(shot: &Shot, id: u32) -> [DVec3; 3] {
+    let draw = shot.draw_of(id).expect("a triangle of the shot");
+    let evaluator = VertexEvaluator::new(shot.scene, draw, shot.view, shot.stack);
+    let bounds = VertexBounds::new(&evaluator, None);
+    evaluator.triangle_corners(id - draw.first_triangle).map(|corner| bounds.clip(corner).homogeneous())
 }
 
 fn is_wrong(setup: &TriangleSetup, (hook, words): &(SampleHook, &[u32]), given: [u32; 4]) -> bool {

@@ -6,10 +6,7 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{
-    super::shot::Shot,
-    vertex::{Corner, VertexEvaluator},
-};
+use super::{super::shot::Shot, vertex::VertexEvaluator};
 use crate::scene::{draw::Draw, shadow_resolution::ShadowResolution};
 
 /// A triangle that casts a shadow.
@@ -112,7 +109,7 @@ fn casters(shot: &Shot, draw: &Draw) -> Vec<Caster> {
     let evaluator = VertexEvaluator::new(scene, draw, view, stack);
     let primitive = &scene.primitives[draw.primitive];
     let caster = |triangle: u32| {
-        let corners = primitive.corners(scene, triangle).map(|vertex| Corner { vertex, triangle });
+        let corners = evaluator.triangle_corners(triangle);
         if corners.iter().any(|corner| evaluator.clip(*corner).is_err()) {
             return None;
         }

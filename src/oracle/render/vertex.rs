@@ -76,8 +76,13 @@ impl<'a> VertexEvaluator<'a> {
         if !self.has_unshared_vertices {
             return (0..primitive.vertex_count()).map(|vertex| Corner { vertex, triangle: 0 }).collect();
         }
-        let corners = |triangle| primitive.corners(self.scene, triangle).map(|vertex| Corner { vertex, triangle });
-        (0..primitive.triangle_count()).flat_map(corners).collect()
+        (0..primitive.triangle_count()).flat_map(|triangle| self.triangle_corners(triangle)).collect()
+    }
+
+    /// The corners of the draw's triangle with this index.
+    pub fn triangle_corners(&self, triangle: u32) -> [Corner; 3] {
+        let primitive = &self.scene.primitives[self.draw.primitive];
+        primitive.corners(self.scene, triangle).map(|vertex| Corner { vertex, triangle })
     }
 
     /// Index of this draw's first record in the geometry.

@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::super::arithmetic::vector::cross_magnitudes;
+use super::super::arithmetic::vector::cross_errors;
 use crate::{
     effects::hooks::{ROUNDING, Shape},
     scene::view::View,
@@ -85,10 +85,7 @@ impl Weights {
         let Self::Homogeneous { rows, corners, .. } = self else { return self.errors(weights, point) };
         let p = point.ndc();
         let sum = rows.iter().map(|row| p.dot(*row)).sum::<f64>().abs();
-        let magnitudes = [0, 1, 2].map(|k| corners[k].abs() + clip[k]);
-        let given = [(1, 2), (2, 0), (0, 1)].map(|(i, j): (usize, usize)| {
-            p.abs().dot(cross_magnitudes(magnitudes[i], clip[j]) + cross_magnitudes(clip[i], magnitudes[j])) / sum
-        });
+        let given = cross_errors(corners, clip).map(|error| p.abs().dot(error) / sum);
         let rounded = self.errors(weights, point);
         let errors = [0, 1, 2].map(|k| rounded[k] + given[k]);
         let whole = 1.0 - errors.iter().sum::<f64>();
