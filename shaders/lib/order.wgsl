@@ -1,5 +1,6 @@
 // The draw order: after how many samples drawing stops. Written by the passes that count samples, read as a uniform by the
 // raster passes. Mirrors `gpu::records::OrderRecord`.
+//@ use lib/frame
 
 struct Order {
     boundary_triangle: u32,   // id of the boundary triangle: triangles before it are drawn, later ones are not
@@ -17,3 +18,8 @@ struct Order {
 }
 
 const ORDER_BLOCK = 1024u; // triangles in a block whose samples are summed
+
+// Words of the bits, one for each pixel, that mark the samples of the boundary triangle.
+fn order_bit_words() -> u32 {
+    return (frame.size.x * frame.size.y + 31u) / 32u;
+}

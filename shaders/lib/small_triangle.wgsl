@@ -62,7 +62,7 @@ fn small_triangle(invocation: u32) {
 // `area` is twice the signed area; `pixels` is the first and the last candidate pixel.
 fn draw_small(t: Triangle, area: i32, pixels: vec4i) {
     mark_tiles(pixels);
-    framebuffer_begin(t.id);
+    if !framebuffer_begin(t.id) { return; }
     let is_reversed = area < 0;
     let coverage = coverage_begin(t.a, select(t.b, t.c, is_reversed), select(t.c, t.b, is_reversed), abs(area), pixels.xy);
     let width = pixels.z - pixels.x + 1;
@@ -88,6 +88,7 @@ fn draw_small(t: Triangle, area: i32, pixels: vec4i) {
             pixel += frame.size.x - u32(width);
         }
     }
+    framebuffer_end(t.id);
 }
 
 // A corner was rejected, or lies between the eye and the near plane or outside the guard band.

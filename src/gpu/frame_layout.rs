@@ -392,7 +392,8 @@ impl FrameLayout {
         self.add(BufferId::SampleCounts, WORD * triangles);
         self.add(BufferId::BlockSums, 2 * WORD * triangles.div_ceil(ORDER_BLOCK));
         if key.samples.draw_order == Some(Mode::Submission) {
-            self.add(BufferId::BoundarySamples, WORD * self.pixels().div_ceil(32));
+            // A bit for every pixel, and the first and last word that have any.
+            self.add(BufferId::BoundarySamples, WORD * (self.pixels().div_ceil(32) + 2));
         }
     }
 

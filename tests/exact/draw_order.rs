@@ -22,7 +22,7 @@ const SAMPLES_OF_SHEET: u64 = PIXELS * FACTOR;
 const TOTAL: u64 = SHEETS * SAMPLES_OF_SHEET;
 
 fn heavy() -> Mutated {
-    mutated("variants/framebuffer_write/sample_counts", "atomicAdd(&sample_counts[id], 1u);", "atomicAdd(&sample_counts[id], 6001u);")
+    mutated("variants/framebuffer_write/sample_counts", "found_samples += 1u;", "found_samples += 6001u;")
 }
 
 /// Triangles over the whole picture, each nearer than the one before it.
@@ -104,7 +104,7 @@ fn a_lost_high_half_is_seen_wherever_it_is_lost() {
         ("stages/order/order_limit", "order.total_hi = total.hi;", "order.total_hi = 0u;"),
         ("stages/order/order_limit", "let high = fixed_umul(total.hi, fraction);", "let high = Wide(0u, 0u);"),
         ("stages/order/order_limit", "order.before_hi = sum.hi;", "order.before_hi = 0u;"),
-        ("stages/order/order_limit", "sum = Wide(sums[block].x, sums[block].y);", "sum = Wide(0u, sums[block].y);"),
+        ("stages/order/order_limit", "before_found = sum;", "before_found = Wide(0u, sum.lo);"),
         (
             "stages/order/order_cut",
             "fixed_add(Wide(order.before_hi, order.before_lo), Wide(0u, rest))",

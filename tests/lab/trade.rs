@@ -350,9 +350,7 @@ fn a_measurement_waits_as_long_as_a_picture_plays() {
     lab.run_steps(3);
     let (begun, time_s) = (Instant::now(), lab.state().shown_time_s());
     // Longer than the measurement waits after a key. The first picture may come later than that on a busy machine.
-    until(&mut lab, "a picture that plays", |lab| {
-        begun.elapsed() > Duration::from_millis(2500) && lab.state().shown_time_s() != time_s
-    });
+    until(&mut lab, "a picture that plays", |lab| begun.elapsed() > Duration::from_millis(2500) && lab.state().shown_time_s() != time_s);
     assert!(lab.query_by_label_contains("Waiting while you work").is_some(), "it goes on: {:?}", progress(&lab));
     lab.key_press(Key::Space);
     lab.get_by_role_and_label(Role::Button, "Cancel").click();

@@ -3,6 +3,7 @@
 //@ use lib/frame
 //@ use lib/fixed
 //@ use lib/order
+//@ use lib/order_scan
 //@ use effects/draw_order
 //@ use glue/effects
 
@@ -12,22 +13,10 @@
 
 const ORDER_NONE = 0xffffffffu;
 
-var<workgroup> before: array<Wide, 256>;
 var<workgroup> limit: Wide;
+// The block in which the limit is reached, and the samples before it.
 var<workgroup> found: u32;
-
-// Replaces the value of each invocation by the sum of all earlier invocations; returns the sum of all.
-fn order_scan(invocation_index: u32) -> Wide {
-    var sum = Wide(0u, 0u);
-    if invocation_index == 0u {
-        for (var i = 0u; i < 256u; i += 1u) {
-            let here = before[i];
-            before[i] = sum;
-            sum = fixed_add(sum, here);
-        }
-    }
-    return sum;
-}
+var<workgroup> before_found: Wide;
 
 // round(total * fraction / 2^24)
 fn order_fraction(total: Wide, fraction: u32) -> Wide {
@@ -45,10 +34,9 @@ fn order_limit(@builtin(local_invocation_index) invocation_index: u32) {
     let last = min(first + blocks_each, blocks);
     var sum = Wide(0u, 0u);
     for (var i = first; i < last; i += 1u) { sum = fixed_add(sum, Wide(sums[i].x, sums[i].y)); }
-    before[invocation_index] = sum;
-    workgroupBarrier();
-    let total = order_scan(invocation_index);
+    let before = order_scan(invocation_index, sum);
     if invocation_index == 0u {
+        let total = order_scan_total();
         var to_draw = Wide(0u, effects.draw_order.limit);
         if effects.draw_order.unit == DRAW_ORDER_UNIT_FRACTION { to_draw = order_fraction(total, u32(round(effects.draw_order.fraction * 16777216.0))); }
         if fixed_is_less(total, to_draw) { to_draw = total; }
@@ -61,11 +49,14 @@ fn order_limit(@builtin(local_invocation_index) invocation_index: u32) {
     }
     workgroupBarrier();
     // One block contains the first sample that is not drawn.
-    sum = before[invocation_index];
+    sum = before;
     for (var i = first; i < last; i += 1u) {
         let next = fixed_add(sum, Wide(sums[i].x, sums[i].y));
         sums[i] = vec2u(sum.hi, sum.lo);
-        if !fixed_is_less(limit, sum) && fixed_is_less(limit, next) { found = i; }
+        if !fixed_is_less(limit, sum) && fixed_is_less(limit, next) {
+            found = i;
+            before_found = sum;
+        }
         sum = next;
     }
     workgroupBarrier();
@@ -78,16 +69,10 @@ fn order_limit(@builtin(local_invocation_index) invocation_index: u32) {
         }
         return;
     }
-    sum = Wide(sums[block].x, sums[block].y);
-    workgroupBarrier();
     let begin = block * ORDER_BLOCK + invocation_index * 4u;
     var mine = Wide(0u, 0u);
     for (var id = begin; id < min(begin + 4u, frame.triangle_count); id += 1u) { mine = fixed_add(mine, Wide(0u, sample_counts[id])); }
-    before[invocation_index] = mine;
-    workgroupBarrier();
-    order_scan(invocation_index);
-    workgroupBarrier();
-    sum = fixed_add(sum, before[invocation_index]);
+    sum = fixed_add(before_found, order_scan(invocation_index, mine));
     for (var id = begin; id < min(begin + 4u, frame.triangle_count); id += 1u) {
         let next = fixed_add(sum, Wide(0u, sample_counts[id]));
         if !fixed_is_less(limit, sum) && fixed_is_less(limit, next) {

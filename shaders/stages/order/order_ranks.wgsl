@@ -2,13 +2,12 @@
 //@ use lib/frame
 //@ use lib/fixed
 //@ use lib/order
+//@ use lib/order_scan
 
 @group(0) @binding(4) var<storage, read_write> vertices: array<vec4u>;
 @group(0) @binding(5) var<storage, read> sample_counts: array<u32>;
 @group(0) @binding(6) var<storage, read> sums: array<vec2u>;
 @group(0) @binding(14) var<uniform> order: Order;
-
-var<workgroup> partial: array<Wide, 256>;
 
 @compute @workgroup_size(256)
 fn order_ranks(
@@ -23,18 +22,9 @@ fn order_ranks(
         if begin + i < frame.triangle_count { mine[i] = sample_counts[begin + i]; }
         sum = fixed_add(sum, Wide(0u, mine[i]));
     }
-    partial[invocation_index] = sum;
-    workgroupBarrier();
-    // Inclusive prefix sums over the invocations (Hillis and Steele 1986).
-    for (var step = 1u; step < 256u; step *= 2u) {
-        var other = Wide(0u, 0u);
-        if invocation_index >= step { other = partial[invocation_index - step]; }
-        workgroupBarrier();
-        partial[invocation_index] = fixed_add(partial[invocation_index], other);
-        workgroupBarrier();
-    }
+    let before = order_scan(invocation_index, sum);
     if begin >= frame.triangle_count { return; }
-    var rank = fixed_sub(fixed_add(Wide(sums[block].x, sums[block].y), partial[invocation_index]), sum);
+    var rank = fixed_add(Wide(sums[block].x, sums[block].y), before);
     let total = max(fixed_to_f32(Wide(order.total_hi, order.total_lo)), 1.0);
     var ranks: vec4u;
     for (var i = 0u; i < 4u; i += 1u) {

@@ -33,9 +33,10 @@ fn raster_points(
         return;
     }
     if !triangle_is_shown(draws[t.draw].flags, orientation > 0) { return; }
-    framebuffer_begin(t.id);
+    if !framebuffer_begin(t.id) { return; }
     var corners = array(t.a, t.b, t.c);
     for (var i = 0u; i < 3u; i += 1u) { draw_disc(t, corners[i], i, part); }
+    framebuffer_end(t.id);
 }
 
 // Draws the samples of one disc that belong to its corner, in the rows of this part.

@@ -5,7 +5,9 @@
 // Load before the atomic: faster where many samples lose.
 override EARLY_LOAD: bool = false;
 
-fn framebuffer_begin(id: u32) {}
+fn framebuffer_begin(id: u32) -> bool { return true; }
+
+fn framebuffer_end(id: u32) {}
 
 fn framebuffer_write(pixel: u32, key: u32, id: u32) {
     let is_behind = EARLY_LOAD && atomicLoad(&depth_keys[pixel]) >= key;

@@ -2,7 +2,9 @@
 
 @group(0) @binding(5) var<storage, read_write> depth_and_id: array<atomic<u64>>;
 
-fn framebuffer_begin(id: u32) {}
+fn framebuffer_begin(id: u32) -> bool { return true; }
+
+fn framebuffer_end(id: u32) {}
 
 fn framebuffer_write(pixel: u32, key: u32, id: u32) {
     atomicMax(&depth_and_id[pixel], (u64(key) << 32u) | u64(~id));

@@ -3,7 +3,9 @@
 
 @group(0) @binding(5) var<storage, read_write> depth_and_id: array<u32>;
 
-fn framebuffer_begin(id: u32) {}
+fn framebuffer_begin(id: u32) -> bool { return true; }
+
+fn framebuffer_end(id: u32) {}
 
 fn framebuffer_write(pixel: u32, key: u32, id: u32) {
     let is_nearer = depth_and_id[2u * pixel + 1u] < key;

@@ -3,7 +3,9 @@
 @group(0) @binding(5) var<storage, read> depth_keys: array<u32>;
 @group(0) @binding(6) var<storage, read_write> triangle_ids: array<atomic<u32>>;
 
-fn framebuffer_begin(id: u32) {}
+fn framebuffer_begin(id: u32) -> bool { return true; }
+
+fn framebuffer_end(id: u32) {}
 
 fn framebuffer_write(pixel: u32, key: u32, id: u32) {
     if depth_keys[pixel] == key {

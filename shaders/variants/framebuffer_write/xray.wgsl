@@ -9,9 +9,12 @@
 //@ use glue/surface
 //@ use variants/xray_buffer
 
-fn framebuffer_begin(id: u32) {
+fn framebuffer_begin(id: u32) -> bool {
     shade_begin(id);
+    return true;
 }
+
+fn framebuffer_end(id: u32) {}
 
 fn framebuffer_write(pixel: u32, key: u32, id: u32) {
     if key < xray_threshold(xray_buffer_front(pixel), IS_PERSPECTIVE, effects.xray) { return; }

@@ -27,7 +27,7 @@ fn large_tiles(group: u32, groups: u32, invocation_index: u32) {
     workgroupBarrier();
     if !exists { return; }
 
-    framebuffer_begin(t.id);
+    if !framebuffer_begin(t.id) { return; }
     let pixels = clockwise_pixels(large);
     let plane = depth_plane_wide(large.z, large.area);
     let nearest = depth_key(bitcast<f32>(max(max(large.z.x, large.z.y), large.z.z)));
@@ -53,4 +53,5 @@ fn large_tiles(group: u32, groups: u32, invocation_index: u32) {
             }
         }
     }
+    framebuffer_end(t.id);
 }

@@ -44,12 +44,12 @@ fn draw_tile(slot: u32, part: u32, parts: u32, invocation_index: u32) {
     if invocation_index < 2u { atomicStore(&drawn[invocation_index], 0u); }
     workgroupBarrier();
 
-    framebuffer_begin(t.id);
+    let is_drawn = framebuffer_begin(t.id);
     let pixels = clockwise_pixels(large);
     let plane = depth_plane_wide(large.z, large.area);
     let nearest = depth_key(bitcast<f32>(max(max(large.z.x, large.z.y), large.z.z)));
     let mine = vec2i(vec2u(invocation_index % 8u, invocation_index / 8u));
-    if tile_block_is_drawn(large, plane, pixels, tile, mine * 8) && u32(mine.y) % parts == part {
+    if is_drawn && tile_block_is_drawn(large, plane, pixels, tile, mine * 8) && u32(mine.y) % parts == part {
         atomicOr(&drawn[invocation_index / 32u], 1u << (invocation_index % 32u));
     }
     workgroupBarrier();
@@ -76,6 +76,7 @@ fn draw_tile(slot: u32, part: u32, parts: u32, invocation_index: u32) {
             }
         }
     }
+    framebuffer_end(t.id);
 }
 
 // Index of the edges of the block of 16x16 pixels that holds a pixel, counted from the tile's first.

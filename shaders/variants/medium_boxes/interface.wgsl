@@ -23,7 +23,7 @@ fn medium_boxes(group: u32, groups: u32, invocation_index: u32) {
     let is_reversed = area < 0;
 
     if invocation_index == 0u { mark_tiles(pixels); }
-    framebuffer_begin(t.id);
+    if !framebuffer_begin(t.id) { return; }
     let mine = vec2i(vec2u(invocation_index % 8u, invocation_index / 8u));
     let coverage = coverage_begin(
         t.a, select(t.b, t.c, is_reversed), select(t.c, t.b, is_reversed), abs(area), pixels.xy + mine);
@@ -38,4 +38,5 @@ fn medium_boxes(group: u32, groups: u32, invocation_index: u32) {
         }
         row += coverage.step_y * 8;
     }
+    framebuffer_end(t.id);
 }

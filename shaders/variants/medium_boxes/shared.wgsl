@@ -41,15 +41,17 @@ fn draw_triangle(slot: u32, part: u32, parts: u32, invocation_index: u32) {
     let high = max(max(vertex_at(t.a), vertex_at(t.b)), vertex_at(t.c));
     let pixels = triangle_pixels(low, high);
     let sides = pixels.zw / 8 - pixels.xy / 8 + 1;
+    let is_drawn = framebuffer_begin(t.id);
     if invocation_index == 0u {
-        blocks = u32(sides.x * sides.y);
+        blocks = select(0u, u32(sides.x * sides.y), is_drawn);
         if part == 0u { mark_tiles(pixels); }
     }
     let count = workgroupUniformLoad(&blocks);
-    framebuffer_begin(t.id);
+    if count == 0u { return; }
     let mine = vec2i(vec2u(invocation_index % 8u, invocation_index / 8u));
     if !HIDES_BLOCKS || count < MIN_EXAMINED {
         draw_box(t, pixels, mine, i32(part), i32(parts));
+        framebuffer_end(t.id);
         return;
     }
 
@@ -78,6 +80,7 @@ fn draw_triangle(slot: u32, part: u32, parts: u32, invocation_index: u32) {
             }
         }
     }
+    framebuffer_end(t.id);
 }
 
 // Visits every `parts`th row of blocks of a box.

@@ -3,7 +3,6 @@
 // 1, scheduler: every covered sample takes the next index of a counter, so the number of samples is exact, but which samples
 // are drawn differs from frame to frame.
 // 2, racy: load, compare, add, as a simple kernel counts. Other invocations add in between, so too many samples are drawn.
-// 3, boundary: the samples of the boundary triangle alone, to find where drawing stops within it.
 //@ use lib/frame
 //@ use lib/triangle
 //@ use lib/order
@@ -16,7 +15,6 @@ override USES_SECOND_COUNTER: bool = false;
 
 const ORDER_TEST_SUBMISSION = 0u;
 const ORDER_TEST_SCHEDULER = 1u;
-const ORDER_TEST_RACY = 2u;
 
 fn sample_test_draw_order(t: Triangle, at: vec2u, pixel: u32) -> bool {
     if ORDER_TEST == ORDER_TEST_SUBMISSION {
@@ -28,15 +26,13 @@ fn sample_test_draw_order(t: Triangle, at: vec2u, pixel: u32) -> bool {
         else { index = atomicAdd(&counters.next_sample_index, 1u); }
         return order.limit_hi > 0u || index < order.limit_lo;
     }
-    if ORDER_TEST == ORDER_TEST_RACY {
-        if USES_SECOND_COUNTER {
-            if order.limit_hi == 0u && atomicLoad(&counters.next_sample_index_again) >= order.limit_lo { return false; }
-            atomicAdd(&counters.next_sample_index_again, 1u);
-            return true;
-        }
-        if order.limit_hi == 0u && atomicLoad(&counters.next_sample_index) >= order.limit_lo { return false; }
-        atomicAdd(&counters.next_sample_index, 1u);
+    // The racy test.
+    if USES_SECOND_COUNTER {
+        if order.limit_hi == 0u && atomicLoad(&counters.next_sample_index_again) >= order.limit_lo { return false; }
+        atomicAdd(&counters.next_sample_index_again, 1u);
         return true;
     }
-    return t.id == order.boundary_triangle;
+    if order.limit_hi == 0u && atomicLoad(&counters.next_sample_index) >= order.limit_lo { return false; }
+    atomicAdd(&counters.next_sample_index, 1u);
+    return true;
 }

@@ -231,7 +231,6 @@ const DRAW_ORDER: Feature = Feature {
             None | Some(OrderTest::Submission) => 0.0,
             Some(OrderTest::Scheduler) => 1.0,
             Some(OrderTest::Racy) => 2.0,
-            Some(OrderTest::Boundary) => 3.0,
         }),
     ],
     ..Feature::NONE
@@ -242,16 +241,16 @@ enum OrderTest {
     Submission,
     Scheduler,
     Racy,
-    Boundary,
 }
 
-/// The test of a pass, if it has one. Counting phases count every sample; of two passes over the same samples, only the first
+/// The test of a pass, if it has one. Counting phases count every sample, and the boundary triangle's are marked by its id; of two passes over the same samples, only the first
 /// takes numbers from the counter.
 fn order(key: &KernelKey, pass: Pass) -> Option<OrderTest> {
     use draw_order::Mode::{Scheduler, Submission};
     match (key.samples.draw_order, pass.phase()) {
-        (_, Some(RasterPhase::BoundaryTriangle)) => Some(OrderTest::Boundary),
-        (None, _) | (_, Some(RasterPhase::CountSamples)) | (Some(Scheduler), Some(RasterPhase::TriangleId)) => None,
+        (None, _)
+        | (_, Some(RasterPhase::CountSamples | RasterPhase::BoundaryTriangle))
+        | (Some(Scheduler), Some(RasterPhase::TriangleId)) => None,
         _ if key.options.sample_counter == SampleCounter::Racy => Some(OrderTest::Racy),
         (Some(Submission), _) => Some(OrderTest::Submission),
         (Some(Scheduler), _) => Some(OrderTest::Scheduler),
