@@ -2,7 +2,7 @@
 
 use std::{path::PathBuf, sync::Arc};
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::{
     args::{Calibrate, Common},
@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     gpu::{Gpu, RenderError, Renderer, calibration},
-    plan::cost_model::{Unit, UnitCosts},
+    plan::cost_model::{PassWork, Unit, UnitCosts},
     preset_file::{self, calibrations_folder},
     stress::random,
 };
@@ -126,6 +126,12 @@ fn check(renderer: &mut Renderer, costs: &UnitCosts, count: u32, seed: u32, stre
     Ok(checked)
 }
 
+/// A pass with its cost and with what the prediction counts in it.
+fn pass_json(((label, cost), work): (&(String, Cost), &PassWork)) -> Value {
+    let counts: Map<String, Value> = work.counts.iter().map(|(unit, count)| (unit.name().into(), json!(count))).collect();
+    json!({ "name": label, "cost": cost, "counts": counts })
+}
+
 fn print_check(checked: &[Checked], adapter: Value, streams: &mut Streams) -> Result<(), CliError> {
     let is_near = |cost: &Cost| cost.ratio.is_some_and(|ratio| (ratio - 1.0).abs() <= NEAR);
     let near = checked.iter().filter(|one| is_near(&one.cost.frame)).count();
@@ -133,7 +139,7 @@ fn print_check(checked: &[Checked], adapter: Value, streams: &mut Streams) -> Re
         let result = |one: &Checked| {
             json!({
                 "seed": one.seed, "what": one.what, "cost": one.cost.frame, "is_near": is_near(&one.cost.frame),
-                "passes": one.cost.passes.iter().map(|(label, cost)| json!({ "name": label, "cost": cost })).collect::<Vec<_>>(),
+                "passes": one.cost.passes.iter().zip(&one.cost.work.passes).map(pass_json).collect::<Vec<_>>(),
             })
         };
         streams.object("calibrate", adapter, checked.iter().map(result).collect())?;

@@ -7,7 +7,7 @@ use crate::{
     effects::Stack,
     gpu::{
         Gpu, Renderer,
-        calibration::{FrameTimes, paired, time, warm_up},
+        calibration::{FrameTimes, draw_until_ready, paired, time},
     },
     plan::{
         AccuracyRequest,
@@ -35,6 +35,9 @@ pub struct PictureCost {
     pub frame: Cost,
     /// Every pass by its label, the clears first.
     pub passes: Vec<(String, Cost)>,
+    /// What the prediction counts in each pass, in the same order.
+    #[serde(skip)]
+    pub work: FrameWork,
 }
 
 impl Cost {
@@ -58,7 +61,7 @@ impl PictureCost {
             (pass.label.clone(), Cost::new(predicted, measured))
         });
         let measured = times.map(|times| times.whole_ms).filter(|ms| *ms > 0.0);
-        Self { passes: passes.collect(), frame: Cost::new(costs.map(|costs| costs.ms(work)), measured) }
+        Self { passes: passes.collect(), frame: Cost::new(costs.map(|costs| costs.ms(work)), measured), work: work.clone() }
     }
 
     /// Of the last picture of a renderer, without drawing anything.
@@ -80,7 +83,7 @@ impl PictureCost {
         accuracy: &AccuracyRequest,
         costs: Option<&UnitCosts>,
     ) -> Result<Self, CliError> {
-        warm_up(renderer, view, stack, accuracy)?;
+        draw_until_ready(renderer, view, stack, accuracy)?;
         let work = renderer.work()?;
         Ok(Self::new(&work, costs, Some(&time(renderer, view, stack, accuracy)?)))
     }

@@ -7,7 +7,14 @@ use std::{
     time::{Duration, Instant},
 };
 
-use super::{device::Gpu, error::RenderError, particles::Wait, renderer::Renderer, timer::Detail};
+use super::{
+    device::Gpu,
+    error::RenderError,
+    particles::Wait,
+    renderer::{Renderer, Report},
+    timer::Detail,
+    warm_up::{self, FRAMES_PER_SAMPLE},
+};
 use crate::{
     effects::{Effect, Stack},
     measure::timing,
@@ -82,21 +89,29 @@ const PICTURE_BUDGET: Duration = Duration::from_millis(40);
 /// When a picture cannot be drawn, or the device is lost.
 pub fn calibrate(gpu: &Arc<Gpu>, progress: &mut dyn FnMut(usize, usize)) -> Result<Calibrated, RenderError> {
     let begin = Instant::now();
-    let (mut measured, mut measuring) = (Vec::new(), Duration::ZERO);
-    let mut renderer = Renderer::new(gpu.clone());
+    let accuracy = AccuracyRequest::default();
+    // All kernels are compiled before anything is timed, so that a card stays at the clock of one at work.
+    let mut ready = Vec::new();
     for (index, picture) in PICTURES.iter().enumerate() {
         progress(index, PICTURES.len());
         let (scene, view, stack) = made(picture);
+        let mut renderer = Renderer::new(gpu.clone());
         renderer.set_scene(&scene)?;
-        let accuracy = AccuracyRequest::default();
-        warm_up(&mut renderer, &view, &stack, &accuracy)?;
-        let work = renderer.work()?;
-        let start = Instant::now();
-        let times = time(&mut renderer, &view, &stack, &accuracy)?;
-        measuring += start.elapsed();
-        measured.extend(observations(&work, &times));
+        draw_until_ready(&mut renderer, &view, &stack, &accuracy)?;
+        ready.push((renderer, view, stack));
     }
-    let (measuring_s, all_s) = (measuring.as_secs_f64(), begin.elapsed().as_secs_f64());
+    let start = Instant::now();
+    warm_up::warm_up(gpu, ready.len(), |at, frames| {
+        let (renderer, view, stack) = &mut ready[at];
+        sample(renderer, view, stack, &accuracy, Detail::Whole, frames)?;
+        Ok(true)
+    })?;
+    let mut measured = Vec::new();
+    for (renderer, view, stack) in &mut ready {
+        let work = renderer.work()?;
+        measured.extend(observations(&work, &timed(renderer, view, stack, &accuracy)?));
+    }
+    let (measuring_s, all_s) = (start.elapsed().as_secs_f64(), begin.elapsed().as_secs_f64());
     Ok(Calibrated { costs: UnitCosts::fitted(&measured), pictures: PICTURES.len(), measuring_s, preparing_s: all_s - measuring_s })
 }
 
@@ -116,7 +131,7 @@ fn made((query, effects, size): &Picture) -> (Arc<Scene>, View, Stack) {
 ///
 /// # Errors
 /// When the picture cannot be drawn, or the device is lost.
-pub fn warm_up(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<(), RenderError> {
+pub fn draw_until_ready(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<(), RenderError> {
     let mut left = WARM_UP;
     // Queues grow a few times at most.
     for _ in 0..16 {
@@ -129,28 +144,50 @@ pub fn warm_up(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &A
     Ok(())
 }
 
-/// Times a picture that was drawn before: as a whole and pass by pass in turn.
+/// Draws frames without a pause between them; the report is of the last.
+fn sample(
+    renderer: &mut Renderer,
+    view: &View,
+    stack: &Stack,
+    accuracy: &AccuracyRequest,
+    detail: Detail,
+    frames: usize,
+) -> Result<Report, RenderError> {
+    for _ in 0..frames {
+        renderer.draw_timed(view, stack, accuracy, detail, Wait::Simulation)?;
+    }
+    renderer.finish()
+}
+
+/// Times a picture that was drawn before, on a card that has been kept busy first.
 ///
 /// # Errors
 /// When the picture cannot be drawn, or the device is lost.
 pub fn time(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<FrameTimes, RenderError> {
+    let gpu = renderer.gpu().clone();
+    warm_up::warm_up(&gpu, 1, |_, frames| sample(renderer, view, stack, accuracy, Detail::Whole, frames).map(|_| true))?;
+    timed(renderer, view, stack, accuracy)
+}
+
+/// Times a picture: as a whole and pass by pass in turn.
+fn timed(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<FrameTimes, RenderError> {
     let has_timestamps = renderer.gpu().caps.timestamps;
+    // On a software adapter a frame before the one that is timed would only take time.
+    let frames = if renderer.gpu().caps.software { 1 } else { FRAMES_PER_SAMPLE };
     let (mut whole, mut passes): (Vec<f64>, Vec<(String, Vec<f64>)>) = (Vec::new(), Vec::new());
     let [least, most] = FRAMES;
     let begin = Instant::now();
     while whole.len() < least || whole.len() < most && begin.elapsed() < PICTURE_BUDGET {
         let start = Instant::now();
-        renderer.draw_timed(view, stack, accuracy, Detail::Whole, Wait::Simulation)?;
-        let report = renderer.finish()?;
-        let passed_ms = start.elapsed().as_secs_f64() * 1e3;
+        let report = sample(renderer, view, stack, accuracy, Detail::Whole, frames)?;
+        let passed_ms = start.elapsed().as_secs_f64() * 1e3 / frames as f64;
         // A stamp that was not written leaves no time.
         whole.extend(if has_timestamps { report.gpu_ms } else { Some(passed_ms) });
         if !has_timestamps {
             continue;
         }
-        renderer.draw_timed(view, stack, accuracy, Detail::Passes, Wait::Simulation)?;
         let mut seen = HashMap::new();
-        for (label, ms) in renderer.finish()?.passes {
+        for (label, ms) in sample(renderer, view, stack, accuracy, Detail::Passes, frames)?.passes {
             // A label may occur several times in a frame.
             let turn = seen.entry(label.clone()).and_modify(|turn| *turn += 1).or_insert(0usize);
             match passes.iter_mut().filter(|(known, _)| *known == label).nth(*turn) {

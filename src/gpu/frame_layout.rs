@@ -180,7 +180,7 @@ const CLEARED_IN_PASSES: &[BufferId] =
 const MOST_PARTS: u32 = 4;
 /// Invocations of a workgroup of the passes over queues.
 const QUEUE_GROUP: u32 = 64;
-/// Most pixels that an invocation of the first pass clears.
+/// Most pixels, or pairs of words of sums, that an invocation of the first pass clears.
 const CLEARED_PIXELS: u64 = 4;
 
 /// Rows of a background of one color that are kept, to be copied all over the picture.
@@ -537,7 +537,8 @@ impl FrameLayout {
             Pass::Particles => over(scene.particles),
             Pass::Skin => over(scene.deformable),
             Pass::Project if key.work.clears_in_passes => {
-                let clearing = self.pixels().div_ceil(CLEARED_PIXELS) as u32;
+                let sums = self.region(Region::XraySums).map_or(0, |span| (span.bytes.end - span.bytes.start) / (2 * WORD));
+                let clearing = (self.pixels() + sums).div_ceil(CLEARED_PIXELS) as u32;
                 over((vertex_records(key, scene) as u32).max(clearing).max(1))
             }
             Pass::Project => over(vertex_records(key, scene) as u32),

@@ -7,7 +7,10 @@ use super::{
 };
 use crate::{
     accuracy::{AccuracyOptions, Clipping, Culling, Parameters, Visibility},
-    effects::hooks::{Layers, Shape},
+    effects::{
+        hooks::{Layers, Shape},
+        xray,
+    },
     math::SMALL_EXTENT,
     scene::needs::Needs,
     shader::key::{
@@ -46,10 +49,11 @@ pub(super) fn key_of(
             hides_blocks: tuning.hides_blocks,
             stored_uniforms: tuning.stored_uniforms,
             wide_loads: tuning.wide_loads,
-            clears_in_passes: tuning.clears_in_passes && options.culling == Culling::None && !matches!(layers, Some(Layers::Xray { .. })),
+            clears_in_passes: tuning.clears_in_passes && options.culling == Culling::None,
         },
         framebuffer: Framebuffer {
             layers,
+            sums_may_overflow: sums_may_overflow(&options, layers, needs, stack),
             triangle_id_bits: if options.visibility == Visibility::Packed32 { bit_length(needs.triangles) } else { 0 },
         },
         surface: SurfaceInputs { has_material_atlas: needs.material_count > 0, has_planes: stack.reads_planes() || !needs.normals_agree },
@@ -64,6 +68,15 @@ pub(super) fn key_of(
             dots: stack.dots,
         },
     }
+}
+
+/// May the layers of a pixel weigh more than its sums can hold?
+fn sums_may_overflow(options: &AccuracyOptions, layers: Option<Layers>, needs: &Needs, stack: &StackTraits) -> bool {
+    // A triangle is cut into at most nine, which may overlap where they are folded.
+    const MOST_LAYERS: u64 = 16;
+    let (Some(Layers::Xray { bits }), Some(xray)) = (layers, &stack.xray) else { return false };
+    let capacity = options.xray_sums.capacity().unwrap_or_else(|| xray::capacity(bits).into());
+    needs.triangles.saturating_mul(MOST_LAYERS).saturating_mul(xray.unit().into()) > capacity
 }
 
 fn vertex_inputs(needs: &Needs) -> VertexInputs {

@@ -136,6 +136,8 @@ pub struct WorkSharing {
 pub struct Framebuffer {
     /// What an effect makes of the samples of a pixel; without one the nearest is shown.
     pub layers: Option<Layers>,
+    /// More layers may lie on a pixel than its sums can hold.
+    pub sums_may_overflow: bool,
     /// Bits of a triangle's id where it shares a word with its depth, else 0.
     pub triangle_id_bits: u32,
 }
@@ -233,7 +235,11 @@ impl KernelKey {
                 stored_uniforms: false,
                 wide_loads: false,
             },
-            framebuffer: Framebuffer { layers, triangle_id_bits: if visibility == Visibility::Packed32 { 24 } else { 0 } },
+            framebuffer: Framebuffer {
+                layers,
+                sums_may_overflow: true,
+                triangle_id_bits: if visibility == Visibility::Packed32 { 24 } else { 0 },
+            },
             surface: SurfaceInputs { has_material_atlas: true, has_planes: true },
             view: ViewKind { projection: ProjectionKind::Perspective, is_light: false },
             effects: EffectList {
