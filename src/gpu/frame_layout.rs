@@ -223,6 +223,9 @@ impl FrameLayout {
         if key.work.clears_in_passes {
             CLEARED_IN_PASSES.iter().for_each(|&id| layout.clear_only(id, None));
         }
+        if key.work.clears_order {
+            [BufferId::SampleCounts, BufferId::BoundarySamples].into_iter().for_each(|id| layout.clear_only(id, None));
+        }
         layout
     }
 

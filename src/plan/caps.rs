@@ -1,13 +1,15 @@
 //! Capabilities of an adapter, and how work is divided on it.
 
-/// Kernels bind at most 8 storage buffers, and at most 2 more in place of uniforms.
-const MANY_STORAGE_BUFFERS: u32 = 10;
+/// Kernels bind at most 8 storage buffers, and at most 2 more in place of uniforms or to clear what a draw order counts.
+pub(super) const MANY_STORAGE_BUFFERS: u32 = 10;
 
 /// What an adapter can do for us.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Caps {
     /// 64-bit atomic maximum on storage buffers: visibility `packed64`.
     pub int64_atomics: bool,
+    /// And 64-bit atomic addition.
+    pub int64_additions: bool,
     /// GPU timestamps.
     pub timestamps: bool,
     pub max_storage_binding_bytes: u64,
@@ -23,6 +25,7 @@ impl Caps {
     /// More than any adapter has: what cannot be planned for it, none can draw.
     pub const ALL: Self = Self {
         int64_atomics: true,
+        int64_additions: true,
         timestamps: true,
         max_storage_binding_bytes: u64::MAX,
         max_buffer_bytes: u64::MAX,
@@ -75,7 +78,7 @@ pub struct Tuning {
     /// Workgroups of every pass over a queue, which share its entries, at most 65,535; 0: as many as the queue has entries, by an
     /// indirect dispatch (culled pictures always).
     pub queue_groups: u32,
-    /// The first pass clears counters and pixels beside its own work (pictures that are not culled, without x-ray sums).
+    /// The first pass clears counters and pixels beside its own work (pictures that are not culled).
     pub clears_in_passes: bool,
     /// Large and medium triangles skip blocks of pixels in which what was drawn hides them.
     pub hides_blocks: bool,

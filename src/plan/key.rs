@@ -1,16 +1,13 @@
 //! The key of a plan: which paths, formats and limits the kernel of a picture takes.
 
 use super::{
-    caps::{Caps, Tuning},
+    caps::{Caps, MANY_STORAGE_BUFFERS, Tuning},
     loops,
     traits::StackTraits,
 };
 use crate::{
     accuracy::{AccuracyOptions, Clipping, Culling, Parameters, Visibility},
-    effects::{
-        hooks::{Layers, Shape},
-        xray,
-    },
+    effects::hooks::{Layers, Shape},
     math::SMALL_EXTENT,
     scene::needs::Needs,
     shader::key::{
@@ -30,6 +27,7 @@ pub(super) fn key_of(
     // Boxes and discs show all of a material.
     let has_mask = needs.masked && stack.shape == Shape::Triangles;
     let loops = loops::of_a_sample(has_mask, layers, &options);
+    let clears_in_passes = tuning.clears_in_passes && options.culling == Culling::None;
     KernelKey {
         options,
         vertices: vertex_inputs(needs),
@@ -49,11 +47,12 @@ pub(super) fn key_of(
             hides_blocks: tuning.hides_blocks,
             stored_uniforms: tuning.stored_uniforms,
             wide_loads: tuning.wide_loads,
-            clears_in_passes: tuning.clears_in_passes && options.culling == Culling::None,
+            paired_sums: adds_pairs(&options, layers, caps),
+            clears_in_passes,
+            clears_order: clears_in_passes && stack.draw_order.is_some() && caps.max_storage_buffers >= MANY_STORAGE_BUFFERS,
         },
         framebuffer: Framebuffer {
             layers,
-            sums_may_overflow: sums_may_overflow(&options, layers, needs, stack),
             triangle_id_bits: if options.visibility == Visibility::Packed32 { bit_length(needs.triangles) } else { 0 },
         },
         surface: SurfaceInputs { has_material_atlas: needs.material_count > 0, has_planes: stack.reads_planes() || !needs.normals_agree },
@@ -70,13 +69,10 @@ pub(super) fn key_of(
     }
 }
 
-/// May the layers of a pixel weigh more than its sums can hold?
-fn sums_may_overflow(options: &AccuracyOptions, layers: Option<Layers>, needs: &Needs, stack: &StackTraits) -> bool {
-    // A triangle is cut into at most nine, which may overlap where they are folded.
-    const MOST_LAYERS: u64 = 16;
-    let (Some(Layers::Xray { bits }), Some(xray)) = (layers, &stack.xray) else { return false };
-    let capacity = options.xray_sums.capacity().unwrap_or_else(|| xray::capacity(bits).into());
-    needs.triangles.saturating_mul(MOST_LAYERS).saturating_mul(xray.unit().into()) > capacity
+/// Are the sums of an x-ray added two words at a time?
+fn adds_pairs(options: &AccuracyOptions, layers: Option<Layers>, caps: &Caps) -> bool {
+    let has_pairs = options.visibility == Visibility::Packed64 && options.xray_sums.words().is_multiple_of(2);
+    caps.int64_additions && has_pairs && matches!(layers, Some(Layers::Xray { .. }))
 }
 
 fn vertex_inputs(needs: &Needs) -> VertexInputs {

@@ -123,12 +123,16 @@ pub struct WorkSharing {
     pub queue_groups: u32,
     /// The first pass clears counters and pixels beside its own work.
     pub clears_in_passes: bool,
+    /// And what a draw order counts, which takes two more storage buffers.
+    pub clears_order: bool,
     /// Triangles that cover a block of pixels hide what lies behind.
     pub hides_blocks: bool,
     /// What conditions read of draws, effects and particles lies in storage buffers instead of uniforms; see `plan::Tuning`.
     pub stored_uniforms: bool,
     /// The resolve gathers two words at a time; see `plan::Tuning`.
     pub wide_loads: bool,
+    /// The sums of an x-ray are added two words at a time, as 64-bit integers.
+    pub paired_sums: bool,
 }
 
 /// What a pixel holds.
@@ -136,8 +140,6 @@ pub struct WorkSharing {
 pub struct Framebuffer {
     /// What an effect makes of the samples of a pixel; without one the nearest is shown.
     pub layers: Option<Layers>,
-    /// More layers may lie on a pixel than its sums can hold.
-    pub sums_may_overflow: bool,
     /// Bits of a triangle's id where it shares a word with its depth, else 0.
     pub triangle_id_bits: u32,
 }
@@ -231,15 +233,13 @@ impl KernelKey {
                 early_load: true,
                 queue_groups: 0,
                 clears_in_passes: true,
+                clears_order: false,
                 hides_blocks: true,
                 stored_uniforms: false,
                 wide_loads: false,
+                paired_sums: false,
             },
-            framebuffer: Framebuffer {
-                layers,
-                sums_may_overflow: true,
-                triangle_id_bits: if visibility == Visibility::Packed32 { 24 } else { 0 },
-            },
+            framebuffer: Framebuffer { layers, triangle_id_bits: if visibility == Visibility::Packed32 { 24 } else { 0 } },
             surface: SurfaceInputs { has_material_atlas: true, has_planes: true },
             view: ViewKind { projection: ProjectionKind::Perspective, is_light: false },
             effects: EffectList {

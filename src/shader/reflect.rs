@@ -59,7 +59,7 @@ pub fn reflect(linked: &Linked, int64: bool) -> Result<Reflected, ShaderError> {
     })?;
     let mut capabilities = Capabilities::default();
     if int64 {
-        capabilities |= Capabilities::SHADER_INT64 | Capabilities::SHADER_INT64_ATOMIC_MIN_MAX;
+        capabilities |= Capabilities::SHADER_INT64 | Capabilities::SHADER_INT64_ATOMIC_MIN_MAX | Capabilities::SHADER_INT64_ATOMIC_ALL_OPS;
     }
     let info = Validator::new(ValidationFlags::all(), capabilities).validate(&module).map_err(|error| {
         let line = error.location(&linked.text).map_or(1, |l| l.line_number);

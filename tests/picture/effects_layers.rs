@@ -387,8 +387,8 @@ fn mutants() -> Vec<Mutant> {
         mutant(
             "count 1 for a merged group",
             "variants/framebuffer_write/xray",
-            "xray_buffer_add(SUM_WORDS * pixel + i, layer[i])",
-            "xray_buffer_add(SUM_WORDS * pixel + i, select(layer[i], 0u, i == 3u && pixel % 32u == 31u))",
+            "xray_buffer_add(pixel, layer)",
+            "xray_buffer_add(pixel, select(layer, vec4u(layer.xyz, 0u), pixel % 32u == 31u))",
             &["xray"],
             COUNTS,
         ),

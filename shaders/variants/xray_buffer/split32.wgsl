@@ -1,5 +1,6 @@
 // X-ray buffer, split32: behind the depth keys.
 //@ use lib/frame
+//@ use lib/xray_sums
 
 @group(0) @binding(5) var<storage, read_write> depth_keys: array<atomic<u32>>;
 
@@ -7,6 +8,9 @@ fn xray_buffer_front(pixel: u32) -> u32 {
     return atomicLoad(&depth_keys[pixel]);
 }
 
-fn xray_buffer_add(word: u32, value: u32) -> u32 {
-    return atomicAdd(&depth_keys[frame.size.x * frame.size.y + word], value);
+fn xray_buffer_add(pixel: u32, layer: vec4u) -> vec4u {
+    let first = frame.size.x * frame.size.y + SUM_WORDS * pixel;
+    var before: vec4u;
+    for (var i = 0u; i < SUM_WORDS; i += 1u) { before[i] = atomicAdd(&depth_keys[first + i], layer[i]); }
+    return before;
 }

@@ -46,7 +46,7 @@ const FRAMEBUFFER: Feature = Feature {
         Visibility::Packed32 => format!("visibility=packed32/{}", key.framebuffer.triangle_id_bits),
         other => format!("visibility={}", other.name()),
     },
-    variants: &[("framebuffer_write", framebuffer_write), ("framebuffer_read", framebuffer_read), ("xray_buffer", framebuffer_layout)],
+    variants: &[("framebuffer_write", framebuffer_write), ("framebuffer_read", framebuffer_read), ("xray_buffer", xray_buffer)],
     constants: &[
         ("EARLY_LOAD", |key, _| flag(key.work.early_load)),
         ("ID_BITS", |key, _| key.framebuffer.triangle_id_bits.into()),
@@ -68,6 +68,11 @@ fn framebuffer_layout(key: &KernelKey, _: Pass) -> &'static str {
 fn framebuffer_read(key: &KernelKey, pass: Pass) -> &'static str {
     let is_wide = key.work.wide_loads && pass == Pass::Resolve && key.framebuffer_layout() == FramebufferLayout::Packed64;
     if is_wide { "packed64_wide" } else { framebuffer_layout(key, pass) }
+}
+
+/// Where the sums of an x-ray are added up.
+fn xray_buffer(key: &KernelKey, pass: Pass) -> &'static str {
+    if key.work.paired_sums { "packed64_pairs" } else { framebuffer_layout(key, pass) }
 }
 
 /// What a raster pass does with a sample.
@@ -134,6 +139,10 @@ const CLEARS: Feature = Feature {
             FramebufferLayout::Split32 => "split32",
             FramebufferLayout::Packed32 => "packed32",
             FramebufferLayout::Packed64 => "packed64",
+        }),
+        ("clear_step", |key, _| step_if(key.work.clears_order, "sample_counts")),
+        ("clear_step", |key, _| {
+            step_if(key.work.clears_order && key.samples.draw_order == Some(draw_order::Mode::Submission), "boundary_samples")
         }),
     ],
     constants: &[("HAS_SURPLUS", |key, _| flag(key.work.clears_in_passes))],

@@ -27,7 +27,6 @@ const LAYERS: Feature = Feature {
     constants: &[
         ("SUM_WORDS", |key, _| key.options.xray_sums.words().into()),
         ("SUM_BITS", |key, _| if let Some(Layers::Xray { bits }) = key.framebuffer.layers { bits.into() } else { 0.0 }),
-        ("SUMS_MAY_OVERFLOW", |key, _| flag(key.framebuffer.sums_may_overflow)),
         ("CLEARED_SUMS", |key, _| match key.framebuffer.layers {
             Some(Layers::Xray { .. }) => key.options.xray_sums.words().into(),
             _ => 0.0,
