@@ -8,7 +8,7 @@ use super::{
     case::{Case, Expectation},
     checks::{EarlyEnd, check},
     context::CaseContext,
-    scenes::{Rng, scene_of_meshes, triangle_soup},
+    scenes::{Rng, SimpleMesh, scene_of_meshes, triangle_soup},
 };
 use crate::{
     accuracy::{Culling, PinnedOptions},
@@ -67,19 +67,39 @@ impl Eye {
     }
 }
 
-/// A wall of squares of four pixels, one in twelve of which is missing, and rectangles of half a pixel to sixteen pixels behind it,
-/// each a mesh of its own.
-fn wall_with_holes(eye: &Eye, rng: &mut Rng) -> Arc<Scene> {
-    const CELL: u32 = 4;
+/// Side of a square of the wall, pixels.
+const CELL: u32 = 4;
+/// Squares of the wall across and up.
+const CELLS: [u32; 2] = [SIZE[0] / CELL, SIZE[1] / CELL];
+
+/// A wall over the whole picture, of squares of which some are missing: column and row, counted from the lower left, tell which.
+fn wall(eye: &Eye, mut is_there: impl FnMut([u32; 2]) -> bool) -> SimpleMesh {
     let pixel = Eye::pixel();
     let half = 0.5 * f64::from(CELL) * pixel;
     let at = |index: u32, side: u32| (f64::from(index * CELL) + 0.5 * f64::from(CELL) - 0.5 * f64::from(side)) * pixel;
-    let cells = (0..SIZE[1] / CELL).flat_map(|row| (0..SIZE[0] / CELL).map(move |column| [column, row]));
-    let wall: Vec<_> = cells
-        .filter(|_| rng.between(0, 12) > 0)
-        .flat_map(|[column, row]| eye.rectangle([at(column, SIZE[0]), at(row, SIZE[1]), DISTANCE], [half; 2]))
-        .collect();
-    let mut meshes = vec![triangle_soup(wall)];
+    let cells = (0..CELLS[1]).flat_map(|row| (0..CELLS[0]).map(move |column| [column, row]));
+    let squares = cells
+        .filter(|cell| is_there(*cell))
+        .flat_map(|[column, row]| eye.rectangle([at(column, SIZE[0]), at(row, SIZE[1]), DISTANCE], [half; 2]));
+    triangle_soup(squares.collect::<Vec<_>>())
+}
+
+/// A wall with one hole in a tile of 8x8 pixels of the upper left block of 64x64, and behind it one mesh that is wider than a block and
+/// shows through the hole alone: whether it is hidden is asked of whole blocks.
+fn wall_with_a_hole(eye: &Eye, tile: u32) -> Arc<Scene> {
+    let hole = [tile % 8 * 8 / CELL, CELLS[1] - 1 - tile / 8 * 8 / CELL];
+    let pixel = Eye::pixel();
+    // From the left border to pixel 100, and from the upper one to pixel 62.
+    let center = [(50.0 - 0.5 * f64::from(SIZE[0])) * pixel, (0.5 * f64::from(SIZE[1]) - 31.0) * pixel, DISTANCE * 1.001];
+    let behind = triangle_soup(eye.rectangle(center, [50.0 * pixel, 31.0 * pixel]));
+    scene_of_meshes(&[wall(eye, |cell| cell != hole), behind])
+}
+
+/// A wall of squares of four pixels, one in twelve of which is missing, and rectangles of half a pixel to sixteen pixels behind it,
+/// each a mesh of its own.
+fn wall_with_holes(eye: &Eye, rng: &mut Rng) -> Arc<Scene> {
+    let pixel = Eye::pixel();
+    let mut meshes = vec![wall(eye, |_| rng.between(0, 12) > 0)];
     meshes.extend((0..400).map(|_| {
         let [right, up] = SIZE.map(|side| rng.real(-0.5, 0.5) * f64::from(side) * pixel);
         let sides = [0, 1].map(|_| 0.25 * pixel * libm::exp2(rng.real(0.0, 5.0)));
@@ -102,6 +122,16 @@ fn culled_behind_holes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             let aside = [0, 1].map(|_| rng.real(-2.0, 2.0) * Eye::pixel());
             let what = format!("{scale} m, step {step}");
             let culled = context.exact_next(&scene, &eye.view(&scene, aside), &Stack::default(), &accuracy, &what)?;
+            (hidden, drawn) = (hidden + culled.hidden, drawn + culled.drawn);
+        }
+    }
+    // Tiles that halves of a block end and begin with.
+    let eye = Eye { axes: DMat3::IDENTITY, scale: 1.0 };
+    for tile in [0, 1, 2, 3, 6, 7, 14, 15, 30, 31, 32, 33, 62, 63] {
+        let scene = wall_with_a_hole(&eye, tile);
+        for step in 0..2 {
+            let what = format!("a hole in tile {tile}, step {step}");
+            let culled = context.exact_next(&scene, &eye.view(&scene, [0.0; 2]), &Stack::default(), &accuracy, &what)?;
             (hidden, drawn) = (hidden + culled.hidden, drawn + culled.drawn);
         }
     }
