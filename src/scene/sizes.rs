@@ -62,6 +62,8 @@ pub struct PathWork {
     pub candidates: f64,
     /// Samples that the triangles cover, whatever hides them.
     pub covered: f64,
+    /// The most samples in the box of one of them.
+    pub longest: f64,
 }
 
 /// Estimated work of all raster paths.
@@ -80,6 +82,7 @@ impl PathWork {
         self.triangles += times;
         self.candidates += times * f64::from(columns) * f64::from(rows);
         self.covered += times * f64::from(triangle.area);
+        self.longest = self.longest.max(f64::from(columns) * f64::from(rows));
     }
 }
 

@@ -1,6 +1,6 @@
 //! Random presets: effects, scenes, cameras, times and options, each preset from one seed. Every preset is one that a file may hold.
 
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
 use glam::DVec3;
 
@@ -19,6 +19,9 @@ use crate::{
         parts::{Scope, parts},
     },
 };
+
+/// Seeds of the presets that the calibration of an adapter times; nothing else that is random uses them.
+pub const CALIBRATION_SEEDS: Range<u32> = 0xca1b_0000..0xca1b_0030;
 
 /// Most triangles of a random scene, so that the oracle draws it within about a second.
 const MAX_TRIANGLES: u64 = 20_000;
