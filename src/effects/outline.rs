@@ -96,3 +96,14 @@ impl Outline {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn its_loop_visits_the_square_of_its_width() {
+        // Two pixels wide, so two on each side of the pixel itself.
+        assert_eq!((EFFECT.turns)(&(EFFECT.defaults)()), 25.0);
+    }
+}

@@ -194,7 +194,8 @@ impl<'a> FrameCounts<'a> {
         }
     }
 
-    /// Turns of the longest loop over pixels that an invocation runs. In such a loop there is little to do, but every turn waits for memory.
+    /// Turns of the longest loop over pixels that an invocation runs. There is little to do in such a loop, but every turn waits for
+    /// memory.
     fn pixel_turns(&self, pass: Pass) -> f64 {
         match pass {
             Pass::RasterPoints(_) if self.needs.sizes.visible() > 0 => self.disc_turns(),

@@ -330,6 +330,7 @@ mod tests {
         let (classes, work) = (sizes.classes(32, 32, 128.0), sizes.work(32, 32, 128.0));
         assert_eq!([classes.small, classes.medium], [work.small.triangles, work.medium.triangles]);
         assert!(work.medium.covered < work.medium.candidates && work.medium.candidates > 32.0 * work.medium.triangles, "{work:?}");
+        assert!(work.small.longest <= 32.0 && work.medium.longest > 32.0, "{work:?}");
         // The teapot fills the middle of the picture, and no corner.
         let touched = sizes.touched_fraction([640, 480], 8);
         let covered = (work.small.covered + work.medium.covered) / (640.0 * 480.0);

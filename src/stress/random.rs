@@ -269,6 +269,17 @@ mod tests {
     }
 
     #[test]
+    fn nearly_every_preset_of_the_calibration_has_a_scene_and_pixels() {
+        let is_drawable = |preset: &Preset| {
+            let SceneSource::Builtin(query) = &preset.scene else { return false };
+            let scene = builtin::build(query).expect("a built-in scene");
+            preset.moments(&scene, preset.output.size).last().is_some_and(|(view, _)| view.pixels() > 0)
+        };
+        let drawable = CALIBRATION_SEEDS.map(preset).filter(is_drawable).count();
+        assert!(drawable >= 40, "{drawable} of {}", CALIBRATION_SEEDS.len());
+    }
+
+    #[test]
     fn magnitudes_stay_in_their_range_and_reach_all_of_it() {
         let mut rng = Rng(1);
         for range in [[-1e6, 1e6], [0.0, 1.0], [-3.0, 0.0], [0.0, 0.0], [2.0, 2.0], [1e-3, 1e9]] {
