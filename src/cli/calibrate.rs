@@ -12,10 +12,7 @@ use super::{
     streams::{Streams, table},
 };
 use crate::{
-    gpu::{
-        Gpu, RenderError, Renderer,
-        calibration::{self, MorePicture},
-    },
+    gpu::{Gpu, RenderError, Renderer, calibration},
     plan::cost_model::{PassWork, Unit, UnitCosts},
     preset_file::{self, calibrations_folder},
     stress::random,
@@ -51,22 +48,10 @@ pub fn run(common: &Common, args: &Calibrate, streams: &mut Streams) -> Result<E
     Ok(Exit::Done)
 }
 
-/// Pictures of random presets, so that the calibration meets what pictures do. None on software adapters, which take minutes to compile
-/// their kernels.
-fn random_pictures(gpu: &Gpu) -> Vec<MorePicture> {
-    let seeds = if gpu.caps.software { 0..0 } else { random::CALIBRATION_SEEDS };
-    let pictures = seeds.map(random::preset).filter_map(|preset| {
-        let scene = preset_file::load_scene(&preset, None).ok()?;
-        let (view, stack) = preset.moments(&scene, preset.output.size).pop().filter(|(view, _)| view.pixels() > 0)?;
-        Some(MorePicture { scene, view, stack, accuracy: preset.accuracy })
-    });
-    pictures.collect()
-}
-
 /// Measures and keeps the costs.
 fn calibrated(gpu: &Arc<Gpu>, streams: &Streams) -> Result<UnitCosts, CliError> {
     let bar = streams.progress(0);
-    let found = calibration::calibrate(gpu, random_pictures(gpu), &mut |done, all| {
+    let found = calibration::calibrate(gpu, &mut |done, all| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
     })?;
@@ -111,8 +96,7 @@ struct Checked {
 fn check(renderer: &mut Renderer, costs: &UnitCosts, count: u32, seed: u32, streams: &Streams) -> Result<Vec<Checked>, CliError> {
     let bar = streams.progress(count.into());
     let (mut checked, mut refused) = (Vec::new(), 0);
-    let seeds = (0..).map(|n| seed.wrapping_add(n));
-    for seed in seeds.filter(|seed| !random::CALIBRATION_SEEDS.contains(seed)) {
+    for seed in (0..).map(|n| seed.wrapping_add(n)) {
         bar.set_message(format!("seed {seed}"));
         let preset = random::preset(seed);
         let scene = preset_file::load_scene(&preset, None)?;

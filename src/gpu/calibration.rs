@@ -20,7 +20,7 @@ use crate::{
     measure::timing,
     plan::{
         AccuracyRequest,
-        cost_model::{FrameWork, MeasuredFrame, UnitCosts},
+        cost_model::{FrameWork, MeasuredWork, UnitCosts},
     },
     preset::{Preset, SceneSource},
     scene::{Scene, builtin, view::View},
@@ -80,64 +80,39 @@ const WARM_UP: usize = 2;
 /// Frames that are timed, at least and at most; each is drawn once as a whole and once pass by pass.
 const FRAMES: [usize; 2] = [3, 9];
 /// Time for the frames of a picture beyond the least number of them.
-const BUDGET: Duration = Duration::from_millis(40);
-/// The same for each of the many pictures of the calibration.
-const BUDGET_PER_PICTURE: Duration = Duration::from_millis(8);
+const PICTURE_BUDGET: Duration = Duration::from_millis(40);
 
-/// Another picture that is timed.
-#[derive(Clone, Debug)]
-pub struct MorePicture {
-    pub scene: Arc<Scene>,
-    pub view: View,
-    pub stack: Stack,
-    pub accuracy: AccuracyRequest,
-}
-
-/// Times the pictures of the calibration, and `more` of them that can be drawn, on a device and computes the unit costs. `progress` is told
-/// the number of the next picture and of all.
+/// Times the pictures of the calibration on a device and computes the unit costs. `progress` is told the number of the next picture and of
+/// all.
 ///
 /// # Errors
-/// When a picture of the calibration's own cannot be drawn, or the device is lost.
-pub fn calibrate(gpu: &Arc<Gpu>, more: Vec<MorePicture>, progress: &mut dyn FnMut(usize, usize)) -> Result<Calibrated, RenderError> {
+/// When a picture cannot be drawn, or the device is lost.
+pub fn calibrate(gpu: &Arc<Gpu>, progress: &mut dyn FnMut(usize, usize)) -> Result<Calibrated, RenderError> {
     let begin = Instant::now();
-    let all = PICTURES.len() + more.len();
+    let accuracy = AccuracyRequest::default();
     // All kernels are compiled before anything is timed, so that a card stays at the clock of one at work.
     let mut ready = Vec::new();
     for (index, picture) in PICTURES.iter().enumerate() {
-        progress(index, all);
+        progress(index, PICTURES.len());
         let (scene, view, stack) = made(picture);
-        ready.push(drawn(gpu, MorePicture { scene, view, stack, accuracy: AccuracyRequest::default() })?);
-    }
-    for (index, picture) in more.into_iter().enumerate() {
-        progress(PICTURES.len() + index, all);
-        match drawn(gpu, picture) {
-            Ok(one) => ready.push(one),
-            Err(RenderError::Lost) => return Err(RenderError::Lost),
-            // As one that has too many pixels or particles for this device.
-            Err(_) => {}
-        }
+        let mut renderer = Renderer::new(gpu.clone());
+        renderer.set_scene(&scene)?;
+        draw_until_ready(&mut renderer, &view, &stack, &accuracy)?;
+        ready.push((renderer, view, stack));
     }
     let start = Instant::now();
     warm_up::warm_up(gpu, ready.len(), |at, frames| {
-        let (renderer, MorePicture { view, stack, accuracy, .. }) = &mut ready[at];
-        sample(renderer, view, stack, accuracy, Detail::Whole, frames)?;
+        let (renderer, view, stack) = &mut ready[at];
+        sample(renderer, view, stack, &accuracy, Detail::Whole, frames)?;
         Ok(true)
     })?;
     let mut measured = Vec::new();
-    for (renderer, MorePicture { view, stack, accuracy, .. }) in &mut ready {
+    for (renderer, view, stack) in &mut ready {
         let work = renderer.work()?;
-        measured.push(measured_frame(work, &timed(renderer, view, stack, accuracy, BUDGET_PER_PICTURE)?));
+        measured.extend(observations(&work, &timed(renderer, view, stack, &accuracy)?));
     }
     let (measuring_s, all_s) = (start.elapsed().as_secs_f64(), begin.elapsed().as_secs_f64());
-    Ok(Calibrated { costs: UnitCosts::fitted(&measured), pictures: ready.len(), measuring_s, preparing_s: all_s - measuring_s })
-}
-
-/// A renderer for which everything of a picture is ready.
-fn drawn(gpu: &Arc<Gpu>, picture: MorePicture) -> Result<(Renderer, MorePicture), RenderError> {
-    let mut renderer = Renderer::new(gpu.clone());
-    renderer.set_scene(&picture.scene)?;
-    draw_until_ready(&mut renderer, &picture.view, &picture.stack, &picture.accuracy)?;
-    Ok((renderer, picture))
+    Ok(Calibrated { costs: UnitCosts::fitted(&measured), pictures: PICTURES.len(), measuring_s, preparing_s: all_s - measuring_s })
 }
 
 /// The scene, view and stack of a picture; effects have their default values.
@@ -191,24 +166,18 @@ fn sample(
 pub fn time(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<FrameTimes, RenderError> {
     let gpu = renderer.gpu().clone();
     warm_up::warm_up(&gpu, 1, |_, frames| sample(renderer, view, stack, accuracy, Detail::Whole, frames).map(|_| true))?;
-    timed(renderer, view, stack, accuracy, BUDGET)
+    timed(renderer, view, stack, accuracy)
 }
 
-/// Times a picture: as a whole and pass by pass in turn, for as long as the budget allows.
-fn timed(
-    renderer: &mut Renderer,
-    view: &View,
-    stack: &Stack,
-    accuracy: &AccuracyRequest,
-    budget: Duration,
-) -> Result<FrameTimes, RenderError> {
+/// Times a picture: as a whole and pass by pass in turn.
+fn timed(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<FrameTimes, RenderError> {
     let has_timestamps = renderer.gpu().caps.timestamps;
     // On a software adapter a frame before the one that is timed would only take time.
     let frames = if renderer.gpu().caps.software { 1 } else { FRAMES_PER_SAMPLE };
     let (mut whole, mut passes): (Vec<f64>, Vec<(String, Vec<f64>)>) = (Vec::new(), Vec::new());
     let [least, most] = FRAMES;
     let begin = Instant::now();
-    while whole.len() < least || whole.len() < most && begin.elapsed() < budget {
+    while whole.len() < least || whole.len() < most && begin.elapsed() < PICTURE_BUDGET {
         let start = Instant::now();
         let report = sample(renderer, view, stack, accuracy, Detail::Whole, frames)?;
         let passed_ms = start.elapsed().as_secs_f64() * 1e3 / frames as f64;
@@ -226,7 +195,7 @@ fn timed(
                 None => passes.push((label, vec![ms])),
             }
         }
-        if begin.elapsed() > 20 * BUDGET {
+        if begin.elapsed() > 20 * PICTURE_BUDGET {
             break;
         }
     }
@@ -238,10 +207,14 @@ fn timed(
     })
 }
 
-/// A frame with the times that were measured in it.
-fn measured_frame(work: FrameWork, times: &FrameTimes) -> MeasuredFrame {
-    let passes = paired(&work, times).into_iter().map(|(_, ms)| ms.filter(|ms| *ms > 0.0)).collect();
-    MeasuredFrame { ms: times.whole_ms, passes, work }
+/// Times beside the work that was done in them: the whole frame, and every pass in proportion to its part of the frame.
+fn observations(work: &FrameWork, times: &FrameTimes) -> Vec<MeasuredWork> {
+    let mut measured = vec![MeasuredWork { counts: work.counts(), ms: times.whole_ms, weight: 1.0 }];
+    let all: f64 = times.passes.iter().map(|(_, ms)| ms).sum();
+    for (pass, ms) in paired(work, times) {
+        measured.extend(ms.map(|ms| MeasuredWork { counts: pass.counts.clone(), ms, weight: (ms / all).max(0.02) }));
+    }
+    measured
 }
 
 /// Every pass of a frame with its measured milliseconds, where they are known.
@@ -267,8 +240,7 @@ mod tests {
     #[test]
     fn passes_of_one_name_are_paired_in_their_order() {
         let pass = |label: &str, count: f64| PassWork { label: label.into(), counts: vec![(Unit::Pass, count)] };
-        let work =
-            FrameWork { counts: Vec::new(), passes: vec![pass("clear", 0.0), pass("args", 1.0), pass("clip", 2.0), pass("args", 3.0)] };
+        let work = FrameWork { passes: vec![pass("clear", 0.0), pass("args", 1.0), pass("clip", 2.0), pass("args", 3.0)] };
         let passes = [("clear", 0.1), ("args", 0.2), ("args", 0.4)].map(|(label, ms)| (label.to_owned(), ms)).to_vec();
         let times = FrameTimes { whole_ms: 1.0, passes, frames: 1 };
         let pairs: Vec<_> = paired(&work, &times).into_iter().map(|(pass, ms)| (pass.counts[0].1, ms)).collect();

@@ -17,23 +17,11 @@ use crate::{
         needs::Needs,
         sizes::{PathWork, SizeWork},
     },
-    shader::{
-        key::KernelKey,
-        link,
-        pass::{Pass, TriangleSource},
-        reflect,
-        weight::Weight,
-    },
+    shader::{key::KernelKey, link, pass::Pass, reflect, weight::Weight},
 };
 
 /// How often a loop over few items runs, as a rule: joints of a vertex, corners of a polygon, taps of a filter.
 const TURNS: f64 = 4.0;
-
-/// The same of loops within loops, as of the corners of a polygon at every plane that cuts it.
-const CLIP_TURNS: f64 = TURNS * TURNS;
-
-/// Workgroups that share a medium triangle or a tile of a large one where there are few.
-const QUEUE_PARTS: f64 = 4.0;
 
 /// Side of a tile of the resolve where it visits listed tiles, pixels.
 const TILE: u32 = 8;
@@ -49,8 +37,7 @@ impl Renderer {
         let deforming = passes.iter().take_while(|pass| matches!(pass, Pass::Particles | Pass::Skin)).count();
         let picture = self.passes_of(&self.picture, &passes, "")?;
         let mut work =
-            vec![PassWork { label: "clear".into(), counts: vec![(Unit::Clears, 1.0), (Unit::ClearedByte, cleared_bytes(&frame.layout))] }];
-        let mut counts = vec![(Unit::Frame, 1.0)];
+            vec![PassWork { label: "clear".into(), counts: vec![(Unit::Frame, 1.0), (Unit::ClearedByte, cleared_bytes(&frame.layout))] }];
         let (first, others) = picture.split_at(deforming.min(picture.len()));
         work.extend_from_slice(first);
         if let Some(shadow) = &self.shadow
@@ -61,10 +48,9 @@ impl Renderer {
                 first.counts.push((Unit::ClearedByte, cleared_bytes(&light.layout)));
             }
             work.extend(passes);
-            counts.push((Unit::ShadowMap, 1.0));
         }
         work.extend_from_slice(others);
-        Ok(FrameWork { counts, passes: work })
+        Ok(FrameWork { passes: work })
     }
 
     fn passes_of(&self, view: &ViewResources, passes: &[Pass], prefix: &str) -> Result<Vec<PassWork>, RenderError> {
@@ -75,13 +61,10 @@ impl Renderer {
             .map(|&pass| {
                 let weight = weight_of(&self.device, &frame.plan.key, pass)?;
                 let mut counts = scene.counts(pass, weight);
-                counts.extend([(Unit::ChainOperation, scene.chain(pass, weight)), (Unit::PixelTurn, scene.pixel_turns(pass))]);
                 counts.retain(|(_, count)| *count > 0.0);
                 // An indirect dispatch of no workgroup costs next to nothing.
                 let is_idle = counts.is_empty() && matches!(frame.layout.dispatch(&frame.plan.key, pass), Dispatch::Indirect { .. });
-                if !is_idle {
-                    counts.extend([(Unit::Pass, 1.0), (Unit::PassTimed, 1.0)]);
-                }
+                counts.extend((!is_idle).then_some((Unit::Pass, 1.0)));
                 Ok(PassWork { label: format!("{prefix}{}", pass.label()), counts })
             })
             .collect()
@@ -115,10 +98,6 @@ struct FrameCounts<'a> {
     disc: f64,
     /// Pixels in the square about a dot.
     dot: f64,
-    /// Turns of the longest loop that an effect runs at every pixel.
-    turns: f64,
-    /// Triangles are cut, as far as is known before effects move them.
-    clips: bool,
 }
 
 impl<'a> FrameCounts<'a> {
@@ -134,9 +113,7 @@ impl<'a> FrameCounts<'a> {
         let square = |units: u32| layout.size.iter().map(|side| (f64::from(units) / 128.0).clamp(1.0, f64::from(*side).max(1.0))).product();
         let disc = square(frame.point_radius);
         let dot = dot_radius.map_or(0.0, |radius| square(radius + 128));
-        // Where effects move vertices, clipping is kept in case; as a rule nothing is cut.
-        let clips = key.paths.has_clipping && (!key.moves() || sizes.cut > 0.0);
-        Self { key, layout, needs, sizes, pixels, covered, touched, disc, dot, turns: frame.turns, clips }
+        Self { key, layout, needs, sizes, pixels, covered, touched, disc, dot }
     }
 
     fn triangles(&self) -> f64 {
@@ -149,70 +126,6 @@ impl<'a> FrameCounts<'a> {
             Dispatch::Direct { groups: [x, y] } => Some(f64::from(x) * f64::from(y) * f64::from(self.key.work.group_size)),
             Dispatch::Indirect { .. } => None,
         }
-    }
-
-    /// Operations that the invocation with most to do executes one after another. In small pictures a pass takes as long as that, and the
-    /// others wait at its end.
-    fn chain(&self, pass: Pass, Weight { once, looped }: Weight) -> f64 {
-        let few_turns = once + TURNS * looped;
-        let only_if = |has_work: bool, operations: f64| if has_work { operations } else { 0.0 };
-        let SizeWork { small, medium, large, .. } = self.sizes;
-        // Workgroups draw blocks of 64 pixels one after another, several of them share a triangle, and a tile has 64 blocks.
-        let blocks = |path: PathWork, most: f64| (path.longest / 64.0 / QUEUE_PARTS).clamp(1.0, most);
-        let has = |path: PathWork| path.triangles > 0.0 || self.clips;
-        match pass {
-            Pass::SampleSetup(TriangleSource::ClippedTriangles) => only_if(self.clips, few_turns),
-            Pass::Clip => only_if(self.clips, once + CLIP_TURNS * looped),
-            Pass::RasterSmall(_) => only_if(self.needs.sizes.visible() > 0, once + small.longest * looped),
-            Pass::RasterMedium(_) => only_if(has(medium), once + blocks(medium, f64::MAX) * looped),
-            Pass::RasterLarge(_) => only_if(has(large), once + blocks(large, 64.0 / QUEUE_PARTS) * looped),
-            // Its text holds the code of three paths.
-            Pass::RasterAll(_) => {
-                let of_queue = |path: PathWork, most: f64| only_if(has(path), blocks(path, most));
-                let turns = small.longest.max(of_queue(medium, f64::MAX)).max(of_queue(large, 64.0 / QUEUE_PARTS));
-                only_if(turns > 0.0, (once + turns * looped) / 3.0)
-            }
-            Pass::RasterPoints(_) => only_if(self.needs.sizes.visible() > 0, once + self.disc_turns() * looped),
-            Pass::DotsDraw | Pass::DotsProbe => only_if(self.dots() > 0.0, once + self.dot * looped),
-            Pass::Resolve => only_if(self.covered > 0.0 || self.clips, few_turns),
-            Pass::AdvanceQueues { .. } | Pass::Args | Pass::DotsArgs | Pass::TileLarge => 0.0,
-            Pass::Particles
-            | Pass::Skin
-            | Pass::Project
-            | Pass::Cull(_)
-            | Pass::ProjectMeshlets
-            | Pass::SampleSetup(TriangleSource::Triangles)
-            | Pass::OrderSums
-            | Pass::OrderRanks
-            | Pass::OrderLimit
-            | Pass::OrderCut
-            | Pass::DotsEnds
-            | Pass::DotsCull
-            | Pass::Scale
-            | Pass::DepthReduce
-            | Pass::ListTiles => few_turns,
-        }
-    }
-
-    /// Turns of the longest loop over pixels that an invocation runs. There is little to do in such a loop, but every turn waits for
-    /// memory.
-    fn pixel_turns(&self, pass: Pass) -> f64 {
-        match pass {
-            Pass::RasterPoints(_) if self.needs.sizes.visible() > 0 => self.disc_turns(),
-            Pass::DotsDraw | Pass::DotsProbe if self.dots() > 0.0 => self.dot,
-            Pass::Resolve if self.touched > 0.0 || self.key.finishes_pixels() => self.turns,
-            _ => 0.0,
-        }
-    }
-
-    /// Pixels in the squares about the corners of a triangle, for each invocation that draws them.
-    fn disc_turns(&self) -> f64 {
-        3.0 * self.disc / f64::from(self.key.work.invocations_per_triangle.max(1))
-    }
-
-    /// Dots that may be drawn.
-    fn dots(&self) -> f64 {
-        self.layout.dots.map_or(0.0, |dots| f64::from(if dots.chosen > 0 { dots.chosen } else { dots.dots }))
     }
 
     fn counts(&self, pass: Pass, weight: Weight) -> Vec<(Unit, f64)> {
@@ -232,7 +145,7 @@ impl<'a> FrameCounts<'a> {
                 vec![(Unit::VertexOperation, vertices * few_turns)]
             }
             Pass::SampleSetup(_) => vec![(Unit::SetupOperation, self.invocations(pass).unwrap_or(2.0 * sizes.cut) * few_turns)],
-            Pass::Clip => vec![(Unit::SetupOperation, sizes.cut * few_turns)],
+            Pass::Clip => vec![(Unit::CutOperation, sizes.cut * few_turns)],
             Pass::TileLarge => vec![(Unit::QueuedOperation, sizes.large.triangles * few_turns)],
             Pass::RasterSmall(_) => {
                 let triangles = self.invocations(pass).unwrap_or(0.5 * self.triangles());
@@ -258,10 +171,10 @@ impl<'a> FrameCounts<'a> {
             Pass::DotsEnds => vec![(Unit::LineOperation, self.layout.dots.map_or(0.0, |dots| dots.segments.into()) * few_turns)],
             Pass::DotsCull => vec![(Unit::LineOperation, self.layout.dots.map_or(0.0, |dots| dots.runs.into()) * few_turns)],
             Pass::DotsDraw | Pass::DotsProbe => {
-                let dots = self.dots();
+                let dots = self.layout.dots.map_or(0.0, |dots| f64::from(if dots.chosen > 0 { dots.chosen } else { dots.dots }));
                 // Where dots would crowd, most have faded.
                 let shown = dots.min(0.25 * self.pixels);
-                vec![(Unit::LineOperation, dots * 0.1 * once), (Unit::DiscOperation, shown * self.dot * looped)]
+                vec![(Unit::LineOperation, dots * 0.1 * once), (Unit::DotOperation, shown * self.dot * looped)]
             }
             Pass::Resolve => self.resolve(weight),
             Pass::Scale => {

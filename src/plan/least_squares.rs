@@ -6,7 +6,7 @@
 pub struct Observation {
     /// How much of each cost the value contains.
     pub terms: Vec<f64>,
-    /// Above 0 for [`nonnegative`].
+    /// Above 0.
     pub value: f64,
     pub weight: f64,
 }
@@ -42,15 +42,6 @@ pub fn nonnegative(observations: &[Observation], count: usize) -> Vec<f64> {
     costs.iter().zip(&scales).map(|(cost, scale)| cost / scale).collect()
 }
 
-/// The `count` costs of the least sum of squared errors, by the weights alone. Terms and values may have any sign.
-pub fn of_any_sign(observations: &[Observation], count: usize) -> Vec<f64> {
-    let rows: Vec<Vec<f64>> = observations.iter().map(|one| one.terms.clone()).collect();
-    let weights: Vec<f64> = observations.iter().map(|one| one.weight).collect();
-    let mut costs = vec![0.0; count];
-    descend(observations, &rows, &weights, &mut costs);
-    costs
-}
-
 /// Coordinate descent on the normal equations of the weighted problem.
 fn descend(observations: &[Observation], rows: &[Vec<f64>], weights: &[f64], costs: &mut [f64]) {
     let count = costs.len();
@@ -81,13 +72,6 @@ mod tests {
         let one = |terms: [f64; 2], value: f64| Observation { terms: terms.to_vec(), value, weight: 1.0 };
         let costs = nonnegative(&[one([1.0, 0.0], 2.0), one([2.0, 1.0], 3.9), one([3.0, 0.5], 5.95)], 2);
         assert!((costs[0] - 2.0).abs() < 0.05 && costs[1] == 0.0, "{costs:?}");
-    }
-
-    #[test]
-    fn terms_and_values_may_be_negative_where_costs_are_not() {
-        let one = |terms: [f64; 2], value: f64| Observation { terms: terms.to_vec(), value, weight: 1.0 };
-        let costs = of_any_sign(&[one([1.0, -3.0], -4.0), one([1.0, -5.0], -8.0), one([1.0, -1.0], 0.0)], 2);
-        assert!((costs[0] - 2.0).abs() < 1e-3 && (costs[1] - 2.0).abs() < 1e-3, "{costs:?}");
     }
 
     #[test]

@@ -62,8 +62,6 @@ pub struct PathWork {
     pub candidates: f64,
     /// Samples that the triangles cover, whatever hides them.
     pub covered: f64,
-    /// The most samples in the box of one of them.
-    pub longest: f64,
 }
 
 /// Estimated work of all raster paths.
@@ -82,7 +80,6 @@ impl PathWork {
         self.triangles += times;
         self.candidates += times * f64::from(columns) * f64::from(rows);
         self.covered += times * f64::from(triangle.area);
-        self.longest = self.longest.max(f64::from(columns) * f64::from(rows));
     }
 }
 
@@ -330,7 +327,6 @@ mod tests {
         let (classes, work) = (sizes.classes(32, 32, 128.0), sizes.work(32, 32, 128.0));
         assert_eq!([classes.small, classes.medium], [work.small.triangles, work.medium.triangles]);
         assert!(work.medium.covered < work.medium.candidates && work.medium.candidates > 32.0 * work.medium.triangles, "{work:?}");
-        assert!(work.small.longest <= 32.0 && work.medium.longest > 32.0, "{work:?}");
         // The teapot fills the middle of the picture, and no corner.
         let touched = sizes.touched_fraction([640, 480], 8);
         let covered = (work.small.covered + work.medium.covered) / (640.0 * 480.0);
