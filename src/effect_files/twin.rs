@@ -294,7 +294,8 @@ pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> Verte
             normal = normal.max((other.normal - exact.normal).abs().max_element());
         }
         let scale = v.position.abs().max_element() + exact.offset.abs().max_element();
-        ErrorBound { offset_m: 2.0 * offset_m + 16.0 * ROUNDING * scale, normal: 2.0 * normal + 16.0 * ROUNDING, ..bound }
+        let (offset_m, normal) = (2.0 * offset_m + 16.0 * ROUNDING * scale, 2.0 * normal + 16.0 * ROUNDING);
+        ErrorBound { offset_m, along_m: DVec3::ZERO, normal, ..bound }
     };
     let fields = double.fields;
     let limit = move |_: f64, words: &[u32]| lengths(fields).map(|field| field.get(words)[0].abs()).sum();

@@ -87,6 +87,8 @@ impl VertexEffect for Wobble {
         let turns = along / wavelength + ROUNDING * (4.0 * wave.distance.abs() + f64::from(p.phase_turns));
         let sine = (std::f64::consts::TAU * turns + SINE_ERROR).min(2.0);
         error_bound.offset_m += wave.amplitude * (sine + 14.0 * ROUNDING) + ROUNDING * v.offset.abs().max_element();
+        // An error of the sine sways too. That of an earlier wave counts as one in any direction.
+        error_bound.along_m = wave.sway * (wave.amplitude * sine);
 
         let steepest = std::f64::consts::TAU * wave.amplitude / wavelength;
         let slope = steepest * (sine + 2.0 * ROUNDING + 6.0 * ROUNDING);

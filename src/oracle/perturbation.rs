@@ -5,7 +5,7 @@
 //! bound; answers between those pictures are right (`docs/exactness.md` §9). The bounds themselves stand where the quantity is
 //! computed.
 
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 
 /// By how much a picture differs from the straight one, in error bounds. Zero draws the picture itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -30,6 +30,8 @@ pub struct InterpolatedPerturbation {
     pub plane: DVec3,
     /// Of the depth, as a fraction of it.
     pub depth: f64,
+    /// Added to the color that the corners' mix, which stays between theirs.
+    pub color: DVec4,
 }
 
 /// Offset of texture lookups: across, down, and in the level of detail, each in error bounds.

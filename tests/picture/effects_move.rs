@@ -335,10 +335,26 @@ fn exploding_and_turning_keeps_every_triangle_and_its_area() {
 #[test]
 fn a_bound_grows_with_what_an_effect_is_given_and_with_what_it_does() {
     let mut rng = Rng(11);
-    let given =
-        ErrorBound { position_m: 1e-7, offset_m: 0.0, normal: 1e-7, flat_normal: 1e-7, center_m: 1e-7, arm_m: 1e-8, center_screen: 1e-7 };
-    let coarser =
-        ErrorBound { position_m: 1e-5, offset_m: 1e-6, normal: 1e-5, flat_normal: 1e-5, center_m: 1e-5, arm_m: 1e-5, center_screen: 1e-5 };
+    let given = ErrorBound {
+        position_m: 1e-7,
+        offset_m: 0.0,
+        along_m: DVec3::ZERO,
+        normal: 1e-7,
+        flat_normal: 1e-7,
+        center_m: 1e-7,
+        arm_m: 1e-8,
+        center_screen: 1e-7,
+    };
+    let coarser = ErrorBound {
+        position_m: 1e-5,
+        offset_m: 1e-6,
+        along_m: DVec3::ZERO,
+        normal: 1e-5,
+        flat_normal: 1e-5,
+        center_m: 1e-5,
+        arm_m: 1e-5,
+        center_screen: 1e-5,
+    };
     for effect in MOVING {
         let moving = suited(effect, &scene("sphere?triangles=200"));
         let still = resting(effect, &scene("sphere?triangles=200"));

@@ -35,11 +35,21 @@ pub struct Vertex {
 pub struct ErrorBound {
     pub position_m: f64,
     pub offset_m: f64,
+    /// The part of `offset_m` whose direction is known: the offset errs by this vector or less of it to either side, and beside that by
+    /// no more than the rest of `offset_m`. A model that is swayed far in one direction errs far in that one alone.
+    pub along_m: DVec3,
     pub normal: f64,
     pub flat_normal: f64,
     pub center_m: f64,
     pub arm_m: f64,
     pub center_screen: f64,
+}
+
+impl ErrorBound {
+    /// What is left of `offset_m` beside `along_m`.
+    pub fn aside_m(&self) -> f64 {
+        (self.offset_m - self.along_m.length()).max(0.0)
+    }
 }
 
 /// Largest relative error of one f32 addition or multiplication, in any rounding mode.

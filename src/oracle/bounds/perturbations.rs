@@ -64,9 +64,6 @@ static STRETCHES: LazyLock<Vec<[f64; 4]>> = LazyLock::new(|| {
     even.chain(powers).flat_map(|stretch| [stretch, -stretch]).map(|stretch| [0.0, 0.0, 0.0, stretch]).collect()
 });
 
-/// Perturbations of what is interpolated where colors change in proportion, and depths within their interval.
-static NARROW_INTERPOLATIONS: LazyLock<Vec<[f64; 4]>> = LazyLock::new(|| [&INTERPOLATIONS[..], &STRETCHES[..]].concat());
-
 /// Perturbations of what is interpolated where colors do not change in proportion: normals all over the cone in which they lie, depths
 /// all over their interval, and both together.
 static WIDE_INTERPOLATIONS: LazyLock<Vec<[f64; 4]>> = LazyLock::new(|| {
@@ -81,6 +78,31 @@ static WIDE_INTERPOLATIONS: LazyLock<Vec<[f64; 4]>> = LazyLock::new(|| {
     let turned = turns.flat_map(|turn| [0.0, 1.1, -1.1].map(|stretch| [turn.x, turn.y, turn.z, stretch]));
     turned.chain(STRETCHES.iter().copied()).collect()
 });
+
+/// Perturbations of the color that a triangle's corners mix, in error bounds: every channel at either end of its interval. What follows
+/// from it, ever brighter or ever darker as a channel grows, is extreme at one of these. Alpha is mixed with no channel.
+const TINTS: [[f64; 4]; 8] = {
+    let mut tints = [[-1.0; 4]; 8];
+    let mut i = 0;
+    while i < 8 {
+        let mut channel = 0;
+        while channel < 3 {
+            if i >> channel & 1 == 1 {
+                tints[i][channel] = 1.0;
+            }
+            channel += 1;
+        }
+        tints[i][3] = tints[i][0];
+        i += 1;
+    }
+    tints
+};
+
+/// Those of all channels alike. Beside perturbations that are too many for all.
+const EVEN_TINTS: [[f64; 4]; 2] = [TINTS[0], TINTS[7]];
+
+/// Of a color that does not err.
+const NO_TINT: [[f64; 4]; 1] = [[0.0; 4]];
 
 /// How far answers between [`WIDE_INTERPOLATIONS`] may lie outside theirs, as a fraction of their span.
 pub const WIDE_SLACK: f64 = 0.25;
@@ -121,13 +143,20 @@ pub fn places(stack: &Stack) -> impl Iterator<Item = Perturbation> {
 
 /// Perturbations of what is interpolated with these errors, for each perturbation of color steps.
 pub fn interpolations(stack: &Stack, errors: SampleErrors) -> impl Iterator<Item = Perturbation> {
-    let offsets = match errors.doubt() {
-        Doubt::None => &[],
-        Doubt::Narrow => NARROW_INTERPOLATIONS.as_slice(),
-        Doubt::Wide => WIDE_INTERPOLATIONS.as_slice(),
+    let (few, many): (&[[f64; 4]], &[[f64; 4]]) = match errors.doubt() {
+        Doubt::None => (&[], &[]),
+        Doubt::Narrow => (&INTERPOLATIONS, STRETCHES.as_slice()),
+        Doubt::Wide => (&[], WIDE_INTERPOLATIONS.as_slice()),
     };
+    // The color may err by its bound whatever the normal and the depth err by, and alone.
+    let (alone, tints, even_tints): (&[[f64; 4]], &[[f64; 4]], &[[f64; 4]]) =
+        if errors.has_doubtful_color() { (&[[0.0; 4]], &TINTS, &EVEN_TINTS) } else { (&[], &NO_TINT, &NO_TINT) };
+    let each = |offsets: &'static [[f64; 4]], tints: &'static [[f64; 4]]| {
+        offsets.iter().flat_map(move |&offset| tints.iter().map(move |&tint| errors.times(offset, tint)))
+    };
+    let interpolated = each(alone, tints).chain(each(few, tints)).chain(each(many, even_tints));
     let at_step = move |&color_step: &f64| {
-        offsets.iter().map(move |&times| Perturbation { color_step, interpolated: errors.times(times), ..Perturbation::default() })
+        interpolated.clone().map(move |interpolated| Perturbation { color_step, interpolated, ..Perturbation::default() })
     };
     color_steps(stack).iter().flat_map(at_step)
 }

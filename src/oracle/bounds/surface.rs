@@ -1,9 +1,10 @@
-//! Bounds of the errors of what a float renderer interpolates from a triangle's corners: its normal and, where it was clipped, its depth.
+//! Bounds of the errors of what a float renderer interpolates from a triangle's corners: its normal and, where it was clipped, its depth
+//! and its color.
 //!
-//! Both follow from the bounds of the corners ([`VertexBounds`]) and of their weights. A quotient of sums Σ bₖxₖ / Σ bₖ errs, to first
+//! They follow from the bounds of the corners ([`VertexBounds`]) and of their weights. A quotient of sums Σ bₖxₖ / Σ bₖ errs, to first
 //! order, by Σ δₖ (xₖ - x) / Σ bₖ, where bₖ errs by δₖ and x is the quotient.
 
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 
 use super::{
     super::{
@@ -24,8 +25,8 @@ const ANY_DIRECTION: f64 = 2.0;
 /// Bounds of the errors of a triangle's corners.
 #[derive(Clone, Copy, Debug)]
 pub struct CornerErrors {
-    /// Of x, y and w in clip space.
-    clip: [DVec3; 3],
+    /// Of x, y and w in clip space, in any direction, and beside that along one.
+    clip: [[DVec3; 2]; 3],
     /// Of displacements, meters.
     offsets_m: [f64; 3],
     /// Of the directions of normals.
@@ -41,9 +42,11 @@ pub struct SampleErrors {
     plane: f64,
     /// Of the depth, relative to it.
     depth: f64,
+    /// Of the color that the corners' mix, linear RGBA.
+    color: DVec4,
 }
 
-/// How far what is interpolated at a sample may err.
+/// How far the normal and the depth that are interpolated at a sample may err.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doubt {
     /// Not so far that a color shows it.
@@ -67,11 +70,22 @@ impl SampleErrors {
         }
     }
 
-    /// The normals turned and the depth stretched by so many of these bounds: x, y and z of world space, and the depth. Of corners that
-    /// lie far before and far behind the eye a renderer may mix a depth of either sign.
-    pub fn times(&self, [turn @ .., stretch]: [f64; 4]) -> InterpolatedPerturbation {
+    /// Returns true if the color that the corners' mix may err by so much that the bound of a shaded color does not contain it. On an
+    /// unclipped triangle it errs by 2^-19 of their differences at most.
+    pub fn has_doubtful_color(&self) -> bool {
+        self.color.max_element() > 1.0 / f64::from(1 << 18)
+    }
+
+    /// The normals turned, the depth stretched and the color moved by so many of these bounds: x, y and z of world space, and the depth;
+    /// red, green, blue and alpha. Of corners that lie far before and far behind the eye a renderer may mix a depth of either sign.
+    pub fn times(&self, [turn @ .., stretch]: [f64; 4], tint: [f64; 4]) -> InterpolatedPerturbation {
         let turn = DVec3::from(turn);
-        InterpolatedPerturbation { normal: turn * self.normal, plane: turn * self.plane, depth: stretch * self.depth }
+        InterpolatedPerturbation {
+            normal: turn * self.normal,
+            plane: turn * self.plane,
+            depth: stretch * self.depth,
+            color: DVec4::from(tint) * self.color,
+        }
     }
 }
 
@@ -83,7 +97,7 @@ impl CornerErrors {
         let bounds = VertexBounds::new(&evaluator, packed_bits);
         let corners = evaluator.triangle_corners(id - draw.first_triangle);
         let moved = corners.map(|corner| bounds.moved(corner));
-        let clip = corners.map(|corner| bounds.clip(corner).homogeneous());
+        let clip = [0, 1, 2].map(|k| bounds.clip_apart(corners[k], &moved[k]));
         Self { clip, offsets_m: moved.map(|bound| bound.offset_m), normals: moved.map(|bound| bound.normal) }
     }
 
@@ -91,7 +105,7 @@ impl CornerErrors {
     ///
     /// However far the weights err, a renderer clamps them from 0 to 1 with a sum of 1, so what they mix lies between the corners'.
     pub fn at(&self, triangle: &SurfaceTriangle, x: usize, y: usize) -> SampleErrors {
-        let Interpolation { weights, depths, normals, displaced } = triangle.interpolation(x, y);
+        let Interpolation { weights, depths, normals, colors, displaced } = triangle.interpolation(x, y);
         let errors = triangle.weight_errors(x, y, &self.clip);
         let mixed = |differences: [f64; 3]| {
             let sum: f64 = (0..3).map(|k| errors[k] * differences[k]).sum();
@@ -104,7 +118,13 @@ impl CornerErrors {
             relative(mixed(normals.map(|normal| (normal - middle).length())) + of_corners, middle.length())
         });
         let plane = displaced.map_or(0.0, |corners| self.plane(corners));
-        SampleErrors { normal, plane, depth: mixed(depths.map(|depth| (depth - 1.0).abs())) }
+        let color = (0..3).map(|k| colors[k] * weights[k]).sum::<DVec4>();
+        SampleErrors {
+            normal,
+            plane,
+            depth: mixed(depths.map(|depth| (depth - 1.0).abs())),
+            color: [0, 1, 2, 3].map(|channel| mixed(colors.map(|corner| (corner[channel] - color[channel]).abs()))).into(),
+        }
     }
 
     /// Of the direction of the plane through the displaced corners.

@@ -33,6 +33,9 @@ pub fn snap_bounds(shot: &Shot) -> Vec<Option<[f64; 2]>> {
     shot.draws.iter().flat_map(of_draw).collect()
 }
 
+/// Second-order terms of a quotient, which are a fifteenth of the first-order ones at most.
+const SECOND_ORDER: f64 = 16.0 / 15.0;
+
 /// Bounds of the errors of what a [`VertexEvaluator`] evaluates.
 pub struct VertexBounds<'a> {
     evaluator: &'a VertexEvaluator<'a>,
@@ -50,21 +53,35 @@ impl<'a> VertexBounds<'a> {
 
     /// Bounds of [`VertexEvaluator::clip`].
     pub fn clip(&self, corner: Corner) -> ClipErrors {
+        let displacement = if self.evaluator.moves { self.moved(corner).offset_m } else { 0.0 };
+        self.clip_displaced(corner, displacement)
+    }
+
+    /// The same in two parts, for x, y and w, given the bound of the moved corner: errors in any direction, and those along the one of
+    /// [`ErrorBound::along_m`].
+    pub fn clip_apart(&self, corner: Corner, moved: &ErrorBound) -> [DVec3; 2] {
+        let along = |r: usize| [0, 1, 2].map(|axis| self.evaluator.clip_from_world[axis][r] * moved.along_m[axis]).iter().sum::<f64>();
+        let displaced = self.clip_displaced(corner, moved.aside_m());
+        [displaced.homogeneous(), DVec3::new(along(0), along(1), along(3)) * SECOND_ORDER]
+    }
+
+    /// Bounds of the clip position of a corner whose displacement errs by so many meters.
+    fn clip_displaced(&self, corner: Corner, displacement: f64) -> ClipErrors {
         let (evaluator, draw) = (self.evaluator, self.evaluator.draw);
         let position = self.position(corner.vertex);
         let mut magnitudes = evaluator.clip_rows(position.value - draw.origin(), Terms::Magnitudes);
         // Four products are added; subtracting an origin rounds once more.
         let roundings = if draw.origin == [0.0; 3] { 4.0 } else { 5.0 };
         let deformed = [0, 1, 2, 3].map(|r| self.clip_row_error(r, position.error) * (17.0 / 16.0));
-        let (displacement, offset) = if evaluator.moves { self.displacement(corner) } else { (0.0, DVec3::ZERO) };
+        let offset = if evaluator.moves { self.displacement(corner) } else { DVec3::ZERO };
         if displacement == 0.0 && offset == DVec3::ZERO {
             return ClipErrors { errors: [0, 1, 2, 3].map(|r| roundings * ROUNDING * magnitudes[r] + deformed[r]), magnitudes };
         }
         let errors = [0, 1, 2, 3].map(|r| {
             let row = [0, 1, 2].map(|axis| evaluator.clip_from_world[axis][r].abs());
             magnitudes[r] += row[0] * offset.x.abs() + row[1] * offset.y.abs() + row[2] * offset.z.abs();
-            // Three more products, added in any order; a fifteenth for second-order terms of the quotient.
-            ((roundings + 3.0) * ROUNDING * magnitudes[r] + displacement * (row[0] + row[1] + row[2])) * (16.0 / 15.0) + deformed[r]
+            // Three more products, added in any order.
+            ((roundings + 3.0) * ROUNDING * magnitudes[r] + displacement * (row[0] + row[1] + row[2])) * SECOND_ORDER + deformed[r]
         });
         ClipErrors { errors, magnitudes }
     }
@@ -76,10 +93,9 @@ impl<'a> VertexBounds<'a> {
         self.evaluator.stack.error_bound(unmoved, given, self.evaluator.draw.scopes)
     }
 
-    /// Bound of the error of a corner's displacement in meters, and the displacement.
-    fn displacement(&self, corner: Corner) -> (f64, DVec3) {
-        let offset = self.evaluator.stack.moved(self.evaluator.unmoved(corner), self.evaluator.draw.scopes).offset;
-        (self.moved(corner).offset_m, offset)
+    /// A corner's displacement, meters.
+    fn displacement(&self, corner: Corner) -> DVec3 {
+        self.evaluator.stack.moved(self.evaluator.unmoved(corner), self.evaluator.draw.scopes).offset
     }
 
     /// What an error of an object-space position adds to a row of its clip position.
@@ -123,7 +139,7 @@ impl<'a> VertexBounds<'a> {
             arm_m: 12.0 * ROUNDING * magnitude(edges).max_element() + 2.0 * deformed(error),
             center_screen,
             flat_normal: self.plane_error(corners, error.max_element()),
-            offset_m: 0.0,
+            ..ErrorBound::default()
         }
     }
 

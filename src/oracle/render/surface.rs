@@ -120,6 +120,8 @@ pub struct Interpolation {
     pub depths: [f64; 3],
     /// Of the corners, world space, of any length; none if one has no finite normal.
     pub normals: Option<[DVec3; 3]>,
+    /// Linear RGBA of the corners.
+    pub colors: [DVec4; 3],
     /// The corners, if the plane is that of displaced ones, meters.
     pub displaced: Option<[DVec3; 3]>,
 }
@@ -217,7 +219,7 @@ impl<'a> SurfaceTriangle<'a> {
         let smooth = self.normals.and_then(|normals| self.smooth_normal(weights, normals));
         let flat_normal = self.flat_normal.map(|normal| turned(normal, moved.plane));
         let normal = smooth.map(|normal| turned(normal, moved.normal)).or(flat_normal).unwrap_or(toward_eye);
-        let base = mixed(weights, self.colors);
+        let base = self.base_color(weights, moved.color);
         let textured = self
             .material
             .as_ref()
@@ -257,12 +259,23 @@ impl<'a> SurfaceTriangle<'a> {
             weights,
             depths: self.depths_m.map(|depth| depth / depth_m),
             normals: self.normals.map(|normals| normals.map(|normal| self.world_from_normal * normal)),
+            colors: self.colors,
             displaced: self.is_deformed.then_some(self.positions),
         }
     }
 
-    /// How far the weights at the center of a pixel may err, where the corners err by so much in x, y and w of clip space.
-    pub fn weight_errors(&self, x: usize, y: usize, clip_errors: &[DVec3; 3]) -> [f64; 3] {
+    /// The color that the corners' mix, moved by `offset`. Whatever the weights are, it lies between theirs.
+    fn base_color(&self, weights: [f64; 3], offset: DVec4) -> DVec4 {
+        let [a, b, c] = self.colors;
+        match (mixed(weights, self.colors), offset) {
+            (color, DVec4::ZERO) => color,
+            (color, offset) => (color + offset).clamp(a.min(b).min(c), a.max(b).max(c)),
+        }
+    }
+
+    /// How far the weights at the center of a pixel may err, where the corners err by so much in x, y and w of clip space: in any
+    /// direction, and along one.
+    pub fn weight_errors(&self, x: usize, y: usize, clip_errors: &[[DVec3; 2]; 3]) -> [f64; 3] {
         let point = self.sample_point(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
         self.weights.errors_from(clip_errors, self.weights.at(&point), &point)
     }

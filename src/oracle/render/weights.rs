@@ -79,13 +79,14 @@ impl Weights {
         }
     }
 
-    /// As [`errors`](Self::errors), where the corners' (x, y, w) err by `clip`; large where nothing is known.
-    pub fn errors_from(&self, clip: &[DVec3; 3], weights: [f64; 3], point: &SamplePoint) -> [f64; 3] {
+    /// As [`errors`](Self::errors), where the corners' (x, y, w) err by `clip`, in any direction and along one; large where nothing is
+    /// known.
+    pub fn errors_from(&self, clip: &[[DVec3; 2]; 3], weights: [f64; 3], point: &SamplePoint) -> [f64; 3] {
         const UNKNOWN: f64 = 1e30;
         let Self::Homogeneous { rows, corners, .. } = self else { return self.errors(weights, point) };
         let p = point.ndc();
         let sum = rows.iter().map(|row| p.dot(*row)).sum::<f64>().abs();
-        let given = cross_errors(corners, clip).map(|error| p.abs().dot(error) / sum);
+        let given = given_errors(p, corners, clip).map(|error| error / sum);
         let rounded = self.errors(weights, point);
         let errors = [0, 1, 2].map(|k| rounded[k] + given[k]);
         let whole = 1.0 - errors.iter().sum::<f64>();
@@ -146,6 +147,19 @@ impl Weights {
             }
         }
     }
+}
+
+/// How far the product of `p` with each row may err, where the corners err by `clip`.
+fn given_errors(p: DVec3, corners: &[DVec3; 3], clip: &[[DVec3; 2]; 3]) -> [f64; 3] {
+    let (aside, along) = (clip.map(|[aside, _]| aside), clip.map(|[_, along]| along));
+    let moved = [0, 1, 2].map(|k| corners[k].abs() + along[k].abs());
+    let aside = cross_errors(&moved, &aside);
+    // Of a triangle that is long in the direction of the errors these products cancel, those of magnitudes do not.
+    let along = |i: usize, j: usize| {
+        let products = [along[i].cross(corners[j]), corners[i].cross(along[j]), along[i].cross(along[j])];
+        products.iter().map(|product| p.dot(*product).abs()).sum::<f64>()
+    };
+    [(0, 1, 2), (1, 2, 0), (2, 0, 1)].map(|(k, i, j): (usize, usize, usize)| p.abs().dot(aside[k]) + along(i, j))
 }
 
 /// Doubled areas opposite the corners at a sample, positive inside for either winding.
