@@ -243,6 +243,26 @@ fn colors_of_clipped_triangles_err_by_the_normals_and_depths_of_their_corners() 
 }
 
 #[test]
+fn vertex_colors_of_clipped_triangles_err_by_the_weights_of_their_corners() {
+    let Some(mut renderer) = renderer() else { return };
+    // Triangles of a few centimeters, torn to 1,000 m along one direction.
+    let wave = "[effects.wobble]\ndirection = [-1.0, -1.0, 1.0]\nsway = [0.8, 0.2, -0.3]\namplitude_m = 1000.0\nwavelength_m = 0.16";
+    let camera = "[camera]\neye = [0.5, -2.9, -2.6]\ntarget = [-1.5, 1.0, 0.1]";
+    let torn = format!("scene.builtin = \"walker?tess=1\"\noutput.size = [64, 48]\n{camera}\n{wave}\n[effects.xray]\nbits = \"8\"");
+    exact_preset(&mut renderer, &torn);
+    exact_preset(&mut renderer, &format!("{torn}\n[effects.posterize]\nlevels = 32"));
+
+    // That weights err does not excuse those of other corners.
+    let preset = preset_file::parse(&format!("schema = 2\n{torn}"), "case").unwrap_or_else(|error| panic!("{error}")).preset;
+    let scene = preset_file::load_scene(&preset, None).unwrap_or_else(|error| panic!("{error}"));
+    let shaders =
+        mutated("lib/shade", "        weights, dot(weights, depths), depths,", "        weights.yxz, dot(weights, depths), depths,");
+    let mut mistaken = Renderer::with_library(renderer.gpu().clone(), shaders.shaders());
+    let (_, verdict) = judged_preset(&mut mistaken, &scene, &preset, &preset.accuracy);
+    assert!(verdict.report.max_color_delta > 8, "weights of other corners: {:?}", verdict.report);
+}
+
+#[test]
 fn surfaces_may_cross_where_only_depths_moved() {
     let Some(mut renderer) = renderer() else { return };
     // Triangles in a plane, waving by 590 m along the parallel rays of the camera, with a wave of a millimeter.

@@ -149,8 +149,9 @@ pub fn interpolations(stack: &Stack, errors: SampleErrors) -> impl Iterator<Item
         Doubt::Wide => (&[], WIDE_INTERPOLATIONS.as_slice()),
     };
     // The color may err by its bound whatever the normal and the depth err by, and alone.
-    let (alone, tints, even_tints): (&[[f64; 4]], &[[f64; 4]], &[[f64; 4]]) =
-        if errors.has_doubtful_color() { (&[[0.0; 4]], &TINTS, &EVEN_TINTS) } else { (&[], &NO_TINT, &NO_TINT) };
+    let is_doubtful = errors.has_doubtful_color();
+    let alone: &[[f64; 4]] = if is_doubtful { &[[0.0; 4]] } else { &[] };
+    let (tints, even_tints): (&[[f64; 4]], &[[f64; 4]]) = if is_doubtful { (&TINTS, &EVEN_TINTS) } else { (&NO_TINT, &NO_TINT) };
     let each = |offsets: &'static [[f64; 4]], tints: &'static [[f64; 4]]| {
         offsets.iter().flat_map(move |&offset| tints.iter().map(move |&tint| errors.times(offset, tint)))
     };
