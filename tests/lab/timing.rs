@@ -38,8 +38,10 @@ fn the_cost_is_a_median_at_rest_and_then_nothing_is_drawn() {
 
     lab.key_press(Key::Num7);
     lab.run_steps(2);
-    assert!(!texts(&lab, "timing…").is_empty(), "the time of another picture is shown: {:?}", texts(&lab, " ms GPU"));
-    assert!(texts(&lab, " ms GPU").is_empty());
+    // Where these two steps take long, the next picture has been measured within them.
+    let is_measured = lab.state().draws() >= draws + 6;
+    let times = texts(&lab, " ms GPU");
+    assert!(is_measured || !texts(&lab, "timing…").is_empty() && times.is_empty(), "the time of another picture is shown: {times:?}");
     settle(&mut lab);
     assert!(!texts(&lab, " ms GPU").is_empty());
     assert!(lab.state().draws() >= draws + 6);
