@@ -157,8 +157,7 @@ impl Renderer {
         let (shown, factor) = ([view.width, view.height], accuracy.scale().factor());
         let (view, stack) = (view.scaled(factor), stack.scaled(factor));
         let accuracy = AccuracyRequest { pins: accuracy.pins.with(Culling::None), ..*accuracy };
-        let request =
-            Request { view: &view, stack: &stack, accuracy: &accuracy, shown, fewer_bits: self.history.fewer_bits(&view, &stack) };
+        let request = Request { view: &view, stack: &stack, accuracy: &accuracy, shown, room: self.history.room_for_layers(&view, &stack) };
         let Self { device, scene, picture, shadow, particles, .. } = self;
         let scene = scene.as_mut().ok_or(RenderError::NoScene)?;
         let mut judge = ViewResources::new(Target::Judge, None);

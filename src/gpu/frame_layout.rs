@@ -404,7 +404,7 @@ impl FrameLayout {
     fn add_visibility(&mut self, key: &KernelKey) {
         let pixels = self.pixels();
         let is_summed = matches!(key.framebuffer.layers, Some(Layers::Xray { .. }));
-        let sums = if is_summed { WORD * u64::from(key.options.xray_sums.words()) * pixels } else { 0 };
+        let sums = if is_summed { WORD * u64::from(key.sum_words()) * pixels } else { 0 };
         let (nearest, words, with_sums) = match key.framebuffer_layout() {
             FramebufferLayout::Split32 => (BufferId::DepthKeys, 1, "nearest depth key per pixel, 4 bytes, then the sums of its layers"),
             FramebufferLayout::Packed64 => {

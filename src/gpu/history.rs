@@ -13,6 +13,31 @@ use crate::{
     shader::key::KernelKey,
 };
 
+/// What the sums of an x-ray need where those of earlier pictures overflowed.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RoomForLayers {
+    /// Bits per channel, where more of them overflowed.
+    pub fewer_bits: Option<u32>,
+    /// A word for each sum instead of a 64-bit integer for all.
+    pub is_deep: bool,
+}
+
+impl RoomForLayers {
+    /// Changes a key whose sums would overflow.
+    pub fn make(self, key: &mut KernelKey) {
+        if let (Some(Layers::Xray { bits }), Some(fewer)) = (&mut key.framebuffer.layers, self.fewer_bits) {
+            *bits = fewer.min(*bits);
+        }
+        key.framebuffer.has_one64_sums &= !self.is_deep;
+    }
+
+    /// Does it change this key?
+    pub fn changes(self, key: &KernelKey) -> bool {
+        let has_fewer = matches!((key.framebuffer.layers, self.fewer_bits), (Some(Layers::Xray { bits }), Some(fewer)) if fewer < bits);
+        has_fewer || (self.is_deep && key.framebuffer.has_one64_sums)
+    }
+}
+
 /// What a picture starts from of the one before it.
 #[derive(Default)]
 pub struct History {
@@ -24,6 +49,8 @@ pub struct History {
     last: Option<(View, Stack)>,
     /// The last picture whose sums of layers overflowed, and the bits per channel that it gets instead.
     full_sums: Option<(View, Stack, u32)>,
+    /// Pictures of this scene have had more layers on a pixel than sums in one 64-bit integer hold.
+    is_deep: bool,
 }
 
 impl History {
@@ -35,7 +62,7 @@ impl History {
     /// Forgets all pictures of a scene.
     pub fn change_scene(&mut self) {
         self.clear();
-        self.full_sums = None;
+        (self.full_sums, self.is_deep) = (None, false);
     }
 
     /// Remembers the picture that was drawn.
@@ -43,13 +70,19 @@ impl History {
         self.last = Some((view.clone(), stack.clone()));
     }
 
-    /// Bits per channel of the x-ray's sums, where those of this picture overflowed with more.
-    pub fn fewer_bits(&self, view: &View, stack: &Stack) -> Option<u32> {
-        self.full_sums.as_ref().filter(|(of, with, _)| (of, with) == (view, stack)).map(|(.., bits)| *bits)
+    /// What the x-ray's sums need on this picture, as far as earlier ones have shown.
+    pub fn room_for_layers(&self, view: &View, stack: &Stack) -> RoomForLayers {
+        let full = self.full_sums.as_ref().filter(|(of, with, _)| (of, with) == (view, stack));
+        RoomForLayers { fewer_bits: full.map(|(.., bits)| *bits), is_deep: self.is_deep }
     }
 
-    /// Gives the last picture, whose sums overflowed, fewer bits per channel next time; false where it has the fewest.
-    pub fn take_fewer_bits(&mut self, key: &KernelKey) -> bool {
+    /// Makes room for the layers of the last picture, whose sums overflowed: a word for each sum, else fewer bits per channel; false where
+    /// it has the fewest.
+    pub fn make_room_for_layers(&mut self, key: &KernelKey) -> bool {
+        if key.framebuffer.has_one64_sums {
+            self.is_deep = true;
+            return true;
+        }
         let bits = match key.framebuffer.layers {
             Some(Layers::Xray { bits }) => xray::fewer(bits),
             _ => None,

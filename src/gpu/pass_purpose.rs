@@ -18,6 +18,9 @@ pub fn pass_purpose(pass: Pass) -> &'static str {
         Pass::RasterSmall(RasterPhase::CountSamples) => "culls and classifies every triangle, counts the samples of the small ones",
         Pass::RasterSmall(RasterPhase::BoundaryTriangle) => "marks the samples of the triangle in which the drawing stops",
         Pass::RasterSmall(RasterPhase::TriangleId) => "visits the small triangles again for the triangle id of each nearest key",
+        Pass::RasterSmall(RasterPhase::NearestAndSum) => {
+            "culls and classifies every triangle, draws the small ones on the spot and adds every layer's color"
+        }
         Pass::RasterSmall(RasterPhase::Sum) => "visits the small triangles again and adds every layer's color",
         Pass::RasterSmall(RasterPhase::Count) => "visits the small triangles again and counts layers",
         Pass::RasterSmall(_) => "culls and classifies every triangle, draws the small ones on the spot",

@@ -74,9 +74,8 @@ impl Readback<'_> {
         let key = &self.frame()?.plan.key;
         match key.framebuffer.layers {
             Some(Layers::Xray { .. }) => {
-                let sums = key.options.xray_sums;
                 let words: Vec<u32> = self.region(Region::XraySums)?;
-                Ok(words.chunks_exact(sums.words() as usize).map(|words| xray_weight(sums, words)).collect())
+                Ok(words.chunks_exact(key.sum_words() as usize).map(|words| xray_weight(key, words)).collect())
             }
             Some(Layers::Overdraw) => self.elements(BufferId::LayerCounts, self.pixels()?),
             Some(Layers::Race) | None => Ok(Vec::new()),
@@ -182,8 +181,9 @@ pub fn count_layers(device: &mut Device, view: &mut ViewResources, others: &Reso
 }
 
 /// Weight of all layers of a pixel, as `shaders/variants/xray_buffer` adds it up.
-fn xray_weight(sums: XraySums, words: &[u32]) -> u32 {
-    match (sums, words) {
+fn xray_weight(key: &KernelKey, words: &[u32]) -> u32 {
+    match (key.options.xray_sums, words) {
+        (_, [_, last]) if key.framebuffer.has_one64_sums => last >> 25,
         (XraySums::Packed16, [_, last]) => last >> 16,
         (XraySums::Three8, [first, ..]) => first >> 20,
         (XraySums::Four32, [.., last]) => *last,

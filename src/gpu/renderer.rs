@@ -213,8 +213,8 @@ impl Renderer {
             return Err(RenderError::Lost);
         }
         self.attach_particles(stack)?;
-        let fewer_bits = self.history.fewer_bits(view, stack);
-        self.prepare(&Request { view, stack, accuracy, shown, fewer_bits }, wait)?;
+        let room = self.history.room_for_layers(view, stack);
+        self.prepare(&Request { view, stack, accuracy, shown, room }, wait)?;
         if view.pixels() == 0 {
             self.presentation = None;
             return Ok(());
@@ -372,7 +372,7 @@ impl Renderer {
         let lost_shadow = self.shadow.as_mut().map_or(0, |shadow| shadow.collect_stats(&stats.shadow));
         counters.overflow = counters.overflow.saturating_add(lost_shadow);
         redraw |= lost_shadow > 0;
-        redraw |= counters.full_pixels > 0 && self.pending.is_empty() && self.history.take_fewer_bits(&key);
+        redraw |= counters.full_pixels > 0 && self.pending.is_empty() && self.history.make_room_for_layers(&key);
         let is_chosen = key.samples.draw_order == Some(Mode::Scheduler);
         self.culled = key.culls().then(|| record.culled());
         Some(Report {

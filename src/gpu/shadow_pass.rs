@@ -6,6 +6,7 @@ use super::{
     device::Gpu,
     error::RenderError,
     frame_layout::Target,
+    history::RoomForLayers,
     pass_purpose::pass_purpose,
     queues::recorded_capacities,
     recording::{Device, Resources, Timing},
@@ -54,7 +55,7 @@ impl ShadowPass {
         };
         let accuracy = AccuracyRequest { pins: pins(), ..AccuracyRequest::default() };
         let shown = [view.width, view.height];
-        let request = Request { view: &view, stack: &stack.shadow_casters(), accuracy: &accuracy, shown, fewer_bits: None };
+        let request = Request { view: &view, stack: &stack.shadow_casters(), accuracy: &accuracy, shown, room: RoomForLayers::default() };
         resources.prepare(device, scene, &request)?;
         uniform.fill(&device.gpu, BufferId::ShadowMapView, bytemuck::bytes_of(&ShadowMapUniform::new(&view)))?;
         let map = match map.filter(|map| map.texture.width() == view.width) {

@@ -10,6 +10,7 @@ use super::{
     draws::{DrawData, DrawInputs},
     error::RenderError,
     frame_layout::{FrameLayout, LayoutInputs, Region, Span, Target},
+    history::RoomForLayers,
     preparations::Preparation,
     queues::{Capacities, first_capacities, recorded_capacities},
     recording::{CommandList, Device, Resources, Timing},
@@ -19,7 +20,7 @@ use super::{
 };
 use crate::{
     accuracy::PositionFormat,
-    effects::{Stack, hooks::Layers},
+    effects::Stack,
     math::SUBPIXEL_BITS,
     plan::{AccuracyRequest, Plan, Planner, Tuning},
     scene::{Background, Scene, draw::Draw, needs::Needs, parts::Scope, view::View},
@@ -37,8 +38,8 @@ pub struct Request<'a> {
     pub accuracy: &'a AccuracyRequest,
     /// Pixels of the picture that is shown.
     pub shown: [u32; 2],
-    /// Bits per channel of the x-ray's sums, where more of them overflowed.
-    pub fewer_bits: Option<u32>,
+    /// What the sums of an x-ray need.
+    pub room: RoomForLayers,
 }
 
 /// A frame for which every buffer is ready.
@@ -204,8 +205,8 @@ impl ViewResources {
             seen = self.see(&device.gpu, scene, &view, request.stack)?;
             plan = self.plan_of(device, seen, request)?;
         }
-        if let (Some(Layers::Xray { bits }), Some(fewer)) = (plan.key.framebuffer.layers, request.fewer_bits) {
-            Arc::make_mut(&mut plan).key.framebuffer.layers = Some(Layers::Xray { bits: bits.min(fewer) });
+        if request.room.changes(&plan.key) {
+            request.room.make(&mut Arc::make_mut(&mut plan).key);
         }
         Ok((plan, view, self.seen[seen].draws.clone()))
     }

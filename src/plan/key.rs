@@ -6,13 +6,13 @@ use super::{
     traits::StackTraits,
 };
 use crate::{
-    accuracy::{AccuracyOptions, Clipping, Culling, Parameters, Visibility},
+    accuracy::{AccuracyOptions, Clipping, Culling, Parameters, Visibility, XraySums},
     effects::hooks::{Layers, Shape},
     math::SMALL_EXTENT,
     scene::needs::Needs,
     shader::key::{
-        AttributeFormat, EffectList, Fetch, Framebuffer, GeneratedVertices, KernelKey, ProjectionKind, RasterPaths, SampleRules,
-        SurfaceInputs, VertexInputs, ViewKind, WorkSharing,
+        AttributeFormat, EffectList, Fetch, Framebuffer, GeneratedVertices, KernelKey, ONE64_BITS, ProjectionKind, RasterPaths,
+        SampleRules, SurfaceInputs, VertexInputs, ViewKind, WorkSharing,
     },
 };
 
@@ -27,6 +27,7 @@ pub(super) fn key_of(
     // Boxes and discs show all of a material.
     let has_mask = needs.masked && stack.shape == Shape::Triangles;
     let loops = loops::of_a_sample(has_mask, layers, &options);
+    let paired_sums = adds_pairs(&options, layers, caps);
     let clears_in_passes = tuning.clears_in_passes && options.culling == Culling::None;
     KernelKey {
         options,
@@ -47,12 +48,17 @@ pub(super) fn key_of(
             hides_blocks: tuning.hides_blocks,
             stored_uniforms: tuning.stored_uniforms,
             wide_loads: tuning.wide_loads,
-            paired_sums: adds_pairs(&options, layers, caps),
+            paired_sums,
+            sums_with_nearest: paired_sums
+                && !options.culling.occludes()
+                && stack.sums_all_layers()
+                && caps.max_storage_buffers >= MANY_STORAGE_BUFFERS,
             clears_in_passes,
             clears_order: clears_in_passes && stack.draw_order.is_some() && caps.max_storage_buffers >= MANY_STORAGE_BUFFERS,
         },
         framebuffer: Framebuffer {
             layers,
+            has_one64_sums: paired_sums && has_one64_sums(&options, layers, stack),
             triangle_id_bits: if options.visibility == Visibility::Packed32 { bit_length(needs.triangles) } else { 0 },
         },
         surface: SurfaceInputs { has_material_atlas: needs.material_count > 0, has_planes: stack.reads_planes() || !needs.normals_agree },
@@ -73,6 +79,13 @@ pub(super) fn key_of(
 fn adds_pairs(options: &AccuracyOptions, layers: Option<Layers>, caps: &Caps) -> bool {
     let has_pairs = options.visibility == Visibility::Packed64 && options.xray_sums.words().is_multiple_of(2);
     caps.int64_additions && has_pairs && matches!(layers, Some(Layers::Xray { .. }))
+}
+
+/// Do the sums of an x-ray share one 64-bit integer? Layers of equal weight, and colors of few enough bits; where more layers lie on a pixel
+/// than that holds, the renderer takes a word for each sum instead.
+fn has_one64_sums(options: &AccuracyOptions, layers: Option<Layers>, stack: &StackTraits) -> bool {
+    let fits = matches!(layers, Some(Layers::Xray { bits }) if bits <= ONE64_BITS);
+    fits && options.xray_sums == XraySums::Four32 && stack.xray.is_some_and(|xray| xray.unit() == 1)
 }
 
 fn vertex_inputs(needs: &Needs) -> VertexInputs {

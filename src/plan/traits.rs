@@ -8,7 +8,7 @@ use crate::{
         draw_order,
         hooks::{Layers, Shape, Slot},
         overdraw, read,
-        xray::{self, Xray},
+        xray::{self, Reach, Xray},
     },
 };
 
@@ -72,6 +72,11 @@ impl StackTraits {
             None if *effect == &overdraw::EFFECT => Layers::Overdraw,
             None => Layers::Race,
         })
+    }
+
+    /// Does an x-ray count every layer, whatever lies in front of it?
+    pub fn sums_all_layers(&self) -> bool {
+        self.xray.is_some_and(|xray| Reach::of(xray.layers) == Reach::All)
     }
 
     /// The first effect that moves vertices.

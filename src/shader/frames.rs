@@ -41,12 +41,13 @@ impl KernelKey {
             (Some(Layers::Race), _) | (_, Visibility::Race) => &[RasterPhase::Race],
             (_, Visibility::Packed32) => &[RasterPhase::Packed32],
             (_, Visibility::Split32) => &[RasterPhase::Depth, RasterPhase::TriangleId],
+            (_, Visibility::Packed64) if self.work.sums_with_nearest => &[RasterPhase::NearestAndSum],
             (_, Visibility::Packed64) => &[RasterPhase::Packed],
         };
         let layers: &[RasterPhase] = match self.framebuffer.layers {
-            Some(Layers::Xray { .. }) => &[RasterPhase::Sum],
+            Some(Layers::Xray { .. }) if !self.work.sums_with_nearest => &[RasterPhase::Sum],
             Some(Layers::Overdraw) => &[RasterPhase::Count],
-            Some(Layers::Race) | None => &[],
+            Some(Layers::Xray { .. } | Layers::Race) | None => &[],
         };
         [self.order_phases(), nearest, layers].concat()
     }

@@ -133,6 +133,8 @@ pub struct WorkSharing {
     pub wide_loads: bool,
     /// The sums of an x-ray are added two words at a time, as 64-bit integers.
     pub paired_sums: bool,
+    /// They are added by the passes that find the nearest, instead of passes of their own.
+    pub sums_with_nearest: bool,
 }
 
 /// What a pixel holds.
@@ -140,6 +142,8 @@ pub struct WorkSharing {
 pub struct Framebuffer {
     /// What an effect makes of the samples of a pixel; without one the nearest is shown.
     pub layers: Option<Layers>,
+    /// The sums of an x-ray share one 64-bit integer, which holds [`ONE64_LAYERS`] layers.
+    pub has_one64_sums: bool,
     /// Bits of a triangle's id where it shares a word with its depth, else 0.
     pub triangle_id_bits: u32,
 }
@@ -193,6 +197,12 @@ pub struct EffectList {
     pub dots: Option<LineSource>,
 }
 
+/// Layers of equal weight that x-ray sums in one 64-bit integer hold.
+pub const ONE64_LAYERS: u32 = 127;
+
+/// Most bits per channel in such sums.
+pub const ONE64_BITS: u32 = 12;
+
 /// Records of an alpha mask among the sample setups of a triangle: where its corners lie in the image.
 pub const MASK_SETUPS: u32 = 2;
 
@@ -238,8 +248,13 @@ impl KernelKey {
                 stored_uniforms: false,
                 wide_loads: false,
                 paired_sums: false,
+                sums_with_nearest: false,
             },
-            framebuffer: Framebuffer { layers, triangle_id_bits: if visibility == Visibility::Packed32 { 24 } else { 0 } },
+            framebuffer: Framebuffer {
+                layers,
+                has_one64_sums: false,
+                triangle_id_bits: if visibility == Visibility::Packed32 { 24 } else { 0 },
+            },
             surface: SurfaceInputs { has_material_atlas: true, has_planes: true },
             view: ViewKind { projection: ProjectionKind::Perspective, is_light: false },
             effects: EffectList {
@@ -325,6 +340,11 @@ impl KernelKey {
     /// Side of the pixel square that a workgroup of the resolve visits; listed tiles are the smaller ones.
     pub const fn tile_side(&self) -> u32 {
         if self.work.listed_tiles { 8 } else { 16 }
+    }
+
+    /// Words per pixel in which an x-ray sums up layers.
+    pub const fn sum_words(&self) -> u32 {
+        if self.framebuffer.has_one64_sums { 2 } else { self.options.xray_sums.words() }
     }
 
     /// How depth and triangle id lie in memory.

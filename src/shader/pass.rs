@@ -96,6 +96,8 @@ pub enum RasterPhase {
     Count,
     /// Weighted colors of all layers.
     Sum,
+    /// Both in the same pass: the nearest in one 64-bit atomic, and the colors of all layers.
+    NearestAndSum,
     /// Depth key and triangle id without atomics.
     Race,
     /// Samples per triangle.
@@ -113,6 +115,7 @@ impl RasterPhase {
             Self::TriangleId => "triangle id",
             Self::Count => "count",
             Self::Sum => "sum",
+            Self::NearestAndSum => "nearest and sum",
             Self::Race => "race",
             Self::CountSamples => "count samples",
             Self::BoundaryTriangle => "boundary triangle",

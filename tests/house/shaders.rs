@@ -56,7 +56,7 @@ fn linked(key: &KernelKey, pass: Pass) -> Linked {
 pub fn validate(key: &KernelKey, pass: Pass) -> usize {
     static VALID: Mutex<BTreeMap<(String, &str, bool), usize>> = Mutex::new(BTreeMap::new());
     let valid = || VALID.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-    let int64 = pass.phase() == Some(RasterPhase::Packed);
+    let int64 = matches!(pass.phase(), Some(RasterPhase::Packed | RasterPhase::NearestAndSum));
     let linked = linked(key, pass);
     let identity = (linked.text.clone(), pass.stem(), int64);
     if let Some(&storage) = valid().get(&identity) {

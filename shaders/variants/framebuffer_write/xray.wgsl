@@ -9,6 +9,9 @@
 //@ use glue/surface
 //@ use variants/xray_buffer
 
+// All layers count, so none waits until the nearest is known: the same pass finds it.
+override FINDS_NEAREST: bool = false;
+
 fn framebuffer_begin(id: u32) -> bool {
     shade_begin(id);
     return true;
@@ -17,7 +20,11 @@ fn framebuffer_begin(id: u32) -> bool {
 fn framebuffer_end(id: u32) {}
 
 fn framebuffer_write(pixel: u32, key: u32, id: u32) {
-    if key < xray_threshold(xray_buffer_front(pixel), IS_PERSPECTIVE, effects.xray) { return; }
+    if FINDS_NEAREST {
+        xray_buffer_nearest(pixel, key, id);
+    } else if key < xray_threshold(xray_buffer_front(pixel), IS_PERSPECTIVE, effects.xray) {
+        return;
+    }
     let surface = glue_surface(shade_surface(vec2u(pixel % frame.size.x, pixel / frame.size.x)), shaded.draw);
     let weight = xray_weight(surface, effects.xray);
     let layer = xray_sums_layer(clamp(surface.color.rgb, vec3f(0.0), vec3f(1.0)), weight);

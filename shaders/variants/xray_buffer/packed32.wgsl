@@ -5,6 +5,8 @@
 
 @group(0) @binding(5) var<storage, read_write> packed: array<atomic<u32>>;
 
+fn xray_buffer_nearest(pixel: u32, key: u32, id: u32) {}
+
 fn xray_buffer_front(pixel: u32) -> u32 {
     return packed32_unpacked(atomicLoad(&packed[pixel])).y;
 }

@@ -4,6 +4,8 @@
 
 @group(0) @binding(5) var<storage, read_write> depth_and_id: array<atomic<u32>>;
 
+fn xray_buffer_nearest(pixel: u32, key: u32, id: u32) {}
+
 fn xray_buffer_front(pixel: u32) -> u32 {
     return atomicLoad(&depth_and_id[2u * pixel + 1u]);
 }

@@ -1,9 +1,13 @@
 // X-ray buffer, packed64 in pairs: behind the 64-bit words, two words of sums in one addition. The lower word of a pair overflows into the
-// upper one only on pixels whose sums are full, and that is seen before it happens.
+// upper one only on pixels whose sums are full, and that is seen before it happens; one64 is one integer to begin with.
 //@ use lib/frame
 //@ use lib/xray_sums
 
 @group(0) @binding(5) var<storage, read_write> depth_and_id: array<atomic<u64>>;
+
+fn xray_buffer_nearest(pixel: u32, key: u32, id: u32) {
+    atomicMax(&depth_and_id[pixel], (u64(key) << 32u) | u64(~id));
+}
 
 fn xray_buffer_front(pixel: u32) -> u32 {
     return u32(atomicLoad(&depth_and_id[pixel]) >> 32u);

@@ -48,6 +48,7 @@ const FRAMEBUFFER: Feature = Feature {
     },
     variants: &[("framebuffer_write", framebuffer_write), ("framebuffer_read", framebuffer_read), ("xray_buffer", xray_buffer)],
     constants: &[
+        ("FINDS_NEAREST", |_, pass| flag(pass.phase() == Some(RasterPhase::NearestAndSum))),
         ("EARLY_LOAD", |key, _| flag(key.work.early_load)),
         ("ID_BITS", |key, _| key.framebuffer.triangle_id_bits.into()),
         ("DEPTH_KEY_BITS", |key, _| key.depth_key_range().0.into()),
@@ -85,7 +86,7 @@ fn framebuffer_write(_: &KernelKey, pass: Pass) -> &'static str {
         Some(RasterPhase::Count) => "layers",
         Some(RasterPhase::CountSamples) => "sample_counts",
         Some(RasterPhase::BoundaryTriangle) => "boundary_samples",
-        Some(RasterPhase::Sum) => "xray",
+        Some(RasterPhase::Sum | RasterPhase::NearestAndSum) => "xray",
         Some(RasterPhase::Race) => "race",
         None => NO_STEP,
     }

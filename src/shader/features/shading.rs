@@ -12,6 +12,7 @@ pub(super) const FEATURES: &[Feature] =
 
 const LAYERS: Feature = Feature {
     label: |key| match key.framebuffer.layers {
+        Some(Layers::Xray { bits }) if key.framebuffer.has_one64_sums => format!("layers=xray/{bits}/one64"),
         Some(Layers::Xray { bits }) => format!("layers=xray/{bits}"),
         Some(Layers::Overdraw) => "layers=overdraw".into(),
         Some(Layers::Race) | None => String::new(),
@@ -25,10 +26,11 @@ const LAYERS: Feature = Feature {
         ("store_step", |key, _| step_if(key.framebuffer.layers == Some(Layers::Race), "race")),
     ],
     constants: &[
-        ("SUM_WORDS", |key, _| key.options.xray_sums.words().into()),
+        ("SUM_WORDS", |key, _| key.sum_words().into()),
+        ("IS_ONE64", |key, _| flag(key.framebuffer.has_one64_sums)),
         ("SUM_BITS", |key, _| if let Some(Layers::Xray { bits }) = key.framebuffer.layers { bits.into() } else { 0.0 }),
         ("CLEARED_SUMS", |key, _| match key.framebuffer.layers {
-            Some(Layers::Xray { .. }) => key.options.xray_sums.words().into(),
+            Some(Layers::Xray { .. }) => key.sum_words().into(),
             _ => 0.0,
         }),
     ],
