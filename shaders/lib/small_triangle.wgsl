@@ -15,6 +15,9 @@ override MAX_SMALL_SAMPLES: i32 = 128;
 override MAX_SMALL_SIDE: i32 = 64;
 // This is the first of several passes over the triangles: it fills the queues and counts.
 override IS_FIRST_VISIT: bool = true;
+// A covered sample costs so much more than the test that finds it, that an invocation first lists the covered ones: those beside it in
+// the workgroup then work on theirs at the same time. Boxes have at most 32 samples.
+override LISTS_SAMPLES: bool = false;
 // Flags of a corner for which a triangle is dropped instead of clipped.
 override DROPPED_FLAGS: u32 = 0u;
 
@@ -67,6 +70,11 @@ fn draw_small(t: Triangle, area: i32, pixels: vec4i) {
     let coverage = coverage_begin(t.a, select(t.b, t.c, is_reversed), select(t.c, t.b, is_reversed), abs(area), pixels.xy);
     let width = pixels.z - pixels.x + 1;
     let count = width * (pixels.w - pixels.y + 1);
+    if LISTS_SAMPLES {
+        draw_listed(t, coverage, pixels.xy, width, count);
+        framebuffer_end(t.id);
+        return;
+    }
     var row = coverage.row;
     var edges = row;
     var pixel = u32(pixels.y) * frame.size.x + u32(pixels.x);
@@ -89,6 +97,34 @@ fn draw_small(t: Triangle, area: i32, pixels: vec4i) {
         }
     }
     framebuffer_end(t.id);
+}
+
+// Finds the covered samples among `count` in rows of `width`, and then draws them.
+fn draw_listed(t: Triangle, coverage: Coverage, first: vec2i, width: i32, count: i32) {
+    var covered = 0u;
+    var row = coverage.row;
+    var edges = row;
+    var x = 0;
+    for (var i = 0u; i < u32(count); i += 1u) {
+        covered |= u32(coverage_contains(coverage, edges)) << i;
+        x += 1;
+        edges += coverage.step_x;
+        if x == width {
+            x = 0;
+            row += coverage.step_y;
+            edges = row;
+        }
+    }
+    while covered != 0u {
+        let i = i32(firstTrailingBit(covered));
+        covered &= covered - 1u;
+        let offset = vec2i(i % width, i / width);
+        let at = vec2u(first + offset);
+        let pixel = at.y * frame.size.x + at.x;
+        if sample_test(t, at, pixel) {
+            framebuffer_write(pixel, coverage_key(coverage, coverage_at(coverage, offset)), t.id);
+        }
+    }
 }
 
 // A corner was rejected, or lies between the eye and the near plane or outside the guard band.

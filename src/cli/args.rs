@@ -4,7 +4,12 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use crate::{effect_files::Hook, film::Turntable, preset_file::Folders, scene::memory::MemoryBudget};
+use crate::{
+    effect_files::Hook,
+    film::Turntable,
+    preset_file::Folders,
+    scene::memory::{MemoryBudget, read_size},
+};
 
 /// An effects lab around a compute-shader rasterizer, judged by an exact oracle.
 #[derive(Parser, Debug)]
@@ -55,6 +60,9 @@ pub struct Common {
     /// Most memory that opening a scene may take, e.g. 8GiB [default: half of the machine's] [env: RASTERLAB_MEMORY]
     #[arg(long, global = true, value_name = "SIZE")]
     pub memory: Option<String>,
+    /// Most memory that pictures and their scenes may take on the adapter, e.g. 2GiB [default: all there is]
+    #[arg(long, global = true, value_name = "SIZE", value_parser = read_size)]
+    pub device_memory: Option<u64>,
     /// Print one JSON object to stdout
     #[arg(long, global = true)]
     pub json: bool,

@@ -47,7 +47,7 @@ pub use args::{Cli, Command};
 pub use error::{CliError, Exit};
 use streams::Streams;
 
-use crate::{preset_file::PresetError, shader::library::Library};
+use crate::{gpu::device_memory::choose_device_memory, preset_file::PresetError, shader::library::Library};
 
 /// Runs the command.
 ///
@@ -62,6 +62,9 @@ pub fn run(cli: &Cli) -> Result<Exit, CliError> {
     }
     if let Some(budget) = cli.common.memory_budget().map_err(CliError::usage)? {
         budget.choose();
+    }
+    if let Some(bytes) = cli.common.device_memory {
+        choose_device_memory(bytes);
     }
     if let Some(folder) = cli.common.presets_dir().filter(|folder| !folder.is_dir()) {
         return Err(CliError::usage(format!("--presets or RASTERLAB_PRESETS: there is no folder {}", folder.display())));

@@ -5,7 +5,7 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
-use super::{device::Gpu, error::RenderError, preparations::Preparation, resource_id::BufferId};
+use super::{device::Gpu, device_memory::Reserved, error::RenderError, preparations::Preparation, resource_id::BufferId};
 
 /// One buffer of the picture, for `explain`.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -19,6 +19,8 @@ struct Held {
     buffer: wgpu::Buffer,
     bytes: u64,
     purpose: &'static str,
+    /// Freed with the buffer.
+    _memory: Reserved,
 }
 
 /// Buffers on the device by their `BufferId`: made when first needed, kept while they fit, listed with their purpose.
@@ -66,15 +68,17 @@ impl Buffers {
         }
         self.held.remove(&id);
         self.revision = next_revision();
+        let no_memory = RenderError::OutOfMemory { buffer: id.name(), bytes };
+        let Some(memory) = gpu.memory.reserve(bytes) else { return Err(no_memory) };
         let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let usage = id.usage() | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
         let descriptor = wgpu::BufferDescriptor { label: Some(id.name()), size: bytes, usage, mapped_at_creation: false };
         let buffer = gpu.device.create_buffer(&descriptor);
         gpu.prepared.count(Preparation::Buffer);
         if pollster::block_on(scope.pop()).is_some() {
-            return Err(RenderError::OutOfMemory { buffer: id.name(), bytes });
+            return Err(no_memory);
         }
-        self.held.insert(id, Held { buffer, bytes, purpose });
+        self.held.insert(id, Held { buffer, bytes, purpose, _memory: memory });
         Ok(true)
     }
 

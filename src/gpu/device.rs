@@ -8,7 +8,7 @@ use std::{
     },
 };
 
-use super::{pipeline_store::PipelineStore, preparations::Preparations};
+use super::{device_memory::DeviceMemory, pipeline_store::PipelineStore, preparations::Preparations};
 pub use crate::plan::Caps;
 
 /// Which adapter a person asked for.
@@ -55,6 +55,8 @@ pub struct Gpu {
     pub(super) pipelines: PipelineStore,
     /// What its renderers prepared.
     pub prepared: Preparations,
+    /// What its renderers' buffers and textures take.
+    pub memory: DeviceMemory,
     lost: Arc<AtomicBool>,
     /// First error that no scope caught.
     error: Arc<Mutex<Option<String>>>,
@@ -204,6 +206,7 @@ impl Gpu {
             caps: caps(adapter),
             pipelines: PipelineStore::default(),
             prepared: Preparations::default(),
+            memory: DeviceMemory::default(),
             lost,
             error,
         })

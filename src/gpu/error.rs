@@ -20,7 +20,7 @@ pub enum RenderError {
     TooLarge { buffer: &'static str, bytes: u64, limit: u64 },
     #[error("the picture is {width} x {height}; this adapter's textures end at {limit} pixels a side")]
     TooWide { width: u32, height: u32, limit: u32 },
-    #[error("no memory for the buffer {buffer} of {bytes} bytes")]
+    #[error("no memory for the buffer {buffer} of {bytes} bytes; take another adapter, or a smaller picture or scene")]
     OutOfMemory { buffer: &'static str, bytes: u64 },
     #[error("scale {} draws {}x{} pixels for a picture of {}x{}, and {why}; take a smaller scale", option.name(), drawn[0], drawn[1], shown[0], shown[1])]
     Scaled { option: RenderScale, shown: [u32; 2], drawn: [u32; 2], why: Box<RenderError> },

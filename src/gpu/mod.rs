@@ -11,6 +11,7 @@ mod pipeline_store;
 pub mod preparations;
 
 pub mod device;
+pub mod device_memory;
 
 pub mod buffers;
 mod textures;

@@ -1,6 +1,8 @@
 //! Textures of 32-bit words, which kernels read texel by texel: they take none of the few storage buffers that a pass may bind.
 
-use super::{buffers::next_revision, device::Gpu, error::RenderError, preparations::Preparation, resource_id::TextureId};
+use super::{
+    buffers::next_revision, device::Gpu, device_memory::Reserved, error::RenderError, preparations::Preparation, resource_id::TextureId,
+};
 
 /// A texture on the device.
 pub struct WordTexture {
@@ -8,6 +10,8 @@ pub struct WordTexture {
     pub view: wgpu::TextureView,
     /// Equal numbers, equal textures.
     pub revision: u64,
+    /// Freed with the texture.
+    _memory: Reserved,
 }
 
 impl WordTexture {
@@ -16,6 +20,8 @@ impl WordTexture {
     /// # Errors
     /// When there is no memory for it.
     pub fn new(gpu: &Gpu, id: TextureId, size: wgpu::Extent3d, dimension: wgpu::TextureViewDimension) -> Result<Self, RenderError> {
+        let no_memory = RenderError::OutOfMemory { buffer: id.name(), bytes: bytes_of(size) };
+        let Some(memory) = gpu.memory.reserve(bytes_of(size)) else { return Err(no_memory) };
         let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(id.name()),
@@ -30,9 +36,9 @@ impl WordTexture {
         gpu.prepared.count(Preparation::Texture);
         let view = texture.create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() });
         if pollster::block_on(scope.pop()).is_some() {
-            return Err(RenderError::OutOfMemory { buffer: id.name(), bytes: bytes_of(size) });
+            return Err(no_memory);
         }
-        Ok(Self { texture, view, revision: next_revision() })
+        Ok(Self { texture, view, revision: next_revision(), _memory: memory })
     }
 
     /// Bytes that it takes.

@@ -72,13 +72,23 @@ impl FromStr for MemoryBudget {
 
     /// Reads a whole or decimal number with the unit MiB, GiB or TiB.
     fn from_str(text: &str) -> Result<Self, String> {
-        let units = [("MiB", MIB), ("GiB", GIB), ("TiB", 1024 * GIB)];
-        let read = |(unit, size): &(&str, u64)| Some(text.strip_suffix(unit)?.trim_end().parse::<f64>().ok()? * *size as f64);
-        match units.iter().find_map(read) {
-            Some(bytes) if bytes >= Self::LEAST.0 as f64 && bytes <= 2f64.powi(60) => Ok(Self(bytes as u64)),
-            Some(_) => Err(format!("it must be at least {}", Self::LEAST)),
-            None => Err("it must be a number with a unit, for instance 8GiB or 1500MiB".into()),
+        match read_size(text)? {
+            bytes if bytes >= Self::LEAST.0 => Ok(Self(bytes)),
+            _ => Err(format!("it must be at least {}", Self::LEAST)),
         }
+    }
+}
+
+/// Bytes of a whole or decimal number with the unit MiB, GiB or TiB, at most 2^60.
+///
+/// # Errors
+/// It is no such number: what it must be, a part of a sentence.
+pub fn read_size(text: &str) -> Result<u64, String> {
+    let units = [("MiB", MIB), ("GiB", GIB), ("TiB", 1024 * GIB)];
+    let read = |(unit, size): &(&str, u64)| Some(text.strip_suffix(unit)?.trim_end().parse::<f64>().ok()? * *size as f64);
+    match units.iter().find_map(read) {
+        Some(bytes) if (0.0..=2f64.powi(60)).contains(&bytes) => Ok(bytes as u64),
+        _ => Err("it must be a number with a unit, for instance 8GiB or 1500MiB".into()),
     }
 }
 

@@ -97,7 +97,7 @@ fn culled_walk(context: &mut CaseContext) -> Result<(), EarlyEnd> {
 }
 
 /// A camera inside or just outside a scene, in a random direction.
-fn camera_anywhere(scene: &Scene, rng: &mut Rng, step: usize) -> Camera {
+pub(super) fn camera_anywhere(scene: &Scene, rng: &mut Rng, step: usize) -> Camera {
     let bounds = scene.bounds();
     let mut random = |reach: f64| DVec3::new(rng.real(-reach, reach), rng.real(-reach, reach), rng.real(-reach, reach));
     let radius = bounds.radius();

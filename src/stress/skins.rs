@@ -7,12 +7,14 @@ use serde_json::json;
 
 use super::{
     case::{Case, Expectation},
-    checks::{EarlyEnd, check, same},
+    checks::{EarlyEnd, check, same, same_nearest},
     context::CaseContext,
+    culling::camera_anywhere,
     drawing::{pinned, stack},
 };
 use crate::{
-    accuracy::{PinnedOptions, Skinning},
+    accuracy::{Culling, PinnedOptions, Skinning},
+    effects::Stack,
     plan::AccuracyRequest,
     preset::{ClipPlayback, Clock, Preset},
     scene::{
@@ -44,6 +46,13 @@ pub const CASES: &[Case] = &[
         about: "a skin, morph targets alone and meshes that stay as they are, in turn, also with NaN and infinities: each mesh follows what moves it",
         expectation: Expectation::Exact,
         run: skins_beside_other_meshes,
+    },
+    Case {
+        number: 30,
+        name: "culled-skins",
+        about: "the same meshes from 48 cameras in 48 moments: culling goes by where a mesh bends, not by where it was",
+        expectation: Expectation::Exact,
+        run: culled_skins,
     },
     Case {
         number: 30,
@@ -207,6 +216,35 @@ fn skins_beside_other_meshes(context: &mut CaseContext) -> Result<(), EarlyEnd> 
             }
         }
     }
+    Ok(())
+}
+
+fn culled_skins(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let mut rng = context.rng(0x5c1);
+    let scene = Arc::new(mixed_company(&*context.scene("tentacle?tess=3&joints=5")?));
+    let option = context.quick_option();
+    let (mut covered, mut culled) = (0, 0);
+    for step in 0..if context.is_slow() { 12 } else { 48 } {
+        let preset = Preset {
+            playback: ClipPlayback { clip: "Curl".into(), ..ClipPlayback::default() },
+            clock: Clock { time_s: 0.05 * f64::from(step), ..Clock::default() },
+            camera: Some(camera_anywhere(&scene, &mut rng, step as usize)),
+            ..Preset::default()
+        };
+        let view = preset.view(&scene, [64, 48]);
+        let what = format!("{:?}", preset.camera);
+        let accuracy = |culling: Culling| AccuracyRequest { pins: PinnedOptions::of(culling).with(option), ..AccuracyRequest::default() };
+        let reference = context.captured(&scene, &view, &Stack::default(), &accuracy(Culling::None), &what)?;
+        covered += reference.frame.covered();
+        for culling in [Culling::Frustum, Culling::TwoPass] {
+            let what = format!("{what}, culling {}", culling.name());
+            let capture = context.captured(&scene, &view, &Stack::default(), &accuracy(culling), &what)?;
+            same_nearest(&capture, &reference, &what)?;
+            let left_out = context.renderer.culled().unwrap_or_default();
+            culled += left_out.outside + left_out.backfacing;
+        }
+    }
+    check!(covered > 3_000 && culled > 200, "{covered} pixels are covered, and {culled} meshlets were left out");
     Ok(())
 }
 

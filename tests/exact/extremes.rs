@@ -79,6 +79,7 @@ cases! {
     case_30_unusual_skins = "unusual-skins",
     case_30_rotations_of_any_length = "rotations-of-any-length",
     case_30_skins_beside_other_meshes = "skins-beside-other-meshes",
+    case_30_culled_skins = "culled-skins",
     case_30_invalid_skins = "invalid-skins",
     case_32_hardware_cross_check = "hardware-cross-check",
     case_34_slivers_at_the_border = "slivers-at-the-border",

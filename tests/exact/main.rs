@@ -10,6 +10,7 @@ mod backgrounds;
 mod compiled_once;
 mod culling;
 mod device_lost;
+mod device_memory;
 mod draw_order;
 mod evaluator_gpu;
 mod extremes;

@@ -19,6 +19,7 @@ use rasterlab::{
     plan::{AccuracyRequest, Tuning},
     preset_file,
     scene::{Scene, view::View},
+    shader::key::{ONE64_BITS, ONE64_LAYERS},
 };
 
 /// A stack of effects with values: `"xray.weight=facing"`, or a name alone.
@@ -141,6 +142,9 @@ fn any_number_of_layers_gives_the_right_average_with_fewer_bits_where_it_must() 
     let Some(mut renderer) = renderer() else { return };
     let view = pixel_view(2, 2);
     let cases = [
+        (127, "12", 12),
+        (128, "12", 12),
+        (127, "8", 8),
         (257, "auto", 16),
         (258, "auto", 16),
         (258, "8", 8),
@@ -159,6 +163,9 @@ fn any_number_of_layers_gives_the_right_average_with_fewer_bits_where_it_must() 
         let what = format!("{count} layers from {bits} bits");
         let (capture, verdict) = exact(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default(), &what);
         assert_eq!(renderer.key().and_then(|key| key.framebuffer.layers), Some(Layers::Xray { bits: taken }), "{what}");
+        let has_one64 = renderer.key().is_some_and(|key| key.framebuffer.has_one64_sums);
+        let fits = count <= ONE64_LAYERS && taken <= ONE64_BITS && renderer.key().is_some_and(|key| key.work.paired_sums);
+        assert_eq!(has_one64, fits, "{what}: sums in one integer");
         assert_eq!((capture.frame.layer_sums, capture.frame.counters.full_pixels), (vec![count; 4], 0), "{what}");
         let expected = pile_color(count);
         let near = |color: &[u8; 4]| color.iter().zip(expected).all(|(a, b)| a.abs_diff(b) <= 1);

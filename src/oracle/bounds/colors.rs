@@ -24,7 +24,7 @@ use super::{
         shot::Shot,
     },
     layers::LayerBounds,
-    perturbations::{WIDE_SLACK, color_steps, interpolations, of_pictures, places},
+    perturbations::{Search, WIDE_SLACK, color_steps, interpolations, of_pictures, places},
     surface::{CornerErrors, Doubt},
 };
 use crate::{effects::Surface, frame::Geometry, measure::Budget, work::checkpoint};
@@ -109,7 +109,8 @@ impl AcceptedColors {
                 let color = shaded(shot, &triangle, Surface { rank, ..surface }, light.as_ref(), perturbation.color_step);
                 finish.pixel_at_ties(i, color, perturbation.color_step)
             };
-            let [least, most] = span(interpolations(shot.stack, errors).flat_map(&finished)).unwrap_or([self.pictures[0][i]; 2]);
+            let [least, most] =
+                span(interpolations(shot.stack, errors, Search::Wide).flat_map(&finished)).unwrap_or([self.pictures[0][i]; 2]);
             let slack =
                 |c: usize| if errors.doubt() == Doubt::Wide { (f64::from(most[c] - least[c]) * WIDE_SLACK).ceil() as u8 } else { 0 };
             let wide = [[0, 1, 2, 3].map(|c| least[c].saturating_sub(slack(c))), [0, 1, 2, 3].map(|c| most[c].saturating_add(slack(c)))];

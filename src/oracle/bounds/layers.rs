@@ -1,6 +1,6 @@
 //! Which pictures of layers are right. An adapter sums f32 colors and weights rounded to whole numbers. Where either answer of a
 //! rounding is right, or a float key may lie on either side of the depth window, a pixel has an interval of right answers
-//! (`docs/exactness.md` §9), which does not depend on the adapter's answer.
+//! (`docs/exactness.md` §9). Whether a wider search is worth its time depends on the adapter's answer; what it finds does not.
 
 use glam::{DVec3, DVec4};
 
@@ -17,7 +17,7 @@ use super::{
         },
     },
     coverage::depth_interval,
-    perturbations::{WIDE_SLACK, interpolations, of_layers},
+    perturbations::{Search, WIDE_SLACK, interpolations, of_layers},
     surface::{CornerErrors, Doubt},
 };
 use crate::effects::{Surface, xray, xray::Xray};
@@ -36,19 +36,41 @@ pub struct LayerBounds {
     pub counted: Vec<[u64; 2]>,
 }
 
-/// The right answers round `image`.
+/// The right answers round `image`, without those that only a [wider search](LayerBounds::widen) finds.
 pub fn layer_bounds(input: &LayerInput, image: &LayerImage) -> LayerBounds {
     let LayerMode::Xray { params, bits } = &image.mode else {
         let colors = image.colors.iter().map(|&color| [color; 2]).collect();
         return LayerBounds { colors, counted: image.counted.iter().map(|&layers| [layers.into(); 2]).collect() };
     };
-    let sums = sums(input, params, *bits);
-    let (background, width) = (background(input.shot.view), input.shot.view.width as usize);
-    let color = |(i, sum): (usize, &SumBounds)| match image.counted[i] {
-        0 => [image.colors[i]; 2],
-        _ => sum.colors(background[i / width], params, *bits),
-    };
+    let sums = sums(input, params, *bits, None);
+    let rows = Rows::of(input);
+    let color = |(i, sum): (usize, &SumBounds)| sum.pixel(i, image, &rows, params, *bits);
     LayerBounds { colors: sums.iter().enumerate().map(color).collect(), counted: sums.iter().map(SumBounds::weights).collect() }
+}
+
+impl LayerBounds {
+    /// Adds the answers at these pixels that are right where interpolated normals and depths err so far that colors do not change in
+    /// proportion: hundreds of shades a layer, which are not computed where the adapter's answer is known to be right without them.
+    pub fn widen(&mut self, input: &LayerInput, image: &LayerImage, pixels: &[bool]) {
+        let LayerMode::Xray { params, bits } = &image.mode else { return };
+        let rows = Rows::of(input);
+        for (i, sum) in sums(input, params, *bits, Some(pixels)).iter().enumerate().filter(|(i, _)| pixels[*i]) {
+            self.colors[i] = sum.pixel(i, image, &rows, params, *bits);
+            self.counted[i] = sum.weights();
+        }
+    }
+}
+
+/// The background of every row of a picture.
+struct Rows {
+    background: Vec<DVec4>,
+    width: usize,
+}
+
+impl Rows {
+    fn of(input: &LayerInput) -> Self {
+        Self { background: background(input.shot.view), width: input.shot.view.width as usize }
+    }
 }
 
 /// A layer whose weight has more than one right answer.
@@ -76,17 +98,22 @@ struct Layer {
     is_certain: bool,
 }
 
-fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<SumBounds> {
+/// Bounds of the sums of every pixel; of a wider search, at the pixels for which it is asked.
+fn sums(input: &LayerInput, params: &Xray, bits: u32, wider_at: Option<&[bool]>) -> Vec<SumBounds> {
     let (view, stack) = (input.shot.view, input.shot.stack);
     let mut sums: Vec<SumBounds> = (0..view.pixels()).map(|_| SumBounds::default()).collect();
     let (ranks, light) = (ranks(&input.shot, input.geometry), Light::of(&input.shot, input.geometry));
     let perturbations = of_layers(input.shot.scene, view, stack);
     let (ranks, light, perturbations) = (&ranks, light.as_ref(), &perturbations);
+    let search = if wider_at.is_some() { Search::Wide } else { Search::Quick };
     scatter(input.tests, input.triangles, view, &mut sums, |triangle| {
         let mut surface: Option<Option<(SurfaceTriangle<'_>, CornerErrors)>> = None;
         let rank = ranks.get(triangle.id as usize).copied().unwrap_or(0.0);
         move |sum: &mut SumBounds, x: usize, y: usize, hit: Hit| {
             let pixel = y * view.width as usize + x;
+            if wider_at.is_some_and(|asked| !asked[pixel]) {
+                return;
+            }
             let threshold = window_depth(input, params, pixel);
             // A depth too small for a normal float has key 1.
             let [low, high] = depth_interval(triangle, &hit).map(|depth| depth.max(f64::from(f32::from_bits(1))));
@@ -101,7 +128,7 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<SumBounds> {
             let Some((known, errors)) = surface.get_or_insert_with(of_triangle) else { return };
             let lit_point = known.lit_point(&known.surface(x, y, &Perturbation::default()));
             let errors = errors.at(known, x, y);
-            let mut shaded = perturbations.iter().copied().chain(interpolations(stack, errors)).map(|perturbation| {
+            let mut shaded = perturbations.iter().copied().chain(interpolations(stack, errors, search)).map(|perturbation| {
                 let step = perturbation.color_step;
                 let lit = light.map_or(0.0, |light| light.arrives(&lit_point, triangle.id, step));
                 let surface = Surface { rank, lit, step_offset: step, ..known.surface(x, y, &perturbation) };
@@ -151,6 +178,11 @@ impl SumBounds {
         } else {
             self.ambiguous.push(AmbiguousLayer { colors, weights: [if layer.is_certain { low } else { 0 }, high] });
         }
+    }
+
+    /// Colors of a pixel between which every right answer lies.
+    fn pixel(&self, i: usize, image: &LayerImage, rows: &Rows, params: &Xray, bits: u32) -> [DVec4; 2] {
+        if image.counted[i] == 0 { [image.colors[i]; 2] } else { self.colors(rows.background[i / rows.width], params, bits) }
     }
 
     /// Smallest and largest sum of weights.

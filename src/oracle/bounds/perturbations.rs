@@ -141,10 +141,21 @@ pub fn places(stack: &Stack) -> impl Iterator<Item = Perturbation> {
     color_steps(stack).iter().flat_map(at_step)
 }
 
+/// How many perturbations are tried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Search {
+    /// Those to which colors answer in proportion.
+    Quick,
+    /// All of them.
+    Wide,
+}
+
 /// Perturbations of what is interpolated with these errors, for each perturbation of color steps.
-pub fn interpolations(stack: &Stack, errors: SampleErrors) -> impl Iterator<Item = Perturbation> {
+pub fn interpolations(stack: &Stack, errors: SampleErrors, search: Search) -> impl Iterator<Item = Perturbation> {
     let (few, many): (&[[f64; 4]], &[[f64; 4]]) = match errors.doubt() {
         Doubt::None => (&[], &[]),
+        Doubt::Narrow if search == Search::Quick => (&INTERPOLATIONS, &[]),
+        Doubt::Wide if search == Search::Quick => (&[], &[]),
         Doubt::Narrow => (&INTERPOLATIONS, STRETCHES.as_slice()),
         Doubt::Wide => (&[], WIDE_INTERPOLATIONS.as_slice()),
     };

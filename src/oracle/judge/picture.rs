@@ -34,7 +34,7 @@ use super::{
     freedom::Freedom,
     particles::judge_particles,
     sample_setups::wrong_setups,
-    samples::{judge_layers, judge_samples},
+    samples::{judge_layers, judge_samples, judge_scheduled_layers},
     shadow::judge_shadow_map,
     vertices::{count_vertices, vertex_errors},
 };
@@ -94,8 +94,8 @@ pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture
     let (triangle_ids, keys) = (&picture.frame.triangle_id, &picture.frame.depth_key);
     let layer_input = LayerInput { shot, geometry, tests: &tests, triangles: &triangles, triangle_ids, depth_keys: keys };
     stage("colors");
-    let colors = JudgedColors::new(&layer_input, &coverage, picture, &dots);
-    let nearest = colors.judge(&mut report, picture, freedom);
+    let colors = JudgedColors::new(&layer_input, &coverage, picture, &dots, freedom);
+    let nearest = colors.judge(&mut report, &coverage, picture, freedom);
     stage("the error map");
     let mut faults = error_map(&shot, &coverage, picture, &nearest, freedom);
     let step_band = colors.accepted.step_band();
@@ -144,6 +144,16 @@ fn judge_counters(report: &mut ErrorReport, reference: &Counters, frame: &Frame)
     report.depth_without_id = report.depth_without_id.max(frame.counters.depth_without_id.into());
 }
 
+/// Pixels where the adapter's color or its count of layers is not among the right answers that are known.
+fn doubtful_pixels(accepted: &AcceptedColors, bounds: &LayerBounds, frame: &Frame) -> Vec<bool> {
+    let is_counted_wrong = |i: usize| {
+        let [least, most] = bounds.counted[i];
+        !(least..=most).contains(&frame.layer_sums.get(i).map_or(least, |&count| count.into()))
+    };
+    let nearest = accepted.nearest(&frame.color);
+    (0..nearest.len()).map(|i| nearest[i] != frame.color[i] || is_counted_wrong(i)).collect()
+}
+
 /// The colors that are right for a picture, given its triangle ids.
 struct JudgedColors {
     accepted: AcceptedColors,
@@ -152,15 +162,26 @@ struct JudgedColors {
 }
 
 impl JudgedColors {
-    fn new(input: &LayerInput, coverage: &BoundedCoverage, picture: &AdapterPicture, dots: &[u32]) -> Self {
+    fn new(input: &LayerInput, coverage: &BoundedCoverage, picture: &AdapterPicture, dots: &[u32], freedom: Freedom) -> Self {
         let resolve = ResolveInput { triangle_ids: input.triangle_ids, depth_keys: input.depth_keys, dots, previous: picture.previous };
         let layers = || coverage.samples.iter().map(|sample| sample.nearest.layers).collect();
-        let layers = layer_image(input, layers).map(|image| {
+        let mut layers = layer_image(input, layers).map(|image| {
             let bounds = layer_bounds(input, &image);
             (image, bounds)
         });
-        let accepted = match &layers {
-            Some((image, bounds)) => AcceptedColors::of_layers(&input.shot, &resolve, image, bounds),
+        let of_layers = |(image, bounds): &(LayerImage, LayerBounds)| AcceptedColors::of_layers(&input.shot, &resolve, image, bounds);
+        let accepted = match &mut layers {
+            Some(layers) => {
+                let accepted = of_layers(layers);
+                let doubtful = doubtful_pixels(&accepted, &layers.1, picture.frame);
+                // The colors of layers that the scheduler chooses are not judged.
+                if freedom.is_scheduled() || !doubtful.contains(&true) {
+                    accepted
+                } else {
+                    layers.1.widen(input, &layers.0, &doubtful);
+                    of_layers(layers)
+                }
+            }
             None => AcceptedColors::of_surfaces(&input.shot, &resolve, input.geometry).with_interpolations(
                 &input.shot,
                 &resolve,
@@ -172,13 +193,16 @@ impl JudgedColors {
     }
 
     /// Judges the adapter's colors and returns the right ones nearest to them.
-    fn judge(&self, report: &mut ErrorReport, picture: &AdapterPicture, freedom: Freedom) -> Vec<[u8; 4]> {
+    fn judge(&self, report: &mut ErrorReport, coverage: &BoundedCoverage, picture: &AdapterPicture, freedom: Freedom) -> Vec<[u8; 4]> {
         let frame = picture.frame;
         // Only the adapter's scheduler knows which layers it drew.
         let nearest =
             if freedom.is_scheduled() && self.layers.is_some() { frame.color.clone() } else { self.accepted.nearest(&frame.color) };
-        if let (Some((_, bounds)), false) = (&self.layers, freedom.is_scheduled()) {
-            judge_layers(report, bounds, picture);
+        if let Some((_, bounds)) = &self.layers {
+            match freedom {
+                Freedom::Scheduled { limit } => judge_scheduled_layers(report, bounds, picture, coverage, limit),
+                Freedom::Exact | Freedom::Racing => judge_layers(report, bounds, picture),
+            }
         }
         let [delta, beyond] = [0, 1].map(|step| compare::pictures(&nearest, &frame.color, step));
         (report.max_color_delta, report.rms_color_delta) = (delta.max_delta, delta.rms);

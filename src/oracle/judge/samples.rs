@@ -75,3 +75,26 @@ pub fn judge_layers(report: &mut ErrorReport, bounds: &LayerBounds, picture: &Ad
     report.overflow += u64::from(picture.frame.counters.full_pixels);
     report.ambiguous_layer_pixels = bounds.colors.iter().filter(|ends| bytes(ends[0]) != bytes(ends[1])).count() as u64;
 }
+
+/// Judges the counts of a picture whose layers the scheduler chooses: none holds more than all layers, and where each layer counts 1, all
+/// together are as many as are drawn.
+///
+/// # Panics
+/// If the counts have another size.
+pub fn judge_scheduled_layers(
+    report: &mut ErrorReport,
+    bounds: &LayerBounds,
+    picture: &AdapterPicture,
+    coverage: &BoundedCoverage,
+    limit: u64,
+) {
+    let counted = &picture.frame.layer_sums;
+    assert_eq!(counted.len(), bounds.counted.len(), "the counts of layers have another size");
+    report.layer_counts_wrong = counted.iter().zip(&bounds.counted).filter(|(count, [_, most])| u64::from(**count) > *most).count() as u64;
+    report.overflow += u64::from(picture.frame.counters.full_pixels);
+    let counts_each = bounds.counted.iter().zip(&coverage.samples).all(|(counts, sample)| *counts == [u64::from(sample.nearest.layers); 2]);
+    if counts_each {
+        let all: u64 = counted.iter().map(|&count| u64::from(count)).sum();
+        report.holes += all.abs_diff(limit);
+    }
+}

@@ -97,6 +97,10 @@ const SMALL_PATH: Feature = Feature {
     constants: &[
         ("MAX_SMALL_SAMPLES", |key, _| key.paths.max_small_samples.into()),
         ("MAX_SMALL_SIDE", |key, _| key.paths.max_small_side.into()),
+        ("LISTS_SAMPLES", |key, pass| {
+            let is_shaded = matches!(pass.phase(), Some(RasterPhase::Sum | RasterPhase::NearestAndSum));
+            flag(is_shaded && key.paths.max_small_samples <= u32::BITS && !key.options.coverage.is_float())
+        }),
     ],
     ..Feature::NONE
 };
