@@ -79,9 +79,10 @@ fn drawing_again_compiles_nothing() {
     for name in PRESETS {
         assert_eq!(regions_of_draws(&gpu, name, 4, tuning), 0, "{name}: regions of code that came with four draws");
     }
-    // What this test sees without the tuning.
-    let grown = regions_of_draws(&gpu, "hero-xray", 4, Tuning { stored_uniforms: false, ..tuning });
     if gpu.summary.driver.contains("Mesa 22.") {
-        assert!(grown > 0, "uniforms in conditions compile nothing: the test sees nothing");
+        // What this test sees without the tuning.
+        let untuned = Tuning { stored_uniforms: false, ..tuning };
+        let compiles = |name: &&str| regions_of_draws(&gpu, name, 4, untuned) > 0;
+        assert!(PRESETS.iter().any(compiles), "uniforms in conditions compile nothing: the test sees nothing");
     }
 }
