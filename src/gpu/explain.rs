@@ -72,9 +72,8 @@ impl SizesNote {
 }
 
 impl Explanation {
-    /// What exists for the last frame of `picture`. `others` are resources that it shares, and `counted` is how many medium and large
-    /// triangles its queues counted.
-    pub fn new(picture: &ViewResources, others: &Resources<'_>, shadow: Option<&ShadowPass>, counted: Option<[u32; 2]>) -> Self {
+    /// What exists for the last frame of `picture`. `others` are resources that it shares.
+    pub fn new(picture: &ViewResources, others: &Resources<'_>, shadow: Option<&ShadowPass>) -> Self {
         let mut buffers: Vec<BufferNote> = others.with(&picture.buffers).notes();
         buffers.sort_by(|a, b| a.name.cmp(&b.name));
         buffers.extend(shadow.into_iter().flat_map(ShadowPass::notes));
@@ -103,11 +102,16 @@ impl Explanation {
             buffers,
             reasons,
             omitted: plan.omissions(),
-            sizes: Some(SizesNote::new(plan, counted)),
+            sizes: Some(SizesNote::new(plan, counted(picture))),
             prediction: Some(plan.prediction),
             tolerance: Some(plan.tolerance),
         }
     }
+}
+
+/// Medium and large triangles that the queues of the newest finished picture counted.
+fn counted(picture: &ViewResources) -> Option<[u32; 2]> {
+    picture.demand.map(|demand| [demand.medium, demand.large])
 }
 
 /// The newest explanation, and what it speaks of.
@@ -140,20 +144,19 @@ impl Explained {
         gpu: &Gpu,
         picture: &ViewResources,
         shadow: Option<&ShadowPass>,
-        counted: Option<[u32; 2]>,
         others: impl FnOnce() -> Resources<'a>,
     ) -> Arc<Explanation> {
         let subject = Subject {
             plan: picture.frame().ok().map(|frame| frame.plan.clone()),
             commands: [picture.commands_revision(), shadow.and_then(|shadow| shadow.resources.commands_revision())],
             dots: picture.dots.as_ref().map(|dots| (dots.counts(), dots.line_count())),
-            counted,
+            counted: counted(picture),
         };
         if let Some((_, explanation)) = self.0.as_ref().filter(|(known, _)| known.is_same(&subject)) {
             return explanation.clone();
         }
         gpu.prepared.count(Preparation::Explanation);
-        let explanation = Arc::new(Explanation::new(picture, &others(), shadow, counted));
+        let explanation = Arc::new(Explanation::new(picture, &others(), shadow));
         self.0 = Some((subject, explanation.clone()));
         explanation
     }

@@ -176,8 +176,10 @@ const ORDER_BLOCK: u64 = 1024;
 /// What the first pass of a frame may clear beside its own work: `shaders/variants/clear_step`.
 const CLEARED_IN_PASSES: &[BufferId] =
     &[BufferId::Counters, BufferId::DepthKeys, BufferId::TriangleIds, BufferId::DepthAndId, BufferId::PackedDepthId];
-/// Most workgroups that share a medium triangle, as the kernel has it.
+/// Most workgroups that share a medium triangle or a tile of a large one, as the kernels have it.
 const MOST_PARTS: u32 = 4;
+/// Workgroups that a pass over a queue has even where a picture before had an empty queue: should it be full now, they draw it fast enough.
+const LEAST_QUEUE_GROUPS: u32 = 1024;
 /// Invocations of a workgroup of the passes over queues.
 const QUEUE_GROUP: u32 = 64;
 /// Most pixels, or pairs of words of sums, that an invocation of the first pass clears.
@@ -529,8 +531,25 @@ impl FrameLayout {
         }
     }
 
-    /// How many workgroups a pass takes.
-    pub fn dispatch(&self, key: &KernelKey, pass: Pass) -> Dispatch {
+    /// Workgroups of a pass over a queue, of which each takes entries in turn. `demand` is what a picture before counted: where its queues
+    /// held little, fewer workgroups find work, and those that find none cost a little too. A queue that held more since is drawn whole.
+    fn queue_groups(&self, key: &KernelKey, pass: Pass, demand: Option<&CounterRecord>) -> u32 {
+        let most = key.work.queue_groups.min(self.most_queued(pass)).max(1);
+        let Some(demand) = demand else { return most };
+        let medium = demand.medium.saturating_mul(MOST_PARTS);
+        let tiles = demand.tiles.saturating_mul(MOST_PARTS);
+        let held = match pass {
+            Pass::Clip => demand.clip.div_ceil(64),
+            Pass::TileLarge => demand.large,
+            Pass::RasterMedium(_) => medium.max(demand.large),
+            Pass::RasterAll(_) => medium.max(tiles),
+            _ => tiles,
+        };
+        held.clamp(LEAST_QUEUE_GROUPS.min(most), most)
+    }
+
+    /// How many workgroups a pass takes. `demand` is what the queues of a picture before held, where it is known.
+    pub fn dispatch(&self, key: &KernelKey, pass: Pass, demand: Option<&CounterRecord>) -> Dispatch {
         let scene = &self.scene;
         let (triangles, group) = (scene.triangles as u32, key.work.group_size);
         let over = |count: u32| Dispatch::once(folded(count.div_ceil(group)));
@@ -555,12 +574,9 @@ impl FrameLayout {
             Pass::OrderSums | Pass::OrderRanks => Dispatch::once(folded(triangles.div_ceil(ORDER_BLOCK as u32))),
             Pass::OrderLimit | Pass::OrderCut | Pass::Args | Pass::AdvanceQueues { .. } | Pass::DotsArgs => Dispatch::once([1, 1]),
             Pass::Clip | Pass::TileLarge | Pass::RasterMedium(_) | Pass::RasterLarge(_) if key.work.queue_groups > 0 => {
-                Dispatch::once([key.work.queue_groups.min(self.most_queued(pass)).max(1), 1])
+                Dispatch::once([self.queue_groups(key, pass, demand), 1])
             }
-            Pass::RasterAll(_) => {
-                let of_queues = key.work.queue_groups.min(self.most_queued(pass));
-                Dispatch::once(folded(triangles.div_ceil(QUEUE_GROUP) + of_queues.max(1)))
-            }
+            Pass::RasterAll(_) => Dispatch::once(folded(triangles.div_ceil(QUEUE_GROUP) + self.queue_groups(key, pass, demand))),
             Pass::Clip => Dispatch::args(offset_of!(DispatchArgs, clip)),
             Pass::RasterMedium(_) => Dispatch::args(offset_of!(DispatchArgs, medium)),
             Pass::TileLarge => Dispatch::args(offset_of!(DispatchArgs, large)),

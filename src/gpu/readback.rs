@@ -7,7 +7,7 @@ use super::{
     frame_layout::Region,
     particles::ParticleSimulation,
     queues::recorded_capacities,
-    recording::{CommandList, Device, Resources, Timing},
+    recording::{CommandList, Device, DispatchSizes, Resources, Timing},
     records::{ClippedTriangleRecord, CounterRecord, DepthAndId, VertexRecord},
     resource_id::{BufferId, ClearedBy},
     scene_resources::SceneResources,
@@ -170,7 +170,8 @@ pub fn count_layers(device: &mut Device, view: &mut ViewResources, others: &Reso
     view.clear(&mut encoder, |occasion| occasion == ClearedBy::PictureAndCount)?;
     encoder.clear_buffer(view.buffers.get(BufferId::LayerCounts)?, 0, Some(bytes.next_multiple_of(4)));
     let layout = &view.frame()?.layout;
-    commands.record(0..commands.len(), &mut encoder, layout, &view.buffers, Timing { timer: None, ends_frame: true })?;
+    let sizes = DispatchSizes { layout, demand: view.demand.as_ref(), buffers: &view.buffers };
+    commands.record(0..commands.len(), &mut encoder, &sizes, Timing { timer: None, ends_frame: true })?;
     device.gpu.queue.submit([encoder.finish()]);
     let layers = buffers::read(&device.gpu, view.buffers.get(BufferId::LayerCounts)?, bytes)?;
     let counters = buffers::read(&device.gpu, view.buffers.get(BufferId::Counters)?, size_of::<CounterRecord>() as u64)?;

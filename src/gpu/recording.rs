@@ -11,6 +11,7 @@ use super::{
     pipeline_store::{Pipeline, PipelineStore},
     pipelines::Pipelines,
     preparations::Preparation,
+    records::CounterRecord,
     resource_id::{ResourceId, TextureId},
     scene_resources::SceneResources,
     textures::WordTexture,
@@ -131,6 +132,21 @@ pub struct Timing<'a> {
     pub ends_frame: bool,
 }
 
+/// How many workgroups the passes of a frame take.
+pub struct DispatchSizes<'a> {
+    pub layout: &'a FrameLayout,
+    /// What the queues of the newest finished picture held, where one is known.
+    pub demand: Option<&'a CounterRecord>,
+    /// Holds the sizes of indirect dispatches.
+    pub buffers: &'a Buffers,
+}
+
+impl DispatchSizes<'_> {
+    fn of(&self, key: &KernelKey, pass: Pass) -> Dispatch {
+        self.layout.dispatch(key, pass, self.demand)
+    }
+}
+
 impl CommandList {
     /// Compiles pipelines that are missing, and binds what each pass reads and writes. `prefix` begins the label of every pass.
     ///
@@ -169,7 +185,7 @@ impl CommandList {
         self.commands.iter().for_each(|command| store.mark(&command.pipeline));
     }
 
-    /// Records a part of the list. `buffers` holds the sizes of indirect dispatches.
+    /// Records a part of the list. `sizes` says how many workgroups each takes.
     ///
     /// # Errors
     /// When there is no buffer for an indirect dispatch.
@@ -177,12 +193,11 @@ impl CommandList {
         &self,
         part: Range<usize>,
         encoder: &mut wgpu::CommandEncoder,
-        layout: &FrameLayout,
-        buffers: &Buffers,
+        sizes: &DispatchSizes<'_>,
         mut timing: Timing<'_>,
     ) -> Result<(), RenderError> {
         if timing.timer.as_ref().is_none_or(|timer| timer.is_whole()) {
-            return self.record_in_one(part, encoder, layout, buffers, timing);
+            return self.record_in_one(part, encoder, sizes, timing);
         }
         let last = part.end;
         for (i, command) in part.clone().zip(&self.commands[part]) {
@@ -190,7 +205,7 @@ impl CommandList {
             let label = Some(command.label.as_str());
             let timestamp_writes = timing.timer.as_mut().and_then(|timer| timer.compute(&command.label, is_last));
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes });
-            command.dispatch(&mut pass, layout.dispatch(&self.key, command.pass), buffers)?;
+            command.dispatch(&mut pass, sizes.of(&self.key, command.pass), sizes.buffers)?;
         }
         Ok(())
     }
@@ -200,8 +215,7 @@ impl CommandList {
         &self,
         part: Range<usize>,
         encoder: &mut wgpu::CommandEncoder,
-        layout: &FrameLayout,
-        buffers: &Buffers,
+        sizes: &DispatchSizes<'_>,
         mut timing: Timing<'_>,
     ) -> Result<(), RenderError> {
         if part.is_empty() {
@@ -211,7 +225,7 @@ impl CommandList {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("passes"), timestamp_writes });
         for command in &self.commands[part] {
             pass.push_debug_group(&command.label);
-            command.dispatch(&mut pass, layout.dispatch(&self.key, command.pass), buffers)?;
+            command.dispatch(&mut pass, sizes.of(&self.key, command.pass), sizes.buffers)?;
             pass.pop_debug_group();
         }
         Ok(())

@@ -73,8 +73,6 @@ pub struct Renderer {
     /// Through which shown pictures are read.
     shown_staging: Option<wgpu::Buffer>,
     explained: Explained,
-    /// Medium and large triangles of the newest finished frame.
-    demand: Option<[u32; 2]>,
     culled: Option<CullingStats>,
     presentation: Option<Presentation>,
 }
@@ -99,7 +97,6 @@ impl Renderer {
             spare_stats: Vec::new(),
             shown_staging: None,
             explained: Explained::default(),
-            demand: None,
             culled: None,
             presentation: None,
         }
@@ -365,7 +362,7 @@ impl Renderer {
         let (stats, times) = finished.read(self.device.timer.as_ref())?;
         self.spare_stats.push(finished.into_spare());
         let record = &stats.picture;
-        self.demand = Some([record.medium, record.large]);
+        self.picture.demand = Some(*record);
         let key = self.picture.frame().ok()?.plan.key.clone();
         let mut counters = record.counters(&recorded_capacities(&key, &self.picture.capacities));
         let mut redraw = counters.overflow > 0 && self.picture.grow_queues(record);
@@ -394,8 +391,8 @@ impl Renderer {
 
     /// [`Self::explain`], kept while nothing that it says has changed.
     pub fn explained(&mut self) -> Arc<Explanation> {
-        let Self { device, scene, picture, shadow, particles, explained, demand, .. } = self;
-        explained.of(&device.gpu, picture, shadow.as_ref(), *demand, || match scene {
+        let Self { device, scene, picture, shadow, particles, explained, .. } = self;
+        explained.of(&device.gpu, picture, shadow.as_ref(), || match scene {
             Some(scene) => shared(scene, particles, shadow.as_ref()),
             None => Resources::default(),
         })
@@ -404,7 +401,7 @@ impl Renderer {
     /// Passes and buffers of the last picture, what it does without, and why.
     pub fn explain(&self) -> Explanation {
         let others = self.scene.as_ref().map(|scene| shared(scene, &self.particles, self.shadow.as_ref())).unwrap_or_default();
-        Explanation::new(&self.picture, &others, self.shadow.as_ref(), self.demand)
+        Explanation::new(&self.picture, &others, self.shadow.as_ref())
     }
 
     /// Draws loose triangles with the adapter's own rasterizer: see `hardware_ids::triangle_ids`.

@@ -83,6 +83,7 @@ impl ShadowPass {
 
     /// How many entries the queues lost; they grow, so that the next picture is complete.
     pub fn collect_stats(&mut self, record: &CounterRecord) -> u32 {
+        self.resources.demand = Some(*record);
         let Ok(frame) = self.resources.frame() else { return 0 };
         let lost = record.counters(&recorded_capacities(&frame.plan.key, &self.resources.capacities)).overflow;
         if lost > 0 {

@@ -13,7 +13,7 @@ use super::{
     history::RoomForLayers,
     preparations::Preparation,
     queues::{Capacities, first_capacities, recorded_capacities},
-    recording::{CommandList, Device, Resources, Timing},
+    recording::{CommandList, Device, DispatchSizes, Resources, Timing},
     records::{CounterRecord, ScalingUniform},
     resource_id::{BufferId, ClearedBy},
     scene_resources::SceneResources,
@@ -70,6 +70,8 @@ pub struct ViewResources {
     pub buffers: Buffers,
     /// Room in the queues.
     pub capacities: Capacities,
+    /// What the newest finished picture counted.
+    pub demand: Option<CounterRecord>,
     /// The size estimate was wrong once: queues and clipping are kept for this scene.
     pub force_all_paths: bool,
     /// Requirements of the last views: one for the default grid, one for the grid that the plan then took.
@@ -92,6 +94,7 @@ impl ViewResources {
             target,
             buffers: Buffers::default(),
             capacities: scene.map_or_else(Capacities::default, first_capacities),
+            demand: None,
             force_all_paths: false,
             seen: Vec::new(),
             planner: Planner::default(),
@@ -123,7 +126,7 @@ impl ViewResources {
         self.release_commands();
         self.buffers.keep(|id| !of_scene.contains(&id));
         (self.capacities, self.force_all_paths) = (first_capacities(scene), false);
-        (self.draw_data, self.dots) = (None, None);
+        (self.draw_data, self.dots, self.demand) = (None, None, None);
         self.seen.clear();
     }
 
@@ -384,7 +387,8 @@ impl ViewResources {
     /// When none were.
     pub fn record(&self, part: Range<usize>, encoder: &mut wgpu::CommandEncoder, timing: Timing<'_>) -> Result<(), RenderError> {
         let commands = self.commands.as_ref().ok_or(RenderError::NoScene)?;
-        commands.record(part, encoder, &self.frame()?.layout, &self.buffers, timing)
+        let sizes = DispatchSizes { layout: &self.frame()?.layout, demand: self.demand.as_ref(), buffers: &self.buffers };
+        commands.record(part, encoder, &sizes, timing)
     }
 
     /// Records all passes that were prepared.

@@ -63,7 +63,7 @@ impl Renderer {
                 let mut counts = scene.counts(pass, weight);
                 counts.retain(|(_, count)| *count > 0.0);
                 // An indirect dispatch of no workgroup costs next to nothing.
-                let is_idle = counts.is_empty() && matches!(frame.layout.dispatch(&frame.plan.key, pass), Dispatch::Indirect { .. });
+                let is_idle = counts.is_empty() && matches!(frame.layout.dispatch(&frame.plan.key, pass, None), Dispatch::Indirect { .. });
                 counts.extend((!is_idle).then_some((Unit::Pass, 1.0)));
                 Ok(PassWork { label: format!("{prefix}{}", pass.label()), counts })
             })
@@ -122,7 +122,7 @@ impl<'a> FrameCounts<'a> {
 
     /// Invocations of a pass that is dispatched over a known number; none for one whose number a pass before it decides.
     fn invocations(&self, pass: Pass) -> Option<f64> {
-        match self.layout.dispatch(self.key, pass) {
+        match self.layout.dispatch(self.key, pass, None) {
             Dispatch::Direct { groups: [x, y] } => Some(f64::from(x) * f64::from(y) * f64::from(self.key.work.group_size)),
             Dispatch::Indirect { .. } => None,
         }

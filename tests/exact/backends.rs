@@ -104,6 +104,31 @@ fn every_exact_backend_gives_the_same_triangle_ids_and_depth_keys() {
     }
 }
 
+#[test]
+fn a_picture_is_the_same_whatever_the_queues_of_the_one_before_held() {
+    let Some(mut renderer) = renderer() else { return };
+    // Whatever covers more than a pixel is queued.
+    let tuning = Tuning { max_small_samples: 1, max_small_side: 1, queue_groups: 8192, ..GRAPHICS_CARD };
+    let (scene, stack, request) = (scene("sphere?triangles=20000"), stack(&["lambert"]), AccuracyRequest::default());
+    let [far, near] = [[4, 4], [480, 360]].map(|size| view(&scene, size));
+    renderer.set_tuning(tuning);
+    renderer.set_scene(&scene).expect("it fits");
+    let mut queued = |view: &View| {
+        let frame = renderer.capture(view, &stack, &request).expect("it draws").frame;
+        let sizes = renderer.explain().sizes.expect("something was drawn");
+        (sizes.counted.expect("the queues are counted")[0], frame)
+    };
+    // The first picture knows of none before it.
+    let (all, first) = queued(&near);
+    let (few, _) = queued(&far);
+    let (after_few, second) = queued(&near);
+    let (after_all, third) = queued(&near);
+    assert!(few < 500 && all > 4000, "{few} and {all} triangles are queued");
+    assert_eq!([after_few, after_all], [all; 2]);
+    assert_same(&second, &first, "after a picture with empty queues");
+    assert_same(&third, &first, "after the same picture");
+}
+
 /// A float key as packed32 keeps it among so many triangles: all depths below 2^-31 are one, and the bits that the id needs
 /// are cut off below.
 fn cut_key(key: u32, triangles: u64) -> u32 {
