@@ -20,6 +20,7 @@ pub mod timer;
 mod packing;
 
 mod attributes;
+mod layer_sums;
 mod queues;
 
 mod frame_layout;

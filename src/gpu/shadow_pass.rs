@@ -6,7 +6,7 @@ use super::{
     device::Gpu,
     error::RenderError,
     frame_layout::Target,
-    history::RoomForLayers,
+    layer_sums::RoomForLayers,
     pass_purpose::pass_purpose,
     queues::recorded_capacities,
     recording::{Device, Resources, Timing},

@@ -10,7 +10,7 @@ use super::{
     draws::{DrawData, DrawInputs},
     error::RenderError,
     frame_layout::{FrameLayout, LayoutInputs, Region, Span, Target},
-    history::RoomForLayers,
+    layer_sums::RoomForLayers,
     preparations::Preparation,
     queues::{Capacities, first_capacities, recorded_capacities},
     recording::{CommandList, Device, DispatchSizes, Resources, Timing},

@@ -45,7 +45,7 @@ impl WorkDistribution {
         let is_card = matches!(self, Self::CardListedTiles | Self::Card);
         let [max_small_samples, max_small_side] = match self {
             Self::WorkgroupEach => [1, 1],
-            Self::CardListedTiles | Self::Card => [64, 32],
+            Self::CardListedTiles | Self::Card => [32, 32],
             Self::InvocationEach => [128 * 128, 128],
         };
         let listed_tiles = matches!(self, Self::CardListedTiles | Self::InvocationEach);
