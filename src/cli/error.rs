@@ -85,6 +85,7 @@ fn exit_of_open(error: &OpenError) -> Exit {
     if matches!(error, OpenError::Ambiguous { .. }) { Exit::Usage } else { Exit::NoAdapter }
 }
 
+/// Only what another adapter may draw is the adapter's fault.
 fn exit_of_render(error: &RenderError) -> Exit {
     match error {
         error if error.is_lost() => Exit::DeviceLost,

@@ -200,7 +200,7 @@ pub fn check(
             accuracy: verdict.report,
             pixels_over_tolerance,
             frames: 1 + options.repeats,
-            without_budget: if failures.is_empty() { Vec::new() } else { without_budget(&preset) },
+            without_budget: if failures.is_empty() { Vec::new() } else { without_budget(&preset, pixels_over_tolerance) },
             failures,
             volume,
         });
@@ -209,10 +209,12 @@ pub fn check(
     Ok(rows)
 }
 
-/// What a preset allows to err although its budget is the default one, which allows no error.
-fn without_budget(preset: &Preset) -> Vec<String> {
-    let budget = preset.test.clone().unwrap_or_default();
-    if (GoldenTest { why: String::new(), ..budget }) != GoldenTest::default() {
+/// What a preset allows to err although its budget allows no wrong triangle and no wider difference of color. A number of pixels alone is
+/// a budget where these are so few.
+fn without_budget(preset: &Preset, pixels_over_tolerance: u64) -> Vec<String> {
+    let (budget, default) = (preset.test.clone().unwrap_or_default(), GoldenTest::default());
+    let has_pixels = budget.max_pixels > 0 && pixels_over_tolerance > u64::from(budget.max_pixels);
+    if has_pixels || budget.max_wrong_triangles > 0 || budget.max_channel > default.max_channel {
         return Vec::new();
     }
     let accuracy = &preset.accuracy;

@@ -74,6 +74,11 @@ pub enum DrawError {
         "the oracle would compute {positions} positions of vertices and morph targets, and may compute {limit}; place the model less often"
     )]
     OracleWork { positions: u64, limit: u64 },
+    #[error(
+        "the oracle would follow {count} particles over {steps} steps with {octaves} octaves, which makes {work} evaluations of the flow, and \
+         may make {limit}; draw fewer, a lower rate, fewer octaves or an earlier time, or draw on an adapter"
+    )]
+    OracleParticles { count: u32, steps: u32, octaves: u32, work: u64, limit: u64 },
 }
 
 /// The point of a box nearest to `eye`, in f32; the origin if the box is empty or too large.

@@ -129,6 +129,25 @@ fn a_picture_is_the_same_whatever_the_queues_of_the_one_before_held() {
     assert_same(&third, &first, "after the same picture");
 }
 
+#[test]
+fn a_picture_of_large_triangles_is_the_same_after_one_with_more_and_one_with_fewer_of_them() {
+    let Some(mut renderer) = renderer() else { return };
+    let ((scene, view), stack) = (hall(), stack(&["lambert"]));
+    // The same hall from afar has few large triangles or none.
+    let far = crate::common::view(&scene, [16, 12]);
+    let fresh = captured(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default()).frame;
+    for tuning in [GRAPHICS_CARD, Tuning { queue_groups: 0, ..GRAPHICS_CARD }, Tuning { queue_groups: 8192, ..GRAPHICS_CARD }] {
+        renderer.set_tuning(tuning);
+        renderer.set_scene(&scene).expect("it fits");
+        for (turn, view) in [&view, &far, &view, &far, &view].into_iter().enumerate() {
+            let frame = renderer.capture(view, &stack, &AccuracyRequest::default()).expect("it draws").frame;
+            if turn % 2 == 0 {
+                assert_same(&frame, &fresh, &format!("turn {turn}, {tuning:?}"));
+            }
+        }
+    }
+}
+
 /// A float key as packed32 keeps it among so many triangles: all depths below 2^-31 are one, and the bits that the id needs
 /// are cut off below.
 fn cut_key(key: u32, triangles: u64) -> u32 {

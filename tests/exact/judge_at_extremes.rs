@@ -29,7 +29,10 @@ fn exact_preset(renderer: &mut Renderer, text: &str) {
 fn edges_that_reach_far_behind_the_eye_move_by_their_corners_errors() {
     let Some(mut renderer) = renderer() else { return };
     // Walls of 200 km, cut a few meters from the eye.
-    exact_preset(&mut renderer, "scene.builtin = \"near\"\noutput.size = [320, 240]\n[camera]\neye = [1.0, 1.0, 1.0]\n[effects.lambert]");
+    for tier in ["", "accuracy.tier = \"strict\"\n"] {
+        let camera = "[camera]\neye = [1.0, 1.0, 1.0]";
+        exact_preset(&mut renderer, &format!("scene.builtin = \"near\"\noutput.size = [320, 240]\n{tier}{camera}\n[effects.lambert]"));
+    }
     exact_preset(&mut renderer, "scene.builtin = \"near?reach=100000\"\noutput.size = [60, 144]\n[camera]");
     exact_preset(&mut renderer, "scene.builtin = \"near\"\noutput.size = [160, 120]\naccuracy.coverage = \"fixed12\"");
 }
@@ -64,7 +67,9 @@ fov_y_deg = 170.0";
 fn overlapping_boxes_of_one_clipped_triangle_have_the_nearest_depth() {
     let Some(mut renderer) = renderer() else { return };
     let camera = "[camera]\ntarget = [0.155594989, -0.760247648, -0.299653268]\nup = [-0.634883838, 0.745447538, -0.370145453]";
-    exact_preset(&mut renderer, &format!("scene.builtin = \"near\"\noutput.size = [64, 48]\n{camera}\n[effects.boxes]"));
+    for accuracy in ["", "accuracy.depth = \"integer\"\n", "accuracy.tier = \"strict\"\n"] {
+        exact_preset(&mut renderer, &format!("scene.builtin = \"near\"\noutput.size = [64, 48]\n{accuracy}{camera}\n[effects.boxes]"));
+    }
 }
 
 #[test]
@@ -217,7 +222,12 @@ fn colors_seen_from_very_far_err_by_the_roundings_of_the_distance() {
 #[test]
 fn a_flat_area_on_a_step_of_color_is_one_color_in_doubt() {
     let Some(mut renderer) = renderer() else { return };
-    exact_preset(&mut renderer, "scene.builtin = \"stack\"\noutput.size = [157, 98]\n[effects.hatch]\n[effects.dither]");
+    let flat = "scene.builtin = \"stack\"\noutput.size = [157, 98]\n[effects.hatch]\n[effects.dither]";
+    exact_preset(&mut renderer, flat);
+    // A race shows layers of other tones, too, on each of which the lines of the hatch vary from pixel to pixel.
+    for _ in 0..3 {
+        exact_preset(&mut renderer, &format!("{flat}\n[effects.race]"));
+    }
 }
 
 #[test]

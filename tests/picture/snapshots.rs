@@ -221,13 +221,18 @@ fn a_preset_that_pins_a_lossy_option_is_verified_within_its_budget_of_wrong_tria
         let rows = object["results"].as_array().expect("rows").iter();
         let stats = rows
             .flat_map(|row| ["wrong_triangles", "double_hits", "holes", "unexplained"].map(|name| row[name].as_u64().expect("a count")));
-        (run.status.code(), stats.max().expect("an option"))
+        let is_told = object["results"][0]["without_budget"] == serde_json::json!(["coverage=float"]);
+        assert_eq!(is_told, String::from_utf8_lossy(&run.stderr).contains("may err by design, and the preset states no budget for it"));
+        (run.status.code(), stats.max().expect("an option"), is_told)
     };
-    let (exit, wrong) = verify("");
-    assert!(exit == Some(1) && wrong > 100, "{exit:?}, {wrong} without a budget");
+    let (exit, wrong, is_told) = verify("");
+    assert!(exit == Some(1) && wrong > 100 && is_told, "{exit:?}, {wrong} without a budget");
+    // A number of pixels for something else is no budget for wrong triangles, as long as no more pixels than that have another color.
+    let elsewhere = verify("[test]\nmax_pixels = 3000\nwhy = \"dots\"\n");
+    assert!(elsewhere.0 == Some(1) && elsewhere.2, "{elsewhere:?}");
     let budget = |most: u64| format!("[test]\nmax_wrong_triangles = {most}\nwhy = \"edges that touch a sample draw it twice\"\n");
-    assert_eq!(verify(&budget(wrong)).0, Some(0));
-    assert_eq!(verify(&budget(wrong - 1)).0, Some(1));
+    assert_eq!((verify(&budget(wrong)).0, verify(&budget(wrong)).2), (Some(0), false));
+    assert_eq!((verify(&budget(wrong - 1)).0, verify(&budget(wrong - 1)).2), (Some(1), false));
 }
 
 #[test]

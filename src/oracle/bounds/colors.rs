@@ -154,12 +154,24 @@ impl AcceptedColors {
         self.pictures.iter().step_by(self.per_step).collect()
     }
 
-    /// Number of different sets of right colors in the step band: a flat area on a step is one.
-    pub fn step_band_colors(&self) -> u64 {
+    /// Number of different sets of right colors in the step band. A flat area on a step is one, and so is a flat triangle, whatever lines
+    /// or patterns an effect draws on it.
+    pub fn step_band_colors(&self, shot: &Shot, geometry: &Geometry, triangle_ids: &[u32]) -> u64 {
         let answers = self.at_steps();
-        let pixels = self.step_band().into_iter().enumerate().filter(|(_, is_band)| *is_band);
-        let sets: HashSet<Vec<[u8; 4]>> = pixels.map(|(i, _)| answers.iter().map(|answer| answer[i]).collect()).collect();
-        sets.len() as u64
+        let mut known = HashMap::new();
+        let mut is_flat = |id: u32| {
+            *known.entry(id).or_insert_with(|| SurfaceTriangle::new(shot, geometry, id).is_some_and(|triangle| triangle.is_flat()))
+        };
+        let (mut triangles, mut sets) = (HashSet::new(), HashSet::new());
+        for (i, _) in self.step_band().into_iter().enumerate().filter(|(_, is_band)| *is_band) {
+            if is_flat(triangle_ids[i]) {
+                triangles.insert(triangle_ids[i]);
+            } else {
+                sets.insert(answers.iter().map(|answer| answer[i]).collect::<Vec<_>>());
+            }
+        }
+        // An area of several flat triangles has one set where no pattern divides it.
+        (triangles.len() + sets.len()) as u64
     }
 
     /// The step band: pixels with answers more than 1 of 255 apart because of a step of color. Empty without steps.

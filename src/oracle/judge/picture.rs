@@ -16,7 +16,7 @@ use super::{
             dots::dot_strengths,
             draw_order::limited,
             layers::{LayerImage, LayerInput, layer_image},
-            particles::scene_with_particles,
+            particles::{check_particles, scene_with_particles},
             project::project,
             resolve::ResolveInput,
             sample_setup::sample_setups,
@@ -64,6 +64,9 @@ pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture
         return Ok(Verdict { expected: Frame { width: view.width, height: view.height, ..Frame::default() }, ..Verdict::default() });
     }
     let words = geometry.particle_readback.as_ref().map(|readback| readback.words.as_slice());
+    if words.is_none() {
+        check_particles(view, stack)?;
+    }
     let scene = &*scene_with_particles(scene, view, stack, words);
     let draws = stack.draws(scene, view)?;
     let shot = Shot::new(scene, &draws, view, stack);
@@ -95,7 +98,7 @@ pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture
     let layer_input = LayerInput { shot, geometry, tests: &tests, triangles: &triangles, triangle_ids, depth_keys: keys };
     stage("colors");
     let colors = JudgedColors::new(&layer_input, &coverage, picture, &dots, freedom);
-    let nearest = colors.judge(&mut report, &coverage, picture, freedom);
+    let nearest = colors.judge(&mut report, &shot, &coverage, picture, freedom);
     stage("the error map");
     let mut faults = error_map(&shot, &coverage, picture, &nearest, freedom);
     let step_band = colors.accepted.step_band();
@@ -193,7 +196,14 @@ impl JudgedColors {
     }
 
     /// Judges the adapter's colors and returns the right ones nearest to them.
-    fn judge(&self, report: &mut ErrorReport, coverage: &BoundedCoverage, picture: &AdapterPicture, freedom: Freedom) -> Vec<[u8; 4]> {
+    fn judge(
+        &self,
+        report: &mut ErrorReport,
+        shot: &Shot,
+        coverage: &BoundedCoverage,
+        picture: &AdapterPicture,
+        freedom: Freedom,
+    ) -> Vec<[u8; 4]> {
         let frame = picture.frame;
         // Only the adapter's scheduler knows which layers it drew.
         let nearest =
@@ -208,7 +218,7 @@ impl JudgedColors {
         (report.max_color_delta, report.rms_color_delta) = (delta.max_delta, delta.rms);
         report.rounding_pixels = delta.pixels_over_tolerance - beyond.pixels_over_tolerance;
         report.interpolation_pixels = self.accepted.unsure_pixels();
-        report.step_band_colors = self.accepted.step_band_colors();
+        report.step_band_colors = self.accepted.step_band_colors(shot, picture.geometry, &frame.triangle_id);
         report.step_band_pixels = self.accepted.step_band().iter().filter(|is_band| **is_band).count() as u64;
         nearest
     }

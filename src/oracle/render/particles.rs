@@ -16,6 +16,7 @@ use crate::{
     math::{hash, hash_unit},
     scene::{
         Scene,
+        draw::DrawError,
         particle_discs::{PARTICLE_DISC_WORDS, ParticleTimeline},
         view::View,
     },
@@ -40,6 +41,25 @@ impl From<&ParticleState> for ReferenceParticle {
         let [position, velocity] = [state.position, state.velocity].map(|v| DVec3::from_array(v.map(f64::from)));
         Self { position, velocity, age: state.age, births: state.births }
     }
+}
+
+/// Most octaves of flow that are evaluated for particles: one each for every octave, particle and step since the first frame. Two cores take
+/// about ten seconds.
+const MAX_PARTICLE_WORK: u64 = 1 << 28;
+
+/// Refuses particles whose simulation up to `view` takes more work than the oracle may do.
+///
+/// # Errors
+/// [`DrawError::OracleParticles`].
+pub fn check_particles(view: &View, stack: &Stack) -> Result<(), DrawError> {
+    let Some(settings) = stack.particle_settings() else { return Ok(()) };
+    let timeline = timeline(view, stack);
+    let octaves = (1..=timeline.len() as u32).map(|step| read::<Particles>(timeline.words(step)).octaves).max().unwrap_or(1).max(1);
+    let work = u64::from(settings.count) * u64::from(timeline.frame) * u64::from(octaves);
+    if work > MAX_PARTICLE_WORK {
+        return Err(DrawError::OracleParticles { count: settings.count, steps: timeline.frame, octaves, work, limit: MAX_PARTICLE_WORK });
+    }
+    Ok(())
 }
 
 /// The scene with the particles of a stack as they are at `view`.

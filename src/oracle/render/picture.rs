@@ -9,7 +9,7 @@ use super::{
     dots::{dot_records, dot_strengths},
     draw_order::limited,
     layers::{LayerInput, layer_image},
-    particles::scene_with_particles,
+    particles::{check_particles, scene_with_particles},
     project::project,
     resolve::{ResolveInput, finish, shade},
     sample_setup::sample_setups,
@@ -41,6 +41,7 @@ pub fn render_next(scene: &Scene, view: &View, stack: &Stack, previous: Option<&
         stack.draws(scene, view)?;
         return Ok(Frame { width: view.width, height: view.height, ..Frame::default() });
     }
+    check_particles(view, stack)?;
     let scene = &*scene_with_particles(scene, view, stack, None);
     let draws = stack.draws(scene, view)?;
     let shot = Shot::new(scene, &draws, view, stack);

@@ -172,6 +172,12 @@ impl<'a> SurfaceTriangle<'a> {
         Some(triangle)
     }
 
+    /// Have all corners the same normal and the same color, and is there no image?
+    pub fn is_flat(&self) -> bool {
+        let has_one_normal = self.normals.is_some_and(|[a, b, c]| a == b && b == c);
+        has_one_normal && self.colors.iter().all(|color| *color == self.colors[0]) && self.material.is_none()
+    }
+
     /// Moves positions and normals as the vertex effects do; `side` turns normals to the viewer. The center does not move, so that
     /// the fronts of several effects meet.
     ///

@@ -161,6 +161,15 @@ fn a_picture_of_a_model_opens_where_the_model_is_and_nowhere_else() {
     let refused = render("elsewhere/c.png", "d.png");
     assert_eq!(refused.code, 2);
     assert!(refused.err.contains("t.gltf lies outside of the folder of the picture"), "{}", refused.err);
+    // Nor does a picture name a file of the system, or one on another machine.
+    for name in ["/etc/passwd", "/etc/t.gltf", "C:\\\\t.gltf", "\\\\\\\\host\\\\share\\\\t.gltf", "//host/share/t.gltf"] {
+        let text = format!("schema = 2\n[scene]\npath = \"{name}\"\n");
+        let chunk = format!("rasterlab preset\0\0\0\0\0{text}");
+        fs::write(folder.path().join("elsewhere/e.png"), with_chunk(&foreign(), b"iTXt", chunk.as_bytes())).unwrap();
+        let refused = render("elsewhere/e.png", "f.png");
+        assert!(refused.code == 2 && !folder.path().join("f.png").exists(), "{name}: {}", refused.err);
+        assert!(refused.err.contains("outside of the folder of the picture"), "{name}: {}", refused.err);
+    }
     fs::copy(folder.path().join("models/t.gltf"), folder.path().join("elsewhere/t.gltf")).unwrap();
     let copied = render("elsewhere/c.png", "d.png");
     assert!(copied.code == 0 && copied.err.contains("t.gltf beside the picture is used"), "{}", copied.err);

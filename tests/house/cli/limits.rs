@@ -85,6 +85,42 @@ fn a_scene_that_the_adapter_cannot_bind_names_its_buffer_and_its_limit() {
 }
 
 #[test]
+fn particles_that_the_oracle_would_follow_for_minutes_are_refused_in_a_moment() {
+    let folder = tempfile::tempdir().unwrap();
+    let began = Instant::now();
+    for (count, time) in [("5000", "590"), ("4000000", "149")] {
+        let sets = [format!("particles.count={count}"), format!("clock.time_s={time}"), "particles.octaves=6".into()];
+        let sets: Vec<&str> = sets.iter().flat_map(|set| ["--set", set]).collect();
+        let run = run_in(
+            folder.path(),
+            &[&["render", "builtin:chamber", "--adapter", "cpu", "--size", "8x6", "-o", "p.png"], &sets[..]].concat(),
+        );
+        assert!(run.code == 2 && run.err.contains(&format!("would follow {count} particles over")), "{}", run.err);
+        assert!(run.err.contains("or draw on an adapter") && !folder.path().join("p.png").exists(), "{}", run.err);
+    }
+    assert!(began.elapsed().as_secs() < 60, "{:?}", began.elapsed());
+}
+
+#[test]
+fn a_measurement_of_many_layers_reports_no_holes() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["bench", "--scene", "stack?layers=300", "--size", "256x192", "--samples", "2", "--json"];
+    let run = run_in(folder.path(), &args);
+    if run.code == 3 {
+        return eprintln!("skipped: no adapter is here");
+    }
+    assert_eq!(run.code, 0, "{}", run.err);
+    let rows = json(&run);
+    let promised: Vec<_> = rows["results"].as_array().unwrap().iter().filter(|row| row["is_promised"] == true).collect();
+    assert!(!promised.is_empty(), "{rows}");
+    for row in promised {
+        for figure in ["holes", "double_hits", "wrong_triangles"] {
+            assert_eq!(row["error"][figure], 0, "{figure}: {row}");
+        }
+    }
+}
+
+#[test]
 fn a_picture_that_is_too_large_for_the_oracle_is_refused_in_a_moment() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("crowd.gltf"), crowd(1_000, 3, 100_000, 0)).unwrap();

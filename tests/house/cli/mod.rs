@@ -166,6 +166,9 @@ fn what_no_adapter_could_draw_is_wrong_usage_from_check_on() {
         let check = run(&[&["check", preset], &sets[..]].concat());
         assert_eq!(check.code, 2, "{set:?}: {}", check.out);
         assert!(check.out.contains("FAIL"), "{}", check.out);
+        // On an adapter, too, if one is here: another one would not help.
+        let render = run(&[&["render", preset, "--size", "8x6", "-o", "{preset}.png"], &sets[..]].concat());
+        assert!(render.code == 2 || render.err.contains("no adapter"), "{set:?}: {}: {}", render.code, render.err);
     }
     assert_eq!(run(&["check"]).code, 0, "every preset of the gallery has a kernel");
 }
