@@ -4,6 +4,9 @@
 use super::*;
 use rasterlab::preset_file::{FrameStatus, frame_status};
 
+/// Bytes of a PNG's signature and its first chunk.
+const AFTER_HEADER: usize = 33;
+
 /// A PNG of 2x2 pixels that some other program made.
 fn foreign() -> Vec<u8> {
     rasterlab::preset_file::png_bytes(&[[9, 8, 7, 255]; 4], [2, 2]).unwrap()
@@ -11,7 +14,11 @@ fn foreign() -> Vec<u8> {
 
 /// `png` with one more chunk in front of its end.
 fn with_chunk(png: &[u8], name: &[u8; 4], data: &[u8]) -> Vec<u8> {
-    let (body, end) = png.split_at(png.len() - 12);
+    with_chunk_at(png, png.len() - 12, name, data)
+}
+
+fn with_chunk_at(png: &[u8], at: usize, name: &[u8; 4], data: &[u8]) -> Vec<u8> {
+    let (body, end) = png.split_at(at);
     let mut crc = flate2::Crc::new();
     crc.update(name);
     crc.update(data);
@@ -165,7 +172,7 @@ fn a_picture_of_a_model_opens_where_the_model_is_and_nowhere_else() {
     for name in ["/etc/passwd", "/etc/t.gltf", "C:\\\\t.gltf", "\\\\\\\\host\\\\share\\\\t.gltf", "//host/share/t.gltf"] {
         let text = format!("schema = 2\n[scene]\npath = \"{name}\"\n");
         let chunk = format!("rasterlab preset\0\0\0\0\0{text}");
-        fs::write(folder.path().join("elsewhere/e.png"), with_chunk(&foreign(), b"iTXt", chunk.as_bytes())).unwrap();
+        fs::write(folder.path().join("elsewhere/e.png"), with_chunk_at(&foreign(), AFTER_HEADER, b"iTXt", chunk.as_bytes())).unwrap();
         let refused = render("elsewhere/e.png", "f.png");
         assert!(refused.code == 2 && !folder.path().join("f.png").exists(), "{name}: {}", refused.err);
         assert!(refused.err.contains("outside of the folder of the picture"), "{name}: {}", refused.err);
