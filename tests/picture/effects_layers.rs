@@ -490,8 +490,8 @@ fn layers_with_a_mistake_are_caught() {
 #[test]
 fn a_card_lists_the_covered_samples_of_a_small_box_and_draws_each_of_them() {
     let Some(mut renderer) = renderer() else { return };
-    // All within 7x7 pixels, so most boxes have 32 samples at most.
-    let (scene, view, stack) = (scene_from(&soup(5, 120, 7, 0.08)), pixel_view(8, 8), with(&["xray"]));
+    // No box has more than the 32 pixels of the picture.
+    let (scene, view, stack) = (scene_from(&soup(5, 120, 7, 0.08)), pixel_view(8, 4), with(&["xray"]));
     let usual = renderer.gpu().caps.tuning();
     let card = Tuning { max_small_samples: 32, max_small_side: 32, specialized: true, ..usual };
     for option in options(&renderer) {
@@ -501,7 +501,8 @@ fn a_card_lists_the_covered_samples_of_a_small_box_and_draws_each_of_them() {
         renderer.set_tuning(usual);
         assert_eq!((&listed.frame.color, &listed.frame.layer_sums), (&whole.color, &whole.layer_sums), "{}", option.name());
         for (from, to) in [("vec2i(i % width, i / width)", "vec2i(i % width, 0)"), ("<< i;", "<< (i & 15u);")] {
-            let mut wrong = Renderer::with_library(renderer.gpu().clone(), mutated("lib/small_triangle", from, to).shaders());
+            let library = mutated("lib/small_triangle", from, to);
+            let mut wrong = Renderer::with_library(renderer.gpu().clone(), library.shaders());
             wrong.set_tuning(card);
             let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &pinned(option));
             assert!(verdict.report.layer_counts_wrong > 0, "{}: {to} does not show", option.name());
