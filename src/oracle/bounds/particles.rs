@@ -84,6 +84,11 @@ impl<'a> StepBounds<'a> {
         let terms = before.velocity.abs().max_element() + dt * drag * 4.0 * wide(p.speed_mps) + dt * wide(p.attraction).abs();
         let mut velocity = damped * (drag * self.flow_error(before.position, given) + pull) + 16.0 * ROUNDING * terms;
         let mut position = dt * velocity + given + 8.0 * ROUNDING * (before.position.abs().max_element() + dt * terms);
+        // A subnormal counts as 0 or as it is, in whatever is multiplied and added up here.
+        let reach = attractor + before.position.abs().max_element();
+        let flushed = 8.0 * f64::from(f32::MIN_POSITIVE) * (1.0 + 4.0 * wide(p.speed_mps) + reach);
+        velocity += flushed;
+        position += flushed;
         if self.is_rough {
             // f16 has eleven significant bits; below 2^-14 it may be flushed to 0.
             velocity += moved.velocity.abs().max_element() / 1024.0 + 6.2e-5;
@@ -123,4 +128,23 @@ fn is_near(reference: &ReferenceParticle, given: &ReferenceParticle, error: &Ste
     (reference.age, reference.births) == (given.age, given.births)
         && within(reference.position, given.position, error.position)
         && within(reference.velocity, given.velocity, error.velocity)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::oracle::render::particles::{born, first, moved};
+
+    #[test]
+    fn a_velocity_that_is_subnormal_may_be_0_and_nothing_else() {
+        let p = Particles { drag: 1e-38, attraction: 0.0, ..Particles::default() };
+        let bounds = StepBounds::new(&p, &ParticleReadback::default(), 1);
+        let before = first(&p, 3);
+        let [moved, born] = [moved(&p, 3, &before, 1).expect("it lives"), born(&p, 3, 1)];
+        assert!(moved.velocity.length() > 0.0 && moved.velocity.length() < f64::from(f32::MIN_POSITIVE), "{moved:?}");
+        let with = |velocity: DVec3| ReferenceParticle { velocity, ..moved };
+        assert!(bounds.allows(&before, Some(&moved), &born, &with(moved.velocity)));
+        assert!(bounds.allows(&before, Some(&moved), &born, &with(DVec3::ZERO)));
+        assert!(!bounds.allows(&before, Some(&moved), &born, &with(DVec3::X * 1e-30)));
+    }
 }
