@@ -36,8 +36,9 @@ pub fn until_compiling(lab: &mut Lab) -> String {
     let patience = Instant::now() + Duration::from_secs(60);
     loop {
         lab.step();
-        if let Some(text) = lab.state().compiling() {
-            lab.step();
+        let text = lab.state().compiling();
+        // The words come with the next frame, or later where the machine has other work.
+        if let Some(text) = text.filter(|text| lab.query_by_label(text).is_some()) {
             return text;
         }
         assert!(Instant::now() < patience, "nothing is compiled\n{}", lab.state().log_text());
