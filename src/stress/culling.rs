@@ -110,10 +110,36 @@ pub(super) fn camera_anywhere(scene: &Scene, rng: &mut Rng, step: usize) -> Came
     Camera { eye, target: eye + way.normalize_or(DVec3::X), up, projection, near_m }
 }
 
+/// What culling left out of the pictures of one view, with every option that culls.
+#[derive(Default)]
+pub(super) struct CulledPictures {
+    /// Pixels that show a triangle.
+    pub(super) covered: usize,
+    /// Meshlets outside the picture, and meshlets that face away.
+    pub(super) outside: u32,
+    pub(super) backfacing: u32,
+}
+
+/// Draws a view without culling and with every option that culls; the pictures must show the same triangles at the same depths.
+pub(super) fn compare_culled(context: &mut CaseContext, scene: &Arc<Scene>, view: &View, what: &str) -> Result<CulledPictures, EarlyEnd> {
+    let option = context.quick_option();
+    let accuracy = |culling: Culling| AccuracyRequest { pins: PinnedOptions::of(culling).with(option), ..AccuracyRequest::default() };
+    let reference = context.captured(scene, view, &Stack::default(), &accuracy(Culling::None), what)?;
+    let mut all = CulledPictures { covered: reference.frame.covered(), ..CulledPictures::default() };
+    for culling in [Culling::Frustum, Culling::TwoPass] {
+        let what = format!("{what}, culling {}", culling.name());
+        let capture = context.captured(scene, view, &Stack::default(), &accuracy(culling), &what)?;
+        same_nearest(&capture, &reference, &what)?;
+        let culled = context.renderer.culled().unwrap_or_default();
+        all.outside += culled.outside;
+        all.backfacing += culled.backfacing;
+    }
+    Ok(all)
+}
+
 fn culled_cameras(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let mut rng = context.rng(0xca3);
     let (mut outside, mut backfacing, mut covered) = (0, 0, 0);
-    let option = context.quick_option();
     let steps = if context.is_slow() { 8 } else { 32 };
     // Panels have two sides.
     for query in ["field?count=27&triangles=400", "town", "knot", "panels"] {
@@ -121,19 +147,10 @@ fn culled_cameras(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         for step in 0..steps {
             let camera = camera_anywhere(&scene, &mut rng, step);
             let view = View::new(&camera, 64, 48, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
-            let accuracy =
-                |culling: Culling| AccuracyRequest { pins: PinnedOptions::of(culling).with(option), ..AccuracyRequest::default() };
-            let what = format!("{query}, {camera:?}");
-            let reference = context.captured(&scene, &view, &Stack::default(), &accuracy(Culling::None), &what)?;
-            covered += reference.frame.covered();
-            for culling in [Culling::Frustum, Culling::TwoPass] {
-                let what = format!("{what}, culling {}", culling.name());
-                let capture = context.captured(&scene, &view, &Stack::default(), &accuracy(culling), &what)?;
-                same_nearest(&capture, &reference, &what)?;
-                let culled = context.renderer.culled().unwrap_or_default();
-                outside += culled.outside;
-                backfacing += culled.backfacing;
-            }
+            let culled = compare_culled(context, &scene, &view, &format!("{query}, {camera:?}"))?;
+            covered += culled.covered;
+            outside += culled.outside;
+            backfacing += culled.backfacing;
         }
     }
     check!(

@@ -7,14 +7,13 @@ use serde_json::json;
 
 use super::{
     case::{Case, Expectation},
-    checks::{EarlyEnd, check, same, same_nearest},
+    checks::{EarlyEnd, check, same},
     context::CaseContext,
-    culling::camera_anywhere,
+    culling::{camera_anywhere, compare_culled},
     drawing::{pinned, stack},
 };
 use crate::{
-    accuracy::{Culling, PinnedOptions, Skinning},
-    effects::Stack,
+    accuracy::{PinnedOptions, Skinning},
     plan::AccuracyRequest,
     preset::{ClipPlayback, Clock, Preset},
     scene::{
@@ -222,7 +221,6 @@ fn skins_beside_other_meshes(context: &mut CaseContext) -> Result<(), EarlyEnd> 
 fn culled_skins(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let mut rng = context.rng(0x5c1);
     let scene = Arc::new(mixed_company(&*context.scene("tentacle?tess=3&joints=5")?));
-    let option = context.quick_option();
     let (mut covered, mut culled) = (0, 0);
     for step in 0..if context.is_slow() { 12 } else { 48 } {
         let preset = Preset {
@@ -232,17 +230,9 @@ fn culled_skins(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             ..Preset::default()
         };
         let view = preset.view(&scene, [64, 48]);
-        let what = format!("{:?}", preset.camera);
-        let accuracy = |culling: Culling| AccuracyRequest { pins: PinnedOptions::of(culling).with(option), ..AccuracyRequest::default() };
-        let reference = context.captured(&scene, &view, &Stack::default(), &accuracy(Culling::None), &what)?;
-        covered += reference.frame.covered();
-        for culling in [Culling::Frustum, Culling::TwoPass] {
-            let what = format!("{what}, culling {}", culling.name());
-            let capture = context.captured(&scene, &view, &Stack::default(), &accuracy(culling), &what)?;
-            same_nearest(&capture, &reference, &what)?;
-            let left_out = context.renderer.culled().unwrap_or_default();
-            culled += left_out.outside + left_out.backfacing;
-        }
+        let left_out = compare_culled(context, &scene, &view, &format!("{:?}", preset.camera))?;
+        covered += left_out.covered;
+        culled += left_out.outside + left_out.backfacing;
     }
     check!(covered > 3_000 && culled > 200, "{covered} pixels are covered, and {culled} meshlets were left out");
     Ok(())

@@ -107,7 +107,7 @@ fn every_exact_backend_gives_the_same_triangle_ids_and_depth_keys() {
 #[test]
 fn a_picture_is_the_same_whatever_the_queues_of_the_one_before_held() {
     let Some(mut renderer) = renderer() else { return };
-    // Whatever covers more than a pixel is queued.
+    // Every triangle whose box has more than one pixel waits in a queue.
     let tuning = Tuning { max_small_samples: 1, max_small_side: 1, queue_groups: 8192, ..GRAPHICS_CARD };
     let (scene, stack, request) = (scene("sphere?triangles=20000"), stack(&["lambert"]), AccuracyRequest::default());
     let [far, near] = [[4, 4], [480, 360]].map(|size| view(&scene, size));

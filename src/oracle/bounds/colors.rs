@@ -154,24 +154,25 @@ impl AcceptedColors {
         self.pictures.iter().step_by(self.per_step).collect()
     }
 
-    /// Number of different sets of right colors in the step band. A flat area on a step is one, and so is a flat triangle, whatever lines
-    /// or patterns an effect draws on it.
+    /// Number of different sets of right colors in the step band. An area of one tone that lies on a step counts once: as one set, however
+    /// many triangles it has, or as one triangle, where an effect draws lines on it that give its pixels different sets.
     pub fn step_band_colors(&self, shot: &Shot, geometry: &Geometry, triangle_ids: &[u32]) -> u64 {
         let answers = self.at_steps();
         let mut known = HashMap::new();
         let mut is_flat = |id: u32| {
             *known.entry(id).or_insert_with(|| SurfaceTriangle::new(shot, geometry, id).is_some_and(|triangle| triangle.is_flat()))
         };
-        let (mut triangles, mut sets) = (HashSet::new(), HashSet::new());
+        let (mut flat_triangles, mut flat_sets, mut sets) = (HashSet::new(), HashSet::new(), HashSet::new());
         for (i, _) in self.step_band().into_iter().enumerate().filter(|(_, is_band)| *is_band) {
+            let set: Vec<[u8; 4]> = answers.iter().map(|answer| answer[i]).collect();
             if is_flat(triangle_ids[i]) {
-                triangles.insert(triangle_ids[i]);
+                flat_triangles.insert(triangle_ids[i]);
+                flat_sets.insert(set);
             } else {
-                sets.insert(answers.iter().map(|answer| answer[i]).collect::<Vec<_>>());
+                sets.insert(set);
             }
         }
-        // An area of several flat triangles has one set where no pattern divides it.
-        (triangles.len() + sets.len()) as u64
+        (flat_triangles.len().min(flat_sets.len()) + sets.len()) as u64
     }
 
     /// The step band: pixels with answers more than 1 of 255 apart because of a step of color. Empty without steps.

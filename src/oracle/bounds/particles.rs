@@ -84,7 +84,7 @@ impl<'a> StepBounds<'a> {
         let terms = before.velocity.abs().max_element() + dt * drag * 4.0 * wide(p.speed_mps) + dt * wide(p.attraction).abs();
         let mut velocity = damped * (drag * self.flow_error(before.position, given) + pull) + 16.0 * ROUNDING * terms;
         let mut position = dt * velocity + given + 8.0 * ROUNDING * (before.position.abs().max_element() + dt * terms);
-        // A subnormal counts as 0 or as it is, in whatever is multiplied and added up here.
+        // WGSL allows an adapter to replace every subnormal number by 0, whether it is a parameter, a product or a sum.
         let reach = attractor + before.position.abs().max_element();
         let flushed = 8.0 * f64::from(f32::MIN_POSITIVE) * (1.0 + 4.0 * wide(p.speed_mps) + reach);
         velocity += flushed;
