@@ -14,7 +14,7 @@ SMALLER = ["--size", "48x36"]
 # Cases of `stress` that take little time; a name stands for all cases whose names contain it.
 STRESS = [
     "clipped-quads", "beyond-the-guard-band", "rotated-quads", "fan-around-a-sample", "d3d", "translation", "sizes", "slivers",
-    "size-class-borders", "guard-band", "w-around-zero", "non-finite", "depth-range", "relative-positions", "coplanar-layers", "near-ties",
+    "size-class-borders", "guard-band", "clipped-needles", "w-around-zero", "non-finite", "depth-range", "relative-positions", "coplanar-layers", "near-ties",
     "degenerate-triangles", "queues", "empty-pictures", "odd-picture-sizes", "mirrored-transforms", "draw-limit", "unusual-skins",
     "rotations-of-any-length", "after-a-day", "shuffled-triangles", "near-plane-sweep", "culled-walk", "culled-cameras", "culled-behind-holes", "edges-beside-axes",
     "clipped-in-turns", "played-particles", "normals-along-axes",

@@ -112,9 +112,25 @@ impl Backend {
     /// The picture of `session`.
     pub fn frame(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Frame, CliError> {
         match self {
-            Self::Oracle => Ok(oracle::render_scaled(scene, &preset.moments(scene, preset.output.size), preset.accuracy.scale().factor())?),
+            Self::Oracle => Ok(oracle::render_scaled(scene, &self.moments(preset, scene)?, preset.accuracy.scale().factor())?),
             Self::Gpu(..) => Ok(self.capture(preset, scene)?.into_shown()),
         }
+    }
+
+    /// What is drawn for a picture, in order.
+    ///
+    /// # Errors
+    /// It would take a processor minutes.
+    fn moments(&self, preset: &Preset, scene: &Scene) -> Result<Vec<(View, Stack)>, DrawError> {
+        let moments = preset.moments(scene, preset.output.size);
+        let is_processor = match self {
+            Self::Oracle => true,
+            Self::Gpu(_, gpu) => gpu.summary.software,
+        };
+        if is_processor {
+            oracle::can_draw_sequence(scene, &moments, preset.accuracy.scale().factor())?;
+        }
+        Ok(moments)
     }
 
     /// The verdict on a capture of this backend. The oracle's own picture is the reference.
@@ -133,7 +149,7 @@ impl Backend {
 
     /// The picture with everything that a judge needs.
     pub fn capture(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Capture, CliError> {
-        let moments = preset.moments(scene, preset.output.size);
+        let moments = self.moments(preset, scene)?;
         match self {
             Self::Oracle => {
                 let ((view, stack), before) = moments.split_last().expect("a preset has at least one frame");

@@ -31,7 +31,7 @@ pub use bounds::{
     coverage::{BoundedCoverage, BoundedSample, cover_claims},
     vertex::snap_bounds,
 };
-pub use budget::can_judge;
+pub use budget::{can_draw_sequence, can_judge};
 pub use judge::{
     picture::{JUDGE_STAGES, judge},
     shadow::shadow_errors,

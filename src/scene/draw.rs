@@ -75,8 +75,18 @@ pub enum DrawError {
     )]
     OracleWork { positions: u64, limit: u64 },
     #[error(
+        "the oracle would test {samples} samples of triangles for the {image}, and may test {limit}; take a smaller {image}, fewer triangles \
+         or smaller ones"
+    )]
+    OracleSamples { image: &'static str, samples: u64, limit: u64 },
+    #[error(
+        "the processor would test {samples} samples of triangles (pictures drawn one after the other: {pictures}), and may test \
+         {limit}; take fewer frames, smaller pictures or shadow maps, fewer triangles, or an adapter that is no processor"
+    )]
+    SequenceSamples { pictures: u64, samples: u64, limit: u64 },
+    #[error(
         "the oracle would follow {count} particles over {steps} steps with {octaves} octaves, which makes {work} evaluations of the flow, and \
-         may make {limit}; draw fewer, a lower rate, fewer octaves or an earlier time, or draw on an adapter"
+         may make {limit}; take fewer particles, a lower rate, fewer octaves or an earlier time, or draw on an adapter"
     )]
     OracleParticles { count: u32, steps: u32, octaves: u32, work: u64, limit: u64 },
 }

@@ -12,7 +12,7 @@ use super::{
     scenes::{camera_view, pixel_view, scene_of_meshes, square_perspective, triangle_soup, triangle_soup_in_units},
 };
 use crate::{
-    math::GUARD_BAND,
+    math::{GUARD_BAND, SMALL_EXTENT, UNITS_PER_PIXEL},
     scene::{Scene, camera::Camera},
 };
 
@@ -23,6 +23,13 @@ pub const CASES: &[Case] = &[
         about: "corners on the guard band and one unit beyond, in all combinations: exact inside, no cracks beyond",
         expectation: Expectation::Exact,
         run: guard_band,
+    },
+    Case {
+        number: 9,
+        name: "clipped-needles",
+        about: "needles from the picture to beyond the guard band: what is left of them is long and thin, and drawn as what is long",
+        expectation: Expectation::Exact,
+        run: clipped_needles,
     },
     Case {
         number: 10,
@@ -70,6 +77,38 @@ fn guard_band(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         (whole, cut) = (whole + 4 - counters.clipped, cut + counters.clipped);
     }
     check!(whole >= 4 * 16 && cut > 512, "{whole} triangles whole, {cut} cut");
+    Ok(())
+}
+
+fn clipped_needles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let size = 96;
+    let view = pixel_view(size as u32, size as u32);
+    for (round, [dx, dy]) in (1..).zip([[1, 0], [-1, 0], [0, 1], [0, -1]]) {
+        let mut rng = context.rng(round);
+        let needles: Vec<_> = (0..24)
+            .map(|needle| {
+                let mut inside = || rng.between(0, UNITS_PER_PIXEL * size);
+                let (middle, along) = (inside(), [(); 3].map(|()| inside()));
+                let beyond = GUARD_BAND + rng.between(1, GUARD_BAND);
+                let mut corner = |i: usize| {
+                    // One corner in the picture and two beyond, or two and one.
+                    let along = if i == 0 || i == 1 && needle % 2 == 0 { along[i] } else { (dx + dy) * beyond };
+                    // Thinner than what small kernels may draw.
+                    let across = middle + rng.between(-SMALL_EXTENT / 2, SMALL_EXTENT / 2);
+                    if dx == 0 { [across, along] } else { [along, across] }
+                };
+                ([corner(0), corner(1), corner(2)], 0.25 + needle as f32 / 64.0)
+            })
+            .collect();
+        let what = format!("needles towards {dx}, {dy}");
+        let capture = context.exact_on_all(&scene_of_meshes(&[triangle_soup_in_units(&needles)]), &view, &what)?;
+        let counters = capture.frame.counters;
+        check!(
+            counters.clipped >= 20 && capture.frame.covered() > 2000,
+            "{what}: {counters:?}, {} pixels covered",
+            capture.frame.covered()
+        );
+    }
     Ok(())
 }
 

@@ -15,6 +15,8 @@ use rasterlab::{
     math::hash,
 };
 
+use crate::rounds::rounds;
+
 const MOVING: &str = "schema = 2\n[scene]\nbuiltin = \"knot?tess=3\"\nspin_deg_per_s = 90.0\n[clock]\nrange_s = [0.0, 1.0]\n\
     [effects.facet]\n[effects.lambert]\n[effects.shadow]\n[output]\nsize = [64, 48]\n";
 
@@ -77,7 +79,7 @@ fn a_device_lost_at_any_moment_ends_a_command_with_4_and_loses_nothing() {
         let began = Instant::now();
         assert_eq!(attempt(whole.path(), None).unwrap_or_else(|error| panic!("{command}: {}", error.sentence())), Exit::Done);
         let took = began.elapsed();
-        for round in 0..3 {
+        for round in 0..rounds(3) {
             let folder = tempfile::tempdir().unwrap();
             // The first is lost before anything was done with it.
             let share = if round == 0 { 0.0 } else { f64::from(hash(100 * number as u32 + round) % 1000) / 1000.0 };
@@ -102,5 +104,6 @@ fn a_device_lost_at_any_moment_ends_a_command_with_4_and_loses_nothing() {
             }
         }
     }
+    eprintln!("{lost} commands lost their device, {finished} were done before");
     assert!(lost >= 3, "{lost} commands lost their device, {finished} were done before");
 }

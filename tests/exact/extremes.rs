@@ -55,6 +55,7 @@ cases! {
     case_8_size_class_borders = "size-class-borders",
     case_8_edges_beside_axes = "edges-beside-axes",
     case_9_guard_band = "guard-band",
+    case_9_clipped_needles = "clipped-needles",
     case_10_w_around_zero = "w-around-zero",
     case_12_non_finite_positions = "non-finite-positions",
     case_12_non_finite_attributes = "non-finite-attributes",
@@ -181,6 +182,20 @@ const MUTANTS: &[(&str, &str, &str, &str, &str)] = &[
         "let slot = atomicAdd(&counters.clipped_triangles, 1u);",
         "if i == 1u { continue; }\n        let slot = atomicAdd(&counters.clipped_triangles, 1u);",
         "guard-band",
+    ),
+    (
+        "clipped triangles that are wide and flat are small",
+        "stages/geometry/clip",
+        "max(high.x - low.x, high.y - low.y) > SMALL_EXTENT",
+        "high.y - low.y > SMALL_EXTENT",
+        "clipped-needles",
+    ),
+    (
+        "clipped triangles that are tall and narrow are small",
+        "stages/geometry/clip",
+        "max(high.x - low.x, high.y - low.y) > SMALL_EXTENT",
+        "high.x - low.x > SMALL_EXTENT",
+        "clipped-needles",
     ),
     ("depth of another corner", "variants/depth/float", "weights.z * plane.depth.z", "weights.z * plane.depth.y", "scales-and-offsets"),
     (

@@ -18,6 +18,8 @@ mod grounds;
 mod hardware;
 mod judge_at_extremes;
 mod oracle;
+#[path = "../common/rounds.rs"]
+mod rounds;
 mod specialization;
 mod stacks;
 mod strict;

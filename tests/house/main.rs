@@ -15,6 +15,8 @@ mod mutation_campaign;
 mod plans;
 mod presets;
 mod registry;
+#[path = "../common/rounds.rs"]
+mod rounds;
 mod scenes;
 mod scopes;
 mod shaders;

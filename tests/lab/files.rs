@@ -159,7 +159,7 @@ fn loading_a_model_shows_its_progress_and_can_be_stopped_while_the_picture_stays
 
 /// Steps until a label with this text is there.
 fn wait_for_label(lab: &mut Lab, text: &str) {
-    let patience = Instant::now() + Duration::from_secs(30);
+    let patience = Instant::now() + Duration::from_secs(120);
     while lab.query_all_by_label_contains(text).next().is_none() {
         assert!(Instant::now() < patience, "there is no label with {text:?}\n{}", lab.state().log_text());
         lab.step();

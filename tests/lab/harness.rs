@@ -212,7 +212,8 @@ pub fn lab(open: &str) -> Option<Lab> {
 
 /// Steps until pictures, reports and thumbnails have arrived, and then until every undo step is closed.
 pub fn settle(lab: &mut Lab) {
-    let patience = Instant::now() + Duration::from_secs(120);
+    // A window that is compiling shares two processors with the other tests.
+    let patience = Instant::now() + Duration::from_secs(300);
     loop {
         lab.step();
         if lab.state().is_idle() {

@@ -3,6 +3,8 @@
 //! What a decision takes from floats (a front in the world, for instance) is rounded once per triangle, stored, and read by all
 //! passes: [`SampleEffect::sample_setup`].
 
+use std::cmp::Ordering;
+
 use glam::{DVec2, DVec3};
 
 use super::{ErrorBound, ROUNDING};
@@ -13,7 +15,7 @@ use crate::params::Params;
 pub struct TriangleSetup {
     /// Global triangle id; a clipped triangle has its parent's.
     pub triangle: u32,
-    /// Snapped corners, units of 1/256 px, in the order of the file, or of the clip fan.
+    /// Snapped corners, units of 1/256 px, in the order of the file, or of the clip fan; at most [`GUARD_BAND`](crate::math::GUARD_BAND) from 0 along both axes.
     pub corners: [[i32; 2]; 3],
     /// Bit k: the edge opposite corner k is an edge of the parent triangle, not of the clipping.
     pub outline: u32,
@@ -56,15 +58,15 @@ impl TriangleSetup {
 
     /// Top-left rule at the sample of a pixel: each edge function with the sample moved right by less than a unit, and down by less than that.
     fn covers(&self, x: i64, y: i64) -> bool {
-        let [a, b, c] = self.corners.map(|corner| corner.map(i128::from));
-        let (px, py) = (i128::from(256 * x + 128), i128::from(256 * y + 128));
-        let offset_cross = |[ax, ay]: [i128; 2], [bx, by]: [i128; 2]| {
+        let [a, b, c] = self.corners.map(|corner| corner.map(i64::from));
+        let (px, py) = (256 * x + 128, 256 * y + 128);
+        let side = |[ax, ay]: [i64; 2], [bx, by]: [i64; 2]| {
             let (dx, dy) = (bx - ax, by - ay);
-            ((dx * (py - ay) - dy * (px - ax)) << 60) - (dy << 30) + dx
+            (dx * (py - ay) - dy * (px - ax)).cmp(&0).then(0.cmp(&dy)).then(dx.cmp(&0))
         };
-        let signs = [offset_cross(b, c), offset_cross(c, a), offset_cross(a, b)].map(i128::signum);
         // Clockwise all are positive, counterclockwise all negative: a tie is broken alike for both sides of an edge.
-        signs == [1; 3] || signs == [-1; 3]
+        let sides = [side(b, c), side(c, a), side(a, b)];
+        sides == [Ordering::Greater; 3] || sides == [Ordering::Less; 3]
     }
 
     /// Bits that every doubled area of this triangle is shifted by, so that it fits 31 bits.

@@ -85,6 +85,7 @@ pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture
     stage("coverage");
     let (triangles, counters) = triangles(&shot, geometry);
     let tests = SampleTests::new(&shot, geometry);
+    budget::check_samples("picture", &triangles, &tests, view)?;
     let freedom = Freedom::of(&shot, &tests, &triangles);
     let tests = if freedom.is_scheduled() { tests } else { limited(tests, stack, &triangles, view) };
     let coverage = cover_claims(&tests, &triangles, view, &picture.frame.triangle_id);

@@ -4,6 +4,7 @@ use super::{
     super::{
         arithmetic::depth_key::key_fits,
         bounds::coverage::nearest_intervals,
+        budget::check_samples,
         perturbation::Perturbation,
         render::{
             project::project,
@@ -40,7 +41,9 @@ pub fn judge_shadow_map(report: &mut ErrorReport, shot: &Shot, map: &ShadowMap) 
     let own = project(&shot);
     assert_eq!(map.geometry.vertices.len(), own.vertices.len(), "the shadow map is of another scene or stack");
     let (triangles, _) = triangles(&shot, &map.geometry);
-    let intervals = nearest_intervals(&SampleTests::new(&shot, &map.geometry), &triangles, &view);
+    let tests = SampleTests::new(&shot, &map.geometry);
+    check_samples("shadow map", &triangles, &tests, &view)?;
+    let intervals = nearest_intervals(&tests, &triangles, &view);
     for (interval, &key) in intervals.iter().zip(&map.depth_keys) {
         let is_covered = interval[1] > f64::NEG_INFINITY;
         report.holes += u64::from(is_covered && key == 0);

@@ -51,7 +51,9 @@ pub fn render_next(scene: &Scene, view: &View, stack: &Stack, previous: Option<&
     geometry.dots = dot_records(&shot)?;
     geometry.shadow_map = shadow_map(scene, view, stack)?;
     let (triangles, counters) = triangles(&shot, &geometry);
-    let tests = limited(SampleTests::new(&shot, &geometry), stack, &triangles, view);
+    let tests = SampleTests::new(&shot, &geometry);
+    budget::check_samples("picture", &triangles, &tests, view)?;
+    let tests = limited(tests, stack, &triangles, view);
     let coverage = cover_with(&tests, &triangles, view);
     let (triangle_id, depth_key) = (coverage.triangle_ids(), coverage.depth_keys());
     let (triangle_ids, depth_keys) = (&*triangle_id, &*depth_key);

@@ -12,7 +12,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{
-    super::{arithmetic::depth_key::depth_key, shot::Shot},
+    super::{arithmetic::depth_key::depth_key, budget::check_samples, shot::Shot},
     coverage::nearest_depths,
     project::project,
     rays::Rays,
@@ -30,22 +30,26 @@ use crate::{
     scene::{Scene, draw::DrawError, shadow_resolution::ShadowResolution, view::View},
 };
 
+/// The view of the light whose shadow map a picture of `scene` needs; none if no effect needs one, or if shadows are traced.
+pub fn shadow_map_view(scene: &Scene, view: &View, stack: &Stack) -> Option<View> {
+    if view.precision.shadow == ShadowResolution::TRACED { None } else { stack.light_view(scene, view) }
+}
+
 /// The shadow map of `scene` for the light of `stack`; none if no effect needs one, or if shadows are traced.
 ///
 /// # Errors
-/// [`DrawError`] if a transform or the number of triangles is out of range.
+/// [`DrawError`] if a transform or the number of triangles is out of range, or the map takes more work than it may.
 pub fn shadow_map(scene: &Scene, view: &View, stack: &Stack) -> Result<Option<Box<ShadowMap>>, DrawError> {
-    if view.precision.shadow == ShadowResolution::TRACED {
-        return Ok(None);
-    }
-    let Some(view) = stack.light_view(scene, view) else { return Ok(None) };
+    let Some(view) = shadow_map_view(scene, view, stack) else { return Ok(None) };
     let casting = stack.shadow_casters();
     let draws = casting.draws(scene, &view)?;
     let shot = Shot::new(scene, &draws, &view, &casting);
     let mut geometry = project(&shot);
     geometry.sample_setups = sample_setups(&shot, &geometry);
     let (triangles, _) = triangles(&shot, &geometry);
-    let depths = nearest_depths(&SampleTests::new(&shot, &geometry), &triangles, &view);
+    let tests = SampleTests::new(&shot, &geometry);
+    check_samples("shadow map", &triangles, &tests, &view)?;
+    let depths = nearest_depths(&tests, &triangles, &view);
     let keys = depths.iter().map(|depth| if depth.is_finite() { depth_key(*depth) } else { 0 }).collect();
     Ok(Some(Box::new(ShadowMap { depth_keys: keys, geometry })))
 }

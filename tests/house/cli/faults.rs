@@ -5,6 +5,7 @@
 use std::time::{Duration, Instant, SystemTime};
 
 use super::*;
+use crate::rounds::rounds;
 use rasterlab::math::hash;
 
 /// Ends as a PNG does, and its pixels can be read.
@@ -70,7 +71,7 @@ fn a_command_killed_at_any_moment_leaves_the_old_file_or_the_new_one() {
                 .filter(|(name, _)| name != "note.png")
                 .for_each(|(name, _)| fs::remove_file(folder.path().join(name)).unwrap())
         };
-        kill_at_random(folder.path(), args, 16, prepare, || {
+        kill_at_random(folder.path(), args, rounds(16), prepare, || {
             for (name, bytes) in frames(folder.path()).iter().filter(|(name, _)| name.starts_with("out")) {
                 assert!(is_whole(bytes), "{args:?}: {name} is torn: {} bytes", bytes.len());
             }
@@ -97,7 +98,7 @@ fn a_preset_whose_save_is_killed_is_the_old_one_or_the_new_one() {
     assert!(migrate().wait().unwrap().success());
     let (whole_us, new) = (began.elapsed().as_micros() as u64, fs::read_to_string(&path).unwrap());
     assert_ne!(new, old);
-    for round in 0..24 {
+    for round in 0..rounds(24) {
         fs::write(&path, &old).unwrap();
         let mut child = migrate();
         std::thread::sleep(Duration::from_micros(whole_us * u64::from(hash(round) % 1200) / 1000));

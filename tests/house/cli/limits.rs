@@ -102,6 +102,38 @@ fn particles_that_the_oracle_would_follow_for_minutes_are_refused_in_a_moment() 
 }
 
 #[test]
+fn images_that_the_oracle_would_draw_for_minutes_are_refused_in_a_moment() {
+    let folder = tempfile::tempdir().unwrap();
+    let look = "schema = 2\n[scene]\nbuiltin = \"stack?layers=1000&gap=0.001\"\n[accuracy]\nshadow_map_size = \"4096\"\n[effects.shadow]\n\
+                [effects.boxes]\n[output]\nsize = [64, 48]\n";
+    fs::write(folder.path().join("look.toml"), look).unwrap();
+    fs::write(folder.path().join("smear.toml"), look.replace("1000", "60").replace("[output]", "[effects.smear]\nframes = 32\n[output]"))
+        .unwrap();
+    fs::write(folder.path().join("crowd.gltf"), crowd(1_000, 3, 100_000, 0)).unwrap();
+    let large = ["builtin:stack?layers=1000", "--size", "6000x4000", "--set", "boxes"];
+    let began = Instant::now();
+    for (args, wanted) in [
+        (&["verify", "look.toml"][..], "samples of triangles for the shadow map, and may test 2147483648; take a smaller shadow map"),
+        (&["verify", "look.toml", "--adapter", "cpu"], "samples of triangles for the shadow map"),
+        (&["render", "look.toml", "--adapter", "cpu", "-o", "a.png"], "samples of triangles for the shadow map"),
+        (
+            &[&["render", "--adapter", "cpu", "-o", "a.png"][..], &large].concat(),
+            "samples of triangles (pictures drawn one after the other: 1)",
+        ),
+        (&["verify", "smear.toml", "--adapter", "cpu"], "samples of triangles (pictures drawn one after the other: 33)"),
+        (&["verify", "crowd.gltf"], "GiB of memory"),
+    ] {
+        let run = run_in(folder.path(), args);
+        if run.code == 3 {
+            eprintln!("skipped without an adapter: {args:?}");
+            continue;
+        }
+        assert!(run.code == 2 && run.err.contains(wanted) && !folder.path().join("a.png").exists(), "{args:?}: {}: {}", run.code, run.err);
+    }
+    assert!(began.elapsed().as_secs() < 60, "{:?}", began.elapsed());
+}
+
+#[test]
 fn a_measurement_of_many_layers_reports_no_holes() {
     let folder = tempfile::tempdir().unwrap();
     let args = ["bench", "--scene", "stack?layers=300", "--size", "256x192", "--samples", "2", "--json"];

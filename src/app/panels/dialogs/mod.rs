@@ -97,9 +97,11 @@ impl Dialogs {
         self.open = Some(Dialog::NewEffect(NewEffect::new(duplicated, catalog)));
     }
 
-    /// Asks what becomes of unsaved changes and of `theirs`, the open preset as its file has it now. The outcome is saved to `saving`.
+    /// Asks what becomes of unsaved changes and of `theirs`, the open preset as its file has it now. The outcome is saved to `saving`. A
+    /// file that changes once more while that is asked leaves the question as it is, with the newer file.
     pub fn ask_changed(&mut self, theirs: Box<PresetFile>, saving: Option<PathBuf>) {
-        self.open = Some(Dialog::Changed(theirs, saving));
+        let asked = if let Some(Dialog::Changed(_, asked)) = self.open.take() { asked } else { None };
+        self.open = Some(Dialog::Changed(theirs, saving.or(asked)));
     }
 
     /// Asks whether the effects that `preset_file` brings may run.
@@ -236,4 +238,19 @@ fn new_effect_ui(ui: &mut Ui, dialog: &mut NewEffect) -> Option<Choice> {
     let verb = if matches!(dialog.origin, Origin::Duplicate(_)) { "Duplicate" } else { "Create" };
     let choice = buttons(ui, &[(verb, Choice::Accept, true), ("Cancel", Choice::Cancel, false)], |_| None);
     if is_entered { Some(Choice::Accept) } else { choice }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_changes_while_a_save_asks_does_not_turn_the_question_into_one_that_saves_nothing() {
+        let mut dialogs = Dialogs::default();
+        let theirs = |name: &str| Box::new(preset_file::open(name, &preset_file::Folders::default()).expect("a built-in preset"));
+        dialogs.ask_changed(theirs("facet"), Some("mine.toml".into()));
+        dialogs.ask_changed(theirs("fog"), None);
+        let Some(Dialog::Changed(theirs, Some(path))) = dialogs.open else { panic!("nothing is saved any more") };
+        assert_eq!((theirs.id.as_str(), path), ("fog", "mine.toml".into()));
+    }
 }
