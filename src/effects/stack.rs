@@ -14,6 +14,7 @@ use crate::{
         light::light_view,
         particle_discs::ParticleSettings,
         parts::{MAX_SCOPES, Scope},
+        shadow_resolution::ShadowResolution,
         view::View,
     },
 };
@@ -216,6 +217,11 @@ impl Stack {
     /// The view of that light, for its shadow map of `scene` in `view`.
     pub fn light_view(&self, scene: &Scene, view: &View) -> Option<View> {
         Some(light_view(self.light()?.toward(), scene, view, self.max_displacement_m(scene.bounds_of(scene.shadow_casters()).radius())))
+    }
+
+    /// The view of the light whose shadow map a picture of `scene` needs; none if no effect needs one, or if shadows are traced.
+    pub fn shadow_map_view(&self, scene: &Scene, view: &View) -> Option<View> {
+        if view.precision.shadow == ShadowResolution::TRACED { None } else { self.light_view(scene, view) }
     }
 
     /// The effects that decide which samples stop a light, and where they are.

@@ -8,7 +8,7 @@
 //! Imports run one way, from each of these to those before it:
 //!
 //! * `arithmetic`, `perturbation`, `shot`: exact arithmetic, and what a picture shows
-//! * `budget`: how much memory and work a picture may take
+//! * `budget`: how much memory a picture may take, and how many positions
 //! * `render`: draws exact pictures
 //! * `bounds`: how far an f32 renderer may be from them
 //! * `judge`: compares an adapter's picture with both
@@ -31,7 +31,6 @@ pub use bounds::{
     coverage::{BoundedCoverage, BoundedSample, cover_claims},
     vertex::snap_bounds,
 };
-pub use budget::{can_draw_sequence, can_judge};
 pub use judge::{
     picture::{JUDGE_STAGES, judge},
     shadow::shadow_errors,
@@ -52,5 +51,6 @@ pub use render::{
     shadow::shadow_map,
     strict::project_strict,
     triangles::{OrientedTriangle, triangles},
+    work_limits::{can_draw_sequence, can_judge},
 };
 pub use shot::Shot;

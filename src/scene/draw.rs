@@ -85,10 +85,10 @@ pub enum DrawError {
     )]
     SequenceSamples { pictures: u64, samples: u64, limit: u64 },
     #[error(
-        "the oracle would follow {count} particles over {steps} steps with {octaves} octaves, which makes {work} evaluations of the flow, and \
-         may make {limit}; take fewer particles, a lower rate, fewer octaves or an earlier time, or draw on an adapter"
+        "the processor would follow {count} particles over {steps} steps with {octaves} octaves, which makes {work} evaluations of the flow, and \
+         may make {limit}; take fewer particles, a lower rate, fewer octaves or an earlier time, or an adapter that is no processor"
     )]
-    OracleParticles { count: u32, steps: u32, octaves: u32, work: u64, limit: u64 },
+    ParticleWork { count: u32, steps: u32, octaves: u32, work: u64, limit: u64 },
 }
 
 /// The point of a box nearest to `eye`, in f32; the origin if the box is empty or too large.

@@ -23,6 +23,7 @@ use super::{
             sample_tests::SampleTests,
             strict::project_strict,
             triangles::triangles,
+            work_limits::check_samples,
         },
         shot::{Shot, drawn_view},
     },
@@ -85,7 +86,7 @@ pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture
     stage("coverage");
     let (triangles, counters) = triangles(&shot, geometry);
     let tests = SampleTests::new(&shot, geometry);
-    budget::check_samples("picture", &triangles, &tests, view)?;
+    check_samples("picture", &triangles, &tests, view)?;
     let freedom = Freedom::of(&shot, &tests, &triangles);
     let tests = if freedom.is_scheduled() { tests } else { limited(tests, stack, &triangles, view) };
     let coverage = cover_claims(&tests, &triangles, view, &picture.frame.triangle_id);

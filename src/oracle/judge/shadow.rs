@@ -4,7 +4,6 @@ use super::{
     super::{
         arithmetic::depth_key::key_fits,
         bounds::coverage::nearest_intervals,
-        budget::check_samples,
         perturbation::Perturbation,
         render::{
             project::project,
@@ -13,6 +12,7 @@ use super::{
             shadow::{Light, leaves_samples_out},
             surface::each_surface,
             triangles::triangles,
+            work_limits::check_samples,
         },
         shot::{Shot, drawn_view},
     },

@@ -16,6 +16,7 @@ pub mod mask;
 pub mod sample_setup;
 pub mod sample_tests;
 pub mod screen;
+pub mod work_limits;
 
 pub mod background;
 pub mod dots;

@@ -17,6 +17,7 @@ use super::{
     shadow::shadow_map,
     strict::project_strict,
     triangles::triangles,
+    work_limits::check_samples,
 };
 use crate::{
     effects::Stack,
@@ -52,7 +53,7 @@ pub fn render_next(scene: &Scene, view: &View, stack: &Stack, previous: Option<&
     geometry.shadow_map = shadow_map(scene, view, stack)?;
     let (triangles, counters) = triangles(&shot, &geometry);
     let tests = SampleTests::new(&shot, &geometry);
-    budget::check_samples("picture", &triangles, &tests, view)?;
+    check_samples("picture", &triangles, &tests, view)?;
     let tests = limited(tests, stack, &triangles, view);
     let coverage = cover_with(&tests, &triangles, view);
     let (triangle_id, depth_key) = (coverage.triangle_ids(), coverage.depth_keys());

@@ -12,13 +12,14 @@
 use glam::{DVec2, DVec3};
 
 use super::{
-    super::{arithmetic::depth_key::depth_key, budget::check_samples, shot::Shot},
+    super::{arithmetic::depth_key::depth_key, shot::Shot},
     coverage::nearest_depths,
     project::project,
     rays::Rays,
     sample_setup::sample_setups,
     sample_tests::SampleTests,
     triangles::triangles,
+    work_limits::check_samples,
 };
 use crate::{
     effects::{
@@ -30,17 +31,12 @@ use crate::{
     scene::{Scene, draw::DrawError, shadow_resolution::ShadowResolution, view::View},
 };
 
-/// The view of the light whose shadow map a picture of `scene` needs; none if no effect needs one, or if shadows are traced.
-pub fn shadow_map_view(scene: &Scene, view: &View, stack: &Stack) -> Option<View> {
-    if view.precision.shadow == ShadowResolution::TRACED { None } else { stack.light_view(scene, view) }
-}
-
 /// The shadow map of `scene` for the light of `stack`; none if no effect needs one, or if shadows are traced.
 ///
 /// # Errors
 /// [`DrawError`] if a transform or the number of triangles is out of range, or the map takes more work than it may.
 pub fn shadow_map(scene: &Scene, view: &View, stack: &Stack) -> Result<Option<Box<ShadowMap>>, DrawError> {
-    let Some(view) = shadow_map_view(scene, view, stack) else { return Ok(None) };
+    let Some(view) = stack.shadow_map_view(scene, view) else { return Ok(None) };
     let casting = stack.shadow_casters();
     let draws = casting.draws(scene, &view)?;
     let shot = Shot::new(scene, &draws, &view, &casting);
