@@ -122,7 +122,9 @@ fn every_case_of_the_table_is_tested_here_or_is_a_sweep_of_the_continuous_integr
     assert_eq!(tested, listed);
     assert_eq!(TESTED.len() + SWEEPS.len(), listed.len(), "a case is tested twice");
     let steps = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(".ci/run")).expect(".ci/run can be read");
-    assert!(steps.lines().any(|line| line == "\"$lab\" stress"), "no step of .ci/run draws all cases");
+    let names: String = steps.lines().filter_map(|line| line.strip_prefix("sweeps=").or(line.strip_prefix("sweeps+="))).collect();
+    assert_eq!(names.split(',').collect::<Vec<_>>(), SWEEPS, "the cases that .ci/run draws");
+    assert!(steps.lines().any(|line| line == "\"$lab\" stress --filter \"$sweeps\""), "no step of .ci/run draws them");
 }
 
 #[test]
