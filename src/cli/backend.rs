@@ -120,14 +120,14 @@ impl Backend {
     /// What is drawn for a picture, in order.
     ///
     /// # Errors
-    /// It would take a processor minutes.
+    /// It would take a CPU minutes.
     fn moments(&self, preset: &Preset, scene: &Scene) -> Result<Vec<(View, Stack)>, DrawError> {
         let moments = preset.moments(scene, preset.output.size);
-        let is_processor = match self {
+        let is_cpu = match self {
             Self::Oracle => true,
             Self::Gpu(_, gpu) => gpu.summary.software,
         };
-        if is_processor {
+        if is_cpu {
             oracle::can_draw_sequence(scene, &moments, preset.accuracy.scale().factor())?;
         }
         Ok(moments)

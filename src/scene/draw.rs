@@ -80,13 +80,13 @@ pub enum DrawError {
     )]
     OracleSamples { image: &'static str, samples: u64, limit: u64 },
     #[error(
-        "the processor would test {samples} samples of triangles (pictures drawn one after the other: {pictures}), and may test \
-         {limit}; take fewer frames, smaller pictures or shadow maps, fewer triangles, or an adapter that is no processor"
+        "the CPU would test {samples} samples of triangles (pictures drawn one after the other: {pictures}), and may test \
+         {limit}; take fewer frames, smaller pictures or shadow maps, fewer triangles, or take a GPU"
     )]
     SequenceSamples { pictures: u64, samples: u64, limit: u64 },
     #[error(
-        "the processor would follow {count} particles over {steps} steps with {octaves} octaves, which makes {work} evaluations of the flow, and \
-         may make {limit}; take fewer particles, a lower rate, fewer octaves or an earlier time, or an adapter that is no processor"
+        "the CPU would follow {count} particles over {steps} steps with {octaves} octaves, which makes {work} evaluations of the flow, and \
+         may make {limit}; take fewer particles, a lower rate, fewer octaves or an earlier time, or take a GPU"
     )]
     ParticleWork { count: u32, steps: u32, octaves: u32, work: u64, limit: u64 },
 }

@@ -27,7 +27,7 @@ pub const CASES: &[Case] = &[
     Case {
         number: 9,
         name: "clipped-needles",
-        about: "needles from the picture to beyond the guard band: what is left of them is long and thin, and drawn as what is long",
+        about: "thin triangles that reach beyond the guard band, cut to long thin pieces: each piece is drawn by the kernel of large triangles",
         expectation: Expectation::Exact,
         run: clipped_needles,
     },

@@ -1,4 +1,4 @@
-//! How much work a picture is for a processor, counted before it is drawn: samples in the bounding boxes of triangles, and steps of particles.
+//! How much work a picture is for a CPU, counted before it is drawn: samples in the bounding boxes of triangles, and steps of particles.
 
 use super::{
     super::{
@@ -62,7 +62,7 @@ pub fn can_judge(scene: &Scene, view: &View, stack: &Stack, scale: f64) -> Resul
     within_samples("shadow map", shadow_map)
 }
 
-/// Can a processor draw `sequence`, views and stacks of which each needs the picture before it, at so many times their size? Each is
+/// Can a CPU draw `sequence`, views and stacks of which each needs the picture before it, at so many times their size? Each is
 /// taken to be as much work as the last. The rasterizer of a CPU adapter takes about as long for a sample as the oracle.
 ///
 /// # Errors
