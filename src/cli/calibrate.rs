@@ -13,6 +13,7 @@ use super::{
 };
 use crate::{
     gpu::{Gpu, RenderError, Renderer, calibration},
+    oracle,
     plan::cost_model::{PassWork, Unit, UnitCosts},
     preset_file::{self, calibrations_folder},
     stress::random,
@@ -51,7 +52,7 @@ pub fn run(common: &Common, args: &Calibrate, streams: &mut Streams) -> Result<E
 /// Measures and keeps the costs.
 fn calibrated(gpu: &Arc<Gpu>, streams: &Streams) -> Result<UnitCosts, CliError> {
     let bar = streams.progress(0);
-    let found = calibration::calibrate(gpu, &mut |done, all| {
+    let found = calibration::calibrate(gpu, oracle::moved_sizes, &mut |done, all| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
     })?;

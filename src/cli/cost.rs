@@ -9,6 +9,7 @@ use crate::{
         Gpu, Renderer,
         calibration::{FrameTimes, draw_until_ready, paired, time},
     },
+    oracle,
     plan::{
         AccuracyRequest,
         cost_model::{FrameWork, UnitCosts},
@@ -64,12 +65,12 @@ impl PictureCost {
         Self { passes: passes.collect(), frame: Cost::new(costs.map(|costs| costs.ms(work)), measured), work: work.clone() }
     }
 
-    /// Of the last picture of a renderer, without drawing anything.
+    /// Of the last picture of a renderer, which showed `stack`, without drawing anything.
     ///
     /// # Errors
     /// When nothing was drawn.
-    pub fn predicted(renderer: &Renderer, costs: Option<&UnitCosts>) -> Result<Self, CliError> {
-        Ok(Self::new(&renderer.work()?, costs, None))
+    pub fn predicted(renderer: &Renderer, stack: &Stack, costs: Option<&UnitCosts>) -> Result<Self, CliError> {
+        Ok(Self::new(&renderer.work(stack, oracle::moved_sizes)?, costs, None))
     }
 
     /// Draws and times a picture.
@@ -84,7 +85,7 @@ impl PictureCost {
         costs: Option<&UnitCosts>,
     ) -> Result<Self, CliError> {
         draw_until_ready(renderer, view, stack, accuracy)?;
-        let work = renderer.work()?;
+        let work = renderer.work(stack, oracle::moved_sizes)?;
         Ok(Self::new(&work, costs, Some(&time(renderer, view, stack, accuracy)?)))
     }
 }

@@ -51,7 +51,7 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
                 let costs = kept_costs(&gpu, streams);
                 cost = Some(match args.measure {
                     true => PictureCost::measured(&mut renderer, &view, &stack, &preset.accuracy, costs.as_ref())?,
-                    false => PictureCost::predicted(&renderer, costs.as_ref())?,
+                    false => PictureCost::predicted(&renderer, &stack, costs.as_ref())?,
                 });
             }
             (Backend::Gpu(Box::new(crate::gpu::Renderer::new(gpu.clone())), gpu).json(), Some(plan))

@@ -24,6 +24,8 @@ pub struct Effect {
     pub base: Option<&'static Effect>,
     /// Is every frame the same with these parameter words?
     pub is_repeatable: fn(&[u32]) -> bool,
+    /// How often the longest loop over what belongs to one pixel runs with these parameter words; the cost model alone asks.
+    pub turns: fn(&[u32]) -> f64,
 }
 
 impl Effect {
@@ -39,6 +41,7 @@ impl Effect {
             source: None,
             base: None,
             is_repeatable: |_| true,
+            turns: |_| 0.0,
         }
     }
 
@@ -117,6 +120,12 @@ impl Effect {
     /// The same effect, whose pictures depend on the order of the hardware unless `is_repeatable` holds.
     pub const fn repeatable_if(mut self, is_repeatable: fn(&[u32]) -> bool) -> Self {
         self.is_repeatable = is_repeatable;
+        self
+    }
+
+    /// The same effect, with a loop over what belongs to a pixel that runs so often.
+    pub const fn with_turns(mut self, turns: fn(&[u32]) -> f64) -> Self {
+        self.turns = turns;
         self
     }
 

@@ -5,6 +5,7 @@
 
 use super::{
     Effect,
+    effect::read,
     hooks::{ImageEffect, Picture, Pixel, tone::encoded},
 };
 use crate::{
@@ -44,7 +45,9 @@ params! {
 }
 
 pub const EFFECT: Effect =
-    Effect::new::<Outline>("outline", "Outline", "lines at silhouettes, between objects and at steps of depth").on_image::<Outline>();
+    Effect::new::<Outline>("outline", "Outline", "lines at silhouettes, between objects and at steps of depth")
+        .on_image::<Outline>()
+        .with_turns(|words| (1.0 + 2.0 * f64::from(read::<Outline>(words).width_px)).powi(2));
 
 /// Triangle id, depth key and draw of a pixel.
 type Seen = (Option<u32>, u32, u32);
@@ -91,5 +94,16 @@ impl Outline {
             Side::Inside => curvature < -jump,
             Side::Both => curvature.abs() > jump,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn its_loop_visits_the_square_of_its_width() {
+        // Two pixels wide, so two on each side of the pixel itself.
+        assert_eq!((EFFECT.turns)(&(EFFECT.defaults)()), 25.0);
     }
 }

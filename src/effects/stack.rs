@@ -245,6 +245,11 @@ impl Stack {
         self.0.iter().all(|enabled| (enabled.effect.is_repeatable)(&enabled.words))
     }
 
+    /// How often the longest loop of an effect over what belongs to one pixel runs.
+    pub fn turns(&self) -> f64 {
+        self.0.iter().map(|enabled| (enabled.effect.turns)(&enabled.words)).fold(0.0, f64::max)
+    }
+
     /// Parameters of the effect called `name`, if it is on; `P` must be its own.
     pub fn params<P: Params>(&self, name: &str) -> Option<P> {
         self.get(name).map(|enabled| read(&enabled.words))

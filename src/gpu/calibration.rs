@@ -14,6 +14,7 @@ use super::{
     renderer::{Renderer, Report},
     timer::Detail,
     warm_up::{self, FRAMES_PER_SAMPLE},
+    workload::MovedSizes,
 };
 use crate::{
     effects::{Effect, Stack},
@@ -49,30 +50,47 @@ pub struct Calibrated {
     pub preparing_s: f64,
 }
 
-/// A picture of the calibration: scene, effects and size in pixels.
-type Picture = (&'static str, &'static [&'static str], [u32; 2]);
+/// An effect and the values that some of its parameters have instead of their defaults.
+type Enabled = (&'static str, &'static [(&'static str, f64)]);
 
+/// A picture of the calibration: scene, effects and size in pixels.
+type Picture = (&'static str, &'static [Enabled], [u32; 2]);
+
+/// Kinds of work that come together in one picture come in other proportions in another, so that the cost of each can be told.
 const PICTURES: &[Picture] = &[
-    ("sphere?triangles=200", &["lambert"], [16, 12]),
-    ("sphere?triangles=20000", &["lambert"], [160, 120]),
-    ("sphere?triangles=2000", &["outline", "fog"], [320, 240]),
-    ("teapot?tess=4", &["hatch", "normals"], [120, 90]),
-    ("stack?layers=24", &["depth"], [256, 256]),
-    ("near", &["facet"], [160, 120]),
-    ("chamber", &["toon"], [96, 96]),
-    ("globe?tess=6", &["wireframe"], [128, 96]),
-    ("leaves?n=200", &["dither"], [160, 120]),
-    ("tentacle?instances=6", &["posterize"], [96, 72]),
-    ("teapot?tess=6", &["points"], [120, 120]),
-    ("knot?tess=3", &["dots"], [160, 120]),
-    ("chamber", &["particles"], [120, 90]),
-    ("sphere?triangles=6000", &["draw_order"], [80, 60]),
-    ("knot?tess=4", &["xray"], [120, 90]),
-    ("sphere?triangles=3000", &["explode", "stipple"], [120, 90]),
-    ("knot?tess=6", &["wobble", "triangle_id"], [100, 75]),
-    ("still-life?tess=1", &["shadow"], [96, 72]),
-    ("cube-wall?columns=4&rows=3", &["boxes", "smear"], [100, 80]),
-    ("sphere?triangles=4000", &["dissolve"], [100, 75]),
+    ("sphere?triangles=200", &[("lambert", &[])], [16, 12]),
+    ("sphere?triangles=20000", &[("lambert", &[])], [160, 120]),
+    ("sphere?triangles=320", &[("triangle_id", &[])], [60, 45]),
+    ("sphere?triangles=1200", &[("race", &[])], [120, 90]),
+    ("sphere?triangles=2000", &[("outline", &[]), ("fog", &[])], [320, 240]),
+    ("teapot?tess=3", &[("outline", &[("width_px", 7.0)])], [80, 60]),
+    ("teapot?tess=4", &[("hatch", &[]), ("normals", &[])], [120, 90]),
+    ("stack?layers=24", &[("depth", &[])], [256, 256]),
+    ("stack?layers=6", &[("overdraw", &[]), ("stipple", &[])], [120, 90]),
+    ("near", &[("facet", &[])], [160, 120]),
+    ("near", &[("shadow", &[])], [96, 72]),
+    ("chamber", &[("toon", &[])], [96, 96]),
+    ("panels", &[("toon", &[])], [120, 90]),
+    ("panels", &[("smear", &[])], [40, 30]),
+    ("globe?tess=6", &[("wireframe", &[])], [128, 96]),
+    ("leaves?n=200", &[("dither", &[])], [160, 120]),
+    ("tentacle?instances=6", &[("posterize", &[])], [96, 72]),
+    ("tentacle?instances=60", &[("fog", &[])], [48, 36]),
+    ("teapot?tess=6", &[("points", &[])], [120, 120]),
+    ("teapot?tess=3", &[("points", &[("size_px", 20.0)])], [96, 72]),
+    ("knot?tess=3", &[("dots", &[])], [160, 120]),
+    ("teapot?tess=3", &[("dots", &[("spacing_m", 0.3), ("size_px", 8.0)])], [96, 72]),
+    ("chamber", &[("particles", &[])], [120, 90]),
+    ("teapot?tess=3", &[("particles", &[("count", 2000.0)])], [96, 72]),
+    ("sphere?triangles=6000", &[("draw_order", &[])], [80, 60]),
+    ("knot?tess=4", &[("xray", &[])], [120, 90]),
+    ("cube-wall?columns=8&rows=6", &[("xray", &[]), ("lambert", &[])], [60, 45]),
+    ("sphere?triangles=3000", &[("explode", &[]), ("stipple", &[])], [120, 90]),
+    ("knot?tess=6", &[("wobble", &[]), ("triangle_id", &[])], [100, 75]),
+    ("sphere?triangles=6000", &[("inflate", &[("amount_m", 8.0)])], [80, 60]),
+    ("still-life?tess=1", &[("shadow", &[])], [96, 72]),
+    ("cube-wall?columns=4&rows=3", &[("boxes", &[]), ("smear", &[])], [100, 80]),
+    ("sphere?triangles=4000", &[("dissolve", &[])], [100, 75]),
 ];
 
 /// Frames of a picture that are drawn before any is timed.
@@ -82,12 +100,12 @@ const FRAMES: [usize; 2] = [3, 9];
 /// Time for the frames of a picture beyond the least number of them.
 const PICTURE_BUDGET: Duration = Duration::from_millis(40);
 
-/// Times the pictures of the calibration on a device and computes the unit costs. `progress` is told the number of the next picture and of
-/// all.
+/// Times the pictures of the calibration on a device and computes the unit costs. `moved_sizes` samples their triangles; `progress` is told
+/// the number of the next picture and of all.
 ///
 /// # Errors
 /// When a picture cannot be drawn, or the device is lost.
-pub fn calibrate(gpu: &Arc<Gpu>, progress: &mut dyn FnMut(usize, usize)) -> Result<Calibrated, RenderError> {
+pub fn calibrate(gpu: &Arc<Gpu>, moved_sizes: MovedSizes, progress: &mut dyn FnMut(usize, usize)) -> Result<Calibrated, RenderError> {
     let begin = Instant::now();
     let accuracy = AccuracyRequest::default();
     // All kernels are compiled before anything is timed, so that a card stays at the clock of one at work.
@@ -106,21 +124,33 @@ pub fn calibrate(gpu: &Arc<Gpu>, progress: &mut dyn FnMut(usize, usize)) -> Resu
         sample(renderer, view, stack, &accuracy, Detail::Whole, frames)?;
         Ok(true)
     })?;
+    let is_software = gpu.caps.software;
+    let passes_weight = PASSES_WEIGHT[usize::from(is_software)];
     let mut measured = Vec::new();
     for (renderer, view, stack) in &mut ready {
-        let work = renderer.work()?;
-        measured.extend(observations(&work, &timed(renderer, view, stack, &accuracy)?));
+        let work = renderer.work(stack, moved_sizes)?;
+        measured.extend(observations(&work, &timed(renderer, view, stack, &accuracy)?, passes_weight));
     }
     let (measuring_s, all_s) = (start.elapsed().as_secs_f64(), begin.elapsed().as_secs_f64());
-    Ok(Calibrated { costs: UnitCosts::fitted(&measured), pictures: PICTURES.len(), measuring_s, preparing_s: all_s - measuring_s })
+    Ok(Calibrated {
+        costs: UnitCosts::fitted(&measured, !is_software),
+        pictures: PICTURES.len(),
+        measuring_s,
+        preparing_s: all_s - measuring_s,
+    })
 }
 
 /// The scene, view and stack of a picture; effects have their default values.
 fn made((query, effects, size): &Picture) -> (Arc<Scene>, View, Stack) {
     let scene = Arc::new(builtin::build(query).expect("a built-in scene"));
     let mut preset = Preset { scene: SceneSource::Builtin((*query).into()), ..Preset::default() };
-    for name in *effects {
-        preset.stack.enable(Effect::find(name).expect("a built-in effect"));
+    for (name, values) in *effects {
+        let effect = Effect::find(name).expect("a built-in effect");
+        let words = &mut preset.stack.enable(effect).words;
+        for (field, value) in *values {
+            let field = effect.fields.iter().find(|other| other.name == *field).expect("a parameter of the effect");
+            field.set(words, &[*value]).expect("an allowed value");
+        }
     }
     preset.clock.time_s = if preset.stack.has_steps() { 0.5 } else { 0.0 };
     let (view, stack) = preset.moments(&scene, *size).pop().expect("a preset has at least one frame");
@@ -207,12 +237,16 @@ fn timed(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &Accurac
     })
 }
 
+/// How much the passes of a frame count together beside the whole frame: on a card, where a pass that is timed alone overlaps with no other,
+/// and on a CPU adapter.
+const PASSES_WEIGHT: [f64; 2] = [0.2, 1.0];
+
 /// Times beside the work that was done in them: the whole frame, and every pass in proportion to its part of the frame.
-fn observations(work: &FrameWork, times: &FrameTimes) -> Vec<MeasuredWork> {
+fn observations(work: &FrameWork, times: &FrameTimes, passes_weight: f64) -> Vec<MeasuredWork> {
     let mut measured = vec![MeasuredWork { counts: work.counts(), ms: times.whole_ms, weight: 1.0 }];
     let all: f64 = times.passes.iter().map(|(_, ms)| ms).sum();
     for (pass, ms) in paired(work, times) {
-        measured.extend(ms.map(|ms| MeasuredWork { counts: pass.counts.clone(), ms, weight: (ms / all).max(0.02) }));
+        measured.extend(ms.map(|ms| MeasuredWork { counts: pass.counts.clone(), ms, weight: passes_weight * (ms / all).max(0.02) }));
     }
     measured
 }

@@ -294,7 +294,7 @@ impl DeformPass {
         buffers.fill(gpu, BufferId::Joints, bytemuck::cast_slice(&deforms.joints))?;
         buffers.fill(gpu, BufferId::MorphTargets, bytemuck::cast_slice(&deforms.morph_targets))?;
         let pipeline = Pipelines::new(Library::from_env()).get(gpu, key, Pass::Skin)?;
-        let group = Resources { buffers: vec![buffers], textures: Vec::new() }.bind_group(gpu, &pipeline)?;
+        let group = Resources { buffers: vec![buffers], textures: Vec::new(), light: None }.bind_group(gpu, &pipeline)?;
         Ok(Self { pipeline, group, groups: folded(deformable.div_ceil(key.work.group_size)) })
     }
 

@@ -54,7 +54,7 @@ mod readback;
 mod hardware_ids;
 mod renderer;
 mod warm_up;
-mod workload;
+pub mod workload;
 
 mod capture;
 pub mod hardware;

@@ -62,7 +62,7 @@ impl Naive {
         let mut pipelines = Pipelines::new(Library::from_env());
         let mut build = |entry: &str, groups: [u32; 2]| {
             let pipeline = pipelines.build(gpu, "baselines/naive", entry, entry, key, &[], &[])?;
-            let resources = Resources { buffers: vec![&buffers], textures: Vec::new() };
+            let resources = Resources { buffers: vec![&buffers], textures: Vec::new(), light: None };
             let group = resources.bind_group(gpu, &pipeline)?;
             Ok::<_, RenderError>((pipeline, group, groups))
         };

@@ -189,7 +189,7 @@ impl ParticleSimulation {
         let Device { gpu, pipelines, .. } = device;
         self.buffers.fill(gpu, BufferId::ParticleStep, bytemuck::bytes_of(uniform))?;
         let pipeline = pipelines.get(gpu, key, Pass::Particles)?;
-        let resources = Resources { buffers: vec![frame, &scene.buffers, &self.buffers], textures: Vec::new() };
+        let resources = Resources { buffers: vec![frame, &scene.buffers, &self.buffers], textures: Vec::new(), light: None };
         let group = resources.bind_group(gpu, &pipeline)?;
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("particle steps") });
         {

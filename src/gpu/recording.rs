@@ -12,7 +12,7 @@ use super::{
     pipelines::Pipelines,
     preparations::Preparation,
     records::CounterRecord,
-    resource_id::{ResourceId, TextureId},
+    resource_id::{BufferId, ResourceId, TextureId},
     scene_resources::SceneResources,
     textures::WordTexture,
     timer::Timer,
@@ -36,11 +36,16 @@ pub struct Device {
 pub struct Resources<'a> {
     pub buffers: Vec<&'a Buffers>,
     pub textures: Vec<(TextureId, &'a WordTexture)>,
+    /// The buffers of a light, whose depth keys are the shadow map.
+    pub light: Option<&'a Buffers>,
 }
 
 impl<'a> Resources<'a> {
     fn get(&self, id: ResourceId) -> Result<wgpu::BindingResource<'a>, RenderError> {
         let found = match id {
+            ResourceId::Buffer(BufferId::ShadowMapKeys) => {
+                self.light.map(|light| light.get(BufferId::DepthKeys).map(wgpu::Buffer::as_entire_binding))
+            }
             ResourceId::Buffer(id) => {
                 self.buffers.iter().find(|buffers| buffers.has(id)).map(|buffers| buffers.get(id).map(wgpu::Buffer::as_entire_binding))
             }
@@ -55,7 +60,7 @@ impl<'a> Resources<'a> {
     /// What every view of a scene shares.
     pub fn of_scene(scene: &'a SceneResources) -> Self {
         let atlas = scene.material_atlas.iter().map(|atlas| (TextureId::MaterialAtlas, atlas));
-        Self { buffers: vec![&scene.buffers], textures: atlas.collect() }
+        Self { buffers: vec![&scene.buffers], textures: atlas.collect(), light: None }
     }
 
     /// The same, with `first` before all others.
@@ -64,7 +69,7 @@ impl<'a> Resources<'a> {
         'a: 'b,
     {
         let buffers = std::iter::once(first).chain(self.buffers.iter().copied()).collect();
-        Resources { buffers, textures: self.textures.clone() }
+        Resources { buffers, textures: self.textures.clone(), light: self.light }
     }
 
     /// Every buffer and texture, for `explain`.
@@ -90,7 +95,7 @@ impl<'a> Resources<'a> {
     }
 
     fn revisions(&self) -> Vec<u64> {
-        let buffers = self.buffers.iter().map(|buffers| buffers.revision());
+        let buffers = self.buffers.iter().copied().chain(self.light).map(|buffers| buffers.revision());
         buffers.chain(self.textures.iter().map(|(_, texture)| texture.revision)).collect()
     }
 }

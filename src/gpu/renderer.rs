@@ -419,7 +419,8 @@ pub(super) fn shared<'a>(scene: &'a SceneResources, particles: &'a ParticleSimul
     resources.buffers.push(&particles.buffers);
     if let Some(shadow) = shadow {
         resources.buffers.push(&shadow.uniform);
-        resources.textures.push((TextureId::ShadowMap, &shadow.map));
+        resources.textures.extend(shadow.map.iter().map(|map| (TextureId::ShadowMap, map)));
+        resources.light = Some(&shadow.resources.buffers);
     }
     resources
 }

@@ -94,6 +94,7 @@ buffers! {
     Scaling = "scaling", UNIFORM, Nothing, "size of what is shown";
     ScaledColor = "shown", STORAGE, Nothing, "the picture at the size that is shown, 4 bytes per pixel";
     ShadowMapView = "light", UNIFORM, Nothing, "maps positions to the shadow map";
+    ShadowMapKeys = "shadow_map_keys", STORAGE, Nothing, "nearest depth key to the light per texel: the light's buffer of depth keys";
     DotFrame = "dot_frame", UNIFORM, Nothing, "size, spacing and color of dots";
     DotSegments = "dot_segments", STORAGE, Nothing, "both ends of every line segment that carries dots";
     DotRuns = "dot_runs", STORAGE, Nothing, "up to 64 dots of one segment each, 20 bytes";

@@ -32,7 +32,8 @@ pub struct ShadowPass {
     pub view: View,
     /// The uniform that maps positions to the shadow map.
     pub uniform: Buffers,
-    pub map: WordTexture,
+    /// A copy of the map for kernels that may bind no further storage buffer; see [`crate::plan::Tuning::buffered_shadow_map`].
+    pub map: Option<WordTexture>,
 }
 
 impl ShadowPass {
@@ -50,7 +51,7 @@ impl ShadowPass {
     ) -> Result<Option<Self>, RenderError> {
         let Some(view) = stack.light_view(scene.scene(), view) else { return Ok(None) };
         let (mut resources, mut uniform, map) = match previous {
-            Some(Self { resources, uniform, map, .. }) => (resources, uniform, Some(map)),
+            Some(Self { resources, uniform, map, .. }) => (resources, uniform, map),
             None => (ViewResources::new(Target::ShadowMap, Some(scene.scene())), Buffers::default(), None),
         };
         let accuracy = AccuracyRequest { pins: pins(), ..AccuracyRequest::default() };
@@ -59,25 +60,27 @@ impl ShadowPass {
         resources.prepare(device, scene, &request)?;
         uniform.fill(&device.gpu, BufferId::ShadowMapView, bytemuck::bytes_of(&ShadowMapUniform::new(&view)))?;
         let map = match map.filter(|map| map.texture.width() == view.width) {
-            Some(map) => map,
-            None => new_map(&device.gpu, view.width)?,
+            _ if device.tuning.buffered_shadow_map => None,
+            Some(map) => Some(map),
+            None => Some(new_map(&device.gpu, view.width)?),
         };
         let passes = resources.frame()?.plan.key.light_frame();
         resources.prepare_passes(device, passes, &Resources::of_scene(scene))?;
         Ok(Some(Self { resources, view, uniform, map }))
     }
 
-    /// Draws what the light sees, and copies it to the map.
+    /// Draws what the light sees, and copies it to the texture if there is one.
     ///
     /// # Errors
     /// When a buffer is missing.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timer: Option<&mut Timer>) -> Result<(), RenderError> {
         self.resources.clear(encoder, |occasion| occasion != ClearedBy::History)?;
         self.resources.record_all(encoder, Timing { timer, ends_frame: false })?;
+        let Some(map) = &self.map else { return Ok(()) };
         // Rows of the map are multiples of 256 bytes.
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * self.view.width), rows_per_image: None };
         let source = wgpu::TexelCopyBufferInfo { buffer: self.resources.buffers.get(BufferId::DepthKeys)?, layout };
-        encoder.copy_buffer_to_texture(source, self.map.texture.as_image_copy(), self.map.texture.size());
+        encoder.copy_buffer_to_texture(source, map.texture.as_image_copy(), map.texture.size());
         Ok(())
     }
 

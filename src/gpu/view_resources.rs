@@ -50,6 +50,8 @@ pub struct PreparedFrame {
     pub layout: FrameLayout,
     /// Radius of discs about corners, units of 1/256 px; 0 without them.
     pub point_radius: u32,
+    /// Of [`Stack::turns`].
+    pub turns: f64,
 }
 
 /// The draws of a scene as a view has them, and what they require of the kernels.
@@ -190,7 +192,7 @@ impl ViewResources {
         if let Some(dots) = &mut self.dots {
             dots.write(gpu, &self.buffers, |id| new.contains(&id))?;
         }
-        self.frame = Some(PreparedFrame { plan, view, layout, point_radius: request.stack.point_radius() });
+        self.frame = Some(PreparedFrame { plan, view, layout, point_radius: request.stack.point_radius(), turns: request.stack.turns() });
         self.is_prepared = true;
         Ok(())
     }

@@ -1,61 +1,93 @@
-//! The work of the last picture as the cost model counts it: from its plan, its layout and the text of its kernels, without reading
-//! anything back.
+//! The work of the last picture as the cost model counts it: from its plan, its layout and the text of its kernels, from what its queues held,
+//! and from a sample of its triangles.
 
 use super::{
     dots::DotStore,
     error::RenderError,
     frame_layout::{Dispatch, FrameLayout},
     recording::Device,
+    records::CounterRecord,
     renderer::Renderer,
     view_resources::{PreparedFrame, ViewResources},
 };
 use crate::{
-    effects::hooks::Shape,
+    effects::Stack,
     math::SMALL_EXTENT,
     plan::cost_model::{FrameWork, PassWork, Unit},
     scene::{
+        Scene,
+        draw::DrawError,
         needs::Needs,
-        sizes::{PathWork, SizeWork},
+        sizes::{PathWork, SizeWork, TriangleSizes},
+        view::View,
     },
-    shader::{key::KernelKey, link, pass::Pass, reflect, weight::Weight},
+    shader::{
+        key::KernelKey,
+        link,
+        pass::{Pass, TriangleSource},
+        reflect,
+        weight::Weight,
+    },
 };
+
+/// Samples the triangles of a scene as a view sees them where the effects of a stack have moved them.
+pub type MovedSizes = fn(&Scene, &View, &Stack) -> Result<TriangleSizes, DrawError>;
 
 /// How often a loop over few items runs, as a rule: joints of a vertex, corners of a polygon, taps of a filter.
 const TURNS: f64 = 4.0;
+
+/// Operations outside loops and in them beyond which most lie in branches that are seldom taken: more of them count by the root alone.
+const FEW_ONCE: f64 = 3000.0;
+const FEW_LOOPED: f64 = 2000.0;
+
+/// Pixels of a block that a workgroup draws at once, and sides of a tile in such blocks.
+const BLOCK: f64 = 64.0;
+const BLOCKS_OF_TILE: f64 = 64.0;
+/// Workgroups that share a medium triangle or a tile of a large one where there are few.
+const QUEUE_PARTS: f64 = 4.0;
+/// Samples in the box of a queued triangle whose size is not known.
+const USUAL_CANDIDATES: f64 = 100.0;
 
 /// Side of a tile of the resolve where it visits listed tiles, pixels.
 const TILE: u32 = 8;
 
 impl Renderer {
-    /// The work of the last picture, in the order in which its passes are timed.
+    /// The work of the last picture, which showed `stack`, in the order in which its passes are timed.
     ///
     /// # Errors
     /// When nothing was drawn.
-    pub fn work(&self) -> Result<FrameWork, RenderError> {
+    pub fn work(&self, stack: &Stack, moved_sizes: MovedSizes) -> Result<FrameWork, RenderError> {
         let frame = self.picture.frame()?;
+        let scene = self.scene.as_ref().ok_or(RenderError::NoScene)?.scene();
+        // Where particles are drawn only the adapter knows.
+        let sizes = |view: &View, stack: &Stack, prepared: &PreparedFrame| match scene.particle_discs {
+            Some(_) => prepared.plan.needs.sizes.clone(),
+            None => moved_sizes(scene, view, stack).unwrap_or_else(|_| prepared.plan.needs.sizes.clone()),
+        };
         let passes = frame.plan.key.frame();
         let deforming = passes.iter().take_while(|pass| matches!(pass, Pass::Particles | Pass::Skin)).count();
-        let picture = self.passes_of(&self.picture, &passes, "")?;
-        let mut work =
-            vec![PassWork { label: "clear".into(), counts: vec![(Unit::Frame, 1.0), (Unit::ClearedByte, cleared_bytes(&frame.layout))] }];
-        let (first, others) = picture.split_at(deforming.min(picture.len()));
-        work.extend_from_slice(first);
+        let picture = self.passes_of(&self.picture, &passes, "", &sizes(&frame.view, stack, frame))?;
+        let mut begin = clears(&frame.layout);
+        begin.push((Unit::Frame, 1.0));
+        let mut light = Vec::new();
         if let Some(shadow) = &self.shadow
-            && let Ok(light) = shadow.resources.frame()
+            && let Ok(prepared) = shadow.resources.frame()
         {
-            let mut passes = self.passes_of(&shadow.resources, &light.plan.key.light_frame(), "light ")?;
-            if let Some(first) = passes.first_mut() {
-                first.counts.push((Unit::ClearedByte, cleared_bytes(&light.layout)));
+            begin.push((Unit::ShadowMap, 1.0));
+            let passes = prepared.plan.key.light_frame();
+            light = self.passes_of(&shadow.resources, &passes, "light ", &sizes(&shadow.view, &stack.shadow_casters(), prepared))?;
+            if let Some(first) = light.first_mut() {
+                first.counts.extend(clears(&prepared.layout));
             }
-            work.extend(passes);
         }
-        work.extend_from_slice(others);
-        Ok(FrameWork { passes: work })
+        let (first, others) = picture.split_at(deforming.min(picture.len()));
+        let clear = PassWork { label: "clear".into(), counts: begin };
+        Ok(FrameWork { passes: [std::slice::from_ref(&clear), first, &light, others].concat() })
     }
 
-    fn passes_of(&self, view: &ViewResources, passes: &[Pass], prefix: &str) -> Result<Vec<PassWork>, RenderError> {
+    fn passes_of(&self, view: &ViewResources, passes: &[Pass], prefix: &str, sizes: &TriangleSizes) -> Result<Vec<PassWork>, RenderError> {
         let frame = view.frame()?;
-        let scene = FrameCounts::new(frame, view.dots.as_ref().map(DotStore::radius));
+        let scene = FrameCounts::new(frame, sizes, view.demand.as_ref(), view.dots.as_ref().map(DotStore::radius));
         passes
             .iter()
             .map(|&pass| {
@@ -76,11 +108,22 @@ fn weight_of(device: &Device, key: &KernelKey, pass: Pass) -> Result<Weight, Ren
     let linked = link::link(device.pipelines.library(), &pass.path(), key, &key.variants(pass))?;
     let reflected = reflect::reflect(&linked, device.gpu.caps.int64_atomics)?;
     let constants: Vec<_> = key.constants(pass).iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
-    Ok(reflected.weight(pass.stem(), &constants).unwrap_or_default())
+    let Weight { once, looped } = reflected.weight(pass.stem(), &constants).unwrap_or_default();
+    let usual = |operations: f64, few: f64| if operations > few { (few * operations).sqrt() } else { operations };
+    Ok(Weight { once: usual(once, FEW_ONCE), looped: usual(looped, FEW_LOOPED) })
 }
 
-fn cleared_bytes(layout: &FrameLayout) -> f64 {
-    layout.cleared(|_| true).map(|(_, bytes)| (bytes.end - bytes.start) as f64).sum()
+fn clears(layout: &FrameLayout) -> Vec<(Unit, f64)> {
+    let bytes = |(_, bytes): (_, std::ops::Range<u64>)| (bytes.end - bytes.start) as f64;
+    vec![(Unit::Fill, layout.cleared(|_| true).count() as f64), (Unit::ClearedByte, layout.cleared(|_| true).map(bytes).sum())]
+}
+
+/// What waits in the queues of a frame.
+struct Queues {
+    clip: f64,
+    clipped_triangles: f64,
+    medium: f64,
+    tiles: f64,
 }
 
 /// What the passes of a frame have to do, in numbers.
@@ -89,31 +132,57 @@ struct FrameCounts<'a> {
     layout: &'a FrameLayout,
     needs: &'a Needs,
     sizes: SizeWork,
+    queues: Queues,
+    /// Some triangle is visible.
+    shows: bool,
+    /// Estimated fraction of the triangles that is visible.
+    visible: f64,
     pixels: f64,
-    /// Estimated fraction of the pixels that show a triangle.
-    covered: f64,
     /// Estimated fraction of the pixels in tiles that a triangle touches.
     touched: f64,
     /// Pixels in the square about a corner's disc.
     disc: f64,
     /// Pixels in the square about a dot.
     dot: f64,
+    /// Turns of the longest loop that an effect runs at every pixel.
+    turns: f64,
 }
 
 impl<'a> FrameCounts<'a> {
-    fn new(frame: &'a PreparedFrame, dot_radius: Option<u32>) -> Self {
+    fn new(frame: &'a PreparedFrame, triangles: &TriangleSizes, demand: Option<&CounterRecord>, dot_radius: Option<u32>) -> Self {
         let (key, layout, needs) = (&frame.plan.key, &frame.layout, &*frame.plan.needs);
         let large = f64::from(SMALL_EXTENT >> key.options.coverage.subpixel_bits());
-        let sizes = needs.sizes.work(key.paths.max_small_samples, key.paths.max_small_side, large);
-        let pixels = f64::from(layout.size[0]) * f64::from(layout.size[1]);
-        let touched = needs.sizes.touched_fraction(layout.size, TILE);
-        let drawn = (sizes.small.covered + sizes.medium.covered + sizes.large.covered) / pixels.max(1.0);
-        let covered = touched.min(drawn);
+        let sizes = triangles.work(key.paths.max_small_samples, key.paths.max_small_side, large);
+        let queues = match demand {
+            Some(counted) => Queues {
+                clip: counted.clip.into(),
+                clipped_triangles: counted.clipped_triangles.into(),
+                medium: counted.medium.into(),
+                tiles: counted.tiles.into(),
+            },
+            None => Queues {
+                clip: sizes.cut,
+                clipped_triangles: 2.0 * sizes.cut,
+                medium: sizes.medium.triangles,
+                tiles: sizes.large.triangles + sizes.large.candidates / (BLOCK * BLOCKS_OF_TILE),
+            },
+        };
         // The part of a square that lies in the picture.
         let square = |units: u32| layout.size.iter().map(|side| (f64::from(units) / 128.0).clamp(1.0, f64::from(*side).max(1.0))).product();
-        let disc = square(frame.point_radius);
-        let dot = dot_radius.map_or(0.0, |radius| square(radius + 128));
-        Self { key, layout, needs, sizes, pixels, covered, touched, disc, dot }
+        Self {
+            key,
+            layout,
+            needs,
+            queues,
+            shows: triangles.visible() > 0,
+            visible: f64::from(triangles.visible()) / f64::from(triangles.sampled.max(1)),
+            pixels: f64::from(layout.size[0]) * f64::from(layout.size[1]),
+            touched: triangles.touched_fraction(layout.size, TILE),
+            disc: square(frame.point_radius),
+            dot: dot_radius.map_or(0.0, |radius| square(radius + 128)),
+            turns: frame.turns,
+            sizes,
+        }
     }
 
     fn triangles(&self) -> f64 {
@@ -128,45 +197,82 @@ impl<'a> FrameCounts<'a> {
         }
     }
 
-    fn counts(&self, pass: Pass, weight: Weight) -> Vec<(Unit, f64)> {
-        let Weight { once, looped } = weight;
-        let few_turns = once + TURNS * looped;
-        let sizes = &self.sizes;
-        // A workgroup visits squares of 64 pixels that a triangle touches: those inside, and those along its edges.
-        let queued = |path: PathWork, once: f64, looped: f64| {
-            let visited = path.covered + 16.0 * (path.candidates * path.triangles).sqrt() + 64.0 * path.triangles;
-            vec![(Unit::QueuedOperation, path.triangles * once), (Unit::QueuedSampleOperation, visited * looped)]
+    /// Samples that workgroups visit for medium triangles: squares of 64 pixels inside them, and along their edges.
+    fn medium_samples(&self) -> f64 {
+        let PathWork { triangles, candidates, covered, .. } = self.sizes.medium;
+        let (candidates, covered) = match triangles > 0.0 {
+            true => (candidates / triangles, covered / triangles),
+            false => (USUAL_CANDIDATES, 0.5 * USUAL_CANDIDATES),
         };
+        self.queues.medium * (covered + 16.0 * candidates.sqrt() + BLOCK)
+    }
+
+    /// The same for large ones: what they cover, and blocks along their edges in every tile.
+    fn large_samples(&self) -> f64 {
+        if self.queues.tiles > 0.0 { self.sizes.large.covered + 16.0 * BLOCK * self.queues.tiles } else { 0.0 }
+    }
+
+    /// Blocks of the medium triangle that has most, one after another, and of a tile.
+    fn medium_turns(&self) -> f64 {
+        if self.queues.medium > 0.0 { (self.sizes.medium.longest / BLOCK / QUEUE_PARTS).max(1.0) } else { 0.0 }
+    }
+
+    fn tile_turns(&self) -> f64 {
+        if self.queues.tiles > 0.0 { BLOCKS_OF_TILE / QUEUE_PARTS } else { 0.0 }
+    }
+
+    fn counts(&self, pass: Pass, Weight { once, looped }: Weight) -> Vec<(Unit, f64)> {
+        let few_turns = once + TURNS * looped;
+        let small = &self.sizes.small;
         match pass {
-            Pass::Particles => vec![(Unit::ParticleOperation, f64::from(self.layout.scene.particles) * few_turns)],
-            Pass::Skin => vec![(Unit::DeformOperation, f64::from(self.layout.scene.deformable) * few_turns)],
+            Pass::Particles => {
+                vec![(Unit::ParticleChain, few_turns), (Unit::ParticleOperation, f64::from(self.layout.scene.particles) * few_turns)]
+            }
+            Pass::Skin => {
+                vec![(Unit::DeformChain, few_turns), (Unit::DeformOperation, f64::from(self.layout.scene.deformable) * few_turns)]
+            }
             Pass::Project | Pass::Cull(_) | Pass::ProjectMeshlets => {
                 let vertices = self.invocations(pass).unwrap_or(0.5 * self.layout.scene.vertices as f64);
                 vec![(Unit::VertexOperation, vertices * few_turns)]
             }
-            Pass::SampleSetup(_) => vec![(Unit::SetupOperation, self.invocations(pass).unwrap_or(2.0 * sizes.cut) * few_turns)],
-            Pass::Clip => vec![(Unit::CutOperation, sizes.cut * few_turns)],
-            Pass::TileLarge => vec![(Unit::QueuedOperation, sizes.large.triangles * few_turns)],
+            Pass::SampleSetup(TriangleSource::Triangles) => {
+                vec![
+                    (Unit::SetupChain, few_turns),
+                    (Unit::SetupOperation, self.invocations(pass).unwrap_or_else(|| self.triangles()) * few_turns),
+                ]
+            }
+            Pass::SampleSetup(TriangleSource::ClippedTriangles) if self.queues.clipped_triangles > 0.0 => {
+                vec![(Unit::SetupChain, few_turns), (Unit::SetupOperation, self.queues.clipped_triangles * few_turns)]
+            }
+            Pass::Clip if self.queues.clip > 0.0 => {
+                vec![(Unit::Clipping, 1.0), (Unit::ClipChain, few_turns), (Unit::ClipOperation, self.queues.clip * few_turns)]
+            }
             Pass::RasterSmall(_) => {
-                let triangles = self.invocations(pass).unwrap_or(0.5 * self.triangles());
-                vec![(Unit::TriangleOperation, triangles * once), (Unit::SampleOperation, sizes.small.candidates * looped)]
+                let triangles = if self.invocations(pass).is_some() { self.triangles() } else { 0.5 * self.triangles() };
+                vec![
+                    (Unit::SmallTurn, small.longest),
+                    (Unit::SmallChain, small.longest * looped),
+                    (Unit::SmallOperation, triangles * once + small.candidates * looped),
+                ]
             }
             // Its text holds the code of three paths, each about as long as the others.
             Pass::RasterAll(_) => {
                 let (once, looped) = (once / 3.0, looped / 3.0);
-                let mut counts =
-                    vec![(Unit::TriangleOperation, self.triangles() * once), (Unit::SampleOperation, sizes.small.candidates * looped)];
-                counts.extend(queued(sizes.medium, once, looped));
-                counts.extend(queued(sizes.large, once, looped));
-                counts
+                let turns = small.longest.max(self.medium_turns()).max(self.tile_turns());
+                vec![
+                    (Unit::SmallTurn, turns),
+                    (Unit::SmallChain, turns * looped),
+                    (Unit::SmallOperation, self.triangles() * once + small.candidates * looped),
+                    (Unit::QueuedOperation, (self.medium_samples() + self.large_samples()) * looped),
+                ]
             }
+            Pass::TileLarge => vec![(Unit::QueuedOperation, self.sizes.large.triangles * few_turns)],
+            Pass::RasterMedium(_) => Self::queued(self.medium_turns(), self.medium_samples(), looped),
+            Pass::RasterLarge(_) => Self::queued(self.tile_turns(), self.large_samples(), looped),
             Pass::RasterPoints(_) => {
-                let triangles = self.invocations(pass).unwrap_or_else(|| self.triangles());
-                let seen = f64::from(self.needs.sizes.visible()) / f64::from(self.needs.sizes.sampled.max(1));
-                vec![(Unit::TriangleOperation, triangles * once), (Unit::DiscOperation, 3.0 * seen * self.triangles() * self.disc * looped)]
+                let turns = if self.shows { 3.0 * self.disc / f64::from(self.key.work.invocations_per_triangle.max(1)) } else { 0.0 };
+                vec![(Unit::DiscTurn, turns), (Unit::DiscOperation, self.triangles() * (once + 3.0 * self.visible * self.disc * looped))]
             }
-            Pass::RasterMedium(_) => queued(sizes.medium, once, looped),
-            Pass::RasterLarge(_) => queued(sizes.large, once, looped),
             Pass::OrderSums | Pass::OrderRanks => vec![(Unit::OrderedTriangle, self.triangles())],
             Pass::DotsEnds => vec![(Unit::LineOperation, self.layout.dots.map_or(0.0, |dots| dots.segments.into()) * few_turns)],
             Pass::DotsCull => vec![(Unit::LineOperation, self.layout.dots.map_or(0.0, |dots| dots.runs.into()) * few_turns)],
@@ -174,32 +280,39 @@ impl<'a> FrameCounts<'a> {
                 let dots = self.layout.dots.map_or(0.0, |dots| f64::from(if dots.chosen > 0 { dots.chosen } else { dots.dots }));
                 // Where dots would crowd, most have faded.
                 let shown = dots.min(0.25 * self.pixels);
-                vec![(Unit::LineOperation, dots * 0.1 * once), (Unit::DotOperation, shown * self.dot * looped)]
+                vec![(Unit::DotTurn, self.dot), (Unit::DotOperation, shown * self.dot * looped), (Unit::LineOperation, 0.1 * dots * once)]
             }
-            Pass::Resolve => self.resolve(weight),
+            Pass::Resolve => self.resolve(few_turns),
             Pass::Scale => {
                 let shown = f64::from(self.layout.shown[0]) * f64::from(self.layout.shown[1]);
                 let taps = (self.pixels / shown.max(1.0)).max(1.0);
-                vec![(Unit::PixelOperation, shown * once), (Unit::PixelLoopOperation, shown * taps * looped)]
+                vec![(Unit::PixelOperation, shown * (once + taps * looped))]
             }
-            Pass::DepthReduce | Pass::ListTiles => vec![(Unit::PixelVisited, self.pixels / 16.0)],
-            Pass::AdvanceQueues { .. } | Pass::Args | Pass::OrderLimit | Pass::OrderCut | Pass::DotsArgs => Vec::new(),
+            Pass::DepthReduce | Pass::ListTiles => vec![(Unit::Pixel, self.pixels / 16.0)],
+            Pass::SampleSetup(_)
+            | Pass::Clip
+            | Pass::AdvanceQueues { .. }
+            | Pass::Args
+            | Pass::OrderLimit
+            | Pass::OrderCut
+            | Pass::DotsArgs => Vec::new(),
         }
     }
 
-    fn resolve(&self, weight: Weight) -> Vec<(Unit, f64)> {
+    fn queued(turns: f64, samples: f64, looped: f64) -> Vec<(Unit, f64)> {
+        vec![(Unit::QueuedTurn, turns), (Unit::QueuedChain, turns * looped), (Unit::QueuedOperation, samples * looped)]
+    }
+
+    fn resolve(&self, few_turns: f64) -> Vec<(Unit, f64)> {
+        let shades = self.touched > 0.0 || self.queues.clip > 0.0;
+        let if_shaded = |count: f64| if shades { count } else { 0.0 };
         let visited = if self.key.work.listed_tiles { self.touched } else { 1.0 };
-        // Without listed tiles an invocation branches; with them it shades empty pixels too.
-        let is_other = self.key.samples.shape != Shape::Triangles || self.key.finishes_pixels() || self.key.moves();
-        let shaded = match self.key.work.listed_tiles {
-            true => self.touched,
-            false if is_other => self.touched.max(self.covered),
-            false => self.covered,
-        };
         vec![
-            (Unit::PixelVisited, visited * self.pixels),
-            (Unit::PixelOperation, shaded * self.pixels * weight.once),
-            (Unit::PixelLoopOperation, shaded * self.pixels * weight.looped),
+            (Unit::Pixel, visited * self.pixels),
+            (Unit::PixelChain, if_shaded(few_turns)),
+            (Unit::PixelTurn, if shades || self.key.finishes_pixels() { self.turns } else { 0.0 }),
+            (Unit::Textures, if_shaded(f64::from(u8::from(self.needs.textured > 0)))),
+            (Unit::PixelOperation, self.touched * self.pixels * few_turns),
         ]
     }
 }

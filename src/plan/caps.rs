@@ -56,6 +56,7 @@ impl Caps {
             hides_blocks: !self.software,
             stored_uniforms: self.software && self.max_storage_buffers >= MANY_STORAGE_BUFFERS,
             wide_loads: self.software && self.int64_atomics,
+            buffered_shadow_map: self.max_storage_buffers > MANY_STORAGE_BUFFERS,
             specialized: true,
         }
     }
@@ -89,6 +90,9 @@ pub struct Tuning {
     /// The resolve gathers two words at a time, as 64-bit integers, which the adapter must have. On lavapipe a gathered
     /// component of 64 bits costs about as much as one of 32; it was not tried on a card.
     pub wide_loads: bool,
+    /// A shadow map is read from the buffer that the light's passes wrote, which is one storage buffer more in the resolve; else it is
+    /// copied to a texture first.
+    pub buffered_shadow_map: bool,
     /// Omit what the scene does not need; else keep every path and every branch.
     pub specialized: bool,
 }

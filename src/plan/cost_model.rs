@@ -4,25 +4,41 @@
 use super::least_squares::{self, Observation};
 
 /// A kind of work. Operations are those of [`crate::shader::weight::Weight`].
+///
+/// Where a picture is small, a pass takes as long as the invocation that has most to do, and the others wait at its end. *Chains* are the
+/// operations of that invocation, *turns* how often its longest loop runs, during which it waits for memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Unit {
     Frame,
-    Pass,
+    ShadowMap,
+    Fill,
     ClearedByte,
+    Pass,
     VertexOperation,
+    DeformChain,
     DeformOperation,
+    SetupChain,
     SetupOperation,
-    TriangleOperation,
-    SampleOperation,
+    SmallTurn,
+    SmallChain,
+    SmallOperation,
+    QueuedTurn,
+    QueuedChain,
     QueuedOperation,
-    QueuedSampleOperation,
-    CutOperation,
+    Clipping,
+    ClipChain,
+    ClipOperation,
+    DiscTurn,
     DiscOperation,
+    Pixel,
+    PixelChain,
+    PixelTurn,
+    Textures,
     PixelOperation,
-    PixelLoopOperation,
-    PixelVisited,
+    ParticleChain,
     ParticleOperation,
     LineOperation,
+    DotTurn,
     DotOperation,
     OrderedTriangle,
 }
@@ -31,22 +47,39 @@ impl Unit {
     /// Every unit with its name in files, and what it is.
     pub const ALL: &'static [(Self, &'static str, &'static str)] = &[
         (Self::Frame, "frame", "a frame, however little it draws"),
-        (Self::Pass, "pass", "a pass, however little it does"),
+        (Self::ShadowMap, "shadow_map", "a shadow map that is drawn before the picture, beyond its passes"),
+        (Self::Fill, "fill", "a buffer that is filled with zeros before the passes"),
         (Self::ClearedByte, "cleared_byte", "a byte that is cleared"),
+        (Self::Pass, "pass", "a pass, however little it does"),
         (Self::VertexOperation, "vertex_operation", "an operation on a vertex that is projected, or on a meshlet"),
+        (Self::DeformChain, "deform_chain", "an operation on the longest way through the kernel that deforms vertices"),
         (Self::DeformOperation, "deform_operation", "an operation on a vertex that joints or morph targets deform"),
+        (Self::SetupChain, "setup_chain", "an operation on the longest way through the kernel of sample setups"),
         (Self::SetupOperation, "setup_operation", "an operation on what sample tests read once per triangle"),
-        (Self::TriangleOperation, "triangle_operation", "an operation on a triangle in the first raster pass"),
-        (Self::SampleOperation, "sample_operation", "an operation on a candidate sample of a small triangle"),
-        (Self::QueuedOperation, "queued_operation", "an operation on a medium or large triangle"),
-        (Self::QueuedSampleOperation, "queued_sample_operation", "an operation on a candidate sample of a medium or large triangle"),
-        (Self::CutOperation, "cut_operation", "an operation on a triangle that is clipped"),
+        (Self::SmallTurn, "small_turn", "a sample of the small triangle that has most, one after another"),
+        (Self::SmallChain, "small_chain", "an operation on these samples"),
+        (
+            Self::SmallOperation,
+            "small_operation",
+            "an operation on a triangle in a first raster pass, or on a candidate sample of a small one",
+        ),
+        (Self::QueuedTurn, "queued_turn", "a block of 64 pixels of the queued triangle that has most, one after another"),
+        (Self::QueuedChain, "queued_chain", "an operation on these blocks"),
+        (Self::QueuedOperation, "queued_operation", "an operation on a candidate sample of a medium or large triangle"),
+        (Self::Clipping, "clipping", "a pass that clips at least one triangle"),
+        (Self::ClipChain, "clip_chain", "an operation on the longest way through the kernel that clips"),
+        (Self::ClipOperation, "clip_operation", "an operation on a triangle that is clipped"),
+        (Self::DiscTurn, "disc_turn", "a candidate sample of the discs of one triangle, one after another"),
         (Self::DiscOperation, "disc_operation", "an operation on a candidate sample of a corner's disc"),
-        (Self::PixelOperation, "pixel_operation", "an operation on a pixel that is shaded, outside loops"),
-        (Self::PixelLoopOperation, "pixel_loop_operation", "an operation on a pixel that is shaded, in a loop"),
-        (Self::PixelVisited, "pixel_visited", "a pixel that the resolve visits"),
+        (Self::Pixel, "pixel", "a pixel that the resolve visits"),
+        (Self::PixelChain, "pixel_chain", "an operation on the longest way through the resolve"),
+        (Self::PixelTurn, "pixel_turn", "a turn of the longest loop of an effect over what belongs to one pixel"),
+        (Self::Textures, "textures", "a resolve that reads images of materials"),
+        (Self::PixelOperation, "pixel_operation", "an operation on a pixel that is shaded"),
+        (Self::ParticleChain, "particle_chain", "an operation on the longest way through the kernel that moves particles"),
         (Self::ParticleOperation, "particle_operation", "an operation on a particle"),
-        (Self::LineOperation, "line_operation", "an operation on a segment or a run of dots"),
+        (Self::LineOperation, "line_operation", "an operation on a segment, on a run of dots, or on a dot that is listed"),
+        (Self::DotTurn, "dot_turn", "a candidate sample of one dot, one after another"),
         (Self::DotOperation, "dot_operation", "an operation on a candidate sample of a dot"),
         (Self::OrderedTriangle, "ordered_triangle", "a triangle in a draw order, for each pass over the order"),
     ];
@@ -56,6 +89,28 @@ impl Unit {
     /// Its name in files.
     pub const fn name(self) -> &'static str {
         Self::ALL[self as usize].1
+    }
+
+    /// Does it count how long the invocation with most to do keeps the others waiting? Where invocations run one after another, as on a CPU
+    /// adapter, nothing waits for it.
+    pub const fn is_wait(self) -> bool {
+        matches!(
+            self,
+            Self::DeformChain
+                | Self::SetupChain
+                | Self::SmallTurn
+                | Self::SmallChain
+                | Self::QueuedTurn
+                | Self::QueuedChain
+                | Self::Clipping
+                | Self::ClipChain
+                | Self::DiscTurn
+                | Self::PixelChain
+                | Self::PixelTurn
+                | Self::Textures
+                | Self::ParticleChain
+                | Self::DotTurn
+        )
     }
 
     pub const fn about(self) -> &'static str {
@@ -111,11 +166,12 @@ impl UnitCosts {
         self.ms[unit as usize] = if ms.is_finite() { ms.max(0.0) } else { 0.0 };
     }
 
-    /// The costs that explain the measured times best, each time by its relative error.
-    pub fn fitted(measured: &[MeasuredWork]) -> Self {
+    /// The costs that explain the measured times best, each time by its relative error; without `waits`, [`Unit::is_wait`] costs nothing.
+    pub fn fitted(measured: &[MeasuredWork], waits: bool) -> Self {
         let observation = |work: &MeasuredWork| {
             let mut terms = vec![0.0; Unit::COUNT];
-            work.counts.iter().for_each(|(unit, count)| terms[*unit as usize] += count);
+            let counted = work.counts.iter().filter(|(unit, _)| waits || !unit.is_wait());
+            counted.for_each(|(unit, count)| terms[*unit as usize] += count);
             Observation { terms, value: work.ms, weight: work.weight }
         };
         let observations: Vec<_> = measured.iter().filter(|work| work.ms > 0.0).map(observation).collect();
@@ -149,7 +205,7 @@ mod tests {
     #[test]
     fn the_costs_behind_measured_times_are_found_again() {
         let mut known = UnitCosts::default();
-        [(Unit::Frame, 0.05), (Unit::Pass, 0.01), (Unit::TriangleOperation, 2e-7), (Unit::PixelOperation, 3e-8)]
+        [(Unit::Frame, 0.05), (Unit::Pass, 0.01), (Unit::SmallOperation, 2e-7), (Unit::PixelOperation, 3e-8)]
             .into_iter()
             .for_each(|(unit, ms)| known.set(unit, ms));
         let measured: Vec<MeasuredWork> = (0..40u32)
@@ -157,7 +213,7 @@ mod tests {
                 let counts = vec![
                     (Unit::Frame, 1.0),
                     (Unit::Pass, f64::from(3 + i % 5)),
-                    (Unit::TriangleOperation, f64::from(1 + i * i) * 1e4),
+                    (Unit::SmallOperation, f64::from(1 + i * i) * 1e4),
                     (Unit::PixelOperation, f64::from(1 + i * 7 % 11) * 1e6),
                 ];
                 // Every time is up to 2 % off, and one was disturbed.
@@ -166,7 +222,7 @@ mod tests {
                 MeasuredWork { ms: known.ms_of(&counts) * noise * disturbed, counts, weight: 1.0 }
             })
             .collect();
-        let found = UnitCosts::fitted(&measured);
+        let found = UnitCosts::fitted(&measured, true);
         for (unit, ..) in Unit::ALL {
             let (found, known) = (found.of(*unit), known.of(*unit));
             assert!((found - known).abs() <= 0.1 * known, "{}: {found} instead of {known}", unit.name());

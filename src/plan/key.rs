@@ -48,6 +48,7 @@ pub(super) fn key_of(
             hides_blocks: tuning.hides_blocks,
             stored_uniforms: tuning.stored_uniforms,
             wide_loads: tuning.wide_loads,
+            buffered_shadow_map: tuning.buffered_shadow_map && stack.reads_light(),
             paired_sums,
             sums_with_nearest: paired_sums
                 && !options.culling.occludes()

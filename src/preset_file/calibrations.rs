@@ -13,7 +13,7 @@ use super::{
 use crate::plan::cost_model::{Unit, UnitCosts};
 
 /// Changes where work is counted in another way, so that costs measured before hold no longer.
-const COUNTING: u32 = 1;
+const COUNTING: u32 = 2;
 
 /// What a calibration is for: it holds for nothing else.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -62,6 +62,8 @@ pub struct PathWork {
     pub candidates: f64,
     /// Samples that the triangles cover, whatever hides them.
     pub covered: f64,
+    /// The most samples in the box of one of them.
+    pub longest: f64,
 }
 
 /// Estimated work of all raster paths.
@@ -80,12 +82,27 @@ impl PathWork {
         self.triangles += times;
         self.candidates += times * f64::from(columns) * f64::from(rows);
         self.covered += times * f64::from(triangle.area);
+        self.longest = self.longest.max(f64::from(columns) * f64::from(rows));
     }
 }
 
 impl TriangleSizes {
     /// Samples triangles of `scene` as `view` sees it through `draws`, spread evenly over their list.
     pub fn of(scene: &Scene, draws: &[Draw], view: &View) -> Self {
+        Self::of_corners(scene, draws, view, |index, triangle| {
+            let draw = &draws[index];
+            let primitive = &scene.primitives[draw.primitive];
+            let position = |vertex: u32| match &draw.deform {
+                Some(deform) => deform.position(scene, primitive, vertex),
+                None => DVec3::from_array(primitive.position(scene, vertex).map(f64::from)),
+            };
+            primitive.corners(scene, triangle).map(|vertex| draw.clip_point(position(vertex)))
+        })
+    }
+
+    /// As [`Self::of`], where `corners` returns the positions in clip space of a triangle, given the index of its draw and its own within the
+    /// draw.
+    pub fn of_corners(scene: &Scene, draws: &[Draw], view: &View, corners: impl Fn(usize, u32) -> [DVec4; 3]) -> Self {
         let triangles: u64 = draws.iter().map(|draw| u64::from(scene.primitives[draw.primitive].triangle_count())).sum();
         let count = triangles.min(MAX_SAMPLES);
         let (mut visible, mut cut, mut near_clipped) = (Vec::new(), Vec::new(), 0);
@@ -93,8 +110,9 @@ impl TriangleSizes {
             // One random position per stratum: a fixed step would alias with the order of a strip.
             let within = if triangles > MAX_SAMPLES { hash_unit(k as u32) } else { 0.0 };
             let id = ((k as f64 + within) * triangles as f64 / count as f64) as u64;
-            let draw = &draws[draws.partition_point(|draw| u64::from(draw.first_triangle) <= id) - 1];
-            match classify(scene, draw, view, id as u32 - draw.first_triangle) {
+            let index = draws.partition_point(|draw| u64::from(draw.first_triangle) <= id) - 1;
+            let draw = &draws[index];
+            match classify(scene, draw, view, corners(index, id as u32 - draw.first_triangle)) {
                 Sampled::Visible(one) => visible.push(one),
                 Sampled::CrossesNear(rest) => {
                     near_clipped += 1;
@@ -235,13 +253,7 @@ fn behind_near(clip: [DVec4; 3], view: &View) -> Option<VisibleTriangle> {
     })
 }
 
-fn classify(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Sampled {
-    let primitive = &scene.primitives[draw.primitive];
-    let position = |vertex: u32| match &draw.deform {
-        Some(deform) => deform.position(scene, primitive, vertex),
-        None => DVec3::from_array(primitive.position(scene, vertex).map(f64::from)),
-    };
-    let clip: [DVec4; 3] = primitive.corners(scene, triangle).map(|vertex| draw.clip_point(position(vertex)));
+fn classify(scene: &Scene, draw: &Draw, view: &View, clip: [DVec4; 3]) -> Sampled {
     if clip.iter().any(|c| !c.is_finite()) {
         return Sampled::Hidden;
     }
@@ -258,7 +270,7 @@ fn classify(scene: &Scene, draw: &Draw, view: &View, triangle: u32) -> Sampled {
     let doubled = (b - a).perp_dot(c - a);
     let is_back = (doubled > 0.0) != draw.mirrored;
     let is_outside = high.x <= 0.0 || high.y <= 0.0 || low.x >= size.x || low.y >= size.y;
-    if is_outside || doubled == 0.0 || is_back && !scene.materials[primitive.material].double_sided {
+    if is_outside || doubled == 0.0 || is_back && !scene.materials[scene.primitives[draw.primitive].material].double_sided {
         return Sampled::Hidden;
     }
     let first = [0, 1].map(|axis| (low[axis] - 0.5).ceil().max(0.0));

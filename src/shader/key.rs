@@ -131,6 +131,8 @@ pub struct WorkSharing {
     pub stored_uniforms: bool,
     /// The resolve gathers two words at a time; see `plan::Tuning`.
     pub wide_loads: bool,
+    /// A shadow map is read from the buffer that the light's passes wrote, not from a texture; see `plan::Tuning`.
+    pub buffered_shadow_map: bool,
     /// The sums of an x-ray are added two words at a time, as 64-bit integers.
     pub paired_sums: bool,
     /// They are added by the passes that find the nearest, instead of passes of their own.
@@ -247,6 +249,7 @@ impl KernelKey {
                 hides_blocks: true,
                 stored_uniforms: false,
                 wide_loads: false,
+                buffered_shadow_map: false,
                 paired_sums: false,
                 sums_with_nearest: false,
             },

@@ -59,6 +59,7 @@ impl WorkDistribution {
             hides_blocks: is_card,
             stored_uniforms: false,
             wide_loads: false,
+            buffered_shadow_map: false,
             clears_in_passes: self == Self::Card,
             specialized: true,
         }

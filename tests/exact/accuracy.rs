@@ -372,6 +372,7 @@ const GRAPHICS_CARD: Tuning = Tuning {
     hides_blocks: true,
     stored_uniforms: false,
     wide_loads: false,
+    buffered_shadow_map: false,
     specialized: true,
 };
 

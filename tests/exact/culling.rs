@@ -88,6 +88,7 @@ fn both_tunings(renderer: &Renderer) -> [Tuning; 2] {
         hides_blocks: true,
         stored_uniforms: false,
         wide_loads: false,
+        buffered_shadow_map: false,
         specialized: true,
     };
     [renderer.gpu().caps.tuning(), card]

@@ -125,6 +125,7 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles() {
         hides_blocks: false,
         stored_uniforms: false,
         wide_loads: false,
+        buffered_shadow_map: false,
         specialized: true,
     };
     let explained = |query, tuning| explained(query, [320, 240], Visibility::Split32, tuning);

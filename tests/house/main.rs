@@ -20,6 +20,7 @@ mod rounds;
 mod scenes;
 mod scopes;
 mod shaders;
+mod sizes;
 mod surface_inputs;
 mod twins;
 mod weights;

@@ -3,6 +3,7 @@
 //@ use lib/triangle
 //@ use lib/surface
 //@ use lib/shade
+//@ use variants/shadow_map
 //@ use glue/effects
 
 // The transform from world space to the shadow map.
@@ -17,7 +18,6 @@ struct ShadowMapView {
 }
 
 @group(0) @binding(30) var<uniform> light: ShadowMapView;
-@group(0) @binding(31) var shadow_map: texture_2d<u32>;
 
 // Texels along a side of the filter: 1, 3 or 5.
 override SHADOW_TAPS_SIDE: i32 = 3;
@@ -28,7 +28,7 @@ override MAX_SHADOW_SLOPE: f32 = 8.0;
 // bits. There is no shadow outside the map.
 fn shadow_map_is_lit(texel: vec2i, depth: f32) -> bool {
     let is_inside = all(texel >= vec2i(0)) && all(texel < vec2i(i32(light.side)));
-    let key = textureLoad(shadow_map, clamp(texel, vec2i(0), vec2i(i32(light.side) - 1)), 0).x;
+    let key = shadow_map_key(vec2u(clamp(texel, vec2i(0), vec2i(i32(light.side) - 1))), light.side);
     return !is_inside || bitcast<u32>(max(depth, 1e-9)) >= key;
 }
 

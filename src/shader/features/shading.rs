@@ -76,7 +76,10 @@ const MASK: Feature = Feature {
 };
 
 const LIGHT: Feature = Feature {
-    variants: &[("shade_step", |key, _| step_if(key.reads_light(), "shadow_map"))],
+    variants: &[
+        ("shade_step", |key, _| step_if(key.reads_light(), "shadow_map")),
+        ("shadow_map", |key, _| if key.work.buffered_shadow_map { "buffer" } else { "texture" }),
+    ],
     constants: &[("SHADOW_TAPS_SIDE", |key, _| key.options.shadow_taps.side().into()), ("MAX_SHADOW_SLOPE", |_, _| MAX_SHADOW_SLOPE)],
     ..Feature::NONE
 };
