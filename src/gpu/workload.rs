@@ -36,11 +36,12 @@ pub type MovedSizes = fn(&Scene, &View, &Stack) -> Result<TriangleSizes, DrawErr
 /// How often a loop over few items runs, as a rule: joints of a vertex, corners of a polygon, taps of a filter.
 const TURNS: f64 = 4.0;
 
-/// Operations outside loops and in them beyond which most lie in branches that are seldom taken: more of them count by the root alone.
+/// Operations outside loops and in them beyond which most lie in branches that are seldom taken: on a card more of them count by the root alone.
+/// A CPU adapter runs both sides of a branch.
 const FEW_ONCE: f64 = 3000.0;
 const FEW_LOOPED: f64 = 2000.0;
 
-/// Pixels of a block that a workgroup draws at once, and sides of a tile in such blocks.
+/// Pixels of a block that a workgroup draws at once, and blocks of a tile.
 const BLOCK: f64 = 64.0;
 const BLOCKS_OF_TILE: f64 = 64.0;
 /// Workgroups that share a medium triangle or a tile of a large one where there are few.
@@ -73,7 +74,6 @@ impl Renderer {
         if let Some(shadow) = &self.shadow
             && let Ok(prepared) = shadow.resources.frame()
         {
-            begin.push((Unit::ShadowMap, 1.0));
             let passes = prepared.plan.key.light_frame();
             light = self.passes_of(&shadow.resources, &passes, "light ", &sizes(&shadow.view, &stack.shadow_casters(), prepared))?;
             if let Some(first) = light.first_mut() {
@@ -109,7 +109,8 @@ fn weight_of(device: &Device, key: &KernelKey, pass: Pass) -> Result<Weight, Ren
     let reflected = reflect::reflect(&linked, device.gpu.caps.int64_atomics)?;
     let constants: Vec<_> = key.constants(pass).iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
     let Weight { once, looped } = reflected.weight(pass.stem(), &constants).unwrap_or_default();
-    let usual = |operations: f64, few: f64| if operations > few { (few * operations).sqrt() } else { operations };
+    let is_software = device.gpu.caps.software;
+    let usual = |operations: f64, few: f64| if operations > few && !is_software { (few * operations).sqrt() } else { operations };
     Ok(Weight { once: usual(once, FEW_ONCE), looped: usual(looped, FEW_LOOPED) })
 }
 
@@ -197,6 +198,13 @@ impl<'a> FrameCounts<'a> {
         }
     }
 
+    /// Of so many covered samples those that blocks do not hide before they are drawn: where many layers lie on a pixel in any order, the n-th
+    /// is the nearest so far with a probability of 1/n.
+    fn drawn(&self, covered: f64) -> f64 {
+        let layers = covered / self.pixels.max(1.0);
+        if self.key.work.hides_blocks && layers > 1.0 { self.pixels * (1.0 + layers.ln()) } else { covered }
+    }
+
     /// Samples that workgroups visit for medium triangles: squares of 64 pixels inside them, and along their edges.
     fn medium_samples(&self) -> f64 {
         let PathWork { triangles, candidates, covered, .. } = self.sizes.medium;
@@ -204,12 +212,12 @@ impl<'a> FrameCounts<'a> {
             true => (candidates / triangles, covered / triangles),
             false => (USUAL_CANDIDATES, 0.5 * USUAL_CANDIDATES),
         };
-        self.queues.medium * (covered + 16.0 * candidates.sqrt() + BLOCK)
+        self.drawn(self.queues.medium * covered) + self.queues.medium * (16.0 * candidates.sqrt() + BLOCK)
     }
 
     /// The same for large ones: what they cover, and blocks along their edges in every tile.
     fn large_samples(&self) -> f64 {
-        if self.queues.tiles > 0.0 { self.sizes.large.covered + 16.0 * BLOCK * self.queues.tiles } else { 0.0 }
+        if self.queues.tiles > 0.0 { self.drawn(self.sizes.large.covered) + 16.0 * BLOCK * self.queues.tiles } else { 0.0 }
     }
 
     /// Blocks of the medium triangle that has most, one after another, and of a tile.
@@ -271,7 +279,11 @@ impl<'a> FrameCounts<'a> {
             Pass::RasterLarge(_) => Self::queued(self.tile_turns(), self.large_samples(), looped),
             Pass::RasterPoints(_) => {
                 let turns = if self.shows { 3.0 * self.disc / f64::from(self.key.work.invocations_per_triangle.max(1)) } else { 0.0 };
-                vec![(Unit::DiscTurn, turns), (Unit::DiscOperation, self.triangles() * (once + 3.0 * self.visible * self.disc * looped))]
+                vec![
+                    (Unit::DiscTurn, turns),
+                    (Unit::SmallOperation, self.triangles() * once),
+                    (Unit::DiscOperation, self.triangles() * 3.0 * self.visible * self.disc * looped),
+                ]
             }
             Pass::OrderSums | Pass::OrderRanks => vec![(Unit::OrderedTriangle, self.triangles())],
             Pass::DotsEnds => vec![(Unit::LineOperation, self.layout.dots.map_or(0.0, |dots| dots.segments.into()) * few_turns)],
@@ -282,7 +294,7 @@ impl<'a> FrameCounts<'a> {
                 let shown = dots.min(0.25 * self.pixels);
                 vec![(Unit::DotTurn, self.dot), (Unit::DotOperation, shown * self.dot * looped), (Unit::LineOperation, 0.1 * dots * once)]
             }
-            Pass::Resolve => self.resolve(few_turns),
+            Pass::Resolve => self.resolve(once, looped),
             Pass::Scale => {
                 let shown = f64::from(self.layout.shown[0]) * f64::from(self.layout.shown[1]);
                 let taps = (self.pixels / shown.max(1.0)).max(1.0);
@@ -303,16 +315,17 @@ impl<'a> FrameCounts<'a> {
         vec![(Unit::QueuedTurn, turns), (Unit::QueuedChain, turns * looped), (Unit::QueuedOperation, samples * looped)]
     }
 
-    fn resolve(&self, few_turns: f64) -> Vec<(Unit, f64)> {
+    fn resolve(&self, once: f64, looped: f64) -> Vec<(Unit, f64)> {
         let shades = self.touched > 0.0 || self.queues.clip > 0.0;
         let if_shaded = |count: f64| if shades { count } else { 0.0 };
         let visited = if self.key.work.listed_tiles { self.touched } else { 1.0 };
+        let shaded = if self.key.finishes_pixels() { 1.0 } else { self.touched };
         vec![
             (Unit::Pixel, visited * self.pixels),
-            (Unit::PixelChain, if_shaded(few_turns)),
+            (Unit::PixelChain, if_shaded(once + TURNS * looped)),
             (Unit::PixelTurn, if shades || self.key.finishes_pixels() { self.turns } else { 0.0 }),
             (Unit::Textures, if_shaded(f64::from(u8::from(self.needs.textured > 0)))),
-            (Unit::PixelOperation, self.touched * self.pixels * few_turns),
+            (Unit::PixelOperation, shaded * self.pixels * (once + self.turns.max(TURNS) * looped)),
         ]
     }
 }

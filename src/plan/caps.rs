@@ -1,6 +1,7 @@
 //! Capabilities of an adapter, and how work is divided on it.
 
-/// Kernels bind at most 8 storage buffers, and at most 2 more in place of uniforms or to clear what a draw order counts.
+/// Kernels bind at most 8 storage buffers, and at most 2 more in place of uniforms or to clear what a draw order counts. A resolve that reads
+/// a shadow map from a buffer binds one more.
 pub(super) const MANY_STORAGE_BUFFERS: u32 = 10;
 
 /// What an adapter can do for us.

@@ -10,7 +10,6 @@ use super::least_squares::{self, Observation};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Unit {
     Frame,
-    ShadowMap,
     Fill,
     ClearedByte,
     Pass,
@@ -47,7 +46,6 @@ impl Unit {
     /// Every unit with its name in files, and what it is.
     pub const ALL: &'static [(Self, &'static str, &'static str)] = &[
         (Self::Frame, "frame", "a frame, however little it draws"),
-        (Self::ShadowMap, "shadow_map", "a shadow map that is drawn before the picture, beyond its passes"),
         (Self::Fill, "fill", "a buffer that is filled with zeros before the passes"),
         (Self::ClearedByte, "cleared_byte", "a byte that is cleared"),
         (Self::Pass, "pass", "a pass, however little it does"),

@@ -38,6 +38,8 @@ fn keys() -> Vec<KernelKey> {
         key
     };
     let one = |effect| whole(Visibility::Split32, &[effect]);
+    let mut buffered = one(&rasterlab::effects::shadow::EFFECT);
+    buffered.work.buffered_shadow_map = true;
     vec![
         plain,
         culling,
@@ -45,6 +47,7 @@ fn keys() -> Vec<KernelKey> {
         dots(LineSource::Edges, DotCulling::Gpu),
         dots(LineSource::Polyline, DotCulling::Cpu),
         one(&rasterlab::effects::shadow::EFFECT),
+        buffered,
         one(&rasterlab::effects::overdraw::EFFECT),
         one(&rasterlab::effects::xray::EFFECT),
         whole(Visibility::Packed32, &[]),

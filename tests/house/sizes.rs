@@ -14,7 +14,7 @@ const SIZE: [u32; 2] = [160, 120];
 fn stack_of(name: &str, field: &str, value: f64) -> Stack {
     let mut stack = stress::stack(&[name]);
     let enabled = &mut stack.0[0];
-    let field = enabled.effect.fields.iter().find(|other| other.name == field).expect("a parameter");
+    let field = enabled.effect.field(field).expect("a parameter");
     field.set(&mut enabled.words, &[value]).expect("an allowed value");
     stack
 }

@@ -221,12 +221,24 @@ fn every_size_of_map_and_filter_is_what_the_oracle_draws() {
     let Some(mut renderer) = renderer() else { return };
     let scene = boxed("knot?tess=6");
     let quick = quick_option(&renderer);
+    let mut tuning = renderer.gpu().caps.tuning();
     for &map in ShadowMapSize::ALL {
         for &taps in ShadowTaps::ALL {
             let view = on(&view(&scene, [96, 72]), map, taps);
             let (capture, _) = exact(&mut renderer, &scene, &view, &lit(&["shadow"], &[]), &pinned(quick), &format!("{map:?} {taps:?}"));
             let keys = &capture.geometry.shadow_map.expect("there is a map").depth_keys;
             assert_eq!(keys.len(), (map.side() * map.side()) as usize);
+            // The map is read from the buffer in which it was drawn, or from a texture, its copy.
+            if std::mem::replace(&mut tuning.buffered_shadow_map, false) {
+                renderer.set_tuning(tuning);
+                let copied = captured(&mut renderer, &scene, &view, &lit(&["shadow"], &[]), &pinned(quick));
+                assert_eq!(renderer.key().map(|key| key.work.buffered_shadow_map), Some(false));
+                assert_eq!(copied.frame.color, capture.frame.color, "{map:?} {taps:?} from a texture");
+                tuning.buffered_shadow_map = true;
+                renderer.set_tuning(tuning);
+            } else {
+                eprintln!("this adapter binds too few storage buffers for a shadow map among them");
+            }
         }
     }
 }
@@ -390,6 +402,7 @@ fn mistakes_in_the_light_are_found() {
     let mapped = "variants/shade_step/shadow_map";
     for (file, from, to, stack) in [
         (mapped, "+ (effects.shadow.bias", "- (effects.shadow.bias", &plain),
+        ("variants/shadow_map/buffer", "texel.y * side + texel.x", "texel.x * side + texel.y", &plain),
         (mapped, "x <= radius", "x < radius", &plain),
         (mapped, "vec2i(first) + texel", "vec2i(first) + texel + vec2i(1, 0)", &plain),
         (mapped, "vec2i(first) + texel", "vec2i(first) + texel.yx", &plain),
@@ -399,6 +412,9 @@ fn mistakes_in_the_light_are_found() {
         ("variants/framebuffer_write/depth", "atomicMax(&depth_keys[pixel], key)", "atomicMin(&depth_keys[pixel], key)", &plain),
         ("lib/geometry", "picture_from_world * vec4f(center, 1.0)", "picture_from_world * vec4f(center.zyx, 1.0)", &parted),
     ] {
+        if file == "variants/shadow_map/buffer" && !gpu.caps.tuning().buffered_shadow_map {
+            continue;
+        }
         let mutated = mutated(file, from, to);
         let mut renderer = Renderer::with_library(gpu.clone(), mutated.shaders());
         let view = on(&view(&scene, [120, 90]), ShadowMapSize::Side512, ShadowTaps::Nine);

@@ -27,7 +27,7 @@ fn a_calibration_is_kept_used_and_mended() {
     assert!(first.err.contains("pictures were measured in") && first.err.contains("kept in"), "{}", first.err);
     let units = json(&first)["results"].as_array().expect("a result for every unit").clone();
     let ms = |unit: &str| units.iter().find(|one| one["unit"] == unit).and_then(|one| one["ms"].as_f64()).expect("a unit");
-    assert!(ms("pass") > 0.0 && ms("triangle_operation") > 0.0 && ms("pixel_operation") + ms("pixel_visited") > 0.0, "{units:?}");
+    assert!(ms("pass") > 0.0 && ms("small_operation") > 0.0 && ms("pixel_operation") + ms("pixel") > 0.0, "{units:?}");
     let again = run_in(folder.path(), &["calibrate", "--json"]);
     assert!(again.err.contains("the calibration that was kept"), "{}", again.err);
     for (one, other) in units.iter().zip(json(&again)["results"].as_array().expect("a result for every unit")) {
