@@ -99,7 +99,7 @@ pub fn calibration_key(gpu: &Arc<Gpu>) -> CalibrationKey {
 /// The calibration that was kept for an adapter, if there is one. A file that cannot be used is named on stderr.
 pub fn kept_costs(gpu: &Arc<Gpu>, streams: &Streams) -> Option<UnitCosts> {
     match calibration_key(gpu).read(&calibrations_folder()?) {
-        Kept::Found(costs) => Some(costs),
+        Kept::Found(costs) => Some(*costs),
         Kept::Nothing => None,
         Kept::Broken(why) => {
             streams.note(&format!("{why}; rasterlab calibrate makes another"));

@@ -27,7 +27,7 @@ pub struct CalibrationKey {
 /// A calibration that was kept, or why there is none.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kept {
-    Found(UnitCosts),
+    Found(Box<UnitCosts>),
     /// There is no file.
     Nothing,
     /// There is a file that cannot be used, in one sentence.
@@ -61,7 +61,8 @@ impl CalibrationKey {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Kept::Nothing,
             Err(error) => return Kept::Broken(format!("{} cannot be read: {error}", path.display())),
         };
-        parsed(&text).map_or_else(|why| Kept::Broken(format!("{} is no calibration: {why}", path.display())), Kept::Found)
+        parsed(&text)
+            .map_or_else(|why| Kept::Broken(format!("{} is no calibration: {why}", path.display())), |costs| Kept::Found(Box::new(costs)))
     }
 
     /// Keeps a calibration in `folder`, which is made if it is not there.
