@@ -9,9 +9,12 @@ use super::{
     background::{Urgency, started_as},
     settings::WindowPlace,
 };
-use crate::gpu::{
-    Gpu,
-    device::{self, AdapterChoice},
+use crate::{
+    gpu::{
+        Gpu,
+        device::{self, AdapterChoice},
+    },
+    preset_file::CalibrationKey,
 };
 
 /// Smallest size of the window's contents, points.
@@ -64,7 +67,8 @@ fn select(adapters: &[wgpu::Adapter], surface: Option<&wgpu::Surface<'_>>, choic
 /// If the window has no wgpu device.
 pub fn adopt(cc: &eframe::CreationContext<'_>, devices: Option<Devices>) -> anyhow::Result<(egui_wgpu::RenderState, Devices)> {
     let window = cc.wgpu_render_state.clone().context("the window has no wgpu device")?;
-    let devices = devices.unwrap_or_else(|| Devices::of(Gpu::adopt(&window.adapter, window.device.clone(), window.queue.clone())));
+    let adopted = || calibrated(Gpu::adopt(&window.adapter, window.device.clone(), window.queue.clone()));
+    let devices = devices.unwrap_or_else(|| Devices::of(adopted()));
     Ok((window, devices))
 }
 
@@ -82,10 +86,16 @@ impl Devices {
     /// The devices for a window on `window`. Without a second device the first draws, too.
     pub fn of(window: Arc<Gpu>) -> Self {
         let choice = AdapterChoice::Named(window.summary.name.clone());
-        let opened = || started_as(Urgency::Picture, || Gpu::open(&choice).ok());
+        let opened = || started_as(Urgency::Picture, || Gpu::open(&choice).ok().map(calibrated));
         let second = if window.summary.software { opened() } else { None };
         Self { picture: second.unwrap_or_else(|| window.clone()), window }
     }
+}
+
+/// The device, whose pictures are planned with the calibration that was kept for its adapter, if there is one.
+pub fn calibrated(gpu: Arc<Gpu>) -> Arc<Gpu> {
+    let measured = CalibrationKey::of(&gpu.summary.name, &gpu.summary.driver).kept_measured();
+    gpu.with_measured(measured)
 }
 
 /// Presents without waiting for the display on a software adapter, which is slower than any display. Waiting would also

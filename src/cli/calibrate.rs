@@ -7,15 +7,19 @@ use serde_json::{Map, Value, json};
 use super::{
     args::{Calibrate, Common},
     backend::Backend,
-    cost::{Cost, PictureCost, calibration_key, kept_costs},
+    cost::{Cost, PictureCost, calibration_key, kept_calibration},
     error::{CliError, Exit},
     streams::{Streams, table},
 };
 use crate::{
+    accuracy::AXES,
     gpu::{Gpu, RenderError, Renderer, calibration},
     oracle,
-    plan::cost_model::{PassWork, Unit, UnitCosts},
-    preset_file::{self, calibrations_folder},
+    plan::{
+        MEASURED_OPTIONS, MEASURED_TRIANGLES,
+        cost_model::{PassWork, Unit, UnitCosts},
+    },
+    preset_file::{self, Calibration, calibrations_folder},
     stress::random,
 };
 
@@ -31,26 +35,26 @@ pub fn run(common: &Common, args: &Calibrate, streams: &mut Streams) -> Result<E
     let Backend::Gpu(renderer, gpu) = &mut backend else {
         return Err(CliError::usage("calibrate needs a GPU adapter; the oracle is not measured"));
     };
-    let kept = if common.force { None } else { kept_costs(gpu, streams) };
-    let costs = match kept {
-        Some(costs) => {
+    let kept = if common.force { None } else { kept_calibration(gpu, streams) };
+    let found = match kept {
+        Some(found) => {
             streams.note("the calibration that was kept for this adapter, driver and version; --force measures again");
-            costs
+            found
         }
         None => calibrated(gpu, streams)?,
     };
     match args.check {
-        None => print_costs(&costs, adapter, streams)?,
+        None => print_calibration(&found, adapter, streams)?,
         Some(count) => {
-            let checked = check(renderer, &costs, count, args.seed, streams)?;
+            let checked = check(renderer, &found.units, count, args.seed, streams)?;
             print_check(&checked, adapter, streams)?;
         }
     }
     Ok(Exit::Done)
 }
 
-/// Measures and keeps the costs.
-fn calibrated(gpu: &Arc<Gpu>, streams: &Streams) -> Result<UnitCosts, CliError> {
+/// Measures and keeps what was found.
+fn calibrated(gpu: &Arc<Gpu>, streams: &Streams) -> Result<Calibration, CliError> {
     let bar = streams.progress(0);
     let found = calibration::calibrate(gpu, oracle::moved_sizes, &mut |done, all| {
         bar.set_length(all as u64);
@@ -61,27 +65,40 @@ fn calibrated(gpu: &Arc<Gpu>, streams: &Streams) -> Result<UnitCosts, CliError> 
         "{} pictures were measured in {:.2} s; compiling their kernels and making them ready took {:.1} s more",
         found.pictures, found.measuring_s, found.preparing_s
     ));
-    match kept_in(gpu, &found.costs) {
+    let calibration = Calibration { units: found.costs, measured: found.measured };
+    match kept_in(gpu, &calibration) {
         Some(Ok(path)) => streams.note(&format!("kept in {}", path.display())),
         Some(Err(error)) => streams.note(&format!("the calibration is not kept: {error}")),
         None => streams.note("the calibration is not kept: there is no folder for the user's configuration"),
     }
-    Ok(found.costs)
+    Ok(calibration)
 }
 
-fn kept_in(gpu: &Arc<Gpu>, costs: &UnitCosts) -> Option<Result<PathBuf, preset_file::PresetError>> {
-    Some(calibration_key(gpu).write(&calibrations_folder()?, costs))
+fn kept_in(gpu: &Arc<Gpu>, calibration: &Calibration) -> Option<Result<PathBuf, preset_file::PresetError>> {
+    Some(calibration_key(gpu).write(&calibrations_folder()?, calibration))
 }
 
-fn print_costs(costs: &UnitCosts, adapter: Value, streams: &mut Streams) -> Result<(), CliError> {
+fn print_calibration(Calibration { units: costs, measured }: &Calibration, adapter: Value, streams: &mut Streams) -> Result<(), CliError> {
+    let options = MEASURED_OPTIONS.iter().map(|&(axis, option)| {
+        let fractions = MEASURED_TRIANGLES.map(|triangles| measured.options.fraction(axis, option, triangles.into()).unwrap_or(1.0));
+        (format!("{}={}", AXES[axis].name, AXES[axis].words[option]), fractions)
+    });
     if streams.json {
-        let result = |(unit, name, about): &(Unit, &str, &str)| json!({ "unit": name, "ms": costs.of(*unit), "what": about });
-        streams.object("calibrate", adapter, Unit::ALL.iter().map(result).collect())?;
+        let unit = |(unit, name, about): &(Unit, &str, &str)| json!({ "unit": name, "ms": costs.of(*unit), "what": about });
+        let option = |(option, fractions): (String, [f64; 2])| json!({ "option": option, "of_the_defaults": fractions });
+        let samples = json!({ "max_small_samples": measured.max_small_samples });
+        streams.object("calibrate", adapter, Unit::ALL.iter().map(unit).chain(options.map(option)).chain([samples]).collect())?;
         return Ok(());
     }
     let mut rows = vec![["UNIT", "NANOSECONDS", "WHAT"].map(str::to_owned).to_vec()];
     rows.extend(Unit::ALL.iter().map(|(unit, name, about)| vec![(*name).into(), format!("{:.5}", costs.of(*unit) * 1e6), (*about).into()]));
     streams.text(&table(&rows))?;
+    let [few, many] = MEASURED_TRIANGLES;
+    let head = ["OPTION".into(), format!("AT {few} TRIANGLES"), format!("AT {many}")].to_vec();
+    let rows = std::iter::once(head).chain(options.map(|(option, [few, many])| vec![option, format!("{few:.2}"), format!("{many:.2}")]));
+    streams.text("\nTimes of frames with an option, as fractions of the time with the defaults:\n")?;
+    streams.text(&table(&rows.collect::<Vec<_>>()))?;
+    streams.text(&format!("\nOne invocation walks the samples of a triangle of up to {} samples.\n", measured.max_small_samples))?;
     Ok(())
 }
 

@@ -1,7 +1,5 @@
 //! Predicted and measured milliseconds of a picture, and the calibration that predictions come from.
 
-use std::sync::Arc;
-
 use super::{error::CliError, streams::Streams};
 use crate::{
     effects::Stack,
@@ -14,9 +12,8 @@ use crate::{
         AccuracyRequest,
         cost_model::{FrameWork, UnitCosts},
     },
-    preset_file::{CalibrationKey, Fnv, Kept, calibrations_folder},
+    preset_file::{Calibration, CalibrationKey, Kept},
     scene::view::View,
-    shader::library::Library,
 };
 
 /// What a pass or a frame is predicted to take and was measured to take, milliseconds.
@@ -91,15 +88,14 @@ impl PictureCost {
 }
 
 /// What the calibration of an adapter is kept under.
-pub fn calibration_key(gpu: &Arc<Gpu>) -> CalibrationKey {
-    let shaders = Library::from_env().texts().fold(Fnv::new(), |hash, text| hash.bytes(text.as_bytes()));
-    CalibrationKey { adapter: gpu.summary.name.clone(), driver: gpu.summary.driver.clone(), shaders: shaders.0 }
+pub fn calibration_key(gpu: &Gpu) -> CalibrationKey {
+    CalibrationKey::of(&gpu.summary.name, &gpu.summary.driver)
 }
 
 /// The calibration that was kept for an adapter, if there is one. A file that cannot be used is named on stderr.
-pub fn kept_costs(gpu: &Arc<Gpu>, streams: &Streams) -> Option<UnitCosts> {
-    match calibration_key(gpu).read(&calibrations_folder()?) {
-        Kept::Found(costs) => Some(*costs),
+pub fn kept_calibration(gpu: &Gpu, streams: &Streams) -> Option<Calibration> {
+    match calibration_key(gpu).kept() {
+        Kept::Found(found) => Some(*found),
         Kept::Nothing => None,
         Kept::Broken(why) => {
             streams.note(&format!("{why}; rasterlab calibrate makes another"));

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::{
     args::{Common, Explain},
     backend::{Backend, scene_of},
-    cost::{Cost, PictureCost, kept_costs},
+    cost::{Cost, PictureCost, kept_calibration},
     error::{CliError, Exit},
     open::{named, open},
     streams::{Streams, table},
@@ -48,7 +48,7 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
             }
             let plan = renderer.explain();
             if view.pixels() > 0 {
-                let costs = kept_costs(&gpu, streams);
+                let costs = kept_calibration(&gpu, streams).map(|found| found.units);
                 cost = Some(match args.measure {
                     true => PictureCost::measured(&mut renderer, &view, &stack, &preset.accuracy, costs.as_ref())?,
                     false => PictureCost::predicted(&renderer, &stack, costs.as_ref())?,

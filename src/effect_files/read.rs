@@ -131,6 +131,7 @@ fn read_anew(file: &str, stem: &str, written: &str) -> Result<&'static Effect, E
         base: None,
         is_repeatable: |_| true,
         turns: |_| 0.0,
+        walks_rows: |_| false,
     };
     let parts = Parts { text: &text, stem, declaration: &declaration, rewritten: &rewritten };
     let checked = check::check(parts, leak(copy(&effect)))?;

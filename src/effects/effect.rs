@@ -26,6 +26,8 @@ pub struct Effect {
     pub is_repeatable: fn(&[u32]) -> bool,
     /// How often the longest loop over what belongs to one pixel runs with these parameter words; the cost model alone asks.
     pub turns: fn(&[u32]) -> f64,
+    /// Does the sample setup visit every row of a triangle with these parameter words? The cost model alone asks.
+    pub walks_rows: fn(&[u32]) -> bool,
 }
 
 impl Effect {
@@ -42,6 +44,7 @@ impl Effect {
             base: None,
             is_repeatable: |_| true,
             turns: |_| 0.0,
+            walks_rows: |_| false,
         }
     }
 
@@ -126,6 +129,12 @@ impl Effect {
     /// The same effect, with a loop over what belongs to a pixel that runs so often.
     pub const fn with_turns(mut self, turns: fn(&[u32]) -> f64) -> Self {
         self.turns = turns;
+        self
+    }
+
+    /// The same effect, whose sample setup visits every row of a triangle where `walks_rows` holds.
+    pub const fn walking_rows_if(mut self, walks_rows: fn(&[u32]) -> bool) -> Self {
+        self.walks_rows = walks_rows;
         self
     }
 

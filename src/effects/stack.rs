@@ -250,6 +250,11 @@ impl Stack {
         self.0.iter().map(|enabled| (enabled.effect.turns)(&enabled.words)).fold(0.0, f64::max)
     }
 
+    /// Does the sample setup of an effect visit every row of a triangle?
+    pub fn walks_rows(&self) -> bool {
+        self.0.iter().any(|enabled| (enabled.effect.walks_rows)(&enabled.words))
+    }
+
     /// Parameters of the effect called `name`, if it is on; `P` must be its own.
     pub fn params<P: Params>(&self, name: &str) -> Option<P> {
         self.get(name).map(|enabled| read(&enabled.words))

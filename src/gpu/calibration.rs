@@ -10,6 +10,7 @@ use std::{
 use super::{
     device::Gpu,
     error::RenderError,
+    option_times::{best_limit, limit_pictures, option_costs, option_pictures},
     particles::Wait,
     renderer::{Renderer, Report},
     timer::Detail,
@@ -17,11 +18,11 @@ use super::{
     workload::MovedSizes,
 };
 use crate::{
-    accuracy::{PinnedOptions, Visibility},
+    accuracy::{Coverage, PinnedOptions, VertexTransform, Visibility},
     effects::{Effect, Stack},
     measure::timing,
     plan::{
-        AccuracyRequest,
+        AccuracyRequest, Caps, Measured, Tuning,
         cost_model::{FrameWork, MeasuredWork, UnitCosts},
     },
     preset::{Preset, SceneSource},
@@ -43,6 +44,8 @@ pub struct FrameTimes {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Calibrated {
     pub costs: UnitCosts,
+    /// Of options and limits, which the planner asks for.
+    pub measured: Measured,
     /// Pictures that were timed.
     pub pictures: usize,
     /// Seconds in which frames were timed.
@@ -52,15 +55,15 @@ pub struct Calibrated {
 }
 
 /// An effect and the values that some of its parameters have instead of their defaults.
-type Enabled = (&'static str, &'static [(&'static str, f64)]);
+pub(super) type Enabled = (&'static str, &'static [(&'static str, f64)]);
 
 /// A picture of the calibration: scene, effects and size in pixels.
-type Picture = (&'static str, &'static [Enabled], [u32; 2]);
+pub(super) type Picture<'a> = (&'a str, &'static [Enabled], [u32; 2]);
 
 /// Kinds of work that come together in one picture come in other proportions in another, so that the cost of each can be told.
-const PICTURES: &[Picture] = &[
+const PICTURES: &[Picture<'static>] = &[
     ("sphere?triangles=200", &[("lambert", &[])], [16, 12]),
-    ("sphere?triangles=20000", &[("lambert", &[])], [160, 120]),
+    ("sphere?triangles=20000", &[("wireframe", &[]), ("lambert", &[])], [160, 120]),
     ("sphere?triangles=320", &[("triangle_id", &[])], [60, 45]),
     ("sphere?triangles=1200", &[("race", &[])], [120, 90]),
     ("sphere?triangles=2000", &[("outline", &[]), ("fog", &[])], [320, 240]),
@@ -92,7 +95,13 @@ const PICTURES: &[Picture] = &[
     ("still-life?tess=1", &[("shadow", &[])], [96, 72]),
     ("cube-wall?columns=4&rows=3", &[("boxes", &[]), ("smear", &[])], [100, 80]),
     ("sphere?triangles=4000", &[("dissolve", &[])], [100, 75]),
+    ("sphere?triangles=600", &[("dissolve", &[("mode", 3.0)])], [80, 60]),
+    ("near", &[("lambert", &[])], [100, 75]),
+    ("near", &[("depth", &[])], [40, 30]),
 ];
+
+/// So many of the last pictures are drawn on the finest grid with strict vertices.
+const FINE: usize = 2;
 
 /// Frames of a picture that are drawn before any is timed.
 const WARM_UP: usize = 2;
@@ -101,6 +110,45 @@ const FRAMES: [usize; 2] = [3, 9];
 /// Time for the frames of a picture beyond the least number of them.
 const PICTURE_BUDGET: Duration = Duration::from_millis(40);
 
+/// A picture of the calibration that is ready to be timed.
+pub(super) struct Ready {
+    renderer: Renderer,
+    view: View,
+    stack: Stack,
+    accuracy: AccuracyRequest,
+}
+
+impl Ready {
+    /// Compiles everything that the picture needs, with `tuning` instead of the adapter's usual one.
+    ///
+    /// # Errors
+    /// When the picture cannot be drawn, or the device is lost.
+    pub fn new(gpu: &Arc<Gpu>, picture: &Picture, accuracy: AccuracyRequest, tuning: Tuning) -> Result<Self, RenderError> {
+        let (scene, view, stack) = made(picture);
+        let mut renderer = Renderer::new(gpu.clone());
+        renderer.set_tuning(tuning);
+        renderer.set_scene(&scene)?;
+        draw_until_ready(&mut renderer, &view, &stack, &accuracy)?;
+        Ok(Self { renderer, view, stack, accuracy })
+    }
+
+    fn times(&mut self) -> Result<FrameTimes, RenderError> {
+        timed(&mut self.renderer, &self.view, &self.stack, &self.accuracy)
+    }
+
+    /// Milliseconds of one whole frame.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub fn whole_ms(&mut self) -> Result<f64, RenderError> {
+        let frames = if self.renderer.gpu().caps.software { 1 } else { FRAMES_PER_SAMPLE };
+        let begin = Instant::now();
+        let report = sample(&mut self.renderer, &self.view, &self.stack, &self.accuracy, Detail::Whole, frames)?;
+        let passed_ms = begin.elapsed().as_secs_f64() * 1e3 / frames as f64;
+        Ok(report.gpu_ms.filter(|ms| *ms > 0.0).unwrap_or(passed_ms))
+    }
+}
+
 /// Times the pictures of the calibration on a device and computes the unit costs. `moved_sizes` samples their triangles; `progress` is told
 /// the number of the next picture and of all.
 ///
@@ -108,33 +156,33 @@ const PICTURE_BUDGET: Duration = Duration::from_millis(40);
 /// When a picture cannot be drawn, or the device is lost.
 pub fn calibrate(gpu: &Arc<Gpu>, moved_sizes: MovedSizes, progress: &mut dyn FnMut(usize, usize)) -> Result<Calibrated, RenderError> {
     let begin = Instant::now();
+    // An earlier calibration of the adapter counts for nothing.
+    let usual = Caps { measured: None, ..gpu.caps }.tuning();
     // All kernels are compiled before anything is timed, so that a card stays at the clock of one at work.
     let mut ready = Vec::new();
     for (index, picture) in PICTURES.iter().enumerate() {
         progress(index, PICTURES.len());
-        let (scene, view, stack) = made(picture);
-        let mut renderer = Renderer::new(gpu.clone());
-        renderer.set_scene(&scene)?;
-        let accuracy = accuracy_of(index);
-        draw_until_ready(&mut renderer, &view, &stack, &accuracy)?;
-        ready.push((renderer, view, stack, accuracy));
+        ready.push(Ready::new(gpu, picture, accuracy_of(index), usual)?);
     }
+    let (options, limits) = (option_pictures(gpu, usual)?, limit_pictures(gpu, usual)?);
     let start = Instant::now();
     warm_up::warm_up(gpu, ready.len(), |at, frames| {
-        let (renderer, view, stack, accuracy) = &mut ready[at];
+        let Ready { renderer, view, stack, accuracy } = &mut ready[at];
         sample(renderer, view, stack, accuracy, Detail::Whole, frames)?;
         Ok(true)
     })?;
     let is_software = gpu.caps.software;
     let passes_weight = PASSES_WEIGHT[usize::from(is_software)];
     let mut measured = Vec::new();
-    for (renderer, view, stack, accuracy) in &mut ready {
-        let work = renderer.work(stack, moved_sizes)?;
-        measured.extend(observations(&work, &timed(renderer, view, stack, accuracy)?, passes_weight));
+    for picture in &mut ready {
+        let work = picture.renderer.work(&picture.stack, moved_sizes)?;
+        measured.extend(observations(&work, &picture.times()?, passes_weight));
     }
+    let planned = Measured { options: option_costs(options)?, max_small_samples: best_limit(limits)? };
     let (measuring_s, all_s) = (start.elapsed().as_secs_f64(), begin.elapsed().as_secs_f64());
     Ok(Calibrated {
         costs: UnitCosts::fitted(&measured, !is_software),
+        measured: planned,
         pictures: PICTURES.len(),
         measuring_s,
         preparing_s: all_s - measuring_s,
@@ -144,13 +192,15 @@ pub fn calibrate(gpu: &Arc<Gpu>, moved_sizes: MovedSizes, progress: &mut dyn FnM
 /// Every second picture finds depths first and triangles then, as all do where an adapter has no 64-bit atomics: it has other passes.
 fn accuracy_of(index: usize) -> AccuracyRequest {
     let pins = if index % 2 == 1 { PinnedOptions::of(Visibility::Split32) } else { PinnedOptions::default() };
+    let is_fine = index + FINE >= PICTURES.len();
+    let pins = if is_fine { pins.with(Coverage::Fixed12).with(VertexTransform::Strict) } else { pins };
     AccuracyRequest { pins, ..AccuracyRequest::default() }
 }
 
 /// The scene, view and stack of a picture.
 fn made((query, effects, size): &Picture) -> (Arc<Scene>, View, Stack) {
     let scene = Arc::new(builtin::build(query).expect("a built-in scene"));
-    let mut preset = Preset { scene: SceneSource::Builtin((*query).into()), ..Preset::default() };
+    let mut preset = Preset { scene: SceneSource::Builtin((*query).to_owned()), ..Preset::default() };
     for (name, values) in *effects {
         let effect = Effect::find(name).expect("a built-in effect");
         let words = &mut preset.stack.enable(effect).words;

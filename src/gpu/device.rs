@@ -10,6 +10,7 @@ use std::{
 
 use super::{device_memory::DeviceMemory, pipeline_store::PipelineStore, preparations::Preparations};
 pub use crate::plan::Caps;
+use crate::plan::Measured;
 
 /// Which adapter a person asked for.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -140,6 +141,7 @@ fn caps(adapter: &wgpu::Adapter) -> Caps {
         max_texture_side: limits.max_texture_dimension_2d,
         max_storage_buffers: limits.max_storage_buffers_per_shader_stage,
         software: adapter.get_info().device_type == wgpu::DeviceType::Cpu,
+        measured: None,
     }
 }
 
@@ -210,6 +212,14 @@ impl Gpu {
             lost,
             error,
         })
+    }
+
+    /// The same device, whose pictures are planned with what a calibration measured on its adapter. Nothing else may hold it yet.
+    pub fn with_measured(mut self: Arc<Self>, measured: Option<Measured>) -> Arc<Self> {
+        if let Some(gpu) = Arc::get_mut(&mut self) {
+            gpu.caps.measured = measured;
+        }
+        self
     }
 
     /// Has the device been lost? Then everything made from it is dead.

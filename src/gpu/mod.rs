@@ -59,6 +59,7 @@ pub mod workload;
 mod capture;
 pub mod hardware;
 pub mod naive;
+mod option_times;
 
 pub mod bench;
 pub mod calibration;

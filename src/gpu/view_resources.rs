@@ -52,6 +52,8 @@ pub struct PreparedFrame {
     pub point_radius: u32,
     /// Of [`Stack::turns`].
     pub turns: f64,
+    /// Of [`Stack::walks_rows`].
+    pub walks_rows: bool,
 }
 
 /// The draws of a scene as a view has them, and what they require of the kernels.
@@ -192,7 +194,9 @@ impl ViewResources {
         if let Some(dots) = &mut self.dots {
             dots.write(gpu, &self.buffers, |id| new.contains(&id))?;
         }
-        self.frame = Some(PreparedFrame { plan, view, layout, point_radius: request.stack.point_radius(), turns: request.stack.turns() });
+        let stack = request.stack;
+        let (point_radius, turns, walks_rows) = (stack.point_radius(), stack.turns(), stack.walks_rows());
+        self.frame = Some(PreparedFrame { plan, view, layout, point_radius, turns, walks_rows });
         self.is_prepared = true;
         Ok(())
     }

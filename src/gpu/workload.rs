@@ -11,6 +11,7 @@ use super::{
     view_resources::{PreparedFrame, ViewResources},
 };
 use crate::{
+    accuracy::{AccuracyOptions, Coverage, VertexTransform},
     effects::Stack,
     math::SMALL_EXTENT,
     plan::cost_model::{FrameWork, PassWork, Unit},
@@ -24,7 +25,7 @@ use crate::{
     shader::{
         key::KernelKey,
         link,
-        pass::{Pass, TriangleSource},
+        pass::{Pass, RasterPhase, TriangleSource},
         reflect,
         weight::Weight,
     },
@@ -60,10 +61,11 @@ impl Renderer {
     pub fn work(&self, stack: &Stack, moved_sizes: MovedSizes) -> Result<FrameWork, RenderError> {
         let frame = self.picture.frame()?;
         let scene = self.scene.as_ref().ok_or(RenderError::NoScene)?.scene();
-        // Where particles are drawn only the adapter knows.
-        let sizes = |view: &View, stack: &Stack, prepared: &PreparedFrame| match scene.particle_discs {
-            Some(_) => prepared.plan.needs.sizes.clone(),
-            None => moved_sizes(scene, view, stack).unwrap_or_else(|_| prepared.plan.needs.sizes.clone()),
+        let sizes = |view: &View, stack: &Stack, prepared: &PreparedFrame| {
+            let stays = || prepared.plan.needs.sizes.clone();
+            // Where particles are drawn only the adapter knows.
+            let moves = prepared.plan.classes.is_none() && scene.particle_discs.is_none();
+            if moves { moved_sizes(scene, view, stack).unwrap_or_else(|_| stays()) } else { stays() }
         };
         let passes = frame.plan.key.frame();
         let deforming = passes.iter().take_while(|pass| matches!(pass, Pass::Particles | Pass::Skin)).count();
@@ -87,7 +89,10 @@ impl Renderer {
 
     fn passes_of(&self, view: &ViewResources, passes: &[Pass], prefix: &str, sizes: &TriangleSizes) -> Result<Vec<PassWork>, RenderError> {
         let frame = view.frame()?;
-        let scene = FrameCounts::new(frame, sizes, view.demand.as_ref(), view.dots.as_ref().map(DotStore::radius));
+        let mut scene = FrameCounts::new(frame, sizes, view.demand.as_ref(), view.dots.as_ref().map(DotStore::radius));
+        if self.shadow.is_some() {
+            scene.turns = scene.turns.max(f64::from(frame.plan.needs.shadow.taps).powi(2));
+        }
         passes
             .iter()
             .map(|&pass| {
@@ -147,6 +152,8 @@ struct FrameCounts<'a> {
     dot: f64,
     /// Turns of the longest loop that an effect runs at every pixel.
     turns: f64,
+    /// The sample setup of an effect visits every row of a triangle.
+    walks_rows: bool,
 }
 
 impl<'a> FrameCounts<'a> {
@@ -162,8 +169,8 @@ impl<'a> FrameCounts<'a> {
                 tiles: counted.tiles.into(),
             },
             None => Queues {
-                clip: sizes.cut,
-                clipped_triangles: 2.0 * sizes.cut,
+                clip: sizes.cut.triangles,
+                clipped_triangles: 2.0 * sizes.cut.triangles,
                 medium: sizes.medium.triangles,
                 tiles: sizes.large.triangles + sizes.large.candidates / (BLOCK * BLOCKS_OF_TILE),
             },
@@ -182,6 +189,7 @@ impl<'a> FrameCounts<'a> {
             disc: square(frame.point_radius),
             dot: dot_radius.map_or(0.0, |radius| square(radius + 128)),
             turns: frame.turns,
+            walks_rows: frame.walks_rows,
             sizes,
         }
     }
@@ -199,25 +207,26 @@ impl<'a> FrameCounts<'a> {
     }
 
     /// Of so many covered samples those that blocks do not hide before they are drawn: where many layers lie on a pixel in any order, the n-th
-    /// is the nearest so far with a probability of 1/n.
-    fn drawn(&self, covered: f64) -> f64 {
+    /// is the nearest so far with a probability of 1/n. Passes that count or sum layers draw all.
+    fn drawn(&self, covered: f64, phase: RasterPhase) -> f64 {
         let layers = covered / self.pixels.max(1.0);
-        if self.key.work.hides_blocks && layers > 1.0 { self.pixels * (1.0 + layers.ln()) } else { covered }
+        let hides = matches!(phase, RasterPhase::Packed | RasterPhase::Depth | RasterPhase::TriangleId);
+        if self.key.work.hides_blocks && hides && layers > 1.0 { self.pixels * (1.0 + layers.ln()) } else { covered }
     }
 
     /// Samples that workgroups visit for medium triangles: squares of 64 pixels inside them, and along their edges.
-    fn medium_samples(&self) -> f64 {
+    fn medium_samples(&self, phase: RasterPhase) -> f64 {
         let PathWork { triangles, candidates, covered, .. } = self.sizes.medium;
         let (candidates, covered) = match triangles > 0.0 {
             true => (candidates / triangles, covered / triangles),
             false => (USUAL_CANDIDATES, 0.5 * USUAL_CANDIDATES),
         };
-        self.drawn(self.queues.medium * covered) + self.queues.medium * (16.0 * candidates.sqrt() + BLOCK)
+        self.drawn(self.queues.medium * covered, phase) + self.queues.medium * (16.0 * candidates.sqrt() + BLOCK)
     }
 
     /// The same for large ones: what they cover, and blocks along their edges in every tile.
-    fn large_samples(&self) -> f64 {
-        if self.queues.tiles > 0.0 { self.drawn(self.sizes.large.covered) + 16.0 * BLOCK * self.queues.tiles } else { 0.0 }
+    fn large_samples(&self, phase: RasterPhase) -> f64 {
+        if self.queues.tiles > 0.0 { self.drawn(self.sizes.large.covered, phase) + 16.0 * BLOCK * self.queues.tiles } else { 0.0 }
     }
 
     /// Blocks of the medium triangle that has most, one after another, and of a tile.
@@ -229,7 +238,20 @@ impl<'a> FrameCounts<'a> {
         if self.queues.tiles > 0.0 { BLOCKS_OF_TILE / QUEUE_PARTS } else { 0.0 }
     }
 
-    fn counts(&self, pass: Pass, Weight { once, looped }: Weight) -> Vec<(Unit, f64)> {
+    /// Sample setups of so many triangles. Loops run over rows, for triangles of `paths`, which have samples.
+    fn setups(&self, triangles: f64, paths: &[&PathWork], Weight { once, looped }: Weight) -> Vec<(Unit, f64)> {
+        let rows = |path: &&PathWork| if self.walks_rows { path.rows } else { path.triangles };
+        let most_rows = paths.iter().map(|path| path.most_rows).fold(1.0, f64::max);
+        let turns = if self.walks_rows { most_rows } else { 1.0 };
+        vec![
+            (Unit::SetupTurn, if self.walks_rows { turns } else { 0.0 }),
+            (Unit::SetupChain, once + turns * looped),
+            (Unit::SetupOperation, triangles * once + paths.iter().map(rows).sum::<f64>() * looped),
+        ]
+    }
+
+    fn counts(&self, pass: Pass, weight: Weight) -> Vec<(Unit, f64)> {
+        let Weight { once, looped } = weight;
         let few_turns = once + TURNS * looped;
         let small = &self.sizes.small;
         match pass {
@@ -244,16 +266,20 @@ impl<'a> FrameCounts<'a> {
                 vec![(Unit::VertexOperation, vertices * few_turns)]
             }
             Pass::SampleSetup(TriangleSource::Triangles) => {
-                vec![
-                    (Unit::SetupChain, few_turns),
-                    (Unit::SetupOperation, self.invocations(pass).unwrap_or_else(|| self.triangles()) * few_turns),
-                ]
+                let SizeWork { small, medium, large, .. } = &self.sizes;
+                self.setups(self.invocations(pass).unwrap_or_else(|| self.triangles()), &[small, medium, large], weight)
             }
             Pass::SampleSetup(TriangleSource::ClippedTriangles) if self.queues.clipped_triangles > 0.0 => {
-                vec![(Unit::SetupChain, few_turns), (Unit::SetupOperation, self.queues.clipped_triangles * few_turns)]
+                self.setups(self.queues.clipped_triangles, &[&self.sizes.cut], weight)
             }
             Pass::Clip if self.queues.clip > 0.0 => {
-                vec![(Unit::Clipping, 1.0), (Unit::ClipChain, few_turns), (Unit::ClipOperation, self.queues.clip * few_turns)]
+                let AccuracyOptions { coverage, vertex_transform, .. } = self.key.options;
+                let is_wide = coverage == Coverage::Fixed12 || vertex_transform == VertexTransform::Strict;
+                vec![
+                    (Unit::Clipping, 1.0),
+                    (Unit::WideClipping, f64::from(u8::from(is_wide))),
+                    (Unit::ClipOperation, self.queues.clip * few_turns),
+                ]
             }
             Pass::RasterSmall(_) => {
                 let triangles = if self.invocations(pass).is_some() { self.triangles() } else { 0.5 * self.triangles() };
@@ -264,19 +290,19 @@ impl<'a> FrameCounts<'a> {
                 ]
             }
             // Its text holds the code of three paths, each about as long as the others.
-            Pass::RasterAll(_) => {
+            Pass::RasterAll(phase) => {
                 let (once, looped) = (once / 3.0, looped / 3.0);
                 let turns = small.longest.max(self.medium_turns()).max(self.tile_turns());
                 vec![
                     (Unit::SmallTurn, turns),
                     (Unit::SmallChain, turns * looped),
                     (Unit::SmallOperation, self.triangles() * once + small.candidates * looped),
-                    (Unit::QueuedOperation, (self.medium_samples() + self.large_samples()) * looped),
+                    (Unit::QueuedOperation, (self.medium_samples(phase) + self.large_samples(phase)) * looped),
                 ]
             }
             Pass::TileLarge => vec![(Unit::QueuedOperation, self.sizes.large.triangles * few_turns)],
-            Pass::RasterMedium(_) => Self::queued(self.medium_turns(), self.medium_samples(), looped),
-            Pass::RasterLarge(_) => Self::queued(self.tile_turns(), self.large_samples(), looped),
+            Pass::RasterMedium(phase) => Self::queued(self.medium_turns(), self.medium_samples(phase), looped),
+            Pass::RasterLarge(phase) => Self::queued(self.tile_turns(), self.large_samples(phase), looped),
             Pass::RasterPoints(_) => {
                 let turns = if self.shows { 3.0 * self.disc / f64::from(self.key.work.invocations_per_triangle.max(1)) } else { 0.0 };
                 vec![

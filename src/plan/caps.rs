@@ -1,5 +1,7 @@
 //! Capabilities of an adapter, and how work is divided on it.
 
+use super::costs::Measured;
+
 /// Kernels bind at most 8 storage buffers, and at most 2 more in place of uniforms or to clear what a draw order counts. A resolve that reads
 /// a shadow map from a buffer binds one more.
 pub(super) const MANY_STORAGE_BUFFERS: u32 = 10;
@@ -20,6 +22,9 @@ pub struct Caps {
     pub max_storage_buffers: u32,
     /// It runs on the CPU: pictures are right, times say nothing about a graphics card.
     pub software: bool,
+    /// What a calibration of this adapter measured, if one was kept. It decides about speed alone.
+    #[serde(skip)]
+    pub measured: Option<Measured>,
 }
 
 impl Caps {
@@ -33,6 +38,7 @@ impl Caps {
         max_texture_side: u32::MAX,
         max_storage_buffers: u32::MAX,
         software: false,
+        measured: None,
     };
 
     /// `native-int64` or `portable`.
@@ -45,6 +51,7 @@ impl Caps {
     /// by it.
     pub fn tuning(&self) -> Tuning {
         let (max_small_samples, max_small_side) = if self.software { (128 * 128, 128) } else { (32, 32) };
+        let max_small_samples = self.measured.map_or(max_small_samples, |measured| measured.max_small_samples);
         let group_size = if self.software { 64 } else { 256 };
         Tuning {
             max_small_samples,
@@ -67,7 +74,7 @@ impl Caps {
 /// benches and tests try others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tuning {
-    /// Most candidate samples of a triangle that one invocation walks, at least 1.
+    /// Most candidate samples of a triangle that one invocation walks, at least 1. A calibration chooses it.
     pub max_small_samples: u32,
     /// Most pixels per side of such a triangle's box, 1 to 128.
     pub max_small_side: u32,

@@ -16,6 +16,7 @@ pub enum Unit {
     VertexOperation,
     DeformChain,
     DeformOperation,
+    SetupTurn,
     SetupChain,
     SetupOperation,
     SmallTurn,
@@ -25,7 +26,7 @@ pub enum Unit {
     QueuedChain,
     QueuedOperation,
     Clipping,
-    ClipChain,
+    WideClipping,
     ClipOperation,
     DiscTurn,
     DiscOperation,
@@ -52,6 +53,7 @@ impl Unit {
         (Self::VertexOperation, "vertex_operation", "an operation on a vertex that is projected, or on a meshlet"),
         (Self::DeformChain, "deform_chain", "an operation on the longest way through the kernel that deforms vertices"),
         (Self::DeformOperation, "deform_operation", "an operation on a vertex that joints or morph targets deform"),
+        (Self::SetupTurn, "setup_turn", "a row of the triangle whose sample setup visits most, one after another"),
         (Self::SetupChain, "setup_chain", "an operation on the longest way through the kernel of sample setups"),
         (Self::SetupOperation, "setup_operation", "an operation on what sample tests read once per triangle"),
         (Self::SmallTurn, "small_turn", "a sample of the small triangle that has most, one after another"),
@@ -65,7 +67,7 @@ impl Unit {
         (Self::QueuedChain, "queued_chain", "an operation on these blocks"),
         (Self::QueuedOperation, "queued_operation", "an operation on a candidate sample of a medium or large triangle"),
         (Self::Clipping, "clipping", "a pass that clips at least one triangle"),
-        (Self::ClipChain, "clip_chain", "an operation on the longest way through the kernel that clips"),
+        (Self::WideClipping, "wide_clipping", "such a pass on the finest grid or with strict vertices, beyond that"),
         (Self::ClipOperation, "clip_operation", "an operation on a triangle that is clipped"),
         (Self::DiscTurn, "disc_turn", "a candidate sample of the discs of one triangle, one after another"),
         (Self::DiscOperation, "disc_operation", "an operation on a candidate sample of a corner's disc"),
@@ -95,13 +97,14 @@ impl Unit {
         matches!(
             self,
             Self::DeformChain
+                | Self::SetupTurn
                 | Self::SetupChain
                 | Self::SmallTurn
                 | Self::SmallChain
                 | Self::QueuedTurn
                 | Self::QueuedChain
                 | Self::Clipping
-                | Self::ClipChain
+                | Self::WideClipping
                 | Self::DiscTurn
                 | Self::PixelChain
                 | Self::PixelTurn

@@ -71,8 +71,9 @@ impl Plan {
             }
             Cause::Cheaper => {
                 let (fraction, own) = (costs::of(axis, option, &self.needs, &self.caps), predict(index, option, &self.needs));
+                let measured = if self.caps.measured.is_some() { " as calibrated" } else { "" };
                 format!(
-                    "{word}: {fraction:.2} of the default's time, predicted error {:.0} of {:.0} ppm, {:.1} of {} in color",
+                    "{word}: {fraction:.2} of the default's time{measured}, predicted error {:.0} of {:.0} ppm, {:.1} of {} in color",
                     own.wrong_ppm, self.tolerance.wrong_ppm, own.channel, self.tolerance.channel
                 )
             }
@@ -103,6 +104,7 @@ impl Plan {
     fn small_reason(&self) -> Note {
         let why = match (self.has_default_tuning, self.caps.software) {
             (false, _) => "as the tuning says",
+            (true, _) if self.caps.measured.is_some() => "as the calibration measured",
             (true, true) => "a CPU adapter runs invocations one after another",
             (true, false) => "a workgroup takes over early on a GPU",
         };

@@ -17,6 +17,7 @@ use std::sync::Arc;
 
 pub use self::{
     caps::{Caps, Tuning},
+    costs::{MEASURED_OPTIONS, MEASURED_TRIANGLES, Measured, OptionCosts},
     error::PlanError,
     request::{AccuracyRequest, Tier, Tolerance},
     traits::{InexactEffect, StackTraits},

@@ -10,10 +10,17 @@ use super::{
     gallery::user_folder,
     hash::{Fnv, hex},
 };
-use crate::plan::cost_model::{Unit, UnitCosts};
+use crate::{
+    accuracy::AXES,
+    plan::{
+        MEASURED_OPTIONS, Measured, OptionCosts,
+        cost_model::{Unit, UnitCosts},
+    },
+    shader::library::Library,
+};
 
 /// Changes where work is counted in another way, so that costs measured before hold no longer.
-const COUNTING: u32 = 2;
+const COUNTING: u32 = 3;
 
 /// What a calibration is for: it holds for nothing else.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,10 +31,19 @@ pub struct CalibrationKey {
     pub shaders: u64,
 }
 
+/// What a calibration found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Calibration {
+    /// Predicts milliseconds.
+    pub units: UnitCosts,
+    /// Plans pictures.
+    pub measured: Measured,
+}
+
 /// A calibration that was kept, or why there is none.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kept {
-    Found(Box<UnitCosts>),
+    Found(Box<Calibration>),
     /// There is no file.
     Nothing,
     /// There is a file that cannot be used, in one sentence.
@@ -40,6 +56,22 @@ pub fn calibrations_folder() -> Option<PathBuf> {
 }
 
 impl CalibrationKey {
+    /// What the calibration of an adapter is kept under, with the shader files of this program.
+    pub fn of(adapter: &str, driver: &str) -> Self {
+        let shaders = Library::from_env().texts().fold(Fnv::new(), |hash, text| hash.bytes(text.as_bytes()));
+        Self { adapter: adapter.into(), driver: driver.into(), shaders: shaders.0 }
+    }
+
+    /// The calibration that was kept in the user's folder.
+    pub fn kept(&self) -> Kept {
+        calibrations_folder().map_or(Kept::Nothing, |folder| self.read(&folder))
+    }
+
+    /// What the kept calibration says for the planner; none without one that can be used.
+    pub fn kept_measured(&self) -> Option<Measured> {
+        if let Kept::Found(found) = self.kept() { Some(found.measured) } else { None }
+    }
+
     /// The file of this calibration in `folder`.
     pub fn file(&self, folder: &Path) -> PathBuf {
         let hash = Fnv::new()
@@ -62,28 +94,44 @@ impl CalibrationKey {
             Err(error) => return Kept::Broken(format!("{} cannot be read: {error}", path.display())),
         };
         parsed(&text)
-            .map_or_else(|why| Kept::Broken(format!("{} is no calibration: {why}", path.display())), |costs| Kept::Found(Box::new(costs)))
+            .map_or_else(|why| Kept::Broken(format!("{} is no calibration: {why}", path.display())), |found| Kept::Found(Box::new(found)))
     }
 
     /// Keeps a calibration in `folder`, which is made if it is not there.
     ///
     /// # Errors
     /// When the file cannot be written.
-    pub fn write(&self, folder: &Path, costs: &UnitCosts) -> Result<PathBuf, PresetError> {
+    pub fn write(&self, folder: &Path, calibration: &Calibration) -> Result<PathBuf, PresetError> {
         let path = self.file(folder);
         let failed = |error: std::io::Error| PresetError::Write { file: path.display().to_string(), reason: error.to_string() };
         std::fs::create_dir_all(folder).map_err(failed)?;
-        let units: Map<String, Value> = Unit::ALL.iter().map(|(unit, name, _)| ((*name).to_owned(), json!(costs.of(*unit)))).collect();
+        let Calibration { units, measured } = calibration;
+        let units: Map<String, Value> = Unit::ALL.iter().map(|(unit, name, _)| ((*name).to_owned(), json!(units.of(*unit)))).collect();
+        let options = MEASURED_OPTIONS.iter().zip(&measured.options.options_ms).map(|(option, ms)| (word(*option), json!(ms)));
+        let options: Map<String, Value> = options.chain([(DEFAULTS.to_owned(), json!(measured.options.defaults_ms))]).collect();
         let object = json!({
             "adapter": self.adapter, "driver": self.driver, "version": env!("CARGO_PKG_VERSION"), "ms_per_unit": units,
+            "ms_of_options": options, "max_small_samples": measured.max_small_samples,
         });
         write_atomically(&path, format!("{object:#}\n").as_bytes(), Existing::Replace)?;
         Ok(path)
     }
 }
 
-/// Reads the text of a file. Every unit must be there, with a finite number of milliseconds from 0 up.
-fn parsed(text: &str) -> Result<UnitCosts, String> {
+/// The defaults among the options of a file.
+const DEFAULTS: &str = "defaults";
+
+/// The most that a file may say of `max_small_samples`.
+const MAX_SMALL_SAMPLES: u64 = 128 * 128;
+
+/// An option in a file: `coverage=fixed4`.
+fn word((axis, option): (usize, usize)) -> String {
+    format!("{}={}", AXES[axis].name, AXES[axis].words[option])
+}
+
+/// Reads the text of a file. Every unit must be there, with a finite number of milliseconds from 0 up, and every measured option, with two numbers
+/// above 0.
+fn parsed(text: &str) -> Result<Calibration, String> {
     let object: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
     let mut costs = UnitCosts::default();
     for (unit, name, _) in Unit::ALL {
@@ -93,7 +141,20 @@ fn parsed(text: &str) -> Result<UnitCosts, String> {
             _ => return Err(format!("ms_per_unit.{name} is {value}, not a number from 0 up")),
         }
     }
-    Ok(costs)
+    let ms_of = |option: &str| {
+        let value = &object["ms_of_options"][option];
+        let ms = [0, 1].map(|at| value[at].as_f64().filter(|ms| *ms > 0.0 && ms.is_finite()));
+        ms[0].zip(ms[1]).map(|(few, many)| [few, many]).ok_or(format!("ms_of_options.{option} is {value}, not two numbers above 0"))
+    };
+    let mut options = OptionCosts { defaults_ms: ms_of(DEFAULTS)?, options_ms: Default::default() };
+    for (option, ms) in MEASURED_OPTIONS.iter().zip(&mut options.options_ms) {
+        *ms = ms_of(&word(*option))?;
+    }
+    let samples = &object["max_small_samples"];
+    let max_small_samples = samples.as_u64().filter(|samples| (1..=MAX_SMALL_SAMPLES).contains(samples));
+    let max_small_samples =
+        max_small_samples.ok_or(format!("max_small_samples is {samples}, not a number from 1 to {MAX_SMALL_SAMPLES}"))?;
+    Ok(Calibration { units: costs, measured: Measured { options, max_small_samples: max_small_samples as u32 } })
 }
 
 #[cfg(test)]
@@ -107,16 +168,37 @@ mod tests {
     #[test]
     fn a_calibration_is_read_as_it_was_written_and_holds_for_its_driver_alone() {
         let folder = tempfile::tempdir().expect("a folder");
-        let mut costs = UnitCosts::default();
-        Unit::ALL.iter().enumerate().for_each(|(i, (unit, ..))| costs.set(*unit, 1.5e-7 * i as f64));
+        let mut units = UnitCosts::default();
+        Unit::ALL.iter().enumerate().for_each(|(i, (unit, ..))| units.set(*unit, 1.5e-7 * i as f64));
+        let options_ms = std::array::from_fn(|i| [0.5 + i as f64, 0.25 + 2.0 * i as f64]);
+        let measured = Measured { options: OptionCosts { defaults_ms: [1.0, 2.5], options_ms }, max_small_samples: 64 };
+        let calibration = Calibration { units, measured };
         assert_eq!(key("1.0").read(folder.path()), Kept::Nothing);
-        key("1.0").write(&folder.path().join("made"), &costs).expect("it can be written");
+        key("1.0").write(&folder.path().join("made"), &calibration).expect("it can be written");
         let Kept::Found(found) = key("1.0").read(&folder.path().join("made")) else { panic!("it was kept") };
         for (unit, name, _) in Unit::ALL {
-            assert!((found.of(*unit) - costs.of(*unit)).abs() <= 1e-12 * costs.of(*unit), "{name}");
+            assert!((found.units.of(*unit) - units.of(*unit)).abs() <= 1e-12 * units.of(*unit), "{name}");
         }
+        assert_eq!(found.measured, measured);
         assert_eq!(key("1.1").read(&folder.path().join("made")), Kept::Nothing);
         assert_eq!(CalibrationKey { shaders: 8, ..key("1.0") }.read(&folder.path().join("made")), Kept::Nothing);
+    }
+
+    #[test]
+    fn options_and_limits_out_of_range_are_refused() {
+        let units: Map<String, Value> = Unit::ALL.iter().map(|(_, name, _)| ((*name).to_owned(), json!(1e-6))).collect();
+        let options: Map<String, Value> = MEASURED_OPTIONS.iter().map(|option| (word(*option), json!([1.0, 2.0]))).collect();
+        let mut object = json!({ "ms_per_unit": units, "ms_of_options": options, "max_small_samples": 32 });
+        let refusal = |object: &Value| parsed(&object.to_string()).expect_err("it is refused");
+        assert!(refusal(&object).contains("ms_of_options.defaults is null"));
+        object["ms_of_options"]["defaults"] = json!([1.0, 0.0]);
+        assert!(refusal(&object).contains("not two numbers above 0"));
+        object["ms_of_options"]["defaults"] = json!([1.0, 2.0]);
+        assert!(parsed(&object.to_string()).is_ok());
+        for samples in [json!(0), json!(16_385), json!("many"), json!(-1)] {
+            object["max_small_samples"] = samples;
+            assert!(refusal(&object).contains("not a number from 1 to 16384"), "{object}");
+        }
     }
 
     #[test]

@@ -64,6 +64,10 @@ pub struct PathWork {
     pub covered: f64,
     /// The most samples in the box of one of them.
     pub longest: f64,
+    /// Rows of samples in the boxes of those triangles.
+    pub rows: f64,
+    /// The most rows in the box of one of them.
+    pub most_rows: f64,
 }
 
 /// Estimated work of all raster paths.
@@ -72,8 +76,8 @@ pub struct SizeWork {
     pub small: PathWork,
     pub medium: PathWork,
     pub large: PathWork,
-    /// Triangles that cross the near plane and reach the picture.
-    pub cut: f64,
+    /// What is left of triangles that cross the near plane, where that reaches the picture; it counts as medium or large, too.
+    pub cut: PathWork,
 }
 
 impl PathWork {
@@ -83,6 +87,8 @@ impl PathWork {
         self.candidates += times * f64::from(columns) * f64::from(rows);
         self.covered += times * f64::from(triangle.area);
         self.longest = self.longest.max(f64::from(columns) * f64::from(rows));
+        self.rows += times * f64::from(rows);
+        self.most_rows = self.most_rows.max(rows.into());
     }
 }
 
@@ -162,7 +168,7 @@ impl TriangleSizes {
     /// Estimated work of each raster path, with the limits of [`Self::classes`].
     pub fn work(&self, max_small_samples: u32, max_small_side: u32, large_px: f64) -> SizeWork {
         let each = self.triangles as f64 / f64::from(self.sampled.max(1));
-        let mut work = SizeWork { cut: self.cut.len() as f64 * each, ..SizeWork::default() };
+        let mut work = SizeWork::default();
         for visible in self.visible.iter().filter(|visible| visible.samples.iter().all(|count| *count > 0)) {
             let [columns, rows] = visible.samples;
             let path = match () {
@@ -174,6 +180,7 @@ impl TriangleSizes {
         }
         // What was cut is queued by its size, and no invocation draws it alone.
         for rest in self.cut.iter() {
+            work.cut.add(rest, each);
             let path = if f64::from(rest.extent_px) > large_px { &mut work.large } else { &mut work.medium };
             path.add(rest, each);
         }

@@ -16,15 +16,16 @@ use rasterlab::{
     shader::{Fetch, key::AttributeFormat},
 };
 
-/// Every built-in scene on every option, and on one option a preset for every effect: the resolve of its effects hardly
-/// knows the option.
+/// Every built-in scene on two options, each time the next in turn, and on one option a preset for every effect: the resolve of its effects
+/// hardly knows the option.
 fn pictures(options: &[Visibility]) -> Vec<(String, Arc<Scene>, View, Stack, Visibility)> {
     let mut pictures = Vec::new();
-    for query in SCENES {
+    for (turn, query) in SCENES.iter().enumerate() {
         let scene = scene(query);
         let view = view(&scene, [200, 150]);
         let stack = stack(&["depth", "lambert"]);
-        pictures.extend(options.iter().map(|&option| ((*query).to_owned(), scene.clone(), view.clone(), stack.clone(), option)));
+        let in_turn = options.iter().cycle().skip(2 * turn).take(options.len().min(2));
+        pictures.extend(in_turn.map(|&option| ((*query).to_owned(), scene.clone(), view.clone(), stack.clone(), option)));
     }
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets");
     let entries = std::fs::read_dir(folder).expect("presets/ can be read");

@@ -4,15 +4,19 @@
 use std::sync::Arc;
 
 use rasterlab::{
-    accuracy::{AXES, AxisOption, Coverage, CurlNoise, DotCulling, Perspective, Skinning, VertexTransform, XraySums},
+    accuracy::{AXES, AxisOption, Coverage, CurlNoise, DotCulling, Perspective, Skinning, VertexTransform, Visibility, XraySums},
     effects::{Effect, EnabledEffect, Stack},
-    plan::{AccuracyRequest, Caps, Plan, StackTraits, Tier, plan},
+    plan::{AccuracyRequest, Caps, MEASURED_OPTIONS, Measured, OptionCosts, Plan, StackTraits, Tier, plan},
     preset::{ClipPlayback, Preset, SceneSource},
     preset_file,
     scene::needs::Needs,
 };
 
 fn planned(scene: &str, clip: &str, effects: &[&str], tier: Tier) -> (Plan, Stack) {
+    planned_for(&Caps::ALL, scene, clip, effects, tier)
+}
+
+fn planned_for(caps: &Caps, scene: &str, clip: &str, effects: &[&str], tier: Tier) -> (Plan, Stack) {
     let stack = Stack(effects.iter().map(|name| EnabledEffect::new(Effect::find(name).expect("an effect"))).collect());
     let playback = ClipPlayback { clip: clip.into(), ..ClipPlayback::default() };
     let preset = Preset { scene: SceneSource::Builtin(scene.into()), stack: stack.clone(), playback, ..Preset::default() };
@@ -22,7 +26,40 @@ fn planned(scene: &str, clip: &str, effects: &[&str], tier: Tier) -> (Plan, Stac
     let request = AccuracyRequest { tier, ..AccuracyRequest::default() };
     let traits = StackTraits::of(&stack, &request).expect("no two of a slot");
     let needs = Arc::new(Needs::of(&scene, &draws, &view));
-    (plan(&needs, &traits, &Caps::ALL, &Caps::ALL.tuning(), &request).expect("a plan"), stack)
+    (plan(&needs, &traits, caps, &caps.tuning(), &request).expect("a plan"), stack)
+}
+
+/// An adapter whose calibration found that packed32 takes so much of the defaults' time, and every other option as much as the defaults.
+fn calibrated(packed32: f64) -> Caps {
+    let mut options = OptionCosts { defaults_ms: [1.0, 4.0], options_ms: [[1.0, 4.0]; MEASURED_OPTIONS.len()] };
+    let at =
+        MEASURED_OPTIONS.iter().position(|option| *option == (Visibility::AXIS, Visibility::Packed32.index())).expect("it is measured");
+    options.options_ms[at] = [packed32, 4.0 * packed32];
+    Caps { measured: Some(Measured { options, max_small_samples: 48 }), ..Caps::ALL }
+}
+
+#[test]
+fn a_calibration_decides_which_option_is_cheaper_and_the_tolerance_whether_it_may_be_taken() {
+    let visibility = |caps: &Caps, tier: Tier| planned_for(caps, "teapot?tess=4", "", &["lambert"], tier).0.key.options.visibility;
+    assert_eq!(visibility(&Caps::ALL, Tier::Draft), Visibility::Packed64, "a card without a calibration gains nothing");
+    assert_eq!(visibility(&calibrated(0.8), Tier::Draft), Visibility::Packed32);
+    assert_eq!(visibility(&calibrated(0.98), Tier::Draft), Visibility::Packed64, "that may be noise");
+    assert_eq!(visibility(&calibrated(1.3), Tier::Draft), Visibility::Packed64);
+    for tier in [Tier::Precise, Tier::Reference, Tier::Strict] {
+        assert_eq!(visibility(&calibrated(0.1), tier), Visibility::Packed64, "{}", tier.name());
+    }
+    // What was measured elsewhere no longer counts.
+    let software = |packed32: f64| Caps { software: true, ..calibrated(packed32) };
+    assert_eq!(visibility(&Caps { measured: None, ..software(1.0) }, Tier::Draft), Visibility::Packed32);
+    assert_eq!(visibility(&software(1.0), Tier::Draft), Visibility::Packed64);
+
+    let (plan, _) = planned_for(&calibrated(0.8), "teapot?tess=4", "", &["lambert"], Tier::Draft);
+    let why = plan.reason(&AXES[Visibility::AXIS]).expect("a reason");
+    assert!(why.starts_with("packed32: 0.80 of the default's time as calibrated"), "{why}");
+    assert!((plan.expected_time() - 0.8).abs() < 1e-12);
+    assert_eq!(plan.key.paths.max_small_samples, 48);
+    let small = plan.reasons().into_iter().find(|note| note.name == "small").expect("a reason");
+    assert_eq!(small.why, "one invocation walks up to 48 samples: as the calibration measured");
 }
 
 #[test]

@@ -33,7 +33,7 @@ fn where_nothing_moves_they_are_those_of_the_scene() {
         let moved = moved_sizes(&scene, &view, &stress::stack(&["lambert"])).expect("it fits");
         let [still, moved] = [still, moved].map(|sizes| {
             let work = sizes.work(32, 32, 128.0);
-            [work.small.triangles, work.medium.triangles, work.large.triangles, work.cut, work.small.longest, work.medium.longest]
+            [work.small.triangles, work.medium.triangles, work.large.triangles, work.cut.triangles, work.small.longest, work.medium.longest]
         });
         // A deformed corner may fall on the other side of a sample.
         let differs = still.iter().zip(moved).any(|(still, moved)| (still - moved).abs() > 0.02 * still.max(50.0));

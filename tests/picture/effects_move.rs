@@ -84,7 +84,7 @@ fn every_builtin_scene_is_exact_under_every_moving_effect() {
         let view = view(&scene, [160, 120]);
         // Small scenes take a few ways through the kernels, large ones one: each time the next in turn, so that every way meets
         // several effects and scenes.
-        let count = if scene.triangle_count() <= 3000 { 3 } else { 1 };
+        let count = if scene.triangle_count() <= 3000 { 2 } else { 1 };
         for effect in MOVING {
             let stack = lit(suited(effect, &scene));
             for (option, tuning) in ways.iter().cycle().skip(turn).take(count) {

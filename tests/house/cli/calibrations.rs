@@ -25,7 +25,13 @@ fn a_calibration_is_kept_used_and_mended() {
     let first = run_in(folder.path(), &["calibrate", "--json"]);
     assert_eq!(first.code, 0, "{}", first.err);
     assert!(first.err.contains("pictures were measured in") && first.err.contains("kept in"), "{}", first.err);
-    let units = json(&first)["results"].as_array().expect("a result for every unit").clone();
+    let results = json(&first)["results"].as_array().expect("results").clone();
+    let units: Vec<_> = results.iter().filter(|one| one["unit"].is_string()).cloned().collect();
+    let option = |name: &str| results.iter().find(|one| one["option"] == name).expect("a measured option")["of_the_defaults"].clone();
+    let strict = option("vertex_transform=strict");
+    assert!([0, 1].iter().all(|at| strict[at].as_f64().is_some_and(|fraction| fraction > 0.1 && fraction < 10.0)), "{strict}");
+    let samples = results.iter().find_map(|one| one["max_small_samples"].as_u64());
+    assert!(samples.is_some_and(|samples| (1..=16_384).contains(&samples)), "{results:?}");
     let ms = |unit: &str| units.iter().find(|one| one["unit"] == unit).and_then(|one| one["ms"].as_f64()).expect("a unit");
     assert!(ms("pass") > 0.0 && ms("small_operation") > 0.0 && ms("pixel_operation") + ms("pixel") > 0.0, "{units:?}");
     let again = run_in(folder.path(), &["calibrate", "--json"]);
