@@ -7,14 +7,12 @@ use eframe::{egui, egui_wgpu, wgpu};
 
 use super::{
     background::{Urgency, started_as},
+    calibrated::calibrated,
     settings::WindowPlace,
 };
-use crate::{
-    gpu::{
-        Gpu,
-        device::{self, AdapterChoice},
-    },
-    preset_file::CalibrationKey,
+use crate::gpu::{
+    Gpu,
+    device::{self, AdapterChoice},
 };
 
 /// Smallest size of the window's contents, points.
@@ -90,12 +88,6 @@ impl Devices {
         let second = if window.summary.software { opened() } else { None };
         Self { picture: second.unwrap_or_else(|| window.clone()), window }
     }
-}
-
-/// The device, whose pictures are planned with the calibration that was kept for its adapter, if there is one.
-pub fn calibrated(gpu: Arc<Gpu>) -> Arc<Gpu> {
-    let measured = CalibrationKey::of(&gpu.summary.name, &gpu.summary.driver).kept_measured();
-    gpu.with_measured(measured)
 }
 
 /// Presents without waiting for the display on a software adapter, which is slower than any display. Waiting would also

@@ -11,7 +11,7 @@ use std::{
 
 use eframe::egui;
 
-use super::device::calibrated;
+use super::calibrated::calibrated;
 use crate::{
     accuracy::RenderScale,
     film::{

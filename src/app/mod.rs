@@ -9,6 +9,7 @@ mod anti_aliasing;
 mod apply;
 mod background;
 mod blit;
+mod calibrated;
 mod cells;
 mod command;
 mod completion;

@@ -5,7 +5,8 @@ use crate::{
     effects::Stack,
     gpu::{
         Gpu, Renderer,
-        calibration::{FrameTimes, draw_until_ready, paired, time},
+        calibration::paired,
+        timed_picture::{FrameTimes, draw_until_ready, time},
     },
     oracle,
     plan::{

@@ -1,44 +1,23 @@
 //! The calibration of an adapter: a few small pictures of built-in scenes, each with much of another kind of work, are timed, and the unit
 //! costs that explain the times best are computed.
 
-use std::{
-    collections::HashMap,
-    sync::Arc,
-    time::{Duration, Instant},
-};
+use std::{sync::Arc, time::Instant};
 
 use super::{
     device::Gpu,
     error::RenderError,
     option_times::{best_limit, limit_pictures, option_costs, option_pictures},
-    particles::Wait,
-    renderer::{Renderer, Report},
-    timer::Detail,
-    warm_up::{self, FRAMES_PER_SAMPLE},
+    timed_picture::{FrameTimes, Picture, TimedPicture},
+    warm_up,
     workload::MovedSizes,
 };
 use crate::{
     accuracy::{Coverage, PinnedOptions, VertexTransform, Visibility},
-    effects::{Effect, Stack},
-    measure::timing,
     plan::{
-        AccuracyRequest, Caps, Measured, Tuning,
-        cost_model::{FrameWork, MeasuredWork, UnitCosts},
+        AccuracyRequest, Caps, Measured,
+        cost_model::{FrameWork, MeasuredWork, PassWork, UnitCosts},
     },
-    preset::{Preset, SceneSource},
-    scene::{Scene, builtin, view::View},
 };
-
-/// Times of one picture, medians, milliseconds.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FrameTimes {
-    /// The whole frame: by timestamps, or the time that passed on the CPU where the adapter has none.
-    pub whole_ms: f64,
-    /// Every pass by its label; empty without timestamps.
-    pub passes: Vec<(String, f64)>,
-    /// Frames that were timed as a whole.
-    pub frames: usize,
-}
 
 /// What a calibration found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,12 +32,6 @@ pub struct Calibrated {
     /// Seconds in which kernels were compiled and everything was made ready.
     pub preparing_s: f64,
 }
-
-/// An effect and the values that some of its parameters have instead of their defaults.
-pub(super) type Enabled = (&'static str, &'static [(&'static str, f64)]);
-
-/// A picture of the calibration: scene, effects and size in pixels.
-pub(super) type Picture<'a> = (&'a str, &'static [Enabled], [u32; 2]);
 
 /// Kinds of work that come together in one picture come in other proportions in another, so that the cost of each can be told.
 const PICTURES: &[Picture<'static>] = &[
@@ -103,52 +76,6 @@ const PICTURES: &[Picture<'static>] = &[
 /// So many of the last pictures are drawn on the finest grid with strict vertices.
 const FINE: usize = 2;
 
-/// Frames of a picture that are drawn before any is timed.
-const WARM_UP: usize = 2;
-/// Frames that are timed, at least and at most; each is drawn once as a whole and once pass by pass.
-const FRAMES: [usize; 2] = [3, 9];
-/// Time for the frames of a picture beyond the least number of them.
-const PICTURE_BUDGET: Duration = Duration::from_millis(40);
-
-/// A picture of the calibration that is ready to be timed.
-pub(super) struct Ready {
-    renderer: Renderer,
-    view: View,
-    stack: Stack,
-    accuracy: AccuracyRequest,
-}
-
-impl Ready {
-    /// Compiles everything that the picture needs, with `tuning` instead of the adapter's usual one.
-    ///
-    /// # Errors
-    /// When the picture cannot be drawn, or the device is lost.
-    pub fn new(gpu: &Arc<Gpu>, picture: &Picture, accuracy: AccuracyRequest, tuning: Tuning) -> Result<Self, RenderError> {
-        let (scene, view, stack) = made(picture);
-        let mut renderer = Renderer::new(gpu.clone());
-        renderer.set_tuning(tuning);
-        renderer.set_scene(&scene)?;
-        draw_until_ready(&mut renderer, &view, &stack, &accuracy)?;
-        Ok(Self { renderer, view, stack, accuracy })
-    }
-
-    fn times(&mut self) -> Result<FrameTimes, RenderError> {
-        timed(&mut self.renderer, &self.view, &self.stack, &self.accuracy)
-    }
-
-    /// Milliseconds of one whole frame.
-    ///
-    /// # Errors
-    /// When the device is lost.
-    pub fn whole_ms(&mut self) -> Result<f64, RenderError> {
-        let frames = if self.renderer.gpu().caps.software { 1 } else { FRAMES_PER_SAMPLE };
-        let begin = Instant::now();
-        let report = sample(&mut self.renderer, &self.view, &self.stack, &self.accuracy, Detail::Whole, frames)?;
-        let passed_ms = begin.elapsed().as_secs_f64() * 1e3 / frames as f64;
-        Ok(report.gpu_ms.filter(|ms| *ms > 0.0).unwrap_or(passed_ms))
-    }
-}
-
 /// Times the pictures of the calibration on a device and computes the unit costs. `moved_sizes` samples their triangles; `progress` is told
 /// the number of the next picture and of all.
 ///
@@ -162,20 +89,19 @@ pub fn calibrate(gpu: &Arc<Gpu>, moved_sizes: MovedSizes, progress: &mut dyn FnM
     let mut ready = Vec::new();
     for (index, picture) in PICTURES.iter().enumerate() {
         progress(index, PICTURES.len());
-        ready.push(Ready::new(gpu, picture, accuracy_of(index), usual)?);
+        ready.push(TimedPicture::new(gpu, picture, accuracy_of(index), usual)?);
     }
     let (options, limits) = (option_pictures(gpu, usual)?, limit_pictures(gpu, usual)?);
     let start = Instant::now();
     warm_up::warm_up(gpu, ready.len(), |at, frames| {
-        let Ready { renderer, view, stack, accuracy } = &mut ready[at];
-        sample(renderer, view, stack, accuracy, Detail::Whole, frames)?;
+        ready[at].draw(frames)?;
         Ok(true)
     })?;
     let is_software = gpu.caps.software;
     let passes_weight = PASSES_WEIGHT[usize::from(is_software)];
     let mut measured = Vec::new();
     for picture in &mut ready {
-        let work = picture.renderer.work(&picture.stack, moved_sizes)?;
+        let work = picture.work(moved_sizes)?;
         measured.extend(observations(&work, &picture.times()?, passes_weight));
     }
     let planned = Measured { options: option_costs(options)?, max_small_samples: best_limit(limits)? };
@@ -197,103 +123,6 @@ fn accuracy_of(index: usize) -> AccuracyRequest {
     AccuracyRequest { pins, ..AccuracyRequest::default() }
 }
 
-/// The scene, view and stack of a picture.
-fn made((query, effects, size): &Picture) -> (Arc<Scene>, View, Stack) {
-    let scene = Arc::new(builtin::build(query).expect("a built-in scene"));
-    let mut preset = Preset { scene: SceneSource::Builtin((*query).to_owned()), ..Preset::default() };
-    for (name, values) in *effects {
-        let effect = Effect::find(name).expect("a built-in effect");
-        let words = &mut preset.stack.enable(effect).words;
-        for (field, value) in *values {
-            let field = effect.field(field).expect("a parameter of the effect");
-            field.set(words, &[*value]).expect("an allowed value");
-        }
-    }
-    preset.clock.time_s = if preset.stack.has_steps() { 0.5 } else { 0.0 };
-    let (view, stack) = preset.moments(&scene, *size).pop().expect("a preset has at least one frame");
-    (scene, view, stack)
-}
-
-/// Draws until kernels are compiled and queues are large enough.
-///
-/// # Errors
-/// When the picture cannot be drawn, or the device is lost.
-pub fn draw_until_ready(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<(), RenderError> {
-    let mut left = WARM_UP;
-    // Queues grow a few times at most.
-    for _ in 0..16 {
-        renderer.draw_timed(view, stack, accuracy, Detail::Whole, Wait::Simulation)?;
-        left -= usize::from(!renderer.finish()?.redraw);
-        if left == 0 {
-            break;
-        }
-    }
-    Ok(())
-}
-
-/// Draws frames without a pause between them; the report is of the last.
-fn sample(
-    renderer: &mut Renderer,
-    view: &View,
-    stack: &Stack,
-    accuracy: &AccuracyRequest,
-    detail: Detail,
-    frames: usize,
-) -> Result<Report, RenderError> {
-    for _ in 0..frames {
-        renderer.draw_timed(view, stack, accuracy, detail, Wait::Simulation)?;
-    }
-    renderer.finish()
-}
-
-/// Times a picture that was drawn before, on a card that has been kept busy first.
-///
-/// # Errors
-/// When the picture cannot be drawn, or the device is lost.
-pub fn time(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<FrameTimes, RenderError> {
-    let gpu = renderer.gpu().clone();
-    warm_up::warm_up(&gpu, 1, |_, frames| sample(renderer, view, stack, accuracy, Detail::Whole, frames).map(|_| true))?;
-    timed(renderer, view, stack, accuracy)
-}
-
-/// Times a picture: as a whole and pass by pass in turn.
-fn timed(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<FrameTimes, RenderError> {
-    let has_timestamps = renderer.gpu().caps.timestamps;
-    // On a software adapter a frame before the one that is timed would only take time.
-    let frames = if renderer.gpu().caps.software { 1 } else { FRAMES_PER_SAMPLE };
-    let (mut whole, mut passes): (Vec<f64>, Vec<(String, Vec<f64>)>) = (Vec::new(), Vec::new());
-    let [least, most] = FRAMES;
-    let begin = Instant::now();
-    while whole.len() < least || whole.len() < most && begin.elapsed() < PICTURE_BUDGET {
-        let start = Instant::now();
-        let report = sample(renderer, view, stack, accuracy, Detail::Whole, frames)?;
-        let passed_ms = start.elapsed().as_secs_f64() * 1e3 / frames as f64;
-        // A stamp that was not written leaves no time.
-        whole.extend(if has_timestamps { report.gpu_ms } else { Some(passed_ms) });
-        if !has_timestamps {
-            continue;
-        }
-        let mut seen = HashMap::new();
-        for (label, ms) in sample(renderer, view, stack, accuracy, Detail::Passes, frames)?.passes {
-            // A label may occur several times in a frame.
-            let turn = seen.entry(label.clone()).and_modify(|turn| *turn += 1).or_insert(0usize);
-            match passes.iter_mut().filter(|(known, _)| *known == label).nth(*turn) {
-                Some((_, times)) => times.push(ms),
-                None => passes.push((label, vec![ms])),
-            }
-        }
-        if begin.elapsed() > 20 * PICTURE_BUDGET {
-            break;
-        }
-    }
-    let median = |times: &[f64]| timing::percentile(times, 0.5).unwrap_or(0.0);
-    Ok(FrameTimes {
-        whole_ms: median(&whole),
-        frames: whole.len(),
-        passes: passes.iter().map(|(label, times)| (label.clone(), median(times))).collect(),
-    })
-}
-
 /// How much the passes of a frame count together beside the whole frame: on a card, where a pass that is timed alone overlaps with no other,
 /// and on a CPU adapter.
 const PASSES_WEIGHT: [f64; 2] = [0.2, 1.0];
@@ -309,7 +138,7 @@ fn observations(work: &FrameWork, times: &FrameTimes, passes_weight: f64) -> Vec
 }
 
 /// Every pass of a frame with its measured milliseconds, where they are known.
-pub fn paired<'a>(work: &'a FrameWork, times: &FrameTimes) -> Vec<(&'a crate::plan::cost_model::PassWork, Option<f64>)> {
+pub fn paired<'a>(work: &'a FrameWork, times: &FrameTimes) -> Vec<(&'a PassWork, Option<f64>)> {
     let mut left = times.passes.clone();
     let mut take = |label: &str| left.iter().position(|(name, _)| name == label).map(|at| left.remove(at).1);
     work.passes.iter().map(|pass| (pass, take(&pass.label))).collect()
@@ -318,7 +147,7 @@ pub fn paired<'a>(work: &'a FrameWork, times: &FrameTimes) -> Vec<(&'a crate::pl
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::cost_model::{PassWork, Unit};
+    use crate::{gpu::timed_picture::made, plan::cost_model::Unit};
 
     #[test]
     fn every_picture_of_the_calibration_can_be_made() {

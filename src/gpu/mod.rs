@@ -59,9 +59,12 @@ pub mod workload;
 mod capture;
 pub mod hardware;
 pub mod naive;
-mod option_times;
 
 pub mod bench;
+pub mod timed_picture;
+
+mod option_times;
+
 pub mod calibration;
 pub mod trade;
 

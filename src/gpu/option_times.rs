@@ -3,10 +3,9 @@
 
 use std::sync::Arc;
 
-use super::{calibration::Ready, device::Gpu, error::RenderError};
+use super::{device::Gpu, error::RenderError, timed_picture::TimedPicture};
 use crate::{
     accuracy::{AXES, PinnedOptions},
-    measure::timing,
     plan::{AccuracyRequest, MEASURED_OPTIONS, MEASURED_TRIANGLES, OptionCosts, Tuning},
 };
 
@@ -17,36 +16,53 @@ const OPTIONS_SIZE: [u32; 2] = [960, 540];
 const LIMITS_TRIANGLES: [u32; 3] = [3000, 12_000, 50_000];
 
 /// Fraction of the usual limit's time below which another limit is taken instead.
-const WORTHWHILE: f64 = 0.97;
+const WORTHWHILE: f64 = 0.95;
 
 /// Frames of each option and limit that are timed.
 const OPTION_FRAMES: usize = 9;
 
-/// Medians of whole frames of pictures that are drawn in turn, so that a clock that drifts or other work on the machine meets all of them.
-fn in_turn(contenders: &mut [Ready]) -> Result<Vec<f64>, RenderError> {
+/// The shortest of several whole frames of pictures that are drawn in turn, so that a clock that drifts meets all of them; other work on the
+/// machine only makes frames longer.
+fn in_turn(contenders: &mut [TimedPicture]) -> Result<Vec<f64>, RenderError> {
     let mut times = vec![Vec::new(); contenders.len()];
     for _ in 0..OPTION_FRAMES {
         for (contender, times) in contenders.iter_mut().zip(&mut times) {
             times.push(contender.whole_ms()?);
         }
     }
-    Ok(times.iter().map(|times| timing::percentile(times, 0.5).unwrap_or(0.0).max(f64::MIN_POSITIVE)).collect())
+    Ok(times.iter().map(|times| times.iter().copied().fold(f64::INFINITY, f64::min)).collect())
 }
 
-/// The defaults first, then every measured option that this adapter can hold, each on both scenes.
-pub(super) fn option_pictures(gpu: &Arc<Gpu>, tuning: Tuning) -> Result<Vec<(Option<usize>, [Ready; 2])>, RenderError> {
+/// Both scenes drawn with an option.
+pub(super) struct OptionPictures {
+    /// Index in [`MEASURED_OPTIONS`]; none for the defaults.
+    option: Option<usize>,
+    scenes: [TimedPicture; 2],
+}
+
+/// All spheres drawn with a limit.
+pub(super) struct LimitPictures {
+    max_small_samples: u32,
+    spheres: Vec<TimedPicture>,
+}
+
+/// The defaults first, then every measured option that this adapter can hold.
+///
+/// # Errors
+/// When a picture cannot be drawn, or the device is lost.
+pub(super) fn option_pictures(gpu: &Arc<Gpu>, tuning: Tuning) -> Result<Vec<OptionPictures>, RenderError> {
     let [few, many] = MEASURED_TRIANGLES.map(|triangles| format!("sphere?triangles={triangles}"));
-    let ready = |pins: PinnedOptions| -> Result<[Ready; 2], RenderError> {
+    let ready = |pins: PinnedOptions| -> Result<[TimedPicture; 2], RenderError> {
         let accuracy = AccuracyRequest { pins, ..AccuracyRequest::default() };
-        let picture = |query| Ready::new(gpu, &(query, &[("lambert", &[])], OPTIONS_SIZE), accuracy, tuning);
+        let picture = |query| TimedPicture::new(gpu, &(query, &[("lambert", &[])], OPTIONS_SIZE), accuracy, tuning);
         Ok([picture(&few)?, picture(&many)?])
     };
-    let mut pictures = vec![(None, ready(PinnedOptions::default())?)];
+    let mut pictures = vec![OptionPictures { option: None, scenes: ready(PinnedOptions::default())? }];
     for (at, (axis, option)) in MEASURED_OPTIONS.into_iter().enumerate() {
         let mut pins = PinnedOptions::default();
         pins.set(&AXES[axis], Some(option));
         match ready(pins) {
-            Ok(both) => pictures.push((Some(at), both)),
+            Ok(scenes) => pictures.push(OptionPictures { option: Some(at), scenes }),
             // The adapter cannot hold it, so it is never chosen.
             Err(RenderError::Plan(_)) => {}
             Err(error) => return Err(error),
@@ -61,49 +77,57 @@ fn limits(usual: u32) -> [u32; 3] {
 }
 
 /// Every limit on every sphere.
-pub(super) fn limit_pictures(gpu: &Arc<Gpu>, usual: Tuning) -> Result<Vec<(u32, Vec<Ready>)>, RenderError> {
-    let mut pictures: Vec<(u32, Vec<Ready>)> = Vec::new();
+///
+/// # Errors
+/// When a picture cannot be drawn, or the device is lost.
+pub(super) fn limit_pictures(gpu: &Arc<Gpu>, usual: Tuning) -> Result<Vec<LimitPictures>, RenderError> {
+    let mut pictures: Vec<LimitPictures> = Vec::new();
     for max_small_samples in limits(usual.max_small_samples) {
-        if pictures.iter().any(|(limit, _)| *limit == max_small_samples) {
+        if pictures.iter().any(|known| known.max_small_samples == max_small_samples) {
             continue;
         }
         let tuning = Tuning { max_small_samples, ..usual };
         let of = |triangles: u32| {
             let query = format!("sphere?triangles={triangles}");
-            Ready::new(gpu, &(&query, &[("lambert", &[])], OPTIONS_SIZE), AccuracyRequest::default(), tuning)
+            TimedPicture::new(gpu, &(&query, &[("lambert", &[])], OPTIONS_SIZE), AccuracyRequest::default(), tuning)
         };
-        pictures.push((max_small_samples, LIMITS_TRIANGLES.into_iter().map(of).collect::<Result<_, _>>()?));
+        let spheres = LIMITS_TRIANGLES.into_iter().map(of).collect::<Result<_, _>>()?;
+        pictures.push(LimitPictures { max_small_samples, spheres });
     }
     Ok(pictures)
 }
 
-/// Milliseconds of every option, and of none that the adapter cannot hold: those of the defaults.
-pub(super) fn option_costs(pictures: Vec<(Option<usize>, [Ready; 2])>) -> Result<OptionCosts, RenderError> {
-    let (names, both): (Vec<_>, Vec<_>) = pictures.into_iter().unzip();
+/// Milliseconds of every option; those of the defaults for options that the adapter cannot hold.
+///
+/// # Errors
+/// When the device is lost.
+pub(super) fn option_costs(pictures: Vec<OptionPictures>) -> Result<OptionCosts, RenderError> {
+    let options: Vec<_> = pictures.iter().map(|pictures| pictures.option).collect();
     let (mut few, mut many) = (Vec::new(), Vec::new());
-    for [with_few, with_many] in both {
+    for OptionPictures { scenes: [with_few, with_many], .. } in pictures {
         few.push(with_few);
         many.push(with_many);
     }
     let [few, many] = [in_turn(&mut few)?, in_turn(&mut many)?];
     let defaults_ms = [few[0], many[0]];
     let mut costs = OptionCosts { defaults_ms, options_ms: [defaults_ms; MEASURED_OPTIONS.len()] };
-    for (at, ms) in names.into_iter().zip(few.into_iter().zip(many)) {
-        if let Some(at) = at {
-            costs.options_ms[at] = ms.into();
+    for (option, ms) in options.into_iter().zip(few.into_iter().zip(many)) {
+        if let Some(option) = option {
+            costs.options_ms[option] = ms.into();
         }
     }
     Ok(costs)
 }
 
 /// The limit that the spheres take least time with together; the usual one unless another saves more than noise.
-pub(super) fn best_limit(pictures: Vec<(u32, Vec<Ready>)>) -> Result<u32, RenderError> {
-    let usual = pictures[0].0;
-    let (limits, spheres): (Vec<u32>, Vec<Vec<Ready>>) = pictures.into_iter().unzip();
-    let per_limit = LIMITS_TRIANGLES.len();
-    let times = in_turn(&mut spheres.into_iter().flatten().collect::<Vec<_>>())?;
-    let sums = times.chunks(per_limit).map(|times| times.iter().sum::<f64>());
-    let mut best = (usual, WORTHWHILE * times[..per_limit].iter().sum::<f64>());
+///
+/// # Errors
+/// When the device is lost.
+pub(super) fn best_limit(pictures: Vec<LimitPictures>) -> Result<u32, RenderError> {
+    let limits: Vec<u32> = pictures.iter().map(|pictures| pictures.max_small_samples).collect();
+    let times = in_turn(&mut pictures.into_iter().flat_map(|pictures| pictures.spheres).collect::<Vec<_>>())?;
+    let sums: Vec<f64> = times.chunks(LIMITS_TRIANGLES.len()).map(|times| times.iter().sum()).collect();
+    let mut best = (limits[0], WORTHWHILE * sums[0]);
     for (limit, ms) in limits.into_iter().zip(sums).skip(1) {
         if ms < best.1 {
             best = (limit, ms);

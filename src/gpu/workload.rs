@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     accuracy::{AccuracyOptions, Coverage, VertexTransform},
-    effects::Stack,
+    effects::{Stack, hooks::Layers},
     math::SMALL_EXTENT,
     plan::cost_model::{FrameWork, PassWork, Unit},
     scene::{
@@ -242,10 +242,8 @@ impl<'a> FrameCounts<'a> {
     fn setups(&self, triangles: f64, paths: &[&PathWork], Weight { once, looped }: Weight) -> Vec<(Unit, f64)> {
         let rows = |path: &&PathWork| if self.walks_rows { path.rows } else { path.triangles };
         let most_rows = paths.iter().map(|path| path.most_rows).fold(1.0, f64::max);
-        let turns = if self.walks_rows { most_rows } else { 1.0 };
         vec![
-            (Unit::SetupTurn, if self.walks_rows { turns } else { 0.0 }),
-            (Unit::SetupChain, once + turns * looped),
+            (Unit::SetupTurn, if self.walks_rows { most_rows } else { 0.0 }),
             (Unit::SetupOperation, triangles * once + paths.iter().map(rows).sum::<f64>() * looped),
         ]
     }
@@ -344,13 +342,15 @@ impl<'a> FrameCounts<'a> {
     fn resolve(&self, once: f64, looped: f64) -> Vec<(Unit, f64)> {
         let shades = self.touched > 0.0 || self.queues.clip > 0.0;
         let if_shaded = |count: f64| if shades { count } else { 0.0 };
+        // Averages and counts of layers read no image.
+        let shows_layers = matches!(self.key.framebuffer.layers, Some(Layers::Xray { .. } | Layers::Overdraw));
         let visited = if self.key.work.listed_tiles { self.touched } else { 1.0 };
         let shaded = if self.key.finishes_pixels() { 1.0 } else { self.touched };
         vec![
             (Unit::Pixel, visited * self.pixels),
             (Unit::PixelChain, if_shaded(once + TURNS * looped)),
             (Unit::PixelTurn, if shades || self.key.finishes_pixels() { self.turns } else { 0.0 }),
-            (Unit::Textures, if_shaded(f64::from(u8::from(self.needs.textured > 0)))),
+            (Unit::Textures, if_shaded(f64::from(u8::from(self.needs.textured > 0 && !shows_layers)))),
             (Unit::PixelOperation, shaded * self.pixels * (once + self.turns.max(TURNS) * looped)),
         ]
     }

@@ -1,6 +1,6 @@
 //! Capabilities of an adapter, and how work is divided on it.
 
-use super::costs::Measured;
+use super::measured::Measured;
 
 /// Kernels bind at most 8 storage buffers, and at most 2 more in place of uniforms or to clear what a draw order counts. A resolve that reads
 /// a shadow map from a buffer binds one more.

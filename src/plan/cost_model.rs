@@ -17,7 +17,6 @@ pub enum Unit {
     DeformChain,
     DeformOperation,
     SetupTurn,
-    SetupChain,
     SetupOperation,
     SmallTurn,
     SmallChain,
@@ -54,7 +53,6 @@ impl Unit {
         (Self::DeformChain, "deform_chain", "an operation on the longest way through the kernel that deforms vertices"),
         (Self::DeformOperation, "deform_operation", "an operation on a vertex that joints or morph targets deform"),
         (Self::SetupTurn, "setup_turn", "a row of the triangle whose sample setup visits most, one after another"),
-        (Self::SetupChain, "setup_chain", "an operation on the longest way through the kernel of sample setups"),
         (Self::SetupOperation, "setup_operation", "an operation on what sample tests read once per triangle"),
         (Self::SmallTurn, "small_turn", "a sample of the small triangle that has most, one after another"),
         (Self::SmallChain, "small_chain", "an operation on these samples"),
@@ -98,7 +96,6 @@ impl Unit {
             self,
             Self::DeformChain
                 | Self::SetupTurn
-                | Self::SetupChain
                 | Self::SmallTurn
                 | Self::SmallChain
                 | Self::QueuedTurn

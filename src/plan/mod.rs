@@ -8,6 +8,7 @@ mod explain;
 mod key;
 mod least_squares;
 mod loops;
+mod measured;
 mod options;
 pub mod predict;
 mod request;
@@ -17,8 +18,8 @@ use std::sync::Arc;
 
 pub use self::{
     caps::{Caps, Tuning},
-    costs::{MEASURED_OPTIONS, MEASURED_TRIANGLES, Measured, OptionCosts},
     error::PlanError,
+    measured::{MEASURED_OPTIONS, MEASURED_TRIANGLES, Measured, OptionCosts},
     request::{AccuracyRequest, Tier, Tolerance},
     traits::{InexactEffect, StackTraits},
 };

@@ -118,7 +118,7 @@ impl TriangleSizes {
             let id = ((k as f64 + within) * triangles as f64 / count as f64) as u64;
             let index = draws.partition_point(|draw| u64::from(draw.first_triangle) <= id) - 1;
             let draw = &draws[index];
-            match classify(scene, draw, view, corners(index, id as u32 - draw.first_triangle)) {
+            match classify(draw, view, corners(index, id as u32 - draw.first_triangle)) {
                 Sampled::Visible(one) => visible.push(one),
                 Sampled::CrossesNear(rest) => {
                     near_clipped += 1;
@@ -260,7 +260,7 @@ fn behind_near(clip: [DVec4; 3], view: &View) -> Option<VisibleTriangle> {
     })
 }
 
-fn classify(scene: &Scene, draw: &Draw, view: &View, clip: [DVec4; 3]) -> Sampled {
+fn classify(draw: &Draw, view: &View, clip: [DVec4; 3]) -> Sampled {
     if clip.iter().any(|c| !c.is_finite()) {
         return Sampled::Hidden;
     }
@@ -277,7 +277,7 @@ fn classify(scene: &Scene, draw: &Draw, view: &View, clip: [DVec4; 3]) -> Sample
     let doubled = (b - a).perp_dot(c - a);
     let is_back = (doubled > 0.0) != draw.mirrored;
     let is_outside = high.x <= 0.0 || high.y <= 0.0 || low.x >= size.x || low.y >= size.y;
-    if is_outside || doubled == 0.0 || is_back && !scene.materials[scene.primitives[draw.primitive].material].double_sided {
+    if is_outside || doubled == 0.0 || is_back && !draw.double_sided {
         return Sampled::Hidden;
     }
     let first = [0, 1].map(|axis| (low[axis] - 0.5).ceil().max(0.0));

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     accuracy::{Axis, PinnedOptions},
-    app::device::calibrated,
+    app::calibrated::calibrated,
     effects::Stack,
     gpu::{
         Capture, Gpu,
