@@ -84,7 +84,7 @@ impl Devices {
     /// The devices for a window on `window`. Without a second device the first draws, too.
     pub fn of(window: Arc<Gpu>) -> Self {
         let choice = AdapterChoice::Named(window.summary.name.clone());
-        let opened = || started_as(Urgency::Picture, || Gpu::open(&choice).ok().map(calibrated));
+        let opened = || started_as(Urgency::Picture, || Gpu::open(&choice).ok().map(|gpu| gpu.with_measured(window.caps.measured)));
         let second = if window.summary.software { opened() } else { None };
         Self { picture: second.unwrap_or_else(|| window.clone()), window }
     }

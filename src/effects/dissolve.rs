@@ -6,8 +6,8 @@
 use glam::{DVec2, DVec3, DVec4};
 
 use super::{
-    effect::read,
     Effect, Surface, SurfaceEffect, SurfaceInput,
+    effect::read,
     hooks::{TriangleSetup, Front, Pattern, Sample, SampleEffect},
 };
 use crate::{
@@ -50,7 +50,8 @@ params! {
 }
 
 pub const EFFECT: Effect =
-    Effect::new::<Dissolve>("dissolve", "Dissolve", "fills every triangle to a fraction of its area").on_sample::<Dissolve>().on_surface::<Dissolve>().walking_rows_if(|words| Mode::of(read::<Dissolve>(words).mode) == Mode::Scanline);
+    Effect::new::<Dissolve>("dissolve", "Dissolve", "fills every triangle to a fraction of its area").on_sample::<Dissolve>().on_surface::<Dissolve>()
+        .walking_rows_if(|words| Mode::of(read::<Dissolve>(words).mode) == Mode::Scanline);
 
 /// The whole triangle, in units of the fractions.
 const ONE: u32 = 1 << 24;

@@ -16,14 +16,14 @@ pub const MEASURED_OPTIONS: [(usize, usize); 6] = [
 pub const MEASURED_TRIANGLES: [u32; 2] = [200, 200_000];
 
 /// Milliseconds of frames with options of [`MEASURED_OPTIONS`] and with the defaults, at [`MEASURED_TRIANGLES`], on one adapter; all above 0.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OptionCosts {
     pub defaults_ms: [f64; 2],
     pub options_ms: [[f64; 2]; MEASURED_OPTIONS.len()],
 }
 
 /// What a calibration measured on an adapter that the planner asks for.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
     pub options: OptionCosts,
     /// Most samples of a triangle that one invocation walks.

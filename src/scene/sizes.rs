@@ -76,7 +76,7 @@ pub struct SizeWork {
     pub small: PathWork,
     pub medium: PathWork,
     pub large: PathWork,
-    /// What is left of triangles that cross the near plane, where that reaches the picture; it counts as medium or large, too.
+    /// Triangles that cross the near plane and reach the picture, as the near plane cuts them. They are counted in `medium` or `large` too.
     pub cut: PathWork,
 }
 
