@@ -1,4 +1,5 @@
 // The triangle that a queue entry names: a triangle of the scene, or, with CLIPPED_ENTRY set, a triangle that clipping made.
+// With HIDDEN_ENTRY set, the pass that found the nearest depths saw that blocks hide all of it, so the next pass leaves it out.
 // Mirrors `gpu::records::ClippedTriangleRecord`.
 //@ use lib/frame
 //@ use lib/fixed
@@ -14,15 +15,21 @@ struct ClippedTriangle {
 
 // Bit of a queue entry that names a clipped triangle.
 const CLIPPED_ENTRY = 0x80000000u;
+// Bit of an entry of the medium queue and of the tiles.
+const HIDDEN_ENTRY = 0x40000000u;
+
+// This pass sets HIDDEN_ENTRY, or reads it.
+override MARKS_ENTRIES: bool = false;
+override SKIPS_HIDDEN_ENTRIES: bool = false;
 
 fn queued_triangle(entry: u32) -> Triangle {
+    let index = entry & ~(CLIPPED_ENTRY | HIDDEN_ENTRY);
     if HAS_CLIPPING && (entry & CLIPPED_ENTRY) != 0u {
-        let index = entry & ~CLIPPED_ENTRY;
         let clipped = clipped_triangles[index];
         return Triangle(
             clipped.a, clipped.b, clipped.c, clipped.parent.x, clipped.parent.y, frame.triangle_count + index, clipped.parent.w);
     }
-    return triangle_load(entry);
+    return triangle_load(index);
 }
 
 // A triangle with its corners clockwise on screen, and what its edge functions need: b and c are exchanged where they are not.

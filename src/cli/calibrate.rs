@@ -56,7 +56,7 @@ pub fn run(common: &Common, args: &Calibrate, streams: &mut Streams) -> Result<E
 /// Measures and keeps what was found.
 fn calibrated(gpu: &Arc<Gpu>, streams: &Streams) -> Result<Calibration, CliError> {
     let bar = streams.progress(0);
-    let found = calibration::calibrate(gpu, oracle::moved_sizes, &mut |done, all| {
+    let found = calibration::calibrate(gpu, oracle::moved_sizes, &|done, all| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
     })?;

@@ -506,8 +506,8 @@ impl FrameLayout {
         }
     }
 
-    /// Most workgroups that the entries of a pass's queue can keep busy.
-    fn most_queued(&self, pass: Pass) -> u32 {
+    /// Workgroups that the entries of a pass's queue can keep busy, as a rule.
+    fn usually_queued(&self, pass: Pass) -> u32 {
         let room = &self.capacities;
         // Large triangles are few, as a rule, and workgroups that find none cost a little too.
         let most_large = room.large.div_ceil(4);
@@ -534,8 +534,9 @@ impl FrameLayout {
     /// Workgroups of a pass over a queue, of which each takes entries in turn. `demand` is what a picture before counted: where its queues
     /// held little, fewer workgroups find work, and those that find none cost a little too. A queue that held more since is drawn whole.
     fn queue_groups(&self, key: &KernelKey, pass: Pass, demand: Option<&CounterRecord>) -> u32 {
-        let most = key.work.queue_groups.min(self.most_queued(pass)).max(1);
-        let Some(demand) = demand else { return most };
+        let most = key.work.queue_groups.max(1);
+        let usual = most.min(self.usually_queued(pass)).max(1);
+        let Some(demand) = demand else { return usual };
         let medium = demand.medium.saturating_mul(MOST_PARTS);
         let tiles = demand.tiles.saturating_mul(MOST_PARTS);
         let held = match pass {
@@ -545,7 +546,7 @@ impl FrameLayout {
             Pass::RasterAll(_) => medium.max(tiles),
             _ => tiles,
         };
-        held.clamp(LEAST_QUEUE_GROUPS.min(most), most)
+        held.clamp(LEAST_QUEUE_GROUPS.min(usual), most)
     }
 
     /// How many workgroups a pass takes. `demand` is what the queues of a picture before held, where it is known.

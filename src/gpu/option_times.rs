@@ -3,6 +3,8 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::{device::Gpu, error::RenderError, timed_picture::TimedPicture};
 use crate::{
     accuracy::{AXES, PinnedOptions},
@@ -57,23 +59,27 @@ pub(super) fn option_pictures(gpu: &Arc<Gpu>, tuning: Tuning) -> Result<Vec<Opti
         let picture = |query| TimedPicture::new(gpu, &(query, &[("lambert", &[])], OPTIONS_SIZE), accuracy, tuning);
         Ok([picture(&few)?, picture(&many)?])
     };
-    let mut pictures = vec![OptionPictures { option: None, scenes: ready(PinnedOptions::default())? }];
-    for (at, (axis, option)) in MEASURED_OPTIONS.into_iter().enumerate() {
+    let pinned = |(at, &(axis, option)): (usize, &(usize, usize))| {
         let mut pins = PinnedOptions::default();
         pins.set(&AXES[axis], Some(option));
         match ready(pins) {
-            Ok(scenes) => pictures.push(OptionPictures { option: Some(at), scenes }),
+            Ok(scenes) => Ok(Some(OptionPictures { option: Some(at), scenes })),
             // The adapter cannot hold it, so it is never chosen.
-            Err(RenderError::Plan(_)) => {}
-            Err(error) => return Err(error),
+            Err(RenderError::Plan(_)) => Ok(None),
+            Err(error) => Err(error),
         }
-    }
+    };
+    let mut pictures = vec![OptionPictures { option: None, scenes: ready(PinnedOptions::default())? }];
+    let measured = MEASURED_OPTIONS.par_iter().enumerate().map(pinned).collect::<Result<Vec<_>, _>>()?;
+    pictures.extend(measured.into_iter().flatten());
     Ok(pictures)
 }
 
-/// Limits of samples that one invocation walks: the usual one first.
-fn limits(usual: u32) -> [u32; 3] {
-    [usual, usual / 4, (usual * 4).min(128 * 128)]
+/// Limits of samples that one invocation walks: the usual one first, each once.
+fn limits(usual: u32) -> Vec<u32> {
+    let mut limits = vec![usual, usual / 4];
+    limits.extend(Some((usual * 4).min(128 * 128)).filter(|more| *more > usual));
+    limits
 }
 
 /// Every limit on every sphere.
@@ -81,20 +87,16 @@ fn limits(usual: u32) -> [u32; 3] {
 /// # Errors
 /// When a picture cannot be drawn, or the device is lost.
 pub(super) fn limit_pictures(gpu: &Arc<Gpu>, usual: Tuning) -> Result<Vec<LimitPictures>, RenderError> {
-    let mut pictures: Vec<LimitPictures> = Vec::new();
-    for max_small_samples in limits(usual.max_small_samples) {
-        if pictures.iter().any(|known| known.max_small_samples == max_small_samples) {
-            continue;
-        }
+    let of_limit = |max_small_samples: u32| {
         let tuning = Tuning { max_small_samples, ..usual };
         let of = |triangles: u32| {
             let query = format!("sphere?triangles={triangles}");
             TimedPicture::new(gpu, &(&query, &[("lambert", &[])], OPTIONS_SIZE), AccuracyRequest::default(), tuning)
         };
         let spheres = LIMITS_TRIANGLES.into_iter().map(of).collect::<Result<_, _>>()?;
-        pictures.push(LimitPictures { max_small_samples, spheres });
-    }
-    Ok(pictures)
+        Ok(LimitPictures { max_small_samples, spheres })
+    };
+    limits(usual.max_small_samples).into_par_iter().map(of_limit).collect()
 }
 
 /// Milliseconds of every option; those of the defaults for options that the adapter cannot hold.

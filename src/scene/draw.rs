@@ -108,8 +108,8 @@ pub fn totals(scene: &Scene, draws: &[Draw]) -> [u64; 2] {
     })
 }
 
-/// The most triangles in a picture: an id shares its word with a flag, and one value means none.
-pub const MAX_TRIANGLES: u64 = (1 << 31) - 2;
+/// The most triangles in a picture: an id shares its word with two flags, and one value means none.
+pub const MAX_TRIANGLES: u64 = (1 << 30) - 2;
 
 /// The draws of `scene` as `view` sees it, in instance order, for a stack without scopes.
 ///

@@ -334,6 +334,22 @@ fn mutants() -> Vec<Mutant> {
             TRIANGLE_IDS,
         ),
         mutant(
+            "a tile that shows is left out by the pass that finds triangle ids",
+            "variants/large_tiles/shared",
+            "parts == 1u && is_hidden &&",
+            "parts == 1u &&",
+            sizes(),
+            HOLES,
+        ),
+        mutant(
+            "a medium triangle that shows is left out by the pass that finds triangle ids",
+            "variants/medium_boxes/shared",
+            "parts == 1u && shown == 0u &&",
+            "parts == 1u &&",
+            sizes(),
+            HOLES,
+        ),
+        mutant(
             "a medium triangle stops a block early",
             "variants/medium_boxes/shared",
             "x <= pixels.z; x += 8",

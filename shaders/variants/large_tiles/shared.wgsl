@@ -19,6 +19,8 @@ const MAX_TILE_PARTS = 4u;
 var<workgroup> tile_slots: vec2u;
 // A bit for every block of 8x8 pixels that is drawn.
 var<workgroup> drawn: array<atomic<u32>, 2>;
+// The queue's entry of the tile.
+var<workgroup> tile_entry: u32;
 
 fn large_tiles(group: u32, groups: u32, invocation_index: u32) {
     if invocation_index == 0u { tile_slots = vec2u(queues_tiles_done(), queues_tiles_count()); }
@@ -33,13 +35,16 @@ fn large_tiles(group: u32, groups: u32, invocation_index: u32) {
 // Draws every block of a tile whose row is of this part.
 fn draw_tile(slot: u32, part: u32, parts: u32, invocation_index: u32) {
     let word = frame.tile_first + 2u * slot;
+    // Every invocation has read what was prepared for the tile before.
+    workgroupBarrier();
+    if invocation_index == 0u { tile_entry = queues[word]; }
+    let entry = workgroupUniformLoad(&tile_entry);
+    if SKIPS_HIDDEN_ENTRIES && (entry & HIDDEN_ENTRY) != 0u { return; }
     let packed_tile = queues[word + 1u];
-    let t = queued_triangle(queues[word]);
+    let t = queued_triangle(entry);
     let large = clockwise_triangle(t);
 
     let tile = vec2i(vec2u(packed_tile & 0xffffu, packed_tile >> 16u)) * 64;
-    // Every invocation has read what was prepared for the tile before.
-    workgroupBarrier();
     large_tile_prepare(large, tile, invocation_index);
     if invocation_index < 2u { atomicStore(&drawn[invocation_index], 0u); }
     workgroupBarrier();
@@ -53,6 +58,7 @@ fn draw_tile(slot: u32, part: u32, parts: u32, invocation_index: u32) {
         atomicOr(&drawn[invocation_index / 32u], 1u << (invocation_index % 32u));
     }
     workgroupBarrier();
+    let is_hidden = (atomicLoad(&drawn[0]) | atomicLoad(&drawn[1])) == 0u;
 
     for (var half = 0u; half < 2u; half += 1u) {
         var left = atomicLoad(&drawn[half]);
@@ -77,6 +83,8 @@ fn draw_tile(slot: u32, part: u32, parts: u32, invocation_index: u32) {
         }
     }
     framebuffer_end(t.id);
+    // One workgroup has seen the whole tile.
+    if MARKS_ENTRIES && parts == 1u && is_hidden && invocation_index == 0u { queues[word] = entry | HIDDEN_ENTRY; }
 }
 
 // Index of the edges of the block of 16x16 pixels that holds a pixel, counted from the tile's first.

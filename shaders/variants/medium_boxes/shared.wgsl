@@ -36,12 +36,14 @@ fn medium_boxes(group: u32, groups: u32, invocation_index: u32) {
 
 // Draws a part of a triangle.
 fn draw_triangle(slot: u32, part: u32, parts: u32, invocation_index: u32) {
-    let t = queued_triangle(queues[frame.medium_first + slot]);
+    let word = frame.medium_first + slot;
+    let entry = queues[word];
+    let t = queued_triangle(entry);
     let low = min(min(vertex_at(t.a), vertex_at(t.b)), vertex_at(t.c));
     let high = max(max(vertex_at(t.a), vertex_at(t.b)), vertex_at(t.c));
     let pixels = triangle_pixels(low, high);
     let sides = pixels.zw / 8 - pixels.xy / 8 + 1;
-    let is_drawn = framebuffer_begin(t.id);
+    let is_drawn = framebuffer_begin(t.id) && !(SKIPS_HIDDEN_ENTRIES && (entry & HIDDEN_ENTRY) != 0u);
     if invocation_index == 0u {
         blocks = select(0u, u32(sides.x * sides.y), is_drawn);
         if part == 0u { mark_tiles(pixels); }
@@ -58,6 +60,7 @@ fn draw_triangle(slot: u32, part: u32, parts: u32, invocation_index: u32) {
     // Blocks are aligned, so a part of the first ones may lie outside the box.
     let first = (pixels.xy / 8) * 8;
     let coverage = coverage_of(t, first);
+    var shown = 0u;
     for (var begin = 0u; begin * parts < count; begin += 64u) {
         // Every invocation has read the list before.
         workgroupBarrier();
@@ -70,6 +73,7 @@ fn draw_triangle(slot: u32, part: u32, parts: u32, invocation_index: u32) {
         }
         workgroupBarrier();
         let drawn = min(atomicLoad(&listed), 64u);
+        shown += drawn;
         for (var i = 0u; i < drawn; i += 1u) {
             let offset = vec2i(vec2u(list[i] & 0xffffu, list[i] >> 16u)) * 8 + mine;
             let at = first + offset;
@@ -81,6 +85,8 @@ fn draw_triangle(slot: u32, part: u32, parts: u32, invocation_index: u32) {
         }
     }
     framebuffer_end(t.id);
+    // One workgroup has seen the whole triangle.
+    if MARKS_ENTRIES && parts == 1u && shown == 0u && invocation_index == 0u { queues[word] = entry | HIDDEN_ENTRY; }
 }
 
 // Visits every `parts`th row of blocks of a box.

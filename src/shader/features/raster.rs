@@ -161,6 +161,8 @@ const HIDDEN_BLOCKS: Feature = Feature {
             flag(key.hides_blocks() && keeps_keys)
         }),
         ("RAISES_BLOCKS", |_, pass| flag(pass.phase() != Some(RasterPhase::TriangleId))),
+        ("MARKS_ENTRIES", |key, pass| flag(key.hides_blocks() && pass.phase() == Some(RasterPhase::Depth))),
+        ("SKIPS_HIDDEN_ENTRIES", |key, pass| flag(key.hides_blocks() && pass.phase() == Some(RasterPhase::TriangleId))),
     ],
     ..Feature::NONE
 };
