@@ -56,7 +56,7 @@ impl PictureCost {
     fn new(work: &FrameWork, costs: Option<&UnitCosts>, times: Option<&FrameTimes>) -> Self {
         let nothing = FrameTimes { whole_ms: 0.0, passes: Vec::new(), frames: 0 };
         let passes = paired(work, times.unwrap_or(&nothing)).into_iter().map(|(pass, measured)| {
-            let predicted = costs.map(|costs| costs.ms_of(&pass.counts));
+            let predicted = costs.map(|costs| costs.lone_ms(pass));
             (pass.label.clone(), Cost::new(predicted, measured))
         });
         let measured = times.map(|times| times.whole_ms).filter(|ms| *ms > 0.0);

@@ -1,5 +1,7 @@
 //! Stacks: the enabled effects with their values, in the order in which they apply.
 
+use glam::DVec3;
+
 use super::{
     dots, draw_order,
     effect::{Effect, read},
@@ -125,6 +127,13 @@ impl Stack {
     /// Applies every surface effect in order, as far as they act on a draw with these `scopes` ([`Draw::scopes`]).
     pub fn shade(&self, surface: Surface, scopes: u32) -> Surface {
         self.each_on(scopes, |hooks| hooks.surface).fold(surface, |surface, (apply, words)| apply(surface, words))
+    }
+
+    /// Does the color of a material show through the surface effects on some of a few triangles, or do they paint over it? What is painted over
+    /// no compiler computes.
+    pub fn shows_materials(&self) -> bool {
+        let shaded = |color, triangle| self.shade(Surface::example(color, triangle), u32::MAX).color;
+        (0..4).any(|triangle| shaded(DVec3::splat(0.2), triangle) != shaded(DVec3::splat(0.8), triangle))
     }
 
     /// Moves a vertex of a draw with these `scopes` by every vertex effect in order.

@@ -1,7 +1,15 @@
 //! The calibration of an adapter: a few small pictures of built-in scenes, each with much of another kind of work, are timed, and the unit
 //! costs that explain the times best are computed.
 
-use std::{sync::Arc, time::Instant};
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicUsize, Ordering},
+    },
+    time::Instant,
+};
+
+use rayon::prelude::*;
 
 use super::{
     device::Gpu,
@@ -15,7 +23,7 @@ use crate::{
     accuracy::{Coverage, PinnedOptions, VertexTransform, Visibility},
     plan::{
         AccuracyRequest, Caps, Measured,
-        cost_model::{FrameWork, MeasuredWork, PassWork, UnitCosts},
+        cost_model::{FrameWork, MeasuredWork, PassWork, Unit, UnitCosts},
     },
 };
 
@@ -77,21 +85,27 @@ const PICTURES: &[Picture<'static>] = &[
 const FINE: usize = 2;
 
 /// Times the pictures of the calibration on a device and computes the unit costs. `moved_sizes` samples their triangles; `progress` is told
-/// the number of the next picture and of all.
+/// the number of pictures that are ready to be timed, and of all.
 ///
 /// # Errors
 /// When a picture cannot be drawn, or the device is lost.
-pub fn calibrate(gpu: &Arc<Gpu>, moved_sizes: MovedSizes, progress: &mut dyn FnMut(usize, usize)) -> Result<Calibrated, RenderError> {
+pub fn calibrate(gpu: &Arc<Gpu>, moved_sizes: MovedSizes, progress: &(dyn Fn(usize, usize) + Sync)) -> Result<Calibrated, RenderError> {
     let begin = Instant::now();
     // An earlier calibration of the adapter counts for nothing.
     let usual = Caps { measured: None, ..gpu.caps }.tuning();
-    // All kernels are compiled before anything is timed, so that a card stays at the clock of one at work.
-    let mut ready = Vec::new();
-    for (index, picture) in PICTURES.iter().enumerate() {
-        progress(index, PICTURES.len());
-        ready.push(TimedPicture::new(gpu, picture, accuracy_of(index), usual)?);
-    }
-    let (options, limits) = (option_pictures(gpu, usual)?, limit_pictures(gpu, usual)?);
+    // All kernels are compiled before anything is timed, so that a card stays at the clock of one at work; those of several pictures at once,
+    // since a driver compiles each on the thread that asks for it.
+    let done = AtomicUsize::new(0);
+    let made_ready = |(index, picture): (usize, &Picture<'static>)| {
+        let picture = TimedPicture::new(gpu, picture, accuracy_of(index), usual);
+        progress(done.fetch_add(1, Ordering::Relaxed) + 1, PICTURES.len());
+        picture
+    };
+    let (ready, (options, limits)) = rayon::join(
+        || PICTURES.par_iter().enumerate().map(made_ready).collect::<Result<Vec<_>, _>>(),
+        || rayon::join(|| option_pictures(gpu, usual), || limit_pictures(gpu, usual)),
+    );
+    let (mut ready, options, limits) = (ready?, options?, limits?);
     let start = Instant::now();
     warm_up::warm_up(gpu, ready.len(), |at, frames| {
         ready[at].draw(frames)?;
@@ -125,14 +139,15 @@ fn accuracy_of(index: usize) -> AccuracyRequest {
 
 /// How much the passes of a frame count together beside the whole frame: on a card, where a pass that is timed alone overlaps with no other,
 /// and on a CPU adapter.
-const PASSES_WEIGHT: [f64; 2] = [0.2, 1.0];
+const PASSES_WEIGHT: [f64; 2] = [0.5, 1.0];
 
 /// Times beside the work that was done in them: the whole frame, and every pass in proportion to its part of the frame.
 fn observations(work: &FrameWork, times: &FrameTimes, passes_weight: f64) -> Vec<MeasuredWork> {
     let mut measured = vec![MeasuredWork { counts: work.counts(), ms: times.whole_ms, weight: 1.0 }];
     let all: f64 = times.passes.iter().map(|(_, ms)| ms).sum();
     for (pass, ms) in paired(work, times) {
-        measured.extend(ms.map(|ms| MeasuredWork { counts: pass.counts.clone(), ms, weight: passes_weight * (ms / all).max(0.02) }));
+        let counts = pass.counts.iter().copied().chain([(Unit::LonePass, 1.0)]).collect();
+        measured.extend(ms.map(|ms| MeasuredWork { counts, ms, weight: passes_weight * (ms / all).max(0.02) }));
     }
     measured
 }
@@ -147,7 +162,7 @@ pub fn paired<'a>(work: &'a FrameWork, times: &FrameTimes) -> Vec<(&'a PassWork,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{gpu::timed_picture::made, plan::cost_model::Unit};
+    use crate::gpu::timed_picture::made;
 
     #[test]
     fn every_picture_of_the_calibration_can_be_made() {

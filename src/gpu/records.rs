@@ -100,10 +100,10 @@ gpu_record! {
         pub medium_done: u32,
         pub large_done: u32,
         pub tiles_done: u32,
+        pub listed_dots: u32,
         pub spare_0: u32,
         pub spare_1: u32,
         pub spare_2: u32,
-        pub spare_3: u32,
     }
 }
 

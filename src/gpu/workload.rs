@@ -11,7 +11,7 @@ use super::{
     view_resources::{PreparedFrame, ViewResources},
 };
 use crate::{
-    accuracy::{AccuracyOptions, Coverage, VertexTransform},
+    accuracy::{AccuracyOptions, Coverage, DotCulling, VertexTransform},
     effects::{Stack, hooks::Layers},
     math::SMALL_EXTENT,
     plan::cost_model::{FrameWork, PassWork, Unit},
@@ -99,9 +99,13 @@ impl Renderer {
                 let weight = weight_of(&self.device, &frame.plan.key, pass)?;
                 let mut counts = scene.counts(pass, weight);
                 counts.retain(|(_, count)| *count > 0.0);
-                // An indirect dispatch of no workgroup costs next to nothing.
-                let is_idle = counts.is_empty() && matches!(frame.layout.dispatch(&frame.plan.key, pass, None), Dispatch::Indirect { .. });
-                counts.extend((!is_idle).then_some((Unit::Pass, 1.0)));
+                let is_indirect = || matches!(frame.layout.dispatch(&frame.plan.key, pass, None), Dispatch::Indirect { .. });
+                match counts.is_empty() {
+                    false => counts.push((Unit::Pass, 1.0)),
+                    // An indirect dispatch of no workgroup costs next to nothing.
+                    true if is_indirect() => {}
+                    true => counts.push((Unit::IdlePass, 1.0)),
+                }
                 Ok(PassWork { label: format!("{prefix}{}", pass.label()), counts })
             })
             .collect()
@@ -139,10 +143,6 @@ struct FrameCounts<'a> {
     needs: &'a Needs,
     sizes: SizeWork,
     queues: Queues,
-    /// Some triangle is visible.
-    shows: bool,
-    /// Estimated fraction of the triangles that is visible.
-    visible: f64,
     pixels: f64,
     /// Estimated fraction of the pixels in tiles that a triangle touches.
     touched: f64,
@@ -150,10 +150,14 @@ struct FrameCounts<'a> {
     disc: f64,
     /// Pixels in the square about a dot.
     dot: f64,
+    /// Dots that are drawn.
+    listed_dots: f64,
     /// Turns of the longest loop that an effect runs at every pixel.
     turns: f64,
     /// The sample setup of an effect visits every row of a triangle.
     walks_rows: bool,
+    /// The color of a material is seen.
+    shows_materials: bool,
 }
 
 impl<'a> FrameCounts<'a> {
@@ -182,14 +186,18 @@ impl<'a> FrameCounts<'a> {
             layout,
             needs,
             queues,
-            shows: triangles.visible() > 0,
-            visible: f64::from(triangles.visible()) / f64::from(triangles.sampled.max(1)),
             pixels: f64::from(layout.size[0]) * f64::from(layout.size[1]),
             touched: triangles.touched_fraction(layout.size, TILE),
             disc: square(frame.point_radius),
             dot: dot_radius.map_or(0.0, |radius| square(radius + 128)),
+            listed_dots: layout.dots.map_or(0.0, |dots| match key.options.dot_culling {
+                DotCulling::Brute => dots.dots.into(),
+                DotCulling::Cpu => dots.chosen.into(),
+                DotCulling::Gpu => demand.map_or(dots.dots, |counted| counted.listed_dots).into(),
+            }),
             turns: frame.turns,
             walks_rows: frame.walks_rows,
+            shows_materials: frame.shows_materials,
             sizes,
         }
     }
@@ -242,10 +250,9 @@ impl<'a> FrameCounts<'a> {
     fn setups(&self, triangles: f64, paths: &[&PathWork], Weight { once, looped }: Weight) -> Vec<(Unit, f64)> {
         let rows = |path: &&PathWork| if self.walks_rows { path.rows } else { path.triangles };
         let most_rows = paths.iter().map(|path| path.most_rows).fold(1.0, f64::max);
-        vec![
-            (Unit::SetupTurn, if self.walks_rows { most_rows } else { 0.0 }),
-            (Unit::SetupOperation, triangles * once + paths.iter().map(rows).sum::<f64>() * looped),
-        ]
+        // A setup that does not need all rows finds what it needs in the first two.
+        let turns = if self.walks_rows { most_rows } else { most_rows.min(2.0) };
+        vec![(Unit::SetupChain, turns * looped), (Unit::SetupOperation, triangles * once + paths.iter().map(rows).sum::<f64>() * looped)]
     }
 
     fn counts(&self, pass: Pass, weight: Weight) -> Vec<(Unit, f64)> {
@@ -279,44 +286,40 @@ impl<'a> FrameCounts<'a> {
                     (Unit::ClipOperation, self.queues.clip * few_turns),
                 ]
             }
-            Pass::RasterSmall(_) => {
+            Pass::RasterSmall(phase) => {
                 let triangles = if self.invocations(pass).is_some() { self.triangles() } else { 0.5 * self.triangles() };
-                vec![
-                    (Unit::SmallTurn, small.longest),
-                    (Unit::SmallChain, small.longest * looped),
-                    (Unit::SmallOperation, triangles * once + small.candidates * looped),
-                ]
+                let mut counts = self.turns(phase, small.longest, 0.0, looped);
+                counts.push((Unit::SmallOperation, triangles * once + small.candidates * looped));
+                counts
             }
             // Its text holds the code of three paths, each about as long as the others.
             Pass::RasterAll(phase) => {
                 let (once, looped) = (once / 3.0, looped / 3.0);
-                let turns = small.longest.max(self.medium_turns()).max(self.tile_turns());
-                vec![
-                    (Unit::SmallTurn, turns),
-                    (Unit::SmallChain, turns * looped),
-                    (Unit::SmallOperation, self.triangles() * once + small.candidates * looped),
-                    (Unit::QueuedOperation, (self.medium_samples(phase) + self.large_samples(phase)) * looped),
-                ]
+                let mut counts = self.turns(phase, small.longest, self.medium_turns().max(self.tile_turns()), looped);
+                counts.push((Unit::SmallOperation, self.triangles() * once + small.candidates * looped));
+                counts.push((Unit::QueuedOperation, (self.medium_samples(phase) + self.large_samples(phase)) * looped));
+                counts
             }
             Pass::TileLarge => vec![(Unit::QueuedOperation, self.sizes.large.triangles * few_turns)],
-            Pass::RasterMedium(phase) => Self::queued(self.medium_turns(), self.medium_samples(phase), looped),
-            Pass::RasterLarge(phase) => Self::queued(self.tile_turns(), self.large_samples(phase), looped),
+            Pass::RasterMedium(phase) => self.queued(phase, self.medium_turns(), self.medium_samples(phase), looped),
+            Pass::RasterLarge(phase) => self.queued(phase, self.tile_turns(), self.large_samples(phase), looped),
+            // All discs but those of one triangle are left out before their samples.
+            Pass::RasterPoints(RasterPhase::BoundaryTriangle) => vec![(Unit::SmallOperation, self.triangles() * once)],
             Pass::RasterPoints(_) => {
-                let turns = if self.shows { 3.0 * self.disc / f64::from(self.key.work.invocations_per_triangle.max(1)) } else { 0.0 };
+                let most = self.sizes.most_corners / f64::from(self.key.work.invocations_per_triangle.max(1));
                 vec![
-                    (Unit::DiscTurn, turns),
+                    (Unit::DiscTurn, most * self.disc),
                     (Unit::SmallOperation, self.triangles() * once),
-                    (Unit::DiscOperation, self.triangles() * 3.0 * self.visible * self.disc * looped),
+                    (Unit::DiscOperation, self.sizes.corners * self.disc * looped),
                 ]
             }
             Pass::OrderSums | Pass::OrderRanks => vec![(Unit::OrderedTriangle, self.triangles())],
-            Pass::DotsEnds => vec![(Unit::LineOperation, self.layout.dots.map_or(0.0, |dots| dots.segments.into()) * few_turns)],
-            Pass::DotsCull => vec![(Unit::LineOperation, self.layout.dots.map_or(0.0, |dots| dots.runs.into()) * few_turns)],
+            Pass::DotsEnds => vec![(Unit::VertexOperation, self.layout.dots.map_or(0.0, |dots| dots.segments.into()) * few_turns)],
+            Pass::DotsCull => vec![(Unit::RunOperation, self.layout.dots.map_or(0.0, |dots| dots.runs.into()) * few_turns)],
             Pass::DotsDraw | Pass::DotsProbe => {
-                let dots = self.layout.dots.map_or(0.0, |dots| f64::from(if dots.chosen > 0 { dots.chosen } else { dots.dots }));
-                // Where dots would crowd, most have faded.
-                let shown = dots.min(0.25 * self.pixels);
-                vec![(Unit::DotTurn, self.dot), (Unit::DotOperation, shown * self.dot * looped), (Unit::LineOperation, 0.1 * dots * once)]
+                let turn = if self.listed_dots > 0.0 { self.dot } else { 0.0 };
+                let (samples, operations) = (self.listed_dots * self.dot, self.listed_dots * once);
+                vec![(Unit::DotTurn, turn), (Unit::DotOperation, samples * looped), (Unit::ListedOperation, operations)]
             }
             Pass::Resolve => self.resolve(once, looped),
             Pass::Scale => {
@@ -335,12 +338,31 @@ impl<'a> FrameCounts<'a> {
         }
     }
 
-    fn queued(turns: f64, samples: f64, looped: f64) -> Vec<(Unit, f64)> {
-        vec![(Unit::QueuedTurn, turns), (Unit::QueuedChain, turns * looped), (Unit::QueuedOperation, samples * looped)]
+    /// What the invocation with most samples of small triangles, or with most blocks of queued ones, does one after another.
+    fn turns(&self, phase: RasterPhase, longest: f64, blocks: f64, looped: f64) -> Vec<(Unit, f64)> {
+        match phase {
+            // An invocation lists the covered samples of a small triangle first, half of those in its box.
+            RasterPhase::Sum | RasterPhase::NearestAndSum => vec![(Unit::SumTurn, blocks.max(0.5 * longest))],
+            // No sample is stored: an invocation counts for itself, and triangles but one are left out before their samples.
+            RasterPhase::CountSamples => vec![(Unit::SmallChain, longest.max(blocks) * looped)],
+            RasterPhase::BoundaryTriangle => Vec::new(),
+            _ if self.key.samples.has_mask => vec![(Unit::MaskTurn, longest.max(blocks))],
+            _ => vec![(Unit::SmallTurn, longest.max(blocks)), (Unit::SmallChain, longest.max(blocks) * looped)],
+        }
+    }
+
+    /// Passes over the queues of medium triangles or of tiles.
+    fn queued(&self, phase: RasterPhase, blocks: f64, samples: f64, looped: f64) -> Vec<(Unit, f64)> {
+        let mut counts = match phase {
+            RasterPhase::Sum | RasterPhase::NearestAndSum => self.turns(phase, 0.0, blocks, looped),
+            _ => vec![(Unit::QueuedTurn, blocks)],
+        };
+        counts.push((Unit::QueuedOperation, samples * looped));
+        counts
     }
 
     fn resolve(&self, once: f64, looped: f64) -> Vec<(Unit, f64)> {
-        let shades = self.touched > 0.0 || self.queues.clip > 0.0;
+        let shades = self.touched > 0.0;
         let if_shaded = |count: f64| if shades { count } else { 0.0 };
         // Averages and counts of layers read no image.
         let shows_layers = matches!(self.key.framebuffer.layers, Some(Layers::Xray { .. } | Layers::Overdraw));
@@ -348,9 +370,9 @@ impl<'a> FrameCounts<'a> {
         let shaded = if self.key.finishes_pixels() { 1.0 } else { self.touched };
         vec![
             (Unit::Pixel, visited * self.pixels),
-            (Unit::PixelChain, if_shaded(once + TURNS * looped)),
             (Unit::PixelTurn, if shades || self.key.finishes_pixels() { self.turns } else { 0.0 }),
-            (Unit::Textures, if_shaded(f64::from(u8::from(self.needs.textured > 0 && !shows_layers)))),
+            (Unit::SeveralDraws, if_shaded(f64::from(u8::from(!self.key.vertices.is_single_draw && !shows_layers)))),
+            (Unit::Textures, if_shaded(f64::from(u8::from(self.needs.textured > 0 && self.shows_materials && !shows_layers)))),
             (Unit::PixelOperation, shaded * self.pixels * (once + self.turns.max(TURNS) * looped)),
         ]
     }

@@ -13,30 +13,34 @@ pub enum Unit {
     Fill,
     ClearedByte,
     Pass,
+    IdlePass,
+    LonePass,
     VertexOperation,
     DeformChain,
     DeformOperation,
-    SetupTurn,
+    SetupChain,
     SetupOperation,
     SmallTurn,
+    MaskTurn,
     SmallChain,
     SmallOperation,
     QueuedTurn,
-    QueuedChain,
     QueuedOperation,
+    SumTurn,
     Clipping,
     WideClipping,
     ClipOperation,
     DiscTurn,
     DiscOperation,
     Pixel,
-    PixelChain,
     PixelTurn,
+    SeveralDraws,
     Textures,
     PixelOperation,
     ParticleChain,
     ParticleOperation,
-    LineOperation,
+    RunOperation,
+    ListedOperation,
     DotTurn,
     DotOperation,
     OrderedTriangle,
@@ -48,13 +52,16 @@ impl Unit {
         (Self::Frame, "frame", "a frame, however little it draws"),
         (Self::Fill, "fill", "a buffer that is filled with zeros before the passes"),
         (Self::ClearedByte, "cleared_byte", "a byte that is cleared"),
-        (Self::Pass, "pass", "a pass, however little it does"),
-        (Self::VertexOperation, "vertex_operation", "an operation on a vertex that is projected, or on a meshlet"),
+        (Self::Pass, "pass", "a pass that finds work, however little"),
+        (Self::IdlePass, "idle_pass", "a pass that finds none, or has one workgroup"),
+        (Self::LonePass, "lone_pass", "a pass that is timed alone, beyond what it adds to a frame"),
+        (Self::VertexOperation, "vertex_operation", "an operation on a vertex or the end of a segment that is projected, or on a meshlet"),
         (Self::DeformChain, "deform_chain", "an operation on the longest way through the kernel that deforms vertices"),
         (Self::DeformOperation, "deform_operation", "an operation on a vertex that joints or morph targets deform"),
-        (Self::SetupTurn, "setup_turn", "a row of the triangle whose sample setup visits most, one after another"),
+        (Self::SetupChain, "setup_chain", "an operation on the rows of a triangle that its sample setup visits, one after another"),
         (Self::SetupOperation, "setup_operation", "an operation on what sample tests read once per triangle"),
         (Self::SmallTurn, "small_turn", "a sample of the small triangle that has most, one after another"),
+        (Self::MaskTurn, "mask_turn", "the same where an image decides which samples are seen"),
         (Self::SmallChain, "small_chain", "an operation on these samples"),
         (
             Self::SmallOperation,
@@ -62,21 +69,22 @@ impl Unit {
             "an operation on a triangle in a first raster pass, or on a candidate sample of a small one",
         ),
         (Self::QueuedTurn, "queued_turn", "a block of 64 pixels of the queued triangle that has most, one after another"),
-        (Self::QueuedChain, "queued_chain", "an operation on these blocks"),
         (Self::QueuedOperation, "queued_operation", "an operation on a candidate sample of a medium or large triangle"),
+        (Self::SumTurn, "sum_turn", "a layer, or a block of them, of the triangle that adds most to sums, one after another"),
         (Self::Clipping, "clipping", "a pass that clips at least one triangle"),
         (Self::WideClipping, "wide_clipping", "such a pass on the finest grid or with strict vertices, beyond that"),
         (Self::ClipOperation, "clip_operation", "an operation on a triangle that is clipped"),
         (Self::DiscTurn, "disc_turn", "a candidate sample of the discs of one triangle, one after another"),
         (Self::DiscOperation, "disc_operation", "an operation on a candidate sample of a corner's disc"),
         (Self::Pixel, "pixel", "a pixel that the resolve visits"),
-        (Self::PixelChain, "pixel_chain", "an operation on the longest way through the resolve"),
         (Self::PixelTurn, "pixel_turn", "a turn of the longest loop of an effect over what belongs to one pixel"),
+        (Self::SeveralDraws, "several_draws", "a resolve that looks for the draw of a triangle among several"),
         (Self::Textures, "textures", "a resolve that reads images of materials"),
         (Self::PixelOperation, "pixel_operation", "an operation on a pixel that is shaded"),
         (Self::ParticleChain, "particle_chain", "an operation on the longest way through the kernel that moves particles"),
         (Self::ParticleOperation, "particle_operation", "an operation on a particle"),
-        (Self::LineOperation, "line_operation", "an operation on a segment, on a run of dots, or on a dot that is listed"),
+        (Self::RunOperation, "run_operation", "an operation on a run of dots"),
+        (Self::ListedOperation, "listed_operation", "an operation on a dot that may be visible"),
         (Self::DotTurn, "dot_turn", "a candidate sample of one dot, one after another"),
         (Self::DotOperation, "dot_operation", "an operation on a candidate sample of a dot"),
         (Self::OrderedTriangle, "ordered_triangle", "a triangle in a draw order, for each pass over the order"),
@@ -95,16 +103,17 @@ impl Unit {
         matches!(
             self,
             Self::DeformChain
-                | Self::SetupTurn
+                | Self::SetupChain
                 | Self::SmallTurn
+                | Self::MaskTurn
                 | Self::SmallChain
                 | Self::QueuedTurn
-                | Self::QueuedChain
+                | Self::SumTurn
                 | Self::Clipping
                 | Self::WideClipping
                 | Self::DiscTurn
-                | Self::PixelChain
                 | Self::PixelTurn
+                | Self::SeveralDraws
                 | Self::Textures
                 | Self::ParticleChain
                 | Self::DotTurn
@@ -141,9 +150,15 @@ pub struct MeasuredWork {
 }
 
 /// Milliseconds that a unit of each kind of work takes on an adapter, none below 0.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnitCosts {
     ms: [f64; Unit::COUNT],
+}
+
+impl Default for UnitCosts {
+    fn default() -> Self {
+        Self { ms: [0.0; Unit::COUNT] }
+    }
 }
 
 impl FrameWork {
@@ -183,6 +198,11 @@ impl UnitCosts {
     /// Predicted milliseconds of some work.
     pub fn ms_of(&self, counts: &[(Unit, f64)]) -> f64 {
         counts.iter().fold(0.0, |ms, (unit, count)| ms + self.of(*unit) * count)
+    }
+
+    /// Predicted milliseconds of a pass that is timed alone.
+    pub fn lone_ms(&self, pass: &PassWork) -> f64 {
+        self.ms_of(&pass.counts) + self.of(Unit::LonePass)
     }
 
     /// Predicted milliseconds of a frame.

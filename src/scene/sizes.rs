@@ -38,6 +38,8 @@ struct VisibleTriangle {
     area: f32,
     /// The part of its perimeter inside the picture, pixels.
     perimeter: f32,
+    /// How many of its corners lie in the picture.
+    corners: u32,
 }
 
 /// Estimated numbers of triangles for each raster path.
@@ -78,6 +80,10 @@ pub struct SizeWork {
     pub large: PathWork,
     /// Triangles that cross the near plane and reach the picture, as the near plane cuts them. They are counted in `medium` or `large` too.
     pub cut: PathWork,
+    /// Corners inside the picture of triangles that are not cut, each once for every triangle.
+    pub corners: f64,
+    /// The most such corners of one triangle.
+    pub most_corners: f64,
 }
 
 impl PathWork {
@@ -178,6 +184,10 @@ impl TriangleSizes {
             };
             path.add(visible, each);
         }
+        for visible in self.visible.iter() {
+            work.corners += each * f64::from(visible.corners);
+            work.most_corners = work.most_corners.max(visible.corners.into());
+        }
         // What was cut is queued by its size, and no invocation draws it alone.
         for rest in self.cut.iter() {
             work.cut.add(rest, each);
@@ -257,6 +267,8 @@ fn behind_near(clip: [DVec4; 3], view: &View) -> Option<VisibleTriangle> {
         // A triangle has half the area of its box, as a rule.
         area: (0.5 * inside.x * inside.y) as f32,
         perimeter: (2.0 * (inside.x + inside.y)) as f32,
+        // Discs are not drawn at the corners of a triangle that is cut.
+        corners: 0,
     })
 }
 
@@ -290,6 +302,7 @@ fn classify(draw: &Draw, view: &View, clip: [DVec4; 3]) -> Sampled {
         first: first.map(|first| first as u32),
         area: (0.5 * doubled.abs() * fraction) as f32,
         perimeter: ((a.distance(b) + b.distance(c) + c.distance(a)) * fraction.sqrt()) as f32,
+        corners: [a, b, c].iter().filter(|at| at.cmpge(DVec2::ZERO).all() && at.cmplt(size).all()).count() as u32,
     })
 }
 

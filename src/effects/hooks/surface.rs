@@ -52,6 +52,34 @@ pub struct Surface {
     pub step_offset: f64,
 }
 
+impl Surface {
+    /// A surface of this color in the middle of a triangle that faces the viewer from a meter away.
+    pub fn example(color: DVec3, triangle_id: u32) -> Self {
+        Self {
+            color: color.extend(1.0),
+            glow: DVec3::ZERO,
+            position: DVec3::ZERO,
+            normal: DVec3::Z,
+            flat_normal: DVec3::Z,
+            view: DVec3::Z,
+            center: DVec3::ZERO,
+            center_screen: DVec2::splat(0.5),
+            screen: DVec2::splat(0.5),
+            pixel: DVec2::splat(100.5),
+            barycentrics: DVec3::splat(1.0 / 3.0),
+            edge_distance_px: DVec3::splat(20.0),
+            depth_m: 1.0,
+            pixel_size_m: 0.01,
+            flat_depth_m: 1.0,
+            depth_range_m: DVec2::new(0.5, 2.0),
+            triangle_id,
+            rank: 0.5,
+            lit: 1.0,
+            step_offset: 0.0,
+        }
+    }
+}
+
 /// A member of [`Surface`] that an effect reads. What no effect reads need not be computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SurfaceInput {
