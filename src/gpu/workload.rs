@@ -11,7 +11,7 @@ use super::{
     view_resources::{PreparedFrame, ViewResources},
 };
 use crate::{
-    accuracy::{AccuracyOptions, Coverage, DotCulling, VertexTransform},
+    accuracy::{DotCulling, VertexTransform},
     effects::{Stack, hooks::Layers},
     math::SMALL_EXTENT,
     plan::cost_model::{FrameWork, PassWork, Unit},
@@ -278,11 +278,10 @@ impl<'a> FrameCounts<'a> {
                 self.setups(self.queues.clipped_triangles, &[&self.sizes.cut], weight)
             }
             Pass::Clip if self.queues.clip > 0.0 => {
-                let AccuracyOptions { coverage, vertex_transform, .. } = self.key.options;
-                let is_wide = coverage == Coverage::Fixed12 || vertex_transform == VertexTransform::Strict;
+                let is_strict = self.key.options.vertex_transform == VertexTransform::Strict;
                 vec![
                     (Unit::Clipping, 1.0),
-                    (Unit::WideClipping, f64::from(u8::from(is_wide))),
+                    (Unit::StrictClipping, f64::from(u8::from(is_strict))),
                     (Unit::ClipOperation, self.queues.clip * few_turns),
                 ]
             }
@@ -315,7 +314,10 @@ impl<'a> FrameCounts<'a> {
             }
             Pass::OrderSums | Pass::OrderRanks => vec![(Unit::OrderedTriangle, self.triangles())],
             Pass::DotsEnds => vec![(Unit::VertexOperation, self.layout.dots.map_or(0.0, |dots| dots.segments.into()) * few_turns)],
-            Pass::DotsCull => vec![(Unit::RunOperation, self.layout.dots.map_or(0.0, |dots| dots.runs.into()) * few_turns)],
+            Pass::DotsCull => {
+                let runs = self.layout.dots.map_or(0.0, |dots| dots.runs.into());
+                vec![(Unit::RunChain, if runs > 0.0 { few_turns } else { 0.0 }), (Unit::VertexOperation, runs * few_turns)]
+            }
             Pass::DotsDraw | Pass::DotsProbe => {
                 let turn = if self.listed_dots > 0.0 { self.dot } else { 0.0 };
                 let (samples, operations) = (self.listed_dots * self.dot, self.listed_dots * once);

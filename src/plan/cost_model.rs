@@ -28,7 +28,7 @@ pub enum Unit {
     QueuedOperation,
     SumTurn,
     Clipping,
-    WideClipping,
+    StrictClipping,
     ClipOperation,
     DiscTurn,
     DiscOperation,
@@ -39,7 +39,7 @@ pub enum Unit {
     PixelOperation,
     ParticleChain,
     ParticleOperation,
-    RunOperation,
+    RunChain,
     ListedOperation,
     DotTurn,
     DotOperation,
@@ -55,7 +55,11 @@ impl Unit {
         (Self::Pass, "pass", "a pass that finds work, however little"),
         (Self::IdlePass, "idle_pass", "a pass that finds none, or has one workgroup"),
         (Self::LonePass, "lone_pass", "a pass that is timed alone, beyond what it adds to a frame"),
-        (Self::VertexOperation, "vertex_operation", "an operation on a vertex or the end of a segment that is projected, or on a meshlet"),
+        (
+            Self::VertexOperation,
+            "vertex_operation",
+            "an operation on a vertex or the end of a segment that is projected, on a meshlet, or on a run of dots",
+        ),
         (Self::DeformChain, "deform_chain", "an operation on the longest way through the kernel that deforms vertices"),
         (Self::DeformOperation, "deform_operation", "an operation on a vertex that joints or morph targets deform"),
         (Self::SetupChain, "setup_chain", "an operation on the rows of a triangle that its sample setup visits, one after another"),
@@ -72,7 +76,7 @@ impl Unit {
         (Self::QueuedOperation, "queued_operation", "an operation on a candidate sample of a medium or large triangle"),
         (Self::SumTurn, "sum_turn", "a layer, or a block of them, of the triangle that adds most to sums, one after another"),
         (Self::Clipping, "clipping", "a pass that clips at least one triangle"),
-        (Self::WideClipping, "wide_clipping", "such a pass on the finest grid or with strict vertices, beyond that"),
+        (Self::StrictClipping, "strict_clipping", "such a pass with strict vertices, beyond that"),
         (Self::ClipOperation, "clip_operation", "an operation on a triangle that is clipped"),
         (Self::DiscTurn, "disc_turn", "a candidate sample of the discs of one triangle, one after another"),
         (Self::DiscOperation, "disc_operation", "an operation on a candidate sample of a corner's disc"),
@@ -83,7 +87,7 @@ impl Unit {
         (Self::PixelOperation, "pixel_operation", "an operation on a pixel that is shaded"),
         (Self::ParticleChain, "particle_chain", "an operation on the longest way through the kernel that moves particles"),
         (Self::ParticleOperation, "particle_operation", "an operation on a particle"),
-        (Self::RunOperation, "run_operation", "an operation on a run of dots"),
+        (Self::RunChain, "run_chain", "an operation on the longest way through the kernel that lists dots"),
         (Self::ListedOperation, "listed_operation", "an operation on a dot that may be visible"),
         (Self::DotTurn, "dot_turn", "a candidate sample of one dot, one after another"),
         (Self::DotOperation, "dot_operation", "an operation on a candidate sample of a dot"),
@@ -110,12 +114,13 @@ impl Unit {
                 | Self::QueuedTurn
                 | Self::SumTurn
                 | Self::Clipping
-                | Self::WideClipping
+                | Self::StrictClipping
                 | Self::DiscTurn
                 | Self::PixelTurn
                 | Self::SeveralDraws
                 | Self::Textures
                 | Self::ParticleChain
+                | Self::RunChain
                 | Self::DotTurn
         )
     }
