@@ -129,8 +129,8 @@ impl Stack {
         self.each_on(scopes, |hooks| hooks.surface).fold(surface, |surface, (apply, words)| apply(surface, words))
     }
 
-    /// Does the color of a material show through the surface effects on some of a few triangles, or do they paint over it? What is painted over
-    /// no compiler computes.
+    /// Does the color of a material show through the surface effects, or do they paint over it? Tried with a few triangles. Compilers leave out
+    /// what is painted over.
     pub fn shows_materials(&self) -> bool {
         let shaded = |color, triangle| self.shade(Surface::example(color, triangle), u32::MAX).color;
         (0..4).any(|triangle| shaded(DVec3::splat(0.2), triangle) != shaded(DVec3::splat(0.8), triangle))

@@ -54,8 +54,6 @@ pub struct PreparedFrame {
     pub turns: f64,
     /// Of [`Stack::walks_rows`].
     pub walks_rows: bool,
-    /// Of [`Stack::shows_materials`].
-    pub shows_materials: bool,
 }
 
 /// The draws of a scene as a view has them, and what they require of the kernels.
@@ -198,7 +196,7 @@ impl ViewResources {
         }
         let stack = request.stack;
         let (point_radius, turns, walks_rows) = (stack.point_radius(), stack.turns(), stack.walks_rows());
-        self.frame = Some(PreparedFrame { plan, view, layout, point_radius, turns, walks_rows, shows_materials: stack.shows_materials() });
+        self.frame = Some(PreparedFrame { plan, view, layout, point_radius, turns, walks_rows });
         self.is_prepared = true;
         Ok(())
     }

@@ -69,7 +69,7 @@ impl Renderer {
         };
         let passes = frame.plan.key.frame();
         let deforming = passes.iter().take_while(|pass| matches!(pass, Pass::Particles | Pass::Skin)).count();
-        let picture = self.passes_of(&self.picture, &passes, "", &sizes(&frame.view, stack, frame))?;
+        let picture = self.passes_of(&self.picture, &passes, "", &sizes(&frame.view, stack, frame), stack)?;
         let mut begin = clears(&frame.layout);
         begin.push((Unit::Frame, 1.0));
         let mut light = Vec::new();
@@ -77,7 +77,8 @@ impl Renderer {
             && let Ok(prepared) = shadow.resources.frame()
         {
             let passes = prepared.plan.key.light_frame();
-            light = self.passes_of(&shadow.resources, &passes, "light ", &sizes(&shadow.view, &stack.shadow_casters(), prepared))?;
+            let casters = stack.shadow_casters();
+            light = self.passes_of(&shadow.resources, &passes, "light ", &sizes(&shadow.view, &casters, prepared), &casters)?;
             if let Some(first) = light.first_mut() {
                 first.counts.extend(clears(&prepared.layout));
             }
@@ -87,9 +88,17 @@ impl Renderer {
         Ok(FrameWork { passes: [std::slice::from_ref(&clear), first, &light, others].concat() })
     }
 
-    fn passes_of(&self, view: &ViewResources, passes: &[Pass], prefix: &str, sizes: &TriangleSizes) -> Result<Vec<PassWork>, RenderError> {
+    fn passes_of(
+        &self,
+        view: &ViewResources,
+        passes: &[Pass],
+        prefix: &str,
+        sizes: &TriangleSizes,
+        stack: &Stack,
+    ) -> Result<Vec<PassWork>, RenderError> {
         let frame = view.frame()?;
         let mut scene = FrameCounts::new(frame, sizes, view.demand.as_ref(), view.dots.as_ref().map(DotStore::radius));
+        scene.shows_materials = stack.shows_materials();
         if self.shadow.is_some() {
             scene.turns = scene.turns.max(f64::from(frame.plan.needs.shadow.taps).powi(2));
         }
@@ -100,11 +109,11 @@ impl Renderer {
                 let mut counts = scene.counts(pass, weight);
                 counts.retain(|(_, count)| *count > 0.0);
                 let is_indirect = || matches!(frame.layout.dispatch(&frame.plan.key, pass, None), Dispatch::Indirect { .. });
-                match counts.is_empty() {
-                    false => counts.push((Unit::Pass, 1.0)),
+                if !counts.is_empty() {
+                    counts.push((Unit::Pass, 1.0));
+                } else if !is_indirect() {
                     // An indirect dispatch of no workgroup costs next to nothing.
-                    true if is_indirect() => {}
-                    true => counts.push((Unit::IdlePass, 1.0)),
+                    counts.push((Unit::IdlePass, 1.0));
                 }
                 Ok(PassWork { label: format!("{prefix}{}", pass.label()), counts })
             })
@@ -197,7 +206,7 @@ impl<'a> FrameCounts<'a> {
             }),
             turns: frame.turns,
             walks_rows: frame.walks_rows,
-            shows_materials: frame.shows_materials,
+            shows_materials: true,
             sizes,
         }
     }
