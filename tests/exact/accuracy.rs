@@ -339,7 +339,7 @@ fn mutants() -> Vec<Mutant> {
             "parts == 1u && is_hidden &&",
             "parts == 1u &&",
             sizes(),
-            HOLES,
+            TRIANGLE_IDS,
         ),
         mutant(
             "a medium triangle that shows is left out by the pass that finds triangle ids",
@@ -347,7 +347,7 @@ fn mutants() -> Vec<Mutant> {
             "parts == 1u && shown == 0u &&",
             "parts == 1u &&",
             sizes(),
-            HOLES,
+            TRIANGLE_IDS,
         ),
         mutant(
             "a medium triangle stops a block early",
