@@ -99,6 +99,7 @@ impl Renderer {
         let frame = view.frame()?;
         let mut scene = FrameCounts::new(frame, sizes, view.demand.as_ref(), view.dots.as_ref().map(DotStore::radius));
         scene.shows_materials = stack.shows_materials();
+        scene.is_software = self.device.gpu.caps.software;
         if self.shadow.is_some() {
             scene.turns = scene.turns.max(f64::from(frame.plan.needs.shadow.taps).powi(2));
         }
@@ -167,6 +168,8 @@ struct FrameCounts<'a> {
     walks_rows: bool,
     /// The color of a material is seen.
     shows_materials: bool,
+    /// A CPU draws it.
+    is_software: bool,
 }
 
 impl<'a> FrameCounts<'a> {
@@ -207,6 +210,7 @@ impl<'a> FrameCounts<'a> {
             turns: frame.turns,
             walks_rows: frame.walks_rows,
             shows_materials: true,
+            is_software: false,
             sizes,
         }
     }
@@ -377,13 +381,16 @@ impl<'a> FrameCounts<'a> {
         let if_shaded = |count: f64| if shades { count } else { 0.0 };
         // Averages and counts of layers read no image.
         let shows_layers = matches!(self.key.framebuffer.layers, Some(Layers::Xray { .. } | Layers::Overdraw));
+        let textures = f64::from(u8::from(self.needs.textured > 0 && self.shows_materials && !shows_layers));
         let visited = if self.key.work.listed_tiles { self.touched } else { 1.0 };
         let shaded = if self.key.finishes_pixels() { 1.0 } else { self.touched };
         vec![
             (Unit::Pixel, visited * self.pixels),
             (Unit::PixelTurn, if shades || self.key.finishes_pixels() { self.turns } else { 0.0 }),
             (Unit::SeveralDraws, if_shaded(f64::from(u8::from(!self.key.vertices.is_single_draw && !shows_layers)))),
-            (Unit::Textures, if_shaded(f64::from(u8::from(self.needs.textured > 0 && self.shows_materials && !shows_layers)))),
+            (Unit::Textures, if_shaded(textures)),
+            // A card waits for images once, a CPU adapter at every pixel.
+            (Unit::TexturedPixel, if self.is_software { self.touched * self.pixels * textures } else { 0.0 }),
             (Unit::PixelOperation, shaded * self.pixels * (once + self.turns.max(TURNS) * looped)),
         ]
     }
