@@ -153,28 +153,7 @@ fn what_is_off_leaves_no_trace_to_the_bit() {
 
 /// A surface that looks at the eye from two meters.
 fn surface(color: DVec3) -> Surface {
-    Surface {
-        color: color.extend(1.0),
-        glow: DVec3::ZERO,
-        position: DVec3::ZERO,
-        normal: DVec3::Z,
-        flat_normal: DVec3::Z,
-        view: DVec3::Z,
-        center: DVec3::ZERO,
-        center_screen: DVec2::splat(0.5),
-        screen: DVec2::splat(0.5),
-        pixel: DVec2::splat(50.5),
-        barycentrics: DVec3::splat(1.0 / 3.0),
-        edge_distance_px: DVec3::splat(9.0),
-        depth_m: 2.0,
-        pixel_size_m: 0.01,
-        flat_depth_m: 2.0,
-        depth_range_m: DVec2::new(1.0, 3.0),
-        triangle_id: 0,
-        rank: 0.0,
-        lit: 1.0,
-        step_offset: 0.0,
-    }
+    Surface::example(color, 0)
 }
 
 fn shaded(stack: &Stack, surface: Surface) -> DVec3 {

@@ -53,7 +53,7 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// A surface of this color in the middle of a triangle that faces the viewer from a meter away.
+    /// A surface of this color in the middle of a triangle that faces the viewer from two meters away.
     pub fn example(color: DVec3, triangle_id: u32) -> Self {
         Self {
             color: color.extend(1.0),
@@ -65,15 +65,15 @@ impl Surface {
             center: DVec3::ZERO,
             center_screen: DVec2::splat(0.5),
             screen: DVec2::splat(0.5),
-            pixel: DVec2::splat(100.5),
+            pixel: DVec2::splat(50.5),
             barycentrics: DVec3::splat(1.0 / 3.0),
-            edge_distance_px: DVec3::splat(20.0),
-            depth_m: 1.0,
+            edge_distance_px: DVec3::splat(9.0),
+            depth_m: 2.0,
             pixel_size_m: 0.01,
-            flat_depth_m: 1.0,
-            depth_range_m: DVec2::new(0.5, 2.0),
+            flat_depth_m: 2.0,
+            depth_range_m: DVec2::new(1.0, 3.0),
             triangle_id,
-            rank: 0.5,
+            rank: 0.0,
             lit: 1.0,
             step_offset: 0.0,
         }
