@@ -35,5 +35,10 @@ fn disc_pixels(corner: vec4u) -> vec4i {
     return vec4i(max(grid_first(at - r), vec2i(0)), min(grid_last(at + r + 1), vec2i(frame.size) - 1));
 }
 
+// The most rows of a disc.
+fn disc_rows() -> u32 {
+    return 2u * u32(frame.point_radius) / u32(grid_unit()) + 2u;
+}
+
 // Invocations that divide the rows of a triangle's discs among them.
 override INVOCATIONS_PER_TRIANGLE: u32 = 1u;

@@ -130,7 +130,7 @@ fn wanted_features(adapter: &wgpu::Adapter) -> wgpu::Features {
 }
 
 fn caps(adapter: &wgpu::Adapter) -> Caps {
-    let (features, limits) = (wanted_features(adapter), wanted_limits(adapter));
+    let (features, limits, info) = (wanted_features(adapter), wanted_limits(adapter), adapter.get_info());
     Caps {
         int64_atomics: features.contains(wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX),
         int64_additions: features.contains(wgpu::Features::SHADER_INT64_ATOMIC_ALL_OPS),
@@ -140,7 +140,8 @@ fn caps(adapter: &wgpu::Adapter) -> Caps {
         max_buffer_bytes: limits.max_buffer_size,
         max_texture_side: limits.max_texture_dimension_2d,
         max_storage_buffers: limits.max_storage_buffers_per_shader_stage,
-        software: adapter.get_info().device_type == wgpu::DeviceType::Cpu,
+        software: info.device_type == wgpu::DeviceType::Cpu,
+        slow_atomic_maximum: info.driver.starts_with("SwiftShader"),
         measured: None,
     }
 }

@@ -583,7 +583,7 @@ impl FrameLayout {
             Pass::TileLarge => Dispatch::args(offset_of!(DispatchArgs, large)),
             Pass::RasterLarge(_) => Dispatch::args(offset_of!(DispatchArgs, tiles)),
             Pass::DotsEnds => over_dots(dots.segments),
-            Pass::DotsCull => over_dots(dots.runs),
+            Pass::DotsCull => Dispatch::once(folded(dots.runs.div_ceil(CULL_RUNS))),
             Pass::DotsDraw | Pass::DotsProbe => match key.options.dot_culling {
                 DotCulling::Brute => over_dots(dots.dots),
                 DotCulling::Cpu => over_dots(dots.chosen),
@@ -597,6 +597,8 @@ impl FrameLayout {
     }
 }
 
+/// Runs of dots that a workgroup culls: it lists their dots, 64 to a run at most, 64 at a time.
+const CULL_RUNS: u32 = 8;
 /// Invocations of a workgroup of the passes over dots.
 pub const DOT_GROUP: u32 = 64;
 /// Invocations of a workgroup of the pass that lists tiles.

@@ -22,6 +22,8 @@ pub struct Caps {
     pub max_storage_buffers: u32,
     /// It runs on the CPU: pictures are right, times say nothing about a graphics card.
     pub software: bool,
+    /// The atomic maximum costs far more than compare and exchange: SwiftShader calls a function for each.
+    pub slow_atomic_maximum: bool,
     /// What a calibration of this adapter measured, if one was kept. It decides about speed alone.
     #[serde(skip)]
     pub measured: Option<Measured>,
@@ -38,6 +40,7 @@ impl Caps {
         max_texture_side: u32::MAX,
         max_storage_buffers: u32::MAX,
         software: false,
+        slow_atomic_maximum: false,
         measured: None,
     };
 
@@ -59,6 +62,7 @@ impl Caps {
             group_size,
             listed_tiles: self.software,
             early_load: self.software,
+            exchanges_maximum: self.slow_atomic_maximum,
             queue_groups: if self.software { 0 } else { 8192 },
             clears_in_passes: !self.software,
             hides_blocks: !self.software,
@@ -82,8 +86,10 @@ pub struct Tuning {
     pub group_size: u32,
     /// The resolve visits only tiles that a triangle's box touches, without branches.
     pub listed_tiles: bool,
-    /// Load before the depth atomic (visibility `split32` alone).
+    /// Load before the depth atomic (visibility `split32`; for discs, many of which lie on a pixel, always).
     pub early_load: bool,
+    /// The largest word of a pixel is kept by compare and exchange instead of the atomic maximum (visibility `split32` and `packed32`).
+    pub exchanges_maximum: bool,
     /// Workgroups of every pass over a queue, which share its entries, at most 65,535; 0: as many as the queue has entries, by an
     /// indirect dispatch (culled pictures always).
     pub queue_groups: u32,

@@ -41,9 +41,10 @@ pub(super) fn key_of(
         paths: raster_paths(&options, needs, tuning, loops::samples(caps, loops)),
         work: WorkSharing {
             group_size: tuning.group_size,
-            invocations_per_triangle: loops::invocations_per_triangle(caps, stack.shape, loops),
+            invocations_per_triangle: loops::invocations_per_triangle(caps, stack.shape, needs.triangles, loops),
             listed_tiles: tuning.listed_tiles && !stack.finishes_pixels() && stack.dots.is_none(),
-            early_load: tuning.early_load,
+            early_load: stack.shape == Shape::Points || tuning.early_load && options.visibility == Visibility::Split32,
+            exchanges_maximum: tuning.exchanges_maximum,
             queue_groups: if options.culling == Culling::None { tuning.queue_groups.min(65_535) } else { 0 },
             hides_blocks: tuning.hides_blocks,
             stored_uniforms: tuning.stored_uniforms,

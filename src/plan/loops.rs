@@ -34,15 +34,34 @@ pub fn samples(caps: &Caps, loops: u32) -> u32 {
     if caps.software { MAX_ITERATIONS / loops } else { u32::MAX }
 }
 
-/// Among how many invocations the discs of one triangle are divided.
-pub fn invocations_per_triangle(caps: &Caps, shape: Shape, loops: u32) -> u32 {
-    if caps.software && shape == Shape::Points { (DISC_SAMPLES * loops).div_ceil(MAX_ITERATIONS) } else { 1 }
+/// Rows of the largest disc.
+const DISC_ROWS: u64 = 66;
+
+/// Invocations over which a card divides the discs of few triangles. More of them spare it little of its waiting, and those that find no row
+/// in a small disc cost a few microseconds (docs/benchmarks.md).
+const DISC_INVOCATIONS: u64 = 1 << 18;
+
+/// Among how many invocations the rows of the discs of each of `triangles` are divided: where they are few, a card has more invocations than
+/// triangles, and a CPU adapter has so many that none reaches the limit.
+pub fn invocations_per_triangle(caps: &Caps, shape: Shape, triangles: u64, loops: u32) -> u32 {
+    match (shape, caps.software) {
+        (Shape::Points, true) => (DISC_SAMPLES * loops).div_ceil(MAX_ITERATIONS),
+        (Shape::Points, false) => 1 << (DISC_INVOCATIONS / triangles.max(1)).clamp(1, DISC_ROWS).ilog2(),
+        _ => 1,
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::accuracy::ShadowTaps;
+
+    #[test]
+    fn few_triangles_are_divided_among_many_invocations_on_a_card() {
+        let parts = |triangles| invocations_per_triangle(&Caps::ALL, Shape::Points, triangles, 9);
+        assert_eq!([0, 1, 12, 4096, 16_384, 200_000, 1 << 18, u64::MAX].map(parts), [64, 64, 64, 64, 16, 1, 1, 1]);
+        assert_eq!(invocations_per_triangle(&Caps::ALL, Shape::Triangles, 12, 9), 1);
+    }
 
     #[test]
     fn no_walk_of_a_triangle_reaches_the_limit() {

@@ -119,6 +119,8 @@ pub struct WorkSharing {
     pub listed_tiles: bool,
     /// Load before the depth atomic.
     pub early_load: bool,
+    /// The largest word of a pixel is kept by compare and exchange instead of the atomic maximum.
+    pub exchanges_maximum: bool,
     /// Workgroups of every pass over a queue, which share its entries; 0: as many as it has entries, by an indirect dispatch.
     pub queue_groups: u32,
     /// The first pass clears counters and pixels beside its own work.
@@ -243,6 +245,7 @@ impl KernelKey {
                 invocations_per_triangle: 1,
                 listed_tiles: true,
                 early_load: true,
+                exchanges_maximum: true,
                 queue_groups: 0,
                 clears_in_passes: true,
                 clears_order: false,

@@ -55,6 +55,7 @@ impl WorkDistribution {
             max_small_side,
             listed_tiles,
             early_load: listed_tiles,
+            exchanges_maximum: self == Self::CardListedTiles,
             queue_groups: if self == Self::Card { 48 } else { 0 },
             hides_blocks: is_card,
             stored_uniforms: false,

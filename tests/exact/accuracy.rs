@@ -383,6 +383,7 @@ const GRAPHICS_CARD: Tuning = Tuning {
     group_size: 256,
     listed_tiles: false,
     early_load: true,
+    exchanges_maximum: false,
     queue_groups: 0,
     clears_in_passes: false,
     hides_blocks: true,

@@ -51,6 +51,7 @@ const GRAPHICS_CARD: Tuning = Tuning {
     group_size: 256,
     listed_tiles: false,
     early_load: false,
+    exchanges_maximum: true,
     queue_groups: 64,
     clears_in_passes: true,
     hides_blocks: true,

@@ -83,6 +83,7 @@ fn both_tunings(renderer: &Renderer) -> [Tuning; 2] {
         group_size: 256,
         listed_tiles: false,
         early_load: false,
+        exchanges_maximum: false,
         queue_groups: 64,
         clears_in_passes: true,
         hides_blocks: true,

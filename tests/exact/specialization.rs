@@ -121,6 +121,7 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles() {
         group_size: 256,
         listed_tiles: false,
         early_load: false,
+        exchanges_maximum: false,
         queue_groups: 0,
         clears_in_passes: false,
         hides_blocks: false,

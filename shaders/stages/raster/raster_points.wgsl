@@ -1,5 +1,5 @@
-// raster_points: the corners of every triangle that is shown, as discs. One invocation per triangle, or several where a driver
-// aborts long loops. A triangle that would have to be clipped shows no discs.
+// raster_points: the corners of every triangle that is shown, as discs. Several invocations divide the rows of a triangle's discs among
+// them. A triangle that would have to be clipped shows no discs.
 //@ use lib/frame
 //@ use lib/fixed
 //@ use lib/triangle
@@ -18,10 +18,10 @@ fn raster_points(
     @builtin(local_invocation_index) invocation_index: u32
 ) {
     let invocation = frame_invocation(workgroup, workgroups, invocation_index, GROUP_SIZE);
-    let id = invocation / INVOCATIONS_PER_TRIANGLE;
-    let part = invocation % INVOCATIONS_PER_TRIANGLE;
-    if id >= frame.triangle_count { return; }
-    let t = triangle_load(id);
+    // Neighbors have the same part, so that whole workgroups end here where a disc has fewer rows than there are parts.
+    let part = invocation / frame.triangle_count;
+    if part >= min(INVOCATIONS_PER_TRIANGLE, disc_rows()) { return; }
+    let t = triangle_load(invocation % frame.triangle_count);
     let any_flag = (t.a.x | t.b.x | t.c.x) & 255u;
     if any_flag != 0u {
         if IS_FIRST_VISIT && part == 0u { triangle_rejected(any_flag); }

@@ -4,12 +4,27 @@
 
 // Load before the atomic: faster where many samples lose.
 override EARLY_LOAD: bool = false;
+// The maximum is kept by compare and exchange.
+override EXCHANGES_MAXIMUM: bool = false;
 
 fn framebuffer_begin(id: u32) -> bool { return true; }
 
 fn framebuffer_end(id: u32) {}
 
 fn framebuffer_write(pixel: u32, key: u32, id: u32) {
-    let is_behind = EARLY_LOAD && atomicLoad(&depth_keys[pixel]) >= key;
-    if !is_behind { atomicMax(&depth_keys[pixel], key); }
+    if EXCHANGES_MAXIMUM {
+        exchange_maximum(pixel, key);
+    } else {
+        let is_behind = EARLY_LOAD && atomicLoad(&depth_keys[pixel]) >= key;
+        if !is_behind { atomicMax(&depth_keys[pixel], key); }
+    }
+}
+
+fn exchange_maximum(pixel: u32, word: u32) {
+    var there = atomicLoad(&depth_keys[pixel]);
+    while there < word {
+        let exchange = atomicCompareExchangeWeak(&depth_keys[pixel], there, word);
+        if exchange.exchanged { return; }
+        there = exchange.old_value;
+    }
 }

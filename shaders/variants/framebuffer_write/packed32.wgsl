@@ -4,10 +4,30 @@
 
 @group(0) @binding(5) var<storage, read_write> packed: array<atomic<u32>>;
 
+// Load before the atomic: faster where many samples lose.
+override EARLY_LOAD: bool = false;
+// The maximum is kept by compare and exchange.
+override EXCHANGES_MAXIMUM: bool = false;
+
 fn framebuffer_begin(id: u32) -> bool { return true; }
 
 fn framebuffer_end(id: u32) {}
 
 fn framebuffer_write(pixel: u32, key: u32, id: u32) {
-    atomicMax(&packed[pixel], packed32_word(key, id));
+    let word = packed32_word(key, id);
+    if EXCHANGES_MAXIMUM {
+        exchange_maximum(pixel, word);
+    } else {
+        let is_behind = EARLY_LOAD && atomicLoad(&packed[pixel]) >= word;
+        if !is_behind { atomicMax(&packed[pixel], word); }
+    }
+}
+
+fn exchange_maximum(pixel: u32, word: u32) {
+    var there = atomicLoad(&packed[pixel]);
+    while there < word {
+        let exchange = atomicCompareExchangeWeak(&packed[pixel], there, word);
+        if exchange.exchanged { return; }
+        there = exchange.old_value;
+    }
 }

@@ -2,10 +2,15 @@
 
 @group(0) @binding(5) var<storage, read_write> depth_and_id: array<atomic<u64>>;
 
+// Load before the atomic: faster where many samples lose.
+override EARLY_LOAD: bool = false;
+
 fn framebuffer_begin(id: u32) -> bool { return true; }
 
 fn framebuffer_end(id: u32) {}
 
 fn framebuffer_write(pixel: u32, key: u32, id: u32) {
-    atomicMax(&depth_and_id[pixel], (u64(key) << 32u) | u64(~id));
+    let word = (u64(key) << 32u) | u64(~id);
+    let is_behind = EARLY_LOAD && atomicLoad(&depth_and_id[pixel]) >= word;
+    if !is_behind { atomicMax(&depth_and_id[pixel], word); }
 }

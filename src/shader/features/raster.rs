@@ -50,6 +50,7 @@ const FRAMEBUFFER: Feature = Feature {
     constants: &[
         ("FINDS_NEAREST", |_, pass| flag(pass.phase() == Some(RasterPhase::NearestAndSum))),
         ("EARLY_LOAD", |key, _| flag(key.work.early_load)),
+        ("EXCHANGES_MAXIMUM", |key, _| flag(key.work.exchanges_maximum)),
         ("ID_BITS", |key, _| key.framebuffer.triangle_id_bits.into()),
         ("DEPTH_KEY_BITS", |key, _| key.depth_key_range().0.into()),
         ("MIN_DEPTH_KEY", |key, _| key.depth_key_range().1.into()),
