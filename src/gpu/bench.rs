@@ -214,7 +214,7 @@ impl Lab<'_> {
     /// Keeps the device busy, then draws all contenders in turn until the time of a round has settled. Returns false if it does not
     /// settle.
     fn warm_up(&mut self, entries: &mut [Entry]) -> Result<bool, RenderError> {
-        warm_up::warm_up(self.gpu, entries.len(), |at, frames| {
+        warm_up::warm_up(self.gpu, warm_up::FROM_IDLE, entries.len(), |at, frames| {
             self.sample(&mut entries[at].contender, Detail::Whole, frames).map(|_| true)
         })?;
         let begin = Instant::now();

@@ -161,7 +161,9 @@ fn sample(
 /// When the picture cannot be drawn, or the device is lost.
 pub fn time(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<FrameTimes, RenderError> {
     let gpu = renderer.gpu().clone();
-    warm_up::warm_up(&gpu, 1, |_, frames| sample(renderer, view, stack, accuracy, Detail::Whole, frames).map(|_| true))?;
+    warm_up::warm_up(&gpu, warm_up::FROM_IDLE, 1, |_, frames| {
+        sample(renderer, view, stack, accuracy, Detail::Whole, frames).map(|_| true)
+    })?;
     timed(renderer, view, stack, accuracy)
 }
 

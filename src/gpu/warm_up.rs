@@ -9,18 +9,23 @@ use super::{device::Gpu, error::RenderError};
 pub const FRAMES_PER_SAMPLE: usize = 2;
 /// Frames of a contender in turn while warming up, drawn without a pause.
 const FRAMES_IN_TURN: usize = 8;
-/// How long the card is kept busy before anything is timed.
-const DURATION: Duration = Duration::from_millis(800);
+/// How long a card that may have been idle is kept busy before anything is timed.
+pub const FROM_IDLE: Duration = Duration::from_millis(800);
 
-/// Draws `contenders` in turn for 0.8 seconds. `draw` takes a contender's index and how many frames to draw before it waits; it returns
+/// Draws `contenders` in turn for so long. `draw` takes a contender's index and how many frames to draw before it waits; it returns
 /// false to end the warm-up. Software adapters have no clock of their own, so nothing is drawn there.
 ///
 /// # Errors
 /// Those of `draw`.
-pub fn warm_up(gpu: &Gpu, contenders: usize, mut draw: impl FnMut(usize, usize) -> Result<bool, RenderError>) -> Result<(), RenderError> {
+pub fn warm_up(
+    gpu: &Gpu,
+    duration: Duration,
+    contenders: usize,
+    mut draw: impl FnMut(usize, usize) -> Result<bool, RenderError>,
+) -> Result<(), RenderError> {
     let begin = Instant::now();
     let mut turn = 0;
-    while contenders > 0 && !gpu.caps.software && begin.elapsed() < DURATION && draw(turn % contenders, FRAMES_IN_TURN)? {
+    while contenders > 0 && !gpu.caps.software && begin.elapsed() < duration && draw(turn % contenders, FRAMES_IN_TURN)? {
         turn += 1;
     }
     Ok(())

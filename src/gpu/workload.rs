@@ -12,13 +12,15 @@ use super::{
 };
 use crate::{
     accuracy::{DotCulling, VertexTransform},
-    effects::{Stack, hooks::Layers},
+    effects::{
+        Stack,
+        hooks::{Layers, Shape},
+    },
     math::SMALL_EXTENT,
     plan::cost_model::{FrameWork, PassWork, Unit},
     scene::{
         Scene,
         draw::DrawError,
-        needs::Needs,
         sizes::{PathWork, SizeWork, TriangleSizes},
         view::View,
     },
@@ -45,10 +47,14 @@ const FEW_LOOPED: f64 = 2000.0;
 /// Pixels of a block that a workgroup draws at once, and blocks of a tile.
 const BLOCK: f64 = 64.0;
 const BLOCKS_OF_TILE: f64 = 64.0;
+const BLOCK_SIDE: f64 = 8.0;
 /// Workgroups that share a medium triangle or a tile of a large one where there are few.
 const QUEUE_PARTS: f64 = 4.0;
 /// Samples in the box of a queued triangle whose size is not known.
 const USUAL_CANDIDATES: f64 = 100.0;
+
+/// Expected samples from which on there is one, as a rule.
+const ANY: f64 = 0.5;
 
 /// Side of a tile of the resolve where it visits listed tiles, pixels.
 const TILE: u32 = 8;
@@ -99,7 +105,6 @@ impl Renderer {
         let frame = view.frame()?;
         let mut scene = FrameCounts::new(frame, sizes, view.demand.as_ref(), view.dots.as_ref().map(DotStore::radius));
         scene.shows_materials = stack.shows_materials();
-        scene.is_software = self.device.gpu.caps.software;
         if self.shadow.is_some() {
             scene.turns = scene.turns.max(f64::from(frame.plan.needs.shadow.taps).powi(2));
         }
@@ -133,6 +138,11 @@ fn weight_of(device: &Device, key: &KernelKey, pass: Pass) -> Result<Weight, Ren
     Ok(Weight { once: usual(once, FEW_ONCE), looped: usual(looped, FEW_LOOPED) })
 }
 
+/// The unit that operations of a pass over queues count as: those of layers that are shaded and added to sums have one of their own.
+fn in_sums(phase: RasterPhase, unit: Unit) -> Unit {
+    if matches!(phase, RasterPhase::Sum | RasterPhase::NearestAndSum) { Unit::SumOperation } else { unit }
+}
+
 fn clears(layout: &FrameLayout) -> Vec<(Unit, f64)> {
     let bytes = |(_, bytes): (_, std::ops::Range<u64>)| (bytes.end - bytes.start) as f64;
     vec![(Unit::Fill, layout.cleared(|_| true).count() as f64), (Unit::ClearedByte, layout.cleared(|_| true).map(bytes).sum())]
@@ -150,14 +160,15 @@ struct Queues {
 struct FrameCounts<'a> {
     key: &'a KernelKey,
     layout: &'a FrameLayout,
-    needs: &'a Needs,
     sizes: SizeWork,
     queues: Queues,
     pixels: f64,
     /// Estimated fraction of the pixels in tiles that a triangle touches.
     touched: f64,
-    /// Pixels in the square about a corner's disc.
-    disc: f64,
+    /// Columns and rows of the square about a corner's disc.
+    disc: [f64; 2],
+    /// Pixels of that disc.
+    disc_area: f64,
     /// Pixels in the square about a dot.
     dot: f64,
     /// Dots that are drawn.
@@ -168,13 +179,11 @@ struct FrameCounts<'a> {
     walks_rows: bool,
     /// The color of a material is seen.
     shows_materials: bool,
-    /// A CPU draws it.
-    is_software: bool,
 }
 
 impl<'a> FrameCounts<'a> {
     fn new(frame: &'a PreparedFrame, triangles: &TriangleSizes, demand: Option<&CounterRecord>, dot_radius: Option<u32>) -> Self {
-        let (key, layout, needs) = (&frame.plan.key, &frame.layout, &*frame.plan.needs);
+        let (key, layout) = (&frame.plan.key, &frame.layout);
         let large = f64::from(SMALL_EXTENT >> key.options.coverage.subpixel_bits());
         let sizes = triangles.work(key.paths.max_small_samples, key.paths.max_small_side, large);
         let queues = match demand {
@@ -192,16 +201,16 @@ impl<'a> FrameCounts<'a> {
             },
         };
         // The part of a square that lies in the picture.
-        let square = |units: u32| layout.size.iter().map(|side| (f64::from(units) / 128.0).clamp(1.0, f64::from(*side).max(1.0))).product();
+        let square = |units: u32| layout.size.map(|side| (f64::from(units) / 128.0).clamp(1.0, f64::from(side).max(1.0)));
         Self {
             key,
             layout,
-            needs,
             queues,
             pixels: f64::from(layout.size[0]) * f64::from(layout.size[1]),
             touched: triangles.touched_fraction(layout.size, TILE),
             disc: square(frame.point_radius),
-            dot: dot_radius.map_or(0.0, |radius| square(radius + 128)),
+            disc_area: std::f64::consts::PI * (f64::from(frame.point_radius) / 256.0).powi(2),
+            dot: dot_radius.map_or(0.0, |radius| square(radius + 128).iter().product()),
             listed_dots: layout.dots.map_or(0.0, |dots| match key.options.dot_culling {
                 DotCulling::Brute => dots.dots.into(),
                 DotCulling::Cpu => dots.chosen.into(),
@@ -210,13 +219,33 @@ impl<'a> FrameCounts<'a> {
             turns: frame.turns,
             walks_rows: frame.walks_rows,
             shows_materials: true,
-            is_software: false,
             sizes,
         }
     }
 
     fn triangles(&self) -> f64 {
         self.layout.scene.triangles as f64
+    }
+
+    fn is_strict(&self) -> bool {
+        self.key.options.vertex_transform == VertexTransform::Strict
+    }
+
+    /// Are images of materials seen?
+    fn shows_textures(&self) -> bool {
+        let SizeWork { textured, textured_corners, .. } = self.sizes;
+        self.shows_materials && self.covered(textured, textured_corners) >= ANY
+    }
+
+    /// Samples that are drawn of triangles that cover so many and have so many corners in the picture.
+    fn covered(&self, samples: f64, corners: f64) -> f64 {
+        if self.key.samples.shape == Shape::Points { corners * self.disc_area } else { samples }
+    }
+
+    /// Is any pixel shaded?
+    fn shades(&self) -> bool {
+        let SizeWork { small, medium, large, corners, .. } = self.sizes;
+        self.covered(small.covered + medium.covered + large.covered, corners) >= ANY
     }
 
     /// Invocations of a pass that is dispatched over a known number; none for one whose number a pass before it decides.
@@ -256,15 +285,23 @@ impl<'a> FrameCounts<'a> {
     }
 
     fn tile_turns(&self) -> f64 {
-        if self.queues.tiles > 0.0 { BLOCKS_OF_TILE / QUEUE_PARTS } else { 0.0 }
+        let blocks: f64 = self.layout.size.iter().map(|side| (f64::from(*side) / BLOCK_SIDE).ceil().min(BLOCKS_OF_TILE.sqrt())).product();
+        if self.queues.tiles > 0.0 { (blocks / QUEUE_PARTS).max(1.0) } else { 0.0 }
+    }
+
+    /// The same of those blocks that one triangle covers.
+    fn covered_blocks(&self) -> f64 {
+        let SizeWork { medium, large, .. } = &self.sizes;
+        let blocks = |path: &PathWork| (path.most_covered / BLOCK / QUEUE_PARTS).max(1.0);
+        self.medium_turns().min(blocks(medium)).max(self.tile_turns().min(blocks(large)))
     }
 
     /// Sample setups of so many triangles. Loops run over rows, for triangles of `paths`, which have samples.
     fn setups(&self, triangles: f64, paths: &[&PathWork], Weight { once, looped }: Weight) -> Vec<(Unit, f64)> {
         let rows = |path: &&PathWork| if self.walks_rows { path.rows } else { path.triangles };
-        let most_rows = paths.iter().map(|path| path.most_rows).fold(1.0, f64::max);
-        // A setup that does not need all rows finds what it needs in the first two.
-        let turns = if self.walks_rows { most_rows } else { most_rows.min(2.0) };
+        let most = |rows: fn(&PathWork) -> f64| paths.iter().map(|path| rows(path)).fold(1.0, f64::max);
+        // A setup that does not need all rows ends at the first one with a sample.
+        let turns = if self.walks_rows { most(|path| path.most_rows) } else { most(|path| path.most_empty_rows) };
         vec![(Unit::SetupChain, turns * looped), (Unit::SetupOperation, triangles * once + paths.iter().map(rows).sum::<f64>() * looped)]
     }
 
@@ -281,7 +318,8 @@ impl<'a> FrameCounts<'a> {
             }
             Pass::Project | Pass::Cull(_) | Pass::ProjectMeshlets => {
                 let vertices = self.invocations(pass).unwrap_or(0.5 * self.layout.scene.vertices as f64);
-                vec![(Unit::VertexOperation, vertices * few_turns)]
+                let is_strict = self.is_strict() && !matches!(pass, Pass::Cull(_));
+                vec![(Unit::VertexOperation, vertices * few_turns), (Unit::StrictVertices, f64::from(u8::from(is_strict)))]
             }
             Pass::SampleSetup(TriangleSource::Triangles) => {
                 let SizeWork { small, medium, large, .. } = &self.sizes;
@@ -291,38 +329,45 @@ impl<'a> FrameCounts<'a> {
                 self.setups(self.queues.clipped_triangles, &[&self.sizes.cut], weight)
             }
             Pass::Clip if self.queues.clip > 0.0 => {
-                let is_strict = self.key.options.vertex_transform == VertexTransform::Strict;
                 vec![
                     (Unit::Clipping, 1.0),
-                    (Unit::StrictClipping, f64::from(u8::from(is_strict))),
+                    (Unit::StrictClipping, f64::from(u8::from(self.is_strict()))),
                     (Unit::ClipOperation, self.queues.clip * few_turns),
                 ]
             }
             Pass::RasterSmall(phase) => {
                 let triangles = if self.invocations(pass).is_some() { self.triangles() } else { 0.5 * self.triangles() };
-                let mut counts = self.turns(phase, small.longest, 0.0, looped);
+                let mut counts = self.turns(phase, small, 0.0, looped);
                 counts.push((Unit::SmallOperation, triangles * once + small.candidates * looped));
                 counts
             }
             // Its text holds the code of three paths, each about as long as the others.
             Pass::RasterAll(phase) => {
                 let (once, looped) = (once / 3.0, looped / 3.0);
-                let mut counts = self.turns(phase, small.longest, self.medium_turns().max(self.tile_turns()), looped);
+                let mut counts = self.turns(phase, small, self.medium_turns().max(self.tile_turns()), looped);
                 counts.push((Unit::SmallOperation, self.triangles() * once + small.candidates * looped));
-                counts.push((Unit::QueuedOperation, (self.medium_samples(phase) + self.large_samples(phase)) * looped));
+                counts.push((in_sums(phase, Unit::MediumOperation), self.medium_samples(phase) * looped));
+                counts.push((in_sums(phase, Unit::LargeOperation), self.large_samples(phase) * looped));
                 counts
             }
-            Pass::TileLarge => vec![(Unit::QueuedOperation, self.sizes.large.triangles * few_turns)],
-            Pass::RasterMedium(phase) => self.queued(phase, self.medium_turns(), self.medium_samples(phase), looped),
-            Pass::RasterLarge(phase) => self.queued(phase, self.tile_turns(), self.large_samples(phase), looped),
+            Pass::TileLarge => vec![(Unit::LargeOperation, self.sizes.large.triangles * few_turns)],
+            Pass::RasterMedium(phase) => {
+                self.queued(phase, self.medium_turns(), looped, (Unit::MediumOperation, self.medium_samples(phase) * looped))
+            }
+            Pass::RasterLarge(phase) => {
+                self.queued(phase, self.tile_turns(), looped, (Unit::LargeOperation, self.large_samples(phase) * looped))
+            }
             // All discs but those of one triangle are left out before their samples.
             Pass::RasterPoints(RasterPhase::BoundaryTriangle) => vec![(Unit::SmallOperation, self.triangles() * once)],
             Pass::RasterPoints(_) => {
-                let most = self.sizes.most_corners / f64::from(self.key.work.invocations_per_triangle.max(1));
+                // Parts beyond the rows of a disc end at once.
+                let parts = f64::from(self.key.work.invocations_per_triangle).min(self.disc[1] + 2.0);
+                let turns = self.sizes.most_corners * (self.disc[1] / parts).ceil() * self.disc[0];
+                let samples = self.sizes.corners * self.disc[0] * self.disc[1];
                 vec![
-                    (Unit::DiscTurn, most * self.disc),
-                    (Unit::SmallOperation, self.triangles() * once),
-                    (Unit::DiscOperation, self.sizes.corners * self.disc * looped),
+                    (Unit::DiscTurn, turns),
+                    (Unit::SmallOperation, parts * self.triangles() * once),
+                    (Unit::DiscOperation, samples * looped),
                 ]
             }
             Pass::OrderSums | Pass::OrderRanks => vec![(Unit::OrderedTriangle, self.triangles())],
@@ -354,44 +399,59 @@ impl<'a> FrameCounts<'a> {
     }
 
     /// What the invocation with most samples of small triangles, or with most blocks of queued ones, does one after another.
-    fn turns(&self, phase: RasterPhase, longest: f64, blocks: f64, looped: f64) -> Vec<(Unit, f64)> {
+    fn turns(&self, phase: RasterPhase, small: &PathWork, blocks: f64, looped: f64) -> Vec<(Unit, f64)> {
+        let (longest, covered) = (small.longest, small.most_covered.min(small.longest));
         match phase {
-            // An invocation lists the covered samples of a small triangle first, half of those in its box.
-            RasterPhase::Sum | RasterPhase::NearestAndSum => vec![(Unit::SumTurn, blocks.max(0.5 * longest))],
+            RasterPhase::Sum | RasterPhase::NearestAndSum => {
+                let textures = if self.shows_textures() { 1.0 } else { 0.0 };
+                let blocks = if blocks > 0.0 { self.covered_blocks() } else { 0.0 };
+                vec![
+                    (Unit::SumTurn, covered),
+                    (Unit::SumBlock, blocks),
+                    (Unit::Textures, textures),
+                    (Unit::TexturedTurn, blocks.max(covered) * textures),
+                ]
+            }
             // No sample is stored: an invocation counts for itself, and triangles but one are left out before their samples.
             RasterPhase::CountSamples => vec![(Unit::SmallChain, longest.max(blocks) * looped)],
             RasterPhase::BoundaryTriangle => Vec::new(),
-            _ if self.key.samples.has_mask => vec![(Unit::MaskTurn, longest.max(blocks))],
-            _ => vec![(Unit::SmallTurn, longest.max(blocks)), (Unit::SmallChain, longest.max(blocks) * looped)],
+            _ if self.key.samples.has_mask => vec![(Unit::MaskTurn, covered.max(blocks))],
+            _ => vec![(Unit::SmallTurn, covered.max(blocks)), (Unit::SmallChain, longest.max(blocks) * looped)],
         }
     }
 
     /// Passes over the queues of medium triangles or of tiles.
-    fn queued(&self, phase: RasterPhase, blocks: f64, samples: f64, looped: f64) -> Vec<(Unit, f64)> {
+    fn queued(&self, phase: RasterPhase, blocks: f64, looped: f64, operations: (Unit, f64)) -> Vec<(Unit, f64)> {
         let mut counts = match phase {
-            RasterPhase::Sum | RasterPhase::NearestAndSum => self.turns(phase, 0.0, blocks, looped),
+            RasterPhase::Sum | RasterPhase::NearestAndSum => self.turns(phase, &PathWork::default(), blocks, looped),
             _ => vec![(Unit::QueuedTurn, blocks)],
         };
-        counts.push((Unit::QueuedOperation, samples * looped));
+        counts.push((in_sums(phase, operations.0), operations.1));
         counts
     }
 
     fn resolve(&self, once: f64, looped: f64) -> Vec<(Unit, f64)> {
-        let shades = self.touched > 0.0;
+        let shades = self.shades();
         let if_shaded = |count: f64| if shades { count } else { 0.0 };
         // Averages and counts of layers read no image.
         let shows_layers = matches!(self.key.framebuffer.layers, Some(Layers::Xray { .. } | Layers::Overdraw));
-        let textures = f64::from(u8::from(self.needs.textured > 0 && self.shows_materials && !shows_layers));
+        let textures = f64::from(u8::from(self.shows_textures() && !shows_layers));
         let visited = if self.key.work.listed_tiles { self.touched } else { 1.0 };
         let shaded = if self.key.finishes_pixels() { 1.0 } else { self.touched };
+        let several = if_shaded(f64::from(u8::from(!self.key.vertices.is_single_draw && !shows_layers)));
+        let textures = if_shaded(textures);
+        let turns = if shades || self.key.finishes_pixels() { self.turns } else { 0.0 };
+        // A picture of few pixels waits for the slowest of them, one of many for all.
+        let [shaded, touched] = [shaded, self.touched].map(|part| part * self.pixels);
         vec![
             (Unit::Pixel, visited * self.pixels),
-            (Unit::PixelTurn, if shades || self.key.finishes_pixels() { self.turns } else { 0.0 }),
-            (Unit::SeveralDraws, if_shaded(f64::from(u8::from(!self.key.vertices.is_single_draw && !shows_layers)))),
-            (Unit::Textures, if_shaded(textures)),
-            // A card waits for images once, a CPU adapter at every pixel.
-            (Unit::TexturedPixel, if self.is_software { self.touched * self.pixels * textures } else { 0.0 }),
-            (Unit::PixelOperation, shaded * self.pixels * (once + self.turns.max(TURNS) * looped)),
+            (Unit::PixelTurn, turns),
+            (Unit::LoopedPixel, turns * shaded),
+            (Unit::SeveralDraws, several),
+            (Unit::SearchedPixel, several * touched),
+            (Unit::Textures, textures),
+            (Unit::TexturedPixel, textures * touched),
+            (Unit::PixelOperation, shaded * (once + self.turns.max(TURNS) * looped)),
         ]
     }
 }

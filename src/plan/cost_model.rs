@@ -16,6 +16,7 @@ pub enum Unit {
     IdlePass,
     LonePass,
     VertexOperation,
+    StrictVertices,
     DeformChain,
     DeformOperation,
     SetupChain,
@@ -25,8 +26,12 @@ pub enum Unit {
     SmallChain,
     SmallOperation,
     QueuedTurn,
-    QueuedOperation,
+    MediumOperation,
+    LargeOperation,
     SumTurn,
+    SumBlock,
+    SumOperation,
+    TexturedTurn,
     Clipping,
     StrictClipping,
     ClipOperation,
@@ -34,7 +39,9 @@ pub enum Unit {
     DiscOperation,
     Pixel,
     PixelTurn,
+    LoopedPixel,
     SeveralDraws,
+    SearchedPixel,
     Textures,
     TexturedPixel,
     PixelOperation,
@@ -61,6 +68,7 @@ impl Unit {
             "vertex_operation",
             "an operation on a vertex or the end of a segment that is projected, on a meshlet, or on a run of dots",
         ),
+        (Self::StrictVertices, "strict_vertices", "a pass that projects strictly, beyond its operations"),
         (Self::DeformChain, "deform_chain", "an operation on the longest way through the kernel that deforms vertices"),
         (Self::DeformOperation, "deform_operation", "an operation on a vertex that joints or morph targets deform"),
         (Self::SetupChain, "setup_chain", "an operation on the rows of a triangle that its sample setup visits, one after another"),
@@ -74,8 +82,12 @@ impl Unit {
             "an operation on a triangle in a first raster pass, or on a candidate sample of a small one",
         ),
         (Self::QueuedTurn, "queued_turn", "a block of 64 pixels of the queued triangle that has most, one after another"),
-        (Self::QueuedOperation, "queued_operation", "an operation on a candidate sample of a medium or large triangle"),
-        (Self::SumTurn, "sum_turn", "a layer, or a block of them, of the triangle that adds most to sums, one after another"),
+        (Self::MediumOperation, "medium_operation", "an operation on a candidate sample of a medium triangle"),
+        (Self::LargeOperation, "large_operation", "an operation on a large triangle whose tiles are found, or on a candidate sample of it"),
+        (Self::SumTurn, "sum_turn", "a layer of the small triangle that adds most to sums, one after another"),
+        (Self::SumBlock, "sum_block", "a block of 64 pixels of the queued triangle that adds most, one after another"),
+        (Self::SumOperation, "sum_operation", "an operation on a candidate sample of a queued triangle that is added to sums"),
+        (Self::TexturedTurn, "textured_turn", "a layer or block of these that reads images of materials, beyond that"),
         (Self::Clipping, "clipping", "a pass that clips at least one triangle"),
         (Self::StrictClipping, "strict_clipping", "such a pass with strict vertices, beyond that"),
         (Self::ClipOperation, "clip_operation", "an operation on a triangle that is clipped"),
@@ -83,9 +95,11 @@ impl Unit {
         (Self::DiscOperation, "disc_operation", "an operation on a candidate sample of a corner's disc"),
         (Self::Pixel, "pixel", "a pixel that the resolve visits"),
         (Self::PixelTurn, "pixel_turn", "a turn of the longest loop of an effect over what belongs to one pixel"),
+        (Self::LoopedPixel, "looped_pixel", "such a turn of one pixel among many"),
         (Self::SeveralDraws, "several_draws", "a resolve that looks for the draw of a triangle among several"),
+        (Self::SearchedPixel, "searched_pixel", "such a search for one pixel among many"),
         (Self::Textures, "textures", "a resolve that reads images of materials"),
-        (Self::TexturedPixel, "textured_pixel", "a pixel that reads images of materials on a CPU adapter"),
+        (Self::TexturedPixel, "textured_pixel", "a pixel among many that reads images of materials"),
         (Self::PixelOperation, "pixel_operation", "an operation on a pixel that is shaded"),
         (Self::ParticleChain, "particle_chain", "an operation on the longest way through the kernel that moves particles"),
         (Self::ParticleOperation, "particle_operation", "an operation on a particle"),
@@ -108,13 +122,16 @@ impl Unit {
     pub const fn is_wait(self) -> bool {
         matches!(
             self,
-            Self::DeformChain
+            Self::StrictVertices
+                | Self::DeformChain
                 | Self::SetupChain
                 | Self::SmallTurn
                 | Self::MaskTurn
                 | Self::SmallChain
                 | Self::QueuedTurn
                 | Self::SumTurn
+                | Self::SumBlock
+                | Self::TexturedTurn
                 | Self::Clipping
                 | Self::StrictClipping
                 | Self::DiscTurn

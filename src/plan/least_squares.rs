@@ -16,7 +16,7 @@ const ROUNDS: usize = 12;
 /// Sweeps over all costs in a round.
 const SWEEPS: usize = 3000;
 /// Relative errors beyond this count in proportion instead of by their square.
-const ROBUST: f64 = 0.25;
+const ROBUST: f64 = 0.1;
 
 /// The `count` costs that explain the observations best; 0 for one that no observation contains.
 pub fn nonnegative(observations: &[Observation], count: usize) -> Vec<f64> {

@@ -20,7 +20,7 @@ use crate::{
 };
 
 /// Changes where work is counted in another way, so that costs measured before hold no longer.
-const COUNTING: u32 = 4;
+const COUNTING: u32 = 5;
 
 /// What a calibration is for: it holds for nothing else.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -40,6 +40,8 @@ struct VisibleTriangle {
     perimeter: f32,
     /// How many of its corners lie in the picture.
     corners: u32,
+    /// Its material has images.
+    has_texture: bool,
 }
 
 /// Estimated numbers of triangles for each raster path.
@@ -66,10 +68,14 @@ pub struct PathWork {
     pub covered: f64,
     /// The most samples in the box of one of them.
     pub longest: f64,
+    /// The most samples that one of them covers.
+    pub most_covered: f64,
     /// Rows of samples in the boxes of those triangles.
     pub rows: f64,
     /// The most rows in the box of one of them.
     pub most_rows: f64,
+    /// The most of these until the first in which the triangle covers a sample.
+    pub most_empty_rows: f64,
 }
 
 /// Estimated work of all raster paths.
@@ -84,6 +90,10 @@ pub struct SizeWork {
     pub corners: f64,
     /// The most such corners of one triangle.
     pub most_corners: f64,
+    /// Samples that triangles cover whose materials have images, whatever hides them.
+    pub textured: f64,
+    /// Those of these corners whose triangles have such materials.
+    pub textured_corners: f64,
 }
 
 impl PathWork {
@@ -93,8 +103,12 @@ impl PathWork {
         self.candidates += times * f64::from(columns) * f64::from(rows);
         self.covered += times * f64::from(triangle.area);
         self.longest = self.longest.max(f64::from(columns) * f64::from(rows));
+        self.most_covered = self.most_covered.max(triangle.area.into());
         self.rows += times * f64::from(rows);
         self.most_rows = self.most_rows.max(rows.into());
+        // Where rows have less than one sample, as a rule.
+        let covered_by_row = f64::from(triangle.area) / f64::from(rows);
+        self.most_empty_rows = self.most_empty_rows.max((1.0 / covered_by_row).max(2.0).min(rows.into()));
     }
 }
 
@@ -124,7 +138,8 @@ impl TriangleSizes {
             let id = ((k as f64 + within) * triangles as f64 / count as f64) as u64;
             let index = draws.partition_point(|draw| u64::from(draw.first_triangle) <= id) - 1;
             let draw = &draws[index];
-            match classify(draw, view, corners(index, id as u32 - draw.first_triangle)) {
+            let has_texture = scene.materials[scene.primitives[draw.primitive].material].textures() != [None, None];
+            match classify(draw, view, corners(index, id as u32 - draw.first_triangle), has_texture) {
                 Sampled::Visible(one) => visible.push(one),
                 Sampled::CrossesNear(rest) => {
                     near_clipped += 1;
@@ -188,6 +203,10 @@ impl TriangleSizes {
             work.corners += each * f64::from(visible.corners);
             work.most_corners = work.most_corners.max(visible.corners.into());
         }
+        for textured in self.visible.iter().chain(self.cut.iter()).filter(|triangle| triangle.has_texture) {
+            work.textured += each * f64::from(textured.area);
+            work.textured_corners += each * f64::from(textured.corners);
+        }
         // What was cut is queued by its size, and no invocation draws it alone.
         for rest in self.cut.iter() {
             work.cut.add(rest, each);
@@ -241,7 +260,7 @@ enum Sampled {
 }
 
 /// What lies behind the near plane of a triangle that crosses it, as the box of its corners; none outside the picture.
-fn behind_near(clip: [DVec4; 3], view: &View) -> Option<VisibleTriangle> {
+fn behind_near(clip: [DVec4; 3], view: &View, has_texture: bool) -> Option<VisibleTriangle> {
     let depth = |c: DVec4| c.w - c.z;
     let mut corners = Vec::with_capacity(4);
     for (a, b) in [(clip[0], clip[1]), (clip[1], clip[2]), (clip[2], clip[0])] {
@@ -269,10 +288,11 @@ fn behind_near(clip: [DVec4; 3], view: &View) -> Option<VisibleTriangle> {
         perimeter: (2.0 * (inside.x + inside.y)) as f32,
         // Discs are not drawn at the corners of a triangle that is cut.
         corners: 0,
+        has_texture,
     })
 }
 
-fn classify(draw: &Draw, view: &View, clip: [DVec4; 3]) -> Sampled {
+fn classify(draw: &Draw, view: &View, clip: [DVec4; 3], has_texture: bool) -> Sampled {
     if clip.iter().any(|c| !c.is_finite()) {
         return Sampled::Hidden;
     }
@@ -280,7 +300,7 @@ fn classify(draw: &Draw, view: &View, clip: [DVec4; 3]) -> Sampled {
     match clip.iter().filter(is_before_near).count() {
         0 => {}
         3 => return Sampled::Hidden,
-        _ => return Sampled::CrossesNear(behind_near(clip, view)),
+        _ => return Sampled::CrossesNear(behind_near(clip, view, has_texture)),
     }
     let size = DVec2::new(view.width.into(), view.height.into());
     let [a, b, c] = clip.map(|c| DVec2::new(0.5 + 0.5 * c.x / c.w, 0.5 - 0.5 * c.y / c.w) * size);
@@ -303,6 +323,7 @@ fn classify(draw: &Draw, view: &View, clip: [DVec4; 3]) -> Sampled {
         area: (0.5 * doubled.abs() * fraction) as f32,
         perimeter: ((a.distance(b) + b.distance(c) + c.distance(a)) * fraction.sqrt()) as f32,
         corners: [a, b, c].iter().filter(|at| at.cmpge(DVec2::ZERO).all() && at.cmplt(size).all()).count() as u32,
+        has_texture,
     })
 }
 

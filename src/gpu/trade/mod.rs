@@ -154,7 +154,7 @@ pub fn trade(
         }
     }
     if is_wanted {
-        warm_up::warm_up(gpu, entries.len(), |at, frames| {
+        warm_up::warm_up(gpu, warm_up::FROM_IDLE, entries.len(), |at, frames| {
             entries[at].sample(preset, Kept::Alone, frames)?;
             is_wanted = watch.is_wanted();
             Ok(is_wanted)
