@@ -34,7 +34,21 @@ fn image_at(x: i32, y: i32) -> vec3u {
     let at = vec2u(clamp(vec2i(x, y), vec2i(0), vec2i(frame.size) - 1));
     let found = framebuffer_load(at.y * frame.size.x + at.x);
     if found.x == 0u { return vec3u(IMAGE_NO_TRIANGLE, image_depth(found.y), frame.draw_count); }
-    return vec3u(~found.x, image_depth(found.y), draw_of_triangle(~found.x) + 1u);
+    return vec3u(~found.x, image_depth(found.y), image_draw_of(~found.x) + 1u);
+}
+
+// The draw that was found last, its first triangle and the one behind its last. Neighbors mostly show the same.
+var<private> image_draw: u32;
+var<private> image_draw_triangles: vec2u;
+
+fn image_draw_of(triangle: u32) -> u32 {
+    if triangle < image_draw_triangles.x || triangle >= image_draw_triangles.y {
+        image_draw = draw_of_triangle(triangle);
+        let next = image_draw + 1u;
+        let end = select(frame.triangle_count, draws[min(next, frame.draw_count - 1u)].first_triangle, next < frame.draw_count);
+        image_draw_triangles = vec2u(draws[image_draw].first_triangle, end);
+    }
+    return image_draw;
 }
 
 // Bits of the reversed depth that a key means; 0 for an empty pixel.

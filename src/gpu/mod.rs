@@ -51,6 +51,7 @@ mod hardware_materials;
 mod hardware_pipeline;
 mod readback;
 
+mod frame_counts;
 mod hardware_ids;
 mod renderer;
 mod warm_up;
