@@ -583,7 +583,10 @@ impl FrameLayout {
             Pass::TileLarge => Dispatch::args(offset_of!(DispatchArgs, large)),
             Pass::RasterLarge(_) => Dispatch::args(offset_of!(DispatchArgs, tiles)),
             Pass::DotsEnds => over_dots(dots.segments),
-            Pass::DotsCull => Dispatch::once(folded(dots.runs.div_ceil(CULL_RUNS))),
+            Pass::DotsCull => {
+                let groups = dots.runs.div_ceil(FEW_RUNS).min(key.work.dot_groups);
+                Dispatch::once(folded(groups.max(dots.runs.div_ceil(DOT_GROUP))))
+            }
             Pass::DotsDraw | Pass::DotsProbe => match key.options.dot_culling {
                 DotCulling::Brute => over_dots(dots.dots),
                 DotCulling::Cpu => over_dots(dots.chosen),
@@ -597,8 +600,8 @@ impl FrameLayout {
     }
 }
 
-/// Runs of dots that a workgroup culls: it lists their dots, 64 to a run at most, 64 at a time.
-const CULL_RUNS: u32 = 8;
+/// Runs of dots that a workgroup culls at least, where there are so many. It lists their dots, up to 64 to a run, 64 at a time.
+const FEW_RUNS: u32 = 8;
 /// Invocations of a workgroup of the passes over dots.
 pub const DOT_GROUP: u32 = 64;
 /// Invocations of a workgroup of the pass that lists tiles.

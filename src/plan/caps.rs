@@ -64,6 +64,7 @@ impl Caps {
             early_load: self.software,
             exchanges_maximum: self.slow_atomic_maximum,
             queue_groups: if self.software { 0 } else { 8192 },
+            dot_groups: if self.software { 1 } else { 1024 },
             clears_in_passes: !self.software,
             hides_blocks: !self.software,
             stored_uniforms: self.software && self.max_storage_buffers >= MANY_STORAGE_BUFFERS,
@@ -93,6 +94,8 @@ pub struct Tuning {
     /// Workgroups of every pass over a queue, which share its entries, at most 65,535; 0: as many as the queue has entries, by an
     /// indirect dispatch (culled pictures always).
     pub queue_groups: u32,
+    /// Workgroups among which few runs of dots are divided; more of them are divided 64 to a workgroup.
+    pub dot_groups: u32,
     /// The first pass clears counters and pixels beside its own work (pictures that are not culled).
     pub clears_in_passes: bool,
     /// Large and medium triangles skip blocks of pixels in which what was drawn hides them.

@@ -46,6 +46,7 @@ pub(super) fn key_of(
             early_load: stack.shape == Shape::Points || tuning.early_load && options.visibility == Visibility::Split32,
             exchanges_maximum: tuning.exchanges_maximum,
             queue_groups: if options.culling == Culling::None { tuning.queue_groups.min(65_535) } else { 0 },
+            dot_groups: tuning.dot_groups,
             hides_blocks: tuning.hides_blocks,
             stored_uniforms: tuning.stored_uniforms,
             wide_loads: tuning.wide_loads,

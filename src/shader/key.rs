@@ -123,6 +123,8 @@ pub struct WorkSharing {
     pub exchanges_maximum: bool,
     /// Workgroups of every pass over a queue, which share its entries; 0: as many as it has entries, by an indirect dispatch.
     pub queue_groups: u32,
+    /// Workgroups among which few runs of dots are divided.
+    pub dot_groups: u32,
     /// The first pass clears counters and pixels beside its own work.
     pub clears_in_passes: bool,
     /// And what a draw order counts, which takes two more storage buffers.
@@ -247,6 +249,7 @@ impl KernelKey {
                 early_load: true,
                 exchanges_maximum: true,
                 queue_groups: 0,
+                dot_groups: 1,
                 clears_in_passes: true,
                 clears_order: false,
                 hides_blocks: true,

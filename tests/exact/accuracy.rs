@@ -385,6 +385,7 @@ const GRAPHICS_CARD: Tuning = Tuning {
     early_load: true,
     exchanges_maximum: false,
     queue_groups: 0,
+    dot_groups: 1024,
     clears_in_passes: false,
     hides_blocks: true,
     stored_uniforms: false,

@@ -53,6 +53,7 @@ const GRAPHICS_CARD: Tuning = Tuning {
     early_load: false,
     exchanges_maximum: true,
     queue_groups: 64,
+    dot_groups: 1024,
     clears_in_passes: true,
     hides_blocks: true,
     stored_uniforms: false,

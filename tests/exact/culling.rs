@@ -85,6 +85,7 @@ fn both_tunings(renderer: &Renderer) -> [Tuning; 2] {
         early_load: false,
         exchanges_maximum: false,
         queue_groups: 64,
+        dot_groups: 1024,
         clears_in_passes: true,
         hides_blocks: true,
         stored_uniforms: false,

@@ -14,7 +14,7 @@ use rasterlab::{
     frame::SnappedVertex,
     gpu::{Capture, RenderError, Renderer},
     oracle,
-    plan::AccuracyRequest,
+    plan::{AccuracyRequest, Tuning},
     preset::{Preset, SceneSource},
     scene::{Scene, draw::draws, view::View},
 };
@@ -44,6 +44,12 @@ fn three_ways(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, stack: &
         assert!(brute.frame.dots == other.frame.dots, "{what}: {way} shows other dots than brute force");
         assert!(brute.frame.color == other.frame.color, "{what}: {way} draws another picture than brute force");
     }
+    // With few runs of dots to a workgroup, as on a card.
+    let usual = renderer.gpu().caps.tuning();
+    renderer.set_tuning(Tuning { dot_groups: 1024, ..usual });
+    let divided = captured(renderer, scene, view, stack, &on(DotCulling::Gpu));
+    renderer.set_tuning(usual);
+    assert!(brute.frame.dots == divided.frame.dots, "{what}: among more workgroups other dots are shown");
     gpu
 }
 

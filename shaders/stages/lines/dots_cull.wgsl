@@ -1,4 +1,4 @@
-// dots_cull: 8 dot runs per workgroup. Runs outside the view volume are left out as a whole, the others are thinned by their
+// dots_cull: up to 64 dot runs per workgroup, fewer where a card would be idle. Runs outside the view volume are left out as a whole, the others are thinned by their
 // nearest end, and the remaining dots are divided evenly among the invocations; those that may show are listed without gaps,
 // in any order. A few too many are listed, never one too few: dots_draw decides.
 //@ use lib/frame
@@ -9,15 +9,13 @@
 @group(0) @binding(25) var<storage, read_write> dot_count: atomic<u32>;
 
 const CULL_GROUP = 64u;
-// Runs of a workgroup. Mirrors `gpu::frame_layout::CULL_RUNS`.
-const CULL_RUNS = 8u;
 // Bound on the rounding of 1/w, in steps of its bits.
 const CULL_STEPS = 64u;
 
 // How many dots the runs up to and with this one may show.
-var<workgroup> sums: array<u32, CULL_RUNS>;
+var<workgroup> sums: array<u32, 64>;
 // Index of the first such dot in its run, and how often the dots' numbers can be halved.
-var<workgroup> firsts: array<vec2u, CULL_RUNS>;
+var<workgroup> firsts: array<vec2u, 64>;
 var<workgroup> listed: atomic<u32>;
 var<workgroup> base: u32;
 
@@ -67,7 +65,7 @@ fn cull_run(id: u32) -> vec3u {
 // The run of the workgroup that the candidate of this number belongs to.
 fn cull_run_of(candidate: u32) -> u32 {
     var low = 0u;
-    for (var skip = CULL_RUNS / 2u; skip > 0u; skip /= 2u) {
+    for (var skip = 32u; skip > 0u; skip /= 2u) {
         if sums[low + skip - 1u] <= candidate { low += skip; }
     }
     return low;
@@ -78,23 +76,23 @@ fn dots_cull(
     @builtin(workgroup_id) workgroup: vec3u, @builtin(num_workgroups) workgroups: vec3u,
     @builtin(local_invocation_index) invocation_index: u32
 ) {
-    let first_run = frame_invocation(workgroup, workgroups, 0u, CULL_RUNS);
-    let has_run = invocation_index < CULL_RUNS;
+    let groups = workgroups.x * workgroups.y;
+    let runs_of_group = (dot_frame.dot_runs + groups - 1u) / groups;
+    let first_run = frame_invocation(workgroup, workgroups, 0u, runs_of_group);
+    let run = first_run + invocation_index;
     var own = vec3u(0u);
-    if has_run && first_run + invocation_index < dot_frame.dot_runs { own = cull_run(first_run + invocation_index); }
-    if has_run {
-        sums[invocation_index] = own.x;
-        firsts[invocation_index] = own.yz;
-    }
+    if invocation_index < runs_of_group && run < dot_frame.dot_runs { own = cull_run(run); }
+    sums[invocation_index] = own.x;
+    firsts[invocation_index] = own.yz;
     // Inclusive prefix sums over the invocations (Hillis and Steele 1986).
-    for (var step = 1u; step < CULL_RUNS; step *= 2u) {
+    for (var step = 1u; step < CULL_GROUP; step *= 2u) {
         workgroupBarrier();
         var before = 0u;
-        if has_run && invocation_index >= step { before = sums[invocation_index - step]; }
+        if invocation_index >= step { before = sums[invocation_index - step]; }
         workgroupBarrier();
-        if has_run { sums[invocation_index] += before; }
+        sums[invocation_index] += before;
     }
-    let candidates = workgroupUniformLoad(&sums[CULL_RUNS - 1u]);
+    let candidates = workgroupUniformLoad(&sums[CULL_GROUP - 1u]);
     for (var done = 0u; done < candidates; done += CULL_GROUP) {
         if invocation_index == 0u { atomicStore(&listed, 0u); }
         workgroupBarrier();
