@@ -90,9 +90,9 @@ pub struct SizeWork {
     pub corners: f64,
     /// The most such corners of one triangle.
     pub most_corners: f64,
-    /// Samples that triangles cover whose materials have images, whatever hides them.
+    /// Samples that triangles with images in their materials cover; samples that other triangles hide count too.
     pub textured: f64,
-    /// Those of these corners whose triangles have such materials.
+    /// Corners inside the picture of triangles with images in their materials.
     pub textured_corners: f64,
 }
 

@@ -1,6 +1,7 @@
-// dots_cull: up to 64 dot runs per workgroup, fewer where a card would be idle. Runs outside the view volume are left out as a whole, the others are thinned by their
-// nearest end, and the remaining dots are divided evenly among the invocations; those that may show are listed without gaps,
-// in any order. A few too many are listed, never one too few: dots_draw decides.
+// dots_cull: up to 64 dot runs per workgroup; on a card fewer, where there are too few runs to occupy it. Runs outside the view
+// volume are left out as a whole, the others are thinned by their nearest end, and the remaining dots are divided evenly among the
+// invocations; those that may show are listed without gaps, in any order. A few too many are listed, never one too few:
+// dots_draw decides.
 //@ use lib/frame
 //@ use lib/dots
 //@ use effects/dots

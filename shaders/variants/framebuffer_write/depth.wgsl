@@ -4,7 +4,7 @@
 
 // Load before the atomic: faster where many samples lose.
 override EARLY_LOAD: bool = false;
-// The maximum is kept by compare and exchange.
+// The maximum is kept by compare and exchange. Each buffer has the function of its own: WGSL passes no pointers into buffers.
 override EXCHANGES_MAXIMUM: bool = false;
 
 fn framebuffer_begin(id: u32) -> bool { return true; }

@@ -3,7 +3,7 @@
 @group(0) @binding(5) var<storage, read> depth_keys: array<u32>;
 @group(0) @binding(6) var<storage, read_write> triangle_ids: array<atomic<u32>>;
 
-// The maximum is kept by compare and exchange.
+// The maximum is kept by compare and exchange. Each buffer has the function of its own: WGSL passes no pointers into buffers.
 override EXCHANGES_MAXIMUM: bool = false;
 
 fn framebuffer_begin(id: u32) -> bool { return true; }
