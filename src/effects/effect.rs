@@ -26,8 +26,22 @@ pub struct Effect {
     pub is_repeatable: fn(&[u32]) -> bool,
     /// How often the longest loop over what belongs to one pixel runs with these parameter words; the cost model alone asks.
     pub turns: fn(&[u32]) -> f64,
-    /// Does the sample setup visit every row of a triangle with these parameter words? The cost model alone asks.
-    pub walks_rows: fn(&[u32]) -> bool,
+    /// How many pixels its image hook reads for each, with these parameter words; the cost model alone asks.
+    pub neighbors: fn(&[u32]) -> f64,
+    /// Which rows of a triangle its sample setup visits with these parameter words; the cost model alone asks.
+    pub setup_rows: fn(&[u32]) -> SetupRows,
+}
+
+/// The rows of a triangle that the sample setup of an effect visits, one after another.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+pub enum SetupRows {
+    /// It has no loop over rows.
+    #[default]
+    None,
+    /// Those until the second sample that the triangle covers.
+    First,
+    /// All, so many times.
+    All(f64),
 }
 
 impl Effect {
@@ -44,7 +58,8 @@ impl Effect {
             base: None,
             is_repeatable: |_| true,
             turns: |_| 0.0,
-            walks_rows: |_| false,
+            neighbors: |_| 0.0,
+            setup_rows: |_| SetupRows::None,
         }
     }
 
@@ -132,9 +147,15 @@ impl Effect {
         self
     }
 
-    /// The same effect, whose sample setup visits every row of a triangle where `walks_rows` holds.
-    pub const fn walking_rows_if(mut self, walks_rows: fn(&[u32]) -> bool) -> Self {
-        self.walks_rows = walks_rows;
+    /// The same effect, whose image hook reads so many pixels for each.
+    pub const fn with_neighbors(mut self, neighbors: fn(&[u32]) -> f64) -> Self {
+        self.neighbors = neighbors;
+        self
+    }
+
+    /// The same effect, whose sample setup visits these rows of a triangle.
+    pub const fn visiting_rows(mut self, setup_rows: fn(&[u32]) -> SetupRows) -> Self {
+        self.setup_rows = setup_rows;
         self
     }
 

@@ -47,7 +47,12 @@ params! {
 pub const EFFECT: Effect =
     Effect::new::<Outline>("outline", "Outline", "lines at silhouettes, between objects and at steps of depth")
         .on_image::<Outline>()
-        .with_turns(|words| (1.0 + 2.0 * f64::from(read::<Outline>(words).width_px)).powi(2));
+        .with_neighbors(|words| {
+            let outline: Outline = read(words);
+            // A circle of them; steps of depth are found by those on the other side, too.
+            let circle = (std::f64::consts::PI * f64::from(outline.width_px).powi(2)).max(4.0);
+            if outline.depth == 0 { circle } else { 2.0 * circle }
+        });
 
 /// Triangle id, depth key and draw of a pixel.
 type Seen = (Option<u32>, u32, u32);
@@ -102,8 +107,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn its_loop_visits_the_square_of_its_width() {
-        // Two pixels wide, so two on each side of the pixel itself.
-        assert_eq!((EFFECT.turns)(&(EFFECT.defaults)()), 25.0);
+    fn it_reads_the_circle_of_its_width() {
+        let read_of = |width_px: f64, depth: f64| {
+            let mut words = (EFFECT.defaults)();
+            for (name, value) in [("width_px", width_px), ("depth", depth)] {
+                EFFECT.field(name).expect("a parameter").set(&mut words, &[value]).expect("an allowed value");
+            }
+            (EFFECT.neighbors)(&words)
+        };
+        // Twelve pixels lie within two of another.
+        assert!((read_of(2.0, 0.0) - 12.0).abs() < 1.0);
+        assert_eq!(read_of(2.0, 1.0), 2.0 * read_of(2.0, 0.0), "steps of depth need those on the other side, too");
+        assert_eq!(read_of(1.0, 0.0), 4.0);
     }
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{
     dots, draw_order,
-    effect::{Effect, read},
+    effect::{Effect, SetupRows, read},
     hooks::{self, Hooks, Layers, Picture, Pixel, Shape, Slot, Surface},
     points, race, shadow, smear, xray,
 };
@@ -259,9 +259,17 @@ impl Stack {
         self.0.iter().map(|enabled| (enabled.effect.turns)(&enabled.words)).fold(0.0, f64::max)
     }
 
-    /// Does the sample setup of an effect visit every row of a triangle?
-    pub fn walks_rows(&self) -> bool {
-        self.0.iter().any(|enabled| (enabled.effect.walks_rows)(&enabled.words))
+    /// The most pixels that an image effect reads for each.
+    pub fn neighbors(&self) -> f64 {
+        self.0.iter().map(|enabled| (enabled.effect.neighbors)(&enabled.words)).fold(0.0, f64::max)
+    }
+
+    /// The rows of a triangle that its sample setups visit.
+    pub fn setup_rows(&self) -> SetupRows {
+        self.0
+            .iter()
+            .map(|enabled| (enabled.effect.setup_rows)(&enabled.words))
+            .fold(SetupRows::None, |most, rows| if rows > most { rows } else { most })
     }
 
     /// Parameters of the effect called `name`, if it is on; `P` must be its own.

@@ -7,10 +7,16 @@ use super::{
 };
 use crate::{
     accuracy::{DotCulling, VertexTransform},
-    effects::hooks::{Layers, Shape},
+    effects::{
+        SetupRows,
+        hooks::{Layers, Shape},
+    },
     math::SMALL_EXTENT,
     plan::cost_model::Unit,
-    scene::sizes::{PathWork, SizeWork, TriangleSizes},
+    scene::{
+        sizes::{PathWork, SizeWork, TriangleSizes},
+        triangle_rows::RowWork,
+    },
     shader::{
         key::KernelKey,
         pass::{Pass, RasterPhase, TriangleSource},
@@ -21,6 +27,9 @@ use crate::{
 /// How often a loop over few items runs, as a rule: joints of a vertex, corners of a polygon, taps of a filter.
 const TURNS: f64 = 4.0;
 
+/// Loops over rows in the text of a sample setup, of which each holds as much as the other.
+const ROW_LOOPS: f64 = 2.0;
+
 /// Pixels of a block that a workgroup draws at once, and blocks of a tile.
 const BLOCK: f64 = 64.0;
 const BLOCKS_OF_TILE: f64 = 64.0;
@@ -29,6 +38,11 @@ const BLOCK_SIDE: f64 = 8.0;
 const QUEUE_PARTS: f64 = 4.0;
 /// Samples in the box of a queued triangle whose size is not known.
 const USUAL_CANDIDATES: f64 = 100.0;
+
+/// Triangles that a workgroup clips together. Each takes its own way through the kernel, so that more of them take longer: one as long as
+/// ten doublings of their number (13 µs on an H100, and 21 for 64 of them).
+const CLIPPED_TOGETHER: f64 = 64.0;
+const ONE_CLIPPED: f64 = 10.0;
 
 /// Expected samples from which on there is one, as a rule.
 const ANY: f64 = 0.5;
@@ -68,8 +82,10 @@ pub(super) struct FrameCounts<'a> {
     listed_dots: f64,
     /// Turns of the longest loop that an effect runs at every pixel.
     pub(super) turns: f64,
-    /// The sample setup of an effect visits every row of a triangle.
-    walks_rows: bool,
+    /// Pixels that an image effect reads for each.
+    neighbors: f64,
+    /// The rows of a triangle that sample setups visit.
+    setup_rows: SetupRows,
     /// The color of a material is seen.
     pub(super) shows_materials: bool,
 }
@@ -115,7 +131,8 @@ impl<'a> FrameCounts<'a> {
                 DotCulling::Gpu => demand.map_or(dots.dots, |counted| counted.listed_dots).into(),
             }),
             turns: frame.turns,
-            walks_rows: frame.walks_rows,
+            neighbors: frame.neighbors,
+            setup_rows: frame.setup_rows,
             shows_materials: true,
             sizes,
         }
@@ -194,13 +211,14 @@ impl<'a> FrameCounts<'a> {
         self.medium_turns().min(blocks(medium)).max(self.tile_turns().min(blocks(large)))
     }
 
-    /// Sample setups of so many triangles. Loops run over rows, for triangles of `paths`, which have samples.
-    fn setups(&self, triangles: f64, paths: &[&PathWork], Weight { once, looped }: Weight) -> Vec<(Unit, f64)> {
-        let rows = |path: &&PathWork| if self.walks_rows { path.rows } else { path.triangles };
-        let most = |rows: fn(&PathWork) -> f64| paths.iter().map(|path| rows(path)).fold(1.0, f64::max);
-        // A setup that does not need all rows ends at the first one with a sample.
-        let turns = if self.walks_rows { most(|path| path.most_rows) } else { most(|path| path.most_empty_rows) };
-        vec![(Unit::SetupChain, turns * looped), (Unit::SetupOperation, triangles * once + paths.iter().map(rows).sum::<f64>() * looped)]
+    /// Sample setups of so many triangles, of which some have these rows.
+    fn setups(&self, triangles: f64, rows: &RowWork, Weight { once, looped }: Weight) -> Vec<(Unit, f64)> {
+        let (all, most) = match self.setup_rows {
+            SetupRows::None => (TURNS * triangles, TURNS),
+            SetupRows::First => (rows.first / ROW_LOOPS, rows.most_first / ROW_LOOPS),
+            SetupRows::All(times) => (times * rows.all / ROW_LOOPS, times * rows.most / ROW_LOOPS),
+        };
+        vec![(Unit::SetupChain, most * looped), (Unit::SetupOperation, triangles * once + all * looped)]
     }
 
     /// The work of one pass, whose kernel has this weight.
@@ -221,15 +239,15 @@ impl<'a> FrameCounts<'a> {
                 vec![(Unit::VertexOperation, vertices * few_turns), (Unit::StrictVertices, f64::from(u8::from(is_strict)))]
             }
             Pass::SampleSetup(TriangleSource::Triangles) => {
-                let SizeWork { small, medium, large, .. } = &self.sizes;
-                self.setups(self.invocations(pass).unwrap_or_else(|| self.triangles()), &[small, medium, large], weight)
+                self.setups(self.invocations(pass).unwrap_or_else(|| self.triangles()), &self.sizes.rows, weight)
             }
             Pass::SampleSetup(TriangleSource::ClippedTriangles) if self.queues.clipped_triangles > 0.0 => {
-                self.setups(self.queues.clipped_triangles, &[&self.sizes.cut], weight)
+                self.setups(self.queues.clipped_triangles, &self.sizes.cut_rows, weight)
             }
             Pass::Clip if self.queues.clip > 0.0 => {
+                let doublings = |triangles: f64| ONE_CLIPPED + triangles.min(CLIPPED_TOGETHER).log2();
                 vec![
-                    (Unit::Clipping, 1.0),
+                    (Unit::Clipping, doublings(self.queues.clip) / doublings(CLIPPED_TOGETHER)),
                     (Unit::StrictClipping, f64::from(u8::from(self.is_strict()))),
                     (Unit::ClipOperation, self.queues.clip * few_turns),
                 ]
@@ -258,13 +276,13 @@ impl<'a> FrameCounts<'a> {
             }
             // All discs but those of one triangle are left out before their samples.
             Pass::RasterPoints(RasterPhase::BoundaryTriangle) => vec![(Unit::SmallOperation, self.triangles() * once)],
-            Pass::RasterPoints(_) => {
+            Pass::RasterPoints(phase) => {
                 // Parts beyond the rows of a disc end at once.
                 let parts = f64::from(self.key.work.invocations_per_triangle).min(self.disc[1] + 2.0);
                 let turns = self.sizes.most_corners * (self.disc[1] / parts).ceil() * self.disc[0];
                 let samples = self.sizes.corners * self.disc[0] * self.disc[1];
                 vec![
-                    (Unit::DiscTurn, turns),
+                    (if phase == RasterPhase::Race { Unit::RaceTurn } else { Unit::DiscTurn }, turns),
                     (Unit::SmallOperation, parts * self.triangles() * once),
                     (Unit::DiscOperation, samples * looped),
                 ]
@@ -314,6 +332,7 @@ impl<'a> FrameCounts<'a> {
             // No sample is stored: an invocation counts for itself, and triangles but one are left out before their samples.
             RasterPhase::CountSamples => vec![(Unit::SmallChain, longest.max(blocks) * looped)],
             RasterPhase::BoundaryTriangle => Vec::new(),
+            RasterPhase::Race => vec![(Unit::RaceTurn, covered.max(blocks)), (Unit::SmallChain, longest.max(blocks) * looped)],
             _ if self.key.samples.has_mask => vec![(Unit::MaskTurn, covered.max(blocks))],
             _ => vec![(Unit::SmallTurn, covered.max(blocks)), (Unit::SmallChain, longest.max(blocks) * looped)],
         }
@@ -339,18 +358,21 @@ impl<'a> FrameCounts<'a> {
         let shaded = if self.key.finishes_pixels() { 1.0 } else { self.touched };
         let several = if_shaded(f64::from(u8::from(!self.key.vertices.is_single_draw && !shows_layers)));
         let textures = if_shaded(textures);
-        let turns = if shades || self.key.finishes_pixels() { self.turns } else { 0.0 };
+        let turns = if_shaded(self.turns);
         // A picture of few pixels waits for the slowest of them, one of many for all.
         let [shaded, touched] = [shaded, self.touched].map(|part| part * self.pixels);
         vec![
             (Unit::Pixel, visited * self.pixels),
             (Unit::PixelTurn, turns),
             (Unit::LoopedPixel, turns * shaded),
+            (Unit::Neighbor, self.neighbors),
+            (Unit::NeighborPixel, self.neighbors * shaded),
+            (Unit::NeighborDraw, if self.key.vertices.is_single_draw { 0.0 } else { self.neighbors }),
             (Unit::SeveralDraws, several),
             (Unit::SearchedPixel, several * touched),
             (Unit::Textures, textures),
             (Unit::TexturedPixel, textures * touched),
-            (Unit::PixelOperation, shaded * (once + self.turns.max(TURNS) * looped)),
+            (Unit::PixelOperation, shaded * (once + self.turns.max(self.neighbors).max(TURNS) * looped)),
         ]
     }
 }

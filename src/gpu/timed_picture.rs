@@ -43,7 +43,7 @@ pub type Picture<'a> = (&'a str, &'static [Enabled], [u32; 2]);
 /// Frames of a picture that are drawn before any is timed.
 const WARM_UP: usize = 2;
 /// Frames that are timed, at least and at most; each is drawn once as a whole and once pass by pass.
-const FRAMES: [usize; 2] = [3, 9];
+const FRAMES: [usize; 2] = [3, 7];
 /// Time for the frames of a picture beyond the least number of them.
 const PICTURE_BUDGET: Duration = Duration::from_millis(40);
 

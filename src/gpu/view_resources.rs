@@ -20,7 +20,7 @@ use super::{
 };
 use crate::{
     accuracy::PositionFormat,
-    effects::Stack,
+    effects::{SetupRows, Stack},
     math::SUBPIXEL_BITS,
     plan::{AccuracyRequest, Plan, Planner, Tuning},
     scene::{Background, Scene, draw::Draw, needs::Needs, parts::Scope, view::View},
@@ -52,8 +52,10 @@ pub struct PreparedFrame {
     pub point_radius: u32,
     /// Of [`Stack::turns`].
     pub turns: f64,
-    /// Of [`Stack::walks_rows`].
-    pub walks_rows: bool,
+    /// Of [`Stack::neighbors`].
+    pub neighbors: f64,
+    /// Of [`Stack::setup_rows`].
+    pub setup_rows: SetupRows,
 }
 
 /// The draws of a scene as a view has them, and what they require of the kernels.
@@ -195,8 +197,9 @@ impl ViewResources {
             dots.write(gpu, &self.buffers, |id| new.contains(&id))?;
         }
         let stack = request.stack;
-        let (point_radius, turns, walks_rows) = (stack.point_radius(), stack.turns(), stack.walks_rows());
-        self.frame = Some(PreparedFrame { plan, view, layout, point_radius, turns, walks_rows });
+        let (point_radius, turns) = (stack.point_radius(), stack.turns());
+        let (neighbors, setup_rows) = (stack.neighbors(), stack.setup_rows());
+        self.frame = Some(PreparedFrame { plan, view, layout, point_radius, turns, neighbors, setup_rows });
         self.is_prepared = true;
         Ok(())
     }

@@ -104,7 +104,12 @@ fn weight_of(device: &Device, key: &KernelKey, pass: Pass) -> Result<Weight, Ren
     Ok(Weight { once: usual(once, FEW_ONCE), looped: usual(looped, FEW_LOOPED) })
 }
 
+/// Bytes that a card fills from its command stream; for more it runs a kernel. Measured on an H100: 1 µs and 6.
+const SHORT_FILL: u64 = 4096;
+
 fn clears(layout: &FrameLayout) -> Vec<(Unit, f64)> {
-    let bytes = |(_, bytes): (_, std::ops::Range<u64>)| (bytes.end - bytes.start) as f64;
-    vec![(Unit::Fill, layout.cleared(|_| true).count() as f64), (Unit::ClearedByte, layout.cleared(|_| true).map(bytes).sum())]
+    let bytes = || layout.cleared(|_| true).map(|(_, bytes)| bytes.end - bytes.start);
+    let (short, long): (Vec<u64>, Vec<u64>) = bytes().partition(|bytes| *bytes <= SHORT_FILL);
+    let cleared = bytes().sum::<u64>() as f64;
+    vec![(Unit::Fill, long.len() as f64), (Unit::ShortFill, short.len() as f64), (Unit::ClearedByte, cleared)]
 }

@@ -65,6 +65,7 @@ impl Caps {
             exchanges_maximum: self.slow_atomic_maximum,
             queue_groups: if self.software { 0 } else { 8192 },
             dot_groups: if self.software { 1 } else { 1024 },
+            interleaves_triangles: self.software,
             clears_in_passes: !self.software,
             hides_blocks: !self.software,
             stored_uniforms: self.software && self.max_storage_buffers >= MANY_STORAGE_BUFFERS,
@@ -96,6 +97,9 @@ pub struct Tuning {
     pub queue_groups: u32,
     /// Workgroups among which few runs of dots are divided; more of them are divided 64 to a workgroup.
     pub dot_groups: u32,
+    /// Workgroups take runs of neighboring triangles in turn instead of one long run each. lavapipe gives every thread as many workgroups, one
+    /// behind the other (Mesa 22.3), and the slowest decides: triangles that cost much often lie beside each other.
+    pub interleaves_triangles: bool,
     /// The first pass clears counters and pixels beside its own work (pictures that are not culled).
     pub clears_in_passes: bool,
     /// Large and medium triangles skip blocks of pixels in which what was drawn hides them.

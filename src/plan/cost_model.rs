@@ -11,6 +11,7 @@ use super::least_squares::{self, Observation};
 pub enum Unit {
     Frame,
     Fill,
+    ShortFill,
     ClearedByte,
     Pass,
     IdlePass,
@@ -23,6 +24,7 @@ pub enum Unit {
     SetupOperation,
     SmallTurn,
     MaskTurn,
+    RaceTurn,
     SmallChain,
     SmallOperation,
     QueuedTurn,
@@ -40,6 +42,9 @@ pub enum Unit {
     Pixel,
     PixelTurn,
     LoopedPixel,
+    Neighbor,
+    NeighborPixel,
+    NeighborDraw,
     SeveralDraws,
     SearchedPixel,
     Textures,
@@ -58,7 +63,8 @@ impl Unit {
     /// Every unit with its name in files, and what it is.
     pub const ALL: &'static [(Self, &'static str, &'static str)] = &[
         (Self::Frame, "frame", "a frame, however little it draws"),
-        (Self::Fill, "fill", "a buffer that is filled with zeros before the passes"),
+        (Self::Fill, "fill", "a region of more than 4 KiB that is filled with zeros before the passes"),
+        (Self::ShortFill, "short_fill", "a shorter one"),
         (Self::ClearedByte, "cleared_byte", "a byte that is cleared"),
         (Self::Pass, "pass", "a pass that finds work, however little"),
         (Self::IdlePass, "idle_pass", "a pass that finds none, or has one workgroup"),
@@ -75,6 +81,7 @@ impl Unit {
         (Self::SetupOperation, "setup_operation", "an operation on what sample tests read once per triangle"),
         (Self::SmallTurn, "small_turn", "a sample of the small triangle that has most, one after another"),
         (Self::MaskTurn, "mask_turn", "the same where an image decides which samples are seen"),
+        (Self::RaceTurn, "race_turn", "the same, or a sample of a triangle's discs, where samples race without atomics"),
         (Self::SmallChain, "small_chain", "an operation on these samples"),
         (
             Self::SmallOperation,
@@ -88,7 +95,7 @@ impl Unit {
         (Self::SumBlock, "sum_block", "a block of 64 pixels of the queued triangle that adds most, one after another"),
         (Self::SumOperation, "sum_operation", "an operation on a candidate sample of a queued triangle that is added to sums"),
         (Self::TexturedTurn, "textured_turn", "a layer or block of these that reads images of materials, beyond that"),
-        (Self::Clipping, "clipping", "a pass that clips at least one triangle"),
+        (Self::Clipping, "clipping", "a pass that clips many triangles"),
         (Self::StrictClipping, "strict_clipping", "such a pass with strict vertices, beyond that"),
         (Self::ClipOperation, "clip_operation", "an operation on a triangle that is clipped"),
         (Self::DiscTurn, "disc_turn", "a candidate sample of the discs of one triangle, one after another"),
@@ -96,6 +103,9 @@ impl Unit {
         (Self::Pixel, "pixel", "a pixel that the resolve visits"),
         (Self::PixelTurn, "pixel_turn", "a turn of the longest loop of an effect over what belongs to one pixel"),
         (Self::LoopedPixel, "looped_pixel", "such a turn of one pixel among many"),
+        (Self::Neighbor, "neighbor", "a pixel that an image effect reads for each, one after another"),
+        (Self::NeighborPixel, "neighbor_pixel", "such a pixel for one among many"),
+        (Self::NeighborDraw, "neighbor_draw", "a pixel that an image effect reads for each, where its draw is looked for among several"),
         (Self::SeveralDraws, "several_draws", "a resolve that looks for the draw of a triangle among several"),
         (Self::SearchedPixel, "searched_pixel", "such a search for one pixel among many"),
         (Self::Textures, "textures", "a resolve that reads images of materials"),
@@ -127,6 +137,7 @@ impl Unit {
                 | Self::SetupChain
                 | Self::SmallTurn
                 | Self::MaskTurn
+                | Self::RaceTurn
                 | Self::SmallChain
                 | Self::QueuedTurn
                 | Self::SumTurn
@@ -136,6 +147,8 @@ impl Unit {
                 | Self::StrictClipping
                 | Self::DiscTurn
                 | Self::PixelTurn
+                | Self::Neighbor
+                | Self::NeighborDraw
                 | Self::SeveralDraws
                 | Self::Textures
                 | Self::ParticleChain

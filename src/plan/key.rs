@@ -47,6 +47,7 @@ pub(super) fn key_of(
             exchanges_maximum: tuning.exchanges_maximum,
             queue_groups: if options.culling == Culling::None { tuning.queue_groups.min(65_535) } else { 0 },
             dot_groups: tuning.dot_groups,
+            interleaves_triangles: tuning.interleaves_triangles,
             hides_blocks: tuning.hides_blocks,
             stored_uniforms: tuning.stored_uniforms,
             wide_loads: tuning.wide_loads,

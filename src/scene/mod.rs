@@ -31,6 +31,7 @@ mod room;
 pub mod shadow_resolution;
 pub mod sizes;
 pub mod texture;
+pub mod triangle_rows;
 pub mod view;
 
 pub use accessor::{Accessor, ComponentType};

@@ -4,7 +4,12 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3, DVec4};
 
-use super::{draw::Draw, model::Scene, view::View};
+use super::{
+    draw::Draw,
+    model::Scene,
+    triangle_rows::{RowWork, TriangleRows},
+    view::View,
+};
 use crate::math::hash_unit;
 
 /// The most triangles that are sampled. Fractions are then known to within a few percent at a constant cost.
@@ -23,6 +28,10 @@ pub struct TriangleSizes {
     visible: Arc<[VisibleTriangle]>,
     /// What the near plane leaves of sampled triangles that cross it, where that reaches the picture.
     cut: Arc<[VisibleTriangle]>,
+    /// Rows of the sampled triangles of which the near plane cuts nothing and whose box has a sample, whichever way they face.
+    rows: Arc<[TriangleRows]>,
+    /// The same of what the near plane leaves of the others.
+    cut_rows: Arc<[TriangleRows]>,
 }
 
 /// A sampled triangle that is visible.
@@ -70,12 +79,6 @@ pub struct PathWork {
     pub longest: f64,
     /// The most samples that one of them covers.
     pub most_covered: f64,
-    /// Rows of samples in the boxes of those triangles.
-    pub rows: f64,
-    /// The most rows in the box of one of them.
-    pub most_rows: f64,
-    /// The most of these until the first in which the triangle covers a sample.
-    pub most_empty_rows: f64,
 }
 
 /// Estimated work of all raster paths.
@@ -86,6 +89,10 @@ pub struct SizeWork {
     pub large: PathWork,
     /// Triangles that cross the near plane and reach the picture, as the near plane cuts them. They are counted in `medium` or `large` too.
     pub cut: PathWork,
+    /// Rows of triangles that are not cut, also of those that face away.
+    pub rows: RowWork,
+    /// Rows of those that are.
+    pub cut_rows: RowWork,
     /// Corners inside the picture of triangles that are not cut, each once for every triangle.
     pub corners: f64,
     /// The most such corners of one triangle.
@@ -104,11 +111,6 @@ impl PathWork {
         self.covered += times * f64::from(triangle.area);
         self.longest = self.longest.max(f64::from(columns) * f64::from(rows));
         self.most_covered = self.most_covered.max(triangle.area.into());
-        self.rows += times * f64::from(rows);
-        self.most_rows = self.most_rows.max(rows.into());
-        // Where rows have less than one sample, as a rule.
-        let covered_by_row = f64::from(triangle.area) / f64::from(rows);
-        self.most_empty_rows = self.most_empty_rows.max((1.0 / covered_by_row).max(2.0).min(rows.into()));
     }
 }
 
@@ -132,6 +134,7 @@ impl TriangleSizes {
         let triangles: u64 = draws.iter().map(|draw| u64::from(scene.primitives[draw.primitive].triangle_count())).sum();
         let count = triangles.min(MAX_SAMPLES);
         let (mut visible, mut cut, mut near_clipped) = (Vec::new(), Vec::new(), 0);
+        let (mut rows, mut cut_rows) = (Vec::new(), Vec::new());
         for k in 0..count {
             // One random position per stratum: a fixed step would alias with the order of a strip.
             let within = if triangles > MAX_SAMPLES { hash_unit(k as u32) } else { 0.0 };
@@ -140,15 +143,21 @@ impl TriangleSizes {
             let draw = &draws[index];
             let has_texture = scene.materials[scene.primitives[draw.primitive].material].textures() != [None, None];
             match classify(draw, view, corners(index, id as u32 - draw.first_triangle), has_texture) {
-                Sampled::Visible(one) => visible.push(one),
+                Sampled::Seen { triangle, rows: own } => {
+                    visible.extend(triangle);
+                    rows.extend(own);
+                }
                 Sampled::CrossesNear(rest) => {
                     near_clipped += 1;
+                    cut_rows.extend(rest.iter().map(VisibleTriangle::usual_rows));
                     cut.extend(rest);
                 }
-                Sampled::Hidden => {}
+                Sampled::Outside => {}
             }
         }
-        Self { triangles, sampled: count as u32, near_clipped, visible: visible.into(), cut: cut.into() }
+        let [visible, cut] = [visible, cut].map(Arc::from);
+        let [rows, cut_rows] = [rows, cut_rows].map(Arc::from);
+        Self { triangles, sampled: count as u32, near_clipped, visible, cut, rows, cut_rows }
     }
 
     /// The number of sampled triangles that are visible and not cut by the near plane.
@@ -189,7 +198,8 @@ impl TriangleSizes {
     /// Estimated work of each raster path, with the limits of [`Self::classes`].
     pub fn work(&self, max_small_samples: u32, max_small_side: u32, large_px: f64) -> SizeWork {
         let each = self.triangles as f64 / f64::from(self.sampled.max(1));
-        let mut work = SizeWork::default();
+        let [rows, cut_rows] = [&self.rows, &self.cut_rows].map(|rows| RowWork::of(rows, each));
+        let mut work = SizeWork { rows, cut_rows, ..SizeWork::default() };
         for visible in self.visible.iter().filter(|visible| visible.samples.iter().all(|count| *count > 0)) {
             let [columns, rows] = visible.samples;
             let path = match () {
@@ -252,11 +262,20 @@ impl TriangleSizes {
 
 /// What is known of a sampled triangle.
 enum Sampled {
-    Visible(VisibleTriangle),
+    /// Inside the picture: the triangle, where it faces the viewer, and its rows, where its box has a sample.
+    Seen { triangle: Option<VisibleTriangle>, rows: Option<TriangleRows> },
     /// Crosses the near plane; with what is left of it in the picture.
     CrossesNear(Option<VisibleTriangle>),
-    /// Facing away, or outside the picture.
-    Hidden,
+    /// Without an area, outside the picture, or with a corner that is refused.
+    Outside,
+}
+
+impl VisibleTriangle {
+    /// Rows of a triangle of which only the box is known.
+    fn usual_rows(&self) -> TriangleRows {
+        let [columns, rows] = self.samples.map(f64::from);
+        TriangleRows::of([0.0, 0.5 * rows, rows], columns, [0.0, rows])
+    }
 }
 
 /// What lies behind the near plane of a triangle that crosses it, as the box of its corners; none outside the picture.
@@ -294,12 +313,12 @@ fn behind_near(clip: [DVec4; 3], view: &View, has_texture: bool) -> Option<Visib
 
 fn classify(draw: &Draw, view: &View, clip: [DVec4; 3], has_texture: bool) -> Sampled {
     if clip.iter().any(|c| !c.is_finite()) {
-        return Sampled::Hidden;
+        return Sampled::Outside;
     }
     let is_before_near = |c: &&DVec4| c.w <= 0.0 || c.z > c.w;
     match clip.iter().filter(is_before_near).count() {
         0 => {}
-        3 => return Sampled::Hidden,
+        3 => return Sampled::Outside,
         _ => return Sampled::CrossesNear(behind_near(clip, view, has_texture)),
     }
     let size = DVec2::new(view.width.into(), view.height.into());
@@ -309,14 +328,20 @@ fn classify(draw: &Draw, view: &View, clip: [DVec4; 3], has_texture: bool) -> Sa
     let doubled = (b - a).perp_dot(c - a);
     let is_back = (doubled > 0.0) != draw.mirrored;
     let is_outside = high.x <= 0.0 || high.y <= 0.0 || low.x >= size.x || low.y >= size.y;
-    if is_outside || doubled == 0.0 || is_back && !draw.double_sided {
-        return Sampled::Hidden;
+    if is_outside || doubled == 0.0 {
+        return Sampled::Outside;
     }
     let first = [0, 1].map(|axis| (low[axis] - 0.5).ceil().max(0.0));
     let samples = [0, 1].map(|axis| ((high[axis] - 0.5).floor().min(size[axis] - 1.0) - first[axis] + 1.0).max(0.0) as u32);
     let inside = (high.min(size) - low.max(DVec2::ZERO)) / (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
     let fraction = inside.x * inside.y;
-    Sampled::Visible(VisibleTriangle {
+    let mut heights = [a.y, b.y, c.y];
+    heights.sort_by(f64::total_cmp);
+    let rows = samples.iter().all(|count| *count > 0).then(|| {
+        let shown = [first[1], first[1] + f64::from(samples[1])];
+        TriangleRows::of(heights, doubled.abs() / (high.y - low.y), shown)
+    });
+    let triangle = VisibleTriangle {
         extent_px: (high - low).max_element() as f32,
         samples,
         first: first.map(|first| first as u32),
@@ -324,7 +349,8 @@ fn classify(draw: &Draw, view: &View, clip: [DVec4; 3], has_texture: bool) -> Sa
         perimeter: ((a.distance(b) + b.distance(c) + c.distance(a)) * fraction.sqrt()) as f32,
         corners: [a, b, c].iter().filter(|at| at.cmpge(DVec2::ZERO).all() && at.cmplt(size).all()).count() as u32,
         has_texture,
-    })
+    };
+    Sampled::Seen { triangle: (!is_back || draw.double_sided).then_some(triangle), rows }
 }
 
 #[cfg(test)]
@@ -384,6 +410,15 @@ mod tests {
         let touched = sizes.touched_fraction([640, 480], 8);
         let covered = (work.small.covered + work.medium.covered) / (640.0 * 480.0);
         assert!((0.2..0.8).contains(&touched) && touched > 0.4 * covered, "{touched} touched, {covered} covered");
+    }
+
+    #[test]
+    fn rows_of_triangles_that_face_away_count_too() {
+        let work = sizes("sphere?triangles=2000", [640, 480]).work(32, 32, 128.0);
+        let seen = work.small.triangles + work.medium.triangles;
+        assert!(work.rows.all > 10.0 * seen && work.rows.first < 6.0 * 2000.0, "{work:?}");
+        assert!(work.rows.most >= work.rows.most_first && work.rows.most_first >= 1.0, "{work:?}");
+        assert_eq!(work.cut_rows, RowWork::default());
     }
 
     #[test]

@@ -125,6 +125,8 @@ pub struct WorkSharing {
     pub queue_groups: u32,
     /// Workgroups among which few runs of dots are divided.
     pub dot_groups: u32,
+    /// Workgroups take runs of neighboring triangles in turn instead of one long run each.
+    pub interleaves_triangles: bool,
     /// The first pass clears counters and pixels beside its own work.
     pub clears_in_passes: bool,
     /// And what a draw order counts, which takes two more storage buffers.
@@ -250,6 +252,7 @@ impl KernelKey {
                 exchanges_maximum: true,
                 queue_groups: 0,
                 dot_groups: 1,
+                interleaves_triangles: true,
                 clears_in_passes: true,
                 clears_order: false,
                 hides_blocks: true,

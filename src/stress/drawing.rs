@@ -57,6 +57,7 @@ impl WorkDistribution {
             early_load: listed_tiles,
             exchanges_maximum: self == Self::CardListedTiles,
             dot_groups: if is_card { 1024 } else { 1 },
+            interleaves_triangles: !is_card,
             queue_groups: if self == Self::Card { 48 } else { 0 },
             hides_blocks: is_card,
             stored_uniforms: false,

@@ -386,6 +386,7 @@ const GRAPHICS_CARD: Tuning = Tuning {
     exchanges_maximum: false,
     queue_groups: 0,
     dot_groups: 1024,
+    interleaves_triangles: false,
     clears_in_passes: false,
     hides_blocks: true,
     stored_uniforms: false,

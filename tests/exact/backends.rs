@@ -54,6 +54,7 @@ const GRAPHICS_CARD: Tuning = Tuning {
     exchanges_maximum: true,
     queue_groups: 64,
     dot_groups: 1024,
+    interleaves_triangles: false,
     clears_in_passes: true,
     hides_blocks: true,
     stored_uniforms: false,

@@ -86,6 +86,7 @@ fn both_tunings(renderer: &Renderer) -> [Tuning; 2] {
         exchanges_maximum: false,
         queue_groups: 64,
         dot_groups: 1024,
+        interleaves_triangles: false,
         clears_in_passes: true,
         hides_blocks: true,
         stored_uniforms: false,

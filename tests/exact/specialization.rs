@@ -124,6 +124,7 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles() {
         exchanges_maximum: false,
         queue_groups: 0,
         dot_groups: 1024,
+        interleaves_triangles: false,
         clears_in_passes: false,
         hides_blocks: false,
         stored_uniforms: false,

@@ -7,7 +7,7 @@ use crate::{
     math::SMALL_EXTENT,
     scene::needs::Needs,
     shader::{
-        key::{Fetch, FramebufferLayout, KernelKey},
+        key::{Fetch, FramebufferLayout, KernelKey, WorkSharing},
         pass::{Pass, RasterPhase, TriangleSource},
     },
 };
@@ -93,11 +93,18 @@ fn framebuffer_write(_: &KernelKey, pass: Pass) -> &'static str {
     }
 }
 
+/// Neighboring triangles that a workgroup takes at once: those of a vector of eight invocations, or all that it takes.
+fn triangle_run(work: &WorkSharing) -> u32 {
+    const VECTOR: u32 = 8;
+    if work.interleaves_triangles && work.group_size.is_multiple_of(VECTOR) { VECTOR } else { work.group_size }
+}
+
 const SMALL_PATH: Feature = Feature {
     label: |key| format!("small={}", key.paths.max_small_samples),
     constants: &[
         ("MAX_SMALL_SAMPLES", |key, _| key.paths.max_small_samples.into()),
         ("MAX_SMALL_SIDE", |key, _| key.paths.max_small_side.into()),
+        ("TRIANGLE_RUN", |key, _| triangle_run(&key.work).into()),
         ("LISTS_SAMPLES", |key, pass| {
             let is_shaded = matches!(pass.phase(), Some(RasterPhase::Sum | RasterPhase::NearestAndSum));
             flag(is_shaded && key.paths.max_small_samples <= u32::BITS && !key.options.coverage.is_float())
