@@ -63,7 +63,6 @@ fn rows_visited(words: &[u32]) -> SetupRows {
     }
 }
 
-
 /// The whole triangle, in units of the fractions.
 const ONE: u32 = 1 << 24;
 /// In the third word of a decision: the hash tells.

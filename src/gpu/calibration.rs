@@ -116,7 +116,7 @@ const PICTURES: &[Picture<'static>] = &[
 const WARM_UP: Duration = Duration::from_millis(100);
 
 /// So many pictures are timed again on a card once all were, since its clock may still have risen while they were timed first. An H100 took
-/// up to 0.35 s, in which frames took 2.5 times as long.
+/// up to 0.35 s, in which frames took about three times as long.
 const TIMED_AGAIN: usize = 22;
 
 /// What is measured here counts so much on a card. Without that, predictions of 360 random presets, each drawn for a second before it was timed,

@@ -97,8 +97,8 @@ pub struct Tuning {
     pub queue_groups: u32,
     /// Workgroups among which few runs of dots are divided; more of them are divided 64 to a workgroup.
     pub dot_groups: u32,
-    /// Workgroups take runs of neighboring triangles in turn instead of one long run each. lavapipe gives every thread as many workgroups, one
-    /// behind the other (Mesa 22.3), and the slowest decides: triangles that cost much often lie beside each other.
+    /// Workgroups take runs of neighboring triangles in turn instead of one long run each. On lavapipe one of two threads was done with its
+    /// triangles in half the time of the other (Mesa 22.3): triangles that cost much often lie beside each other.
     pub interleaves_triangles: bool,
     /// The first pass clears counters and pixels beside its own work (pictures that are not culled).
     pub clears_in_passes: bool,
