@@ -115,13 +115,10 @@ const PICTURES: &[Picture<'static>] = &[
 /// How long the card is kept busy before anything is timed: it has drawn while the pictures were made ready.
 const WARM_UP: Duration = Duration::from_millis(100);
 
-/// So many pictures are timed again on a card once all were, since its clock may still have risen while they were timed first. An H100 took
-/// up to 0.35 s, in which frames took about three times as long.
-const TIMED_AGAIN: usize = 22;
-
-/// What is measured here counts so much on a card. Without that, predictions of 360 random presets, each drawn for a second before it was timed,
-/// were 4 % too long (the median, H100, 2026-11-26); pictures of the calibration are drawn for milliseconds, one after another.
-const DRAWN_LONGER: f64 = 0.96;
+/// Pictures whose times did not fall by more than [`STEADY`] when they were timed again, one after another, before the clock of a card counts
+/// as steady.
+const STEADY_PICTURES: usize = 8;
+const STEADY: f64 = 1.04;
 
 /// So many of the last pictures are drawn on the finest grid with strict vertices.
 const FINE: usize = 2;
@@ -157,17 +154,8 @@ pub fn calibrate(gpu: &Arc<Gpu>, moved_sizes: MovedSizes, progress: &(dyn Fn(usi
         Ok(true)
     })?;
     let passes_weight = PASSES_WEIGHT[usize::from(is_software)];
-    let mut measured = Vec::new();
-    let mut times = ready.iter_mut().map(|(picture, _)| picture.times()).collect::<Result<Vec<_>, _>>()?;
-    let again = if is_software { 0 } else { TIMED_AGAIN };
-    for ((picture, _), times) in ready.iter_mut().zip(&mut times).take(again) {
-        *times = picture.times()?;
-    }
-    let drawn_longer = if is_software { 1.0 } else { DRAWN_LONGER };
-    for ((_, work), times) in ready.iter().zip(&times) {
-        let observed = observations(work, times, passes_weight).into_iter();
-        measured.extend(observed.map(|one| MeasuredWork { ms: drawn_longer * one.ms, ..one }));
-    }
+    let times = steady_times(&mut ready, is_software)?;
+    let measured: Vec<_> = ready.iter().zip(&times).flat_map(|((_, work), times)| observations(work, times, passes_weight)).collect();
     let planned = Measured { options: option_costs(options)?, max_small_samples: best_limit(limits)? };
     let (measuring_s, all_s) = (start.elapsed().as_secs_f64(), begin.elapsed().as_secs_f64());
     Ok(Calibrated {
@@ -177,6 +165,22 @@ pub fn calibrate(gpu: &Arc<Gpu>, moved_sizes: MovedSizes, progress: &(dyn Fn(usi
         measuring_s,
         preparing_s: all_s - measuring_s,
     })
+}
+
+/// The times of all pictures. The clock of a card may still rise while they are timed, so the first ones are timed again until their times stay:
+/// an H100 that was idle took up to 0.4 s, in which frames took about three times as long.
+fn steady_times(ready: &mut [(TimedPicture, FrameWork)], is_software: bool) -> Result<Vec<FrameTimes>, RenderError> {
+    let mut times = ready.iter_mut().map(|(picture, _)| picture.times()).collect::<Result<Vec<_>, _>>()?;
+    let mut steady = 0;
+    for ((picture, _), earlier) in ready.iter_mut().zip(&mut times) {
+        if is_software || steady == STEADY_PICTURES {
+            break;
+        }
+        let now = picture.times()?;
+        steady = if earlier.whole_ms <= STEADY * now.whole_ms { steady + 1 } else { 0 };
+        *earlier = now;
+    }
+    Ok(times)
 }
 
 /// Every second picture finds depths first and triangles then, as all do where an adapter has no 64-bit atomics: it has other passes.
