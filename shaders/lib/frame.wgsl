@@ -59,9 +59,9 @@ struct Counters {
     large_done: atomic<u32>,
     tiles_done: atomic<u32>,
     listed_dots: atomic<u32>,    // dots that may be visible, where the adapter lists them
+    background_tiles: atomic<u32>, // tiles that no triangle touches, where dots or image effects finish them
     spare_0: atomic<u32>,
     spare_1: atomic<u32>,
-    spare_2: atomic<u32>,
     farthest: array<atomic<u32>>, // a key for every block of 8x8 pixels: see lib/hidden_blocks
 }
 

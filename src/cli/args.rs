@@ -432,7 +432,7 @@ pub struct Calibrate {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub check: Option<u32>,
     /// Seed of the first random preset; each of the others has the next seed
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "check")]
     pub seed: u32,
 }
 

@@ -33,9 +33,10 @@ pub fn run(common: &Common, args: &Calibrate, streams: &mut Streams) -> Result<E
     let mut backend = Backend::open(common, streams)?;
     let adapter = backend.json();
     let Backend::Gpu(renderer, gpu) = &mut backend else {
-        return Err(CliError::usage("calibrate needs a GPU adapter; the oracle is not measured"));
+        return Err(needs_adapter());
     };
     let kept = if common.force { None } else { kept_calibration(gpu, streams) };
+    let is_new = kept.is_none();
     let found = match kept {
         Some(found) => {
             streams.note("the calibration that was kept for this adapter, driver and version; --force measures again");
@@ -43,14 +44,24 @@ pub fn run(common: &Common, args: &Calibrate, streams: &mut Streams) -> Result<E
         }
         None => calibrated(gpu, streams)?,
     };
-    match args.check {
-        None => print_calibration(&found, adapter, streams)?,
-        Some(count) => {
-            let checked = check(renderer, &found.units, count, args.seed, streams)?;
-            print_check(&checked, adapter, streams)?;
-        }
-    }
+    let Some(count) = args.check else {
+        print_calibration(&found, adapter, streams)?;
+        return Ok(Exit::Done);
+    };
+    let checked = if is_new {
+        // The device plans with the calibration that it was opened with.
+        drop(backend);
+        let Backend::Gpu(mut renderer, _) = Backend::open(common, streams)? else { return Err(needs_adapter()) };
+        check(&mut renderer, &found.units, count, args.seed, streams)?
+    } else {
+        check(renderer, &found.units, count, args.seed, streams)?
+    };
+    print_check(&checked, adapter, streams)?;
     Ok(Exit::Done)
+}
+
+fn needs_adapter() -> CliError {
+    CliError::usage("calibrate needs a GPU adapter; the oracle is not measured")
 }
 
 /// Measures and keeps what was found.
@@ -65,7 +76,7 @@ fn calibrated(gpu: &Arc<Gpu>, streams: &Streams) -> Result<Calibration, CliError
         "{} pictures were measured in {:.2} s; compiling their kernels and making them ready took {:.1} s more",
         found.pictures, found.measuring_s, found.preparing_s
     ));
-    let calibration = Calibration { units: found.costs, measured: found.measured };
+    let calibration = Calibration { units: found.units, measured: found.measured };
     match kept_in(gpu, &calibration) {
         Some(Ok(path)) => streams.note(&format!("kept in {}", path.display())),
         Some(Err(error)) => streams.note(&format!("the calibration is not kept: {error}")),
@@ -113,16 +124,20 @@ struct Checked {
 /// Predicts and measures the first `count` random presets from `seed` on that can be drawn and show pixels.
 fn check(renderer: &mut Renderer, costs: &UnitCosts, count: u32, seed: u32, streams: &Streams) -> Result<Vec<Checked>, CliError> {
     let bar = streams.progress(count.into());
-    let (mut checked, mut refused) = (Vec::new(), 0);
+    let (mut checked, mut refused) = (Vec::new(), Vec::new());
     for seed in (0..).map(|n| seed.wrapping_add(n)) {
         bar.set_message(format!("seed {seed}"));
         let preset = random::preset(seed);
-        let scene = preset_file::load_scene(&preset, None)?;
-        renderer.set_scene(&scene)?;
-        let moments = preset.moments(&scene, preset.output.size);
-        let Some((view, stack)) = moments.last() else { continue };
-        match PictureCost::measured(renderer, view, stack, &preset.accuracy, Some(costs)) {
-            Ok(cost) if cost.frame.ratio.is_some() => {
+        let mut measured = || -> Result<_, CliError> {
+            let scene = preset_file::load_scene(&preset, None)?;
+            renderer.set_scene(&scene)?;
+            let moments = preset.moments(&scene, preset.output.size);
+            let (view, stack) = moments.last().expect("a preset has at least one frame");
+            let cost = PictureCost::measured(renderer, view, stack, &preset.accuracy, Some(costs))?;
+            Ok((scene, view.clone(), stack.clone(), cost))
+        };
+        match measured() {
+            Ok((scene, view, stack, cost)) if cost.frame.ratio.is_some() => {
                 let names: Vec<&str> = stack.0.iter().map(|enabled| enabled.effect.name).collect();
                 let what = format!("{} triangles, {}x{}, {}", scene.triangle_count(), view.width, view.height, names.join(" "));
                 checked.push(Checked { seed, what, cost });
@@ -131,16 +146,15 @@ fn check(renderer: &mut Renderer, costs: &UnitCosts, count: u32, seed: u32, stre
             Err(error) if error.error.downcast_ref::<RenderError>().is_some_and(|error| matches!(error, RenderError::Lost)) => {
                 return Err(error);
             }
-            Ok(_) | Err(_) => refused += 1,
+            Ok(_) => refused.push(format!("seed {seed} could not be timed")),
+            Err(error) => refused.push(format!("seed {seed}: {}", error.error)),
         }
-        if checked.len() >= count as usize || refused > 10 * (count + 1) {
+        if checked.len() >= count as usize || refused.len() > 10 * (count as usize + 1) {
             break;
         }
     }
     bar.finish_and_clear();
-    if refused > 0 {
-        streams.note(&format!("{refused} more presets cannot be drawn or could not be timed"));
-    }
+    refused.iter().for_each(|why| streams.note(&format!("left out: {why}")));
     Ok(checked)
 }
 

@@ -90,7 +90,7 @@ impl PictureCost {
 
 /// What the calibration of an adapter is kept under.
 pub fn calibration_key(gpu: &Gpu) -> CalibrationKey {
-    CalibrationKey::of(&gpu.summary.name, &gpu.summary.driver)
+    CalibrationKey::of(&gpu.summary.name, &gpu.summary.driver, gpu.caps.software)
 }
 
 /// The calibration that was kept for an adapter, if there is one. A file that cannot be used is named on stderr.

@@ -30,8 +30,9 @@ use crate::{
 /// What a calibration found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Calibrated {
-    pub costs: UnitCosts,
-    /// Of options and limits, which the planner asks for.
+    /// What a unit of each kind of work costs.
+    pub units: UnitCosts,
+    /// What options and limits cost, which the planner asks for.
     pub measured: Measured,
     /// Pictures that were timed.
     pub pictures: usize,
@@ -112,12 +113,12 @@ const PICTURES: &[Picture<'static>] = &[
     ("near", &[("depth", &[])], [40, 30]),
 ];
 
-/// How long the card is kept busy before anything is timed: it has drawn while the pictures were made ready.
+/// The card is kept busy for so long before anything is timed. It has drawn already, while the pictures were made ready.
 const WARM_UP: Duration = Duration::from_millis(100);
 
-/// Pictures whose times did not fall by more than [`STEADY`] when they were timed again, one after another, before the clock of a card counts
-/// as steady.
+/// The clock of a card counts as steady once so many pictures, one after another, took about as long when they were timed again.
 const STEADY_PICTURES: usize = 8;
+/// The first time of such a picture as a fraction of its second, at most.
 const STEADY: f64 = 1.04;
 
 /// So many of the last pictures are drawn on the finest grid with strict vertices.
@@ -127,11 +128,11 @@ const FINE: usize = 2;
 /// the number of pictures that are ready to be timed, and of all.
 ///
 /// # Errors
-/// When a picture cannot be drawn, or the device is lost.
+/// When a picture cannot be drawn, the adapter writes no timestamps, or the device is lost.
 pub fn calibrate(gpu: &Arc<Gpu>, moved_sizes: MovedSizes, progress: &(dyn Fn(usize, usize) + Sync)) -> Result<Calibrated, RenderError> {
     let begin = Instant::now();
     let is_software = gpu.caps.software;
-    // An earlier calibration of the adapter counts for nothing.
+    // How an earlier calibration divides work counts for nothing.
     let usual = Caps { measured: None, ..gpu.caps }.tuning();
     // All kernels are compiled before anything is timed, so that a card stays at the clock of one at work; those of several pictures at once,
     // since a driver compiles each on the thread that asks for it.
@@ -155,20 +156,20 @@ pub fn calibrate(gpu: &Arc<Gpu>, moved_sizes: MovedSizes, progress: &(dyn Fn(usi
     })?;
     let passes_weight = PASSES_WEIGHT[usize::from(is_software)];
     let times = steady_times(&mut ready, is_software)?;
-    let measured: Vec<_> = ready.iter().zip(&times).flat_map(|((_, work), times)| observations(work, times, passes_weight)).collect();
-    let planned = Measured { options: option_costs(options)?, max_small_samples: best_limit(limits)? };
+    let observed: Vec<_> = ready.iter().zip(&times).flat_map(|((_, work), times)| observations(work, times, passes_weight)).collect();
+    let measured = Measured { options: option_costs(options)?, max_small_samples: best_limit(limits)? };
     let (measuring_s, all_s) = (start.elapsed().as_secs_f64(), begin.elapsed().as_secs_f64());
     Ok(Calibrated {
-        costs: UnitCosts::fitted(&measured, !is_software),
-        measured: planned,
+        units: UnitCosts::fitted(&observed, !is_software),
+        measured,
         pictures: PICTURES.len(),
         measuring_s,
         preparing_s: all_s - measuring_s,
     })
 }
 
-/// The times of all pictures. The clock of a card may still rise while they are timed, so the first ones are timed again until their times stay:
-/// an H100 that was idle took up to 0.4 s, in which frames took about three times as long.
+/// The times of all pictures. The clock of a card may still rise while they are timed, so they are timed once more from the first on, as far as
+/// their times still fall: an H100 that was idle took up to 0.4 s, in which frames took about three times as long.
 fn steady_times(ready: &mut [(TimedPicture, FrameWork)], is_software: bool) -> Result<Vec<FrameTimes>, RenderError> {
     let mut times = ready.iter_mut().map(|(picture, _)| picture.times()).collect::<Result<Vec<_>, _>>()?;
     let mut steady = 0;

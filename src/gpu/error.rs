@@ -30,6 +30,8 @@ pub enum RenderError {
     NoResource { name: &'static str },
     #[error("the device was lost")]
     Lost,
+    #[error("the adapter has written no timestamps, so nothing can be timed")]
+    NoTimestamps,
     #[error("no scene has been set")]
     NoScene,
     #[error("compiling was stopped, because another picture was asked for")]

@@ -14,7 +14,8 @@ use crate::{
     math::SMALL_EXTENT,
     plan::cost_model::Unit,
     scene::{
-        sizes::{PathWork, SizeWork, TriangleSizes},
+        raster_work::{PathWork, SizeWork},
+        sizes::TriangleSizes,
         triangle_rows::RowWork,
     },
     shader::{
@@ -189,22 +190,23 @@ impl<'a> FrameCounts<'a> {
         self.drawn(self.queues.medium * covered, phase) + self.queues.medium * (16.0 * candidates.sqrt() + BLOCK)
     }
 
-    /// The same for large ones: what they cover, and blocks along their edges in every tile.
+    /// Samples that workgroups visit for large triangles: what these cover, and blocks along their edges in every tile.
     fn large_samples(&self, phase: RasterPhase) -> f64 {
         if self.queues.tiles > 0.0 { self.drawn(self.sizes.large.covered, phase) + 16.0 * BLOCK * self.queues.tiles } else { 0.0 }
     }
 
-    /// Blocks of the medium triangle that has most, one after another, and of a tile.
+    /// Blocks that a workgroup draws one after another of the medium triangle that has most.
     fn medium_turns(&self) -> f64 {
         if self.queues.medium > 0.0 { (self.sizes.medium.longest / BLOCK / QUEUE_PARTS).max(1.0) } else { 0.0 }
     }
 
+    /// Blocks that a workgroup draws one after another of a tile.
     fn tile_turns(&self) -> f64 {
         let blocks: f64 = self.layout.size.iter().map(|side| (f64::from(*side) / BLOCK_SIDE).ceil().min(BLOCKS_OF_TILE.sqrt())).product();
         if self.queues.tiles > 0.0 { (blocks / QUEUE_PARTS).max(1.0) } else { 0.0 }
     }
 
-    /// The same of those blocks that one triangle covers.
+    /// Those of the blocks of both that one triangle covers.
     fn covered_blocks(&self) -> f64 {
         let SizeWork { medium, large, .. } = &self.sizes;
         let blocks = |path: &PathWork| (path.most_covered / BLOCK / QUEUE_PARTS).max(1.0);
@@ -299,6 +301,15 @@ impl<'a> FrameCounts<'a> {
                 vec![(Unit::DotTurn, turn), (Unit::DotOperation, samples * looped), (Unit::ListedOperation, operations)]
             }
             Pass::Resolve => self.resolve(once, looped),
+            Pass::ResolveBackground => {
+                let pixels = (1.0 - self.touched) * self.pixels;
+                let turns = self.turns.max(self.neighbors).max(TURNS);
+                vec![
+                    (Unit::Pixel, pixels),
+                    (Unit::NeighborPixel, self.neighbors * pixels),
+                    (Unit::PixelOperation, pixels * (once + turns * looped)),
+                ]
+            }
             Pass::Scale => {
                 let shown = f64::from(self.layout.shown[0]) * f64::from(self.layout.shown[1]);
                 let taps = (self.pixels / shown.max(1.0)).max(1.0);
@@ -355,7 +366,7 @@ impl<'a> FrameCounts<'a> {
         let shows_layers = matches!(self.key.framebuffer.layers, Some(Layers::Xray { .. } | Layers::Overdraw));
         let textures = f64::from(u8::from(self.shows_textures() && !shows_layers));
         let visited = if self.key.work.listed_tiles { self.touched } else { 1.0 };
-        let shaded = if self.key.finishes_pixels() { 1.0 } else { self.touched };
+        let shaded = if self.key.finishes_pixels() && !self.key.work.listed_tiles { 1.0 } else { self.touched };
         let several = if_shaded(f64::from(u8::from(!self.key.vertices.is_single_draw && !shows_layers)));
         let textures = if_shaded(textures);
         let turns = if_shaded(self.turns);

@@ -437,14 +437,17 @@ impl FrameLayout {
         let picture = rows(self.size);
         let tiles = if key.work.listed_tiles { WORD * self.tile_count(RESOLVE_TILE) } else { 0 };
         let gradient = if self.has_gradient { vec![(Region::BackgroundRows, WORD * u64::from(self.size[1]))] } else { Vec::new() };
-        let with_gradient = |regions: [(Region, u64); 2]| [&regions[..], &gradient].concat();
-        if key.effects.dots.is_some() {
-            let strengths = WORD * self.pixels();
-            self.add_regions(BufferId::Color, &with_gradient([(Region::Pixels, picture), (Region::DotStrengths, strengths)]));
-            self.describe(BufferId::Color, "the picture, 4 bytes per pixel, and as many for the strongest dot on each");
+        let has_dots = key.effects.dots.is_some();
+        let strengths = if has_dots { WORD * self.pixels() } else { 0 };
+        let regions = [(Region::Pixels, picture), (Region::DotStrengths, strengths), (Region::TileList, tiles)];
+        self.add_regions(BufferId::Color, &[&regions[..], &gradient].concat());
+        if has_dots {
+            self.describe(
+                BufferId::Color,
+                "the picture, 4 bytes per pixel, as many for the strongest dot on each, and the list of tiles to resolve",
+            );
             self.clear_only(BufferId::Color, Some(Region::DotStrengths));
         } else {
-            self.add_regions(BufferId::Color, &with_gradient([(Region::Pixels, picture), (Region::TileList, tiles)]));
             self.describe(BufferId::Color, "the picture, 4 bytes per pixel, and the list of tiles to resolve");
             self.clear_only(BufferId::Color, None);
         }
@@ -454,7 +457,7 @@ impl FrameLayout {
         if key.reads_previous() {
             self.add(BufferId::Previous, picture);
         }
-        if key.work.listed_tiles || key.reads_previous() {
+        if key.keeps_background() || key.reads_previous() {
             self.add(BufferId::Background, rows([self.size[0], self.background_rows()]));
         }
     }
@@ -595,6 +598,7 @@ impl FrameLayout {
             Pass::ListTiles => Dispatch::once(folded((self.tile_count(RESOLVE_TILE) as u32).div_ceil(TILE_GROUP))),
             Pass::Resolve if key.work.listed_tiles => Dispatch::args(offset_of!(DispatchArgs, resolve)),
             Pass::Resolve => Dispatch::once(self.tiles(key.tile_side())),
+            Pass::ResolveBackground => Dispatch::args(offset_of!(DispatchArgs, background)),
             Pass::Scale => Dispatch::once(self.shown.map(|side| side.div_ceil(RESOLVE_TILE))),
         }
     }

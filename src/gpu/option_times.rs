@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::{device::Gpu, error::RenderError, timed_picture::TimedPicture};
 use crate::{
     accuracy::{AXES, PinnedOptions},
-    plan::{AccuracyRequest, MEASURED_OPTIONS, MEASURED_TRIANGLES, OptionCosts, Tuning},
+    plan::{AccuracyRequest, MEASURED_OPTIONS, MEASURED_TRIANGLES, MOST_SMALL_SAMPLES, OptionCosts, Tuning},
 };
 
 /// Size of the pictures that options and limits are measured with, pixels.
@@ -25,14 +25,17 @@ const OPTION_FRAMES: usize = 9;
 
 /// The shortest of several whole frames of pictures that are drawn in turn, so that a clock that drifts meets all of them; other work on the
 /// machine only makes frames longer.
+///
+/// # Errors
+/// When the adapter writes no timestamps, or the device is lost.
 fn in_turn(contenders: &mut [TimedPicture]) -> Result<Vec<f64>, RenderError> {
     let mut times = vec![Vec::new(); contenders.len()];
     for _ in 0..OPTION_FRAMES {
         for (contender, times) in contenders.iter_mut().zip(&mut times) {
-            times.push(contender.whole_ms()?);
+            times.extend(contender.whole_ms()?);
         }
     }
-    Ok(times.iter().map(|times| times.iter().copied().fold(f64::INFINITY, f64::min)).collect())
+    times.iter().map(|times| times.iter().copied().reduce(f64::min).ok_or(RenderError::NoTimestamps)).collect()
 }
 
 /// Both scenes drawn with an option.
@@ -78,7 +81,7 @@ pub(super) fn option_pictures(gpu: &Arc<Gpu>, tuning: Tuning) -> Result<Vec<Opti
 /// Limits of samples that one invocation walks: the usual one first, each once.
 fn limits(usual: u32) -> Vec<u32> {
     let mut limits = vec![usual, usual / 4];
-    limits.extend(Some((usual * 4).min(128 * 128)).filter(|more| *more > usual));
+    limits.extend(Some((usual * 4).min(MOST_SMALL_SAMPLES)).filter(|more| *more > usual));
     limits
 }
 
@@ -102,7 +105,7 @@ pub(super) fn limit_pictures(gpu: &Arc<Gpu>, usual: Tuning) -> Result<Vec<LimitP
 /// Milliseconds of every option; those of the defaults for options that the adapter cannot hold.
 ///
 /// # Errors
-/// When the device is lost.
+/// When the adapter writes no timestamps, or the device is lost.
 pub(super) fn option_costs(pictures: Vec<OptionPictures>) -> Result<OptionCosts, RenderError> {
     let options: Vec<_> = pictures.iter().map(|pictures| pictures.option).collect();
     let (mut few, mut many) = (Vec::new(), Vec::new());
@@ -124,7 +127,7 @@ pub(super) fn option_costs(pictures: Vec<OptionPictures>) -> Result<OptionCosts,
 /// The limit that the spheres take least time with together; the usual one unless another saves more than noise.
 ///
 /// # Errors
-/// When the device is lost.
+/// When the adapter writes no timestamps, or the device is lost.
 pub(super) fn best_limit(pictures: Vec<LimitPictures>) -> Result<u32, RenderError> {
     let limits: Vec<u32> = pictures.iter().map(|pictures| pictures.max_small_samples).collect();
     let times = in_turn(&mut pictures.into_iter().flat_map(|pictures| pictures.spheres).collect::<Vec<_>>())?;

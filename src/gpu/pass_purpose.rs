@@ -47,6 +47,7 @@ pub fn pass_purpose(pass: Pass) -> &'static str {
         Pass::DotsProbe => "reads back where every dot lies",
         Pass::ListTiles => "gathers the tiles that hold something",
         Pass::Resolve => "shades every pixel once",
+        Pass::ResolveBackground => "finishes the pixels of tiles that no triangle touches",
         Pass::Scale => "brings the pixels that were drawn to the size that is shown",
     }
 }

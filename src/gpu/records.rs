@@ -101,9 +101,9 @@ gpu_record! {
         pub large_done: u32,
         pub tiles_done: u32,
         pub listed_dots: u32,
+        pub background_tiles: u32,
         pub spare_0: u32,
         pub spare_1: u32,
-        pub spare_2: u32,
     }
 }
 
@@ -341,6 +341,7 @@ gpu_record! {
         pub resolve: DispatchSize,
         pub clipped_triangles: DispatchSize,
         pub meshlets: DispatchSize,
+        pub background: DispatchSize,
     }
 }
 

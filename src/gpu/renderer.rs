@@ -228,6 +228,7 @@ impl Renderer {
         let sources = StatSources { picture: Some(buffers.get(BufferId::Counters)?), shadow, order: buffers.get(BufferId::DrawOrder).ok() };
         let pending = Pending::stage(&gpu, &mut encoder, sources, self.device.timer.as_ref(), self.spare_stats.pop());
         gpu.queue.submit([encoder.finish()]);
+        self.picture.shows_background = self.picture.frame()?.plan.key.keeps_background();
         self.pending.push_back(pending.begin());
         self.history.finish(view, stack);
         Ok(())
@@ -267,9 +268,11 @@ impl Renderer {
     /// Records the clears and passes of a picture and its shadow map.
     fn record(&mut self, encoder: &mut wgpu::CommandEncoder, view: &View, stack: &Stack) -> Result<(), RenderError> {
         let Self { device, picture, shadow, history, .. } = self;
+        // A picture that is recorded and never drawn leaves nothing that is known.
+        let shows_background = std::mem::take(&mut picture.shows_background);
         picture.clear(encoder, |occasion| occasion != ClearedBy::History)?;
         let frame = picture.frame()?;
-        if frame.plan.key.work.listed_tiles {
+        if frame.plan.key.keeps_background() && !shows_background {
             fill_background(encoder, &picture.buffers, &frame.layout)?;
         }
         history.keep_previous(encoder, picture, view, stack)?;

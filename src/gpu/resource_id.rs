@@ -87,7 +87,7 @@ buffers! {
     DepthAndId = "depth_and_id", STORAGE, Picture, "depth key and triangle id per pixel, 8 bytes";
     PackedDepthId = "packed", STORAGE, Picture, "part of the depth key and triangle id per pixel, 4 bytes";
     LayerCounts = "layers", STORAGE, PictureAndCount, "layers per pixel, 4 bytes";
-    TileMask = "tile_mask", STORAGE, Picture, "which 8 x 8 tiles the resolve must visit";
+    TileMask = "tile_mask", STORAGE, Nothing, "which 8 x 8 tiles this picture or the one before has drawn in";
     Color = "color", STORAGE, Picture, "the picture, 4 bytes per pixel";
     Background = "background", STORAGE, Nothing, "a few rows of background, copied all over the picture first";
     Previous = "previous", STORAGE, Nothing, "the previous picture, which an effect reads";

@@ -26,7 +26,7 @@ use crate::{
 /// Times of one picture, milliseconds: medians, and on a CPU adapter the shortest, since other work on the machine only makes frames longer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameTimes {
-    /// The whole frame: by timestamps, or the time that passed on the CPU where the adapter has none.
+    /// The whole frame: by timestamps, or the time that passed on the CPU where the adapter has none; above 0.
     pub whole_ms: f64,
     /// Every pass by its label; empty without timestamps.
     pub passes: Vec<(String, f64)>,
@@ -41,7 +41,7 @@ pub type Enabled = (&'static str, &'static [(&'static str, f64)]);
 pub type Picture<'a> = (&'a str, &'static [Enabled], [u32; 2]);
 
 /// Frames of a picture that are drawn before any is timed.
-const WARM_UP: usize = 2;
+const FIRST_FRAMES: usize = 2;
 /// Frames that are timed, at least and at most; each is drawn once as a whole and once pass by pass.
 const FRAMES: [usize; 2] = [3, 7];
 /// Time for the frames of a picture beyond the least number of them.
@@ -93,16 +93,12 @@ impl TimedPicture {
         timed(&mut self.renderer, &self.view, &self.stack, &self.accuracy)
     }
 
-    /// Milliseconds of one whole frame.
+    /// Milliseconds of one whole frame; none where the adapter has not written its timestamps.
     ///
     /// # Errors
     /// When the device is lost.
-    pub fn whole_ms(&mut self) -> Result<f64, RenderError> {
-        let frames = if self.renderer.gpu().caps.software { 1 } else { FRAMES_PER_SAMPLE };
-        let begin = Instant::now();
-        let report = sample(&mut self.renderer, &self.view, &self.stack, &self.accuracy, Detail::Whole, frames)?;
-        let passed_ms = begin.elapsed().as_secs_f64() * 1e3 / frames as f64;
-        Ok(report.gpu_ms.filter(|ms| *ms > 0.0).unwrap_or(passed_ms))
+    pub fn whole_ms(&mut self) -> Result<Option<f64>, RenderError> {
+        whole_ms(&mut self.renderer, &self.view, &self.stack, &self.accuracy)
     }
 }
 
@@ -128,7 +124,7 @@ pub fn made((query, effects, size): &Picture) -> (Arc<Scene>, View, Stack) {
 /// # Errors
 /// When the picture cannot be drawn, or the device is lost.
 pub fn draw_until_ready(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<(), RenderError> {
-    let mut left = WARM_UP;
+    let mut left = FIRST_FRAMES;
     // Queues grow a few times at most.
     for _ in 0..16 {
         renderer.draw_timed(view, stack, accuracy, Detail::Whole, Wait::Simulation)?;
@@ -155,10 +151,25 @@ fn sample(
     renderer.finish()
 }
 
+/// Frames that are drawn for one time. On a software adapter a frame before the one that is timed would only take time.
+fn frames_per_sample(renderer: &Renderer) -> usize {
+    if renderer.gpu().caps.software { 1 } else { FRAMES_PER_SAMPLE }
+}
+
+/// Milliseconds of one whole frame, above 0: by timestamps, or the time that passed on the CPU where the adapter has none.
+fn whole_ms(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Option<f64>, RenderError> {
+    let frames = frames_per_sample(renderer);
+    let begin = Instant::now();
+    let report = sample(renderer, view, stack, accuracy, Detail::Whole, frames)?;
+    let passed_ms = begin.elapsed().as_secs_f64() * 1e3 / frames as f64;
+    let ms = if renderer.gpu().caps.timestamps { report.gpu_ms } else { Some(passed_ms) };
+    Ok(ms.filter(|ms| *ms > 0.0))
+}
+
 /// Times a picture that was drawn before, on a card that has been kept busy first.
 ///
 /// # Errors
-/// When the picture cannot be drawn, or the device is lost.
+/// When the picture cannot be drawn, the adapter writes no timestamps, or the device is lost.
 pub fn time(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<FrameTimes, RenderError> {
     let gpu = renderer.gpu().clone();
     warm_up::warm_up(&gpu, warm_up::FROM_IDLE, 1, |_, frames| {
@@ -170,17 +181,12 @@ pub fn time(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &Accu
 /// Times a picture: as a whole and pass by pass in turn.
 fn timed(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<FrameTimes, RenderError> {
     let has_timestamps = renderer.gpu().caps.timestamps;
-    // On a software adapter a frame before the one that is timed would only take time.
-    let frames = if renderer.gpu().caps.software { 1 } else { FRAMES_PER_SAMPLE };
+    let frames = frames_per_sample(renderer);
     let (mut whole, mut passes): (Vec<f64>, Vec<(String, Vec<f64>)>) = (Vec::new(), Vec::new());
     let [least, most] = FRAMES;
     let begin = Instant::now();
     while whole.len() < least || whole.len() < most && begin.elapsed() < PICTURE_BUDGET {
-        let start = Instant::now();
-        let report = sample(renderer, view, stack, accuracy, Detail::Whole, frames)?;
-        let passed_ms = start.elapsed().as_secs_f64() * 1e3 / frames as f64;
-        // A stamp that was not written leaves no time.
-        whole.extend(if has_timestamps { report.gpu_ms } else { Some(passed_ms) });
+        whole.extend(whole_ms(renderer, view, stack, accuracy)?);
         if !has_timestamps {
             continue;
         }
@@ -199,6 +205,9 @@ fn timed(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &Accurac
     }
     let percentile = if renderer.gpu().caps.software { 0.0 } else { 0.5 };
     let typical = |times: &[f64]| timing::percentile(times, percentile).unwrap_or(0.0);
+    if whole.is_empty() {
+        return Err(RenderError::NoTimestamps);
+    }
     Ok(FrameTimes {
         whole_ms: typical(&whole),
         frames: whole.len(),

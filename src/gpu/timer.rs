@@ -122,7 +122,7 @@ impl Timer {
         let stamps: Vec<u64> = bytes.chunks_exact(8).map(bytemuck::pod_read_unaligned).collect();
         let span = |from: usize, to: usize| {
             let (begin, end) = (stamps[from], stamps[to]);
-            (begin != 0 && end > begin).then(|| (end - begin) as f64 * self.period_ns * 1e-6)
+            (begin != 0 && end >= begin).then(|| (end - begin) as f64 * self.period_ns * 1e-6)
         };
         let passes = labels.iter().enumerate().filter_map(|(i, label)| {
             // The clears lie between the empty first pass and the first that works.

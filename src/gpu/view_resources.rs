@@ -87,6 +87,8 @@ pub struct ViewResources {
     pub dots: Option<DotStore>,
     /// The background whose rows the buffers hold, the size of the picture, and where the rows lie that the resolve reads.
     background: Option<(Background, [u32; 2], Option<Span>)>,
+    /// The picture shows the background in every tile that the tile mask does not name: the last picture was resolved by listed tiles.
+    pub shows_background: bool,
     frame: Option<PreparedFrame>,
     commands: Option<CommandList>,
     /// The last call of `prepare` succeeded.
@@ -107,6 +109,7 @@ impl ViewResources {
             draw_data: None,
             dots: None,
             background: None,
+            shows_background: false,
             frame: None,
             commands: None,
             is_prepared: false,
@@ -336,7 +339,8 @@ impl ViewResources {
         uniforms.into_iter().filter(|(id, _)| layout.has(*id)).try_for_each(|(id, bytes)| self.buffers.write_at(gpu, id, 0, bytes))
     }
 
-    /// Writes the rows of background that are copied over the picture, and those that the resolve reads, where they changed.
+    /// Writes the rows of background that are copied over the picture, and those that the resolve reads, where they changed. The picture does
+    /// not show them then.
     fn write_background(
         &mut self,
         gpu: &Gpu,
@@ -358,6 +362,7 @@ impl ViewResources {
             self.buffers.write_at(gpu, span.buffer, span.bytes.start, bytemuck::cast_slice(&rows))?;
         }
         self.background = background;
+        self.shows_background &= !is_changed && !is_new(BufferId::Color) && !is_new(BufferId::TileMask);
         Ok(())
     }
 

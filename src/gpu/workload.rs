@@ -8,6 +8,7 @@ use super::{
     frame_layout::{Dispatch, FrameLayout},
     recording::Device,
     renderer::Renderer,
+    resource_id::ClearedBy,
     view_resources::{PreparedFrame, ViewResources},
 };
 use crate::{
@@ -108,7 +109,7 @@ fn weight_of(device: &Device, key: &KernelKey, pass: Pass) -> Result<Weight, Ren
 const SHORT_FILL: u64 = 4096;
 
 fn clears(layout: &FrameLayout) -> Vec<(Unit, f64)> {
-    let bytes = || layout.cleared(|_| true).map(|(_, bytes)| bytes.end - bytes.start);
+    let bytes = || layout.cleared(|occasion| occasion != ClearedBy::History).map(|(_, bytes)| bytes.end - bytes.start);
     let (short, long): (Vec<u64>, Vec<u64>) = bytes().partition(|bytes| *bytes <= SHORT_FILL);
     let cleared = bytes().sum::<u64>() as f64;
     vec![(Unit::Fill, long.len() as f64), (Unit::ShortFill, short.len() as f64), (Unit::ClearedByte, cleared)]

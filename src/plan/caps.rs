@@ -24,7 +24,8 @@ pub struct Caps {
     pub software: bool,
     /// The atomic maximum costs far more than compare and exchange: SwiftShader calls a function for each.
     pub slow_atomic_maximum: bool,
-    /// What a calibration of this adapter measured, if one was kept. It decides about speed alone.
+    /// What a calibration of this adapter measured, if one was kept: it decides how work is divided, and which of the options that a tolerance allows
+    /// is taken.
     #[serde(skip)]
     pub measured: Option<Measured>,
 }
@@ -53,7 +54,7 @@ impl Caps {
     /// neighbors; a CPU adapter runs invocations one after another, executes both sides of every branch, and gains nothing
     /// by it.
     pub fn tuning(&self) -> Tuning {
-        let (max_small_samples, max_small_side) = if self.software { (128 * 128, 128) } else { (32, 32) };
+        let (max_small_samples, max_small_side) = if self.software { (MOST_SMALL_SAMPLES, 128) } else { (32, 32) };
         let max_small_samples = self.measured.map_or(max_small_samples, |measured| measured.max_small_samples);
         let group_size = if self.software { 64 } else { 256 };
         Tuning {
@@ -76,11 +77,14 @@ impl Caps {
     }
 }
 
+/// The most samples of a triangle that one invocation may walk.
+pub const MOST_SMALL_SAMPLES: u32 = 128 * 128;
+
 /// How the kernels divide their work: it changes speed alone, never a picture. [`Caps::tuning`] knows what suits an adapter;
 /// benches and tests try others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tuning {
-    /// Most candidate samples of a triangle that one invocation walks, at least 1. A calibration chooses it.
+    /// Most candidate samples of a triangle that one invocation walks, 1 to [`MOST_SMALL_SAMPLES`]. A calibration chooses it.
     pub max_small_samples: u32,
     /// Most pixels per side of such a triangle's box, 1 to 128.
     pub max_small_side: u32,

@@ -100,7 +100,7 @@ impl Unit {
         (Self::ClipOperation, "clip_operation", "an operation on a triangle that is clipped"),
         (Self::DiscTurn, "disc_turn", "a candidate sample of the discs of one triangle, one after another"),
         (Self::DiscOperation, "disc_operation", "an operation on a candidate sample of a corner's disc"),
-        (Self::Pixel, "pixel", "a pixel that the resolve visits"),
+        (Self::Pixel, "pixel", "a pixel that the resolve visits, or a block of them that a pass over tiles does"),
         (Self::PixelTurn, "pixel_turn", "a turn of the longest loop of an effect over what belongs to one pixel"),
         (Self::LoopedPixel, "looped_pixel", "such a turn of one pixel among many"),
         (Self::Neighbor, "neighbor", "a pixel that an image effect reads for each, one after another"),
@@ -110,7 +110,7 @@ impl Unit {
         (Self::SearchedPixel, "searched_pixel", "such a search for one pixel among many"),
         (Self::Textures, "textures", "a resolve that reads images of materials"),
         (Self::TexturedPixel, "textured_pixel", "a pixel among many that reads images of materials"),
-        (Self::PixelOperation, "pixel_operation", "an operation on a pixel that is shaded"),
+        (Self::PixelOperation, "pixel_operation", "an operation on a pixel that is shaded or scaled"),
         (Self::ParticleChain, "particle_chain", "an operation on the longest way through the kernel that moves particles"),
         (Self::ParticleOperation, "particle_operation", "an operation on a particle"),
         (Self::RunChain, "run_chain", "an operation on the longest way through the kernel that lists dots"),
@@ -155,10 +155,6 @@ impl Unit {
                 | Self::RunChain
                 | Self::DotTurn
         )
-    }
-
-    pub const fn about(self) -> &'static str {
-        Self::ALL[self as usize].2
     }
 }
 

@@ -42,7 +42,7 @@ pub(super) fn key_of(
         work: WorkSharing {
             group_size: tuning.group_size,
             invocations_per_triangle: loops::invocations_per_triangle(caps, stack.shape, needs.triangles, loops),
-            listed_tiles: tuning.listed_tiles && !stack.finishes_pixels() && stack.dots.is_none(),
+            listed_tiles: tuning.listed_tiles,
             early_load: stack.shape == Shape::Points || tuning.early_load && options.visibility == Visibility::Split32,
             exchanges_maximum: tuning.exchanges_maximum,
             queue_groups: if options.culling == Culling::None { tuning.queue_groups.min(65_535) } else { 0 },

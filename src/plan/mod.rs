@@ -17,7 +17,7 @@ mod traits;
 use std::sync::Arc;
 
 pub use self::{
-    caps::{Caps, Tuning},
+    caps::{Caps, MOST_SMALL_SAMPLES, Tuning},
     error::PlanError,
     measured::{MEASURED_OPTIONS, MEASURED_TRIANGLES, Measured, OptionCosts},
     request::{AccuracyRequest, Tier, Tolerance},

@@ -76,7 +76,15 @@ impl AtomicFile {
         builder.prefix(PREFIX).rand_bytes(RANDOM).suffix(SUFFIX);
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let file = builder.tempfile_in(folder).map_err(|e| failed(e.to_string()))?;
+        let file = builder.tempfile_in(folder).map_err(|e| {
+            failed(match e.kind() {
+                _ if !folder.is_dir() => format!("there is no folder {}", folder.display()),
+                io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+                    format!("files cannot be made in the folder {}", folder.display())
+                }
+                _ => e.to_string(),
+            })
+        })?;
         // A file system without locks is covered by the longer age.
         drop(file.as_file().try_lock());
         Ok(Self { file, name, target, existing, replaced })

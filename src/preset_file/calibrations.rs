@@ -1,4 +1,4 @@
-//! The calibrations of adapters, kept in the folder of the user's configuration: one file per adapter, driver and version of the program.
+//! The calibrations of adapters, kept in the folder of the user's configuration: one file for each [`CalibrationKey`] and version of the program.
 
 use std::path::{Path, PathBuf};
 
@@ -13,20 +13,22 @@ use super::{
 use crate::{
     accuracy::AXES,
     plan::{
-        MEASURED_OPTIONS, Measured, OptionCosts,
+        MEASURED_OPTIONS, MOST_SMALL_SAMPLES, Measured, OptionCosts,
         cost_model::{Unit, UnitCosts},
     },
     shader::library::Library,
 };
 
-/// Changes where work is counted in another way, so that costs measured before hold no longer.
-const COUNTING: u32 = 5;
+/// Changes where work is counted, timed or fitted in another way, so that costs measured before hold no longer.
+const COUNTING: u32 = 6;
 
 /// What a calibration is for: it holds for nothing else.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CalibrationKey {
     pub adapter: String,
     pub driver: String,
+    /// Threads of the machine where they draw the pictures; 0 on a card.
+    pub threads: u32,
     /// Hash of the shader files, whose operations the costs are for.
     pub shaders: u64,
 }
@@ -57,9 +59,10 @@ pub fn calibrations_folder() -> Option<PathBuf> {
 
 impl CalibrationKey {
     /// What the calibration of an adapter is kept under, with the shader files of this program.
-    pub fn of(adapter: &str, driver: &str) -> Self {
+    pub fn of(adapter: &str, driver: &str, is_software: bool) -> Self {
         let shaders = Library::from_env().texts().fold(Fnv::new(), |hash, text| hash.bytes(text.as_bytes()));
-        Self { adapter: adapter.into(), driver: driver.into(), shaders: shaders.0 }
+        let threads = if is_software { std::thread::available_parallelism().map_or(1, |threads| threads.get() as u32) } else { 0 };
+        Self { adapter: adapter.into(), driver: driver.into(), threads, shaders: shaders.0 }
     }
 
     /// The calibration that was kept in the user's folder.
@@ -80,7 +83,7 @@ impl CalibrationKey {
             .bytes(self.driver.as_bytes())
             .bytes(&[0])
             .bytes(env!("CARGO_PKG_VERSION").as_bytes())
-            .words(&[COUNTING])
+            .words(&[COUNTING, self.threads])
             .bytes(&self.shaders.to_le_bytes());
         folder.join(format!("{}.json", hex(hash)))
     }
@@ -121,40 +124,50 @@ impl CalibrationKey {
 /// The defaults among the options of a file.
 const DEFAULTS: &str = "defaults";
 
-/// The most that a file may say of `max_small_samples`.
-const MAX_SMALL_SAMPLES: u64 = 128 * 128;
+/// The most milliseconds that a file may say of a unit or an option, and the least of an option.
+const MOST_MS: f64 = 1e6;
+const LEAST_OPTION_MS: f64 = 1e-6;
+
+/// Characters of a wrong value that its refusal repeats.
+const SHOWN_VALUE: usize = 60;
 
 /// An option in a file: `coverage=fixed4`.
 fn word((axis, option): (usize, usize)) -> String {
     format!("{}={}", AXES[axis].name, AXES[axis].words[option])
 }
 
-/// Reads the text of a file. Every unit must be there, with a finite number of milliseconds from 0 up, and every measured option, with two numbers
-/// above 0.
+/// A value as a refusal shows it: its beginning where it is long.
+fn shown(value: &Value) -> String {
+    let text = value.to_string();
+    if text.chars().count() > SHOWN_VALUE { text.chars().take(SHOWN_VALUE).chain("...".chars()).collect() } else { text }
+}
+
+/// Reads the text of a file. Every unit must be there, with milliseconds from 0 to [`MOST_MS`], and every measured option, with two numbers of them
+/// from [`LEAST_OPTION_MS`] on.
 fn parsed(text: &str) -> Result<Calibration, String> {
     let object: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
     let mut costs = UnitCosts::default();
     for (unit, name, _) in Unit::ALL {
         let value = &object["ms_per_unit"][*name];
         match value.as_f64() {
-            Some(ms) if ms >= 0.0 && ms.is_finite() => costs.set(*unit, ms),
-            _ => return Err(format!("ms_per_unit.{name} is {value}, not a number from 0 up")),
+            Some(ms) if (0.0..=MOST_MS).contains(&ms) => costs.set(*unit, ms),
+            _ => return Err(format!("ms_per_unit.{name} is {}, not a number from 0 to {MOST_MS}", shown(value))),
         }
     }
     let ms_of = |option: &str| {
         let value = &object["ms_of_options"][option];
-        let ms = [0, 1].map(|at| value[at].as_f64().filter(|ms| *ms > 0.0 && ms.is_finite()));
-        ms[0].zip(ms[1]).map(|(few, many)| [few, many]).ok_or(format!("ms_of_options.{option} is {value}, not two numbers above 0"))
+        let ms = [0, 1].map(|at| value[at].as_f64().filter(|ms| (LEAST_OPTION_MS..=MOST_MS).contains(ms)));
+        let why = || format!("ms_of_options.{option} is {}, not two numbers from {LEAST_OPTION_MS} to {MOST_MS}", shown(value));
+        ms[0].zip(ms[1]).map(|(few, many)| [few, many]).ok_or_else(why)
     };
     let mut options = OptionCosts { defaults_ms: ms_of(DEFAULTS)?, options_ms: Default::default() };
     for (option, ms) in MEASURED_OPTIONS.iter().zip(&mut options.options_ms) {
         *ms = ms_of(&word(*option))?;
     }
     let samples = &object["max_small_samples"];
-    let max_small_samples = samples.as_u64().filter(|samples| (1..=MAX_SMALL_SAMPLES).contains(samples));
-    let max_small_samples =
-        max_small_samples.ok_or(format!("max_small_samples is {samples}, not a number from 1 to {MAX_SMALL_SAMPLES}"))?;
-    Ok(Calibration { units: costs, measured: Measured { options, max_small_samples: max_small_samples as u32 } })
+    let why = || format!("max_small_samples is {}, not a number from 1 to {MOST_SMALL_SAMPLES}", shown(samples));
+    let max_small_samples = samples.as_u64().filter(|samples| (1..=MOST_SMALL_SAMPLES.into()).contains(samples)).ok_or_else(why)? as u32;
+    Ok(Calibration { units: costs, measured: Measured { options, max_small_samples } })
 }
 
 #[cfg(test)]
@@ -162,7 +175,7 @@ mod tests {
     use super::*;
 
     fn key(driver: &str) -> CalibrationKey {
-        CalibrationKey { adapter: "card".into(), driver: driver.into(), shaders: 7 }
+        CalibrationKey { adapter: "card".into(), driver: driver.into(), threads: 0, shaders: 7 }
     }
 
     #[test]
@@ -182,6 +195,7 @@ mod tests {
         assert_eq!(found.measured, measured);
         assert_eq!(key("1.1").read(&folder.path().join("made")), Kept::Nothing);
         assert_eq!(CalibrationKey { shaders: 8, ..key("1.0") }.read(&folder.path().join("made")), Kept::Nothing);
+        assert_eq!(CalibrationKey { threads: 2, ..key("1.0") }.read(&folder.path().join("made")), Kept::Nothing);
     }
 
     #[test]
@@ -192,7 +206,11 @@ mod tests {
         let refusal = |object: &Value| parsed(&object.to_string()).expect_err("it is refused");
         assert!(refusal(&object).contains("ms_of_options.defaults is null"));
         object["ms_of_options"]["defaults"] = json!([1.0, 0.0]);
-        assert!(refusal(&object).contains("not two numbers above 0"));
+        assert!(refusal(&object).contains("not two numbers from 0.000001 to 1000000"));
+        object["ms_of_options"]["defaults"] = json!([1.0, 1e-300]);
+        assert!(refusal(&object).contains("not two numbers"));
+        object["ms_of_options"]["defaults"] = json!("x".repeat(1000));
+        assert!(refusal(&object).len() < 200);
         object["ms_of_options"]["defaults"] = json!([1.0, 2.0]);
         assert!(parsed(&object.to_string()).is_ok());
         for samples in [json!(0), json!(16_385), json!("many"), json!(-1)] {
@@ -204,7 +222,13 @@ mod tests {
     #[test]
     fn a_broken_file_is_named_in_one_sentence() {
         let folder = tempfile::tempdir().expect("a folder");
-        for (text, why) in [("{", "EOF"), ("{}", "ms_per_unit.frame is null"), (r#"{"ms_per_unit":{"frame":-1}}"#, "frame is -1")] {
+        let broken = [
+            ("{", "EOF"),
+            ("{}", "ms_per_unit.frame is null"),
+            (r#"{"ms_per_unit":{"frame":-1}}"#, "frame is -1, not a number from 0 to 1000000"),
+            (r#"{"ms_per_unit":{"frame":1e308}}"#, "frame is 1e+308"),
+        ];
+        for (text, why) in broken {
             std::fs::write(key("1").file(folder.path()), text).expect("it can be written");
             let Kept::Broken(sentence) = key("1").read(folder.path()) else { panic!("{text} is broken") };
             assert!(sentence.contains(why) && sentence.contains("is no calibration") && !sentence.contains('\n'), "{sentence}");

@@ -164,6 +164,10 @@ pub fn open(what: &str, folders: &Folders) -> Result<PresetFile, PresetError> {
     if let Some(at) = entries.iter().position(|entry| entry.id == what) {
         return entries.swap_remove(at).preset_file;
     }
+    if path.exists() {
+        let reason = "rasterlab opens .toml files, .png pictures that it has saved, and models in .glb and .gltf files";
+        return Err(PresetError::NotOurs { what: what.into(), reason: reason.into() });
+    }
     let hint = did_you_mean(what, entries.iter().map(|entry| entry.id.as_str()));
     let hint = if hint.is_empty() { "; rasterlab list shows all of them".into() } else { hint };
     Err(PresetError::NoPreset { what: what.into(), hint })

@@ -26,6 +26,7 @@ pub mod parts;
 pub mod pick;
 pub mod pose;
 pub mod quaternion;
+pub mod raster_work;
 pub mod rig;
 mod room;
 pub mod shadow_resolution;

@@ -4,12 +4,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3, DVec4};
 
-use super::{
-    draw::Draw,
-    model::Scene,
-    triangle_rows::{RowWork, TriangleRows},
-    view::View,
-};
+use super::{draw::Draw, model::Scene, triangle_rows::TriangleRows, view::View};
 use crate::math::hash_unit;
 
 /// The most triangles that are sampled. Fractions are then known to within a few percent at a constant cost.
@@ -25,32 +20,50 @@ pub struct TriangleSizes {
     /// How many of the sampled triangles cross the near plane; their size is not known.
     pub near_clipped: u32,
     /// The sampled triangles that lie behind the near plane, face the viewer and are inside the picture.
-    visible: Arc<[VisibleTriangle]>,
+    pub(super) visible: Arc<[VisibleTriangle]>,
     /// What the near plane leaves of sampled triangles that cross it, where that reaches the picture.
-    cut: Arc<[VisibleTriangle]>,
+    pub(super) cut: Arc<[VisibleTriangle]>,
     /// Rows of the sampled triangles of which the near plane cuts nothing and whose box has a sample, whichever way they face.
-    rows: Arc<[TriangleRows]>,
+    pub(super) rows: Arc<[TriangleRows]>,
     /// The same of what the near plane leaves of the others.
-    cut_rows: Arc<[TriangleRows]>,
+    pub(super) cut_rows: Arc<[TriangleRows]>,
 }
 
 /// A sampled triangle that is visible.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct VisibleTriangle {
+pub(super) struct VisibleTriangle {
     /// The larger of the width and the height of its bounding box, pixels.
-    extent_px: f32,
+    pub(super) extent_px: f32,
     /// Sample columns and rows inside the picture that its bounding box covers.
-    samples: [u32; 2],
+    pub(super) samples: [u32; 2],
     /// The first of those columns and rows.
     first: [u32; 2],
     /// The part of its area inside the picture, square pixels.
-    area: f32,
+    pub(super) area: f32,
     /// The part of its perimeter inside the picture, pixels.
     perimeter: f32,
     /// How many of its corners lie in the picture.
-    corners: u32,
+    pub(super) corners: u32,
     /// Its material has images.
-    has_texture: bool,
+    pub(super) has_texture: bool,
+}
+
+/// How a triangle is drawn: by one invocation, by one workgroup, or divided into tiles.
+pub(super) enum RasterPath {
+    Small,
+    Medium,
+    Large,
+}
+
+impl VisibleTriangle {
+    pub(super) fn path(&self, max_small_samples: u32, max_small_side: u32, large_px: f64) -> RasterPath {
+        let [columns, rows] = self.samples;
+        match () {
+            () if f64::from(self.extent_px) > large_px => RasterPath::Large,
+            () if columns * rows > max_small_samples || columns.max(rows) > max_small_side => RasterPath::Medium,
+            () => RasterPath::Small,
+        }
+    }
 }
 
 /// Estimated numbers of triangles for each raster path.
@@ -64,54 +77,6 @@ pub struct SizeClasses {
     pub large: f64,
     /// Error of each number: three standard deviations of the sampling, 0 if all triangles were sampled.
     pub error_bound: f64,
-}
-
-/// Estimated work of a raster path.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
-pub struct PathWork {
-    /// Triangles that cover a box with a sample.
-    pub triangles: f64,
-    /// Samples in the boxes of those triangles.
-    pub candidates: f64,
-    /// Samples that the triangles cover, whatever hides them.
-    pub covered: f64,
-    /// The most samples in the box of one of them.
-    pub longest: f64,
-    /// The most samples that one of them covers.
-    pub most_covered: f64,
-}
-
-/// Estimated work of all raster paths.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
-pub struct SizeWork {
-    pub small: PathWork,
-    pub medium: PathWork,
-    pub large: PathWork,
-    /// Triangles that cross the near plane and reach the picture, as the near plane cuts them. They are counted in `medium` or `large` too.
-    pub cut: PathWork,
-    /// Rows of triangles that are not cut, also of those that face away.
-    pub rows: RowWork,
-    /// Rows of those that are.
-    pub cut_rows: RowWork,
-    /// Corners inside the picture of triangles that are not cut, each once for every triangle.
-    pub corners: f64,
-    /// The most such corners of one triangle.
-    pub most_corners: f64,
-    /// Samples that triangles with images in their materials cover; samples that other triangles hide count too.
-    pub textured: f64,
-    /// Corners inside the picture of triangles with images in their materials.
-    pub textured_corners: f64,
-}
-
-impl PathWork {
-    fn add(&mut self, triangle: &VisibleTriangle, times: f64) {
-        let [columns, rows] = triangle.samples;
-        self.triangles += times;
-        self.candidates += times * f64::from(columns) * f64::from(rows);
-        self.covered += times * f64::from(triangle.area);
-        self.longest = self.longest.max(f64::from(columns) * f64::from(rows));
-        self.most_covered = self.most_covered.max(triangle.area.into());
-    }
 }
 
 impl TriangleSizes {
@@ -174,20 +139,24 @@ impl TriangleSizes {
         bins
     }
 
+    /// Triangles of the scene for which a sampled one stands.
+    pub(super) fn each(&self) -> f64 {
+        self.triangles as f64 / f64::from(self.sampled.max(1))
+    }
+
     /// Estimates how many triangles are drawn by one invocation (small), by one workgroup (medium), and how many exceed
     /// `large_px` (large).
     pub fn classes(&self, max_small_samples: u32, max_small_side: u32, large_px: f64) -> SizeClasses {
         let mut classes = SizeClasses::default();
         for visible in self.visible.iter().filter(|visible| visible.samples.iter().all(|count| *count > 0)) {
-            let [columns, rows] = visible.samples;
-            let class = match () {
-                () if f64::from(visible.extent_px) > large_px => &mut classes.large,
-                () if columns * rows > max_small_samples || columns.max(rows) > max_small_side => &mut classes.medium,
-                () => &mut classes.small,
+            let class = match visible.path(max_small_samples, max_small_side, large_px) {
+                RasterPath::Small => &mut classes.small,
+                RasterPath::Medium => &mut classes.medium,
+                RasterPath::Large => &mut classes.large,
             };
             *class += 1.0;
         }
-        let each = self.triangles as f64 / f64::from(self.sampled.max(1));
+        let each = self.each();
         let deviation = |count: f64| (count * (1.0 - count / f64::from(self.sampled.max(1)))).sqrt();
         let most = deviation(classes.small).max(deviation(classes.medium)).max(deviation(classes.large));
         // One more, for classes too rare to be sampled. The numbers are exact where all triangles were sampled.
@@ -195,41 +164,13 @@ impl TriangleSizes {
         SizeClasses { small: classes.small * each, medium: classes.medium * each, large: classes.large * each, error_bound }
     }
 
-    /// Estimated work of each raster path, with the limits of [`Self::classes`].
-    pub fn work(&self, max_small_samples: u32, max_small_side: u32, large_px: f64) -> SizeWork {
-        let each = self.triangles as f64 / f64::from(self.sampled.max(1));
-        let [rows, cut_rows] = [&self.rows, &self.cut_rows].map(|rows| RowWork::of(rows, each));
-        let mut work = SizeWork { rows, cut_rows, ..SizeWork::default() };
-        for visible in self.visible.iter().filter(|visible| visible.samples.iter().all(|count| *count > 0)) {
-            let [columns, rows] = visible.samples;
-            let path = match () {
-                () if f64::from(visible.extent_px) > large_px => &mut work.large,
-                () if columns * rows > max_small_samples || columns.max(rows) > max_small_side => &mut work.medium,
-                () => &mut work.small,
-            };
-            path.add(visible, each);
-        }
-        for visible in self.visible.iter() {
-            work.corners += each * f64::from(visible.corners);
-            work.most_corners = work.most_corners.max(visible.corners.into());
-        }
-        for textured in self.visible.iter().chain(self.cut.iter()).filter(|triangle| triangle.has_texture) {
-            work.textured += each * f64::from(textured.area);
-            work.textured_corners += each * f64::from(textured.corners);
-        }
-        // What was cut is queued by its size, and no invocation draws it alone.
-        for rest in self.cut.iter() {
-            work.cut.add(rest, each);
-            let path = if f64::from(rest.extent_px) > large_px { &mut work.large } else { &mut work.medium };
-            path.add(rest, each);
-        }
-        work
-    }
-
-    /// Estimated fraction of the picture that lies in squares of `side` pixels or more which the box of some triangle touches.
+    /// Estimated fraction of the picture that lies in squares of `side` pixels or more which the box of some triangle touches; 0 without triangles.
     pub fn touched_fraction(&self, [width, height]: [u32; 2], side: u32) -> f64 {
+        if self.triangles == 0 {
+            return 0.0;
+        }
         // Where triangles are sampled, squares must be large enough that each holds a sampled one.
-        let spared = self.triangles as f64 / f64::from(self.sampled.max(1));
+        let spared = self.each();
         let side = f64::from(side.max(1)).max((f64::from(width) * f64::from(height) * 1e-5).sqrt()) * spared.sqrt();
         let squares = |pixels: u32| (f64::from(pixels) / side).ceil().max(1.0) as usize;
         let (columns, rows) = (squares(width), squares(height));
@@ -254,7 +195,7 @@ impl TriangleSizes {
         let area: f64 = self.visible.iter().map(|visible| f64::from(visible.area)).sum();
         let passed: f64 =
             self.visible.iter().map(|visible| (f64::from(visible.perimeter) * shift_px * 0.5).min(f64::from(visible.area))).sum();
-        let each = self.triangles as f64 / f64::from(self.sampled.max(1));
+        let each = self.each();
         let covered = if self.near_clipped > 0 { 1.0 } else { (area * each / pixels.max(1.0)).min(1.0) };
         if area > 0.0 { passed / area * covered } else { 0.0 }
     }
@@ -358,7 +299,7 @@ mod tests {
     use glam::DMat4;
 
     use super::*;
-    use crate::scene::{builtin, camera::Camera, draw::draws};
+    use crate::scene::{builtin, camera::Camera, draw::draws, triangle_rows::RowWork};
 
     fn framed(scene: &Scene, [width, height]: [u32; 2]) -> Camera {
         Camera::framing(&scene.bounds(), DVec3::new(-0.4, -0.4, -1.0), f64::from(width) / f64::from(height))
@@ -410,6 +351,7 @@ mod tests {
         let touched = sizes.touched_fraction([640, 480], 8);
         let covered = (work.small.covered + work.medium.covered) / (640.0 * 480.0);
         assert!((0.2..0.8).contains(&touched) && touched > 0.4 * covered, "{touched} touched, {covered} covered");
+        assert_eq!(TriangleSizes::default().touched_fraction([640, 480], 8), 0.0, "a scene of no triangles");
     }
 
     #[test]

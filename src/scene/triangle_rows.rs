@@ -4,10 +4,10 @@
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TriangleRows {
     all: f32,
-    /// From the first to that of the second sample that the triangle covers, as far as its area tells.
+    /// Rows from the first to that of the second sample that the triangle covers, as its area lets one expect.
     first: f32,
-    /// The same where it is unlucky.
-    last_first: f32,
+    /// The most such rows, in almost all cases.
+    most_first: f32,
 }
 
 /// Estimated rows that are visited by what examines the samples of triangles row by row.
@@ -30,14 +30,14 @@ impl RowWork {
             all: sum.all + each * f64::from(rows.all),
             most: sum.most.max(rows.all.into()),
             first: sum.first + each * f64::from(rows.first),
-            most_first: sum.most_first.max(rows.last_first.into()),
+            most_first: sum.most_first.max(rows.most_first.into()),
         })
     }
 }
 
 impl TriangleRows {
-    /// Of a triangle with corners at these heights in pixels, lowest number first, which is so wide in the middle one's row, and of which
-    /// the picture shows the rows from the first to the last of `shown`.
+    /// The rows of a triangle whose corners lie at the heights `[top, middle, bottom]`, and which is `width` wide at the middle one. The picture
+    /// shows it from the height `first` to `last`. All are pixels; heights grow downward.
     pub(super) fn of([top, middle, bottom]: [f64; 3], width: f64, [first, last]: [f64; 2]) -> Self {
         let (upper, lower) = ((middle - top).max(1e-9), (bottom - middle).max(1e-9));
         let area = 0.5 * width * (bottom - top);
@@ -54,7 +54,7 @@ impl TriangleRows {
         let all = (last - first).max(1.0);
         let until = |square_px: f64| (height(above(first) + square_px) - first + 1.0).clamp(1.0, all) as f32;
         // Two samples are covered where two square pixels are, as a rule, and in almost all cases where six are.
-        Self { all: all as f32, first: until(2.0), last_first: until(6.0) }
+        Self { all: all as f32, first: until(2.0), most_first: until(6.0) }
     }
 }
 
@@ -68,12 +68,12 @@ mod tests {
         let of = |heights, shown| TriangleRows::of(heights, 10.0, shown);
         let tip_above = of([0.0, 20.0, 20.0], [0.0, 20.0]);
         // Its first 2.8 rows hold two square pixels, and its first 4.9 six.
-        assert_eq!([tip_above.all, tip_above.first.floor(), tip_above.last_first.floor()], [20.0, 3.0, 5.0]);
+        assert_eq!([tip_above.all, tip_above.first.floor(), tip_above.most_first.floor()], [20.0, 3.0, 5.0]);
         let tip_below = of([0.0, 0.0, 20.0], [0.0, 20.0]);
         assert!(tip_below.first < 1.5, "its first row holds almost ten: {tip_below:?}");
         let later = of([0.0, 20.0, 20.0], [10.0, 20.0]);
         assert!(later.all == 10.0 && later.first < 1.5, "the picture begins where it is wide: {later:?}");
         let needle = TriangleRows::of([0.0, 20.0, 40.0], 0.05, [0.0, 40.0]);
-        assert_eq!([needle.first, needle.last_first], [40.0, 40.0], "it covers one square pixel in all");
+        assert_eq!([needle.first, needle.most_first], [40.0, 40.0], "it covers one square pixel in all");
     }
 }

@@ -24,6 +24,9 @@ impl KernelKey {
             passes.extend([Pass::ListTiles, Pass::Args]);
         }
         passes.push(Pass::Resolve);
+        if self.lists_background() {
+            passes.push(Pass::ResolveBackground);
+        }
         if self.is_scaled() {
             passes.push(Pass::Scale);
         }

@@ -303,6 +303,16 @@ impl KernelKey {
         self.effects.list.iter().any(|effect| effect.hooks.image.is_some())
     }
 
+    /// Are the tiles that no triangle touches listed too, because dots or image effects finish the background?
+    pub fn lists_background(&self) -> bool {
+        self.work.listed_tiles && (self.finishes_pixels() || self.effects.dots.is_some())
+    }
+
+    /// Do tiles that no triangle touches keep the background that was copied over the picture?
+    pub fn keeps_background(&self) -> bool {
+        self.work.listed_tiles && !self.lists_background()
+    }
+
     /// Does an effect ask how much of a light arrives?
     pub fn reads_light(&self) -> bool {
         self.effects.list.iter().any(|effect| effect.hooks.reads_light())

@@ -53,8 +53,10 @@ pub enum Pass {
     DotsProbe,
     /// Lists the tiles that a triangle touched.
     ListTiles,
-    /// Shades every pixel.
+    /// Shades every pixel, or those of the listed tiles.
     Resolve,
+    /// Finishes the pixels of the tiles that no triangle touched.
+    ResolveBackground,
     /// Resamples the drawn picture to the shown size.
     Scale,
 }
@@ -154,6 +156,7 @@ impl Pass {
             Self::DotsProbe => "dots_probe",
             Self::ListTiles => "list_tiles",
             Self::Resolve => "resolve",
+            Self::ResolveBackground => "resolve_background",
             Self::Scale => "scale",
         }
     }
@@ -167,9 +170,14 @@ impl Pass {
             Self::RasterAll(_) | Self::TileLarge => "raster",
             Self::OrderSums | Self::OrderLimit | Self::OrderRanks | Self::OrderCut => "order",
             Self::DotsEnds | Self::DotsCull | Self::DotsArgs | Self::DotsDraw | Self::DotsProbe => "lines",
-            Self::ListTiles | Self::Resolve | Self::Scale => "shade",
+            Self::ListTiles | Self::Resolve | Self::ResolveBackground | Self::Scale => "shade",
         };
         format!("stages/{folder}/{}", self.stem())
+    }
+
+    /// Does it write the colors of the picture?
+    pub const fn resolves(self) -> bool {
+        matches!(self, Self::Resolve | Self::ResolveBackground)
     }
 
     /// Does it run over dots?

@@ -33,7 +33,7 @@ impl Reflected {
     /// module has no such entry point.
     pub fn weight(&self, entry: &str, constants: &[(String, f64)]) -> Option<Weight> {
         let index = self.module.entry_points.iter().position(|point| point.name == entry)?;
-        let mut counter = Counter { reflected: self, constants, known: HashMap::new(), locals: HashMap::new() };
+        let mut counter = Counter { reflected: self, constants, known: HashMap::new(), locals: HashMap::new(), loaded: HashMap::new() };
         let (function, info) = (&self.module.entry_points[index].function, self.info.get_entry_point(index));
         Some(counter.function(function, info))
     }
@@ -45,6 +45,8 @@ struct Counter<'a> {
     known: HashMap<Handle<Function>, Weight>,
     /// Values that variables of the function hold here on every way. `a && b` is a variable that a branch sets.
     locals: HashMap<Handle<LocalVariable>, f64>,
+    /// What loads of these variables have found.
+    loaded: HashMap<Handle<Expression>, f64>,
 }
 
 /// A function while it is counted.
@@ -57,16 +59,19 @@ struct Context<'a> {
 impl Counter<'_> {
     fn function(&mut self, function: &Function, info: &FunctionInfo) -> Weight {
         let mut weight = Weight::default();
-        let outer = std::mem::take(&mut self.locals);
+        let outer = (std::mem::take(&mut self.locals), std::mem::take(&mut self.loaded));
         self.block(&function.body, Context { function, info }, false, &mut weight);
-        self.locals = outer;
+        (self.locals, self.loaded) = outer;
         weight
     }
 
     fn block(&mut self, block: &Block, context: Context<'_>, is_looped: bool, weight: &mut Weight) {
         for statement in block {
             let own = match statement {
-                Statement::Emit(range) => range.clone().map(|handle| self.expression(handle, context)).sum(),
+                Statement::Emit(range) => {
+                    range.clone().for_each(|handle| self.note_load(handle, context));
+                    range.clone().map(|handle| self.expression(handle, context)).sum()
+                }
                 Statement::Store { pointer, value } => {
                     self.stored(*pointer, *value, context);
                     self.access(*pointer, context)
@@ -127,6 +132,16 @@ impl Counter<'_> {
                 weight.once += own;
             }
         }
+    }
+
+    /// Notes what a load of a variable of the function finds here: later stores do not change it.
+    fn note_load(&mut self, handle: Handle<Expression>, context: Context<'_>) {
+        let Expression::Load { pointer } = context.function.expressions[handle] else { return };
+        let Expression::LocalVariable(local) = context.function.expressions[pointer] else { return };
+        match self.locals.get(&local) {
+            Some(value) => self.loaded.insert(handle, *value),
+            None => self.loaded.remove(&handle),
+        };
     }
 
     /// Notes what a variable of the function holds from here on.
@@ -201,10 +216,7 @@ impl Counter<'_> {
                 let given = self.constants.iter().find(|(other, _)| other == name).map(|(_, value)| *value);
                 given.or_else(|| self.global(declared.init?))
             }
-            Expression::Load { pointer } => match context.function.expressions[*pointer] {
-                Expression::LocalVariable(local) => self.locals.get(&local).copied(),
-                _ => None,
-            },
+            Expression::Load { .. } => self.loaded.get(&handle).copied(),
             Expression::Constant(constant) => self.global(self.module().constants[*constant].init),
             Expression::Unary { op: UnaryOperator::LogicalNot, expr } => bool(self.value(*expr, context)? == 0.0),
             Expression::Binary { op, left, right } => {

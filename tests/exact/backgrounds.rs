@@ -8,9 +8,10 @@ use rasterlab::{
     gpu::Renderer,
     measure::compare::pictures,
     oracle,
-    plan::{AccuracyRequest, Tier},
+    plan::{AccuracyRequest, Tier, Tuning},
     preset::{Clock, Output, Preset, Visibility},
     scene::{Background, view::View},
+    stress::culling::walk,
 };
 
 use crate::common::*;
@@ -56,6 +57,42 @@ fn empty_pixels_are_the_bytes_of_their_row_with_every_option_and_tuning() {
             }
         }
     }
+}
+
+/// Where the resolve visits listed tiles, the others keep what they show. A model that moves, another size, another background and effects that
+/// visit every pixel must leave nothing of the pictures before.
+#[test]
+fn tiles_that_a_model_leaves_show_the_background_again() {
+    let Some(gpu) = gpu() else { return };
+    let tuning = Tuning { listed_tiles: true, ..gpu.caps.tuning() };
+    let fresh = || {
+        let mut renderer = Renderer::new(gpu.clone());
+        renderer.set_tuning(tuning);
+        renderer
+    };
+    let scenes = [scene("teapot?tess=4"), scene("cube-wall?columns=4&rows=3"), scene("sphere?triangles=200")];
+    let stacks = [stack(&["lambert"]), stack(&["lambert", "outline"]), stack(&["xray"]), stack(&["lambert", "dots"]), stack(&["overdraw"])];
+    let backgrounds = [Background::from([0.0, 0.2, 0.4, 1.0]), GRADIENT];
+    let mut rng = Rng(36);
+    let mut renderer = fresh();
+    let (mut left, mut before) = (0, Vec::new());
+    for turn in 0..60 {
+        // Most pictures differ from the one before by the camera alone.
+        let [at, which, behind] = [turn / 20, turn / 3, turn / 7];
+        let (scene, stack) = (&scenes[at % 3], &stacks[if turn % 3 == 0 { which % 5 } else { 0 }]);
+        let size = if turn % 11 == 10 { [65, 63] } else { SIZE };
+        let moved = walk(scene, &mut rng, 1, size).remove(0);
+        let view = View { background: backgrounds[behind % 2], ..moved };
+        let drawn = captured(&mut renderer, scene, &view, stack, &AccuracyRequest::default()).frame;
+        let alone = captured(&mut fresh(), scene, &view, stack, &AccuracyRequest::default()).frame;
+        assert!(drawn.color == alone.color, "turn {turn}: another picture than that of a renderer that drew nothing before");
+        let covered: Vec<bool> = drawn.triangle_id.iter().map(|id| *id != NO_TRIANGLE).collect();
+        if covered.len() == before.len() {
+            left += std::iter::zip(&before, &covered).filter(|(before, now)| **before && !**now).count();
+        }
+        before = covered;
+    }
+    assert!(left > 5000, "models left only {left} pixels");
 }
 
 /// A background of one color needs no rows: the buffers and the picture are those without a gradient.

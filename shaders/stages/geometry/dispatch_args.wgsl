@@ -13,6 +13,7 @@ struct Args {
     resolve: Dispatch,
     clipped_triangles: Dispatch,
     meshlets: Dispatch,
+    background: Dispatch,
 }
 
 @group(0) @binding(10) var<storage, read_write> args: Args;
@@ -30,6 +31,7 @@ fn dispatch_args() {
     let clipped_triangles = min(atomicLoad(&counters.clipped_triangles), frame.clipped_triangle_capacity);
     args.clipped_triangles = folded((clipped_triangles + GROUP_SIZE - 1u) / GROUP_SIZE);
     args.resolve = folded(atomicLoad(&counters.marked_tiles));
+    args.background = folded(atomicLoad(&counters.background_tiles));
     let meshlets = atomicLoad(&counters.visible_meshlets) - atomicLoad(&counters.visible_meshlets_done);
     args.meshlets = folded((meshlets * MESHLET_TRIANGLES + GROUP_SIZE - 1u) / GROUP_SIZE);
 }

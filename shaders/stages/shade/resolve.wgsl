@@ -1,15 +1,16 @@
-// resolve: visits every pixel, or every pixel of the marked tiles; shades it, by its nearest triangle or by all its layers, and
+// resolve: visits every pixel, or every pixel of the listed tiles; shades it, by its nearest triangle or by all its layers, and
 // writes gamma-encoded bytes.
 //@ use lib/frame
 //@ use lib/color
 //@ use lib/picture
+//@ use lib/background
 //@ use variants/framebuffer_read
 //@ use variants/shading
 //@ use steps/finish_step
 
 // Side of the square of pixels that a workgroup visits.
 override TILE_SIDE: u32 = 8u;
-// Only marked tiles are visited; the others keep the background. Empty pixels are shaded too, with the first triangle, and the
+// Only listed tiles are visited; the others show the background. Empty pixels are shaded too, with the first triangle, and the
 // result is discarded: a CPU adapter executes both sides of every branch anyway, and loads what all invocations share only
 // once outside branches.
 override IS_BRANCHLESS: bool = false;
@@ -37,14 +38,7 @@ fn resolve(
 
 fn resolved_pixel(workgroup: vec3u, workgroups: vec3u, local: vec2u) -> vec2u {
     if !IS_BRANCHLESS { return workgroup.xy * TILE_SIDE + local; }
-    let tile = color[color_end() + workgroup.y * workgroups.x + workgroup.x];
+    let tile = color[tile_list() + workgroup.y * workgroups.x + workgroup.x];
     let width = (frame.size.x + TILE_SIDE - 1u) / TILE_SIDE;
     return vec2u(tile % width, tile / width) * TILE_SIDE + local;
-}
-
-// The rows of a gradient are bytes that the CPU computed, so that they are the same on every adapter.
-fn background_of_row(y: u32) -> vec4f {
-    if frame.background_first <= y { return frame.background; }
-    let word = color[frame.background_first + y];
-    return vec4f((vec4u(word) >> vec4u(0u, 8u, 16u, 24u)) & vec4u(255u)) / 255.0;
 }

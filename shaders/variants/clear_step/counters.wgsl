@@ -29,7 +29,7 @@ fn clear_step_counters(index: u32, count: u32) {
     atomicStore(&counters.large_done, 0u);
     atomicStore(&counters.tiles_done, 0u);
     atomicStore(&counters.listed_dots, 0u);
+    atomicStore(&counters.background_tiles, 0u);
     atomicStore(&counters.spare_0, 0u);
     atomicStore(&counters.spare_1, 0u);
-    atomicStore(&counters.spare_2, 0u);
 }

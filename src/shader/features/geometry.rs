@@ -127,7 +127,7 @@ const VERTEX_FORMATS: Feature = Feature {
         is_used: |key| key.vertices.fetch != Fetch::Direct,
         why_omitted: |_| "no primitive has indices".into(),
     }),
-    variants: &[("loads", |key, pass| stem_if(key.work.wide_loads && pass == Pass::Resolve, "wide"))],
+    variants: &[("loads", |key, pass| stem_if(key.work.wide_loads && pass.resolves(), "wide"))],
     constants: &[
         ("ONLY_TRIANGLE_LISTS", |key, _| flag(key.vertices.only_triangle_lists)),
         ("HAS_INDICES", |key, _| flag(key.vertices.fetch != Fetch::Direct)),

@@ -68,7 +68,7 @@ fn framebuffer_layout(key: &KernelKey, _: Pass) -> &'static str {
 
 /// How a pass reads the finished pixels.
 fn framebuffer_read(key: &KernelKey, pass: Pass) -> &'static str {
-    let is_wide = key.work.wide_loads && pass == Pass::Resolve && key.framebuffer_layout() == FramebufferLayout::Packed64;
+    let is_wide = key.work.wide_loads && pass.resolves() && key.framebuffer_layout() == FramebufferLayout::Packed64;
     if is_wide { "packed64_wide" } else { framebuffer_layout(key, pass) }
 }
 
@@ -205,7 +205,12 @@ const TILE_LIST: Feature = Feature {
         let is_repeated = matches!(pass.phase(), Some(TriangleId | Count | Sum | CountSamples | BoundaryTriangle));
         step_if(key.work.listed_tiles && !is_repeated, "marked")
     })],
-    constants: &[("IS_BRANCHLESS", |key, _| flag(key.work.listed_tiles)), ("TILE_SIDE", |key, _| key.tile_side().into())],
+    constants: &[
+        ("IS_BRANCHLESS", |key, _| flag(key.work.listed_tiles)),
+        ("LISTS_BACKGROUND", |key, _| flag(key.lists_background())),
+        ("HAS_DOT_STRENGTHS", |key, _| flag(key.effects.dots.is_some())),
+        ("TILE_SIDE", |key, _| key.tile_side().into()),
+    ],
     ..Feature::NONE
 };
 
