@@ -56,6 +56,9 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
             }
             (Backend::Gpu(Box::new(crate::gpu::Renderer::new(gpu.clone())), gpu).json(), Some(plan))
         }
+        Some(Backend::Oracle) if args.measure => {
+            return Err(CliError::usage("--measure times an adapter; --adapter cpu, the built-in oracle, is not timed"));
+        }
         Some(backend) => (backend.json(), None),
         None => (Value::Null, None),
     };

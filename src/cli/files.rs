@@ -35,6 +35,19 @@ pub fn stdin_text() -> Result<String, CliError> {
     String::from_utf8(bytes).map_err(|_| CliError::usage("stdin: the preset is not UTF-8 text"))
 }
 
+/// Refuses a name for a picture that says it is no PNG.
+///
+/// # Errors
+/// An extension other than `png`.
+pub fn check_picture_name(template: &str) -> Result<(), CliError> {
+    match Path::new(template).extension() {
+        Some(extension) if !extension.eq_ignore_ascii_case("png") => {
+            Err(CliError::usage(format!("{template}: pictures are written as PNG; give the file a name that ends with .png")))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// The file that `template` names: with `{n}` the first free number, otherwise a file that is free or may be overwritten.
 ///
 /// # Errors

@@ -33,6 +33,8 @@ pub fn run(common: &Common, args: &List, streams: &mut Streams) -> Result<Exit, 
         streams.text(&parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("\n"))?;
     }
     entries.iter().filter_map(|entry| entry.preset_file.as_ref().err()).for_each(|error| streams.note(&format!("warning: {error}")));
+    let faulty = folders.effects.custom().filter(|_| args.has(ListKind::Effects)).filter_map(|(_, custom)| custom.read.as_ref().err());
+    faulty.for_each(|error| streams.note(&format!("warning: {error}")));
     Ok(Exit::Done)
 }
 

@@ -15,6 +15,7 @@ use crate::preset_file::{self, PresetFile};
 
 pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit, CliError> {
     let to_stdout = args.output == "-";
+    files::check_picture_name(&args.output)?;
     if to_stdout && (streams.json || args.inputs.len() > 1) {
         return Err(CliError::usage("-o - writes one PNG to stdout; leave out --json and name one preset"));
     }

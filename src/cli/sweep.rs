@@ -31,6 +31,7 @@ const MAX_PIXELS: u64 = 1 << 27;
 
 pub fn run(common: &Common, args: &Sweep, streams: &mut Streams) -> Result<Exit, CliError> {
     let to_stdout = args.output == "-";
+    files::check_picture_name(&args.output)?;
     if to_stdout && streams.json {
         return Err(CliError::usage("-o - writes one PNG to stdout; leave out --json"));
     }

@@ -189,16 +189,41 @@ fn a_kernel_that_reads_another_row_is_caught() {
     let scene = scene("knot?tess=8");
     let view = view_of(&scene, GRADIENT);
     let mutants = [
-        ("frame.background_first + y", "frame.background_first"),
-        ("frame.background_first <= y", "frame.background_first != 1u"),
-        ("background_of_row(pixel.y)", "background_of_row(pixel.x)"),
+        ("lib/background", "frame.background_first + y", "frame.background_first"),
+        ("lib/background", "frame.background_first <= y", "frame.background_first != 1u"),
+        ("stages/shade/resolve", "background_of_row(pixel.y)", "background_of_row(pixel.x)"),
     ];
-    for (from, to) in mutants {
-        let library = mutated("stages/shade/resolve", from, to);
+    for (file, from, to) in mutants {
+        let library = mutated(file, from, to);
         let mut wrong = Renderer::with_library(gpu.clone(), library.shaders());
         for stack in [stack(&["lambert"]), with(&["xray"], &[("xray", "opacity", 0.4)])] {
             let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &pinned(Visibility::Split32));
             assert!(verdict.report.max_color_delta > 1, "{to:?}: {:?}", verdict.report);
         }
+    }
+}
+
+/// A list that leaves out tiles: of the picture before, of this one, or of the background that effects finish.
+#[test]
+fn a_list_that_forgets_tiles_is_caught() {
+    let Some(gpu) = gpu() else { return };
+    let scene = scene("teapot?tess=4");
+    let tuning = Tuning { listed_tiles: true, ..gpu.caps.tuning() };
+    let behind = |view: View| View { background: GRADIENT, ..view };
+    let views: Vec<View> = [view(&scene, SIZE)].into_iter().chain(walk(&scene, &mut Rng(3), 6, SIZE)).map(behind).collect();
+    let pictures = |mut renderer: Renderer, stack: &Stack| -> Vec<Vec<[u8; 4]>> {
+        renderer.set_tuning(tuning);
+        views.iter().map(|view| captured(&mut renderer, &scene, view, stack, &AccuracyRequest::default()).frame.color).collect()
+    };
+    let (plain, finished) = (stack(&["lambert"]), stack(&["lambert", "posterize"]));
+    let mutants = [
+        (&plain, "TILE_DRAWN_BEFORE, mark == TILE_DRAWN", "0u, mark == TILE_DRAWN"),
+        (&plain, "if mark != 0u", "if mark == TILE_DRAWN_BEFORE"),
+        (&finished, "else if LISTS_BACKGROUND", "else if LISTS_BACKGROUND && tile % 5u != 0u"),
+    ];
+    for (stack, from, to) in mutants {
+        let library = mutated("stages/shade/list_tiles", from, to);
+        let wrong = pictures(Renderer::with_library(gpu.clone(), library.shaders()), stack);
+        assert!(wrong != pictures(Renderer::new(gpu.clone()), stack), "{to:?} changes nothing");
     }
 }

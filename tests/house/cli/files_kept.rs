@@ -194,6 +194,30 @@ fn a_damaged_picture_is_called_damaged() {
     assert!(run.code == 2 && run.err.contains("the file is damaged"), "{}", run.err);
 }
 
+#[test]
+fn files_that_cannot_be_what_they_are_called_are_refused_with_what_to_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("model.obj"), "v 0 0 0\n").unwrap();
+    fs::create_dir(at("folder")).unwrap();
+    fs::create_dir(at("effects")).unwrap();
+    fs::write(at("effects/mist.wgsl"), "fn mist(").unwrap();
+    let refused = |args: &[&str], wanted: &str| {
+        let run = run_in(folder.path(), args);
+        assert!(run.code == 2 && run.err.contains(wanted), "{args:?}: {} {}", run.code, run.err);
+    };
+    refused(&["render", "model.obj", "--adapter", "cpu"], "models in .glb and .gltf files");
+    refused(&["render", "folder", "--adapter", "cpu"], "models in .glb and .gltf files");
+    refused(&["render", "facet", "--adapter", "cpu", "-o", "a.jpg"], "a.jpg: pictures are written as PNG");
+    refused(&["explain", "facet", "--adapter", "cpu", "--measure"], "the built-in oracle, is not timed");
+    refused(&["calibrate", "--seed", "7"], "--check");
+    let missing = run_in(folder.path(), &["render", "facet", "--adapter", "cpu", "--size", "4x3", "-o", "no/a.png"]);
+    assert!(missing.code != 0 && missing.err.contains("there is no folder no") && !missing.err.contains(".tmp"), "{}", missing.err);
+    assert!(!at("a.jpg").exists());
+    let listed = run_in(folder.path(), &["list", "effects"]);
+    assert!(listed.code == 0 && listed.err.contains("mist.wgsl"), "{}", listed.err);
+}
+
 #[cfg(unix)]
 mod special {
     use std::os::unix::fs::{FileTypeExt as _, symlink};
