@@ -77,6 +77,11 @@ fn frame_invocation(workgroup: vec3u, workgroups: vec3u, invocation_index: u32, 
     return (workgroup.y * workgroups.x + workgroup.x) * group_size + invocation_index;
 }
 
+// Word of the picture behind its last row.
+fn color_end() -> u32 {
+    return frame.stride * frame.size.y;
+}
+
 // A binary search, over records sorted by their first id, for the last record whose first id is not above a given id.
 struct Search {
     low: u32,

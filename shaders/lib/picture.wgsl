@@ -4,11 +4,6 @@
 //@ use lib/frame
 //@ binding @group(0) @binding(11) var<storage, read_write> color: array<u32>;
 
-// Word of the picture behind its last row.
-fn color_end() -> u32 {
-    return frame.stride * frame.size.y;
-}
-
 override HAS_DOT_STRENGTHS: bool = false;
 
 // First word of the list of tiles.
@@ -18,3 +13,10 @@ fn tile_list() -> u32 {
 
 // Gamma-encoded background of the pixel that is resolved. The resolve pass sets it first.
 var<private> background: vec4f;
+
+// The rows of a gradient are bytes that the CPU computed, so that they are the same on every adapter.
+fn background_of_row(y: u32) -> vec4f {
+    if frame.background_first <= y { return frame.background; }
+    let word = color[frame.background_first + y];
+    return vec4f((vec4u(word) >> vec4u(0u, 8u, 16u, 24u)) & vec4u(255u)) / 255.0;
+}

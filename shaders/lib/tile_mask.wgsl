@@ -1,4 +1,4 @@
-// Tile mask: a word for every tile of 8x8 pixels. Every other tile shows the background.
+// Tile mask: a word for every tile of 8x8 pixels. A tile whose word is 0 shows the background.
 
 // A triangle's box touches the tile in this picture.
 const TILE_DRAWN: u32 = 1u;

@@ -132,7 +132,7 @@ fn check(renderer: &mut Renderer, costs: &UnitCosts, count: u32, seed: u32, stre
             let scene = preset_file::load_scene(&preset, None)?;
             renderer.set_scene(&scene)?;
             let moments = preset.moments(&scene, preset.output.size);
-            let (view, stack) = moments.last().expect("a preset has at least one frame");
+            let (view, stack) = moments.last().ok_or_else(|| CliError::usage("it has no frame"))?;
             let cost = PictureCost::measured(renderer, view, stack, &preset.accuracy, Some(costs))?;
             Ok((scene, view.clone(), stack.clone(), cost))
         };

@@ -38,6 +38,7 @@ pub fn run(common: &Common, args: &Compare, streams: &mut Streams) -> Result<Exi
     let wrong_triangles = a.triangle_id.as_ref().zip(b.triangle_id.as_ref()).map(|(a, b)| triangle_ids(a, b).different);
     let passes = delta.pixels_over_tolerance <= args.max_pixels && wrong_triangles.is_none_or(|wrong| wrong <= args.max_wrong_triangles);
     if let Some(output) = &args.output {
+        files::check_picture_name(output)?;
         let png = preset_file::png_bytes(&difference_picture(&a.color, &b.color, 16), a.size)?;
         files::create(output, &Names { preset: "diff".into(), ..Names::default() }, common.force, &png)?;
     }

@@ -268,7 +268,7 @@ impl Renderer {
     /// Records the clears and passes of a picture and its shadow map.
     fn record(&mut self, encoder: &mut wgpu::CommandEncoder, view: &View, stack: &Stack) -> Result<(), RenderError> {
         let Self { device, picture, shadow, history, .. } = self;
-        // A picture that is recorded and never drawn leaves nothing that is known.
+        // If recording fails, nothing is drawn, and the next picture copies the background again.
         let shows_background = std::mem::take(&mut picture.shows_background);
         picture.clear(encoder, |occasion| occasion != ClearedBy::History)?;
         let frame = picture.frame()?;

@@ -12,7 +12,7 @@ pub struct PathWork {
     pub triangles: f64,
     /// Samples in the boxes of those triangles.
     pub candidates: f64,
-    /// Samples that the triangles cover, whatever hides them.
+    /// Samples that the triangles cover, also where others hide them.
     pub covered: f64,
     /// The most samples in the box of one of them.
     pub longest: f64,

@@ -189,8 +189,8 @@ fn a_kernel_that_reads_another_row_is_caught() {
     let scene = scene("knot?tess=8");
     let view = view_of(&scene, GRADIENT);
     let mutants = [
-        ("lib/background", "frame.background_first + y", "frame.background_first"),
-        ("lib/background", "frame.background_first <= y", "frame.background_first != 1u"),
+        ("lib/picture", "frame.background_first + y", "frame.background_first"),
+        ("lib/picture", "frame.background_first <= y", "frame.background_first != 1u"),
         ("stages/shade/resolve", "background_of_row(pixel.y)", "background_of_row(pixel.x)"),
     ];
     for (file, from, to) in mutants {

@@ -2,7 +2,6 @@
 // a dot that fades in front never hides one behind it.
 //@ use lib/frame
 //@ use lib/triangle
-//@ use lib/picture
 //@ use lib/dots
 //@ use effects/dots
 //@ use variants/dot_list

@@ -3,7 +3,6 @@
 //@ use lib/frame
 //@ use lib/color
 //@ use lib/picture
-//@ use lib/background
 //@ use variants/framebuffer_read
 //@ use variants/shading
 //@ use steps/finish_step

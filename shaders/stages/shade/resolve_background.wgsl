@@ -3,7 +3,6 @@
 //@ use lib/frame
 //@ use lib/color
 //@ use lib/picture
-//@ use lib/background
 //@ use steps/finish_step
 
 @compute @workgroup_size(8, 8)
