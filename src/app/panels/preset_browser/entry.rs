@@ -36,13 +36,6 @@ pub struct Responses {
 }
 
 impl Shown<'_> {
-    pub fn name(&self) -> &str {
-        match &self.entry.preset_file {
-            Ok(preset_file) => preset_file.title(),
-            Err(_) => &self.entry.id,
-        }
-    }
-
     fn about(&self) -> String {
         match &self.entry.preset_file {
             Ok(preset_file) => preset_file.preset.about.clone(),
@@ -71,7 +64,7 @@ pub fn entry_size(layout: Layout, width: f32) -> (egui::Vec2, usize) {
 pub fn entry_ui(ui: &mut Ui, shown: &Shown<'_>, layout: Layout, rect: Rect) -> Responses {
     let id = egui::Id::unique(("preset", &shown.entry.id));
     let response = ui.interact(rect, id, Sense::click());
-    let name = shown.name();
+    let name = shown.entry.title();
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, shown.is_open, format!("Preset {name}")));
     let is_near = ui.rect_contains_pointer(rect) || response.has_focus();
     if shown.is_open {
@@ -90,12 +83,15 @@ pub fn entry_ui(ui: &mut Ui, shown: &Shown<'_>, layout: Layout, rect: Rect) -> R
     };
     match layout {
         Layout::List => text_ui(ui, shown, Rect::from_min_max(pos2(picture.right() + 8.0, picture.top()), rect.max - vec2(6.0, 4.0))),
-        Layout::Grid => name_ui(ui, shown, Rect::from_min_max(pos2(picture.left(), picture.bottom()), rect.max - vec2(4.0, 2.0))),
+        Layout::Grid => name_ui(ui, shown, Rect::from_min_max(pos2(picture.left(), picture.bottom()), rect.max - vec2(4.0, 2.0)), ""),
     }
     let star = star_ui(ui, shown, star_rect, is_near, layout == Layout::Grid);
     let about = shown.about();
     let entry = response.on_hover_ui(|ui| {
-        ui.label(RichText::new(name).color(theme::text_strong()));
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(name).color(theme::text_strong()));
+            ui.label(theme::weak(id_beside_title(shown.entry)));
+        });
         ui.label(&about);
         if let Ok(found) = &shown.entry.preset_file {
             let effects: Vec<&str> = found.preset.stack.0.iter().map(|enabled| enabled.effect.name).collect();
@@ -125,7 +121,7 @@ fn picture_ui(ui: &Ui, shown: &Shown<'_>, rect: Rect) {
 /// Name and description beside the thumbnail.
 fn text_ui(ui: &Ui, shown: &Shown<'_>, rect: Rect) {
     let name = Rect::from_min_max(rect.min, pos2(rect.right() - STAR, rect.top() + 20.0));
-    name_ui(ui, shown, name);
+    name_ui(ui, shown, name, id_beside_title(shown.entry));
     let ink = if shown.is_open { theme::text() } else { theme::text_weak() };
     let format = egui::TextFormat::simple(FontId::proportional(11.5), ink);
     let mut job = egui::text::LayoutJob::single_section(shown.about(), format);
@@ -134,11 +130,17 @@ fn text_ui(ui: &Ui, shown: &Shown<'_>, rect: Rect) {
     painter.galley(rect.min + vec2(0.0, 20.0), painter.layout_job(job), ink);
 }
 
-/// The name, in one line, and a dot for unsaved changes.
-fn name_ui(ui: &Ui, shown: &Shown<'_>, rect: Rect) {
+/// The id of a preset whose title is another text; else nothing.
+fn id_beside_title(entry: &GalleryEntry) -> &str {
+    if entry.title() == entry.id { "" } else { &entry.id }
+}
+
+/// The name and behind it the id, in one line, and a dot for unsaved changes.
+fn name_ui(ui: &Ui, shown: &Shown<'_>, rect: Rect, id: &str) {
     let dot = if shown.is_modified { 12.0 } else { 0.0 };
     let format = egui::TextFormat::simple(FontId::proportional(13.0), shown.color());
-    let mut job = egui::text::LayoutJob::single_section(shown.name().to_owned(), format);
+    let mut job = egui::text::LayoutJob::single_section(shown.entry.title().to_owned(), format);
+    job.append(id, if id.is_empty() { 0.0 } else { 6.0 }, egui::TextFormat::simple(FontId::proportional(11.0), theme::text_weak()));
     job.wrap =
         egui::text::TextWrapping { max_width: rect.width() - dot, max_rows: 1, break_anywhere: true, overflow_character: Some('…') };
     let painter = ui.painter_at(rect);
@@ -153,7 +155,7 @@ fn name_ui(ui: &Ui, shown: &Shown<'_>, rect: Rect) {
 /// The star of a favorite, or a faint one to click while the pointer is near.
 fn star_ui(ui: &Ui, shown: &Shown<'_>, rect: Rect, is_near: bool, is_over_picture: bool) -> Response {
     let response = ui.interact(rect, egui::Id::unique(("star", &shown.entry.id)), Sense::click());
-    let name = format!("Favorite {}", shown.name());
+    let name = format!("Favorite {}", shown.entry.title());
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, shown.is_favorite, &name));
     let is_seen = shown.is_favorite || is_near || response.has_focus();
     if is_seen && is_over_picture {
