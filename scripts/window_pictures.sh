@@ -54,10 +54,10 @@ stop() {
     rm -rf "$work/rasterlab"
 }
 
-start 1400 860 hero-etching --set accuracy.render_scale=double
-nap 15
-key v
+start 1400 860 hero-etching
 nap 10
+key v
+nap 15
 shot window 1400x860
 stop
 
