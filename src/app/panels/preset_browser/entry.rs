@@ -83,14 +83,14 @@ pub fn entry_ui(ui: &mut Ui, shown: &Shown<'_>, layout: Layout, rect: Rect) -> R
     };
     match layout {
         Layout::List => text_ui(ui, shown, Rect::from_min_max(pos2(picture.right() + 8.0, picture.top()), rect.max - vec2(6.0, 4.0))),
-        Layout::Grid => name_ui(ui, shown, Rect::from_min_max(pos2(picture.left(), picture.bottom()), rect.max - vec2(4.0, 2.0)), ""),
+        Layout::Grid => name_ui(ui, shown, Rect::from_min_max(pos2(picture.left(), picture.bottom()), rect.max - vec2(4.0, 2.0))),
     }
     let star = star_ui(ui, shown, star_rect, is_near, layout == Layout::Grid);
     let about = shown.about();
     let entry = response.on_hover_ui(|ui| {
         ui.horizontal(|ui| {
             ui.label(RichText::new(name).color(theme::text_strong()));
-            ui.label(theme::weak(id_beside_title(shown.entry)));
+            ui.label(theme::weak(&shown.entry.id));
         });
         ui.label(&about);
         if let Ok(found) = &shown.entry.preset_file {
@@ -121,7 +121,7 @@ fn picture_ui(ui: &Ui, shown: &Shown<'_>, rect: Rect) {
 /// Name and description beside the thumbnail.
 fn text_ui(ui: &Ui, shown: &Shown<'_>, rect: Rect) {
     let name = Rect::from_min_max(rect.min, pos2(rect.right() - STAR, rect.top() + 20.0));
-    name_ui(ui, shown, name, id_beside_title(shown.entry));
+    name_ui(ui, shown, name);
     let ink = if shown.is_open { theme::text() } else { theme::text_weak() };
     let format = egui::TextFormat::simple(FontId::proportional(11.5), ink);
     let mut job = egui::text::LayoutJob::single_section(shown.about(), format);
@@ -130,17 +130,11 @@ fn text_ui(ui: &Ui, shown: &Shown<'_>, rect: Rect) {
     painter.galley(rect.min + vec2(0.0, 20.0), painter.layout_job(job), ink);
 }
 
-/// The id of a preset whose title is another text; else nothing.
-fn id_beside_title(entry: &GalleryEntry) -> &str {
-    if entry.title() == entry.id { "" } else { &entry.id }
-}
-
-/// The name and behind it the id, in one line, and a dot for unsaved changes.
-fn name_ui(ui: &Ui, shown: &Shown<'_>, rect: Rect, id: &str) {
+/// The name, in one line, and a dot for unsaved changes.
+fn name_ui(ui: &Ui, shown: &Shown<'_>, rect: Rect) {
     let dot = if shown.is_modified { 12.0 } else { 0.0 };
     let format = egui::TextFormat::simple(FontId::proportional(13.0), shown.color());
     let mut job = egui::text::LayoutJob::single_section(shown.entry.title().to_owned(), format);
-    job.append(id, if id.is_empty() { 0.0 } else { 6.0 }, egui::TextFormat::simple(FontId::proportional(11.0), theme::text_weak()));
     job.wrap =
         egui::text::TextWrapping { max_width: rect.width() - dot, max_rows: 1, break_anywhere: true, overflow_character: Some('…') };
     let painter = ui.painter_at(rect);
