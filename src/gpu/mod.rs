@@ -51,22 +51,16 @@ mod hardware_materials;
 mod hardware_pipeline;
 mod readback;
 
-mod frame_counts;
 mod hardware_ids;
 mod renderer;
 mod warm_up;
-pub mod workload;
 
 mod capture;
 pub mod hardware;
 pub mod naive;
 
 pub mod bench;
-pub mod timed_picture;
-
-mod option_times;
-
-pub mod calibration;
+pub mod frame_times;
 pub mod trade;
 
 pub use buffers::BufferNote;

@@ -1,12 +1,10 @@
 //! The planner: the cheapest kernel that scene, stack and tolerance allow on this adapter.
 
 mod caps;
-pub mod cost_model;
 mod costs;
 mod error;
 mod explain;
 mod key;
-mod least_squares;
 mod loops;
 mod measured;
 mod options;
@@ -19,7 +17,7 @@ use std::sync::Arc;
 pub use self::{
     caps::{Caps, MOST_SMALL_SAMPLES, Tuning},
     error::PlanError,
-    measured::{MEASURED_OPTIONS, MEASURED_TRIANGLES, Measured, OptionCosts},
+    measured::MeasuredCosts,
     request::{AccuracyRequest, Tier, Tolerance},
     traits::{InexactEffect, StackTraits},
 };
@@ -57,6 +55,7 @@ pub struct Plan {
     pub classes: Option<SizeClasses>,
     /// Why each axis is on its option.
     causes: [Cause; AXES.len()],
+    measured: MeasuredCosts,
     caps: Caps,
     has_default_tuning: bool,
 }
@@ -83,6 +82,7 @@ pub fn plan(needs: &Arc<Needs>, stack: &StackTraits, caps: &Caps, tuning: &Tunin
         prediction,
         tolerance: request.tolerance(),
         causes,
+        measured: request.measured,
         caps: *caps,
         has_default_tuning: *tuning == caps.tuning(),
     })

@@ -24,7 +24,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
     ("preset", &["effects", "accuracy", "math", "params", "plan", "scene", "shader"]),
     ("oracle", &["effects", "frame", "math", "measure", "params", "scene", "work"]),
     ("gpu", &["effects", "frame", "accuracy", "math", "measure", "params", "plan", "scene", "preset", "shader"]),
-    ("preset_file", &["effect_files", "effects", "frame", "accuracy", "math", "params", "plan", "scene", "preset", "shader"]),
+    ("preset_file", &["effect_files", "effects", "frame", "accuracy", "math", "params", "scene", "preset"]),
     // A film names neither `gpu` nor `oracle`: whoever asks for one says who draws it.
     ("film", &["frame", "math", "scene", "preset", "preset_file"]),
     ("stress", &["effects", "frame", "gpu", "accuracy", "math", "measure", "oracle", "params", "plan", "scene", "preset", "work"]),
