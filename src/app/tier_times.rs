@@ -164,8 +164,9 @@ pub fn numbers(state: &State, tier: Tier) -> Option<TierNumbers> {
     Some(TierNumbers { time: times.time(&plan.key), judged, bound: plan.prediction })
 }
 
-/// Follows the picture: drops what was measured of another one, and times the next tier when everything is at rest.
-pub fn follow(ctx: &egui::Context, state: &mut State, is_held: bool) {
+/// Follows the picture: drops what was measured of another one, and times the next tier when everything is at rest and the window not
+/// otherwise busy.
+pub fn follow(ctx: &egui::Context, state: &mut State, is_busy: bool) {
     let is_looked_at = std::mem::take(&mut state.tier_times.is_looked_at);
     let Some(requested) = state.screen.requested() else { return };
     let rest_s = state.tier_times.rest_s(requested, state.now_s);
@@ -187,7 +188,7 @@ pub fn follow(ctx: &egui::Context, state: &mut State, is_held: bool) {
         let (plan, accuracy) = Tier::ALL.into_iter().find_map(of)?;
         Some((plan.key, Inputs { accuracy, ..drawn.clone() }))
     };
-    if !is_looked_at || is_held || state.tier_times.is_running() {
+    if !is_looked_at || is_busy || state.tier_times.is_running() {
         return;
     }
     let Some((kernel, inputs)) = next() else {

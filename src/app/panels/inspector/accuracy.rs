@@ -1,7 +1,7 @@
 //! The folder of accuracy: one slider from draft to strict, what each tier was measured to cost and judged to err by on the open picture, and
 //! below it, folded, the axes that the picture can use, each with the option that the planner took and why.
 
-use eframe::egui::{self, Align2, RichText, Sense, Ui, pos2, vec2};
+use eframe::egui::{self, Align2, Color32, RichText, Sense, Ui, pos2, vec2};
 
 use super::rows::{folder, setting_ui};
 use crate::{
@@ -96,30 +96,30 @@ fn names_ui(ui: &mut Ui, setting: &'static Setting, commands: &Commands, chosen:
 
 /// What each tier costs and errs by on the open picture. While this is looked at, tiers are measured.
 fn tiers_ui(ui: &mut Ui, state: &State, commands: &Commands, chosen: Tier) {
-    let table = egui::Grid::new("tiers").num_columns(3).spacing(vec2(theme::GAP, 1.0));
-    let shown = ui.horizontal(|ui| {
-        ui.add_space(theme::GAP);
-        table.show(ui, |ui| {
-            for tier in Tier::ALL {
-                let color = if tier == chosen { theme::text_strong() } else { theme::text_weak() };
-                let numbers = tier_times::numbers(state, tier);
-                let (time, error) = match &numbers {
-                    Some(numbers) => (time_text(numbers.time, state.screen.gpu.caps.timestamps), error_text(numbers)),
-                    None if state.screen.plan().is_none() => ("not measured yet".into(), String::new()),
-                    None => ("cannot be drawn so".into(), String::new()),
-                };
-                for text in [tier.name().to_owned(), time, error] {
-                    ui.label(RichText::new(text).size(11.5).color(color));
-                }
-                ui.end_row();
-            }
-        });
+    let shown = ui.vertical(|ui| {
+        for tier in Tier::ALL {
+            let text = match tier_times::numbers(state, tier) {
+                Some(numbers) => format!("{}, {}", time_text(numbers.time, state.screen.gpu.caps.timestamps), error_text(&numbers)),
+                None if state.screen.plan().is_none() => "not measured yet".into(),
+                None => "this picture cannot be drawn so".into(),
+            };
+            line_ui(ui, tier.name(), text, if tier == chosen { theme::text_strong() } else { theme::text_weak() });
+        }
     });
-    let hint = "Milliseconds of a frame, measured on this picture while the window is at rest. Errors are judged where Verify has compared the \
-                tier with the oracle; up to (≤) what its options may err by elsewhere.";
+    let hint = "Milliseconds of a frame, measured on this picture while the window is at rest. Wrong pixels per million and the largest \
+                difference of a color, as Verify has judged this picture, or (≤) what the options of the tier may err by.";
     if ui.is_rect_visible(shown.response.on_hover_text(hint).rect) {
         commands.send(Command::MeasureTiers);
     }
+}
+
+/// A name and what there is to say of it.
+fn line_ui(ui: &mut Ui, name: &str, text: String, color: Color32) {
+    ui.horizontal(|ui| {
+        ui.add_space(theme::GAP);
+        ui.add_sized([64.0, 16.0], egui::Label::new(theme::weak(name).size(11.5)));
+        ui.add(egui::Label::new(RichText::new(text).size(11.5).color(color)).truncate());
+    });
 }
 
 fn time_text(time: TierTime, has_timer: bool) -> String {
@@ -131,14 +131,13 @@ fn time_text(time: TierTime, has_timer: bool) -> String {
     }
 }
 
-/// `0 ppm, 17 true, color Δ 1`, or what the options may err by: `≤ 400 ppm, color Δ ≤ 2`.
+/// `0 ppm, 17 true, Δ 1`, or what the options may err by: `≤ 400 ppm, Δ ≤ 2`.
 fn error_text(numbers: &TierNumbers) -> String {
     if let Some(judged) = numbers.judged {
         let against_true = judged.true_ppm.map_or_else(String::new, |ppm| format!(", {} true", short(ppm)));
-        return format!("{} ppm{against_true}, color Δ {}", short(judged.wrong_ppm), judged.channel);
+        return format!("{} ppm{against_true}, Δ {}", short(judged.wrong_ppm), judged.channel);
     }
-    let bound = |value: f64, most: f64| short(value.min(most));
-    format!("≤ {} ppm, color Δ ≤ {}", bound(numbers.bound.wrong_ppm, 1e6), bound(numbers.bound.channel, 255.0))
+    format!("≤ {} ppm, Δ ≤ {}", short(numbers.bound.wrong_ppm.min(1e6)), short(numbers.bound.channel.min(255.0)))
 }
 
 /// `12.34 ms GPU, color Δ 0` and `wrong ppm: 0 snapped, 17 true`.
@@ -151,20 +150,13 @@ fn measured_texts(time: &str, findings: &Findings) -> (String, String) {
 
 /// Milliseconds and error of the picture that is shown.
 fn numbers_ui(ui: &mut Ui, state: &State) {
-    let line = |ui: &mut Ui, name: &str, text: String| {
-        ui.horizontal(|ui| {
-            ui.add_space(theme::GAP);
-            ui.add_sized([64.0, 16.0], egui::Label::new(theme::weak(name).size(11.5)));
-            ui.add(egui::Label::new(RichText::new(text).monospace().size(11.5).color(theme::text_strong())).truncate());
-        });
-    };
     let time = time_line(Some(&state.screen)).0;
     let (measured, wrong) = match state.verification.verdict_on(state.screen.drawn()) {
         Some(verdict) => measured_texts(&time, &verdict.findings),
         None => (time, "error not measured (V)".to_owned()),
     };
-    line(ui, "measured", measured);
-    line(ui, "", wrong);
+    line_ui(ui, "measured", measured, theme::text_strong());
+    line_ui(ui, "", wrong, theme::text_strong());
 }
 
 /// The axes that decide about something in the picture, and those that the preset pins.
