@@ -12,7 +12,7 @@ use super::{
     precision::REST_S,
     screen::Inputs,
     state::State,
-    timings::{Cost, Sample, Summary, has_settled},
+    timings::{Sample, Summary, has_settled},
     verification::Verdict,
 };
 use crate::{
@@ -175,14 +175,7 @@ pub fn follow(ctx: &egui::Context, state: &mut State, is_busy: bool) {
     if state.session.playback.playing || state.jobs.is_computing() || screen.is_waiting() || !screen.timings().is_settled() {
         return state.tier_times.stop();
     }
-    let (Some(plan), Some(drawn)) = (screen.plan(), screen.drawn().filter(|drawn| Some(*drawn) == screen.requested())) else { return };
-    if let Cost::Settled(summary) = screen.timings().cost()
-        && state.tier_times.time(&plan.key) == TierTime::NotYet
-    {
-        let (kernel, ms) = (plan.key.clone(), summary.frame.median);
-        state.tier_times.add(kernel, Some(ms));
-        return ctx.request_repaint();
-    }
+    let Some(drawn) = screen.drawn().filter(|drawn| Some(*drawn) == screen.requested()) else { return };
     let next = || {
         let of = |tier| plan_in(state, tier).filter(|(plan, _)| state.tier_times.time(&plan.key) == TierTime::NotYet);
         let (plan, accuracy) = Tier::ALL.into_iter().find_map(of)?;
