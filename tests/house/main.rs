@@ -19,7 +19,5 @@ mod rounds;
 mod scenes;
 mod scopes;
 mod shaders;
-mod sizes;
 mod surface_inputs;
 mod twins;
-mod weights;

@@ -1,44 +1,29 @@
-//! Pictures that are timed: as a whole and pass by pass, once their kernels are compiled.
+//! Times of the frames of one picture: as a whole and pass by pass, once its kernels are compiled.
 
 use std::{
     collections::HashMap,
-    sync::Arc,
     time::{Duration, Instant},
 };
 
 use super::{
-    device::Gpu,
     error::RenderError,
     particles::Wait,
     renderer::{Renderer, Report},
     timer::Detail,
     warm_up::{self, FRAMES_PER_SAMPLE},
-    workload::MovedSizes,
 };
-use crate::{
-    effects::{Effect, Stack},
-    measure::timing,
-    plan::{AccuracyRequest, Tuning, cost_model::FrameWork},
-    preset::{Preset, SceneSource},
-    scene::{Scene, builtin, view::View},
-};
+use crate::{effects::Stack, measure::timing, plan::AccuracyRequest, scene::view::View};
 
 /// Times of one picture, milliseconds: medians, and on a CPU adapter the shortest, since other work on the machine only makes frames longer.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct FrameTimes {
     /// The whole frame: by timestamps, or the time that passed on the CPU where the adapter has none; above 0.
     pub whole_ms: f64,
-    /// Every pass by its label; empty without timestamps.
+    /// Every pass by its label, timed alone; empty without timestamps.
     pub passes: Vec<(String, f64)>,
     /// Frames that were timed as a whole.
     pub frames: usize,
 }
-
-/// An effect and the values that some of its parameters have instead of their defaults.
-pub type Enabled = (&'static str, &'static [(&'static str, f64)]);
-
-/// A picture: built-in scene, effects and size in pixels.
-pub type Picture<'a> = (&'a str, &'static [Enabled], [u32; 2]);
 
 /// Frames of a picture that are drawn before any is timed.
 const FIRST_FRAMES: usize = 2;
@@ -47,83 +32,23 @@ const FRAMES: [usize; 2] = [3, 7];
 /// Time for the frames of a picture beyond the least number of them.
 const PICTURE_BUDGET: Duration = Duration::from_millis(40);
 
-/// A picture that is ready to be timed.
-pub struct TimedPicture {
-    renderer: Renderer,
-    view: View,
-    stack: Stack,
-    accuracy: AccuracyRequest,
-}
-
-impl TimedPicture {
-    /// Compiles everything that the picture needs, with `tuning` instead of the adapter's usual one.
+impl FrameTimes {
+    /// Draws a picture until its kernels are compiled, keeps a card busy so that its clock is that of one at work, and times frames.
     ///
     /// # Errors
-    /// When the picture cannot be drawn, or the device is lost.
-    pub fn new(gpu: &Arc<Gpu>, picture: &Picture, accuracy: AccuracyRequest, tuning: Tuning) -> Result<Self, RenderError> {
-        let (scene, view, stack) = made(picture);
-        let mut renderer = Renderer::new(gpu.clone());
-        renderer.set_tuning(tuning);
-        renderer.set_scene(&scene)?;
-        draw_until_ready(&mut renderer, &view, &stack, &accuracy)?;
-        Ok(Self { renderer, view, stack, accuracy })
+    /// When the picture cannot be drawn, the adapter writes no timestamps, or the device is lost.
+    pub fn of(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Self, RenderError> {
+        draw_until_ready(renderer, view, stack, accuracy)?;
+        let gpu = renderer.gpu().clone();
+        warm_up::warm_up(&gpu, warm_up::FROM_IDLE, 1, |_, frames| {
+            sample(renderer, view, stack, accuracy, Detail::Whole, frames).map(|_| true)
+        })?;
+        timed(renderer, view, stack, accuracy)
     }
-
-    /// What its last frame had to do.
-    ///
-    /// # Errors
-    /// When nothing was drawn.
-    pub fn work(&self, moved_sizes: MovedSizes) -> Result<FrameWork, RenderError> {
-        self.renderer.work(&self.stack, moved_sizes)
-    }
-
-    /// Draws frames without a pause between them, and waits for them.
-    ///
-    /// # Errors
-    /// When the device is lost.
-    pub fn draw(&mut self, frames: usize) -> Result<(), RenderError> {
-        sample(&mut self.renderer, &self.view, &self.stack, &self.accuracy, Detail::Whole, frames).map(|_| ())
-    }
-
-    /// Times it as a whole and pass by pass in turn.
-    ///
-    /// # Errors
-    /// When the device is lost.
-    pub fn times(&mut self) -> Result<FrameTimes, RenderError> {
-        timed(&mut self.renderer, &self.view, &self.stack, &self.accuracy)
-    }
-
-    /// Milliseconds of one whole frame; none where the adapter has not written its timestamps.
-    ///
-    /// # Errors
-    /// When the device is lost.
-    pub fn whole_ms(&mut self) -> Result<Option<f64>, RenderError> {
-        whole_ms(&mut self.renderer, &self.view, &self.stack, &self.accuracy)
-    }
-}
-
-/// The scene, view and stack of a picture.
-pub fn made((query, effects, size): &Picture) -> (Arc<Scene>, View, Stack) {
-    let scene = Arc::new(builtin::build(query).expect("a built-in scene"));
-    let mut preset = Preset { scene: SceneSource::Builtin((*query).to_owned()), ..Preset::default() };
-    for (name, values) in *effects {
-        let effect = Effect::find(name).expect("a built-in effect");
-        let words = &mut preset.stack.enable(effect).words;
-        for (field, value) in *values {
-            let field = effect.field(field).expect("a parameter of the effect");
-            field.set(words, &[*value]).expect("an allowed value");
-        }
-    }
-    preset.clock.time_s = if preset.stack.has_steps() { 0.5 } else { 0.0 };
-    let (view, stack) = preset.moments(&scene, *size).pop().expect("a preset has at least one frame");
-    (scene, view, stack)
 }
 
 /// Draws until kernels are compiled and queues are large enough.
-///
-/// # Errors
-/// When the picture cannot be drawn, or the device is lost.
-pub fn draw_until_ready(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<(), RenderError> {
+fn draw_until_ready(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<(), RenderError> {
     let mut left = FIRST_FRAMES;
     // Queues grow a few times at most.
     for _ in 0..16 {
@@ -164,18 +89,6 @@ fn whole_ms(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &Accu
     let passed_ms = begin.elapsed().as_secs_f64() * 1e3 / frames as f64;
     let ms = if renderer.gpu().caps.timestamps { report.gpu_ms } else { Some(passed_ms) };
     Ok(ms.filter(|ms| *ms > 0.0))
-}
-
-/// Times a picture that was drawn before, on a card that has been kept busy first.
-///
-/// # Errors
-/// When the picture cannot be drawn, the adapter writes no timestamps, or the device is lost.
-pub fn time(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<FrameTimes, RenderError> {
-    let gpu = renderer.gpu().clone();
-    warm_up::warm_up(&gpu, warm_up::FROM_IDLE, 1, |_, frames| {
-        sample(renderer, view, stack, accuracy, Detail::Whole, frames).map(|_| true)
-    })?;
-    timed(renderer, view, stack, accuracy)
 }
 
 /// Times a picture: as a whole and pass by pass in turn.
