@@ -21,7 +21,7 @@ fn module(functions: &str, body: &str) -> Reflected {
     let entry = "@compute @workgroup_size(64) fn main(@builtin(local_invocation_index) at: u32) {";
     // The arguments of a kernel, so that naga folds nothing.
     let text = format!("{HEAD}\n{functions}\n{entry}\n var x = f32(at); var n = at; var v = vec4f(x);\n{body}\n}}");
-    reflect(&Linked { text, files: vec![("test".into(), 0)] }, false).unwrap_or_else(|error| panic!("{body}: {}", error.message))
+    reflect(&Linked { text, parts: Vec::new() }, false).unwrap_or_else(|error| panic!("{body}: {}", error.message))
 }
 
 /// What a body adds to the weight of an empty kernel.
