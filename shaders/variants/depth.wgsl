@@ -36,11 +36,12 @@ const DEPTH_STANDARD = 1u;
 const DEPTH_NDC16 = 2u;
 const DEPTH_LOG = 3u;
 
+const DEPTH_ABOVE_ONE = 0x3f800001u; // bits of the least float above 1
 const DEPTH_LOG_FIRST = 0x30000000u; // bits of 2^-31: logarithmic keys cover five bits of the exponent, 2^-31 to 1
 
 fn depth_key(z: f32) -> u32 {
     // A conventional float depth, 0 at the near plane and 1 far away, turned so that larger is nearer. Its keys crowd far away.
-    if DEPTH_FORMAT == DEPTH_STANDARD { return 0x3f800001u - bitcast<u32>(clamp(1.0 - z, 0.0, 1.0)); }
+    if DEPTH_FORMAT == DEPTH_STANDARD { return DEPTH_ABOVE_ONE - bitcast<u32>(clamp(1.0 - z, 0.0, 1.0)); }
     // 16 bits, evenly spaced in normalized device depth.
     if DEPTH_FORMAT == DEPTH_NDC16 { return max(u32(clamp(z, 0.0, 1.0) * 65535.0 + 0.5), 1u); }
     // A float's bits are a logarithm already: exponent and fraction, cut to 16 or 24 bits.
@@ -52,7 +53,7 @@ fn depth_key(z: f32) -> u32 {
 }
 
 fn depth_bits(key: u32) -> u32 {
-    if DEPTH_FORMAT == DEPTH_STANDARD { return max(bitcast<u32>(1.0 - bitcast<f32>(0x3f800001u - key)), 1u); }
+    if DEPTH_FORMAT == DEPTH_STANDARD { return max(bitcast<u32>(1.0 - bitcast<f32>(DEPTH_ABOVE_ONE - key)), 1u); }
     // A product is rounded correctly everywhere, a quotient is not.
     if DEPTH_FORMAT == DEPTH_NDC16 { return bitcast<u32>(f32(key) * (1.0 / 65535.0)); }
     if DEPTH_FORMAT == DEPTH_LOG { return DEPTH_LOG_FIRST + key * DEPTH_LOG_STEP; }

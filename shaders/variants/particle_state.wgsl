@@ -65,16 +65,21 @@ fn state_unpacked(frame_number: u32, words: vec4u) -> ParticleState {
     return ParticleState(step_params[c].p.center.xyz + step_params[c].p.room_m * at, v, words.y >> 16u, words.w >> 16u);
 }
 
+const HALF_LARGEST = 0x477fe000u;   // bits of 65504 as a float
+const HALF_LEAST = 0x38801000u;     // bits of 2^-14, rounded as below
+const HALF_REBIAS = 0x38000000u;    // a float's exponent is 112 more than a half float's
+const HALF_ROUNDING = 0x1000u;      // half of a half float's last bit
+
 // Floats as half floats, rounded to nearest; those below 2^-14 are 0, and none is infinite.
 fn state_halves(v: vec3f) -> vec3u {
     let bits = bitcast<vec3u>(v);
-    let size = min(bits & vec3u(0x7fffffffu), vec3u(0x477fe000u)) + vec3u(0x1000u);
-    let half = select((size - vec3u(0x38000000u)) >> vec3u(13u), vec3u(0u), size < vec3u(0x38801000u));
+    let size = min(bits & vec3u(0x7fffffffu), vec3u(HALF_LARGEST)) + vec3u(HALF_ROUNDING);
+    let half = select((size - vec3u(HALF_REBIAS)) >> vec3u(13u), vec3u(0u), size < vec3u(HALF_LEAST));
     return ((bits >> vec3u(16u)) & vec3u(0x8000u)) | half;
 }
 
 fn state_floats(halves: vec3u) -> vec3f {
     let size = halves & vec3u(0x7fffu);
-    let bits = select((size << vec3u(13u)) + vec3u(0x38000000u), vec3u(0u), size == vec3u(0u));
+    let bits = select((size << vec3u(13u)) + vec3u(HALF_REBIAS), vec3u(0u), size == vec3u(0u));
     return bitcast<vec3f>(((halves & vec3u(0x8000u)) << vec3u(16u)) | bits);
 }
