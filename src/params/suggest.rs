@@ -22,7 +22,7 @@ pub fn did_you_mean<'a>(written: &str, candidates: impl Iterator<Item = &'a str>
 }
 
 /// `; did you mean "facet"?`.
-pub fn suggestion(candidate: &str) -> String {
+fn suggestion(candidate: &str) -> String {
     format!("; did you mean {candidate:?}?")
 }
 

@@ -46,7 +46,7 @@ pub use frame_status::{FrameStatus, frame_status};
 pub use gallery::{BUILTIN_DIR, Folders, GalleryEntry, Origin, gallery, open, user_effects_folder, user_folder};
 pub use goldens::{golden_folder, golden_paths};
 pub use hash::{Fnv, hex, preset_hash, scene_hash};
-pub use load::{Migrated, load, load_with, migrated, parse, parse_file, parse_with};
+pub use load::{load, load_with, parse, parse_file, parse_with};
 pub use look::Look;
 pub use manage::{duplicate, file_stem, rename};
 pub use merge::{Merged, merge};
