@@ -32,7 +32,6 @@ mod scope;
 mod share;
 pub mod sweep;
 pub mod toml_value;
-mod trash;
 mod write;
 
 pub use apng::{AnimatedPng, AnimationOptions};
@@ -53,4 +52,3 @@ pub use merge::{Merged, merge};
 pub use picture::{Provenance, png_bytes, png_of_frame, png_pixels, png_with_preset, preset_from_png};
 pub use scene::{SceneError, load_scene, scene_bounds};
 pub use share::{from_line, to_line};
-pub use trash::{Trashed, move_to_trash, restore, trashed};

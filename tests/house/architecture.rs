@@ -94,6 +94,8 @@ const GUARDED: &[(&str, &[&str])] = &[
     ("egui_wgpu", &["app"]),
     ("rfd", &["app"]),
     ("notify", &["app"]),
+    ("trash", &["app"]),
+    ("etcetera", &["preset_file"]),
     ("rstar", &["gpu"]),
     ("clap", &["cli", "main"]),
     ("indicatif", &["cli"]),
