@@ -1,0 +1,414 @@
+//! Parameters: one registry entry for everything that a person can set.
+//!
+//! A [`Param`] says what a value is called, what it means, its type, its ranges and its unit. Effects declare theirs with
+//! [`params!`](crate::params!), which also lays the struct out as WGSL has it; settings of a preset and accuracy axes wrap the same
+//! type. Sliders, preset files, `--set`, listings, the JSON schema and uniform bytes all read these entries.
+
+mod legible;
+mod measure;
+mod suggest;
+mod value;
+
+use std::ops::{Deref, RangeInclusive};
+
+pub use legible::{is_hidden, legible, legible_line};
+pub use measure::Measure;
+pub use suggest::{did_you_mean, likeness, suggestion};
+pub use value::{Stored, Value, ValueError, ValueType, format_number};
+
+/// One parameter: what every surface of the program needs to know about it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Param {
+    /// Stable name: key in preset files, end of a `--set` path, WGSL member. A new name needs a new schema.
+    pub name: &'static str,
+    /// Tooltip and help text.
+    pub doc: &'static str,
+    pub value_type: ValueType,
+    /// What the kernel survives; every number outside it is an error.
+    pub hard: [f64; 2],
+    /// What the slider spans.
+    pub soft: [f64; 2],
+    /// Shown with a slider; otherwise as a number field alone.
+    pub has_slider: bool,
+    /// Unit shown after the value; empty for a plain number.
+    pub unit: &'static str,
+    /// The slider moves in decades.
+    pub log: bool,
+    /// A height in world space: a length that counts from the origin, along y.
+    pub height: bool,
+    /// Shown only while the choice of this name has one of these words.
+    pub when: Option<(&'static str, &'static [&'static str])>,
+}
+
+impl Param {
+    pub const fn new(name: &'static str, doc: &'static str, value_type: ValueType) -> Self {
+        let (hard, soft) = value_type.default_ranges();
+        Self { name, doc, value_type, hard, soft, has_slider: false, unit: "", log: false, height: false, when: None }
+    }
+
+    pub const fn hard(mut self, range: RangeInclusive<f64>) -> Self {
+        self.hard = [*range.start(), *range.end()];
+        self.soft = self.hard;
+        self
+    }
+
+    pub const fn soft(mut self, range: RangeInclusive<f64>) -> Self {
+        self.soft = [*range.start(), *range.end()];
+        self.has_slider = true;
+        self
+    }
+
+    pub const fn unit(mut self, unit: &'static str) -> Self {
+        self.unit = unit;
+        self
+    }
+
+    pub const fn log(mut self, log: bool) -> Self {
+        self.log = log;
+        self
+    }
+
+    pub const fn height(mut self, height: bool) -> Self {
+        self.height = height;
+        self
+    }
+
+    /// Shown only while the choice of this name has one of these words.
+    pub const fn when(mut self, condition: (&'static str, &'static [&'static str])) -> Self {
+        self.when = Some(condition);
+        self
+    }
+
+    /// Does `value` have the parameter's type, and lie inside its hard range?
+    ///
+    /// # Errors
+    /// Completes a sentence that begins with the parameter's name.
+    pub fn check(&self, value: &Value) -> Result<(), ValueError> {
+        self.value_type.check(value, self.hard)
+    }
+
+    /// What the value measures in space.
+    pub fn measure(&self) -> Measure {
+        Measure::of(self.value_type, self.unit, self.hard[0], self.height)
+    }
+
+    /// What is allowed, for listings: `0..=1`, `smooth | flat`, `4 numbers, each 0..=1`.
+    pub fn allowed(&self) -> String {
+        let [low, high] = self.hard.map(format_number);
+        match self.value_type {
+            ValueType::Bool => "true | false".into(),
+            ValueType::Choice(words) => words.join(" | "),
+            ValueType::Text { max_chars } => format!("text, at most {max_chars} characters"),
+            ValueType::TextList { max_entries, max_chars } => format!("at most {max_entries} texts of {max_chars} characters"),
+            numbers if numbers.components() == 1 => format!("{low}..={high}"),
+            numbers => format!("{} numbers, each {low}..={high}", numbers.components()),
+        }
+    }
+}
+
+/// How an effect's parameter is stored in its WGSL struct.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WgslType {
+    F32,
+    U32,
+    I32,
+    Vec4F32,
+}
+
+impl WgslType {
+    /// The name in WGSL.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::U32 => "u32",
+            Self::I32 => "i32",
+            Self::Vec4F32 => "vec4<f32>",
+        }
+    }
+
+    /// Number of 4-byte words.
+    pub const fn words(self) -> usize {
+        if matches!(self, Self::Vec4F32) { 4 } else { 1 }
+    }
+}
+
+/// A parameter of an effect: a [`Param`] and where the effect's words hold its value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Field {
+    pub param: Param,
+    pub wgsl: WgslType,
+    /// Byte offset in the struct, in Rust and in WGSL.
+    pub offset: usize,
+    /// The member of the struct that holds it, where effects share a group of parameters.
+    pub group: Option<Group>,
+}
+
+/// A member of an effect's struct that is a struct itself: parameters that several effects share.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Group {
+    /// Name of the member, in Rust and in WGSL.
+    pub member: &'static str,
+    /// Name of its WGSL struct.
+    pub wgsl_struct: &'static str,
+}
+
+impl Deref for Field {
+    type Target = Param;
+
+    fn deref(&self) -> &Param {
+        &self.param
+    }
+}
+
+impl Field {
+    /// The parameter at `offset`. Every parameter of an effect has a slider.
+    pub const fn new(param: Param, wgsl: WgslType, offset: usize) -> Self {
+        Self { param: Param { has_slider: true, ..param }, wgsl, offset, group: None }
+    }
+
+    /// An effect's own fields, then those of a group that its struct holds at its beginning. The field `always_shown` of the group
+    /// is always shown, although the group's declaration makes it depend on a choice.
+    pub const fn with_group<const N: usize>(own: &[Self], group: Group, shared: &[Self], always_shown: &str) -> [Self; N] {
+        assert!(own.len() + shared.len() == N, "N is the number of all fields");
+        let mut fields = [own[0]; N];
+        let mut index = 0;
+        while index < N {
+            if index < own.len() {
+                fields[index] = own[index];
+            } else {
+                let mut field = shared[index - own.len()];
+                field.group = Some(group);
+                if is_same_text(field.param.name, always_shown) {
+                    field.param.when = None;
+                }
+                fields[index] = field;
+            }
+            index += 1;
+        }
+        fields
+    }
+
+    fn words_range(&self) -> std::ops::Range<usize> {
+        self.offset / 4..self.offset / 4 + self.wgsl.words()
+    }
+
+    /// The value in an effect's words.
+    pub fn value(&self, words: &[u32]) -> Value {
+        self.value_type.value(&self.get(words)).expect("effects have no texts")
+    }
+
+    /// The components of the value: a choice is its index, a flag 0 or 1.
+    pub fn get(&self, words: &[u32]) -> Vec<f64> {
+        let words = &words[self.words_range()][..self.value_type.components()];
+        let number = |word: u32| match self.wgsl {
+            WgslType::F32 | WgslType::Vec4F32 => f64::from(f32::from_bits(word)),
+            WgslType::I32 => f64::from(word as i32),
+            WgslType::U32 => f64::from(word),
+        };
+        words.iter().map(|word| number(*word)).collect()
+    }
+
+    /// Writes a value.
+    ///
+    /// # Errors
+    /// The value has another type or lies outside the hard range; then nothing is changed.
+    pub fn set_value(&self, words: &mut [u32], value: &Value) -> Result<(), ValueError> {
+        self.check(value)?;
+        let range = self.words_range();
+        for (word, number) in words[range].iter_mut().zip(value.components()) {
+            *word = match self.wgsl {
+                WgslType::F32 | WgslType::Vec4F32 => (number as f32).to_bits(),
+                WgslType::I32 => number as i32 as u32,
+                WgslType::U32 => number as u32,
+            };
+        }
+        Ok(())
+    }
+
+    /// Writes a value by its components.
+    ///
+    /// # Errors
+    /// As [`Field::set_value`].
+    pub fn set(&self, words: &mut [u32], components: &[f64]) -> Result<(), ValueError> {
+        // A flag or choice takes one whole number inside its range, before it becomes a value of its type.
+        let numbers = Value::Numbers(components.to_vec());
+        let value = match self.value_type {
+            ValueType::Bool | ValueType::Choice(_) => {
+                ValueType::U32.check(&numbers, self.hard)?;
+                self.value_type.value(components).expect("one number is a flag or choice")
+            }
+            _ => numbers,
+        };
+        self.set_value(words, &value)
+    }
+
+    /// Do both hold the same bits in this field?
+    pub fn same(&self, a: &[u32], b: &[u32]) -> bool {
+        a[self.words_range()] == b[self.words_range()]
+    }
+
+    /// Copies this field's bits.
+    pub fn copy(&self, from: &[u32], to: &mut [u32]) {
+        to[self.words_range()].copy_from_slice(&from[self.words_range()]);
+    }
+
+    /// Is the field shown for these values?
+    pub fn is_shown(&self, fields: &[Self], words: &[u32]) -> bool {
+        self.when.is_none_or(|(name, allowed)| {
+            fields.iter().find(|field| field.name == name).is_some_and(|field| match (field.value_type, field.value(words)) {
+                (ValueType::Choice(names), Value::Choice(index)) => names.get(index).is_some_and(|name| allowed.contains(name)),
+                _ => true,
+            })
+        })
+    }
+}
+
+/// A type that can stand in a `params!` declaration.
+pub trait ParamType {
+    /// What the struct stores.
+    type Raw: bytemuck::Pod + PartialEq + std::fmt::Debug;
+    const TYPE: ValueType;
+    const WGSL: WgslType;
+}
+
+impl ParamType for f32 {
+    type Raw = f32;
+    const TYPE: ValueType = ValueType::F32;
+    const WGSL: WgslType = WgslType::F32;
+}
+
+impl ParamType for u32 {
+    type Raw = u32;
+    const TYPE: ValueType = ValueType::U32;
+    const WGSL: WgslType = WgslType::U32;
+}
+
+impl ParamType for i32 {
+    type Raw = i32;
+    const TYPE: ValueType = ValueType::I32;
+    const WGSL: WgslType = WgslType::I32;
+}
+
+/// An on/off parameter, stored as 0 or 1.
+pub enum Flag {}
+
+impl ParamType for Flag {
+    type Raw = u32;
+    const TYPE: ValueType = ValueType::Bool;
+    const WGSL: WgslType = WgslType::U32;
+}
+
+/// A linear RGBA parameter.
+pub enum Color {}
+
+impl ParamType for Color {
+    type Raw = [f32; 4];
+    const TYPE: ValueType = ValueType::Color;
+    const WGSL: WgslType = WgslType::Vec4F32;
+}
+
+/// A world-space point or direction; the fourth component is unused.
+pub enum Point {}
+
+impl ParamType for Point {
+    type Raw = [f32; 4];
+    const TYPE: ValueType = ValueType::Point;
+    const WGSL: WgslType = WgslType::Vec4F32;
+}
+
+/// A struct declared by [`params!`](crate::params!).
+pub trait Params: bytemuck::Pod + Default {
+    const FIELDS: &'static [Field];
+}
+
+/// Declares a choice: an enum whose words stand in presets and, upper-cased, name WGSL constants.
+#[macro_export]
+macro_rules! choice {
+    ($(#[$meta:meta])* pub enum $name:ident { $($(#[$vmeta:meta])* $variant:ident = $word:literal),+ $(,)? }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[repr(u32)]
+        pub enum $name { $($(#[$vmeta])* $variant),+ }
+
+        impl $name {
+            const ALL: &'static [Self] = &[$(Self::$variant),+];
+
+            /// The choice with this index; an index out of range, which no checked value has, gives the first.
+            pub fn of(index: u32) -> Self {
+                Self::ALL.get(index as usize).copied().unwrap_or(Self::ALL[0])
+            }
+        }
+
+        impl $crate::params::ParamType for $name {
+            type Raw = u32;
+            const TYPE: $crate::params::ValueType = $crate::params::ValueType::Choice(&[$($word),+]);
+            const WGSL: $crate::params::WgslType = $crate::params::WgslType::U32;
+        }
+    };
+}
+
+const fn is_same_text(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    let mut index = 0;
+    while index < a.len() && index < b.len() && a[index] == b[index] {
+        index += 1;
+    }
+    index == a.len() && index == b.len()
+}
+
+/// Declares a parameter struct: a doc line, a type, a default and options per field. `..name: Type = default, always_shown "field";`
+/// at the beginning puts a group of parameters that several effects share into the struct.
+#[macro_export]
+macro_rules! params {
+    ($(#[$meta:meta])* pub struct $name:ident {
+        ..$group:ident : $group_ty:ty = $group_default:expr, always_shown $always:literal;
+        $($(#[doc = $doc:literal])+ $field:ident : $ty:ty = $default:expr $(, $key:ident $value:expr)*;)*
+    }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+        #[repr(C)]
+        pub struct $name { pub $group: $group_ty, $($(#[doc = $doc])+ pub $field: <$ty as $crate::params::ParamType>::Raw,)* }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self { $group: $group_default, $($field: $default),* }
+            }
+        }
+
+        impl $crate::params::Params for $name {
+            const FIELDS: &'static [$crate::params::Field] = {
+                const OWN: &[$crate::params::Field] = &[$($crate::params!(@field $name $field, $ty, concat!($($doc),+) $(, $key $value)*)),*];
+                const SHARED: &[$crate::params::Field] = <$group_ty as $crate::params::Params>::FIELDS;
+                const NAMES: $crate::params::Group =
+                    $crate::params::Group { member: stringify!($group), wgsl_struct: stringify!($group_ty) };
+                &$crate::params::Field::with_group::<{ OWN.len() + SHARED.len() }>(OWN, NAMES, SHARED, $always)
+            };
+        }
+    };
+    ($(#[$meta:meta])* pub struct $name:ident {
+        $($(#[doc = $doc:literal])+ $field:ident : $ty:ty = $default:expr $(, $key:ident $value:expr)*;)*
+    }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+        #[repr(C)]
+        pub struct $name { $($(#[doc = $doc])+ pub $field: <$ty as $crate::params::ParamType>::Raw,)* }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self { $($field: $default),* }
+            }
+        }
+
+        impl $crate::params::Params for $name {
+            const FIELDS: &'static [$crate::params::Field] =
+                &[$($crate::params!(@field $name $field, $ty, concat!($($doc),+) $(, $key $value)*)),*];
+        }
+    };
+    (@field $name:ident $field:ident, $ty:ty, $doc:expr $(, $key:ident $value:expr)*) => {
+        $crate::params::Field::new(
+            $crate::params::Param::new(stringify!($field), $doc, <$ty as $crate::params::ParamType>::TYPE)$(.$key($value))*,
+            <$ty as $crate::params::ParamType>::WGSL,
+            std::mem::offset_of!($name, $field),
+        )
+    };
+}
