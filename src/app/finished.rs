@@ -63,7 +63,7 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
         Done::ThumbnailOn(key, id, image) => panels.browser.pictures.on_model_arrived(ctx, &key, &id, image),
         Done::EffectPicture(effect, image) => panels.browser.effects.picture_arrived(ctx, effect, image),
         Done::Favorites(outcome) => {
-            state.favorites.written();
+            state.favorites.write_ended();
             match outcome {
                 Ok(()) => library::write_favorites(state),
                 Err(error) => state.notify(Level::Error, error),

@@ -21,7 +21,7 @@ use super::{
     completion::Listing,
     computing::{Computing, Count},
     effect_picture::EffectPicture,
-    favorites, film,
+    film,
     findings::Findings,
     golden_check::{self, GoldenCheck},
     live::Reload,
@@ -271,9 +271,9 @@ impl Jobs {
         self.spawn_urgent("trade", || giving_back(|| Done::Trade(caught("measuring the trade", work))));
     }
 
-    /// Writes changes of the favorites.
-    pub fn write_favorites(&self, path: PathBuf, changes: Vec<favorites::Change>) {
-        self.spawn("favorites", move || Done::Favorites(caught("writing the favorites", || favorites::update(&path, &changes))));
+    /// Writes the favorites with this function.
+    pub fn write_favorites(&self, write: impl FnOnce() -> Result<(), String> + Send + 'static) {
+        self.spawn("favorites", move || Done::Favorites(caught("writing the favorites", write)));
     }
 
     /// Draws the picture of a preset with the oracle, which needs no device. Width and height are in pixels.

@@ -5,6 +5,7 @@ use std::{collections::HashSet, path::PathBuf, sync::Arc};
 
 use super::{
     command::{Marker, Picking},
+    deleted::Deleted,
     favorites::Favorites,
     findings::Findings,
     history::History,
@@ -23,7 +24,7 @@ use super::{
 };
 use crate::{
     measure::ErrorReport,
-    preset_file::{Folders, SavedValues, Trashed},
+    preset_file::{Folders, SavedValues},
 };
 
 /// What copy and paste apply to.
@@ -46,7 +47,7 @@ pub struct State {
     pub session: Session,
     pub favorites: Favorites,
     /// Files that were moved to the trash since the start, the newest last.
-    pub deleted: Vec<Trashed>,
+    pub deleted: Vec<Deleted>,
     /// Saved values of effects.
     pub values: Vec<SavedValues>,
     pub history: History<UndoState>,

@@ -127,8 +127,8 @@ impl App {
         let mut session = start.session;
         // The start preset plays; a preset that the user named does not.
         session.playback.playing = options.open.is_none() && !start.is_restored && session.preset().is_moving();
-        let (favorites, fault) = Favorites::load(options.folders.user.as_deref());
-        fault.into_iter().for_each(|fault| log.notify(Level::Warning, fault, 0.0));
+        let (favorites, remarks) = Favorites::load(options.folders.user.as_deref());
+        remarks.into_iter().for_each(|remark| log.notify(Level::Warning, remark, 0.0));
         let values = options.folders.effect_values().map_or_else(Vec::new, |folder| preset_file::saved_values(&folder));
         Ok(Self {
             panels,

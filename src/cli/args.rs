@@ -142,8 +142,6 @@ pub enum Command {
     Gallery(Gallery),
     /// Validate presets; with --render also compare them with their goldens
     Check(Check),
-    /// Show what the current schema changes in preset files; with --write change them
-    Migrate(Migrate),
     /// Write a commented effect file to begin with
     NewEffect(NewEffect),
     /// Print a completion script
@@ -179,7 +177,6 @@ impl Command {
             Self::Fuzz(_) => "fuzz",
             Self::Gallery(_) => "gallery",
             Self::Check(_) => "check",
-            Self::Migrate(_) => "migrate",
             Self::NewEffect(_) => "new-effect",
             Self::Completions { .. } => "completions",
             Self::Man { .. } => "man",
@@ -455,16 +452,6 @@ pub enum Format {
     Json,
     Csv,
     Md,
-}
-
-#[derive(Args, Debug)]
-pub struct Migrate {
-    /// Preset files
-    #[arg(required = true, value_name = "FILE")]
-    pub files: Vec<PathBuf>,
-    /// Change the files
-    #[arg(long)]
-    pub write: bool,
 }
 
 #[derive(Args, Debug)]

@@ -22,7 +22,6 @@ mod list;
 mod loading;
 mod man;
 mod measured;
-mod migrate;
 mod new_effect;
 mod open;
 mod parts;
@@ -110,7 +109,6 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
         Command::Gallery(args) => gallery::run(args, streams),
         Command::Check(args) => check::run(common, args, streams),
         Command::NewEffect(args) => new_effect::run(common, args, streams),
-        Command::Migrate(args) => migrate::run(args, streams),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(*shell, &mut Cli::command(), "rasterlab", &mut script);

@@ -465,38 +465,6 @@ fn check_finds_every_bad_preset_and_lists_all() {
 }
 
 #[test]
-fn migrate_shows_the_changed_lines_and_writes_when_told() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("old.toml");
-    let old = "# mine\nschema = 1\n[accuracy]\nscale = \"whole\" # all of it\n";
-    fs::write(&path, old).unwrap();
-    let shown = run_in(folder.path(), &["migrate", "old.toml"]);
-    assert_eq!(shown.code, 0, "{}", shown.err);
-    for line in [
-        "--- old.toml (schema 1)",
-        "+++ old.toml (schema 2)",
-        "@@ line 4 @@",
-        "-scale = \"whole\" # all of it",
-        "+render_scale = \"full\" # all of it",
-    ] {
-        assert!(shown.out.lines().any(|shown| shown == line), "{line:?} is missing in\n{}", shown.out);
-    }
-    assert!(
-        !shown.out.contains("# mine") && shown.err.contains("1 of 1 files change to schema 2; --write changes the files"),
-        "{}",
-        shown.err
-    );
-    assert_eq!(fs::read_to_string(&path).unwrap(), old);
-    let written = run_in(folder.path(), &["migrate", "old.toml", "--write", "--json"]);
-    assert_eq!((written.code, &json(&written)["results"][0]["written"]), (0, &true.into()), "{}", written.err);
-    assert_eq!(fs::read_to_string(&path).unwrap(), "# mine\nschema = 2\n[accuracy]\nrender_scale = \"full\" # all of it\n");
-    assert_eq!(run_in(folder.path(), &["migrate", "old.toml"]).out, "");
-    fs::write(&path, "schema = 1\n[clock]\nspeed = 0\n").unwrap();
-    let broken = run_in(folder.path(), &["migrate", "old.toml", "--write"]);
-    assert!(broken.code == 2 && broken.err.contains("old.toml:3: clock.speed 0 lies outside"), "{}", broken.err);
-}
-
-#[test]
 fn bless_draws_what_check_then_accepts() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("presets")).unwrap();
