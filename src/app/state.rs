@@ -18,6 +18,7 @@ use super::{
     screen::Screen,
     session::{Session, UndoState},
     settings::{OpenPanels, Settings},
+    tier_times::TierTimes,
     trust::Trust,
     verification::Verification,
 };
@@ -53,6 +54,8 @@ pub struct State {
     /// The preset that is being opened.
     pub opening: Opening,
     pub jobs: Jobs,
+    /// What the accuracy tiers cost. Dropped before the screen, which waits for its thread.
+    pub tier_times: TierTimes,
     pub screen: Screen,
     pub verification: Verification,
     pub overlays: OverlaySelection,

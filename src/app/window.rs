@@ -31,6 +31,7 @@ use super::{
     settings::{keeper::Keeper, recents::Recents},
     state::{Clipboard, State},
     theme,
+    tier_times::{self, TierTimes},
     trust::Trust,
     typing::HeldTyping,
     ui_frames::UiFrames,
@@ -142,6 +143,7 @@ impl App {
                 deleted: Vec::new(),
                 values,
                 jobs: Jobs::new(cc.egui_ctx.clone()),
+                tier_times: TierTimes::default(),
                 screen: Screen::new(&window, devices, cc.egui_ctx.clone()),
                 verification: Verification::default(),
                 overlays: OverlaySelection::default(),
@@ -395,6 +397,8 @@ impl eframe::App for App {
         self.panel_ui(ui, |panels| &mut panels.film);
         self.request_thumbnail(&ctx);
         self.request_precision(&ctx, is_held);
+        let compare = &self.panels.viewport.compare;
+        tier_times::follow(&ctx, &mut self.state, is_held || compare.is_waiting() || compare.needs_measuring());
         self.state.observe(is_held);
         if let Some(wait_s) = self.state.history.wake_in_s(now_s).filter(|_| !is_held) {
             ctx.request_repaint_after_secs(wait_s as f32 + 0.01);

@@ -134,8 +134,6 @@ pub enum Command {
     Bless(Bless),
     /// Measure time and error of accuracy options and effects
     Bench(Bench),
-    /// Measure what the passes of a picture cost on the adapter, and keep it for predictions
-    Calibrate(Calibrate),
     /// Run the extreme cases, each with its expected outcome
     Stress(Stress),
     /// Verify random presets; each that fails is shrunk to the smallest preset that still does
@@ -175,7 +173,6 @@ impl Command {
             Self::Parts(_) => "parts",
             Self::Bless(_) => "bless",
             Self::Bench(_) => "bench",
-            Self::Calibrate(_) => "calibrate",
             Self::Stress(_) => "stress",
             Self::Fuzz(_) => "fuzz",
             Self::Gallery(_) => "gallery",
@@ -364,7 +361,7 @@ pub struct Compare {
 pub struct Explain {
     #[arg(value_name = "PRESET")]
     pub input: String,
-    /// Also time the passes, beside what the calibration of the adapter predicts
+    /// Also time the frame and its passes
     #[arg(long)]
     pub measure: bool,
     /// Size in pixels instead of the preset's own
@@ -421,16 +418,6 @@ pub struct Bench {
     /// Format of the output
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub format: Format,
-}
-
-#[derive(Args, Debug)]
-pub struct Calibrate {
-    /// Predict and measure so many random presets, and print the ratios; uses the calibration that was kept, if there is one
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    pub check: Option<u32>,
-    /// Seed of the first random preset; each of the others has the next seed
-    #[arg(long, value_name = "N", default_value_t = 0, requires = "check")]
-    pub seed: u32,
 }
 
 #[derive(Args, Debug)]

@@ -1,7 +1,6 @@
 //! Promise: stdout carries data only, exit codes mean what they say, nothing is overwritten unasked, a closed pipe is no error.
 
 mod arrays;
-mod calibrations;
 mod effects;
 mod faults;
 mod files_kept;
@@ -113,7 +112,7 @@ fn adapters_always_end_with_cpu() {
 
 #[test]
 fn usage_errors_exit_with_2_and_leave_stdout_empty() {
-    let cases: [&[&str]; 24] = [
+    let cases: [&[&str]; 21] = [
         &["--no-such-flag"],
         &["--log", "no-such-folder/window.log"],
         &["--log", "window.log", "list"],
@@ -132,9 +131,6 @@ fn usage_errors_exit_with_2_and_leave_stdout_empty() {
         &["bench", "--adapter", "cpu"],
         &["stress", "--adapter", "cpu"],
         &["fuzz", "--adapter", "cpu", "--set", "facet"],
-        &["calibrate", "--adapter", "cpu"],
-        &["calibrate", "--adapter", "cpu", "--set", "facet"],
-        &["calibrate", "--check", "0"],
         &["stress", "--filter", "no-such-case"],
         &["bless", "facet", "--adapter", "cpu"],
         &["facet", "list"],
@@ -584,6 +580,23 @@ fn explain_describes_a_preset_without_an_adapter() {
     let explained = run(&["explain", "facet", "--adapter", "cpu"]);
     assert_eq!(explained.code, 0, "{}", explained.err);
     assert!(explained.out.contains("facet (surface), lambert (surface)"), "{}", explained.out);
+}
+
+#[test]
+fn explain_measures_the_frame_and_its_passes_when_asked() {
+    if std::env::var("RASTERLAB_GPU").as_deref() == Ok("skip") {
+        return eprintln!("RASTERLAB_GPU=skip: GPU tests are left out");
+    }
+    let asked = ["explain", "facet", "--size", "64x48", "--quiet", "--measure"];
+    let measured = run(&[&asked[..], &["--json"]].concat());
+    let times = &json(&measured)["results"][0]["times"];
+    assert!(times["whole_ms"].as_f64().is_some_and(|ms| ms > 0.0) && times["frames"].as_u64().is_some_and(|frames| frames > 2), "{times}");
+    let passes = times["passes"].as_array().expect("a list");
+    let is_timed = |pass: &Value| pass[0].as_str().is_some_and(|label| !label.is_empty()) && pass[1].as_f64().is_some_and(|ms| ms >= 0.0);
+    assert!(passes.iter().all(is_timed), "{times}");
+    assert!(run(&asked).out.contains(" ms, measured in "), "the time of the frame");
+    let unasked = run(&["explain", "facet", "--size", "64x48", "--quiet", "--json"]);
+    assert!(json(&unasked)["results"][0]["times"].is_null(), "{}", unasked.out);
 }
 
 #[test]

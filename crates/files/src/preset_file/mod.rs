@@ -5,7 +5,6 @@
 
 mod apng;
 mod atomic;
-mod calibrations;
 mod edit;
 mod effect_values;
 mod error;
@@ -37,7 +36,6 @@ mod write;
 
 pub use apng::{AnimatedPng, AnimationOptions};
 pub use atomic::{AtomicFile, Existing, is_taken, write_atomically};
-pub use calibrations::{Calibration, CalibrationKey, Kept, calibrations_folder};
 pub use edit::{set, unset};
 pub use effect_values::{EffectValues, SavedValues, is_effect_text, load_values, save_values, saved_values};
 pub use error::{Position, PresetError};
