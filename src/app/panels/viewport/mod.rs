@@ -221,7 +221,7 @@ fn picture_ui(ui: &Ui, state: &State, rect: Rect) -> Rect {
     let (title, detail) = if let Some(compiling) = &compiling {
         (compiling.as_str(), "The first picture takes longest.")
     } else if state.session.scenes.has_failed() {
-        ("This scene cannot be shown", "See the log. Choose another scene on the left, or drop a .glb file here.")
+        ("This scene cannot be shown", "See the log. Choose another scene on the left, or drop a model here.")
     } else if state.screen.is_refused() {
         ("This picture cannot be drawn", "See the log.")
     } else {
