@@ -138,7 +138,7 @@ fn check(renderer: &mut Renderer, costs: &UnitCosts, count: u32, seed: u32, stre
         };
         match measured() {
             Ok((scene, view, stack, cost)) if cost.frame.ratio.is_some() => {
-                let names: Vec<&str> = stack.0.iter().map(|enabled| enabled.effect.name).collect();
+                let names: Vec<&str> = stack.0.iter().map(|enabled| enabled.effect.name.as_str()).collect();
                 let what = format!("{} triangles, {}x{}, {}", scene.triangle_count(), view.width, view.height, names.join(" "));
                 checked.push(Checked { seed, what, cost });
                 bar.inc(1);

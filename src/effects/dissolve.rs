@@ -6,7 +6,7 @@
 use glam::{DVec2, DVec3, DVec4};
 
 use super::{
-    Effect, Surface, SurfaceEffect, SurfaceInput,
+    BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
     effect::{SetupRows, read},
     hooks::{TriangleSetup, Front, Pattern, Sample, SampleEffect},
 };
@@ -49,9 +49,13 @@ params! {
     }
 }
 
-pub const EFFECT: Effect =
-    Effect::new::<Dissolve>("dissolve", "Dissolve", "fills every triangle to a fraction of its area").on_sample::<Dissolve>().on_surface::<Dissolve>()
-        .visiting_rows(rows_visited);
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::new::<Dissolve>("dissolve", "Dissolve", "fills every triangle to a fraction of its area")
+        .on_sample::<Dissolve>()
+        .on_surface::<Dissolve>()
+        .visiting_rows(rows_visited)
+        .into()
+});
 
 /// All rows are counted, and once more those that are filled, unless all are; or the first two samples are looked for.
 fn rows_visited(words: &[u32]) -> SetupRows {

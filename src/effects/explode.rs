@@ -5,7 +5,7 @@
 use glam::DVec3;
 
 use super::{
-    Effect,
+    BuiltIn, Effect,
     hooks::{Front, ROUNDING, ErrorBound, Vertex, VertexEffect},
 };
 use crate::{
@@ -27,8 +27,11 @@ params! {
     }
 }
 
-pub const EFFECT: Effect =
-    Effect::new::<Explode>("explode", "Explode", "triangles fly out along their own normals, turn and shrink").on_vertex::<Explode>();
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::new::<Explode>("explode", "Explode", "triangles fly out along their own normals, turn and shrink")
+        .on_vertex::<Explode>()
+        .into()
+});
 
 impl VertexEffect for Explode {
     const NEEDS_TRIANGLE: bool = true;

@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::{
-    Effect, Surface, SurfaceEffect, SurfaceInput,
+    BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
     effect::read,
     hooks::tone::{luminance, rgb, turned},
 };
@@ -50,8 +50,11 @@ params! {
     }
 }
 
-pub const EFFECT: Effect = Effect::surface::<Hatch>("hatch", "Hatch", "cross-hatching in ink, whose lines grow as the tone darkens")
-    .with_turns(|words| read::<Hatch>(words).layers.into());
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::surface::<Hatch>("hatch", "Hatch", "cross-hatching in ink, whose lines grow as the tone darkens")
+        .with_turns(|words| read::<Hatch>(words).layers.into())
+        .into()
+});
 
 impl SurfaceEffect for Hatch {
     const INPUTS: &[SurfaceInput] = &[SurfaceInput::Color, SurfaceInput::Pixel, SurfaceInput::Normal, SurfaceInput::View, SurfaceInput::PixelSize, SurfaceInput::Position, SurfaceInput::Depth];

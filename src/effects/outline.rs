@@ -4,7 +4,7 @@
 //! are a piecewise linear logarithm: a relative step of depth is a difference of depth keys.
 
 use super::{
-    Effect,
+    BuiltIn, Effect,
     effect::read,
     hooks::{ImageEffect, Picture, Pixel, tone::encoded},
 };
@@ -44,7 +44,7 @@ params! {
     }
 }
 
-pub const EFFECT: Effect =
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
     Effect::new::<Outline>("outline", "Outline", "lines at silhouettes, between objects and at steps of depth")
         .on_image::<Outline>()
         .with_neighbors(|words| {
@@ -52,7 +52,9 @@ pub const EFFECT: Effect =
             // A circle of them; steps of depth are found by those on the other side, too.
             let circle = (std::f64::consts::PI * f64::from(outline.width_px).powi(2)).max(4.0);
             if outline.depth == 0 { circle } else { 2.0 * circle }
-        });
+        })
+        .into()
+});
 
 /// Triangle id, depth key and draw of a pixel.
 type Seen = (Option<u32>, u32, u32);
@@ -109,7 +111,7 @@ mod tests {
     #[test]
     fn it_reads_the_circle_of_its_width() {
         let read_of = |width_px: f64, depth: f64| {
-            let mut words = (EFFECT.defaults)();
+            let mut words = EFFECT.defaults.clone();
             for (name, value) in [("width_px", width_px), ("depth", depth)] {
                 EFFECT.field(name).expect("a parameter").set(&mut words, &[value]).expect("an allowed value");
             }

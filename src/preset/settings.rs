@@ -2,7 +2,7 @@
 //!
 //! The reader and writer of preset files, `--set`, the JSON schema, listings and the inspector loop over [`SECTIONS`].
 
-use std::path::PathBuf;
+use std::{path::PathBuf, sync::LazyLock};
 
 pub use super::setting::{Presence, Section, Setting};
 use super::{
@@ -78,7 +78,7 @@ pub fn baseline(preset: &Preset) -> Preset {
 
 /// Every setting, in the order in which files have them.
 pub fn settings() -> impl Iterator<Item = &'static Setting> {
-    SECTIONS.iter().flat_map(|section| section.settings)
+    SECTIONS.iter().flat_map(|section| section.settings.iter())
 }
 
 /// Storage in a field of the preset that is always there.
@@ -116,43 +116,30 @@ macro_rules! section_field {
 
 const LINE: ValueType = ValueType::Text { max_chars: 200 };
 const PARAGRAPH: ValueType = ValueType::Text { max_chars: 2000 };
-const TIERS: &[&str] = &{
-    let mut names = [""; Tier::ALL.len()];
-    let mut index = 0;
-    while index < names.len() {
-        names[index] = Tier::ALL[index].name();
-        index += 1;
-    }
-    names
-};
 
 /// The top of the file, then every table of settings.
 pub static SECTIONS: &[&Section] = &[&TOP, &SCENE, &GROUND, &CAMERA, &CLOCK, &ACCURACY, &OUTPUT, &TEST];
 
-const fn in_section<const N: usize>(section: &'static str, mut settings: [Setting; N]) -> [Setting; N] {
-    let mut index = 0;
-    while index < N {
-        settings[index].section = section;
-        index += 1;
-    }
-    settings
+fn in_section<const N: usize>(section: &'static str, settings: [Setting; N]) -> Vec<Setting> {
+    settings.map(|setting| Setting { section, ..setting }).into()
 }
 
 pub static TOP: Section = Section {
     name: "",
     doc: "The preset as a whole",
-    settings: &[
+    settings: LazyLock::new(|| {
+        vec![
         Setting::new("name", LINE, "Shown in lists and titles", field!(name)),
         Setting::new("about", PARAGRAPH, "One sentence about the preset", field!(about)),
         Setting::new("tags", ValueType::TextList { max_entries: 32, max_chars: 64 }, "Words to find it by", field!(tags)),
-    ],
+    ]}),
     presence: None,
 };
 
 pub static SCENE: Section = Section {
     name: "scene",
     doc: "What is shown",
-    settings: &in_section(
+    settings: LazyLock::new(|| in_section(
         "scene",
         [
             Setting::new("builtin", LINE, "A procedural scene, for instance teapot?tess=16", BUILTIN).or("path"),
@@ -190,7 +177,7 @@ pub static SCENE: Section = Section {
                 .slider(0.0, 1.0),
             Setting::new(
                 "unit",
-                ValueType::Choice(LengthUnit::WORDS),
+                ValueType::choice(LengthUnit::WORDS),
                 "Unit of lengths and points of effects and of the polyline: meters, or scene, the radius of the scene's box from its center",
                 UNIT,
             ),
@@ -208,17 +195,17 @@ pub static SCENE: Section = Section {
                 field!(scene_camera),
             ),
         ],
-    ),
+    )),
     presence: None,
 };
 
 pub static GROUND: Section = Section {
     name: "ground",
     doc: "A flat mesh under the scene, which receives shadows and casts none; without this table there is none",
-    settings: &in_section(
+    settings: LazyLock::new(|| in_section(
         "ground",
         [
-            Setting::new("shape", ValueType::Choice(GroundShape::WORDS), "Outline of the ground", GROUND_SHAPE),
+            Setting::new("shape", ValueType::choice(GroundShape::WORDS), "Outline of the ground", GROUND_SHAPE),
             Setting::new("size", ValueType::F64, "From the center to the edge, in radii of the scene's box", section_field!(ground.size))
                 .range(0.1, 1000.0)
                 .slider(0.5, 10.0),
@@ -232,7 +219,7 @@ pub static GROUND: Section = Section {
             .range(1.0, MAX_CELLS as f64)
             .slider(1.0, 48.0),
         ],
-    ),
+    )),
     presence: Some(Presence {
         is_present: |preset| preset.ground.is_some(),
         add: |preset| _ = preset.ground.get_or_insert_default(),
@@ -243,7 +230,7 @@ pub static GROUND: Section = Section {
 pub static CAMERA: Section = Section {
     name: "camera",
     doc: "Where the scene is seen from; without this table the whole scene is framed",
-    settings: &in_section(
+    settings: LazyLock::new(|| in_section(
         "camera",
         [
             Setting::new("eye", ValueType::Position, "Position of the eye", section_field!(camera.eye)).unit("m"),
@@ -262,7 +249,7 @@ pub static CAMERA: Section = Section {
                 .range(MIN_NEAR_M, 1e6)
                 .unit("m"),
         ],
-    ),
+    )),
     presence: Some(Presence {
         is_present: |preset| preset.camera.is_some(),
         add: |preset| _ = preset.camera.get_or_insert_default(),
@@ -273,7 +260,7 @@ pub static CAMERA: Section = Section {
 pub static CLOCK: Section = Section {
     name: "clock",
     doc: "The time of the picture and the range of the timeline",
-    settings: &in_section(
+    settings: LazyLock::new(|| in_section(
         "clock",
         [
             Setting::new("time_s", ValueType::F64, "Time of the picture", field!(clock.time_s)).slider(0.0, 12.0).unit("s"),
@@ -289,48 +276,44 @@ pub static CLOCK: Section = Section {
             Setting::new("speed", ValueType::F64, "Seconds of the clock that pass in one second of playback", field!(clock.speed))
                 .range(0.01, 100.0),
         ],
-    ),
+    )),
     presence: None,
 };
 
 pub static ACCURACY: Section = Section {
     name: "accuracy",
     doc: "How exact the picture must be",
-    settings: &in_section("accuracy", ACCURACY_SETTINGS),
+    settings: LazyLock::new(accuracy_settings),
     presence: None,
 };
 
-const TOLERANCES: usize = 3;
 /// The tier, the tolerances that replace the tier's, and every axis.
-const ACCURACY_SETTINGS: [Setting; TOLERANCES + AXES.len()] = {
-    let mut settings = [const { Setting::of_axis(&AXES[0]) }; TOLERANCES + AXES.len()];
-    settings[0] = Setting::new("tier", ValueType::Choice(TIERS), "Named tolerance from which the planner chooses the options", TIER);
-    settings[1] = Setting::new(
-        "max_wrong_ppm",
-        ValueType::F64,
-        "Tolerance instead of the tier's: pixels with the wrong triangle, per million",
-        option!(accuracy.wrong_ppm),
-    )
-    .range(0.0, 1e6);
-    settings[2] = Setting::new(
-        "max_channel",
-        ValueType::U32,
-        "Tolerance instead of the tier's: difference of a color channel, of 255",
-        option!(accuracy.channel),
-    )
-    .range(0.0, 255.0);
-    let mut index = 0;
-    while index < AXES.len() {
-        settings[TOLERANCES + index] = Setting::of_axis(&AXES[index]);
-        index += 1;
-    }
-    settings
-};
+fn accuracy_settings() -> Vec<Setting> {
+    let tolerances = [
+        Setting::new("tier", ValueType::choice(&Tier::ALL.map(Tier::name)), "Named tolerance from which the planner chooses the options", TIER),
+        Setting::new(
+            "max_wrong_ppm",
+            ValueType::F64,
+            "Tolerance instead of the tier's: pixels with the wrong triangle, per million",
+            option!(accuracy.wrong_ppm),
+        )
+        .range(0.0, 1e6),
+        Setting::new(
+            "max_channel",
+            ValueType::U32,
+            "Tolerance instead of the tier's: difference of a color channel, of 255",
+            option!(accuracy.channel),
+        )
+        .range(0.0, 255.0),
+    ];
+    let settings = tolerances.into_iter().chain(AXES.iter().map(Setting::of_axis));
+    settings.map(|setting| Setting { section: "accuracy", ..setting }).collect()
+}
 
 pub static OUTPUT: Section = Section {
     name: "output",
     doc: "The picture to draw",
-    settings: &in_section(
+    settings: LazyLock::new(|| in_section(
         "output",
         [
             Setting::new("size", ValueType::Size, "Width and height in pixels", field!(output.size)).range(0.0, 16_384.0),
@@ -342,14 +325,14 @@ pub static OUTPUT: Section = Section {
                 option!(output.background_bottom),
             ),
         ],
-    ),
+    )),
     presence: None,
 };
 
 pub static TEST: Section = Section {
     name: "test",
     doc: "How far a picture may differ from the golden; a preset without this table has no golden",
-    settings: &in_section(
+    settings: LazyLock::new(|| in_section(
         "test",
         [
             Setting::new("max_channel", ValueType::U32, "Largest difference of a color channel, of 255", section_field!(test.max_channel))
@@ -363,7 +346,7 @@ pub static TEST: Section = Section {
             ),
             Setting::new("why", PARAGRAPH, "Why a budget above the default is needed", section_field!(test.why)),
         ],
-    ),
+    )),
     presence: Some(Presence {
         is_present: |preset| preset.test.is_some(),
         add: |preset| _ = preset.test.get_or_insert_default(),

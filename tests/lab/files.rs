@@ -3,6 +3,7 @@
 use std::{
     path::Path,
     time::{Duration, Instant},
+    sync::Arc,
 };
 
 use eframe::egui::{self, Key, Modifiers, Role, vec2};

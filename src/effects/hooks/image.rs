@@ -1,5 +1,7 @@
 //! The image hook: finish the pixel.
 
+use std::sync::Arc;
+
 use glam::DVec4;
 
 use crate::params::Params;
@@ -53,10 +55,10 @@ impl Picture<'_> {
 }
 
 /// An image effect's function over its parameter words.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct ImageHook {
     pub reads_previous: bool,
-    pub finish: &'static (dyn Fn(Pixel, &Picture<'_>, &[u32]) -> Pixel + Sync),
+    pub finish: Arc<dyn Fn(Pixel, &Picture<'_>, &[u32]) -> Pixel + Send + Sync>,
 }
 
 /// The f64 side of an effect on the image hook.

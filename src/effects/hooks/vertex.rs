@@ -1,5 +1,7 @@
 //! The vertex hook: where is it?
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 
 use crate::params::Params;
@@ -56,13 +58,13 @@ impl ErrorBound {
 pub const ROUNDING: f64 = 1.0 / (1 << 23) as f64;
 
 /// A vertex effect's functions over its parameter words.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct VertexHook {
     /// It reads the triangle, so triangles cannot share vertices.
     pub needs_triangle: bool,
-    pub moved: &'static (dyn Fn(Vertex, &[u32]) -> Vertex + Sync),
-    pub error_bound: &'static (dyn Fn(&Vertex, ErrorBound, &[u32]) -> ErrorBound + Sync),
-    pub max_displacement_m: &'static (dyn Fn(f64, &[u32]) -> f64 + Sync),
+    pub moved: Arc<dyn Fn(Vertex, &[u32]) -> Vertex + Send + Sync>,
+    pub error_bound: Arc<dyn Fn(&Vertex, ErrorBound, &[u32]) -> ErrorBound + Send + Sync>,
+    pub max_displacement_m: Arc<dyn Fn(f64, &[u32]) -> f64 + Send + Sync>,
 }
 
 /// The f64 side of an effect on the vertex hook.
