@@ -5,8 +5,12 @@ mod accepted;
 mod mutated;
 mod numerics;
 mod refused;
+mod saved;
 
-use std::{time::{Duration, Instant}, sync::Arc};
+use std::{
+    sync::Arc,
+    time::{Duration, Instant},
+};
 
 use rasterlab::{
     effect_files::{EffectError, read},
