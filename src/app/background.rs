@@ -3,8 +3,6 @@
 //! The window's thread uses the common pool for moments (a pick, the image of an overlay). A picture of the oracle there would keep it
 //! waiting, for seconds with a large one.
 
-use std::sync::Arc;
-
 use rayon::ThreadPoolBuilder;
 
 /// Who goes first when the processor is short, most urgent first. The window itself comes before all of them.

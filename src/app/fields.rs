@@ -342,7 +342,11 @@ mod tests {
     fn no_row_of_an_effect_with_defaults_is_marked_as_modified() {
         for effect in EFFECTS.iter() {
             let words = &effect.defaults;
-            assert!(effect.fields.iter().all(|field| !Row::of_parameter((effect.clone(), field.clone()), words).modified), "{}", effect.name);
+            assert!(
+                effect.fields.iter().all(|field| !Row::of_parameter((effect.clone(), field.clone()), words).modified),
+                "{}",
+                effect.name
+            );
         }
     }
 }

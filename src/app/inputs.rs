@@ -35,7 +35,8 @@ impl Inputs {
 
     /// True if both are drawn by the same kernels, unless the camera requires others.
     pub fn shares_kernels(&self, other: &Self) -> bool {
-        let has_same_effects = || self.stack.0.iter().map(|enabled| &enabled.effect).eq(other.stack.0.iter().map(|enabled| &enabled.effect));
+        let has_same_effects =
+            || self.stack.0.iter().map(|enabled| &enabled.effect).eq(other.stack.0.iter().map(|enabled| &enabled.effect));
         Arc::ptr_eq(&self.scene, &other.scene) && self.accuracy == other.accuracy && has_same_effects()
     }
 

@@ -1,6 +1,9 @@
 //! The user's library: favorites, files of presets, and values of effects.
 
-use std::{path::{Path, PathBuf}, sync::Arc};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use eframe::egui;
 

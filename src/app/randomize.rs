@@ -1,6 +1,6 @@
 //! Random values for the parameters of the enabled effects: how far they vary, which are locked, and the newest ones to go back to.
 
-use std::{collections::{BTreeSet, VecDeque}, sync::Arc};
+use std::collections::{BTreeSet, VecDeque};
 
 use crate::{
     effects::{Effect, EnabledEffect, Stack},

@@ -1,7 +1,10 @@
 //! Reloading what has changed on disk: effects, the open preset, the model and shaders. What cannot be used leaves the last good
 //! version in place, with a fault that is shown until it is mended.
 
-use std::{path::{Path, PathBuf}, sync::Arc};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use super::{
     command::{CodeUse, Edit},

@@ -1,6 +1,9 @@
 //! `bless`: redraws goldens with the oracle and prints what changes. Only this command writes goldens.
 
-use std::{path::{Path, PathBuf}, sync::Arc};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use serde_json::{Value, json};
 

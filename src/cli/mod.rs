@@ -37,7 +37,7 @@ mod sweep;
 pub mod trade;
 mod verify;
 
-use std::{io::{self, Write as _}, sync::Arc};
+use std::io::{self, Write as _};
 
 use clap::CommandFactory as _;
 use serde_json::{Value, json};

@@ -189,7 +189,7 @@ fn parameters_are_documented_and_their_ranges_nest() {
                 field.hard
             );
             assert!(!field.log || soft_low > 0.0, "{name}: a slider in decades begins above 0");
-            assert!(field.get(&defaults).iter().all(|lane| (low..=high).contains(lane)), "{name}: its default is outside its hard range");
+            assert!(field.get(defaults).iter().all(|lane| (low..=high).contains(lane)), "{name}: its default is outside its hard range");
         }
     }
 }

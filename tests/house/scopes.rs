@@ -24,7 +24,7 @@ fn text(key: &KernelKey, pass: Pass) -> String {
 #[test]
 fn text_without_scopes_reads_no_bits() {
     let mut stacks: Vec<Vec<Arc<Effect>>> = EFFECTS.iter().map(|effect| vec![effect.clone()]).collect();
-    stacks.extend([vec![], EFFECTS.iter().cloned().filter(|effect| effect.hooks.slot.is_none()).collect()]);
+    stacks.extend([vec![], EFFECTS.iter().filter(|&effect| effect.hooks.slot.is_none()).cloned().collect()]);
     for effects in stacks {
         let key = KernelKey::complete(Fetch::Indexed, Visibility::Split32, effects);
         for pass in all_passes(&key) {

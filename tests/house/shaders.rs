@@ -2,7 +2,10 @@
 //! atomics only where an option asks for them, within eight storage buffers; every file names only what it and the files that
 //! it uses declare; and few files must be opened to read a pass. Needs no adapter.
 
-use std::{collections::BTreeMap, sync::{Arc, Mutex}};
+use std::{
+    collections::BTreeMap,
+    sync::{Arc, Mutex},
+};
 
 use rasterlab::{
     accuracy::{AXES, Axis, Culling, DotCulling, Parameters, Visibility},
@@ -40,8 +43,8 @@ pub fn all_passes(key: &KernelKey) -> Vec<Pass> {
 /// Nothing, and each effect in the visibility slot alone and together with effects on other hooks.
 fn slot_stacks() -> Vec<Vec<Arc<Effect>>> {
     let mut stacks = vec![vec![]];
-    for effect in EFFECTS.iter().cloned().filter(|effect| effect.hooks.slot == Some(Slot::Visibility)) {
-        let others = EFFECTS.iter().cloned().filter(|other| other.hooks.slot.is_none());
+    for effect in EFFECTS.iter().filter(|&effect| effect.hooks.slot == Some(Slot::Visibility)).cloned() {
+        let others = EFFECTS.iter().filter(|&other| other.hooks.slot.is_none()).cloned();
         stacks.extend([vec![effect.clone()], others.chain([effect]).collect()]);
     }
     stacks
@@ -179,7 +182,7 @@ fn an_empty_stack_leaves_no_trace_of_effects() {
 
 #[test]
 fn a_stack_that_moves_nothing_leaves_no_trace_of_movement() {
-    for effects in [vec![], EFFECTS.iter().cloned().filter(|effect| effect.hooks.vertex.is_none()).collect()] {
+    for effects in [vec![], EFFECTS.iter().filter(|&effect| effect.hooks.vertex.is_none()).cloned().collect()] {
         let key = key(Fetch::Indexed, Visibility::Split32, true, effects);
         assert!(!key.to_string().contains("vertex_effects"), "{key}");
         for pass in all_passes(&key) {

@@ -118,7 +118,7 @@ fn same(effect: &Effect, what: &str, given: &[f64], expected: &[f64], case: &dyn
 fn each_effect(has: impl Fn(&Hooks) -> bool, compare: impl Fn(&Arc<Effect>, &Hooks) + std::panic::RefUnwindSafe) {
     let mut faults = Vec::new();
     let mut compared = 0;
-    for effect in EFFECTS.iter().cloned().filter(|effect| has(&effect.hooks)) {
+    for effect in EFFECTS.iter().filter(|&effect| has(&effect.hooks)).cloned() {
         let hooks = evaluated(&Library::Embedded, &effect).unwrap_or_else(|error| panic!("{}: {error}", effect.name));
         let run = std::panic::AssertUnwindSafe(|| compare(&effect, &hooks));
         if let Err(panic) = std::panic::catch_unwind(run) {

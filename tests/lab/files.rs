@@ -3,7 +3,6 @@
 use std::{
     path::Path,
     time::{Duration, Instant},
-    sync::Arc,
 };
 
 use eframe::egui::{self, Key, Modifiers, Role, vec2};

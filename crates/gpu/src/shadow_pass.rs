@@ -1,8 +1,6 @@
 //! The shadow pass: a second view of the scene, as a directional light sees it. Depths alone are drawn, into the map by which the
 //! picture is shaded. The scene's buffers are read as the picture's passes deformed them.
 
-use std::sync::Arc;
-
 use super::{
     buffers::{BufferNote, Buffers},
     device::Gpu,

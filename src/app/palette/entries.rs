@@ -71,7 +71,14 @@ fn of_effect(session: &Session, effect: &Arc<Effect>) -> Option<Entry> {
         Choice::Replace(rival, _) => format!("instead of {rival}: {}", effect.about),
         _ => effect.about.clone(),
     };
-    Some(Entry { kind: Kind::Effect, text: format!("{verb} {}", effect.name), detail, about: effect.about.clone(), keys: String::new(), choice })
+    Some(Entry {
+        kind: Kind::Effect,
+        text: format!("{verb} {}", effect.name),
+        detail,
+        about: effect.about.clone(),
+        keys: String::new(),
+        choice,
+    })
 }
 
 /// The parameters of an effect. One of an effect that is not in the stack enables it; one that is hidden says why.
@@ -88,8 +95,10 @@ fn parameters(session: &Session, effect: &Arc<Effect>) -> Vec<Entry> {
                 (written(field, &field.value(words)), Choice::Reveal(path.clone(), None))
             }
             (Some(words), None) => {
-                let condition =
-                    field.when.as_ref().map_or_else(String::new, |(choice, among)| format!("{}.{choice} is {}", effect.name, among.join(" or ")));
+                let condition = field
+                    .when
+                    .as_ref()
+                    .map_or_else(String::new, |(choice, among)| format!("{}.{choice} is {}", effect.name, among.join(" or ")));
                 let reason = format!("{path} is shown while {condition}");
                 (format!("{}, hidden", written(field, &field.value(words))), Choice::Refuse(reason))
             }

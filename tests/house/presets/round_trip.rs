@@ -96,10 +96,10 @@ fn animated(stack: &rasterlab::effects::Stack, tracks: Vec<(prop::sample::Index,
         for (time_s, seed, easing) in keys {
             let easing = if steps(field) { Easing::Hold } else { Easing::ALL[easing] };
             if !frames.iter().any(|frame| frame.time_s == time_s) {
-                frames.push(Keyframe { time_s, value: field.get(&filled(&effect, seed)), easing });
+                frames.push(Keyframe { time_s, value: field.get(&filled(effect, seed)), easing });
             }
         }
-        animation.put(Track::new(&effect, field, frames).expect("sound keys"));
+        animation.put(Track::new(effect, field, frames).expect("sound keys"));
     }
     animation
 }

@@ -126,8 +126,8 @@ fn parameters_at_range_ends(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         for (end, word) in [(0, "minimum"), (1, "maximum")] {
             for field in &effect.fields {
                 let mut stack = Stack::default();
-                set(&mut stack, effect, &field, end)?;
-                let what = format!("{}.{} at its {word}, {}", effect.name, field.name, ends(&field)[end]);
+                set(&mut stack, effect, field, end)?;
+                let what = format!("{}.{} at its {word}, {}", effect.name, field.name, ends(field)[end]);
                 judged(context, &stack, turn, &what)?;
             }
             let mut stack = Stack::default();

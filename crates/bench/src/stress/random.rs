@@ -105,10 +105,10 @@ pub fn stack(rng: &mut Rng, values: Values) -> Stack {
     let mut stack = Stack::default();
     for _ in 0..rng.between(1, 6) {
         let effect = &rng.pick(&EFFECTS);
-        if stack.rival_of(&effect).is_some() {
+        if stack.rival_of(effect).is_some() {
             continue;
         }
-        let words = &mut stack.enable(&effect).words;
+        let words = &mut stack.enable(effect).words;
         for field in &effect.fields {
             let value = components(rng, field, values);
             field.set(words, &value).unwrap_or_else(|error| panic!("{}.{}: {error}", effect.name, field.name));

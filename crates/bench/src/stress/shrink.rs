@@ -1,10 +1,7 @@
 //! Shrinking: the smallest preset that still fails.
 
-use std::sync::Arc;
-
 use crate::{
     accuracy::AXES,
-    effects::Effect,
     preset::{Preset, SceneSource, animation::Animation, settings::settings},
     scene::parts::Scope,
 };

@@ -117,7 +117,7 @@ fn declared(effect: &Effect, new_type: &str) -> String {
     fields.sort_by_key(|field| (!matches!(field.value_type, ValueType::Choice(_)), field.offset));
     let mut text = format!("struct {new_type} {{\n");
     for field in fields {
-        writeln!(text, "    /// {}\n    {} {}: {},", field.doc.trim(), attributes(field, &words), field.name, field.wgsl.name())
+        writeln!(text, "    /// {}\n    {} {}: {},", field.doc.trim(), attributes(field, words), field.name, field.wgsl.name())
             .expect("writing to a string");
     }
     text.push('}');

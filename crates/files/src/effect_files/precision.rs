@@ -50,6 +50,9 @@ pub struct LargestError {
     pub place: Place,
 }
 
+/// An effect and the largest error of each of its quantities.
+pub type ErrorsOfEffect = (Arc<Effect>, Vec<LargestError>);
+
 /// What the probes of an effect have found.
 #[derive(Default)]
 struct Errors {
@@ -126,7 +129,7 @@ pub fn precision(
     is_probed: impl Fn(&Effect) -> bool,
     cancelled: &Arc<AtomicBool>,
     draw: impl FnOnce(&Stack),
-) -> Result<Vec<(Arc<Effect>, Vec<LargestError>)>, EvaluatedError> {
+) -> Result<Vec<ErrorsOfEffect>, EvaluatedError> {
     let mut probed = stack.clone();
     let mut probes = Vec::new();
     for enabled in probed.0.iter_mut().filter(|enabled| is_probed(&enabled.effect)) {
@@ -142,7 +145,8 @@ pub fn precision(
         *locked(&probe.errors) = Errors { cancelled: cancelled.clone(), largest: Vec::new() };
     }
     draw(&probed);
-    let mut found: Vec<_> = probes.iter().map(|(effect, probe)| (effect.clone(), std::mem::take(&mut locked(&probe.errors).largest))).collect();
+    let mut found: Vec<_> =
+        probes.iter().map(|(effect, probe)| (effect.clone(), std::mem::take(&mut locked(&probe.errors).largest))).collect();
     found.iter_mut().for_each(|(_, largest)| largest.sort_by_key(|error| error.quantity));
     if cancelled.load(Ordering::Relaxed) {
         found.clear();

@@ -28,6 +28,9 @@ const INPUT_ERROR: f64 = 1.0 / (1 << 17) as f64;
 /// Programs whose registers a thread keeps.
 const MAX_PROGRAMS: usize = 64;
 
+/// The registers of a program, which they do not hold.
+type Kept = (Weak<Program>, Vec<Word>);
+
 /// One function of a linked module.
 #[derive(Clone, Debug)]
 pub struct Function {
@@ -59,7 +62,7 @@ impl Function {
     fn call<R>(&self, mut arguments: Vec<Word>, words: &[u32], host: &mut dyn Host, read: impl FnOnce(&mut Reader<'_>) -> R) -> Option<R> {
         thread_local! {
             /// By the address of the program, which no other has as long as it is weakly held.
-            static REGISTERS: RefCell<HashMap<usize, (Weak<Program>, Vec<Word>)>> = RefCell::new(HashMap::new());
+            static REGISTERS: RefCell<HashMap<usize, Kept>> = RefCell::new(HashMap::new());
         }
         for field in &self.fields {
             let words = &words[field.offset / 4..][..field.wgsl.words()];
@@ -297,7 +300,8 @@ pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> Verte
             center_screen: v.center_screen.as_vec2().as_dvec2(),
             triangle: v.triangle,
         };
-        let others = (0..6).map(|turn| evaluate(&double, &moved_within(v, &bound, turn), words)).chain([evaluate(&single, &rounded, words)]);
+        let others =
+            (0..6).map(|turn| evaluate(&double, &moved_within(v, &bound, turn), words)).chain([evaluate(&single, &rounded, words)]);
         let (mut offset_m, mut normal) = (0.0_f64, 0.0_f64);
         for other in others {
             offset_m = offset_m.max((other.offset - exact.offset).abs().max_element());
@@ -307,10 +311,5 @@ pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> Verte
         let (offset_m, normal) = (2.0 * offset_m + 16.0 * ROUNDING * scale, 2.0 * normal + 16.0 * ROUNDING);
         ErrorBound { offset_m, along_m: DVec3::ZERO, normal, ..bound }
     };
-    VertexHook {
-        needs_triangle,
-        moved: Arc::new(moved),
-        error_bound: Arc::new(error_bound),
-        max_displacement_m: Arc::new(limit),
-    }
+    VertexHook { needs_triangle, moved: Arc::new(moved), error_bound: Arc::new(error_bound), max_displacement_m: Arc::new(limit) }
 }

@@ -45,10 +45,10 @@ impl EffectValues {
     pub fn put_into(&self, preset: &mut Preset) -> Result<(), Conflict> {
         let effect = &self.enabled.effect;
         let mut stack = preset.stack.clone();
-        if let Some(conflict) = stack.conflict_with(&effect) {
+        if let Some(conflict) = stack.conflict_with(effect) {
             return Err(conflict);
         }
-        stack.enable(&effect).clone_from(&self.enabled);
+        stack.enable(effect).clone_from(&self.enabled);
         stack.check()?;
         preset.stack = stack;
         preset.animation.remove_effect(&effect.name);

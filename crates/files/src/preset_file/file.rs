@@ -1,6 +1,9 @@
 //! An open preset: the state with the file it came from.
 
-use std::{path::{Component, Path, PathBuf}, sync::Arc};
+use std::{
+    path::{Component, Path, PathBuf},
+    sync::Arc,
+};
 
 use toml_edit::{DocumentMut, Item, Table};
 
@@ -84,7 +87,12 @@ impl PresetFile {
     /// What a person should know after opening it: warnings, and the code that it brings.
     pub fn remarks(&self) -> Vec<String> {
         let lines = |name: &str| {
-            self.effects.find(name).ok().flatten().and_then(|effect| effect.source.as_ref()).map_or(0, |source| source.written.lines().count())
+            self.effects
+                .find(name)
+                .ok()
+                .flatten()
+                .and_then(|effect| effect.source.as_ref())
+                .map_or(0, |source| source.written.lines().count())
         };
         let brought = self.brought_effects.iter().map(|name| format!("the preset brings the effect {name}, {} lines of WGSL", lines(name)));
         self.warnings.iter().cloned().chain(brought).collect()
@@ -99,8 +107,9 @@ impl PresetFile {
     #[must_use]
     pub fn without_brought(mut self) -> Self {
         let brought = std::mem::take(&mut self.brought_effects);
-        let is_brought =
-            |effect: &Effect| brought.iter().any(|name| effect.name == *name || effect.base.as_ref().is_some_and(|base| base.name == *name));
+        let is_brought = |effect: &Effect| {
+            brought.iter().any(|name| effect.name == *name || effect.base.as_ref().is_some_and(|base| base.name == *name))
+        };
         let used: Vec<String> = self
             .preset
             .stack

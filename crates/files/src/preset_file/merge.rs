@@ -62,8 +62,8 @@ impl Merged {
     fn effects(&mut self, base: &Preset, mine: &Preset, theirs: &Preset) {
         for now in &mine.stack.0 {
             let name = &now.effect.name;
-            let before = base.stack.get(&name);
-            if theirs.stack.get(&name).is_none() {
+            let before = base.stack.get(name);
+            if theirs.stack.get(name).is_none() {
                 if before.is_none_or(|before| before != now) {
                     self.preset.stack.enable(&now.effect).clone_from(now);
                     if before.is_some() {
@@ -74,14 +74,14 @@ impl Merged {
             }
             let new = EnabledEffect::new(&now.effect);
             let EnabledEffect { words: before, on, .. } = before.unwrap_or(&new);
-            if let Some(other) = self.preset.stack.get_mut(&name).filter(|other| now.on != *on && other.on != now.on) {
+            if let Some(other) = self.preset.stack.get_mut(name).filter(|other| now.on != *on && other.on != now.on) {
                 if other.on != *on {
                     self.conflicts.push(format!("{name}.on"));
                 }
                 other.on.clone_from(&now.on);
             }
             for field in now.effect.fields.iter().filter(|field| !field.same(&now.words, before)) {
-                let Some(other) = self.preset.stack.get_mut(&name) else { continue };
+                let Some(other) = self.preset.stack.get_mut(name) else { continue };
                 let Some(theirs) = other.effect.field(&field.name) else { continue };
                 if !field.same(&other.words, before) && !field.same(&other.words, &now.words) {
                     self.conflicts.push(format!("{name}.{}", field.name));

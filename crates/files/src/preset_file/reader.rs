@@ -80,7 +80,10 @@ impl<'a> Reader<'a> {
             let added = self.catalog.add_instance(name, base);
             return added.map(Some).map_err(|reason| self.error(table, prefix, name, reason));
         }
-        self.catalog.find(name).map(Option::<&_>::cloned).map_err(|error| self.error(table, prefix, name, format!("cannot be used: {error}")))
+        self.catalog
+            .find(name)
+            .map(Option::<&_>::cloned)
+            .map_err(|error| self.error(table, prefix, name, format!("cannot be used: {error}")))
     }
 
     /// The value of `param`, which stands in `table` as `item`; its type is right, its range is not checked.

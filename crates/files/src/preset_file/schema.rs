@@ -79,7 +79,7 @@ fn refused(path: &str) -> Option<Json> {
 fn effect_schema(effect: &Effect) -> Json {
     let defaults = &effect.defaults;
     let mut properties: Map<String, Json> =
-        effect.fields.iter().map(|field| (field.name.clone(), param_schema(field, Some(field.value(&defaults))))).collect();
+        effect.fields.iter().map(|field| (field.name.clone(), param_schema(field, Some(field.value(defaults))))).collect();
     if effect.has_scope() {
         properties.insert(SCOPE_KEY.into(), scope_schema());
     }

@@ -129,7 +129,8 @@ impl Plan {
 
     fn scopes_reason(&self) -> Option<Note> {
         let effects = &self.key.effects;
-        let names: Vec<_> = effects.list.iter().filter(|effect| effects.scope(effect).is_some()).map(|effect| effect.name.as_str()).collect();
+        let names: Vec<_> =
+            effects.list.iter().filter(|effect| effects.scope(effect).is_some()).map(|effect| effect.name.as_str()).collect();
         let why = "limited to parts of the scene: one bit per draw decides";
         (!names.is_empty()).then(|| note("scopes", format!("{}: {why}", names.join(", "))))
     }

@@ -238,8 +238,7 @@ fn check_xray(options: &AccuracyOptions, stack: &StackTraits) -> Result<(), Plan
 
 /// An effect whose integers are in units of 1/256 px.
 fn subpixel_effect(stack: &StackTraits) -> Option<String> {
-    let measures =
-        |effect: &&Arc<Effect>| effect.hooks.sample.as_ref().is_some_and(|hook| hook.has_setup) || **effect == *points::EFFECT;
+    let measures = |effect: &&Arc<Effect>| effect.hooks.sample.as_ref().is_some_and(|hook| hook.has_setup) || **effect == *points::EFFECT;
     stack.effects.iter().find(measures).map(|effect| effect.name.clone())
 }
 

@@ -130,7 +130,8 @@ mod tests {
             let before = StackTraits::of(&stack, &request).expect("one effect has no rival");
             // A scene with particles has other triangles than one without.
             let is_structural = |field: &crate::params::Field| {
-                matches!(field.value_type, ValueType::Choice(_) | ValueType::Bool) || (effect.name.as_str(), field.name.as_str()) == ("particles", "count")
+                matches!(field.value_type, ValueType::Choice(_) | ValueType::Bool)
+                    || (effect.name.as_str(), field.name.as_str()) == ("particles", "count")
             };
             for field in effect.fields.iter().filter(|field| !is_structural(field)) {
                 for value in field.hard {

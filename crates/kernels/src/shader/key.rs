@@ -232,7 +232,7 @@ impl EffectList {
 impl KernelKey {
     /// A key that omits nothing, for a stack on a portable adapter.
     pub fn complete(fetch: Fetch, visibility: Visibility, effects: Vec<Arc<Effect>>) -> Self {
-        let layers = Stack(effects.iter().map(|effect| EnabledEffect::new(effect)).collect()).layers(u64::MAX);
+        let layers = Stack(effects.iter().map(EnabledEffect::new).collect()).layers(u64::MAX);
         Self {
             options: AccuracyOptions { visibility, ..AccuracyOptions::default() },
             vertices: VertexInputs {

@@ -2,7 +2,9 @@
 
 use std::sync::{Arc, LazyLock};
 
-use super::hooks::{Hooks, ImageEffect, ImageHook, Picture, SampleEffect, SampleHook, Slot, SurfaceEffect, SurfaceInput, VertexEffect, VertexHook};
+use super::hooks::{
+    Hooks, ImageEffect, ImageHook, Picture, SampleEffect, SampleHook, Slot, SurfaceEffect, SurfaceInput, VertexEffect, VertexHook,
+};
 use crate::{
     params::{Field, Params},
     scene::particle_discs::ParticleSettings,

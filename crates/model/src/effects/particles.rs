@@ -144,7 +144,7 @@ pub fn affects_only_appearance(field: &Field) -> bool {
 fn step_words(words: &[u32]) -> Vec<u32> {
     let mut step = words.to_vec();
     let default = &EFFECT.defaults;
-    EFFECT.fields.iter().filter(|field| affects_only_appearance(field)).for_each(|field| field.copy(&default, &mut step));
+    EFFECT.fields.iter().filter(|field| affects_only_appearance(field)).for_each(|field| field.copy(default, &mut step));
     step
 }
 

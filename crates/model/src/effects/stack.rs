@@ -154,7 +154,8 @@ impl Stack {
 
     /// How far a vertex of a model of this radius may move.
     pub fn max_displacement_m(&self, radius_m: f64) -> f64 {
-        self.each(|hooks| hooks.vertex.as_ref()).fold(0.0, |reach, (hook, words)| reach + (hook.max_displacement_m)(radius_m + reach, words))
+        self.each(|hooks| hooks.vertex.as_ref())
+            .fold(0.0, |reach, (hook, words)| reach + (hook.max_displacement_m)(radius_m + reach, words))
     }
 
     /// Finishes a pixel by every image effect in order.

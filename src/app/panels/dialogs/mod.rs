@@ -4,7 +4,10 @@ mod buttons;
 mod path;
 mod questions;
 
-use std::{path::{Path, PathBuf}, sync::Arc};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use eframe::egui::{self, Ui};
 

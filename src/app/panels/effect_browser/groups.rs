@@ -85,7 +85,7 @@ fn shows_data(effect: &Effect) -> bool {
     let words = &effect.defaults;
     // Lines and dots are somewhere in the picture, so several pixels are asked.
     (0..32).all(|index| {
-        let [dark, bright] = [0.0, 1.0].map(|tone| apply(surface(f64::from(index), tone), &words).color);
+        let [dark, bright] = [0.0, 1.0].map(|tone| apply(surface(f64::from(index), tone), words).color);
         dark == bright
     })
 }
@@ -117,11 +117,7 @@ fn surface(index: f64, tone: f64) -> Surface {
 }
 
 /// The effects that answer `search` and `is_kept`, in their groups. Within a group the best answers come first.
-pub fn grouped<'a>(
-    effects: &[&'a Arc<Effect>],
-    search: &str,
-    is_kept: impl Fn(&Effect) -> bool,
-) -> Vec<(Group, Vec<&'a Arc<Effect>>)> {
+pub fn grouped<'a>(effects: &[&'a Arc<Effect>], search: &str, is_kept: impl Fn(&Effect) -> bool) -> Vec<(Group, Vec<&'a Arc<Effect>>)> {
     let about = |effect: &Effect| format!("{} {} {}", effect.about, Group::of(effect).name(), effect.hooks.names());
     let mut found: Vec<(Group, i32, &Arc<Effect>)> = effects
         .iter()
@@ -156,8 +152,9 @@ mod tests {
 
     #[test]
     fn every_built_in_effect_is_in_the_group_of_what_it_does() {
-        let of =
-            |group: Group| -> Vec<&str> { EFFECTS.iter().filter(|effect| Group::of(effect) == group).map(|effect| effect.name.as_str()).collect() };
+        let of = |group: Group| -> Vec<&str> {
+            EFFECTS.iter().filter(|effect| Group::of(effect) == group).map(|effect| effect.name.as_str()).collect()
+        };
         assert_eq!(of(Group::Inspect), ["draw_order", "triangle_id", "normals", "depth"]);
         assert_eq!(of(Group::Layers), ["xray", "overdraw", "race"]);
         assert_eq!(of(Group::Lines), ["dots"]);
@@ -172,8 +169,9 @@ mod tests {
     #[test]
     fn search_finds_names_descriptions_and_groups() {
         let all: Vec<&'static Arc<Effect>> = EFFECTS.iter().collect();
-        let names =
-            |search: &str| -> Vec<&str> { grouped(&all, search, |_| true).into_iter().flat_map(|(_, e)| e).map(|e| e.name.as_str()).collect() };
+        let names = |search: &str| -> Vec<&str> {
+            grouped(&all, search, |_| true).into_iter().flat_map(|(_, e)| e).map(|e| e.name.as_str()).collect()
+        };
         assert_eq!(names("toon"), ["toon"]);
         assert_eq!(
             names("layers").into_iter().collect::<std::collections::BTreeSet<_>>().into_iter().collect::<Vec<_>>(),

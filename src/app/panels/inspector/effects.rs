@@ -107,14 +107,7 @@ fn enabled_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&Arc<Eff
     shown.response.rect
 }
 
-fn header_ui(
-    ui: &mut Ui,
-    state: &State,
-    commands: &Commands,
-    stack: &[&Arc<Effect>],
-    index: usize,
-    (is_muted, is_folded): (bool, bool),
-) {
+fn header_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&Arc<Effect>], index: usize, (is_muted, is_folded): (bool, bool)) {
     let (effect, count) = (stack[index], stack.len());
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
