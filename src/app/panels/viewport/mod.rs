@@ -83,7 +83,7 @@ impl Viewport {
         if camera.is_some() {
             commands.edit(Edit::Camera(camera));
         }
-        if let Some(picking) = state.picking {
+        if let Some(picking) = &state.picking {
             pick_input::pick(&response, self.compare.side_b(rect), picking, state, commands);
         }
         Interaction { response, size, is_moved }
