@@ -14,6 +14,7 @@
 //! * [`preset`]: the state of a picture, and its animation
 //! * [`oracle`]: the exact CPU renderer that judges the kernels and makes the goldens
 //! * [`gpu`]: runs the kernels
+//! * [`host`]: what the core, which knows no files and no environment, is given of the machine
 //! * [`preset_file`]: presets as sparse TOML files
 //! * [`film`]: films of an animated preset, as frames, animated PNG or video
 //! * [`stress`]: the table of extreme cases, each drawn and judged
@@ -26,6 +27,7 @@
 pub mod accuracy;
 #[cfg(feature = "gui")]
 pub mod app;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod cli;
 pub mod effect_files;
 pub mod effects;
@@ -33,6 +35,7 @@ pub mod evaluator;
 pub mod film;
 pub mod frame;
 pub mod gpu;
+pub mod host;
 pub mod math;
 pub mod measure;
 pub mod oracle;

@@ -2,6 +2,7 @@
 
 use std::{path::PathBuf, sync::Arc};
 
+use pollster::FutureExt as _;
 use serde_json::{Map, Value, json};
 
 use super::{
@@ -130,7 +131,7 @@ fn check(renderer: &mut Renderer, costs: &UnitCosts, count: u32, seed: u32, stre
         let preset = random::preset(seed);
         let mut measured = || -> Result<_, CliError> {
             let scene = preset_file::load_scene(&preset, None)?;
-            renderer.set_scene(&scene)?;
+            renderer.set_scene(&scene).block_on()?;
             let moments = preset.moments(&scene, preset.output.size);
             let (view, stack) = moments.last().ok_or_else(|| CliError::usage("it has no frame"))?;
             let cost = PictureCost::measured(renderer, view, stack, &preset.accuracy, Some(costs))?;

@@ -150,7 +150,7 @@ impl PrecisionProbe {
     fn of(effect: &'static Effect) -> Result<&'static Self, EvaluatedError> {
         static KNOWN: Probes<PrecisionProbe> = Mutex::new(BTreeMap::new());
         kept(&KNOWN, effect, || {
-            let single = evaluated_in(&Library::from_env(), effect, Precision::Single)?;
+            let single = evaluated_in(&Library::of_process(), effect, Precision::Single)?;
             let errors = Arc::new(Mutex::new(Errors::default()));
             let mut hooks = effect.hooks;
             if let (Some(exact), Some(single)) = (hooks.surface, single.surface) {

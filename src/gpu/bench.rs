@@ -5,9 +5,11 @@ use std::{
     time::{Duration, Instant},
 };
 
+use pollster::FutureExt as _;
+
 use super::{
-    buffers,
     capture::Capture,
+    completion,
     device::Gpu,
     error::RenderError,
     frame_stats::{Pending, StatSources},
@@ -152,8 +154,8 @@ pub fn bench_stacks(
     let mut entries = Vec::new();
     for (name, stack) in stacks {
         let mut renderer = Renderer::new(gpu.clone());
-        renderer.set_scene(scene)?;
-        let verdict = judge(stack, &renderer.capture(&lab.view, stack, &AccuracyRequest::default())?);
+        renderer.set_scene(scene).block_on()?;
+        let verdict = judge(stack, &renderer.capture(&lab.view, stack, &AccuracyRequest::default()).block_on()?);
         let contender = Contender::Stacked(name.clone(), Box::new((stack.clone(), renderer)));
         entries.push(Entry::new(contender, (&verdict.report).into()));
     }
@@ -243,12 +245,12 @@ impl Lab<'_> {
         let mut expected = None;
         for &visibility in Visibility::ALL {
             let mut renderer = Renderer::new(self.gpu.clone());
-            renderer.set_scene(scene)?;
+            renderer.set_scene(scene).block_on()?;
             if !visibility.is_supported(self.gpu.caps.int64_atomics) {
                 missing.push((visibility.name().into(), "packed64 needs 64-bit atomics, which this adapter lacks".into()));
                 continue;
             }
-            let capture = match renderer.capture(&self.view, &self.preset.stack, &pinned(visibility)) {
+            let capture = match renderer.capture(&self.view, &self.preset.stack, &pinned(visibility)).block_on() {
                 Err(error) if error.is_unsupported() => {
                     missing.push((visibility.name().into(), error.to_string()));
                     continue;
@@ -302,9 +304,9 @@ impl Lab<'_> {
         };
         if let Some((renderer, stack, accuracy)) = ours {
             for _ in 0..frames {
-                renderer.draw_timed(&self.view, stack, &accuracy, detail, Wait::Simulation)?;
+                renderer.draw_timed(&self.view, stack, &accuracy, detail, Wait::Simulation).block_on()?;
             }
-            let report = renderer.finish()?;
+            let report = renderer.finish().block_on()?;
             return Ok(Times { total_ms: report.gpu_ms, passes: report.passes });
         }
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
@@ -322,7 +324,7 @@ impl Lab<'_> {
         let pending = Pending::stage(self.gpu, &mut encoder, StatSources::default(), self.timer.as_ref(), None);
         self.gpu.queue.submit([encoder.finish()]);
         let pending = pending.begin();
-        buffers::wait(self.gpu)?;
+        completion::idle(self.gpu).block_on()?;
         pending.read(self.timer.as_ref()).map(|(_, times)| times).ok_or(RenderError::Lost)
     }
 }

@@ -1,6 +1,7 @@
 //! Materials of the hardware baseline: images as textures of the adapter with all their mip levels, and samplers that filter them as
 //! the file says.
 
+use pollster::FutureExt as _;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 use super::{device::Gpu, error::RenderError, records::HardwareMaterial};
@@ -28,7 +29,7 @@ impl HardwareMaterials {
         // Bound where a material has no image; nothing reads it.
         let none = upload(gpu, &[Level { size: [1, 1], texels: vec![[255; 4]] }]);
         let groups = scene.materials.iter().map(|material| group(gpu, &layout, material, &views, &none)).collect();
-        if pollster::block_on(scope.pop()).is_some() {
+        if scope.pop().block_on().is_some() {
             let bytes = scene.images.iter().map(Image::bytes).sum();
             return Err(RenderError::OutOfMemory { buffer: "images of the hardware baseline", bytes });
         }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::DMat4;
+use pollster::FutureExt as _;
 
 use super::{
     buffers::{self, Buffers, color_stride},
@@ -55,13 +56,13 @@ impl Naive {
         };
         let pixels = view.pixels() as u64;
         let mut buffers = Buffers::default();
-        buffers.fill(gpu, BufferId::NaiveFrame, bytemuck::bytes_of(&uniform))?;
-        buffers.fill(gpu, BufferId::Corners, bytemuck::cast_slice(&corners))?;
-        buffers.ensure(gpu, BufferId::Channels, 12 * pixels)?;
-        buffers.ensure(gpu, BufferId::Color, 4 * u64::from(uniform.stride) * u64::from(view.height))?;
-        let mut pipelines = Pipelines::new(Library::from_env());
+        buffers.fill(gpu, BufferId::NaiveFrame, bytemuck::bytes_of(&uniform)).block_on()?;
+        buffers.fill(gpu, BufferId::Corners, bytemuck::cast_slice(&corners)).block_on()?;
+        buffers.ensure(gpu, BufferId::Channels, 12 * pixels).block_on()?;
+        buffers.ensure(gpu, BufferId::Color, 4 * u64::from(uniform.stride) * u64::from(view.height)).block_on()?;
+        let mut pipelines = Pipelines::new(Library::of_process());
         let mut build = |entry: &str, groups: [u32; 2]| {
-            let pipeline = pipelines.build(gpu, "baselines/naive", entry, entry, key, &[], &[])?;
+            let pipeline = pipelines.build(gpu, "baselines/naive", entry, entry, key, &[], &[]).block_on()?;
             let resources = Resources { buffers: vec![&buffers], textures: Vec::new(), light: None };
             let group = resources.bind_group(gpu, &pipeline)?;
             Ok::<_, RenderError>((pipeline, group, groups))
@@ -91,7 +92,7 @@ impl Naive {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.record(&mut encoder, None);
         gpu.queue.submit([encoder.finish()]);
-        buffers::read_picture(gpu, self.buffers.get(BufferId::Color)?, self.size)
+        buffers::read_picture(gpu, self.buffers.get(BufferId::Color)?, self.size).block_on()
     }
 }
 

@@ -5,6 +5,7 @@ use std::{collections::VecDeque, sync::Arc};
 use super::{
     buffers::{self, color_stride},
     compile_watch::CompileWatch,
+    completion::idle,
     device::Gpu,
     error::RenderError,
     explain::{Explained, Explanation},
@@ -78,9 +79,9 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// A renderer whose shaders come from where the environment says, as a rule from inside this program.
+    /// A renderer whose shaders come from the library of the process, as a rule from inside this program.
     pub fn new(gpu: Arc<Gpu>) -> Self {
-        Self::with_library(gpu, Library::from_env())
+        Self::with_library(gpu, Library::of_process())
     }
 
     /// A renderer whose shaders come from `library`.
@@ -151,7 +152,7 @@ impl Renderer {
     ///
     /// # Errors
     /// When the scene does not fit.
-    pub fn set_scene(&mut self, scene: &Arc<Scene>) -> Result<(), RenderError> {
+    pub async fn set_scene(&mut self, scene: &Arc<Scene>) -> Result<(), RenderError> {
         if self.scene.as_ref().is_some_and(|current| current.is_of(scene)) {
             return Ok(());
         }
@@ -159,7 +160,7 @@ impl Renderer {
         self.change_scene(scene);
         // The memory of the old scene is free before the new one takes it.
         self.scene = None;
-        self.scene = Some(SceneResources::new(&self.device.gpu, scene)?);
+        self.scene = Some(SceneResources::new(&self.device.gpu, scene).await?);
         Ok(())
     }
 
@@ -170,16 +171,16 @@ impl Renderer {
         self.shadow = None;
     }
 
-    /// Records and submits one frame; never waits. A picture of 0 pixels dispatches nothing.
+    /// Records and submits one frame; never waits for it. A picture of 0 pixels dispatches nothing.
     ///
     /// # Errors
     /// When the picture cannot be drawn on this adapter, or the device is lost.
-    pub fn draw(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<(), RenderError> {
-        self.draw_timed(view, stack, accuracy, Detail::Passes, Wait::None)
+    pub async fn draw(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<(), RenderError> {
+        self.draw_timed(view, stack, accuracy, Detail::Passes, Wait::None).await
     }
 
     /// [`Self::draw`] with a choice of what is timed and what is waited for.
-    pub(crate) fn draw_timed(
+    pub(crate) async fn draw_timed(
         &mut self,
         view: &View,
         stack: &Stack,
@@ -190,14 +191,14 @@ impl Renderer {
         let shown = [view.width, view.height];
         let scale = accuracy.scale();
         if scale == RenderScale::Full {
-            return self.draw_pixels(view, stack, accuracy, shown, detail, wait);
+            return self.draw_pixels(view, stack, accuracy, shown, detail, wait).await;
         }
         let (drawn, stack) = (view.scaled(scale.factor()), stack.scaled(scale.factor()));
-        self.draw_pixels(&drawn, &stack, accuracy, shown, detail, wait).map_err(|error| error.at_scale(scale, view, &drawn))
+        self.draw_pixels(&drawn, &stack, accuracy, shown, detail, wait).await.map_err(|error| error.at_scale(scale, view, &drawn))
     }
 
     /// Draws as many pixels as `view` has, independent of the size at which they are shown.
-    fn draw_pixels(
+    async fn draw_pixels(
         &mut self,
         view: &View,
         stack: &Stack,
@@ -209,9 +210,9 @@ impl Renderer {
         if self.device.gpu.is_lost() {
             return Err(RenderError::Lost);
         }
-        self.attach_particles(stack)?;
+        self.attach_particles(stack).await?;
         let room = self.history.room_for_layers(view, stack);
-        self.prepare(&Request { view, stack, accuracy, shown, room }, wait)?;
+        self.prepare(&Request { view, stack, accuracy, shown, room }, wait).await?;
         if view.pixels() == 0 {
             self.presentation = None;
             return Ok(());
@@ -235,14 +236,14 @@ impl Renderer {
     }
 
     /// Puts the particles of the stack into the scene.
-    fn attach_particles(&mut self, stack: &Stack) -> Result<(), RenderError> {
+    async fn attach_particles(&mut self, stack: &Stack) -> Result<(), RenderError> {
         let scene = self.scene.as_mut().ok_or(RenderError::NoScene)?;
         if scene.has_particles_of(stack) {
             return Ok(());
         }
         self.picture.release_commands();
         self.shadow.iter_mut().for_each(|shadow| shadow.resources.release_commands());
-        if scene.attach_particles(&self.device.gpu, stack)? {
+        if scene.attach_particles(&self.device.gpu, stack).await? {
             let scene = scene.scene().clone();
             self.change_scene(&scene);
         }
@@ -250,19 +251,19 @@ impl Renderer {
     }
 
     /// Makes everything ready for the passes of a picture: plan and buffers, the particles before their last step, the shadow pass.
-    fn prepare(&mut self, request: &Request<'_>, wait: Wait) -> Result<(), RenderError> {
+    async fn prepare(&mut self, request: &Request<'_>, wait: Wait) -> Result<(), RenderError> {
         let Self { device, scene, picture, shadow, particles, .. } = self;
         let scene = scene.as_mut().ok_or(RenderError::NoScene)?;
         let Request { view, stack, .. } = *request;
-        picture.prepare(device, scene, request)?;
+        picture.prepare(device, scene, request).await?;
         if view.pixels() == 0 {
             return Ok(());
         }
         let key = &picture.frame()?.plan.key;
-        particles.simulate(device, scene, &picture.buffers, (key, view, stack), wait)?;
+        particles.simulate(device, scene, &picture.buffers, (key, view, stack), wait).await?;
         let passes = key.frame();
-        *shadow = ShadowPass::prepare(shadow.take(), device, scene, view, stack)?;
-        picture.prepare_passes(device, passes, &shared(scene, particles, shadow.as_ref()))
+        *shadow = ShadowPass::prepare(shadow.take(), device, scene, view, stack).await?;
+        picture.prepare_passes(device, passes, &shared(scene, particles, shadow.as_ref())).await
     }
 
     /// Records the clears and passes of a picture and its shadow map.
@@ -324,15 +325,15 @@ impl Renderer {
         self.presentation.as_ref().map(|presentation| &presentation.view)
     }
 
-    /// The pixels of the finished picture, row by row, as many as the view had; waits for them. None before the first draw and for 0 pixels.
+    /// The pixels of the finished picture, row by row, as many as the view had. None before the first draw and for 0 pixels.
     ///
     /// # Errors
     /// When the device is lost.
-    pub fn read_shown(&mut self) -> Result<Option<Vec<[u8; 4]>>, RenderError> {
+    pub async fn read_shown(&mut self) -> Result<Option<Vec<[u8; 4]>>, RenderError> {
         let Some(presentation) = &self.presentation else { return Ok(None) };
         let size = [presentation.texture.width(), presentation.texture.height()];
         let shown = self.picture.buffers.get(self.shown_buffer())?;
-        buffers::read_picture_through(&self.device.gpu, shown, size, &mut self.shown_staging).map(Some)
+        buffers::read_picture_through(&self.device.gpu, shown, size, &mut self.shown_staging).await.map(Some)
     }
 
     /// Statistics of the newest finished frame, or none yet; does not wait.
@@ -354,8 +355,8 @@ impl Renderer {
     ///
     /// # Errors
     /// When nothing was drawn, or the device is lost.
-    pub fn finish(&mut self) -> Result<Report, RenderError> {
-        buffers::wait(&self.device.gpu)?;
+    pub async fn finish(&mut self) -> Result<Report, RenderError> {
+        idle(&self.device.gpu).await?;
         let finished = self.pending.pop_back().ok_or(RenderError::NoScene)?;
         self.spare_stats.extend(self.pending.drain(..).map(Pending::into_spare));
         self.collect_stats(finished).ok_or(RenderError::Lost)

@@ -6,6 +6,8 @@ use std::{
     time::{Duration, Instant},
 };
 
+use pollster::FutureExt as _;
+
 use super::{
     device::Gpu,
     error::RenderError,
@@ -64,7 +66,7 @@ impl TimedPicture {
         let (scene, view, stack) = made(picture);
         let mut renderer = Renderer::new(gpu.clone());
         renderer.set_tuning(tuning);
-        renderer.set_scene(&scene)?;
+        renderer.set_scene(&scene).block_on()?;
         draw_until_ready(&mut renderer, &view, &stack, &accuracy)?;
         Ok(Self { renderer, view, stack, accuracy })
     }
@@ -127,8 +129,8 @@ pub fn draw_until_ready(renderer: &mut Renderer, view: &View, stack: &Stack, acc
     let mut left = FIRST_FRAMES;
     // Queues grow a few times at most.
     for _ in 0..16 {
-        renderer.draw_timed(view, stack, accuracy, Detail::Whole, Wait::Simulation)?;
-        left -= usize::from(!renderer.finish()?.redraw);
+        renderer.draw_timed(view, stack, accuracy, Detail::Whole, Wait::Simulation).block_on()?;
+        left -= usize::from(!renderer.finish().block_on()?.redraw);
         if left == 0 {
             break;
         }
@@ -146,9 +148,9 @@ fn sample(
     frames: usize,
 ) -> Result<Report, RenderError> {
     for _ in 0..frames {
-        renderer.draw_timed(view, stack, accuracy, detail, Wait::Simulation)?;
+        renderer.draw_timed(view, stack, accuracy, detail, Wait::Simulation).block_on()?;
     }
-    renderer.finish()
+    renderer.finish().block_on()
 }
 
 /// Frames that are drawn for one time. On a software adapter a frame before the one that is timed would only take time.

@@ -60,7 +60,7 @@ pub fn calibrations_folder() -> Option<PathBuf> {
 impl CalibrationKey {
     /// What the calibration of an adapter is kept under, with the shader files of this program.
     pub fn of(adapter: &str, driver: &str, is_software: bool) -> Self {
-        let shaders = Library::from_env().texts().fold(Fnv::new(), |hash, text| hash.bytes(text.as_bytes()));
+        let shaders = Library::of_process().texts().fold(Fnv::new(), |hash, text| hash.bytes(text.as_bytes()));
         let threads = if is_software { std::thread::available_parallelism().map_or(1, |threads| threads.get() as u32) } else { 0 };
         Self { adapter: adapter.into(), driver: driver.into(), threads, shaders: shaders.0 }
     }

@@ -4,6 +4,7 @@ use std::{path::Path, sync::Arc};
 
 use super::file::model_path;
 use crate::{
+    host,
     preset::{MissingInScene, Preset, SceneSource},
     scene::{Bounds, Scene, builtin, gltf},
 };
@@ -48,7 +49,7 @@ fn load_source(source: &SceneSource, preset_path: Option<&Path>) -> Result<Scene
             if !path.exists() {
                 return Err(SceneError::Absent { path: path.display().to_string() });
             }
-            Ok(gltf::load(&path)?)
+            Ok(host::model::load(&path)?)
         }
     }
 }

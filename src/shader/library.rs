@@ -1,34 +1,39 @@
-//! The WGSL files: embedded in the program, or read from a folder while one edits them.
+//! The WGSL files: embedded in the program, or given from outside while one edits them.
 
-use std::{borrow::Cow, collections::BTreeSet, path::PathBuf, sync::OnceLock};
+use std::{
+    borrow::Cow,
+    collections::BTreeSet,
+    sync::{Arc, OnceLock},
+};
 
 use include_dir::{Dir, include_dir};
 
 static EMBEDDED: Dir = include_dir!("$CARGO_MANIFEST_DIR/shaders");
 
+/// Gives the text of a file by its name: a path below `shaders`, without `.wgsl`.
+pub type ReadShader = dyn Fn(&str) -> Option<String> + Send + Sync;
+
 /// Where shader text comes from.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Default)]
 pub enum Library {
     /// The files as they were when the program was built.
     #[default]
     Embedded,
-    /// A `shaders` folder on disk.
-    Folder(PathBuf),
+    /// Files elsewhere, which may change while the program runs.
+    Outside(Arc<ReadShader>),
 }
 
-/// The folder of `--shaders`.
-static CHOSEN: OnceLock<PathBuf> = OnceLock::new();
+static CHOSEN: OnceLock<Library> = OnceLock::new();
 
 impl Library {
-    /// The folder of `--shaders`, or else of `RASTERLAB_SHADERS`, for people who edit shaders; without either the embedded files.
-    pub fn from_env() -> Self {
-        let folder = CHOSEN.get().cloned().or_else(|| std::env::var_os("RASTERLAB_SHADERS").map(PathBuf::from));
-        folder.map_or(Self::Embedded, Self::Folder)
+    /// The library that was [chosen](Self::choose) for this process, else the embedded files.
+    pub fn of_process() -> Self {
+        CHOSEN.get().cloned().unwrap_or_default()
     }
 
-    /// Makes [`Library::from_env`] return this folder from now on. Only the first call counts.
-    pub fn choose(folder: PathBuf) {
-        CHOSEN.get_or_init(|| folder);
+    /// Makes it the library of this process. Only the first call counts.
+    pub fn choose(self) {
+        CHOSEN.get_or_init(|| self);
     }
 
     /// Name and text of every embedded file.
@@ -56,7 +61,7 @@ impl Library {
     pub fn text(&self, name: &str) -> Option<Cow<'static, str>> {
         match self {
             Self::Embedded => EMBEDDED.get_file(format!("{name}.wgsl"))?.contents_utf8().map(Cow::Borrowed),
-            Self::Folder(folder) => std::fs::read_to_string(folder.join(format!("{name}.wgsl"))).ok().map(Cow::Owned),
+            Self::Outside(read) => read(name).map(Cow::Owned),
         }
     }
 }

@@ -92,7 +92,7 @@ static EMBEDDED: LazyLock<HashMap<String, Arc<File>>> = LazyLock::new(|| {
 fn file(library: &Library, name: &str) -> Option<Arc<File>> {
     match library {
         Library::Embedded => EMBEDDED.get(name).cloned(),
-        Library::Folder(_) => library.text(name).map(|text| Arc::new(File::new(text.into_owned()))),
+        Library::Outside(_) => library.text(name).map(|text| Arc::new(File::new(text.into_owned()))),
     }
 }
 

@@ -12,6 +12,7 @@ use rasterlab::{
         draw_order::Mode,
         hooks::{Shape, Slot},
     },
+    host,
     shader::{
         Fetch, KernelKey, Pass,
         library::Library,
@@ -224,7 +225,7 @@ fn an_error_names_the_file_and_line_a_person_wrote() {
         .expect("written");
     std::fs::write(shaders.join("effects/wrong.wgsl"), "// A mistake\nfn wrong() { let x: u32 = 1.5; }\n").expect("written");
     let key = key(Fetch::Direct, Visibility::Split32, false, vec![]);
-    let linked = link::link(&Library::Folder(shaders.into()), "stages/project", &key, &[]).expect("links");
+    let linked = link::link(&host::shaders::library(shaders), "stages/project", &key, &[]).expect("links");
     let Err(error) = reflect::reflect(&linked, false) else { panic!("a wrong type was accepted") };
     assert!(error.to_string().starts_with("shaders/effects/wrong.wgsl:2:"), "{error}");
 }
@@ -287,7 +288,7 @@ fn copied_shaders() -> tempfile::TempDir {
 #[test]
 fn every_use_line_is_needed_and_a_missing_one_is_refused() {
     let folder = copied_shaders();
-    let library = Library::Folder(folder.path().into());
+    let library = host::shaders::library(folder.path());
     let effects = ["dissolve", "explode", "shadow", "outline"].map(|name| Effect::find(name).expect("an effect")).to_vec();
     let mut full = key(Fetch::Indexed, Visibility::Split32, true, effects);
     full.samples.has_mask = true;
@@ -343,7 +344,7 @@ fn an_undeclared_name_is_refused_with_file_line_and_name() {
     let wrong = text.replacen("    return coverage.row + ", "    return vec3i(i32(frame.size.x)) + coverage.row + ", 1);
     std::fs::write(&path, wrong).expect("written");
     let (key, pass) = (plain_key(), Pass::RasterMedium(RasterPhase::Depth));
-    let error = link::link(&Library::Folder(folder.path().into()), &pass.path(), &key, &key.variants(pass)).expect_err("refused");
+    let error = link::link(&host::shaders::library(folder.path()), &pass.path(), &key, &key.variants(pass)).expect_err("refused");
     let expected = format!("shaders/variants/coverage/fixed.wgsl:{line}: names frame, which lib/frame declares; add //@ use for it");
     assert_eq!(error.to_string(), expected);
 }
@@ -355,7 +356,7 @@ fn no_file_can_use_a_stage() {
     let text = std::fs::read_to_string(&path).expect("a shader");
     std::fs::write(&path, format!("//@ use stages/raster/raster_small\n{text}")).expect("written");
     let (key, pass) = (plain_key(), Pass::RasterMedium(RasterPhase::Depth));
-    let error = link::link(&Library::Folder(folder.path().into()), &pass.path(), &key, &key.variants(pass)).expect_err("refused");
+    let error = link::link(&host::shaders::library(folder.path()), &pass.path(), &key, &key.variants(pass)).expect_err("refused");
     assert!(matches!(error, LinkError::UsesStage { line: 1, .. }), "{error}");
 }
 
@@ -366,6 +367,6 @@ fn a_variant_that_lacks_what_its_interface_declares_is_refused() {
     let text = std::fs::read_to_string(&path).expect("a shader");
     std::fs::write(&path, text.replace("area: i32, first: vec2i", "area: u32, first: vec2i")).expect("written");
     let (key, pass) = (plain_key(), Pass::RasterMedium(RasterPhase::Depth));
-    let error = link::link(&Library::Folder(folder.path().into()), &pass.path(), &key, &key.variants(pass)).expect_err("refused");
+    let error = link::link(&host::shaders::library(folder.path()), &pass.path(), &key, &key.variants(pass)).expect_err("refused");
     assert!(matches!(&error, LinkError::Incomplete { signature, .. } if signature.contains("coverage_begin")), "{error}");
 }

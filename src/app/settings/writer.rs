@@ -89,12 +89,12 @@ mod tests {
         std::fs::write(&file, "").expect("a file");
         let writer = Writer::start().expect("a thread");
         writer.write(file.join("settings.toml"), String::new());
-        let patience = std::time::Instant::now() + std::time::Duration::from_secs(30);
+        let patience = web_time::Instant::now() + std::time::Duration::from_secs(30);
         let error = loop {
             if let Some(error) = writer.error() {
                 break error;
             }
-            assert!(std::time::Instant::now() < patience, "no error arrived");
+            assert!(web_time::Instant::now() < patience, "no error arrived");
             std::thread::yield_now();
         };
         assert!(error.contains("the folder cannot be created"), "{error}");
