@@ -267,18 +267,18 @@ impl Lab<'_> {
             return Ok((entries, missing));
         }
         for viewport in [Viewport::AsWritten, Viewport::Folded] {
-            match Naive::new(self.gpu, scene, &self.view, &key, viewport) {
+            match Naive::new(self.gpu, scene, &self.view, &key, viewport).block_on() {
                 Ok(naive) => {
-                    let picture = naive.picture(self.gpu)?;
+                    let picture = naive.picture(self.gpu).block_on()?;
                     entries.push(Entry::new(Contender::Naive(viewport, Box::new(naive)), picture_error(&picture, &expected)));
                 }
                 Err(error) if error.is_unsupported() => missing.push(("naive".into(), error.to_string())),
                 Err(error) => return Err(error),
             }
         }
-        match Hardware::new(self.gpu, scene, &self.view, &self.preset.stack, &key) {
+        match Hardware::new(self.gpu, scene, &self.view, &self.preset.stack, &key).block_on() {
             Ok(Ok(hardware)) => {
-                let picture = hardware.picture(self.gpu)?;
+                let picture = hardware.picture(self.gpu).block_on()?;
                 entries.push(Entry::new(Contender::Hardware(Box::new(hardware)), picture_error(&picture, &expected)));
             }
             Ok(Err(why)) => missing.push(("hardware".into(), why)),

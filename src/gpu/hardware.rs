@@ -2,8 +2,6 @@
 
 use std::{ops::Range, sync::Arc};
 
-use pollster::FutureExt as _;
-
 use super::{
     attributes::AttributeLayout,
     buffers::{self, Buffers, color_stride},
@@ -95,7 +93,7 @@ impl Hardware {
     ///
     /// # Errors
     /// When the scene does not fit the adapter, or a pipeline is refused.
-    pub fn new(gpu: &Gpu, scene: &Scene, view: &View, stack: &Stack, key: &KernelKey) -> Result<Result<Self, String>, RenderError> {
+    pub async fn new(gpu: &Gpu, scene: &Scene, view: &View, stack: &Stack, key: &KernelKey) -> Result<Result<Self, String>, RenderError> {
         if let Some(reason) = obstacle(gpu, scene, stack) {
             return Ok(Err(reason));
         }
@@ -109,13 +107,13 @@ impl Hardware {
         let counts =
             FrameUniform { draw_count: draws.len() as u32, deform_count: deforms.records.len() as u32, ..FrameUniform::of_view(view) };
         let mut buffers = Buffers::default();
-        buffers.fill(gpu, BufferId::Frame, bytemuck::bytes_of(&counts)).block_on()?;
-        buffers.fill(gpu, BufferId::Draws, bytemuck::cast_slice(&records)).block_on()?;
-        buffers.fill(gpu, BufferId::Effects, &uniform_bytes(&stack.0)).block_on()?;
-        upload(gpu, &mut buffers, scene, &geometry)?;
-        let deform = if deformable > 0 { Some(DeformPass::new(gpu, key, &mut buffers, &deforms, deformable)?) } else { None };
+        buffers.fill(gpu, BufferId::Frame, bytemuck::bytes_of(&counts)).await?;
+        buffers.fill(gpu, BufferId::Draws, bytemuck::cast_slice(&records)).await?;
+        buffers.fill(gpu, BufferId::Effects, &uniform_bytes(&stack.0)).await?;
+        upload(gpu, &mut buffers, scene, &geometry).await?;
+        let deform = if deformable > 0 { Some(DeformPass::new(gpu, key, &mut buffers, &deforms, deformable).await?) } else { None };
         let is_painted = recipes.iter().any(|recipe| recipe.paint.is_some());
-        let materials = if is_painted { Some(HardwareMaterials::new(gpu, scene)?) } else { None };
+        let materials = if is_painted { Some(HardwareMaterials::new(gpu, scene).await?) } else { None };
         let (pipelines, group) = pipelines(gpu, key, &buffers, materials.as_ref(), recipes)?;
         let calls = calls(scene, &geometry, &draws, &pipelines);
         let size = [view.width, view.height];
@@ -172,21 +170,21 @@ impl Hardware {
         Ok(())
     }
 
-    /// Draws once and waits for the picture, row-major; alpha is 0 where nothing was drawn.
+    /// Draws once and reads the picture back, row-major; alpha is 0 where nothing was drawn.
     ///
     /// # Errors
     /// When the device is lost.
-    pub fn picture(&self, gpu: &Gpu) -> Result<Vec<[u8; 4]>, RenderError> {
+    pub async fn picture(&self, gpu: &Gpu) -> Result<Vec<[u8; 4]>, RenderError> {
         let [width, height] = self.size;
         let mut held = Buffers::default();
-        held.ensure(gpu, BufferId::Color, 4 * u64::from(color_stride(width)) * u64::from(height)).block_on()?;
+        held.ensure(gpu, BufferId::Color, 4 * u64::from(color_stride(width)) * u64::from(height)).await?;
         let buffer = held.get(BufferId::Color)?;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.record(&mut encoder, None)?;
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * color_stride(width)), rows_per_image: None };
         encoder.copy_texture_to_buffer(self.color.as_image_copy(), wgpu::TexelCopyBufferInfo { buffer, layout }, self.color.size());
         gpu.queue.submit([encoder.finish()]);
-        buffers::read_picture(gpu, buffer, self.size).block_on()
+        buffers::read_picture(gpu, buffer, self.size).await
     }
 }
 
@@ -208,15 +206,15 @@ fn obstacle(gpu: &Gpu, scene: &Scene, stack: &Stack) -> Option<String> {
 }
 
 /// Uploads attributes and index lists, with copies of those that cannot be fetched as they are.
-fn upload(gpu: &Gpu, buffers: &mut Buffers, scene: &Scene, geometry: &HardwareGeometry) -> Result<(), RenderError> {
+async fn upload(gpu: &Gpu, buffers: &mut Buffers, scene: &Scene, geometry: &HardwareGeometry) -> Result<(), RenderError> {
     let copies: &[u8] = bytemuck::cast_slice(&geometry.vertex_copies);
-    buffers.ensure(gpu, BufferId::VertexBytes, geometry.first_copy() + copies.len() as u64).block_on()?;
-    buffers.write_at(gpu, BufferId::VertexBytes, 0, &scene.vertex_bytes).block_on()?;
-    buffers.write_at(gpu, BufferId::VertexBytes, geometry.first_copy(), copies).block_on()?;
+    buffers.ensure(gpu, BufferId::VertexBytes, geometry.first_copy() + copies.len() as u64).await?;
+    buffers.write_at(gpu, BufferId::VertexBytes, 0, &scene.vertex_bytes).await?;
+    buffers.write_at(gpu, BufferId::VertexBytes, geometry.first_copy(), copies).await?;
     let copies: &[u8] = bytemuck::cast_slice(&geometry.index_copies);
-    buffers.ensure(gpu, BufferId::IndexBytes, geometry.first_index_copy + copies.len() as u64).block_on()?;
-    buffers.write_at(gpu, BufferId::IndexBytes, 0, &scene.index_bytes).block_on()?;
-    buffers.write_at(gpu, BufferId::IndexBytes, geometry.first_index_copy, copies).block_on()
+    buffers.ensure(gpu, BufferId::IndexBytes, geometry.first_index_copy + copies.len() as u64).await?;
+    buffers.write_at(gpu, BufferId::IndexBytes, 0, &scene.index_bytes).await?;
+    buffers.write_at(gpu, BufferId::IndexBytes, geometry.first_index_copy, copies).await
 }
 
 impl Recipe {
@@ -291,11 +289,11 @@ fn calls(scene: &Scene, geometry: &HardwareGeometry, draws: &[Draw], pipelines: 
 }
 
 impl DeformPass {
-    fn new(gpu: &Gpu, key: &KernelKey, buffers: &mut Buffers, deforms: &Deforms, deformable: u32) -> Result<Self, RenderError> {
-        buffers.fill(gpu, BufferId::Deforms, bytemuck::cast_slice(&deforms.records)).block_on()?;
-        buffers.fill(gpu, BufferId::Joints, bytemuck::cast_slice(&deforms.joints)).block_on()?;
-        buffers.fill(gpu, BufferId::MorphTargets, bytemuck::cast_slice(&deforms.morph_targets)).block_on()?;
-        let pipeline = Pipelines::new(Library::of_process()).get(gpu, key, Pass::Skin).block_on()?;
+    async fn new(gpu: &Gpu, key: &KernelKey, buffers: &mut Buffers, deforms: &Deforms, deformable: u32) -> Result<Self, RenderError> {
+        buffers.fill(gpu, BufferId::Deforms, bytemuck::cast_slice(&deforms.records)).await?;
+        buffers.fill(gpu, BufferId::Joints, bytemuck::cast_slice(&deforms.joints)).await?;
+        buffers.fill(gpu, BufferId::MorphTargets, bytemuck::cast_slice(&deforms.morph_targets)).await?;
+        let pipeline = Pipelines::new(Library::of_process()).get(gpu, key, Pass::Skin).await?;
         let group = Resources { buffers: vec![buffers], textures: Vec::new(), light: None }.bind_group(gpu, &pipeline)?;
         Ok(Self { pipeline, group, groups: folded(deformable.div_ceil(key.work.group_size)) })
     }

@@ -412,8 +412,8 @@ impl Renderer {
     ///
     /// # Errors
     /// When the corners take more than a buffer holds, or the device is lost.
-    pub fn hardware_ids(&self, size: [u32; 2], corners: &[[f32; 3]]) -> Result<Vec<u32>, RenderError> {
-        hardware_ids::triangle_ids(&self.device.gpu, self.device.pipelines.library(), size, corners)
+    pub async fn hardware_ids(&self, size: [u32; 2], corners: &[[f32; 3]]) -> Result<Vec<u32>, RenderError> {
+        hardware_ids::triangle_ids(&self.device.gpu, self.device.pipelines.library(), size, corners).await
     }
 }
 

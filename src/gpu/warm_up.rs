@@ -1,7 +1,9 @@
 //! Keeping a graphics card busy, so that frames are timed at the clock of a card at work: an idle card lowers its clock, and one short
 //! frame after another with a wait between them does not raise it.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use web_time::Instant;
 
 use super::{device::Gpu, error::RenderError};
 
