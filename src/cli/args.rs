@@ -29,8 +29,8 @@ pub struct Cli {
 }
 
 const LONG: &str = "An effects lab around a compute-shader rasterizer, judged by an exact oracle.\n\n\
-    Without a command the window opens. A PRESET is an id of the gallery (rasterlab list presets), a .toml file, a .glb or \
-    .gltf model, a PNG saved by rasterlab, builtin:QUERY, or - for TOML from stdin.\n\n\
+    Without a command the window opens. A PRESET is an id or a name of the gallery (rasterlab list presets), a .toml file, \
+    a .glb or .gltf model, a PNG saved by rasterlab, builtin:QUERY, or - for TOML from stdin.\n\n\
     Exit codes: 0 done; 1 a comparison, check or stress case failed, a measured error exceeds its limit, or a dry run found \
     changes; 2 wrong usage, or a file that cannot be read or written; 3 no suitable adapter; 4 the device was lost.";
 

@@ -189,8 +189,32 @@ fn a_model_that_breaks_its_standard_loads_and_strictness_refuses_it() {
 }
 
 #[test]
+fn a_preset_is_found_by_its_id_and_else_by_its_name_in_any_case() {
+    let folder = tempfile::tempdir().unwrap();
+    for (id, name) in [("mine", "First light"), ("facet", "Second light"), ("other", "second light"), ("third", "mine")] {
+        let text = format!("schema = 2\nname = \"{name}\"\n[scene]\nbuiltin = \"teapot?tess=2\"\n[effects.facet]\n");
+        fs::write(folder.path().join(format!("{id}.toml")), text).unwrap();
+    }
+    let render = |name: &str| {
+        let args = ["render", name, "--presets", ".", "--adapter", "cpu", "--size", "8x6", "--json", "--force"];
+        run_in(folder.path(), &args)
+    };
+    for (name, id) in [("First light", "mine"), ("FIRST LIGHT", "mine"), ("Third", "third"), ("mine", "mine"), ("cel", "toon")] {
+        let drawn = render(name);
+        assert_eq!((drawn.code, &json(&drawn)["results"][0]["preset"]), (0, &Value::from(id)), "{name}: {}", drawn.err);
+    }
+    for (name, ids) in [("SECOND LIGHT", "facet, other"), ("Mine", "mine, third")] {
+        let refused = render(name);
+        let wanted = format!("several presets are called {name:?}: {ids}; give the id of one");
+        assert!(refused.code == 2 && refused.err.contains(&wanted), "{}", refused.err);
+    }
+}
+
+#[test]
 fn errors_suggest_what_was_meant() {
-    assert!(run(&["render", "fascet", "--adapter", "cpu"]).err.contains("did you mean \"facet\"?"));
+    assert!(run(&["render", "fascet", "--adapter", "cpu"]).err.contains("did you mean \"facet\" (Half cut)?"));
+    let near_name = run(&["render", "Coperplate", "--adapter", "cpu"]);
+    assert!(near_name.code == 2 && near_name.err.contains("did you mean \"hero-etching\" (Copperplate)?"), "{}", near_name.err);
     assert!(run(&["render", "facet", "--adapter", "cpu", "--set", "facet.amuont=1"]).err.contains("did you mean \"amount\"?"));
     assert!(run(&["render", "facet", "--adapter", "cpu", "--set", "facet.amount=2"]).err.contains("lies outside 0..=1"));
 }

@@ -10,7 +10,10 @@ use super::{
     load::{load_with, parse_file},
     picture::load_picture,
 };
-use crate::{effect_files::Catalog, params::did_you_mean, preset::SceneSource};
+use crate::{effect_files::Catalog, params::likeness, preset::SceneSource};
+
+/// The most presets that an error suggests.
+const MAX_NEAR: usize = 3;
 
 /// The presets inside the binary.
 pub static BUILTIN_DIR: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../presets");
@@ -39,6 +42,19 @@ pub struct GalleryEntry {
     pub preset_file: Result<PresetFile, PresetError>,
     /// Where other presets of the same id are, which this one hides.
     pub shadows: Vec<Origin>,
+}
+
+impl GalleryEntry {
+    /// The name that the preset shows; its id where it has none or cannot be read.
+    pub fn title(&self) -> &str {
+        self.preset_file.as_ref().map_or(&self.id, |preset_file| preset_file.title())
+    }
+
+    /// Is `what` its id or its name, whatever the case of the letters?
+    fn is_called(&self, what: &str) -> bool {
+        let what = what.to_lowercase();
+        [&self.id, self.title()].iter().any(|name| name.to_lowercase() == what)
+    }
 }
 
 /// Where presets and effects are looked for, beside the built-in ones.
@@ -136,10 +152,11 @@ pub fn user_folder() -> Option<PathBuf> {
     Some(config?.join("rasterlab/presets"))
 }
 
-/// Opens what a person names: a preset of the gallery, a `.toml` file, a PNG saved by rasterlab, a model, or `builtin:QUERY`.
+/// Opens what a person names: a preset of the gallery by its id, or by its id or name in other letters; a `.toml` file; a PNG saved by
+/// rasterlab; a model; or `builtin:QUERY`.
 ///
 /// # Errors
-/// No such preset or file, or a file that cannot be read.
+/// No such preset or file, a name that several presets have, or a file that cannot be read.
 pub fn open(what: &str, folders: &Folders) -> Result<PresetFile, PresetError> {
     if let Some(query) = what.strip_prefix("builtin:") {
         let name = query.split('?').next().unwrap_or(query);
@@ -159,18 +176,40 @@ pub fn open(what: &str, folders: &Folders) -> Result<PresetFile, PresetError> {
     if let Some(found) = by_id(what, folders) {
         return found;
     }
-    let mut entries = gallery(folders);
-    // A file whose extension is written in capitals, for instance.
-    if let Some(at) = entries.iter().position(|entry| entry.id == what) {
-        return entries.swap_remove(at).preset_file;
+    let entries = gallery(folders);
+    // An entry may have exactly this id: a file whose extension is written in capitals, for instance.
+    let exact = entries.iter().find(|entry| entry.id == what);
+    let named: Vec<&GalleryEntry> =
+        exact.map_or_else(|| entries.iter().filter(|entry| entry.is_called(what)).collect(), |entry| vec![entry]);
+    match named[..] {
+        [] => {}
+        [entry] => return by_id(&entry.id, folders).unwrap_or_else(|| entry.preset_file.clone()),
+        _ => {
+            let ids: Vec<&str> = named.iter().map(|entry| entry.id.as_str()).collect();
+            return Err(PresetError::Ambiguous { name: what.into(), ids: ids.join(", ") });
+        }
     }
     if path.exists() {
         let reason = "rasterlab opens .toml files, .png pictures that it has saved, and models in .glb and .gltf files";
         return Err(PresetError::NotOurs { what: what.into(), reason: reason.into() });
     }
-    let hint = did_you_mean(what, entries.iter().map(|entry| entry.id.as_str()));
-    let hint = if hint.is_empty() { "; rasterlab list shows all of them".into() } else { hint };
-    Err(PresetError::NoPreset { what: what.into(), hint })
+    Err(PresetError::NoPreset { what: what.into(), hint: near_presets(what, &entries) })
+}
+
+/// `; did you mean "facet" (Half cut)?`: the presets whose ids or names are nearest to `what`, or where all of them are listed.
+fn near_presets(what: &str, entries: &[GalleryEntry]) -> String {
+    let near = entries.iter().filter_map(|entry| {
+        let names = [&entry.id, entry.title()].into_iter();
+        Some((names.filter_map(|name| likeness(what, name)).max_by(f64::total_cmp)?, entry))
+    });
+    let mut near: Vec<(f64, &GalleryEntry)> = near.collect();
+    near.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let described = |(_, entry): &(f64, &GalleryEntry)| match entry.title() {
+        title if title == entry.id => format!("{:?}", entry.id),
+        title => format!("{:?} ({title})", entry.id),
+    };
+    let near: Vec<String> = near.iter().take(MAX_NEAR).map(described).collect();
+    if near.is_empty() { "; rasterlab list presets shows all of them".into() } else { format!("; did you mean {}?", near.join(" or ")) }
 }
 
 /// The preset called `id`, read from the first place that has it; no other preset is read.

@@ -13,7 +13,7 @@ use std::ops::{Deref, RangeInclusive};
 
 pub use legible::{is_hidden, legible, legible_line};
 pub use measure::Measure;
-pub use suggest::{did_you_mean, suggestion};
+pub use suggest::{did_you_mean, likeness, suggestion};
 pub use value::{Stored, Value, ValueError, ValueType, format_number};
 
 /// One parameter: what every surface of the program needs to know about it.
