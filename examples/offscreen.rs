@@ -5,7 +5,6 @@
 //! ```
 
 use pollster::FutureExt as _;
-
 use rasterlab::{
     gpu::{Gpu, Renderer, device::AdapterChoice},
     oracle, preset_file,

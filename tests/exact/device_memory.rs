@@ -4,7 +4,6 @@
 use std::process::Command;
 
 use pollster::FutureExt as _;
-
 use rasterlab::{
     effects::Stack,
     gpu::{RenderError, Renderer},
