@@ -12,8 +12,8 @@ use crate::{
     effects::Stack,
     frame::{Frame, NO_TRIANGLE},
     gpu::{
-        Capture, Gpu, RenderError, Renderer, completion,
-        frame_stats::{Pending, StatSources},
+        Capture, Gpu, RenderError, Renderer,
+        frame_stats::{Staged, StatSources},
         hardware::Hardware,
         naive::{Naive, Viewport},
         particles::Wait,
@@ -317,10 +317,10 @@ impl Lab<'_> {
                 Contender::Ours(..) | Contender::Stacked(..) => {}
             }
         }
-        let pending = Pending::stage(self.gpu, &mut encoder, StatSources::default(), self.timer.as_ref(), None);
+        let staged = Staged::stage(self.gpu, &mut encoder, StatSources::default(), self.timer.as_ref(), None);
         self.gpu.queue.submit([encoder.finish()]);
-        let pending = pending.begin();
-        completion::idle(self.gpu).block_on()?;
+        let pending = staged.begin();
+        pending.ready(self.gpu).block_on()?;
         pending.read(self.timer.as_ref()).map(|(_, times)| times).ok_or(RenderError::Lost)
     }
 }

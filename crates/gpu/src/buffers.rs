@@ -6,7 +6,7 @@ use std::{
 };
 
 use super::{
-    completion::{idle, mapped},
+    completion::{Mapping, idle},
     device::Gpu,
     device_memory::Reserved,
     error::RenderError,
@@ -203,7 +203,7 @@ pub async fn read_picture_through(
 
 /// All of a mappable buffer, once what was submitted has written it.
 async fn read_staging(gpu: &Gpu, staging: &wgpu::Buffer) -> Result<Vec<u8>, RenderError> {
-    mapped(gpu, staging).await?;
+    Mapping::begin(staging).ready(gpu).await?;
     let bytes = staging.get_mapped_range(..).map_err(|_| RenderError::Lost)?.to_vec();
     staging.unmap();
     Ok(bytes)

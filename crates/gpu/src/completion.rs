@@ -2,13 +2,19 @@
 //! do. In a page the browser drives the device, and they give the thread back until it calls.
 
 #[cfg(not(target_arch = "wasm32"))]
-pub use native::{idle, mapped};
+pub use native::{Mapping, idle};
 #[cfg(target_arch = "wasm32")]
-pub use page::{idle, mapped};
+pub use page::{Mapping, idle};
 
 #[cfg(not(target_arch = "wasm32"))]
 mod native {
-    use std::time::Duration;
+    use std::{
+        sync::{
+            Arc,
+            atomic::{AtomicBool, Ordering},
+        },
+        time::Duration,
+    };
 
     use crate::{device::Gpu, error::RenderError};
 
@@ -26,22 +32,39 @@ mod native {
         }
     }
 
-    /// Returns when `staging` can be read.
-    ///
-    /// # Errors
-    /// When the device is lost.
-    pub async fn mapped(gpu: &Gpu, staging: &wgpu::Buffer) -> Result<(), RenderError> {
-        staging.map_async(wgpu::MapMode::Read, .., |_| {});
-        idle(gpu).await
+    /// A buffer that is being mapped to be read.
+    pub struct Mapping(Arc<AtomicBool>);
+
+    impl Mapping {
+        /// Asks for a buffer, after what writes it was submitted.
+        pub fn begin(staging: &wgpu::Buffer) -> Self {
+            let ready = Arc::<AtomicBool>::default();
+            let called = ready.clone();
+            staging.map_async(wgpu::MapMode::Read, .., move |result| called.store(result.is_ok(), Ordering::Release));
+            Self(ready)
+        }
+
+        /// Can it be read? True some time after it can, where nobody polls the device.
+        pub fn is_ready(&self) -> bool {
+            self.0.load(Ordering::Acquire)
+        }
+
+        /// Returns when it can be read.
+        ///
+        /// # Errors
+        /// When the device is lost.
+        pub async fn ready(&self, gpu: &Gpu) -> Result<(), RenderError> {
+            idle(gpu).await
+        }
     }
 }
 
 #[cfg(target_arch = "wasm32")]
 mod page {
     use std::{
-        pin::Pin,
-        sync::{Arc, Mutex, PoisonError},
-        task::{Context, Poll, Waker},
+        future::poll_fn,
+        sync::{Arc, Mutex, MutexGuard, PoisonError},
+        task::{Poll, Waker},
     };
 
     use crate::{device::Gpu, error::RenderError};
@@ -53,51 +76,70 @@ mod page {
     pub async fn idle(gpu: &Gpu) -> Result<(), RenderError> {
         let done = Callback::default();
         let called = done.clone();
-        gpu.queue.on_submitted_work_done(move || called.call());
-        done.await;
-        if gpu.is_lost() { Err(RenderError::Lost) } else { Ok(()) }
+        gpu.queue.on_submitted_work_done(move || called.call(true));
+        done.called(gpu).await
     }
 
-    /// Returns when `staging` can be read.
-    ///
-    /// # Errors
-    /// When the device is lost.
-    pub async fn mapped(gpu: &Gpu, staging: &wgpu::Buffer) -> Result<(), RenderError> {
-        let done = Callback::default();
-        let called = done.clone();
-        staging.map_async(wgpu::MapMode::Read, .., move |_| called.call());
-        done.await;
-        if gpu.is_lost() { Err(RenderError::Lost) } else { Ok(()) }
+    /// A buffer that is being mapped to be read.
+    pub struct Mapping(Callback);
+
+    impl Mapping {
+        /// Asks for a buffer, after what writes it was submitted.
+        pub fn begin(staging: &wgpu::Buffer) -> Self {
+            let ready = Callback::default();
+            let called = ready.clone();
+            staging.map_async(wgpu::MapMode::Read, .., move |result| called.call(result.is_ok()));
+            Self(ready)
+        }
+
+        /// Can it be read?
+        pub fn is_ready(&self) -> bool {
+            self.0.state().is_good == Some(true)
+        }
+
+        /// Returns when it can be read.
+        ///
+        /// # Errors
+        /// When the device is lost.
+        pub async fn ready(&self, gpu: &Gpu) -> Result<(), RenderError> {
+            self.0.called(gpu).await
+        }
     }
 
-    /// A callback of the browser as a future.
+    /// What the browser will call.
     #[derive(Clone, Default)]
     struct Callback(Arc<Mutex<State>>);
 
     #[derive(Default)]
     struct State {
-        is_called: bool,
+        /// With what it was called.
+        is_good: Option<bool>,
         waker: Option<Waker>,
     }
 
     impl Callback {
-        fn call(&self) {
-            let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-            state.is_called = true;
+        fn state(&self) -> MutexGuard<'_, State> {
+            self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        }
+
+        fn call(&self, is_good: bool) {
+            let mut state = self.state();
+            state.is_good = Some(is_good);
             state.waker.take().into_iter().for_each(Waker::wake);
         }
-    }
 
-    impl Future for Callback {
-        type Output = ();
-
-        fn poll(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<()> {
-            let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-            if state.is_called {
-                return Poll::Ready(());
-            }
-            state.waker = Some(context.waker().clone());
-            Poll::Pending
+        async fn called(&self, gpu: &Gpu) -> Result<(), RenderError> {
+            let is_good = poll_fn(|context| {
+                let mut state = self.state();
+                match state.is_good {
+                    Some(is_good) => Poll::Ready(is_good),
+                    None => {
+                        state.waker = Some(context.waker().clone());
+                        Poll::Pending
+                    }
+                }
+            });
+            if is_good.await && !gpu.is_lost() { Ok(()) } else { Err(RenderError::Lost) }
         }
     }
 }

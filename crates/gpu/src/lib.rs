@@ -16,7 +16,7 @@ pub mod preparations;
 pub mod device;
 pub mod device_memory;
 
-pub mod completion;
+mod completion;
 
 pub mod buffers;
 mod textures;

@@ -5,12 +5,11 @@ use std::{collections::VecDeque, sync::Arc};
 use super::{
     buffers::{self, color_stride},
     compile_watch::CompileWatch,
-    completion::idle,
     device::Gpu,
     error::RenderError,
     explain::{Explained, Explanation},
     frame_layout::Target,
-    frame_stats::{Pending, StatSources},
+    frame_stats::{Pending, Staged, StatSources},
     hardware_ids,
     history::{History, fill_background},
     particles::{ParticleSimulation, Wait},
@@ -227,10 +226,10 @@ impl Renderer {
         let shadow = self.shadow.as_ref().map(|shadow| shadow.resources.buffers.get(BufferId::Counters)).transpose()?;
         let buffers = &self.picture.buffers;
         let sources = StatSources { picture: Some(buffers.get(BufferId::Counters)?), shadow, order: buffers.get(BufferId::DrawOrder).ok() };
-        let pending = Pending::stage(&gpu, &mut encoder, sources, self.device.timer.as_ref(), self.spare_stats.pop());
+        let staged = Staged::stage(&gpu, &mut encoder, sources, self.device.timer.as_ref(), self.spare_stats.pop());
         gpu.queue.submit([encoder.finish()]);
         self.picture.shows_background = self.picture.frame()?.plan.key.keeps_background();
-        self.pending.push_back(pending.begin());
+        self.pending.push_back(staged.begin());
         self.history.finish(view, stack);
         Ok(())
     }
@@ -356,8 +355,8 @@ impl Renderer {
     /// # Errors
     /// When nothing was drawn, or the device is lost.
     pub async fn finish(&mut self) -> Result<Report, RenderError> {
-        idle(&self.device.gpu).await?;
         let finished = self.pending.pop_back().ok_or(RenderError::NoScene)?;
+        finished.ready(&self.device.gpu).await?;
         self.spare_stats.extend(self.pending.drain(..).map(Pending::into_spare));
         self.collect_stats(finished).ok_or(RenderError::Lost)
     }
