@@ -54,10 +54,8 @@ use crate::{gpu::device_memory::choose_device_memory, host, oracle, preset_file:
 /// # Errors
 /// What failed; [`report_error`] prints it.
 pub fn run(cli: &Cli) -> Result<Exit, CliError> {
-    if let Some(folder) = &cli.common.shaders {
-        if !folder.is_dir() {
-            return Err(CliError::usage(format!("--shaders {}: there is no such folder", folder.display())));
-        }
+    if let Some(folder) = cli.common.shaders.as_ref().filter(|folder| !folder.is_dir()) {
+        return Err(CliError::usage(format!("--shaders {}: there is no such folder", folder.display())));
     }
     host::shaders::choose(cli.common.shaders.clone());
     cli.common.memory_budget().map_err(CliError::usage)?.unwrap_or_else(host::memory::machine_budget).choose();

@@ -16,7 +16,7 @@ use super::{
     nodes::Tree,
     notes::Notes,
     skin,
-    source::{Bytes, Source},
+    source::{Bytes, Source, reserve},
 };
 use crate::{
     scene::{memory::MemoryBudget, model::Scene, pose, rig::Rig},
@@ -62,7 +62,13 @@ fn split<'a>(model: &'a dyn Source) -> Result<(Bytes<'a>, Option<Bytes<'a>>), Lo
     let mut head = Vec::new();
     model.append_to(&mut head, 0..size.min(12))?;
     if !head.starts_with(b"glTF") {
-        return Ok((Bytes::of(model, 0..size), None));
+        if model.in_memory().is_some() {
+            return Ok((Bytes::of(model, 0..size), None));
+        }
+        let read = head.len() as u64;
+        reserve(&mut head, size - read)?;
+        model.append_to(&mut head, read..size)?;
+        return Ok((Bytes::Memory(head.into()), None));
     }
     let word = |bytes: &[u8]| u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
     if size < 12 {
