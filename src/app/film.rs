@@ -13,7 +13,6 @@ use eframe::egui;
 use pollster::FutureExt as _;
 use web_time::Instant;
 
-use super::calibrated::calibrated;
 use crate::{
     accuracy::RenderScale,
     film::{
@@ -272,7 +271,7 @@ pub fn export(
         Format::Video(_) => outputs.video = Some(VideoTarget::new(&request.path, request.size)?),
     }
     let film = Film::new(preset_file, scene, schedule, request.turntable).map_err(FilmError::from)?;
-    let gpu = calibrated(Gpu::open(&AdapterChoice::Named(adapter)).block_on().map_err(|error| Failure::Other(error.to_string()))?);
+    let gpu = Gpu::open(&AdapterChoice::Named(adapter)).block_on().map_err(|error| Failure::Other(error.to_string()))?;
     let mut studio = Studio { renderer: Renderer::new(gpu.clone()), gpu };
     let mut production = Production::begin(film, outputs, studio.provenance(), request.replaces)?;
     let (all, kept) = (production.jobs.len(), production.kept());

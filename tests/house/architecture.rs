@@ -23,11 +23,7 @@ const CORE: &[&str] = &["crates/model", "crates/kernels", "crates/evaluator", "c
 const NATIVE: &[&str] = &["fs", "env", "net", "process", "thread"];
 
 /// Files of the core that are native all the same, with the reason.
-const NATIVE_FOR_A_REASON: &[(&str, &str)] = &[
-    ("crates/gpu/src/calibration.rs", "it measures, for the command line alone"),
-    ("crates/gpu/src/timed_picture.rs", "it measures, for the command line alone"),
-    ("crates/model/src/work.rs", "work that is watched tells how long it will take"),
-];
+const NATIVE_FOR_A_REASON: &[(&str, &str)] = &[("crates/model/src/work.rs", "work that is watched tells how long it will take")];
 
 /// Longest source file, lines. A longer one stands here with its reason.
 const LONGEST: usize = 450;

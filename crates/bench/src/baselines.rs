@@ -212,9 +212,10 @@ impl Lab<'_> {
     /// Keeps the device busy, then draws all contenders in turn until the time of a round has settled. Returns false if it does not
     /// settle.
     fn warm_up(&mut self, entries: &mut [Entry]) -> Result<bool, RenderError> {
-        warm_up::warm_up(self.gpu, warm_up::FROM_IDLE, entries.len(), |at, frames| {
+        warm_up::warm_up(self.gpu, warm_up::FROM_IDLE, entries.len(), async |at, frames| {
             self.sample(&mut entries[at].contender, Detail::Whole, frames).map(|_| true)
-        })?;
+        })
+        .block_on()?;
         let begin = Instant::now();
         let mut rounds = Vec::new();
         while rounds.len() < MIN_WARM_UP_ROUNDS || rounds.len() < MAX_WARM_UP_ROUNDS && begin.elapsed() < MAX_WARM_UP {

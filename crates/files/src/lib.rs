@@ -7,5 +7,5 @@ pub mod host;
 pub mod preset_file;
 
 use rasterlab_evaluator as evaluator;
-use rasterlab_kernels::{plan, shader};
-use rasterlab_model::{accuracy, effects, frame, math, params, preset, scene, work};
+use rasterlab_kernels::shader;
+use rasterlab_model::{effects, frame, math, params, preset, scene, work};

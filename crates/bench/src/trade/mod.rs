@@ -154,11 +154,12 @@ pub fn trade(
         }
     }
     if is_wanted {
-        warm_up::warm_up(gpu, warm_up::FROM_IDLE, entries.len(), |at, frames| {
+        warm_up::warm_up(gpu, warm_up::FROM_IDLE, entries.len(), async |at, frames| {
             entries[at].sample(preset, Kept::Alone, frames)?;
             is_wanted = watch.is_wanted();
             Ok(is_wanted)
-        })?;
+        })
+        .block_on()?;
     }
     let steps = entries.len() * options.samples;
     for round in 0..options.samples {

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use etcetera::base_strategy::{BaseStrategy as _, choose_native_strategy};
 use include_dir::{Dir, File, include_dir};
 
 use super::{
@@ -60,7 +61,7 @@ impl GalleryEntry {
 /// Where presets and effects are looked for, beside the built-in ones.
 #[derive(Clone, Debug, Default)]
 pub struct Folders {
-    /// The user's own folder, `rasterlab` in the configuration folder of the system: `presets`, `effects`, `effect-values`, `trash` and
+    /// The user's own folder, `rasterlab` in the configuration folder of the system: `presets`, `effects`, `effect-values` and
     /// `favorites.toml` are in it. None: the user has no presets, and nothing is kept.
     pub user: Option<PathBuf>,
     /// `--presets DIR`.
@@ -84,11 +85,6 @@ impl Folders {
     /// The folder of the user's own presets.
     pub fn user_presets(&self) -> Option<PathBuf> {
         Some(self.user.as_ref()?.join("presets"))
-    }
-
-    /// The folder of deleted files.
-    pub fn trash(&self) -> Option<PathBuf> {
-        Some(self.user.as_ref()?.join("trash"))
     }
 
     /// The folder of saved values of effects.
@@ -141,15 +137,10 @@ fn places(folders: &Folders) -> Vec<(Origin, PathBuf)> {
 
 /// The folder of the user's presets: `rasterlab/presets` in the configuration folder of the system.
 pub fn user_folder() -> Option<PathBuf> {
-    let variable = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
-    let config = if cfg!(windows) {
-        variable("APPDATA")
-    } else if cfg!(target_os = "macos") {
-        std::env::home_dir().map(|home| home.join("Library/Application Support"))
-    } else {
-        variable("XDG_CONFIG_HOME").or_else(|| std::env::home_dir().map(|home| home.join(".config")))
-    };
-    Some(config?.join("rasterlab/presets"))
+    let system = choose_native_strategy().ok()?;
+    // On macOS, *Preferences* is for files of the system's own format.
+    let config = if cfg!(target_os = "macos") { system.data_dir() } else { system.config_dir() };
+    Some(config.join("rasterlab/presets"))
 }
 
 /// Opens what a person names: a preset of the gallery by its id, or by its id or name in other letters; a `.toml` file; a PNG saved by

@@ -3,6 +3,7 @@
 use std::{
     borrow::Cow,
     collections::BTreeSet,
+    ops::Range,
     sync::{Arc, OnceLock},
 };
 
@@ -10,8 +11,29 @@ use include_dir::{Dir, include_dir};
 
 static EMBEDDED: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../shaders");
 
-/// Gives the text of a file by its name: a path below `shaders`, without `.wgsl`.
-pub type ReadShader = dyn Fn(&str) -> Option<String> + Send + Sync;
+/// WGSL files outside of the program.
+pub trait ShaderFiles: Send + Sync {
+    /// Text of `name` (a path below `shaders`, without `.wgsl`), if there is such a file.
+    fn text(&self, name: &str) -> Option<String>;
+
+    /// Is told the names of the parts of every module that was linked.
+    fn linked(&self, parts: &mut dyn Iterator<Item = &str>);
+}
+
+/// Name and range of every section of a file's text. The first is the head, whose name is empty; a line `//@ variant NAME` or `//@ step NAME`
+/// ends it and begins the section of that name, which reaches to the next such line or to the end.
+pub fn sections(text: &str) -> Vec<(&str, Range<usize>)> {
+    let (mut sections, mut offset) = (vec![("", 0..text.len())], 0);
+    for line in text.split_inclusive('\n') {
+        let directive = line.strip_prefix("//@ ").and_then(|rest| rest.trim_end().split_once(' '));
+        if let Some(("variant" | "step", name)) = directive {
+            sections.last_mut().expect("the head is there").1.end = offset;
+            sections.push((name, offset..text.len()));
+        }
+        offset += line.len();
+    }
+    sections
+}
 
 /// Where shader text comes from.
 #[derive(Clone, Default)]
@@ -20,7 +42,7 @@ pub enum Library {
     #[default]
     Embedded,
     /// Files elsewhere, which may change while the program runs.
-    Outside(Arc<ReadShader>),
+    Outside(Arc<dyn ShaderFiles>),
 }
 
 static CHOSEN: OnceLock<Library> = OnceLock::new();
@@ -57,11 +79,18 @@ impl Library {
         names.into_iter().filter_map(|name| self.text(&name))
     }
 
+    /// Tells files outside the names of parts that were linked.
+    pub(super) fn record<'a>(&self, mut parts: impl Iterator<Item = &'a str>) {
+        if let Self::Outside(files) = self {
+            files.linked(&mut parts);
+        }
+    }
+
     /// Text of `name` (a path below `shaders`, without `.wgsl`), if there is such a file.
     pub fn text(&self, name: &str) -> Option<Cow<'static, str>> {
         match self {
             Self::Embedded => EMBEDDED.get_file(format!("{name}.wgsl"))?.contents_utf8().map(Cow::Borrowed),
-            Self::Outside(read) => read(name).map(Cow::Owned),
+            Self::Outside(files) => files.text(name).map(Cow::Owned),
         }
     }
 }
