@@ -1,15 +1,37 @@
-//! Opening the window, and opening it again when the graphics device is lost.
+//! The window on a desktop: opening it, and opening it again when the graphics device is lost.
 
 use anyhow::Context as _;
+use eframe::{egui, egui_wgpu};
 
 use super::{
-    device::native_options,
+    device::wgpu_setup,
     log::Level,
     loss::LossFlag,
     recovery::recovery_path,
     settings::{WindowPlace, keeper::window_place},
     window::{App, Options},
 };
+use crate::gpu::device::AdapterChoice;
+
+/// Smallest size of the window's contents, points.
+const MIN_SIZE: [f32; 2] = [900.0, 600.0];
+
+/// Size and settings of the window.
+fn native_options(adapter: &AdapterChoice, window: WindowPlace) -> eframe::NativeOptions {
+    eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("rasterlab")
+            .with_app_id("rasterlab")
+            .with_inner_size(window.size.map(|side| side.max(1.0)))
+            .with_maximized(window.is_maximized)
+            .with_min_inner_size(MIN_SIZE)
+            .with_drag_and_drop(true),
+        wgpu_options: egui_wgpu::WgpuConfiguration { wgpu_setup: wgpu_setup(adapter), ..Default::default() },
+        // Dithering would change the bytes that the kernels drew.
+        dithering: false,
+        ..Default::default()
+    }
+}
 
 /// Lost devices after which the window is not opened again.
 const MAX_LOSSES: u32 = 2;
