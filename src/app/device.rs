@@ -7,7 +7,7 @@ use eframe::{egui, egui_wgpu, wgpu};
 
 use super::{
     background::{Urgency, started_as},
-    settings::WindowPlace,
+    settings::WindowSize,
 };
 use crate::gpu::{
     Gpu,
@@ -18,7 +18,7 @@ use crate::gpu::{
 const MIN_SIZE: [f32; 2] = [900.0, 600.0];
 
 /// Size and settings of the window.
-pub fn native_options(adapter: &AdapterChoice, window: WindowPlace) -> eframe::NativeOptions {
+pub fn native_options(adapter: &AdapterChoice, window: WindowSize) -> eframe::NativeOptions {
     eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("rasterlab")

@@ -100,9 +100,10 @@ fn text(toml: &Toml) -> Result<String, String> {
 
 fn word(toml: &Toml, words: &'static [&'static str]) -> Result<usize, String> {
     let written = toml.as_str().ok_or_else(|| format!("must be one of {}, not {}", words.join(", "), description(toml)))?;
-    words.iter().position(|word| *word == written).ok_or_else(|| {
-        format!("{written:?} is not one of {}{}", words.join(", "), did_you_mean(written, words.iter().copied()))
-    })
+    words
+        .iter()
+        .position(|word| *word == written)
+        .ok_or_else(|| format!("{written:?} is not one of {}{}", words.join(", "), did_you_mean(written, words.iter().copied())))
 }
 
 /// What a TOML value is, to complete "must be …, not …".
