@@ -355,15 +355,7 @@ fn a_variant_that_lacks_what_its_interface_declares_is_refused() {
     let folder = shader_parts::copied();
     let path = folder.path().join("variants/coverage.wgsl");
     let text = std::fs::read_to_string(&path).expect("a shader");
-    std::fs::write(
-        &path,
-        text.replacen(
-            "\nfn coverage_begin(a: vec4u, b: vec4u, c: vec4u, area: i32",
-            "\nfn coverage_begin(a: vec4u, b: vec4u, c: vec4u, area: u32",
-            1,
-        ),
-    )
-    .expect("written");
+    std::fs::write(&path, text.replacen("\nfn coverage_begin(a: vec4u, b: vec4u, c: vec4u, area: i32", "\nfn coverage_begin(a: vec4u, b: vec4u, c: vec4u, area: u32", 1)).expect("written");
     let (key, pass) = (plain_key(), Pass::RasterMedium(RasterPhase::Depth));
     let error = link::link(&Library::Folder(folder.path().into()), &pass.path(), &key, &key.variants(pass)).expect_err("refused");
     assert!(matches!(&error, LinkError::Incomplete { signature, .. } if signature.contains("coverage_begin")), "{error}");
