@@ -7,7 +7,6 @@ use super::{
     formats::{MODEL_FORMATS, ModelFormat},
 };
 use crate::{
-    host,
     preset::{MissingInScene, Preset, SceneSource},
     scene::{Bounds, Scene, builtin, gltf},
 };
