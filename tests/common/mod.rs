@@ -10,6 +10,8 @@ use std::{
     thread,
 };
 
+mod shader_parts;
+
 pub use rasterlab::stress::{
     adversarial::near_miss_triangle,
     exactness, pinned,
@@ -267,33 +269,18 @@ impl Mutated {
 
     /// One more mistake, as in [`mutated`].
     #[must_use]
-    pub fn and(self, file: &str, from: &str, to: &str) -> Self {
-        let path = self.0.path().join(format!("{file}.wgsl"));
-        let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{file}: {error}"));
-        assert_eq!(text.matches(from).count(), 1, "{from:?} is not once in {file}");
-        fs::write(&path, text.replace(from, to)).expect("a shader is written");
+    pub fn and(self, part: &str, from: &str, to: &str) -> Self {
+        let (path, mut text, range) = shader_parts::find(self.0.path(), part).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(text[range.clone()].matches(from).count(), 1, "{from:?} is not once in {part}");
+        text.replace_range(range.clone(), &text[range].replace(from, to));
+        fs::write(&path, text).expect("a shader is written");
         self
     }
 }
 
-/// The project's shaders with `from`, which stands in `file` exactly once, replaced by `to`.
-pub fn mutated(file: &str, from: &str, to: &str) -> Mutated {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    copy_folder(&Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders"), folder.path());
-    Mutated(folder).and(file, from, to)
-}
-
-fn copy_folder(from: &Path, to: &Path) {
-    fs::create_dir_all(to).expect("a folder for shaders");
-    for entry in fs::read_dir(from).expect("shaders/ can be read") {
-        let path = entry.expect("shaders/ can be read").path();
-        let target = to.join(path.file_name().expect("a name"));
-        if path.is_dir() {
-            copy_folder(&path, &target);
-        } else {
-            fs::copy(&path, target).expect("a shader is copied");
-        }
-    }
+/// The project's shaders with `from`, which stands exactly once in a part (the head of a file, or `file/section`), replaced by `to`.
+pub fn mutated(part: &str, from: &str, to: &str) -> Mutated {
+    Mutated(shader_parts::copied()).and(part, from, to)
 }
 
 /// The oracle's own picture of a scene, from its own vertices.

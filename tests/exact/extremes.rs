@@ -177,7 +177,7 @@ const MUTANTS: &[(&str, &str, &str, &str, &str)] = &[
         "near-misses",
     ),
     ("no edge owns its samples", "lib/fixed", "return select(1, 0, d.y < 0 || (d.y == 0 && d.x > 0));", "return 1;", "dense-grids"),
-    ("half of a tile is skipped", "variants/large_tiles/interface", "block < 16", "block < 8", "slivers"),
+    ("half of a tile is skipped", "variants/large_tiles/default", "block < 16", "block < 8", "slivers"),
     (
         "a piece of what was clipped is missing",
         "stages/geometry/clip",

@@ -163,7 +163,7 @@ fn rounded_keys_are_judged() {
         (DepthFormat::Ndc16, line, "    if DEPTH_FORMAT == DEPTH_NDC16 { return max(u32(clamp(z, 0.0, 1.0) * 65535.0 + 1.5), 1u); }"),
         (
             DepthFormat::Standard,
-            "return 0x3f800001u - bitcast<u32>(clamp(1.0 - z, 0.0, 1.0)); }",
+            "return DEPTH_ABOVE_ONE - bitcast<u32>(clamp(1.0 - z, 0.0, 1.0)); }",
             "return 0x3f80000au - bitcast<u32>(clamp(1.0 - z, 0.0, 1.0)); }",
         ),
     ];

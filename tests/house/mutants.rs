@@ -6,6 +6,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use super::shader_parts;
+
 /// String literals and everything between them, comments left out.
 #[derive(Debug, PartialEq)]
 enum Token {
@@ -53,7 +55,7 @@ fn literal(source: &str) -> (String, &str) {
     panic!("a literal without an end: {text}");
 }
 
-/// Shader files, each with what stands behind it: the text to be replaced.
+/// Parts of shaders, each with what stands behind it: the text to be replaced.
 fn mistakes(source: &str) -> Vec<(String, String)> {
     let is_part = |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
     let is_file = |text: &str| text.contains('/') && text.split('/').all(is_part) && text != "image/png";
@@ -86,10 +88,10 @@ fn every_mistake_replaces_text_that_is_there_once() {
     for file in files {
         let source = fs::read_to_string(&file).expect("a test can be read");
         for (shader, from) in mistakes(&source) {
-            let said = format!("{}: {from:?} in shaders/{shader}.wgsl", file.strip_prefix(root).unwrap_or(&file).display());
-            match fs::read_to_string(root.join(format!("shaders/{shader}.wgsl"))) {
-                Ok(text) if text.matches(&from).count() == 1 => count += 1,
-                Ok(text) => wrong.push(format!("{said}: {} times", text.matches(&from).count())),
+            let said = format!("{}: {from:?} in {shader}", file.strip_prefix(root).unwrap_or(&file).display());
+            match shader_parts::find(&root.join("shaders"), &shader) {
+                Ok((_, text, part)) if text[part.clone()].matches(&from).count() == 1 => count += 1,
+                Ok((_, text, part)) => wrong.push(format!("{said}: {} times", text[part].matches(&from).count())),
                 Err(error) => wrong.push(format!("{said}: {error}")),
             }
         }

@@ -14,7 +14,7 @@ use rasterlab::{
         SceneSource,
         settings::{SECTIONS, settings},
     },
-    preset_file::{self, BUILTIN_DIR, PresetFile},
+    preset_file::{self, BUILTIN_DIR, MODEL_FORMATS, PresetFile},
 };
 
 fn root() -> &'static Path {
@@ -200,4 +200,15 @@ fn no_effect_file_can_take_the_name_of_a_setting_or_a_section() {
     let names = SECTIONS.iter().map(|section| section.name).filter(|name| !name.is_empty()).chain(tops);
     let free: Vec<&str> = names.filter(|name| check_name(name).is_ok()).collect();
     assert!(free.is_empty(), "{free:?} would hide an effect file of that name from --set");
+}
+
+#[test]
+fn help_texts_name_every_format_of_models() {
+    let key = settings().find(|setting| setting.path() == "scene.path").expect("a key");
+    let help = fs::read_to_string(root().join("src/cli/args.rs")).expect("the help of the command line");
+    for format in MODEL_FORMATS {
+        let name = format!(".{}", format.extension);
+        assert!(key.doc.contains(&name), "scene.path: {}", key.doc);
+        assert_eq!(help.matches(&name).count(), 2, "{name} of a model to open, and of a PRESET");
+    }
 }

@@ -14,7 +14,7 @@ use super::{
     words,
 };
 use crate::{
-    effects::{Effect, EffectSource, SetupRows, SurfaceInput, hooks::Hooks},
+    effects::{Effect, EffectSource, SurfaceInput, hooks::Hooks},
     evaluator::Precision,
     shader::library::Library,
 };
@@ -140,9 +140,6 @@ fn read_anew(file: &str, stem: &str, written: &str) -> Result<Effect, EffectErro
         source: Some(source.clone()),
         base: None,
         is_repeatable: |_| true,
-        turns: |_| 0.0,
-        neighbors: |_| 0.0,
-        setup_rows: |_| SetupRows::None,
     };
     let parts = Parts { text: &text, stem, declaration: &declaration, rewritten: &rewritten };
     let checked = check::check(parts, &Arc::new(effect.clone()))?;

@@ -2,11 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use etcetera::base_strategy::{BaseStrategy as _, choose_native_strategy};
 use include_dir::{Dir, File, include_dir};
 
 use super::{
     error::PresetError,
     file::{PresetFile, stem},
+    formats::ModelFormat,
     load::{load_with, parse_file},
     picture::load_picture,
 };
@@ -60,7 +62,7 @@ impl GalleryEntry {
 /// Where presets and effects are looked for, beside the built-in ones.
 #[derive(Clone, Debug, Default)]
 pub struct Folders {
-    /// The user's own folder, `rasterlab` in the configuration folder of the system: `presets`, `effects`, `effect-values`, `trash` and
+    /// The user's own folder, `rasterlab` in the configuration folder of the system: `presets`, `effects`, `effect-values` and
     /// `favorites.toml` are in it. None: the user has no presets, and nothing is kept.
     pub user: Option<PathBuf>,
     /// `--presets DIR`.
@@ -84,11 +86,6 @@ impl Folders {
     /// The folder of the user's own presets.
     pub fn user_presets(&self) -> Option<PathBuf> {
         Some(self.user.as_ref()?.join("presets"))
-    }
-
-    /// The folder of deleted files.
-    pub fn trash(&self) -> Option<PathBuf> {
-        Some(self.user.as_ref()?.join("trash"))
     }
 
     /// The folder of saved values of effects.
@@ -141,15 +138,10 @@ fn places(folders: &Folders) -> Vec<(Origin, PathBuf)> {
 
 /// The folder of the user's presets: `rasterlab/presets` in the configuration folder of the system.
 pub fn user_folder() -> Option<PathBuf> {
-    let variable = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
-    let config = if cfg!(windows) {
-        variable("APPDATA")
-    } else if cfg!(target_os = "macos") {
-        std::env::home_dir().map(|home| home.join("Library/Application Support"))
-    } else {
-        variable("XDG_CONFIG_HOME").or_else(|| std::env::home_dir().map(|home| home.join(".config")))
-    };
-    Some(config?.join("rasterlab/presets"))
+    let system = choose_native_strategy().ok()?;
+    // On macOS, *Preferences* is for files of the system's own format.
+    let config = if cfg!(target_os = "macos") { system.data_dir() } else { system.config_dir() };
+    Some(config.join("rasterlab/presets"))
 }
 
 /// Opens what a person names: a preset of the gallery by its id, or by its id or name in other letters; a `.toml` file; a PNG saved by
@@ -169,7 +161,7 @@ pub fn open(what: &str, folders: &Folders) -> Result<PresetFile, PresetError> {
     if has_extension(path, "png") {
         return load_picture(path);
     }
-    if has_extension(path, "glb") || has_extension(path, "gltf") {
+    if ModelFormat::of(path).is_some() {
         let absolute = std::path::absolute(path).map_err(|e| PresetError::Read { file: what.into(), reason: e.to_string() })?;
         return Ok(PresetFile { effects: folders.effects.clone(), ..PresetFile::of_scene(&stem(path), SceneSource::File(absolute)) });
     }
@@ -190,8 +182,9 @@ pub fn open(what: &str, folders: &Folders) -> Result<PresetFile, PresetError> {
         }
     }
     if path.exists() {
-        let reason = "rasterlab opens .toml files, .png pictures that it has saved, and models in .glb and .gltf files";
-        return Err(PresetError::NotOurs { what: what.into(), reason: reason.into() });
+        let models = ModelFormat::names(" and ");
+        let reason = format!("rasterlab opens .toml files, .png pictures that it has saved, and models in {models} files");
+        return Err(PresetError::NotOurs { what: what.into(), reason });
     }
     Err(PresetError::NoPreset { what: what.into(), hint: near_presets(what, &entries) })
 }

@@ -8,7 +8,6 @@ use glam::DVec3;
 
 use super::{
     BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
-    effect::read,
     hooks::tone::{luminance, rgb, turned},
 };
 use crate::{choice, params, params::Color};
@@ -51,9 +50,7 @@ params! {
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::surface::<Hatch>("hatch", "Hatch", "cross-hatching in ink, whose lines grow as the tone darkens")
-        .with_turns(|words| read::<Hatch>(words).layers.into())
-        .into()
+    Effect::surface::<Hatch>("hatch", "Hatch", "cross-hatching in ink, whose lines grow as the tone darkens").into()
 });
 
 impl SurfaceEffect for Hatch {

@@ -22,7 +22,7 @@ pub use value::{Stored, Value, ValueError, ValueType, format_number};
 /// One parameter: what every surface of the program needs to know about it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Param {
-    /// Stable name: key in preset files, end of a `--set` path, WGSL member. A new name needs a migration.
+    /// Stable name: key in preset files, end of a `--set` path, WGSL member. A new name needs a new schema.
     pub name: String,
     /// Tooltip and help text.
     pub doc: String,

@@ -136,7 +136,8 @@ impl Viewport {
             let is_full_size = [drawn.view.width, drawn.view.height] == size;
             Finished::new(options, screen.timings().cost_ms(), is_full_size)
         });
-        self.anti_aliasing.applied(state.session.preset().accuracy, (scene, stack, size), &screen.gpu.caps, finished)
+        let accuracy = state.tier_times.informed(state.session.preset().accuracy);
+        self.anti_aliasing.applied(accuracy, (scene, stack, size), &screen.gpu.caps, finished)
     }
 
     /// Seconds until the picture counts as at rest; none when it does.
@@ -220,7 +221,7 @@ fn picture_ui(ui: &Ui, state: &State, rect: Rect) -> Rect {
     let (title, detail) = if let Some(compiling) = &compiling {
         (compiling.as_str(), "The first picture takes longest.")
     } else if state.session.scenes.has_failed() {
-        ("This scene cannot be shown", "See the log. Choose another scene on the left, or drop a .glb file here.")
+        ("This scene cannot be shown", "See the log. Choose another scene on the left, or drop a model here.")
     } else if state.screen.is_refused() {
         ("This picture cannot be drawn", "See the log.")
     } else {
