@@ -81,7 +81,7 @@ mod verification;
 mod watch;
 mod window;
 
-pub use device::{Devices, adopt, wgpu_setup};
+pub use device::{Devices, Painter, adopt, wgpu_setup};
 pub use recovery::{FIRST_PRESET, config_folder};
 pub use run::{DeviceLost, run};
 pub use window::{App, Options};

@@ -5,14 +5,16 @@ use std::{
     collections::{BTreeMap, VecDeque},
     fs,
     ops::{Deref, DerefMut},
-    path::Path,
+    path::{Path, PathBuf},
     sync::{Arc, Condvar, LazyLock, Mutex, MutexGuard, OnceLock},
     thread,
 };
 
 pub use rasterlab::stress::{
     adversarial::near_miss_triangle,
-    exactness, pinned,
+    exactness,
+    matrix::{DEFORMED_SCENES, GALLERY_SCENES, SCENES},
+    pinned,
     scenes::{Rng, SimpleMesh, camera_view, pixel_view, scene_of_meshes, triangle_soup, triangle_soup_in_units},
     stack, tunings,
 };
@@ -28,33 +30,6 @@ use rasterlab::{
     shader::library::Library,
     stress,
 };
-
-/// A scene of every builtin: together they take each path through the kernels.
-pub const SCENES: &[&str] = &[
-    "teapot?tess=8",
-    "sphere?triangles=5000",
-    "sphere?triangles=200",
-    "knot?tess=24",
-    "cube-wall",
-    "field?count=27&triangles=200",
-    "globe?tess=6",
-    "panels",
-    "leaves?n=40",
-    "grid?cell=1",
-    "grid?cell=0.4",
-    "fan?n=13",
-    "sizes",
-    "slivers",
-    "stack",
-    "near",
-    "chamber",
-];
-
-/// Scenes of the gallery that stress nothing in particular, so that sweeps over options leave them out.
-pub const GALLERY_SCENES: &[&str] = &["town?houses=3", "still-life?tess=1"];
-
-/// Scenes with deformed meshes, which the strict vertex stage refuses.
-pub const DEFORMED_SCENES: &[&str] = &["tentacle?tess=3", "walker?tess=1"];
 
 /// The adapter under test: `RASTERLAB_ADAPTER` (a part of its name) or the best there is. A missing one fails the test;
 /// only `RASTERLAB_GPU=skip` leaves GPU tests out, and says so.
@@ -267,20 +242,35 @@ impl Mutated {
 
     /// One more mistake, as in [`mutated`].
     #[must_use]
-    pub fn and(self, file: &str, from: &str, to: &str) -> Self {
-        let path = self.0.path().join(format!("{file}.wgsl"));
-        let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{file}: {error}"));
-        assert_eq!(text.matches(from).count(), 1, "{from:?} is not once in {file}");
-        fs::write(&path, text.replace(from, to)).expect("a shader is written");
+    pub fn and(self, from: &str, to: &str) -> Self {
+        let mut files = Vec::new();
+        files_below(self.0.path(), &mut files);
+        let texts = files.into_iter().map(|path| (fs::read_to_string(&path).expect("a shader is read"), path));
+        let found: Vec<_> = texts.filter(|(text, _)| text.contains(from)).collect();
+        let [(text, path)] = &found[..] else { panic!("{from:?} stands in {} shader files", found.len()) };
+        assert_eq!(text.matches(from).count(), 1, "{from:?} in {}", path.display());
+        fs::write(path, text.replace(from, to)).expect("a shader is written");
         self
     }
 }
 
-/// The project's shaders with `from`, which stands in `file` exactly once, replaced by `to`.
-pub fn mutated(file: &str, from: &str, to: &str) -> Mutated {
+/// The project's shaders with `from`, which stands in them exactly once, replaced by `to`.
+pub fn mutated(from: &str, to: &str) -> Mutated {
+    own_shaders().and(from, to)
+}
+
+/// A copy of the project's shaders.
+pub fn own_shaders() -> Mutated {
     let folder = tempfile::tempdir().expect("a temporary folder");
     copy_folder(&Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders"), folder.path());
-    Mutated(folder).and(file, from, to)
+    Mutated(folder)
+}
+
+fn files_below(folder: &Path, files: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).expect("a folder of shaders can be read") {
+        let path = entry.expect("a folder of shaders can be read").path();
+        if path.is_dir() { files_below(&path, files) } else { files.push(path) }
+    }
 }
 
 fn copy_folder(from: &Path, to: &Path) {

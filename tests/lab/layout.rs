@@ -193,6 +193,7 @@ fn contrast(window: &image::RgbaImage, area: Rect) -> f64 {
 
 #[test]
 fn icons_show_in_both_themes_and_over_pictures_of_any_color() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     for (theme, color) in [("Dark", "1.0"), ("Light", "0.0"), ("Dark", "0.7"), ("Light", "0.3")] {
         let text = format!(

@@ -24,6 +24,7 @@ fn has_timer(lab: &Lab) -> bool {
 
 #[test]
 fn the_cost_is_a_median_at_rest_and_then_nothing_is_drawn() {
+    draw_pictures();
     let Some(mut lab) = lab("lambert") else { return };
     if !has_timer(&lab) {
         assert!(!texts(&lab, "no GPU timer").is_empty());
@@ -50,6 +51,7 @@ fn the_cost_is_a_median_at_rest_and_then_nothing_is_drawn() {
 /// The next picture is held back, so that nothing but the change itself can take the old time away.
 #[test]
 fn the_time_of_the_picture_before_is_gone_before_the_next_is_drawn() {
+    draw_pictures();
     let Some(mut lab) = lab_on_new_devices("lambert") else { return };
     if !has_timer(&lab) {
         return;
@@ -69,6 +71,7 @@ fn the_time_of_the_picture_before_is_gone_before_the_next_is_drawn() {
 /// A picture in motion is timed by the median of its newest frames; those of another preset with the same kernels do not count.
 #[test]
 fn frames_of_the_preset_before_do_not_count_for_the_next() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     for (id, amount) in [("aa1", 0.25), ("aa2", 0.75)] {
         let text = format!("schema = 2\n[scene]\nbuiltin = \"teapot?tess=4\"\n[effects.facet]\namount = {amount}\n");
@@ -142,6 +145,7 @@ fn header_and_legend_count_the_same_wrong_pixels() {
 
 #[test]
 fn the_timing_panel_lists_passes_rest_and_latency() {
+    draw_pictures();
     let Some(mut lab) = lab("lambert") else { return };
     if !has_timer(&lab) {
         return;

@@ -87,6 +87,7 @@ fn verifying_shows_how_far_it_is_and_ends_in_the_middle_when_it_is_canceled() {
 
 #[test]
 fn the_extremes_run_beside_the_window_and_can_be_stopped() {
+    draw_pictures();
     let Some(mut lab) = lab("facet") else { return };
     click(&mut lab, Role::Button, "View");
     click(&mut lab, Role::Button, "Run extreme cases…");
@@ -141,6 +142,7 @@ fn show_overlay(lab: &mut Lab, name: &str) {
 
 #[test]
 fn overlays_are_laid_over_the_picture_and_counted_in_a_legend() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else { return };
     let (plain, draws) = (middle(&mut lab), lab.state().draws());
     show_overlay(&mut lab, "triangle edges");
