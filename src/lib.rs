@@ -1,49 +1,30 @@
 //! rasterlab: an effects lab around a triangle rasterizer written as compute shaders.
 //!
-//! Modules in dependency order; `tests/house/architecture.rs` holds the arrows.
+//! The program: [`cli`] has every subcommand, `app` is the window (feature `gui`). Both drive the crates below, which are named here
+//! once more, so that one dependency gives a whole lab. Each knows only those before it:
 //!
-//! * [`work`]: watching and canceling long work
-//! * [`math`], [`frame`]: snapping and exact comparisons, and the picture with its integer buffers
-//! * [`accuracy`]: every axis on which speed is traded for accuracy, and its options
-//! * [`measure`]: compares frames, summarizes timings
-//! * [`scene`]: meshes as the file has them, cameras, what a scene requires
-//! * [`params`](mod@params), [`effects`]: one table of parameters per effect, one list of effects, their f64 reference
-//! * [`shader`], [`plan`]: choose and link the kernels
-//! * [`evaluator`]: evaluates WGSL functions on the CPU
-//! * [`effect_files`]: effects that anyone can write, one WGSL file each
-//! * [`preset`]: the state of a picture, and its animation
-//! * [`oracle`]: the exact CPU renderer that judges the kernels and makes the goldens
-//! * [`gpu`]: runs the kernels
-//! * [`preset_file`]: presets as sparse TOML files
-//! * [`film`]: films of an animated preset, as frames, animated PNG or video
-//! * [`stress`]: the table of extreme cases, each drawn and judged
-//! * `app`: the window (feature `gui`)
-//! * [`cli`]: every subcommand; opens no window except through `app`
+//! * `rasterlab-model` ([`work`], [`math`], [`frame`], [`accuracy`], [`measure`], [`scene`], [`params`](mod@params), [`effects`],
+//!   [`preset`]): what a picture is made of, as plain data
+//! * `rasterlab-kernels` ([`shader`], [`plan`]): chooses and links the kernels
+//! * `rasterlab-evaluator` ([`evaluator`]): evaluates WGSL functions on the CPU
+//! * `rasterlab-oracle` ([`oracle`]): the exact CPU renderer that judges the kernels and makes the goldens
+//! * `rasterlab-gpu` ([`gpu`]): runs the kernels
+//! * `rasterlab-files` ([`preset_file`], [`effect_files`], [`film`]): presets, effects and films on disk
+//! * `rasterlab-bench` ([`stress`], [`baselines`], [`trade`]): extreme cases, and speed beside error
 
-// One place opts out, with its reason: the option `trusted` of src/gpu/pipelines.rs.
 #![deny(unsafe_code)]
 
-pub mod accuracy;
 #[cfg(feature = "gui")]
 pub mod app;
 pub mod cli;
-pub mod effect_files;
-pub mod effects;
-pub mod evaluator;
-pub mod film;
-pub mod frame;
-pub mod gpu;
-pub mod math;
-pub mod measure;
-pub mod oracle;
-pub mod params;
-pub mod plan;
-pub mod preset;
-pub mod preset_file;
-pub mod scene;
-pub mod shader;
-pub mod stress;
-pub mod work;
+
+pub use rasterlab_bench::{baselines, stress, trade};
+pub use rasterlab_evaluator as evaluator;
+pub use rasterlab_files::{effect_files, film, preset_file};
+pub use rasterlab_gpu as gpu;
+pub use rasterlab_kernels::{plan, shader};
+pub use rasterlab_model::{accuracy, effects, frame, math, measure, params, preset, scene, work};
+pub use rasterlab_oracle as oracle;
 
 /// The arithmetic that the kernels and the oracle implement: the page `docs/exactness.md`, to which doc comments refer by section.
 #[cfg(doc)]

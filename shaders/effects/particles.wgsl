@@ -1,5 +1,5 @@
 // Particles: discs that a divergence-free flow carries through the scene.
-// src/effects/particles.rs defines how they move and look; they use no hook of the stack.
+// crates/model/src/effects/particles.rs defines how they move and look; they use no hook of the stack.
 
 struct Particles {
     slow: vec4f,

@@ -1,4 +1,4 @@
-// Particles: the state of one and the steps that it takes, as src/effects/particles.rs defines them. `c` is the index of a step's
+// Particles: the state of one and the steps that it takes, as crates/model/src/effects/particles.rs defines them. `c` is the index of a step's
 // parameters. Mirrors `gpu::records::{ParticleStepUniform, StepParams}`.
 //@ use lib/fixed
 //@ use lib/hash

@@ -12,8 +12,8 @@ use super::{
     trade,
 };
 use crate::{
+    baselines::{BenchOptions, BenchRow, bench, bench_stacks},
     effects::{EFFECTS, EnabledEffect, Stack},
-    gpu::bench::{BenchOptions, BenchRow, bench, bench_stacks},
     oracle,
 };
 

@@ -35,13 +35,15 @@ impl Painter for Backend {
 }
 
 /// Shows the progress of a film.
-impl Observer for ProgressBar {
+struct FilmBar(ProgressBar);
+
+impl Observer for FilmBar {
     fn begins(&self, job: &FrameJob) {
-        self.set_message(job.path.as_ref().map_or_else(|| format!("frame {}", job.frame), |path| path.display().to_string()));
+        self.0.set_message(job.path.as_ref().map_or_else(|| format!("frame {}", job.frame), |path| path.display().to_string()));
     }
 
     fn ended(&self, _: &FrameJob) {
-        self.inc(1);
+        self.0.inc(1);
     }
 }
 
@@ -77,9 +79,9 @@ pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Ex
         let adapters = production.other_adapters.join(", ");
         streams.note(&format!("some of the kept frames were drawn by {adapters}; use --force to draw them again"));
     }
-    let bar = streams.progress(production.jobs.len() as u64);
+    let bar = FilmBar(streams.progress(production.jobs.len() as u64));
     production.draw(&mut backend, &bar)?;
-    bar.finish_and_clear();
+    bar.0.finish_and_clear();
     let (kept, schedule) = (production.kept(), &production.film().schedule);
     let drawn = production.jobs.len() - kept;
     let range = if production.jobs.len() < schedule.total as usize {

@@ -13,13 +13,11 @@ use super::{
 use crate::{
     accuracy::{AXES, Axis},
     effects::Stack,
-    gpu::{
-        Capture,
-        trade::{AS_PLANNED, Judged, Phase, Reference, Step, TradeError, TradeOptions, TradeRow, Watch, factors, trade},
-    },
+    gpu::Capture,
     oracle,
     params::did_you_mean,
     scene::{Scene, view::View},
+    trade::{AS_PLANNED, Judged, Phase, Reference, Step, TradeError, TradeOptions, TradeRow, Watch, factors, trade},
 };
 
 pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit, CliError> {

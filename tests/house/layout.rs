@@ -121,12 +121,12 @@ fn every_binding_has_a_resource_and_every_bound_struct_is_shared() {
         for binding in bindings {
             let resource = ResourceId::of_binding(&binding.name);
             bound.extend(resource);
-            assert!(resource.is_some(), "{what} binds {}, which src/gpu/resource_id.rs does not list", binding.name);
+            assert!(resource.is_some(), "{what} binds {}, which crates/gpu/src/resource_id.rs does not list", binding.name);
             let (stride, name) = element(&module.module, binding.index);
             // The parameters of effects are compared with the effects below.
             let Some(name) = name.filter(|name| name != "Effects") else { continue };
             let record = RECORDS.iter().find(|record| record.wgsl == name);
-            let record = record.unwrap_or_else(|| panic!("{what} binds {name}, which src/gpu/records.rs does not list"));
+            let record = record.unwrap_or_else(|| panic!("{what} binds {name}, which crates/gpu/src/records.rs does not list"));
             assert!(
                 stride.is_none_or(|stride| stride == record.size),
                 "{what}: {name} lies {stride:?} bytes apart, Rust has {}",

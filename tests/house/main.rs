@@ -1,7 +1,6 @@
 //! Promises that need no adapter: the rules of the code base, files and their formats, the command line.
 
 mod architecture;
-mod circles;
 mod cli;
 mod dependencies;
 mod effect_files;

@@ -42,10 +42,10 @@ fn effects() -> BTreeSet<String> {
 
 #[test]
 fn every_effect_has_both_its_sources_and_no_source_lacks_its_effect() {
-    let mut rust = stems("src/effects", "rs");
+    let mut rust = stems("crates/model/src/effects", "rs");
     // The catalogue itself.
-    ["mod", "effect", "list", "stack"].iter().for_each(|stem| assert!(rust.remove(*stem), "src/effects/{stem}.rs is gone"));
-    assert_eq!(rust, effects(), "src/effects against the list of effects");
+    ["mod", "effect", "list", "stack"].iter().for_each(|stem| assert!(rust.remove(*stem), "crates/model/src/effects/{stem}.rs is gone"));
+    assert_eq!(rust, effects(), "crates/model/src/effects against the list of effects");
     assert_eq!(stems("shaders/effects", "wgsl"), effects(), "shaders/effects against the list of effects");
 }
 
@@ -57,7 +57,8 @@ fn twins_open_with_the_same_sentence() {
             let line = text.lines().find(|line| line.starts_with(mark)).unwrap_or_else(|| panic!("{file} has no opening sentence"));
             line.trim_start_matches(mark).trim().to_owned()
         };
-        let (rust, wgsl) = (opening(format!("src/effects/{effect}.rs"), "//!"), opening(format!("shaders/effects/{effect}.wgsl"), "// "));
+        let (rust, wgsl) =
+            (opening(format!("crates/model/src/effects/{effect}.rs"), "//!"), opening(format!("shaders/effects/{effect}.wgsl"), "// "));
         assert_eq!(rust, wgsl, "{effect}");
     }
 }

@@ -36,7 +36,7 @@ class Camera:
         return [flag for key, value in values.items() for flag in ("--set", f"camera.{key}={json.dumps(value)}")]
 
     def matrix(self, width, height):
-        """rasterlab's clip_from_world, f64 [4, 4] by rows: y up, depth near / w; multiplied in the order of src/scene/view.rs."""
+        """rasterlab's clip_from_world, f64 [4, 4] by rows: y up, depth near / w; multiplied in the order of crates/model/src/scene/view.rs."""
         eye, target = np.array(self.eye, float), np.array(self.target, float)
         back = unit(eye - target)
         right = unit(np.cross((0.0, 1.0, 0.0), back))

@@ -14,13 +14,10 @@ use crate::{
     accuracy::{Axis, PinnedOptions},
     app::calibrated::calibrated,
     effects::Stack,
-    gpu::{
-        Capture, Gpu,
-        device::AdapterChoice,
-        trade::{Judged, Phase, Reference, Step, TradeOptions, TradeRow, Watch, factors, trade},
-    },
+    gpu::{Capture, Gpu, device::AdapterChoice},
     oracle,
     scene::{Scene, view::View},
+    trade::{Judged, Phase, Reference, Step, TradeOptions, TradeRow, Watch, factors, trade},
 };
 
 /// How often a measurement that waits looks whether it may go on.

@@ -286,9 +286,9 @@ fn the_schema_refuses_a_room_that_the_loader_refuses() {
 
 #[test]
 fn an_edit_of_one_value_neither_prints_nor_parses_a_whole_preset() {
-    let source = include_str!("../../../src/preset_file/edit.rs");
+    let source = include_str!("../../../crates/files/src/preset_file/edit.rs");
     for name in ["to_toml(", "parse(text", "parse_file(", "DocumentMut"] {
-        assert!(!source.contains(name), "src/preset_file/edit.rs uses {name}");
+        assert!(!source.contains(name), "crates/files/src/preset_file/edit.rs uses {name}");
     }
     // The text of an effect that only a newer program knows counts for the order all the same.
     let mut preset_file = parse("schema = 2\n[effects.facet]\n[effects.lambert]\n[effects.later]\n");

@@ -26,8 +26,8 @@ use crate::{
             request::{Progress, Request, SAMPLES},
         },
     },
-    gpu::trade::factors,
     preset::{AccuracyRequest, Preset},
+    trade::factors,
 };
 
 /// Most combinations that are measured at once.

@@ -1,0 +1,10 @@
+//! What lies on disk: [`preset_file`] reads and writes presets as TOML, [`effect_files`] are effects that anyone can write, and
+//! [`film`] writes the frames of an animated preset.
+
+pub mod effect_files;
+pub mod film;
+pub mod preset_file;
+
+use rasterlab_evaluator as evaluator;
+use rasterlab_kernels::{plan, shader};
+use rasterlab_model::{accuracy, effects, frame, math, params, preset, scene};

@@ -1,0 +1,145 @@
+//! Stack traits: what planning reads of a stack. A parameter that is not among them changes uniform bytes alone.
+
+use crate::{
+    accuracy::Parameters,
+    effects::{
+        Effect, EnabledEffect, Stack,
+        dots::LineSource,
+        draw_order,
+        hooks::{Layers, Shape, Slot},
+        overdraw, read,
+        xray::{self, Reach, Xray},
+    },
+};
+
+use super::{AccuracyRequest, error::PlanError};
+
+/// What planning reads of a stack. Equal traits have equal plans.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StackTraits {
+    /// The enabled effects, in order.
+    pub effects: Vec<&'static Effect>,
+    /// Parameter words of every effect, where the request bakes them into the text.
+    pub baked: Vec<Vec<u32>>,
+    /// The bit of every effect in the scopes of a draw; empty where no effect has a scope.
+    pub scope_bits: Vec<Option<u32>>,
+    pub shape: Shape,
+    /// Whose order counts where only a number of samples is drawn.
+    pub draw_order: Option<draw_order::Mode>,
+    /// The lines along which dots are drawn.
+    pub dots: Option<LineSource>,
+    /// An effect adds particles to the scene.
+    pub has_particles: bool,
+    /// The xray, with its choices alone: what its other parameters say is zero.
+    pub xray: Option<Xray>,
+    /// The first effect whose samples depend on floats or on chance, and how.
+    pub inexact_effect: Option<InexactEffect>,
+}
+
+/// An effect that a strict picture cannot hold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InexactEffect {
+    pub name: &'static str,
+    pub why: &'static str,
+}
+
+impl StackTraits {
+    /// # Errors
+    /// When two effects take one slot.
+    pub fn of(stack: &Stack, request: &AccuracyRequest) -> Result<Self, PlanError> {
+        stack.check()?;
+        let is_baked = request.pins.option() == Some(Parameters::Baked);
+        let baked = stack.0.iter().filter(|_| is_baked).map(|enabled| enabled.words.clone()).collect();
+        let xray = stack.get(xray::EFFECT.name).map(|enabled| read::<Xray>(&enabled.words));
+        Ok(Self {
+            effects: stack.0.iter().map(|enabled| enabled.effect).collect(),
+            baked,
+            scope_bits: if stack.scopes().is_empty() { Vec::new() } else { stack.scope_bits().collect() },
+            shape: stack.shape(),
+            draw_order: stack.draw_order().map(|order| draw_order::Mode::of(order.mode)),
+            dots: stack.dots().map(|dots| LineSource::of(dots.lines)),
+            has_particles: stack.particle_settings().is_some(),
+            xray: xray.map(|xray| Xray { window: 0, opacity: 0.0, ..xray }),
+            inexact_effect: stack.0.iter().find_map(inexact),
+        })
+    }
+
+    /// What becomes of the samples of a pixel in a scene of so many triangles; none: the nearest is shown.
+    pub fn layers(&self, triangles: u64) -> Option<Layers> {
+        let effect = self.effects.iter().find(|effect| effect.hooks.slot == Some(Slot::Visibility))?;
+        Some(match self.xray {
+            Some(xray) => Layers::Xray { bits: xray.first_bits(triangles) },
+            None if *effect == &overdraw::EFFECT => Layers::Overdraw,
+            None => Layers::Race,
+        })
+    }
+
+    /// Does an x-ray count every layer, whatever lies in front of it?
+    pub fn sums_all_layers(&self) -> bool {
+        self.xray.is_some_and(|xray| Reach::of(xray.layers) == Reach::All)
+    }
+
+    /// The first effect that moves vertices.
+    pub fn vertex_effect(&self) -> Option<&'static Effect> {
+        self.effects.iter().copied().find(|effect| effect.hooks.vertex.is_some())
+    }
+
+    /// Does an effect finish pixels?
+    pub fn finishes_pixels(&self) -> bool {
+        self.effects.iter().any(|effect| effect.hooks.image.is_some())
+    }
+
+    /// Does an effect ask how much of a light arrives?
+    pub fn reads_light(&self) -> bool {
+        self.effects.iter().any(|effect| effect.hooks.reads_light())
+    }
+
+    /// Does an effect read what only the plane of a triangle tells? The taps of a shadow map do.
+    pub fn reads_planes(&self) -> bool {
+        let reads_planes = |effect: &&Effect| effect.hooks.surface_inputs.iter().any(|input| input.needs_planes());
+        self.reads_light() || self.effects.iter().any(reads_planes)
+    }
+}
+
+/// How the samples of an effect depend on floats or on chance, if they do.
+fn inexact(EnabledEffect { effect, words, .. }: &EnabledEffect) -> Option<InexactEffect> {
+    let uses_floats = effect.hooks.sample.is_some_and(|hook| hook.has_setup && (hook.is_from_floats)(words));
+    let why = match () {
+        () if effect.hooks.vertex.is_some() => "moves vertices in floats",
+        () if uses_floats => "moves a front in floats",
+        () if effect.hooks.has_lines => "places its dots in floats",
+        () if !(effect.is_repeatable)(words) => "leaves its picture to chance",
+        () => return None,
+    };
+    Some(InexactEffect { name: effect.name, why })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{effects::EFFECTS, params::ValueType};
+
+    /// A slider touches only bytes.
+    #[test]
+    fn no_slider_changes_the_traits() {
+        let request = AccuracyRequest::default();
+        for effect in EFFECTS {
+            let stack = Stack(vec![EnabledEffect::new(effect)]);
+            let before = StackTraits::of(&stack, &request).expect("one effect has no rival");
+            // A scene with particles has other triangles than one without.
+            let is_structural = |field: &crate::params::Field| {
+                matches!(field.value_type, ValueType::Choice(_) | ValueType::Bool) || (effect.name, field.name) == ("particles", "count")
+            };
+            for field in effect.fields.iter().filter(|field| !is_structural(field)) {
+                for value in field.hard {
+                    let mut moved = stack.clone();
+                    let words = &mut moved.0[0].words;
+                    let components = field.get(words).len();
+                    field.set(words, &vec![value; components]).expect("inside the range");
+                    let after = StackTraits::of(&moved, &request).expect("one effect has no rival");
+                    assert_eq!(before, after, "{}.{} = {value}", effect.name, field.name);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,406 @@
+//! The state of a preset: plain data that is always finite, and the view that it describes.
+//!
+//! `Clone + PartialEq`, so undo is a list of presets. Playback, window layout and overlays are no part of it.
+//! [`Preset::evaluated_stack`] is drawn, not the stack itself: keyframes change its values with the time.
+
+pub mod animation;
+mod fit;
+mod fitted;
+mod landing;
+mod missing_parts;
+mod particle_timeline;
+pub mod polyline;
+pub mod rebind;
+mod rules;
+mod setting;
+pub mod settings;
+
+use std::{path::PathBuf, sync::Arc};
+
+use glam::{DMat4, DVec3};
+
+use crate::{
+    effects::Stack,
+    math::rotation_y,
+    scene::{
+        Background, Bounds, Ground, Scene,
+        camera::Camera,
+        pose::{Motion, Pose, scene_from_nodes},
+        shadow_resolution::ShadowResolution,
+        view::{SceneState, View},
+    },
+};
+pub use animation::{Animation, Track};
+pub use fit::{Fit, LengthUnit};
+
+pub use crate::accuracy::{AccuracyRequest, PinnedOptions, Tier, Visibility};
+
+/// Which scene a preset shows.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SceneSource {
+    /// A procedural scene by its query, for instance `teapot?tess=16`.
+    Builtin(String),
+    /// A model file; relative paths are relative to the folder of the preset.
+    File(PathBuf),
+}
+
+/// Which animation clips of a scene play, and how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClipPlayback {
+    /// Name of the clip; empty: none.
+    pub clip: String,
+    /// Seconds of the clips that pass in one second of the clock.
+    pub speed: f64,
+    /// Freezes the clips at this time.
+    pub clip_time_s: Option<f64>,
+    /// Name of a second clip to blend with; empty: none.
+    pub second_clip: String,
+    /// Weight of the second clip, 0 to 1.
+    pub blend: f64,
+}
+
+impl Default for ClipPlayback {
+    fn default() -> Self {
+        Self { clip: String::new(), speed: 1.0, clip_time_s: None, second_clip: String::new(), blend: 0.0 }
+    }
+}
+
+/// A clip or camera that a scene does not have.
+#[derive(Debug, PartialEq, thiserror::Error)]
+#[error("{key}: the scene has no {what} {name:?}{known}")]
+pub struct MissingInScene {
+    pub key: &'static str,
+    pub what: &'static str,
+    pub name: String,
+    /// `; it has "Walk", "Run"`.
+    pub known: String,
+}
+
+/// `; it has "Walk", "Run"`, or `; <none>` where there are no names.
+fn known<'a>(names: impl Iterator<Item = &'a String>, none: &str) -> String {
+    let names: Vec<String> = names.take(12).map(|name| format!("{name:?}")).collect();
+    if names.is_empty() { format!("; {none}") } else { format!("; it has {}", names.join(", ")) }
+}
+
+impl ClipPlayback {
+    /// Does a clip play with the clock?
+    pub fn is_moving(&self) -> bool {
+        !self.clip.is_empty() && self.clip_time_s.is_none() && self.speed != 0.0
+    }
+
+    /// Does the scene have the clips?
+    ///
+    /// # Errors
+    /// The first clip that is missing.
+    pub fn check(&self, scene: &Scene) -> Result<(), MissingInScene> {
+        for (key, name) in [("scene.clip", &self.clip), ("scene.second_clip", &self.second_clip)] {
+            if !name.is_empty() && scene.rig.clip(name).is_none() {
+                let known = known(scene.rig.clips.iter().map(|clip| &clip.name), "it has no clips");
+                return Err(MissingInScene { key, what: "clip", name: name.clone(), known });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The time of a preset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clock {
+    /// Time of the picture.
+    pub time_s: f64,
+    /// Begin and end of the timeline and of a sequence; the end comes later than the begin and is not drawn.
+    pub range_s: [f64; 2],
+    /// Starts again at the begin of the range after its end.
+    pub is_looping: bool,
+    /// Seconds of the clock that pass in one second of playback, above 0.
+    pub speed: f64,
+}
+
+impl Default for Clock {
+    fn default() -> Self {
+        Self { time_s: 0.0, range_s: [0.0, 4.0], is_looping: true, speed: 1.0 }
+    }
+}
+
+impl Clock {
+    /// The time of the clock `passed_s` seconds of playback after `time_s`, and whether it continues from there. A time before the
+    /// range runs into it.
+    pub fn after(&self, time_s: f64, passed_s: f64) -> (f64, bool) {
+        let [from_s, to_s] = self.range_s;
+        let next_s = time_s + passed_s * self.speed;
+        if next_s < to_s {
+            return (next_s, true);
+        }
+        if !self.is_looping {
+            return (to_s, false);
+        }
+        // The remainder of a tiny negative number may round up to the length of the range.
+        let wrapped_s = from_s + (next_s - from_s).rem_euclid(to_s - from_s);
+        (if wrapped_s < to_s { wrapped_s } else { from_s }, true)
+    }
+}
+
+/// Size and background of the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Output {
+    /// Width and height in pixels, each 0 to 16,384.
+    pub size: [u32; 2],
+    /// Linear RGBA; of a gradient that of the top edge.
+    pub background: [f32; 4],
+    /// Linear RGBA of the bottom edge; none: the background is one color.
+    pub background_bottom: Option<[f32; 4]>,
+}
+
+impl Output {
+    /// What pixels without a triangle show.
+    pub fn backdrop(&self) -> Background {
+        Background { top: self.background, bottom: self.background_bottom.unwrap_or(self.background) }
+    }
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        Self { size: [320, 240], background: [0.012, 0.014, 0.02, 1.0], background_bottom: None }
+    }
+}
+
+/// How far a picture may differ from the golden; a preset without it has no golden.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GoldenTest {
+    /// Largest difference of a color channel, of 255.
+    pub max_channel: u8,
+    /// Number of pixels that may differ by more.
+    pub max_pixels: u32,
+    /// Number of pixels that may show another triangle than the reference, where an option that is not exact is pinned.
+    pub max_wrong_triangles: u32,
+    /// Why a budget above the default is needed.
+    pub why: String,
+}
+
+impl Default for GoldenTest {
+    fn default() -> Self {
+        Self { max_channel: 1, max_pixels: 0, max_wrong_triangles: 0, why: String::new() }
+    }
+}
+
+/// The state of a preset.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Preset {
+    /// Shown; the file stem is the id.
+    pub name: String,
+    pub about: String,
+    pub tags: Vec<String>,
+    pub scene: SceneSource,
+    /// Distance of the walls of a room around the scene, as a multiple of the scene's width; 0: no room.
+    pub room: f64,
+    /// What the scene stands on; none: nothing.
+    pub ground: Option<Ground>,
+    /// Turns the whole scene about +y.
+    pub spin_deg_per_s: f64,
+    /// The animation clips of the scene.
+    pub playback: ClipPlayback,
+    /// The unit of the lengths and points of effects, keyframes and polyline.
+    pub unit: LengthUnit,
+    /// A polyline for effects that draw along lines; it turns with the scene.
+    pub polyline: Arc<[[f32; 3]]>,
+    /// None: a camera of the scene, or one that frames the whole scene.
+    pub camera: Option<Camera>,
+    /// Name of the scene's camera to use without a `camera`; empty: the first.
+    pub scene_camera: String,
+    pub clock: Clock,
+    /// The effects with their values; keyframes change some of them with the time.
+    pub stack: Stack,
+    /// The keyframes.
+    pub animation: Animation,
+    pub accuracy: AccuracyRequest,
+    pub output: Output,
+    pub test: Option<GoldenTest>,
+}
+
+impl Default for Preset {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            about: String::new(),
+            tags: Vec::new(),
+            scene: SceneSource::Builtin("teapot".into()),
+            room: 0.0,
+            ground: None,
+            spin_deg_per_s: 0.0,
+            playback: ClipPlayback::default(),
+            unit: LengthUnit::default(),
+            polyline: Arc::default(),
+            camera: None,
+            scene_camera: String::new(),
+            clock: Clock::default(),
+            stack: Stack::default(),
+            animation: Animation::default(),
+            accuracy: AccuracyRequest::default(),
+            output: Output::default(),
+            test: None,
+        }
+    }
+}
+
+/// The view direction of a camera that frames the scene: from the front, slightly right and above.
+pub const FRAMING_DIRECTION: DVec3 = DVec3::new(-0.45, -0.42, -1.0);
+
+impl Preset {
+    /// The stack at the time of the clock, in the unit of the preset. What is drawn is that of [`Preset::in_meters`].
+    pub fn evaluated_stack(&self) -> Stack {
+        self.stack_at(self.clock.time_s)
+    }
+
+    /// The stack at the time of the clock for `scene`, in meters, which is drawn.
+    pub fn stack_on(&self, scene: &Scene) -> Stack {
+        self.in_meters(scene).evaluated_stack()
+    }
+
+    /// The stack at another time.
+    pub fn stack_at(&self, time_s: f64) -> Stack {
+        self.animation.evaluate(&self.stack, time_s)
+    }
+
+    /// The preset with its values at its time and without keyframes, except those that change the particle simulation. It gives
+    /// the same picture.
+    pub fn evaluated(&self) -> Self {
+        Self { stack: self.evaluated_stack(), animation: self.animation.only(Track::changes_simulation), ..self.clone() }
+    }
+
+    /// Does the picture depend on the time?
+    pub fn is_moving(&self) -> bool {
+        let keyed = self.animation.tracks().iter().any(|t| t.keys().len() > 1 && self.stack.get(t.effect().name).is_some());
+        let has_particles = self.stack.particle_settings().is_some();
+        keyed || has_particles || self.spin_deg_per_s != 0.0 || self.playback.is_moving()
+    }
+
+    /// Removes an effect and its keyframes.
+    pub fn disable(&mut self, effect: &str) {
+        self.stack.disable(effect);
+        self.animation.remove_effect(effect);
+    }
+
+    /// The clips of `scene` and their time at the time of the clock.
+    fn motion(&self, scene: &Scene) -> Motion {
+        let clip = |name: &str| scene.rig.clip(name).filter(|_| !name.is_empty());
+        Motion {
+            clip: clip(&self.playback.clip),
+            other: clip(&self.playback.second_clip),
+            blend: self.playback.blend,
+            time_s: self.playback.clip_time_s.unwrap_or(self.clock.time_s * self.playback.speed),
+            skinning: self.accuracy.pins.option().unwrap_or_default(),
+        }
+    }
+
+    /// The union of `bounds` and the bounds of the particles.
+    fn with_particles(&self, mut bounds: Bounds) -> Bounds {
+        if let Some(particle_settings) = self.evaluated_stack().particle_settings() {
+            let reach = particle_settings.disc_bounds();
+            [reach.min, reach.max].into_iter().for_each(|corner| bounds.include(corner));
+        }
+        bounds
+    }
+
+    /// The pose of `scene` at the time of the clock; none for a scene without nodes.
+    pub fn pose(&self, scene: &Scene) -> Option<Arc<Pose>> {
+        (!scene.rig.is_empty()).then(|| Arc::new(Pose::at(scene, &self.motion(scene))))
+    }
+
+    /// Does `scene` have the clips and the camera that the preset names?
+    ///
+    /// # Errors
+    /// The first that is missing.
+    pub fn check(&self, scene: &Scene) -> Result<(), MissingInScene> {
+        if !self.scene_camera.is_empty() && scene.camera(&self.scene_camera).is_none() {
+            let known = known(scene.cameras.iter().map(|camera| &camera.name), "it has no cameras");
+            return Err(MissingInScene { key: "scene.camera", what: "camera", name: self.scene_camera.clone(), known });
+        }
+        self.playback.check(scene)
+    }
+
+    /// The camera of the preset, else that of the scene at its node, else one that frames `scene`.
+    pub fn camera_for(&self, scene: &Scene, aspect: f64) -> Camera {
+        let own = || {
+            let camera = scene.cameras.get(scene.camera(&self.scene_camera).unwrap_or(0))?;
+            Some(camera.node.map_or(camera.pose, |node| camera.carried(&scene_from_nodes(&scene.rig, &self.motion(scene))[node])))
+        };
+        let framing = || Camera::framing(&self.in_meters(scene).with_particles(scene.bounds()), FRAMING_DIRECTION, aspect);
+        self.camera.or_else(own).unwrap_or_else(framing)
+    }
+
+    /// The view and stack of every frame that this picture depends on, in order; the last is the picture itself. There are several
+    /// where an effect reads the previous picture.
+    pub fn moments(&self, scene: &Scene, size: [u32; 2]) -> Vec<(View, Stack)> {
+        let preset = self.in_meters(scene);
+        let (frames, step_s) = preset.evaluated_stack().smear().map_or((0, 0.0), |smear| (smear.frames, f64::from(smear.step_s)));
+        let moment = |before: u32| {
+            let clock = Clock { time_s: preset.clock.time_s - f64::from(before) * step_s, ..preset.clock };
+            let then = Self { clock, ..preset.clone().into_owned() };
+            (then.view(scene, size), then.evaluated_stack())
+        };
+        (0..=frames).rev().map(moment).collect()
+    }
+
+    /// The view of `scene` on a target of `size` pixels. Its depth range holds everything that effects may move.
+    pub fn view(&self, scene: &Scene, [width, height]: [u32; 2]) -> View {
+        let preset = self.in_meters(scene);
+        let aspect = f64::from(width.max(1)) / f64::from(height.max(1));
+        // Reduced before the trigonometry, so that a day of spinning costs no precision.
+        let turns = preset.spin_deg_per_s * preset.clock.time_s / 360.0;
+        let spin = if turns == 0.0 { DMat4::IDENTITY } else { rotation_y(turns.fract() * std::f64::consts::TAU) };
+        let pose = preset.pose(scene);
+        let mut bounds = preset.with_particles(pose.as_ref().map_or_else(|| scene.bounds_with_ground(), |pose| pose.bounds(scene)));
+        if preset.stack.0.iter().any(|enabled| enabled.effect.hooks.has_lines) {
+            preset.polyline.iter().for_each(|point| bounds.include(DVec3::from(point.map(f64::from))));
+        }
+        if !bounds.is_empty() {
+            let max_displacement_m = preset.evaluated_stack().max_displacement_m(bounds.radius());
+            (bounds.min, bounds.max) = (bounds.min - max_displacement_m, bounds.max + max_displacement_m);
+            if scene.walls > 0 {
+                // Walls do not turn with the scene; this box holds them at every angle.
+                let aside = DVec3::new(std::f64::consts::SQRT_2, 1.0, std::f64::consts::SQRT_2);
+                (bounds.min, bounds.max) = (bounds.min * aside, bounds.max * aside);
+            }
+        }
+        let pins = &preset.accuracy.pins;
+        let shadow = ShadowResolution::of(pins.option().unwrap_or_default(), pins.option().unwrap_or_default());
+        let scene_state =
+            SceneState { world_from_scene: spin, pose, polyline: preset.polyline.clone(), particles: preset.particle_timeline() };
+        let view = View::new(&preset.camera_for(scene, aspect), width, height, &bounds, spin, preset.output.backdrop());
+        View { scene_state, ..view }.with_shadow(shadow)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_looping_clock_stays_in_its_range_and_the_other_stops_at_its_end() {
+        let clock = Clock { range_s: [1.0, 3.0], speed: 2.0, ..Clock::default() };
+        assert_eq!(clock.after(1.0, 0.5), (2.0, true));
+        assert_eq!(clock.after(2.5, 0.5), (1.5, true));
+        assert_eq!(clock.after(-4.0, 0.5), (-3.0, true), "it runs into the range");
+        assert!(clock.after(1e9, 1e-9).1);
+        let once = Clock { is_looping: false, ..clock };
+        assert_eq!(once.after(2.5, 0.5), (3.0, false));
+        for start in 0..10_000 {
+            let (time_s, goes_on) = clock.after(f64::from(start) * 0.377, 1.0 / 60.0);
+            assert!(goes_on && (1.0..3.0).contains(&time_s) || f64::from(start) * 0.377 < 1.0, "{start}: {time_s}");
+        }
+    }
+
+    #[test]
+    fn a_day_of_play_costs_no_precision() {
+        let preset = Preset { spin_deg_per_s: 90.0, ..Preset::default() };
+        let scene = crate::scene::builtin::build("teapot?tess=2").expect("a scene");
+        let turn = |time_s: f64| {
+            let preset = Preset { clock: Clock { time_s, ..Clock::default() }, ..preset.clone() };
+            preset.view(&scene, [8, 8]).scene_state.world_from_scene
+        };
+        let (fresh, late) = (turn(0.37), turn(86_400.0 + 0.37));
+        let error = fresh.to_cols_array().iter().zip(late.to_cols_array()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        // A millionth of a period is an angle of 6e-6.
+        assert!(error < 1e-9, "{error}");
+    }
+}
