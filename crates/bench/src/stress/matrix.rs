@@ -298,8 +298,11 @@ fn scenes_by_options(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     Ok(())
 }
 
+/// Query, scene and view.
+type Picture = (&'static str, Arc<Scene>, View);
+
 /// Every scene, seen as its preset shows it.
-fn pictures(context: &CaseContext, size: [u32; 2]) -> Result<Vec<(&'static str, Arc<Scene>, View)>, EarlyEnd> {
+fn pictures(context: &CaseContext, size: [u32; 2]) -> Result<Vec<Picture>, EarlyEnd> {
     let picture = |query| {
         let scene = context.scene(query)?;
         let view = preset(query, &scene, Stack::default()).view(&scene, size);
