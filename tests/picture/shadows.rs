@@ -204,22 +204,21 @@ fn every_size_of_map_and_filter_is_what_the_oracle_draws() {
     let quick = quick_option(&renderer);
     let mut tuning = renderer.gpu().caps.tuning();
     for (turn, &map) in ShadowMapSize::ALL.iter().enumerate() {
-        for taps in [ShadowTaps::ALL[turn % 3]] {
-            let view = on(&view(&scene, [96, 72]), map, taps);
-            let (capture, _) = exact(&mut renderer, &scene, &view, &lit(&["shadow"], &[]), &pinned(quick), &format!("{map:?} {taps:?}"));
-            let keys = &capture.geometry.shadow_map.expect("there is a map").depth_keys;
-            assert_eq!(keys.len(), (map.side() * map.side()) as usize);
-            // The map is read from the buffer in which it was drawn, or from a texture, its copy.
-            if std::mem::replace(&mut tuning.buffered_shadow_map, false) {
-                renderer.set_tuning(tuning);
-                let copied = captured(&mut renderer, &scene, &view, &lit(&["shadow"], &[]), &pinned(quick));
-                assert_eq!(renderer.key().map(|key| key.work.buffered_shadow_map), Some(false));
-                assert_eq!(copied.frame.color, capture.frame.color, "{map:?} {taps:?} from a texture");
-                tuning.buffered_shadow_map = true;
-                renderer.set_tuning(tuning);
-            } else {
-                eprintln!("this adapter binds too few storage buffers for a shadow map among them");
-            }
+        let taps = ShadowTaps::ALL[turn % 3];
+        let view = on(&view(&scene, [96, 72]), map, taps);
+        let (capture, _) = exact(&mut renderer, &scene, &view, &lit(&["shadow"], &[]), &pinned(quick), &format!("{map:?} {taps:?}"));
+        let keys = &capture.geometry.shadow_map.expect("there is a map").depth_keys;
+        assert_eq!(keys.len(), (map.side() * map.side()) as usize);
+        // The map is read from the buffer in which it was drawn, or from a texture, its copy.
+        if std::mem::replace(&mut tuning.buffered_shadow_map, false) {
+            renderer.set_tuning(tuning);
+            let copied = captured(&mut renderer, &scene, &view, &lit(&["shadow"], &[]), &pinned(quick));
+            assert_eq!(renderer.key().map(|key| key.work.buffered_shadow_map), Some(false));
+            assert_eq!(copied.frame.color, capture.frame.color, "{map:?} {taps:?} from a texture");
+            tuning.buffered_shadow_map = true;
+            renderer.set_tuning(tuning);
+        } else {
+            eprintln!("this adapter binds too few storage buffers for a shadow map among them");
         }
     }
 }
