@@ -1,6 +1,6 @@
 #!/bin/sh
-# Prints the table "what a frame costs" of docs/benchmarks.md for one adapter: meshes of 840 to 4 million triangles and soups of many layers, with
-# every option of visibility and the baselines in turn, milliseconds beside error.
+# Prints the first table of docs/benchmarks.md for one adapter: meshes of 840 to 4 million triangles and soups of many layers, with every option of
+# visibility and the baselines in turn, milliseconds beside error.
 #
 #   sh scripts/frame_costs.sh                      on the best adapter there is
 #   sh scripts/frame_costs.sh --adapter llvmpipe   on another; further arguments go to `rasterlab bench`

@@ -8,8 +8,8 @@
     python3 scripts/mutants.py --self-test                                     check this script's own parts
 
 Every mutant is one changed line of one shader file, in a private copy of the folder that the program reads through --shaders. The
-suite (scripts/mutation/suite.py) first runs with unchanged shaders; every command must succeed, and the shader files that each reads
-are recorded, so that a mutant meets only commands that read its file. The first command that does not succeed catches the mutant:
+suite (scripts/mutation/suite.py) first runs with unchanged shaders; every command must succeed, and the program records which heads and
+sections of files each links, so that a mutant meets only commands that link its own. The first command that does not succeed catches the mutant:
 a failed comparison, a lost device, a crash, or no end within the limit. A mutant that is no valid program counts apart, as does one that
 scripts/mutants-equivalent.txt lists with the reason why it changes nothing. The score is caught / (valid - equivalent).
 
@@ -32,7 +32,7 @@ import time
 
 sys.dont_write_bytecode = True
 
-from mutation import choose, equivalent, planted, reads, results, run, suite  # noqa: E402
+from mutation import choose, equivalent, planted, results, run, suite  # noqa: E402
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 EQUIVALENTS = os.path.join(ROOT, "scripts", "mutants-equivalent.txt")
@@ -54,7 +54,8 @@ def arguments():
     parser.add_argument("--count", type=int, metavar="N", help="run only this many")
     parser.add_argument("--only", action="append", default=[], metavar="ID", help="run only this mutant, listed or not; may be repeated")
     parser.add_argument("--planted", action="store_true", help="try the mistakes of scripts/mutation/planted.toml, and no others")
-    parser.add_argument("--file", action="append", default=[], metavar="FILE", help="only mutants of this file (lib/fixed) or folder (lib/)")
+    parser.add_argument("--file", action="append", default=[], metavar="FILE",
+                        help="only mutants of this file (lib/fixed), section (variants/coverage/boxes) or folder (lib/)")  # fmt: skip
     parser.add_argument("--survivors", action="store_true", help="with --resume: run those again that survived")
     parser.add_argument("--jobs", type=int, default=1, help="mutants at the same time [default: %(default)s]")
     parser.add_argument("--seconds", type=float, metavar="S", help="stop after this time; --resume goes on")
@@ -106,7 +107,7 @@ class Campaign:
         if not self.texts:
             raise Fault(f"{self.shaders} has no shaders; give the repository's folder with --root")
         self.entries = equivalents_of(args.equivalent)
-        for entry in equivalent.stale(self.entries, self.texts):
+        for entry in equivalent.stale(self.entries, choose.parts(self.texts)):
             say(f"note: the list of equivalent mutants names a line that is gone: {entry}")
         self.mutants = self.chosen()
         self.deadline = None if args.seconds is None else time.monotonic() + args.seconds
@@ -133,7 +134,7 @@ class Campaign:
                 raise Fault(f"there is no mutant {missing[0]}; --list shows all, and an id changes with the text of its line")
             return [possible[one] for one in args.only]
         if args.file:
-            every = [mutant for mutant in every if any((mutant["file"] + "/").startswith(one.rstrip("/") + "/") for one in args.file)]
+            every = [mutant for mutant in every if any((mutant["part"] + "/").startswith(one.rstrip("/") + "/") for one in args.file)]
         end = None if args.count is None else args.first + args.count
         return every[args.first : end]
 
@@ -180,24 +181,25 @@ class Campaign:
         return self.local.shaders
 
     def run_baseline(self, pool):
-        """Runs every command on unchanged shaders, and records its time and the files it reads."""
+        """Runs every command on unchanged shaders, and records its time and the parts of shaders that it links."""
         missing = [probe for probe in self.probes if probe.name not in self.baseline]
         if not missing:
             return
         say(f"baseline: {len(missing)} commands with unchanged shaders")
         begin, faults = time.monotonic(), []
-        empty = tempfile.mkdtemp(dir=self.scratch)
-        method = reads.method(empty)
-        if method is None:
-            say("note: this system does not tell which files are read, so every mutant meets every command")
 
         def unchanged(probe):
-            shaders = self.folder()
-            return probe, *reads.names(method, shaders, lambda: self.run_probe(probe, shaders, 900.0))
+            linked = os.path.join(tempfile.mkdtemp(dir=self.scratch), "parts")
+            result = self.run_probe(probe, self.folder(), 900.0, RASTERLAB_PARTS=linked)
+            try:
+                with open(linked, encoding="utf-8") as file:
+                    return probe, result, sorted(set(file.read().split()))
+            except FileNotFoundError:
+                return probe, result, None
 
         for future in concurrent.futures.as_completed([pool.submit(unchanged, probe) for probe in missing]):
-            probe, result, read = future.result()
-            one = {"seconds": round(result.seconds, 3), "files": read}
+            probe, result, parts = future.result()
+            one = {"seconds": round(result.seconds, 3), "parts": parts}
             if result.kind != "passed":
                 one["fails"] = f"{result.kind}: {result.why}"
             if result.kind == "passed" or self.args.leave_out_failing:
@@ -212,25 +214,25 @@ class Campaign:
         longest = f"the longest: {slowest}, {self.baseline[slowest]['seconds']:.1f} s"
         say(f"baseline: done in {time.monotonic() - begin:.0f} s ({total:.0f} s of commands; {longest})")
 
-    def run_probe(self, probe, shaders, limit):
-        return run.run(probe, self.program, shaders, self.args.root, limit, self.environment, self.deadline)
+    def run_probe(self, probe, shaders, limit, **variables):
+        return run.run(probe, self.program, shaders, self.args.root, limit, {**self.environment, **variables}, self.deadline)
 
     def try_mutant(self, mutant):
         """The mutant with what came of it."""
         if self.stopping.is_set():
             raise run.Stopped
-        read_by = [probe for probe in self.probes if self.reads(probe, mutant["file"])]
+        linked_by = [probe for probe in self.probes if self.links(probe, mutant["part"])]
         begin = time.monotonic()
-        if not read_by:
-            return {**mutant, "kind": "unreached", "step": "", "command": "", "why": "no command of the suite reads this file", "seconds": 0.0}
+        if not linked_by:
+            return {**mutant, "kind": "unreached", "step": "", "command": "", "why": "no command of the suite links this part", "seconds": 0.0}
         shaders = self.folder()
         path = os.path.join(shaders, mutant["file"] + ".wgsl")
         self.store(path, choose.changed(self.texts[mutant["file"]], mutant))
         try:
             times = {name: one["seconds"] for name, one in self.baseline.items()}
-            stem = mutant["file"].split("/")[-1]
-            named = [probe for probe in read_by if mutant.get("case") and mutant["case"] in probe.words]
-            for group in [[probe] for probe in named] + suite.commands(read_by, stem, times):
+            stem = mutant["part"].split("/")[-1]
+            named = [probe for probe in linked_by if mutant.get("case") and mutant["case"] in probe.words]
+            for group in [[probe] for probe in named] + suite.commands(linked_by, stem, times):
                 probe = suite.merged(group)
                 usual = sum(times[one.name] for one in group)
                 limit = 20.0 + self.args.limit_factor * usual
@@ -245,9 +247,10 @@ class Campaign:
         finally:
             self.store(path, self.texts[mutant["file"]])
 
-    def reads(self, probe, file):
-        files = self.baseline[probe.name]["files"]
-        return files is None or file in files
+    def links(self, probe, part):
+        """Does a command link this part, or is that not known?"""
+        parts = self.baseline[probe.name]["parts"]
+        return parts is None or part in parts
 
     @staticmethod
     def store(path, text):

@@ -1,11 +1,12 @@
-"""Which mutants a campaign tries: a fixed number, spread over files in proportion to their lines, the same for the same seed."""
+"""Which mutants a campaign tries: a fixed number, spread over heads and sections of files in proportion to their lines, the same for the same seed."""
 
 import hashlib
 import os
+import re
 
 from . import operators, wgsl
 
-# Folders and files, below `shaders`, that are not changed, each with the reason.
+# Folders, files and sections of files, below `shaders`, that are not changed, each with the reason.
 EXCLUDED = {
     "baselines/": "for comparison only: `bench` measures these kernels, and `verify` judges none of their pictures",
     "variants/coverage/float": "errs by design: no right answer exists that a change could miss",
@@ -31,12 +32,28 @@ def files(shaders):
     return dict(sorted(found.items()))
 
 
+SECTION = re.compile(r"//@ (?:variant|step) (\w+)")
+
+
+def parts(texts):
+    """File and text of every part: the head of a file (`lib/fixed`), and each section (`variants/coverage/fixed`). The text is the file's with
+    the lines of other parts left empty, so that lines keep their numbers."""
+    found = {}
+    for file, text in texts.items():
+        lines, part = text.split("\n"), file
+        for number, line in enumerate(lines):
+            section = SECTION.fullmatch(line.strip())
+            part = f"{file}/{section.group(1)}" if section else part
+            found.setdefault(part, (file, [""] * len(lines)))[1][number] = line
+    return {part: (file, "\n".join(lines)) for part, (file, lines) in found.items()}
+
+
 def _rank(*parts):
     return hashlib.sha256("\0".join(map(str, parts)).encode()).hexdigest()
 
 
-def sites(name, text, signatures):
-    """Every mutant of a file. Its id depends on the file's name and the changed line's text, not on the line's number."""
+def sites(part, file, text, signatures):
+    """Every mutant of a part. Its id depends on the part's name and the changed line's text, not on the line's number."""
     lines, found, occurrences = text.split("\n"), {}, {}
     for number, code in enumerate(wgsl.changeable(text), 1):
         line = lines[number - 1]
@@ -45,14 +62,14 @@ def sites(name, text, signatures):
             after = (line[:begin] + replacement + line[end:]).rstrip()
             if after == line.rstrip():
                 continue
-            identity = _rank(name, line.strip(), after.strip(), occurrences[line])[:10]
-            mutant = {"id": identity, "file": name, "line": number, "operator": operator, "before": line, "after": after}
+            identity = _rank(part, line.strip(), after.strip(), occurrences[line])[:10]
+            mutant = {"id": identity, "part": part, "file": file, "line": number, "operator": operator, "before": line, "after": after}
             found.setdefault(identity, mutant)
     return list(found.values())
 
 
-def _of_file(found, count, seed):
-    """`count` of a file's mutants: lines that have none yet first, and of a line the operators that were used least."""
+def _of_part(found, count, seed):
+    """`count` of a part's mutants: lines that have none yet first, and of a line the operators that were used least."""
     found = sorted(found, key=lambda mutant: _rank(seed, mutant["id"]))
     chosen, per_line, per_operator = [], {}, {}
     while found and len(chosen) < count:
@@ -80,17 +97,17 @@ def shares(weights, count):
 
 
 def every(texts):
-    """Every mutant of every file."""
+    """Every mutant of every part."""
     signatures = wgsl.signatures(texts.values())
-    return {name: sites(name, text, signatures) for name, text in texts.items()}
+    return {part: sites(part, file, text, signatures) for part, (file, text) in parts(texts).items()}
 
 
 def mutants(texts, count, seed):
-    """The mutants of a campaign in the order in which they run, which mixes the files, so that any part of it is a fair sample."""
-    found = {name: of_file for name, of_file in every(texts).items() if of_file and excluded(name) is None}
-    lines = {name: sum(map(wgsl.is_code, texts[name].split("\n"))) for name in found}
+    """The mutants of a campaign in the order in which they run, which mixes the files, so that any beginning of it is a fair sample."""
+    found = {name: of_part for name, of_part in every(texts).items() if of_part and excluded(name) is None}
+    lines = {name: sum(map(wgsl.is_code, text.split("\n"))) for name, (_, text) in parts(texts).items() if name in found}
     given = shares(lines, min(count, sum(map(len, found.values()))))
-    chosen = [mutant for name in found for mutant in _of_file(found[name], given[name], seed)]
+    chosen = [mutant for name in found for mutant in _of_part(found[name], given[name], seed)]
     return sorted(chosen, key=lambda mutant: _rank(seed, "order", mutant["id"]))
 
 

@@ -89,7 +89,7 @@ def tables(mutants, equivalents):
         way = mutant["step"] if mutant["kind"] == "failed" else f"{mutant['step']}: {mutant['kind']}"
         ways[way] = ways.get(way, 0) + 1
     lines = _table(["CAUGHT BY", "mutants"], sorted(ways.items(), key=lambda way: -way[1]))
-    lines += ["", *_table(["FOLDER", *head], _by(mutants, equivalents, lambda mutant: "/".join(mutant["file"].split("/")[:-1])))]
+    lines += ["", *_table(["FOLDER", *head], _by(mutants, equivalents, lambda mutant: "/".join(mutant["part"].split("/")[:-1])))]
     lines += ["", *_table(["OPERATOR", *head], _by(mutants, equivalents, lambda mutant: mutant["operator"]))]
     return lines
 

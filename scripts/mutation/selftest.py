@@ -7,7 +7,7 @@ import sys
 import tempfile
 import unittest
 
-from . import choose, equivalent, operators, planted, reads, results, run, suite, wgsl
+from . import choose, equivalent, operators, planted, results, run, suite, wgsl
 
 FILE = """// A comment with a < b and 1u.
 //@ use lib/frame
@@ -134,6 +134,20 @@ class Choice(unittest.TestCase):
         self.assertEqual(ids(1), ids(1))
         self.assertNotEqual(ids(1), ids(2))
 
+    def test_sections_are_parts_of_their_own_and_lines_keep_their_numbers(self):
+        text = f"// Which.\n//@ declare fn g(a: vec2i, b: vec2i)\n\n//@ variant one\n{FILE}\n//@ step two\n{FILE}"
+        parts = choose.parts({"lib/a": FILE, "variants/b": text})
+        self.assertEqual(list(parts), ["lib/a", "variants/b", "variants/b/one", "variants/b/two"])
+        self.assertEqual({file for part, (file, _) in parts.items() if part != "lib/a"}, {"variants/b"})
+        for line, *of_parts in zip(text.split("\n"), *(one.split("\n") for file, one in parts.values() if file == "variants/b")):
+            self.assertEqual(sorted(filter(None, of_parts)), [line] if line else [])
+        found = choose.every({"variants/b": text})
+        self.assertEqual(found["variants/b"], [])
+        self.assertEqual(len(found["variants/b/one"]), len(found["variants/b/two"]))
+        second = text.split("\n").index("//@ step two") + 1
+        self.assertLess(max(mutant["line"] for mutant in found["variants/b/one"]), second)
+        self.assertGreater(min(mutant["line"] for mutant in found["variants/b/two"]), second)
+
     def test_files_get_mutants_in_proportion_to_their_lines_and_excluded_ones_none(self):
         files = [mutant["file"] for mutant in choose.mutants(self.TEXTS, 20, 1)]
         self.assertEqual((files.count("a/long"), files.count("a/short"), files.count("baselines/x")), (16, 4, 0))
@@ -163,12 +177,12 @@ class Planted(unittest.TestCase):
 
 
 class Equivalents(unittest.TestCase):
-    MUTANT = {"id": "1", "file": "lib/a", "line": 3, "before": "    let x = a | b; // c", "after": "    let x = a & b; // c"}
+    MUTANT = {"id": "1", "part": "lib/a", "file": "lib/a", "line": 3, "before": "    let x = a | b; // c", "after": "    let x = a & b; // c"}
 
     def test_an_entry_is_found_by_its_texts(self):
         entries = equivalent.parse("# A comment.\n\n" + equivalent.line(self.MUTANT, "a has no bits of b") + "\n")
         self.assertEqual(equivalent.reason(entries, {**self.MUTANT, "line": 99}), "a has no bits of b")
-        self.assertIsNone(equivalent.reason(entries, {**self.MUTANT, "file": "lib/b"}))
+        self.assertIsNone(equivalent.reason(entries, {**self.MUTANT, "part": "lib/b"}))
         self.assertIsNone(equivalent.reason(entries, {**self.MUTANT, "after": "    let x = a ^ b; // c"}))
 
     def test_a_dropped_line_has_an_empty_text(self):
@@ -182,13 +196,13 @@ class Equivalents(unittest.TestCase):
 
     def test_an_entry_whose_line_is_gone_is_named(self):
         entries = equivalent.parse(equivalent.line(self.MUTANT, "why"))
-        self.assertEqual(equivalent.stale(entries, {"lib/a": self.MUTANT["before"]}), [])
-        self.assertEqual(len(equivalent.stale(entries, {"lib/a": "let y = 1u;"})), 1)
+        self.assertEqual(equivalent.stale(entries, {"lib/a": ("lib/a", self.MUTANT["before"])}), [])
+        self.assertEqual(len(equivalent.stale(entries, {"lib/a": ("lib/a", "let y = 1u;")})), 1)
 
 
 class Results(unittest.TestCase):
     KINDS = ["failed", "hang", "lost", "crash", "refused", "passed", "unreached", "listed", "invalid"]
-    MUTANTS = [{"id": kind, "kind": kind, "step": "verify", "file": "lib/a", "operator": "compare"} for kind in KINDS]
+    MUTANTS = [{"id": kind, "kind": kind, "step": "verify", "part": "lib/a", "operator": "compare"} for kind in KINDS]
 
     def test_the_score_leaves_out_invalid_and_equivalent_mutants(self):
         total = results.counts(self.MUTANTS, {"listed", "failed"})
@@ -238,30 +252,14 @@ class Running(unittest.TestCase):
         self.assertLess(result.seconds, 30.0)
 
 
-class Reads(unittest.TestCase):
-    def test_a_method_that_works_sees_what_is_read_and_nothing_else(self):
-        with tempfile.TemporaryDirectory() as folder:
-            for method in (reads.AccessTimes, reads.Inotify):
-                if not reads.works(method, folder):
-                    continue
-                for name in ("a", "b/c"):
-                    path = os.path.join(folder, name + ".wgsl")
-                    os.makedirs(os.path.dirname(path), exist_ok=True)
-                    with open(path, "w", encoding="utf-8") as file:
-                        file.write(name)
-                script = f"cat '{folder}/b/c.wgsl' '{folder}/b/c.wgsl'"
-                found = reads.names(method, folder, lambda: subprocess.run(["sh", "-c", script], capture_output=True, check=True))[1]
-                self.assertEqual(found, ["b/c"], method)
-            self.assertEqual(reads.names(None, folder, lambda: 3), (3, None))
-
-
 class WholeCampaign(unittest.TestCase):
-    """With a program that notices one line of one file."""
+    """With a program that links one of two sections, and notices one line of it."""
 
     PROGRAM = """#!/bin/sh
 [ "$1" = --help ] && echo '  fuzz  random' && exit 0
 for word in "$@"; do [ "$word" = --list ] && exit 0; done
-grep -q 'const MOST = 7u;' "$2/lib/seen.wgsl" || { echo 'teapot with split32: 3 holes' >&2; exit 1; }
+[ -z "$RASTERLAB_PARTS" ] || echo variants/both/seen >> "$RASTERLAB_PARTS"
+[ "$(grep -c 'const MOST = 7u;' "$2/variants/both.wgsl")" = 2 ] || { echo 'teapot with split32: 3 holes' >&2; exit 1; }
 """
 
     def run_in(self, folder, *words):
@@ -275,9 +273,10 @@ grep -q 'const MOST = 7u;' "$2/lib/seen.wgsl" || { echo 'teapot with split32: 3 
     def test_mutants_are_caught_survive_and_are_continued(self):
         with tempfile.TemporaryDirectory() as folder:
             output, program = os.path.join(folder, "results.json"), os.path.join(folder, "program")
-            for name in ("shaders/lib", "presets"):
+            for name in ("shaders/variants", "presets"):
                 os.makedirs(os.path.join(folder, name))
-            texts = {"shaders/lib/seen.wgsl": FILE, "shaders/lib/unseen.wgsl": FILE, "presets/teapot.toml": "", "program": self.PROGRAM, "equivalent.txt": ""}
+            both = f"//@ declare const MOST\n//@ variant seen\n{FILE}//@ variant unseen\n{FILE}"
+            texts = {"shaders/variants/both.wgsl": both, "presets/teapot.toml": "", "program": self.PROGRAM, "equivalent.txt": ""}
             for name, text in texts.items():
                 with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
                     file.write(text)
@@ -288,14 +287,13 @@ grep -q 'const MOST = 7u;' "$2/lib/seen.wgsl" || { echo 'teapot with split32: 3 
             second, mutants = self.run_in(folder, "--resume", output, *words)
             self.assertEqual((second.returncode, len(mutants)), (1, 16), second.stdout + second.stderr)
             self.assertNotIn("baseline:", second.stdout)
-            tells_reads = reads.method(folder) is not None
             for mutant in mutants:
-                is_noticed = mutant["file"] == "lib/seen" and "const MOST" in mutant["before"]
-                unseen = "unreached" if mutant["file"] == "lib/unseen" and tells_reads else "passed"
+                is_noticed = mutant["part"] == "variants/both/seen" and "const MOST" in mutant["before"]
+                unseen = "unreached" if mutant["part"] == "variants/both/unseen" else "passed"
                 self.assertEqual(mutant["kind"], "failed" if is_noticed else unseen, mutant)
             self.assertIn("failed", {mutant["kind"] for mutant in mutants})
-            with open(os.path.join(folder, "shaders/lib/seen.wgsl"), encoding="utf-8") as file:
-                self.assertEqual(file.read(), FILE)
+            with open(os.path.join(folder, "shaders/variants/both.wgsl"), encoding="utf-8") as file:
+                self.assertEqual(file.read(), both)
             # A list of equivalent mutants that names all survivors, and a bound that the score keeps.
             with open(os.path.join(folder, "equivalent.txt"), "w", encoding="utf-8") as file:
                 file.write("\n".join(sorted({equivalent.line(mutant, "why") for mutant in mutants if mutant["kind"] != "failed"})))
@@ -322,10 +320,10 @@ class Repository(unittest.TestCase):
         texts = choose.files(os.path.join(self.root, "shaders"))
         self.assertGreaterEqual(len(choose.mutants(texts, 480, 1)), 400)
         for prefix in choose.EXCLUDED:
-            self.assertTrue(any(name.startswith(prefix) for name in texts), prefix)
+            self.assertTrue(any(name.startswith(prefix) for name in choose.parts(texts)), prefix)
         with open(os.path.join(self.root, "scripts", "mutants-equivalent.txt"), encoding="utf-8") as file:
             entries = equivalent.parse(file.read())
-        self.assertEqual(equivalent.stale(entries, texts), [])
+        self.assertEqual(equivalent.stale(entries, choose.parts(texts)), [])
         possible = {key(mutant) for found in choose.every(texts).values() for mutant in found}
         self.assertEqual([entry for entry in entries if entry not in possible], [])
 
@@ -349,7 +347,7 @@ class Repository(unittest.TestCase):
 
 
 def key(mutant):
-    return mutant["file"], mutant["before"].strip(), mutant["after"].strip()
+    return mutant["part"], mutant["before"].strip(), mutant["after"].strip()
 
 
 def main(root):

@@ -15,6 +15,7 @@ struct Dissolve {
 }
 
 const DISSOLVE_ONE = 16777216u; // 2^24: the whole triangle
+const DISSOLVE_NO_END = 0xffffffffu; // behind every sample of the triangle
 const DISSOLVE_BY_HASH = 1u;
 
 fn dissolve_fill(p: Dissolve, center: vec3f, center_screen: vec2f, triangle: u32) -> f32 {
@@ -59,14 +60,14 @@ fn dissolve_sample_setup(t: TriangleSetup, p: Dissolve) -> vec4u {
     }
     let to_fill = fixed_add(fixed_umul(fraction, count), Wide(0u, 8388608u));
     var rest = (to_fill.lo >> 24u) | (to_fill.hi << 8u);
-    if rest >= count { return vec4u(fraction, 0xffffffffu, 0u, 0u); }
+    if rest >= count { return vec4u(fraction, DISSOLVE_NO_END, 0u, 0u); }
     for (var y = first.y; y <= last.y; y += 1) {
         let span = dissolve_span(t.a, b, c, y, pixels);
         let length = u32(max(span.y - span.x + 1, 0));
         if rest < length { return vec4u(fraction, (u32(y) << 16u) | (u32(span.x) + rest), 0u, 0u); }
         rest -= length;
     }
-    return vec4u(fraction, 0xffffffffu, 0u, 0u);
+    return vec4u(fraction, DISSOLVE_NO_END, 0u, 0u);
 }
 
 fn dissolve_sample(s: Sample, p: Dissolve) -> bool {

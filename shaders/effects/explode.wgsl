@@ -12,10 +12,13 @@ struct Explode {
     shrink: f32,
 }
 
+// What the seed is multiplied by, so that triangles scatter by other hashes than those of the front.
+const EXPLODE_SCATTER_SEED = 0x85ebca6bu;
+
 fn explode(vertex: Vertex, p: Explode) -> Vertex {
     var v = vertex;
     let reached = front_reached(p.spread, v.center, v.center_screen, v.triangle);
-    let progress = reached * (1.0 - p.scatter * hash_unit(v.triangle ^ (p.spread.seed * 0x85ebca6bu)));
+    let progress = reached * (1.0 - p.scatter * hash_unit(v.triangle ^ (p.spread.seed * EXPLODE_SCATTER_SEED)));
     let sine = sine_turns(p.spin_turns * progress);
     let half_sine = sine_turns(p.spin_turns * progress * 0.5);
     let versine = 2.0 * half_sine * half_sine; // 1 - cosine, without a difference

@@ -9,7 +9,7 @@ struct TriangleId {
 
 fn triangle_id(surface: Surface, p: TriangleId) -> Surface {
     var s = surface;
-    let h = hash(s.triangle_id ^ (p.seed * 0x9e3779b9u));
+    let h = hash(s.triangle_id ^ (p.seed * HASH_GOLDEN));
     let bytes = vec3u(h & 255u, (h >> 8u) & 255u, (h >> 16u) & 255u);
     let shade = vec3f(0.08) + vec3f(bytes) / 255.0 * 0.8;
     s.glow *= 1.0 - p.amount;

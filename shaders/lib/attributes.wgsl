@@ -53,9 +53,12 @@ fn bit_class(bits: vec3u) -> u32 {
     return select(select(0u, VERTEX_OUT_OF_RANGE, beyond), VERTEX_NONFINITE, nonfinite);
 }
 
+// The exponent of a float; all its bits are set in NaN and infinity.
+const FLOAT_EXPONENT = 0x7f800000u;
+
 // Floats from their bits: subnormal components are 0, and so are all components of a rejected class.
 fn floats_of_class(bits: vec3u, class_of_bits: u32) -> vec3f {
-    let is_zero = (bits & vec3u(0x7f800000u)) == vec3u(0u);
+    let is_zero = (bits & vec3u(FLOAT_EXPONENT)) == vec3u(0u);
     return select(bitcast<vec3f>(bits), vec3f(0.0), is_zero | vec3<bool>((class_of_bits & VERTEX_REJECTED) != 0u));
 }
 
@@ -75,14 +78,17 @@ fn position_bits(draw: u32, vertex: u32) -> vec3u {
     return pull_bits3(draws[draw].position_format, byte);
 }
 
+// Rejected components of packed positions: NaN, and 2^127.
+const POSITION_NAN = 0x7fc00000u;
+const POSITION_OUT_OF_RANGE = 0x7f000000u;
+
 // One word per vertex: ten bits per component, x lowest, in steps of the primitive's box. The two bits above tell that the
 // file's position is rejected: 1 for NaN or infinity, 2 for out of range.
 fn position_packed10(draw: u32, vertex: u32) -> vec3u {
     let word = load_word(draws[draw].position_offset / 4u + vertex);
     let steps = vec3f((vec3u(word) >> vec3u(0u, 10u, 20u)) & vec3u(1023u));
     let position = draws[draw].origin.xyz + draws[draw].step.xyz * steps;
-    // NaN, or 2^127.
-    let rejected = select(0x7f000000u, 0x7fc00000u, (word & 0x40000000u) != 0u);
+    let rejected = select(POSITION_OUT_OF_RANGE, POSITION_NAN, (word & 0x40000000u) != 0u);
     return select(bitcast<vec3u>(position), vec3u(rejected), vec3<bool>((word >> 30u) != 0u));
 }
 
@@ -93,8 +99,7 @@ fn position_packed16(draw: u32, vertex: u32) -> vec3u {
     let words = vec2u(load_word(at), load_word(at + 1u));
     let steps = vec3f(vec3u(words.x & 0xffffu, words.x >> 16u, words.y & 0xffffu));
     let position = draws[draw].origin.xyz + draws[draw].step.xyz * steps;
-    // NaN, or 2^127.
-    let rejected = select(0x7f000000u, 0x7fc00000u, (words.y & 0x10000u) != 0u);
+    let rejected = select(POSITION_OUT_OF_RANGE, POSITION_NAN, (words.y & 0x10000u) != 0u);
     return select(bitcast<vec3u>(position), vec3u(rejected), vec3<bool>((words.y >> 16u) != 0u));
 }
 

@@ -31,7 +31,7 @@ fn front_reached(p: Front, center: vec3f, center_screen: vec2f, triangle: u32) -
             return clamp((p.radius_m - length(center - p.center.xyz)) / p.width_m + 0.5, 0.0, 1.0);
         }
         case FRONT_RANDOM: {
-            position = hash_unit(triangle ^ (p.seed * 0x9e3779b9u));
+            position = hash_unit(triangle ^ (p.seed * HASH_GOLDEN));
         }
         default: { return 1.0; }
     }

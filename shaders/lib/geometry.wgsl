@@ -58,8 +58,8 @@ fn center_in_picture(center: vec3f, in_view: vec2f) -> vec2f {
 
 // False where a component is NaN or infinite. Compilers may assume floats to be finite, so the bits are tested.
 fn is_finite(v: vec3f) -> bool {
-    let exponents = bitcast<vec3u>(v) & vec3u(0x7f800000u);
-    return all(exponents != vec3u(0x7f800000u));
+    let exponents = bitcast<vec3u>(v) & vec3u(FLOAT_EXPONENT);
+    return all(exponents != vec3u(FLOAT_EXPONENT));
 }
 
 // Direction of `v`, which may have any length; zero where it has none.

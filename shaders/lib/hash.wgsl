@@ -1,5 +1,8 @@
 // Integer hash with full avalanche (Ettinger and Wellons, "lowbias32"); a bijection of u32.
 
+// 2^32 over the golden ratio: what seeds are multiplied by, so that neighboring ones differ in all their bits.
+const HASH_GOLDEN = 0x9e3779b9u;
+
 fn hash(seed: u32) -> u32 {
     var x = seed;
     x = (x ^ (x >> 16u)) * 0x7feb352du;

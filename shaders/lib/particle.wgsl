@@ -92,7 +92,7 @@ fn particle_stepped(c: u32, id: u32, f: ParticleState, step: u32) -> ParticleSta
 // Velocity of the flow at a position: octaves of curl noise.
 fn particle_flow(c: u32, position: vec3f, step: u32) -> vec3f {
     let drift = f32(step) * step_params[c].step_s * step_params[c].p.evolve * vec3f(0.25, -0.5, 0.375);
-    let salt = hash(step_params[c].p.seed ^ 0x9e3779b9u);
+    let salt = hash(step_params[c].p.seed ^ HASH_GOLDEN);
     var q = position / step_params[c].p.swirl_m;
     var flow = vec3f(0.0);
     var amplitude = 1.0;

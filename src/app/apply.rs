@@ -83,6 +83,7 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
                 state.jobs.measure(state.screen.gpu.summary.name.clone(), scene.clone(), *request, progress);
             }
         }
+        Command::MeasureTiers => state.tier_times.is_looked_at = true,
         Command::ExportFilm(request, progress) => export_film(state, *request, progress),
         Command::Toggle(which) => toggle(state, panels, which),
         Command::Settings(command) => {
@@ -424,7 +425,7 @@ fn export(state: &mut State, path: PathBuf, size: [u32; 2]) {
     exported.preset = state.session.shown_preset();
     // The picture has the anti-aliasing that is shown, and its preset pins that.
     exported.preset.accuracy = anti_aliasing::for_export(exported.preset.accuracy, &state.screen.gpu.caps, size);
-    let accuracy = exported.preset.accuracy;
+    let accuracy = state.tier_times.informed(exported.preset.accuracy);
     let inputs = Inputs { view: state.session.view_at(scene, size), accuracy, ..requested.clone() };
     state.jobs.export(state.screen.gpu.clone(), inputs, exported, path);
 }

@@ -77,6 +77,8 @@ pub enum Command {
     View(ViewCommand),
     /// Measures every combination of the options of the request's axes.
     MeasureTrade(Box<Request>, Arc<Progress>),
+    /// Somebody looks at what the accuracy tiers cost.
+    MeasureTiers,
     /// Draws the film of the preset and writes it.
     ExportFilm(Box<film::Request>, Arc<film::Progress>),
     /// Pins the options of these axes, as a separate undo step.

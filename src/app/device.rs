@@ -7,7 +7,6 @@ use eframe::{egui, egui_wgpu, wgpu};
 
 use super::{
     background::{Urgency, started_as},
-    calibrated::calibrated,
     settings::WindowPlace,
 };
 use crate::gpu::{
@@ -65,7 +64,7 @@ fn select(adapters: &[wgpu::Adapter], surface: Option<&wgpu::Surface<'_>>, choic
 /// If the window has no wgpu device.
 pub fn adopt(cc: &eframe::CreationContext<'_>, devices: Option<Devices>) -> anyhow::Result<(egui_wgpu::RenderState, Devices)> {
     let window = cc.wgpu_render_state.clone().context("the window has no wgpu device")?;
-    let adopted = || calibrated(Gpu::adopt(&window.adapter, window.device.clone(), window.queue.clone()));
+    let adopted = || Gpu::adopt(&window.adapter, window.device.clone(), window.queue.clone());
     let devices = devices.unwrap_or_else(|| Devices::of(adopted()));
     Ok((window, devices))
 }
@@ -94,7 +93,7 @@ impl Devices {
     /// The devices for a window on `window`. Without a second device the first draws, too.
     pub fn of(window: Arc<Gpu>) -> Self {
         let choice = AdapterChoice::Named(window.summary.name.clone());
-        let opened = || started_as(Urgency::Picture, || Gpu::open(&choice).ok().map(|gpu| gpu.with_measured(window.caps.measured)));
+        let opened = || started_as(Urgency::Picture, || Gpu::open(&choice).ok());
         let second = if window.summary.software { opened() } else { None };
         Self { picture: second.unwrap_or_else(|| window.clone()), window, painter: Painter::Kernels }
     }

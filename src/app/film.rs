@@ -11,7 +11,6 @@ use std::{
 
 use eframe::egui;
 
-use super::calibrated::calibrated;
 use crate::{
     accuracy::RenderScale,
     film::{
@@ -270,7 +269,7 @@ pub fn export(
         Format::Video(_) => outputs.video = Some(VideoTarget::new(&request.path, request.size)?),
     }
     let film = Film::new(preset_file, scene, schedule, request.turntable).map_err(FilmError::from)?;
-    let gpu = calibrated(Gpu::open(&AdapterChoice::Named(adapter)).map_err(|error| Failure::Other(error.to_string()))?);
+    let gpu = Gpu::open(&AdapterChoice::Named(adapter)).map_err(|error| Failure::Other(error.to_string()))?;
     let mut studio = Studio { renderer: Renderer::new(gpu.clone()), gpu };
     let mut production = Production::begin(film, outputs, studio.provenance(), request.replaces)?;
     let (all, kept) = (production.jobs.len(), production.kept());

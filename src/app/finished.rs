@@ -16,6 +16,7 @@ use super::{
     reload::{compiled, model_reloaded},
     screen::Inputs,
     state::State,
+    tier_times,
     verification::Verdict,
 };
 
@@ -62,7 +63,7 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
         Done::ThumbnailOn(key, id, image) => panels.browser.pictures.on_model_arrived(ctx, &key, &id, image),
         Done::EffectPicture(effect, image) => panels.browser.effects.picture_arrived(ctx, effect, image),
         Done::Favorites(outcome) => {
-            state.favorites.written();
+            state.favorites.write_ended();
             match outcome {
                 Ok(()) => library::write_favorites(state),
                 Err(error) => state.notify(Level::Error, error),
@@ -81,6 +82,7 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
                 state.log.add(Level::Error, error);
             }
         }
+        Done::TierTime(timed) => tier_times::arrived(state, *timed),
         Done::Golden(number, check) => {
             if state.live.checking_golden == Some(number) {
                 state.live.checking_golden = None;
@@ -106,6 +108,7 @@ fn verdict(state: &mut State, panels: &mut Panels, of: Inputs, findings: Result<
         Ok(Some(findings)) => {
             state.log.add(Level::Info, format!("verified {}: {}", state.session.title(), error_text(&findings)));
             let verdict = Verdict { of, findings: findings.into() };
+            tier_times::judge(state, &verdict);
             if !panels.viewport.compare.take_verdict(&verdict) || state.screen.requested() == Some(&verdict.of) {
                 state.verification.set(verdict);
             }

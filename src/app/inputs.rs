@@ -33,6 +33,13 @@ impl Inputs {
         inputs
     }
 
+    /// True if both show the same, perhaps in different tiers.
+    pub fn is_same_but_for_tier(&self, other: &Self) -> bool {
+        let accuracy = AccuracyRequest { tier: other.accuracy.tier, measured: other.accuracy.measured, ..self.accuracy };
+        let Self { scene, view, stack, .. } = self;
+        Arc::ptr_eq(scene, &other.scene) && *view == other.view && *stack == other.stack && accuracy == other.accuracy
+    }
+
     /// True if both are drawn by the same kernels, unless the camera requires others.
     pub fn shares_kernels(&self, other: &Self) -> bool {
         let effects = |inputs: &Self| inputs.stack.0.iter().map(|enabled| enabled.effect).collect::<Vec<_>>();

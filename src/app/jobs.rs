@@ -9,6 +9,7 @@ use std::{
         atomic::{AtomicBool, Ordering},
         mpsc,
     },
+    thread::JoinHandle,
 };
 
 use eframe::egui;
@@ -20,7 +21,7 @@ use super::{
     completion::Listing,
     computing::{Computing, Count},
     effect_picture::EffectPicture,
-    favorites, film,
+    film,
     findings::Findings,
     golden_check::{self, GoldenCheck},
     live::Reload,
@@ -29,6 +30,7 @@ use super::{
     scene_loader::SceneKey,
     screen::Inputs,
     system_dialog,
+    tier_times::{self, TierDrawing, Timed},
     trade::{
         measure,
         point::Point,
@@ -38,11 +40,12 @@ use super::{
 use crate::{
     effect_files,
     effects::Stack,
-    gpu::{Gpu, Renderer},
+    gpu::{CompileWatch, Gpu, Renderer},
     oracle,
     preset::{AccuracyRequest, Fit, Preset, SceneSource},
     preset_file::{self, Existing, PresetFile, Provenance},
     scene::{Bounds, Scene, view::View},
+    shader::key::KernelKey,
     work::Work,
 };
 
@@ -78,6 +81,8 @@ pub enum Done {
     Compiled(Reload, Result<(), String>),
     /// The f32 errors of the user's effects in a picture; none if the measurement was cancelled.
     Precision(Box<Inputs>, Result<Option<Box<Measured>>, String>),
+    /// A tier of the open picture was timed.
+    TierTime(Box<Timed>),
     /// The golden of a preset, compared again, by the number of its request; none if the preset has no golden.
     Golden(u64, Option<GoldenCheck>),
     /// The file of a new effect.
@@ -137,8 +142,8 @@ impl Jobs {
         });
     }
 
-    /// Starts work that mostly waits.
-    fn spawn_idle(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
+    /// Starts work that mostly waits. None if no thread could be started.
+    fn spawn_idle(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) -> Option<JoinHandle<()>> {
         let (sender, ctx) = (self.sender.clone(), self.ctx.clone());
         let started = std::thread::Builder::new().name(name.into()).spawn(move || {
             // The window may be closed by now; then the result is dropped.
@@ -146,9 +151,7 @@ impl Jobs {
                 ctx.request_repaint();
             }
         });
-        if let Err(error) = started {
-            eprintln!("rasterlab: no thread could be started for {name}: {error}");
-        }
+        started.inspect_err(|error| eprintln!("rasterlab: no thread could be started for {name}: {error}")).ok()
     }
 
     /// Loads a scene as `work`.
@@ -195,6 +198,22 @@ impl Jobs {
                 caught("measuring the f32 error", || precision::measure(&inputs, &cancelled).map(|measured| measured.map(Box::new)));
             Done::Precision(Box::new(inputs), measured)
         });
+    }
+
+    /// Times a tier of the open picture. It does not count as work that would be measured: it stops before such work.
+    pub fn time_tier(
+        &self,
+        gpu: Arc<Gpu>,
+        inputs: Inputs,
+        kernel: KernelKey,
+        drawing: TierDrawing,
+        watch: Arc<CompileWatch>,
+    ) -> Option<JoinHandle<()>> {
+        self.spawn_idle("tier", move || {
+            let (picture, mut drawing) = (inputs, drawing);
+            let outcome = caught("timing a tier", || tier_times::measure(&gpu, &picture, &mut drawing, &watch));
+            Done::TierTime(Box::new(Timed { picture, kernel, outcome, drawing }))
+        })
     }
 
     /// Draws the golden of a preset again and compares.
@@ -252,9 +271,9 @@ impl Jobs {
         self.spawn_urgent("trade", || giving_back(|| Done::Trade(caught("measuring the trade", work))));
     }
 
-    /// Writes changes of the favorites.
-    pub fn write_favorites(&self, path: PathBuf, changes: Vec<favorites::Change>) {
-        self.spawn("favorites", move || Done::Favorites(caught("writing the favorites", || favorites::update(&path, &changes))));
+    /// Writes the favorites with this function.
+    pub fn write_favorites(&self, write: impl FnOnce() -> Result<(), String> + Send + 'static) {
+        self.spawn("favorites", move || Done::Favorites(caught("writing the favorites", write)));
     }
 
     /// Draws the picture of a preset with the oracle, which needs no device. Width and height are in pixels.

@@ -1,11 +1,12 @@
 //! The user's library: favorites, files of presets, and values of effects.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use eframe::egui;
 
 use super::{
     command::{LibraryCommand, Naming},
+    deleted::Deleted,
     history::History,
     log::Level,
     panels::Panels,
@@ -56,8 +57,8 @@ fn sentence(error: PresetError) -> String {
 
 /// Writes the favorites that have changed, unless that is going on.
 pub fn write_favorites(state: &mut State) {
-    if let Some((path, changes)) = state.favorites.next_write() {
-        state.jobs.write_favorites(path, changes);
+    if let Some(write) = state.favorites.next_write() {
+        state.jobs.write_favorites(write);
     }
 }
 
@@ -135,9 +136,8 @@ fn duplicate(state: &mut State, panels: &mut Panels, source: &PresetFile) -> Res
 }
 
 fn delete(state: &mut State, panels: &mut Panels, path: &Path) -> Result<String, String> {
-    let trash = state.folders.trash().ok_or("There is no folder for a trash, so nothing is deleted")?;
     let open = open_at(state, path);
-    let trashed = preset_file::move_to_trash(path, &trash).map_err(sentence)?;
+    let deleted = Deleted::delete(path)?;
     state.settings.recents.remove(path);
     if let Some(id) = open
         && let Some(mut filed) = state.session.filed(&id).cloned()
@@ -146,16 +146,16 @@ fn delete(state: &mut State, panels: &mut Panels, path: &Path) -> Result<String,
         filed.path = None;
         refile(state, &id, filed);
     }
-    let said = format!("Deleted {}", trashed.name());
-    panels.browser.refresh(&state.folders, &trashed.name());
-    state.deleted.push(trashed);
+    let said = format!("Deleted {}", deleted.name());
+    panels.browser.refresh(&state.folders, &deleted.name());
+    state.deleted.push(deleted);
     Ok(said)
 }
 
 fn restore(state: &mut State, panels: &mut Panels) -> Result<String, String> {
-    let trashed = state.deleted.pop().ok_or("Nothing was deleted since the window opened")?;
-    let path = preset_file::restore(&trashed).map_err(sentence)?;
-    let id = FileId { id: trashed.name(), path: None };
+    let deleted = state.deleted.pop().ok_or("Nothing was deleted since the window opened")?;
+    let path = deleted.restore().map_err(sentence)?;
+    let id = FileId { id: deleted.name(), path: None };
     let back = preset_file::load_with(&path, &state.session.preset_file.effects);
     if let (Some(_), Ok(back)) = (state.session.filed(&id), back) {
         refile(state, &id, back);
@@ -199,9 +199,7 @@ fn save_values(state: &mut State, effect: &'static Effect, name: &str) -> Result
 }
 
 fn delete_values(state: &mut State, path: &Path) -> Result<String, String> {
-    let folders = state.folders.trash().zip(state.folders.effect_values());
-    let (trash, folder): (PathBuf, PathBuf) = folders.ok_or("There is no folder for a trash, so nothing is deleted")?;
-    let trashed = preset_file::move_to_trash(path, &trash).map_err(sentence)?;
-    state.values = preset_file::saved_values(&folder);
-    Ok(format!("The values {} are in the trash: {}", trashed.name(), trashed.file.display()))
+    let deleted = Deleted::delete(path)?;
+    state.values = state.folders.effect_values().map_or_else(Vec::new, |folder| preset_file::saved_values(&folder));
+    Ok(format!("The values {} are in the trash", deleted.name()))
 }

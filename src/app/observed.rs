@@ -2,8 +2,15 @@
 
 use std::sync::Arc;
 
-use super::{panels::Panels, state::State, window::App};
-use crate::{accuracy::RenderScale, gpu::Gpu, measure::ErrorReport, preset::Preset, preset_file::PresetFile, scene::view::View};
+use super::{
+    panels::Panels,
+    state::State,
+    tier_times::{self, TierTime},
+    window::App,
+};
+use crate::{
+    accuracy::RenderScale, gpu::Gpu, measure::ErrorReport, plan::Tier, preset::Preset, preset_file::PresetFile, scene::view::View,
+};
 
 impl App {
     /// The open preset with its file.
@@ -96,6 +103,14 @@ impl App {
     /// How many pixels are drawn for one that is shown, with automatic anti-aliasing; none before the first picture.
     pub fn drawn_scale(&self) -> Option<RenderScale> {
         self.state.screen.requested().map(|inputs| inputs.accuracy.scale())
+    }
+
+    /// Measured milliseconds of the open picture in a tier; none while they are not measured.
+    pub fn tier_ms(&self, tier: Tier) -> Option<f64> {
+        match tier_times::numbers(&self.state, tier)?.time {
+            TierTime::Ms(ms) => Some(ms),
+            TierTime::NotYet | TierTime::Failed => None,
+        }
     }
 
     /// The measured error of the picture that is drawn; none if it was not measured.

@@ -239,6 +239,22 @@ struct Worker {
     renderer: Option<Renderer>,
 }
 
+/// Waits until the device has finished the newest frame; none after a long time, or as soon as it `is_wanted` no more.
+///
+/// The device may be the window's, and a wait inside of it would hold the window's submissions up.
+pub fn wait_for_frame(renderer: &mut Renderer, is_wanted: impl Fn() -> bool) -> Result<Option<Report>, RenderError> {
+    let begun = Instant::now();
+    while renderer.is_pending() {
+        match renderer.report() {
+            Some(report) if !renderer.is_pending() => return Ok(Some(report)),
+            _ if renderer.gpu().is_lost() => return Err(RenderError::Lost),
+            _ if begun.elapsed() > PATIENCE || !is_wanted() => return Ok(None),
+            _ => std::thread::sleep(Duration::from_micros(if begun.elapsed() < Duration::from_millis(20) { 250 } else { 1000 })),
+        }
+    }
+    Ok(None)
+}
+
 impl Worker {
     fn run(mut self) {
         if self.gpu.summary.software {
@@ -353,17 +369,7 @@ impl Worker {
         renderer.draw(view, stack, accuracy)?;
         self.shared.draws.fetch_add(1, Ordering::Relaxed);
         let is_compiled = renderer.compiled() > compiled;
-        let begun = Instant::now();
-        // The device may be the window's, and a wait inside of it would hold the window's submissions up.
-        while renderer.is_pending() {
-            match renderer.report() {
-                Some(report) if !renderer.is_pending() => return Ok((Some(report), is_compiled)),
-                _ if gpu.is_lost() => return Err(RenderError::Lost),
-                _ if begun.elapsed() > PATIENCE => return Ok((None, is_compiled)),
-                _ => std::thread::sleep(Duration::from_micros(if begun.elapsed() < Duration::from_millis(20) { 250 } else { 1000 })),
-            }
-        }
-        Ok((None, is_compiled))
+        Ok((wait_for_frame(renderer, || true)?, is_compiled))
     }
 
     /// The picture of the newest frame, for the window; none if the user has taken it back.

@@ -338,6 +338,7 @@ fn shaders_changed(state: &mut State, panels: &mut Panels) {
 fn use_shaders(state: &mut State, panels: &mut Panels) {
     state.live.clear_fault(&Subject::Shaders);
     state.screen.reload_shaders();
+    state.tier_times.forget();
     panels.viewport.compare.reload_shaders();
     state.notify(Level::Info, "The shaders were reloaded");
 }

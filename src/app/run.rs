@@ -7,7 +7,7 @@ use super::{
     log::Level,
     loss::LossFlag,
     recovery::recovery_path,
-    settings::{WindowPlace, keeper::read_settings},
+    settings::{WindowPlace, keeper::window_place},
     window::{App, Options},
 };
 
@@ -21,9 +21,7 @@ const MAX_LOSSES: u32 = 2;
 /// If there is no suitable device or no display, or [`DeviceLost`].
 pub fn run(options: Options) -> anyhow::Result<()> {
     let mut options = options;
-    // What is wrong with the settings is said in the log of the window, which reads them again.
-    let window =
-        options.config.as_deref().map_or_else(WindowPlace::default, |folder| read_settings(folder, &mut Vec::new(), false).0.window);
+    let window = options.config.as_deref().map_or_else(WindowPlace::default, window_place);
     for losses in 0..=MAX_LOSSES {
         let loss = LossFlag::default();
         let (flag, opened) = (loss.clone(), options.clone());

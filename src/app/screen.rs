@@ -1,7 +1,7 @@
 //! Screen: a picture in the window and the thread that draws it. It draws only when an input has changed, and a few frames more at rest
 //! to measure them; after a failure the last good picture stays.
 
-use std::{sync::Arc, time::Instant};
+use std::{sync::Arc, thread::JoinHandle, time::Instant};
 
 use eframe::{egui, egui_wgpu, wgpu};
 
@@ -95,6 +95,11 @@ impl Screen {
         self.thread.reload_shaders();
         self.ordered = None;
         (self.is_waiting, self.has_failed, self.is_measuring) = (false, false, false);
+    }
+
+    /// The window waits for this thread when it closes, as for those that draw.
+    pub fn wait_at_end(&self, thread: JoinHandle<()>) {
+        self.ending.add(thread);
     }
 
     /// True if a device was lost. Asks the window's, since nothing else does while nothing is drawn.

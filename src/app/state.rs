@@ -5,6 +5,7 @@ use std::{collections::HashSet, path::PathBuf, sync::Arc};
 
 use super::{
     command::{Marker, Picking},
+    deleted::Deleted,
     favorites::Favorites,
     findings::Findings,
     history::History,
@@ -17,12 +18,13 @@ use super::{
     screen::Screen,
     session::{Session, UndoState},
     settings::{OpenPanels, Settings},
+    tier_times::TierTimes,
     trust::Trust,
     verification::Verification,
 };
 use crate::{
     measure::ErrorReport,
-    preset_file::{Folders, SavedValues, Trashed},
+    preset_file::{Folders, SavedValues},
 };
 
 /// What copy and paste apply to.
@@ -45,13 +47,15 @@ pub struct State {
     pub session: Session,
     pub favorites: Favorites,
     /// Files that were moved to the trash since the start, the newest last.
-    pub deleted: Vec<Trashed>,
+    pub deleted: Vec<Deleted>,
     /// Saved values of effects.
     pub values: Vec<SavedValues>,
     pub history: History<UndoState>,
     /// The preset that is being opened.
     pub opening: Opening,
     pub jobs: Jobs,
+    /// What the accuracy tiers cost. Dropped before the screen, which waits for its thread.
+    pub tier_times: TierTimes,
     pub screen: Screen,
     pub verification: Verification,
     pub overlays: OverlaySelection,

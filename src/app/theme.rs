@@ -92,7 +92,8 @@ pub const GAP: f32 = 8.0;
 pub const ROW: f32 = 24.0;
 
 /// Which theme is shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum ThemeChoice {
     /// That of the desktop; dark where the desktop has none.
     #[default]
@@ -103,15 +104,6 @@ pub enum ThemeChoice {
 
 impl ThemeChoice {
     pub const ALL: [Self; 3] = [Self::System, Self::Light, Self::Dark];
-
-    /// The word for it in the settings file.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::System => "system",
-            Self::Light => "light",
-            Self::Dark => "dark",
-        }
-    }
 
     pub const fn label(self) -> &'static str {
         match self {
@@ -276,11 +268,5 @@ mod tests {
                 assert!(contrast(p.text_strong, ground) >= 7.0, "{name}: text on {ground:?}");
             }
         }
-    }
-
-    #[test]
-    fn the_words_of_the_themes_are_different() {
-        let words = ThemeChoice::ALL.map(ThemeChoice::word);
-        assert!(words.iter().enumerate().all(|(i, word)| !words[..i].contains(word)));
     }
 }

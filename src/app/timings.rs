@@ -82,6 +82,11 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// Of frames that were drawn one after another at rest until their times agreed; those before were still warming up. None without samples.
+    pub fn settled(samples: &[Sample]) -> Option<Self> {
+        Self::of(&samples[samples.len().saturating_sub(2 * FEWEST)..])
+    }
+
     /// None without samples.
     pub fn of(samples: &[Sample]) -> Option<Self> {
         let of = |value: &dyn Fn(&Sample) -> Option<f64>| Spread::of(&samples.iter().filter_map(value).collect::<Vec<_>>());
@@ -181,9 +186,7 @@ impl Timings {
 
     /// The picture was drawn again at rest.
     pub fn settle(&mut self, samples: Vec<Sample>) {
-        // The frames before those that agree were still warming up.
-        let first = samples.len().saturating_sub(2 * FEWEST);
-        self.settled = Some(Summary::of(&samples[first..]));
+        self.settled = Some(Summary::settled(&samples));
         push(&mut self.history, samples.into_iter().map(|sample| (sample, Occasion::Rest)), HISTORY);
     }
 

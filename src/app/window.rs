@@ -31,6 +31,7 @@ use super::{
     settings::{keeper::Keeper, recents::Recents},
     state::{Clipboard, State},
     theme,
+    tier_times::{self, TierTimes},
     trust::Trust,
     typing::HeldTyping,
     ui_frames::UiFrames,
@@ -126,8 +127,8 @@ impl App {
         let mut session = start.session;
         // The start preset plays; a preset that the user named does not.
         session.playback.playing = options.open.is_none() && !start.is_restored && session.preset().is_moving();
-        let (favorites, fault) = Favorites::load(options.folders.user.as_deref());
-        fault.into_iter().for_each(|fault| log.notify(Level::Warning, fault, 0.0));
+        let (favorites, remarks) = Favorites::load(options.folders.user.as_deref());
+        remarks.into_iter().for_each(|remark| log.notify(Level::Warning, remark, 0.0));
         let values = options.folders.effect_values().map_or_else(Vec::new, |folder| preset_file::saved_values(&folder));
         Ok(Self {
             panels,
@@ -142,6 +143,7 @@ impl App {
                 deleted: Vec::new(),
                 values,
                 jobs: Jobs::new(cc.egui_ctx.clone()),
+                tier_times: TierTimes::default(),
                 screen: Screen::new(&window, devices, cc.egui_ctx.clone()),
                 verification: Verification::default(),
                 overlays: OverlaySelection::default(),
@@ -395,6 +397,8 @@ impl eframe::App for App {
         self.panel_ui(ui, |panels| &mut panels.film);
         self.request_thumbnail(&ctx);
         self.request_precision(&ctx, is_held);
+        let compare = &self.panels.viewport.compare;
+        tier_times::follow(&ctx, &mut self.state, is_held || compare.is_waiting() || compare.needs_measuring());
         self.state.observe(is_held);
         if let Some(wait_s) = self.state.history.wake_in_s(now_s).filter(|_| !is_held) {
             ctx.request_repaint_after_secs(wait_s as f32 + 0.01);

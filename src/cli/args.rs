@@ -28,8 +28,8 @@ pub struct Cli {
 }
 
 const LONG: &str = "An effects lab around a compute-shader rasterizer, judged by an exact oracle.\n\n\
-    Without a command the window opens. A PRESET is an id of the gallery (rasterlab list presets), a .toml file, a .glb or \
-    .gltf model, a PNG saved by rasterlab, builtin:QUERY, or - for TOML from stdin.\n\n\
+    Without a command the window opens. A PRESET is an id or a name of the gallery (rasterlab list presets), a .toml file, \
+    a .glb or .gltf model, a PNG saved by rasterlab, builtin:QUERY, or - for TOML from stdin.\n\n\
     Exit codes: 0 done; 1 a comparison, check or stress case failed, a measured error exceeds its limit, or a dry run found \
     changes; 2 wrong usage, or a file that cannot be read or written; 3 no suitable adapter; 4 the device was lost.";
 
@@ -134,8 +134,6 @@ pub enum Command {
     Bless(Bless),
     /// Measure time and error of accuracy options and effects
     Bench(Bench),
-    /// Measure what the passes of a picture cost on the adapter, and keep it for predictions
-    Calibrate(Calibrate),
     /// Run the extreme cases, each with its expected outcome
     Stress(Stress),
     /// Verify random presets; each that fails is shrunk to the smallest preset that still does
@@ -144,8 +142,6 @@ pub enum Command {
     Gallery(Gallery),
     /// Validate presets; with --render also compare them with their goldens
     Check(Check),
-    /// Show what the current schema changes in preset files; with --write change them
-    Migrate(Migrate),
     /// Write a commented effect file to begin with
     NewEffect(NewEffect),
     /// Print a completion script
@@ -177,12 +173,10 @@ impl Command {
             Self::Parts(_) => "parts",
             Self::Bless(_) => "bless",
             Self::Bench(_) => "bench",
-            Self::Calibrate(_) => "calibrate",
             Self::Stress(_) => "stress",
             Self::Fuzz(_) => "fuzz",
             Self::Gallery(_) => "gallery",
             Self::Check(_) => "check",
-            Self::Migrate(_) => "migrate",
             Self::NewEffect(_) => "new-effect",
             Self::Completions { .. } => "completions",
             Self::Man { .. } => "man",
@@ -367,7 +361,7 @@ pub struct Compare {
 pub struct Explain {
     #[arg(value_name = "PRESET")]
     pub input: String,
-    /// Also time the passes, beside what the calibration of the adapter predicts
+    /// Also time the frame and its passes
     #[arg(long)]
     pub measure: bool,
     /// Size in pixels instead of the preset's own
@@ -427,16 +421,6 @@ pub struct Bench {
 }
 
 #[derive(Args, Debug)]
-pub struct Calibrate {
-    /// Predict and measure so many random presets, and print the ratios; uses the calibration that was kept, if there is one
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    pub check: Option<u32>,
-    /// Seed of the first random preset; each of the others has the next seed
-    #[arg(long, value_name = "N", default_value_t = 0, requires = "check")]
-    pub seed: u32,
-}
-
-#[derive(Args, Debug)]
 pub struct Stress {
     /// Run only the case of this number, or the cases whose names contain this text; several are separated by commas
     #[arg(long, value_name = "F")]
@@ -468,16 +452,6 @@ pub enum Format {
     Json,
     Csv,
     Md,
-}
-
-#[derive(Args, Debug)]
-pub struct Migrate {
-    /// Preset files
-    #[arg(required = true, value_name = "FILE")]
-    pub files: Vec<PathBuf>,
-    /// Change the files
-    #[arg(long)]
-    pub write: bool,
 }
 
 #[derive(Args, Debug)]

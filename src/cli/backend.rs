@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use super::{args::Common, cost::calibration_key, error::CliError, loading, streams::Streams};
+use super::{args::Common, error::CliError, loading, streams::Streams};
 use crate::{
     effects::Stack,
     frame::Frame,
@@ -51,9 +51,6 @@ impl Backend {
             BackendChoice::Oracle => Self::Oracle,
             BackendChoice::Gpu(choice) => {
                 let gpu = Gpu::open(&choice)?;
-                // Commands that print predictions name a file that cannot be used.
-                let measured = calibration_key(&gpu).kept_measured();
-                let gpu = gpu.with_measured(measured);
                 Self::Gpu(Box::new(Renderer::new(gpu.clone())), gpu)
             }
         };
@@ -177,8 +174,7 @@ pub fn usable_options(caps: &Caps) -> Vec<Visibility> {
 
 pub fn describe(summary: &AdapterSummary, caps: &Caps) -> String {
     let software = if summary.software { ", software; compare its timings only with those of software adapters" } else { "" };
-    let calibrated = if caps.measured.is_some() { ", calibrated" } else { "" };
-    format!("{} ({}, {}, {}{calibrated}{software})", summary.name, summary.backend, summary.driver, caps.class())
+    format!("{} ({}, {}, {}{software})", summary.name, summary.backend, summary.driver, caps.class())
 }
 
 pub fn adapter_json(summary: &AdapterSummary, caps: &Caps) -> Value {

@@ -5,7 +5,6 @@ use serde_json::{Value, json};
 use super::{
     args::{Common, Explain},
     backend::{Backend, scene_of},
-    cost::{Cost, PictureCost, kept_calibration},
     error::{CliError, Exit},
     open::{named, open},
     streams::{Streams, table},
@@ -13,7 +12,7 @@ use super::{
 use crate::{
     effects::{EnabledEffect, Stack},
     frame::Frame,
-    gpu::{Capture, Explanation, SizesNote},
+    gpu::{Capture, Explanation, SizesNote, frame_times::FrameTimes},
     measure::compare,
     oracle,
     plan::{Tolerance, predict::Prediction},
@@ -33,7 +32,7 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
         }
         Err(error) => return Err(error),
     };
-    let (mut check, mut particles, mut cost) = (None, None, None);
+    let (mut check, mut particles, mut times) = (None, None, None);
     let (adapter, plan) = match backend {
         Some(Backend::Gpu(mut renderer, gpu)) => {
             renderer.set_scene(&scene)?;
@@ -47,12 +46,8 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
                 check = checked(&scene, &view.scaled(factor), &stack.scaled(factor), &capture.frame, &renderer.explain())?;
             }
             let plan = renderer.explain();
-            if view.pixels() > 0 {
-                let costs = kept_calibration(&gpu, streams).map(|found| found.units);
-                cost = Some(match args.measure {
-                    true => PictureCost::measured(&mut renderer, &view, &stack, &preset.accuracy, costs.as_ref())?,
-                    false => PictureCost::predicted(&renderer, &stack, costs.as_ref())?,
-                });
+            if args.measure && view.pixels() > 0 {
+                times = Some(FrameTimes::of(&mut renderer, &view, &stack, &preset.accuracy)?);
             }
             (Backend::Gpu(Box::new(crate::gpu::Renderer::new(gpu.clone())), gpu).json(), Some(plan))
         }
@@ -66,7 +61,7 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
         let result = json!({
             "scene": scene_json(&scene), "size": preset_file.preset.output.size,
             "effects": effects_json(&preset_file.preset.stack), "plan": plan, "check": check, "particles": particles,
-            "cost": cost,
+            "times": times,
         });
         streams.object("explain", adapter, vec![named(&preset_file, result)])?;
     } else {
@@ -75,11 +70,7 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
             &scene,
             &preset_file.preset.stack,
             plan.as_ref(),
-            [
-                cost.as_ref().map(|cost| cost_text(cost, args.measure)),
-                check.as_ref().map(check_text),
-                particles.as_ref().map(particles_text),
-            ],
+            [times.as_ref().map(times_text), check.as_ref().map(check_text), particles.as_ref().map(particles_text)],
         ))?;
     }
     Ok(Exit::failed_if(check.is_some_and(|check| !check.is_within_tolerance)))
@@ -172,12 +163,12 @@ fn effects_json(stack: &Stack) -> Vec<Value> {
     stack.0.iter().map(effect).collect()
 }
 
-fn text(id: &str, scene: &Scene, stack: &Stack, plan: Option<&Explanation>, [cost, check, particles]: [Option<String>; 3]) -> String {
+fn text(id: &str, scene: &Scene, stack: &Stack, plan: Option<&Explanation>, [times, check, particles]: [Option<String>; 3]) -> String {
     let preset = preset_text(id, scene, stack);
     let Some(plan) = plan else { return preset };
     let sizes = plan.sizes.as_ref().map_or_else(String::new, chart);
-    let [cost, check, particles] = [cost, check, particles].map(Option::unwrap_or_default);
-    format!("{preset}kernel     {}\n{particles}{check}{cost}{sizes}{}", plan.key, plan_text(plan))
+    let [times, check, particles] = [times, check, particles].map(Option::unwrap_or_default);
+    format!("{preset}kernel     {}\n{particles}{check}{times}{sizes}{}", plan.key, plan_text(plan))
 }
 
 fn preset_text(id: &str, scene: &Scene, stack: &Stack) -> String {
@@ -218,26 +209,12 @@ fn check_text(check: &Check) -> String {
     )
 }
 
-/// Predicted and measured milliseconds of the frame and of every pass.
-fn cost_text(cost: &PictureCost, is_measured: bool) -> String {
-    let Cost { predicted_ms, measured_ms, ratio } = cost.frame;
-    let predicted = predicted_ms.map(|ms| format!("{ms:.3} ms predicted"));
-    let measured = measured_ms.map(|ms| format!("{ms:.3} ms measured"));
-    let ratio = ratio.map(|ratio| format!("ratio {ratio:.2}"));
-    let parts: Vec<String> = [predicted, measured, ratio].into_iter().flatten().collect();
-    let hint = match predicted_ms {
-        None => "not predicted: this adapter has no calibration, which rasterlab calibrate makes",
-        Some(_) if !is_measured => "--measure times it",
-        Some(_) => "",
-    };
-    let all: Vec<&str> = parts.iter().map(String::as_str).chain(Some(hint).filter(|hint| !hint.is_empty())).collect();
-    let mut text = format!("time       {}\n", all.join(", "));
-    if predicted_ms.is_some() || is_measured {
-        let mut rows = vec![["PASS", "PREDICTED MS", "MEASURED MS", "RATIO"].map(str::to_owned).to_vec()];
-        rows.extend(cost.passes.iter().map(|(label, cost)| std::iter::once(label.clone()).chain(cost.cells()).collect()));
-        text += &format!("\n{}", table(&rows));
-    }
-    text
+/// Measured milliseconds of the frame and of every pass.
+fn times_text(FrameTimes { whole_ms, passes, frames }: &FrameTimes) -> String {
+    let mut rows = vec![["PASS", "MS"].map(str::to_owned).to_vec()];
+    rows.extend(passes.iter().map(|(label, ms)| vec![label.clone(), format!("{ms:.4}")]));
+    let passes = if passes.is_empty() { String::new() } else { format!("\n{}", table(&rows)) };
+    format!("time       {whole_ms:.4} ms, measured in {frames} frames\n{passes}")
 }
 
 fn plan_text(plan: &Explanation) -> String {

@@ -41,7 +41,7 @@ pub fn replaced(text: &str, table: &str) -> Option<String> {
     Some(format!("{}\n{table}{}", &text[..begin], &text[end..]))
 }
 
-/// Three hero presets per row, each with its picture, id and sentence; then three effects per row, each with picture, name, hooks,
+/// Three hero presets per row, each with its picture, name, id and sentence; then three effects per row, each with picture, name, hooks,
 /// description and further presets.
 pub fn table() -> String {
     let mut preset_files: Vec<String> =
@@ -65,8 +65,10 @@ pub fn heroes() -> Vec<PresetFile> {
 }
 
 fn hero_cell(preset_file: &PresetFile) -> String {
-    let (id, about) = (&preset_file.id, &preset_file.preset.about);
-    format!("<td valign=\"top\"><img src=\"tests/snapshots/{id}.png\" width=\"260\" alt=\"{id}\"><br><b>{id}</b><br>{about}</td>\n")
+    let (id, title, about) = (&preset_file.id, preset_file.title(), &preset_file.preset.about);
+    format!(
+        "<td valign=\"top\"><img src=\"tests/snapshots/{id}.png\" width=\"260\" alt=\"{id}\"><br><b>{title}</b> <sub>{id}</sub><br>{about}</td>\n"
+    )
 }
 
 fn cell(effect: &Effect, preset_files: &[String]) -> String {

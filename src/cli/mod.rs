@@ -8,11 +8,9 @@ mod arrays;
 mod backend;
 mod bench;
 mod bless;
-mod calibrate;
 mod check;
 mod compare;
 mod contact_sheet;
-mod cost;
 mod error;
 mod explain;
 mod files;
@@ -24,7 +22,6 @@ mod list;
 mod loading;
 mod man;
 mod measured;
-mod migrate;
 mod new_effect;
 mod open;
 mod parts;
@@ -108,12 +105,10 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
         Command::Bench(args) => bench::run(common, args, streams),
         Command::Sweep(args) => sweep::run(common, args, streams),
         Command::Stress(args) => stress::run(common, args, streams),
-        Command::Calibrate(args) => calibrate::run(common, args, streams),
         Command::Fuzz(args) => fuzz::run(common, args, streams),
         Command::Gallery(args) => gallery::run(args, streams),
         Command::Check(args) => check::run(common, args, streams),
         Command::NewEffect(args) => new_effect::run(common, args, streams),
-        Command::Migrate(args) => migrate::run(args, streams),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(*shell, &mut Cli::command(), "rasterlab", &mut script);

@@ -10,6 +10,8 @@ use std::{
     thread,
 };
 
+mod shader_parts;
+
 pub use rasterlab::stress::{
     adversarial::near_miss_triangle,
     exactness,
@@ -261,28 +263,13 @@ pub fn mutated(from: &str, to: &str) -> Mutated {
 
 /// A copy of the project's shaders.
 pub fn own_shaders() -> Mutated {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    copy_folder(&Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders"), folder.path());
-    Mutated(folder)
+    Mutated(shader_parts::copied())
 }
 
 fn files_below(folder: &Path, files: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).expect("a folder of shaders can be read") {
         let path = entry.expect("a folder of shaders can be read").path();
         if path.is_dir() { files_below(&path, files) } else { files.push(path) }
-    }
-}
-
-fn copy_folder(from: &Path, to: &Path) {
-    fs::create_dir_all(to).expect("a folder for shaders");
-    for entry in fs::read_dir(from).expect("shaders/ can be read") {
-        let path = entry.expect("shaders/ can be read").path();
-        let target = to.join(path.file_name().expect("a name"));
-        if path.is_dir() {
-            copy_folder(&path, &target);
-        } else {
-            fs::copy(&path, target).expect("a shader is copied");
-        }
     }
 }
 

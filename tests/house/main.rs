@@ -17,8 +17,8 @@ mod registry;
 mod rounds;
 mod scenes;
 mod scopes;
+#[path = "../common/shader_parts.rs"]
+mod shader_parts;
 mod shaders;
-mod sizes;
 mod surface_inputs;
 mod twins;
-mod weights;

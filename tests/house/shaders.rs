@@ -4,6 +4,7 @@
 
 use std::{collections::BTreeMap, sync::Mutex};
 
+use super::shader_parts;
 use rasterlab::{
     accuracy::{AXES, Axis, Culling, DotCulling, Parameters, Visibility},
     effects::{
@@ -14,7 +15,7 @@ use rasterlab::{
     },
     shader::{
         Fetch, KernelKey, Pass,
-        library::Library,
+        library::{self, Library},
         link::{self, LinkError, Linked},
         pass::RasterPhase,
         reflect::{self, BindingKind},
@@ -259,34 +260,14 @@ fn plain_key() -> KernelKey {
 fn a_pass_is_read_in_few_files() {
     for (pass, most) in [(Pass::RasterSmall(RasterPhase::Depth), 11), (Pass::Resolve, 15)] {
         let linked = linked(&plain_key(), pass);
-        let files: Vec<&str> = linked.sources().collect();
+        let files = linked.files();
         assert!(files.len() <= most, "{} files for {}: {files:?}", files.len(), pass.label());
     }
 }
 
-fn copy_folder(from: &std::path::Path, to: &std::path::Path) {
-    std::fs::create_dir_all(to).expect("a folder");
-    for entry in std::fs::read_dir(from).expect("shaders can be read") {
-        let path = entry.expect("an entry").path();
-        let target = to.join(path.file_name().expect("a name"));
-        if path.is_dir() {
-            copy_folder(&path, &target)
-        } else {
-            let _ = std::fs::copy(&path, target).expect("copied");
-        }
-    }
-}
-
-/// A copy of the shaders, to make mistakes in.
-fn copied_shaders() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    copy_folder(&std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders"), folder.path());
-    folder
-}
-
 #[test]
 fn every_use_line_is_needed_and_a_missing_one_is_refused() {
-    let folder = copied_shaders();
+    let folder = shader_parts::copied();
     let library = Library::Folder(folder.path().into());
     let effects = ["dissolve", "explode", "shadow", "outline"].map(|name| Effect::find(name).expect("an effect")).to_vec();
     let mut full = key(Fetch::Indexed, Visibility::Split32, true, effects);
@@ -298,23 +279,30 @@ fn every_use_line_is_needed_and_a_missing_one_is_refused() {
     for key in [plain_key(), unmasked, full] {
         let passes = key.frame();
         for pass in passes {
-            for name in linked(&key, pass).sources().map(str::to_owned).collect::<Vec<_>>() {
-                let path = folder.path().join(format!("{name}.wgsl"));
+            for part in linked(&key, pass).parts {
+                let Some((file, first)) = part.origin else { continue };
+                let path = folder.path().join(format!("{file}.wgsl"));
                 let text = std::fs::read_to_string(&path).expect("a shader");
-                for line in text.lines().filter(|line| line.starts_with("//@ use ")) {
+                let lines: Vec<&str> = text.lines().collect();
+                let is_section = |line: &&str| line.starts_with("//@ variant ") || line.starts_with("//@ step ");
+                let end = lines.iter().skip(first + 1).position(is_section).map_or(lines.len(), |found| first + 1 + found);
+                for at in (first..end).filter(|at| lines[*at].starts_with("//@ use ")) {
+                    let line = lines[at];
                     // A line that one key needs may be idle in another, where a further file uses the same one.
-                    let use_line = (name.clone(), line.to_owned());
+                    let use_line = (part.name.clone(), line.to_owned());
                     if seen.contains(&use_line) {
                         continue;
                     }
-                    std::fs::write(&path, text.replacen(line, "//", 1)).expect("written");
+                    let mut without = lines.clone();
+                    without[at] = "//";
+                    std::fs::write(&path, without.join("\n")).expect("written");
                     match link::link(&library, &pass.path(), &key, &key.variants(pass)) {
-                        Err(LinkError::Undeclared { file, name: missing, .. }) => {
+                        Err(LinkError::Undeclared { file: blamed, name: missing, .. }) => {
                             refused_by_linker += 1;
                             needless.remove(&use_line);
-                            assert!(file == name && !missing.is_empty(), "{name} without {line}: {file} is blamed");
+                            assert!(blamed == file && !missing.is_empty(), "{file} without {line}: {blamed} is blamed");
                         }
-                        Err(error) => panic!("{name} without {line}: {error}"),
+                        Err(error) => panic!("{file} without {line}: {error}"),
                         // A file that nothing else uses is not linked at all.
                         Ok(linked) if reflect::reflect(&linked, false).is_err() => {
                             needless.remove(&use_line);
@@ -336,36 +324,52 @@ fn every_use_line_is_needed_and_a_missing_one_is_refused() {
 
 #[test]
 fn an_undeclared_name_is_refused_with_file_line_and_name() {
-    let folder = copied_shaders();
-    let path = folder.path().join("variants/coverage/fixed.wgsl");
+    let folder = shader_parts::copied();
+    let path = folder.path().join("variants/coverage.wgsl");
     let text = std::fs::read_to_string(&path).expect("a shader");
     let line = text.lines().position(|line| line.contains("fn coverage_at")).expect("the function") + 2;
     let wrong = text.replacen("    return coverage.row + ", "    return vec3i(i32(frame.size.x)) + coverage.row + ", 1);
     std::fs::write(&path, wrong).expect("written");
     let (key, pass) = (plain_key(), Pass::RasterMedium(RasterPhase::Depth));
     let error = link::link(&Library::Folder(folder.path().into()), &pass.path(), &key, &key.variants(pass)).expect_err("refused");
-    let expected = format!("shaders/variants/coverage/fixed.wgsl:{line}: names frame, which lib/frame declares; add //@ use for it");
+    let expected = format!("shaders/variants/coverage.wgsl:{line}: names frame, which lib/frame declares; add //@ use for it");
     assert_eq!(error.to_string(), expected);
 }
 
 #[test]
 fn no_file_can_use_a_stage() {
-    let folder = copied_shaders();
-    let path = folder.path().join("variants/coverage/fixed.wgsl");
+    let folder = shader_parts::copied();
+    let path = folder.path().join("variants/coverage.wgsl");
     let text = std::fs::read_to_string(&path).expect("a shader");
-    std::fs::write(&path, format!("//@ use stages/raster/raster_small\n{text}")).expect("written");
+    let section = "//@ variant fixed\n";
+    let begin = text.find(section).expect("the section");
+    let begin_line = text[..begin].lines().count() as u32 + 1;
+    std::fs::write(&path, text.replace(section, &format!("{section}//@ use stages/raster/raster_small\n"))).expect("written");
     let (key, pass) = (plain_key(), Pass::RasterMedium(RasterPhase::Depth));
     let error = link::link(&Library::Folder(folder.path().into()), &pass.path(), &key, &key.variants(pass)).expect_err("refused");
-    assert!(matches!(error, LinkError::UsesStage { line: 1, .. }), "{error}");
+    assert!(matches!(error, LinkError::UsesStage { line, .. } if line == begin_line + 1), "{error}");
 }
 
 #[test]
 fn a_variant_that_lacks_what_its_interface_declares_is_refused() {
-    let folder = copied_shaders();
-    let path = folder.path().join("variants/coverage/fixed.wgsl");
+    let folder = shader_parts::copied();
+    let path = folder.path().join("variants/coverage.wgsl");
     let text = std::fs::read_to_string(&path).expect("a shader");
-    std::fs::write(&path, text.replace("area: i32, first: vec2i", "area: u32, first: vec2i")).expect("written");
+    std::fs::write(&path, text.replacen("\nfn coverage_begin(a: vec4u, b: vec4u, c: vec4u, area: i32", "\nfn coverage_begin(a: vec4u, b: vec4u, c: vec4u, area: u32", 1)).expect("written");
     let (key, pass) = (plain_key(), Pass::RasterMedium(RasterPhase::Depth));
     let error = link::link(&Library::Folder(folder.path().into()), &pass.path(), &key, &key.variants(pass)).expect_err("refused");
     assert!(matches!(&error, LinkError::Incomplete { signature, .. } if signature.contains("coverage_begin")), "{error}");
+}
+
+#[test]
+fn a_file_of_variants_has_all_its_code_in_sections_of_different_names() {
+    for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/variants")).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let text = std::fs::read_to_string(&path).expect("a shader");
+        let sections = library::sections(&text);
+        let code = text[sections[0].1.clone()].lines().find(|line| !line.is_empty() && !line.starts_with("//"));
+        assert_eq!(code, None, "{}: no kernel links what stands before the first section", path.display());
+        let names: std::collections::BTreeSet<&str> = sections.iter().map(|(name, _)| *name).collect();
+        assert!(names.len() == sections.len() && sections.len() > 1, "{}: {names:?}", path.display());
+    }
 }

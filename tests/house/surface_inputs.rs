@@ -20,7 +20,7 @@ fn module_of(effect: &'static Effect) -> Module {
     let root = format!("effects/{}", effect.name);
     let linked = link::link(&Library::Embedded, &root, &key, &key.variants(Pass::Resolve)).expect("every file is there");
     let text = linked.text + &glue::effects(&key);
-    let reflected = reflect::reflect(&Linked { text, files: linked.files }, false);
+    let reflected = reflect::reflect(&Linked { text, parts: linked.parts }, false);
     reflected.unwrap_or_else(|error| panic!("{}: {error}", effect.name)).module
 }
 

@@ -355,3 +355,15 @@ pub fn middle(lab: &mut Lab) -> image::RgbaImage {
     let whole = picture(lab);
     image::imageops::crop_imm(&whole, 0, 48, whole.width(), whole.height() - 208).to_image()
 }
+
+/// Removes what a test has deleted in `folder` from the trash of the system, where that can be listed.
+#[cfg(any(windows, target_os = "linux"))]
+pub fn remove_from_trash(folder: &Path) {
+    let folder = folder.canonicalize().expect("a folder");
+    let own: Vec<_> = trash::os_limited::list().expect("a trash").into_iter().filter(|item| item.original_parent == folder).collect();
+    assert!(!own.is_empty(), "what was deleted is in the trash");
+    trash::os_limited::purge_all(own).expect("a trash");
+}
+
+#[cfg(not(any(windows, target_os = "linux")))]
+pub fn remove_from_trash(_folder: &Path) {}

@@ -187,6 +187,7 @@ fn a_preset_that_has_landed_on_a_model_is_followed_when_its_file_is_renamed_or_d
     assert!(!listed(&lab).contains(&"Second".to_owned()) && lab.state().preset_file().preset == before, "the picture stays");
     click(&mut lab, Role::Button, "Undo the deletion");
     assert!(is_open(&lab, "Second") && error_lines(&lab).is_empty(), "{:?}", error_lines(&lab));
+    remove_from_trash(&folder.path().join("presets"));
 }
 
 #[test]
@@ -271,6 +272,7 @@ fn a_deleted_preset_comes_back_and_what_took_its_place_stays() {
     assert_eq!(text(&first(folder.path())), "schema = 2\nname = \"Newer\"\n");
     assert_eq!(text(&folder.path().join("presets/first-2.toml")), TEXT);
     assert_eq!(error_lines(&lab), Vec::<String>::new());
+    remove_from_trash(&folder.path().join("presets"));
 }
 
 #[test]
@@ -291,6 +293,7 @@ fn a_preset_that_another_program_has_changed_is_not_lost_by_deleting_or_renaming
     choose(&mut lab, "Renamed", "Delete");
     click(&mut lab, Role::Button, "Undo the deletion");
     assert_eq!(text(&to), "schema = 2\nname = \"Renamed\"\n# by another program\n");
+    remove_from_trash(&folder.path().join("presets"));
 }
 
 #[test]

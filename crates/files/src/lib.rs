@@ -6,5 +6,5 @@ pub mod film;
 pub mod preset_file;
 
 use rasterlab_evaluator as evaluator;
-use rasterlab_kernels::{plan, shader};
-use rasterlab_model::{accuracy, effects, frame, math, params, preset, scene};
+use rasterlab_kernels::shader;
+use rasterlab_model::{effects, frame, math, params, preset, scene};

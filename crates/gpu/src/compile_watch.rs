@@ -25,6 +25,10 @@ impl CompileWatch {
         self.is_stopped.store(false, Ordering::Relaxed);
     }
 
+    pub fn is_stopped(&self) -> bool {
+        self.is_stopped.load(Ordering::Relaxed)
+    }
+
     pub(super) fn begin(&self) {
         (self.began)();
     }
@@ -32,6 +36,6 @@ impl CompileWatch {
     /// # Errors
     /// [`RenderError::Stopped`] after [`Self::stop`].
     pub(super) fn check(&self) -> Result<(), RenderError> {
-        if self.is_stopped.load(Ordering::Relaxed) { Err(RenderError::Stopped) } else { Ok(()) }
+        if self.is_stopped() { Err(RenderError::Stopped) } else { Ok(()) }
     }
 }

@@ -10,7 +10,6 @@ use std::{
 
 use super::{device_memory::DeviceMemory, pipeline_store::PipelineStore, preparations::Preparations};
 pub use crate::plan::Caps;
-use crate::plan::Measured;
 
 /// Which adapter a person asked for.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -142,7 +141,6 @@ fn caps(adapter: &wgpu::Adapter) -> Caps {
         max_storage_buffers: limits.max_storage_buffers_per_shader_stage,
         software: info.device_type == wgpu::DeviceType::Cpu,
         slow_atomic_maximum: info.driver.starts_with("SwiftShader"),
-        measured: None,
     }
 }
 
@@ -213,14 +211,6 @@ impl Gpu {
             lost,
             error,
         })
-    }
-
-    /// The same device, whose pictures are planned with what a calibration measured on its adapter. Nothing else may hold it yet.
-    pub fn with_measured(mut self: Arc<Self>, measured: Option<Measured>) -> Arc<Self> {
-        if let Some(gpu) = Arc::get_mut(&mut self) {
-            gpu.caps.measured = measured;
-        }
-        self
     }
 
     /// Has the device been lost? Then everything made from it is dead.

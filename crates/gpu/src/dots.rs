@@ -120,11 +120,6 @@ impl DotStore {
         Ok(Some(store))
     }
 
-    /// Radius of a dot, units of 1/256 px.
-    pub fn radius(&self) -> u32 {
-        self.frame.radius
-    }
-
     /// How many dots there are, for the layout of the frame.
     pub fn counts(&self) -> DotCounts {
         DotCounts {

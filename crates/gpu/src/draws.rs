@@ -85,9 +85,16 @@ impl DrawData {
     }
 }
 
+// Bits of [`DrawRecord::flags`]; above them is the number of the primitive.
+const DOUBLE_SIDED: u32 = 1;
+const MIRRORED: u32 = 2;
+const PARTICLES: u32 = 4;
+const PRIMITIVE_SHIFT: u32 = 8;
+
 impl DrawRecord {
     /// The record of a draw whose attributes lie as `attributes` says.
     pub fn new(draw: &Draw, scene: &Scene, attributes: &AttributeLayout) -> Self {
+        let flag = |is_set: bool, bit: u32| if is_set { bit } else { 0 };
         let [x, y, z] = draw.origin;
         let primitive = &scene.primitives[draw.primitive];
         let material = &scene.materials[primitive.material];
@@ -108,10 +115,10 @@ impl DrawRecord {
             first_vertex: draw.first_vertex,
             vertex_count: primitive.vertex_count(),
             first_triangle: draw.first_triangle,
-            flags: u32::from(draw.double_sided)
-                | u32::from(draw.mirrored) << 1
-                | u32::from(scene.particle_discs == Some(draw.primitive)) << 2
-                | (draw.primitive as u32) << 8,
+            flags: flag(draw.double_sided, DOUBLE_SIDED)
+                | flag(draw.mirrored, MIRRORED)
+                | flag(scene.particle_discs == Some(draw.primitive), PARTICLES)
+                | (draw.primitive as u32) << PRIMITIVE_SHIFT,
             topology: primitive.topology as u32,
             index_offset: primitive.indices.map_or(0, |i| i.offset),
             index_format: primitive.indices.map_or(0, |i| i.component_type.bytes()),

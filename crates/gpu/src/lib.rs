@@ -54,21 +54,15 @@ mod hardware_materials;
 mod hardware_pipeline;
 mod readback;
 
-mod frame_counts;
 mod hardware_ids;
 mod renderer;
 pub mod warm_up;
-pub mod workload;
 
 mod capture;
 pub mod hardware;
 pub mod naive;
 
-pub mod timed_picture;
-
-mod option_times;
-
-pub mod calibration;
+pub mod frame_times;
 
 pub use buffers::BufferNote;
 pub use capture::Capture;
@@ -84,4 +78,4 @@ pub use resource_id::ResourceId;
 pub use rasterlab_kernels::plan::Note;
 
 use rasterlab_kernels::{plan, shader};
-use rasterlab_model::{accuracy, effects, frame, math, measure, preset, scene};
+use rasterlab_model::{accuracy, effects, frame, math, measure, scene};

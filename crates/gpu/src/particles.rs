@@ -239,7 +239,7 @@ impl ParticleSimulation {
     }
 }
 
-/// A particle as `shaders/variants/particle_state/float32.wgsl` stores it.
+/// A particle as the variant float32 of `shaders/variants/particle_state.wgsl` stores it.
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 struct Float32State {
@@ -256,7 +256,7 @@ impl Float32State {
     }
 }
 
-/// A particle as `shaders/variants/particle_state/half16.wgsl` stores it: the position as signed fractions of the room, the velocity as halves.
+/// A particle as the variant half16 of `shaders/variants/particle_state.wgsl` stores it: the position as signed fractions of the room, the velocity as halves.
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 struct Half16State {

@@ -146,7 +146,7 @@ gpu_record! {
 }
 
 gpu_record! {
-    /// The transform from positions to the shadow map. Each member is explained in `shaders/variants/shade_step/shadow_map.wgsl`.
+    /// The transform from positions to the shadow map. Each member is explained in `shaders/variants/shade_step.wgsl`.
     pub struct ShadowMapUniform = "ShadowMapView" {
         pub column: [f32; 4],
         pub row: [f32; 4],
@@ -185,7 +185,7 @@ gpu_record! {
 }
 
 gpu_record! {
-    /// One morph target of one draw. Each member is explained in `shaders/variants/morph_targets/weighted.wgsl`.
+    /// One morph target of one draw. Each member is explained in `shaders/variants/morph_targets.wgsl`.
     pub struct MorphTargetRecord = "MorphTarget" {
         pub weight: f32,
         pub position_offset: u32,

@@ -20,7 +20,7 @@ use super::{
 };
 use crate::{
     accuracy::PositionFormat,
-    effects::{SetupRows, Stack},
+    effects::Stack,
     math::SUBPIXEL_BITS,
     plan::{AccuracyRequest, Plan, Planner, Tuning},
     scene::{Background, Scene, draw::Draw, needs::Needs, parts::Scope, view::View},
@@ -48,14 +48,6 @@ pub struct PreparedFrame {
     /// The view that was asked for, on the grid and with the origin that the plan takes.
     pub view: View,
     pub layout: FrameLayout,
-    /// Radius of discs about corners, units of 1/256 px; 0 without them.
-    pub point_radius: u32,
-    /// Of [`Stack::turns`].
-    pub turns: f64,
-    /// Of [`Stack::neighbors`].
-    pub neighbors: f64,
-    /// Of [`Stack::setup_rows`].
-    pub setup_rows: SetupRows,
 }
 
 /// The draws of a scene as a view has them, and what they require of the kernels.
@@ -199,10 +191,7 @@ impl ViewResources {
         if let Some(dots) = &mut self.dots {
             dots.write(gpu, &self.buffers, |id| new.contains(&id))?;
         }
-        let stack = request.stack;
-        let (point_radius, turns) = (stack.point_radius(), stack.turns());
-        let (neighbors, setup_rows) = (stack.neighbors(), stack.setup_rows());
-        self.frame = Some(PreparedFrame { plan, view, layout, point_radius, turns, neighbors, setup_rows });
+        self.frame = Some(PreparedFrame { plan, view, layout });
         self.is_prepared = true;
         Ok(())
     }

@@ -77,6 +77,9 @@ pub fn srgb_byte(linear: f64) -> u8 {
     (srgb(linear) * 255.0 + 0.5).floor() as u8
 }
 
+/// 2^32 over the golden ratio: what seeds are multiplied by, so that neighboring ones differ in all their bits.
+pub const HASH_GOLDEN: u32 = 0x9e37_79b9;
+
 /// Integer hash with full avalanche (Ettinger and Wellons, "lowbias32"); a bijection of u32.
 pub fn hash(x: u32) -> u32 {
     let x = (x ^ (x >> 16)).wrapping_mul(0x7feb_352d);

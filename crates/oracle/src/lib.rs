@@ -40,7 +40,6 @@ pub use render::{
     deform::volume,
     dots::{dot_records, dot_strengths},
     draw_order::limited,
-    moved_sizes::moved_sizes,
     particles,
     picture::{render, render_next, render_sequence, strict_frame},
     project::project,

@@ -11,7 +11,7 @@ use crate::Seed;
 /// Small presets by name; what `not-` begins is refused.
 pub const PRESETS: &[(&str, &str)] = &[
     ("empty", "schema = 2\n"),
-    ("old", "schema = 1\n[clock]\nloops = false\nspeed = 0.5\n"),
+    ("not-old", "schema = 1\n[clock]\nspeed = 0.5\n"),
     ("newer", "schema = 99\nname = \"Later\"\n[effects.facet]\namount = 0.5\n"),
     (
         "scene",

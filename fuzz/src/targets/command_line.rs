@@ -32,7 +32,6 @@ const WORDS: &[&str] = &[
     "check",
     "bench",
     "fuzz",
-    "migrate",
     "new-effect",
     "--set",
     "--unset",

@@ -66,7 +66,7 @@ impl Form {
         let id = if session.preset_file.id.is_empty() { "film" } else { &session.preset_file.id };
         let output = session.preset().output.size;
         let shown = state.screen.requested().map_or(output, |inputs| [inputs.view.width, inputs.view.height]);
-        let own_range_s = last.range_s.as_ref().filter(|(preset, _)| *preset == session.preset_file.id).map(|(_, range_s)| *range_s);
+        let own_range_s = last.range_s.filter(|_| last.range_of.as_ref() == Some(&session.preset_file.id));
         let path = last.format.named(&std::env::current_dir().unwrap_or_default().join(format!("{id}.png")));
         Self {
             preset: session.preset_file.id.clone(),
@@ -97,8 +97,9 @@ impl Form {
 
     /// What is remembered of it.
     fn settings(&self, clock: &Clock) -> FilmSettings {
-        let range_s = (self.range_s != clock.range_s).then(|| (self.preset.clone(), self.range_s));
-        FilmSettings { format: self.format, size: Some(self.size), fps: self.fps, scale: self.scale, range_s }
+        let range_s = Some(self.range_s).filter(|range_s| *range_s != clock.range_s);
+        let range_of = range_s.map(|_| self.preset.clone());
+        FilmSettings { format: self.format, size: Some(self.size), fps: self.fps, scale: self.scale, range_s, range_of }
     }
 
     fn choose(&mut self, format: Format) {

@@ -195,7 +195,7 @@ fn name_ui(ui: &mut Ui, state: &State) {
     let name = RichText::new(open.title()).color(theme::text_strong()).strong();
     let file = match (&open.path, open.read_only) {
         (Some(path), _) => path.display().to_string(),
-        (None, true) => "Built in. Save asks for a file name.".into(),
+        (None, true) => format!("{}, built in. Save asks for a file name.", open.id),
         (None, false) => "Not saved yet".into(),
     };
     let width = ui.available_width();

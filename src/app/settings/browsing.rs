@@ -1,7 +1,10 @@
 //! How the left panel shows presets, effects and scenes.
 
+use serde::{Deserialize, Serialize};
+
 /// What the left panel shows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Tab {
     #[default]
     Presets,
@@ -11,15 +14,6 @@ pub enum Tab {
 
 impl Tab {
     pub const ALL: [Self; 3] = [Self::Presets, Self::Effects, Self::Scene];
-
-    /// Its name in the settings file.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Presets => "presets",
-            Self::Effects => "effects",
-            Self::Scene => "scene",
-        }
-    }
 
     pub const fn label(self) -> &'static str {
         match self {
@@ -31,46 +25,28 @@ impl Tab {
 }
 
 /// How presets are shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Layout {
     #[default]
     List,
     Grid,
 }
 
-impl Layout {
-    pub const ALL: [Self; 2] = [Self::List, Self::Grid];
-
-    /// Its name in the settings file.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::List => "list",
-            Self::Grid => "grid",
-        }
-    }
-}
-
 /// In which order presets are listed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Sort {
     #[default]
     Name,
     /// Files that were changed last come first; built-in presets come behind all files.
     Newest,
+    #[serde(rename = "favorites")]
     FavoritesFirst,
 }
 
 impl Sort {
     pub const ALL: [Self; 3] = [Self::Name, Self::Newest, Self::FavoritesFirst];
-
-    /// Its name in the settings file.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Name => "name",
-            Self::Newest => "newest",
-            Self::FavoritesFirst => "favorites",
-        }
-    }
 
     pub const fn label(self) -> &'static str {
         match self {
@@ -82,9 +58,12 @@ impl Sort {
 }
 
 /// What the left panel shows, and how.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Browsing {
     pub tab: Tab,
+    #[serde(rename = "presets")]
     pub layout: Layout,
+    #[serde(rename = "order")]
     pub sort: Sort,
 }

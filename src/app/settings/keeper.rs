@@ -3,18 +3,20 @@
 use std::{
     fs::{File, TryLockError},
     path::{Path, PathBuf},
+    thread::JoinHandle,
 };
 
 use toml_edit::DocumentMut;
 
 use super::{
-    Settings,
+    Settings, WindowPlace,
     last_session::{LastSession, Restored},
-    toml,
-    writer::Writer,
 };
 use crate::{
-    app::session::{FileId, Session},
+    app::{
+        plain_file,
+        session::{FileId, Session},
+    },
     preset::Preset,
     preset_file::Folders,
 };
@@ -24,22 +26,22 @@ const REST_S: f64 = 1.0;
 
 /// Keeps settings and session in a folder. Without a folder, as in tests, it keeps nothing.
 pub struct Keeper {
-    place: Option<Place>,
-    /// What is written or about to be, and since when it waits.
-    settings: Kept<Settings>,
-    open: Kept<Option<(FileId, Preset)>>,
-}
-
-struct Place {
-    folder: PathBuf,
-    writer: Writer,
+    folder: Option<PathBuf>,
     /// The settings file as it was read, with the user's comments.
     document: DocumentMut,
     /// Held while the window runs. Another window has it if this one keeps no session.
     lock: Option<File>,
     /// The last session was read and decided about: it may be replaced.
     replaces_session: bool,
+    /// What is written or about to be, and since when it waits.
+    settings: Kept<Settings>,
+    open: Kept<Option<(FileId, Preset)>>,
+    /// A thread that writes files, and ends with the errors.
+    writing: Option<JoinHandle<Vec<String>>>,
 }
+
+/// A file to be written: a function that does, and returns why it could not.
+type Write = Box<dyn FnOnce() -> Result<(), String> + Send>;
 
 /// A value that is written when it has come to rest.
 struct Kept<T> {
@@ -81,21 +83,17 @@ impl Keeper {
     /// Reads the settings of `folder`. Each remark is something that could not be used.
     pub fn new(folder: Option<PathBuf>) -> (Self, Settings, Vec<String>) {
         let mut remarks = Vec::new();
-        let (mut settings, mut place) = (Settings::default(), None);
-        if let Some(folder) = folder {
-            let (read, document) = read_settings(&folder, &mut remarks, true);
-            settings = read;
-            match Writer::start() {
-                Ok(writer) => place = Some(Place { lock: lock(&folder, &mut remarks), folder, writer, document, replaces_session: false }),
-                Err(error) => remarks.push(format!("settings and session are not kept: no thread could be started: {error}")),
-            }
-        }
-        (Self { place, settings: Kept::new(settings.clone()), open: Kept::new(None) }, settings, remarks)
+        let read = folder.as_deref().map(|folder| plain_file::read(&folder.join(SETTINGS), &mut remarks));
+        let (settings, document): (Settings, _) = read.unwrap_or_default();
+        let lock = folder.as_deref().and_then(|folder| lock(folder, &mut remarks));
+        let kept = Kept::new(settings.clone());
+        let keeper = Self { folder, document, lock, replaces_session: false, settings: kept, open: Kept::new(None), writing: None };
+        (keeper, settings, remarks)
     }
 
     /// What the last session left.
     pub fn left(&self, folders: &Folders) -> Left {
-        let Some(Place { folder, lock: Some(_), .. }) = &self.place else { return Left::Nothing };
+        let Some(folder) = self.folder.as_ref().filter(|_| self.lock.is_some()) else { return Left::Nothing };
         let path = folder.join(SESSION);
         let Ok(text) = std::fs::read_to_string(&path) else { return Left::Nothing };
         let session = LastSession::parse(&text, &path.display().to_string());
@@ -109,92 +107,89 @@ impl Keeper {
 
     /// Does the session of this window come back at the next start?
     pub fn keeps_session(&self) -> bool {
-        self.place.as_ref().is_some_and(|place| place.lock.is_some())
+        self.folder.is_some() && self.lock.is_some()
     }
 
     /// From now on the session of this window replaces the last one.
     pub fn begin_session(&mut self) {
-        if let Some(place) = &mut self.place {
-            place.replaces_session = true;
-        }
+        self.replaces_session = true;
     }
 
     /// Writes what has changed and come to rest. Returns an error of an earlier write, and after how many seconds to look again.
     pub fn follow(&mut self, settings: &Settings, session: &Session, now_s: f64) -> (Option<String>, Option<f64>) {
-        let Some(place) = &mut self.place else { return (None, None) };
-        if self.settings.follow(settings, now_s) {
-            place.write_settings(settings);
+        if self.folder.is_none() {
+            return (None, None);
         }
-        if place.lock.is_some() && place.replaces_session {
+        if self.writing.as_ref().is_some_and(|writing| !writing.is_finished()) {
+            return (None, Some(REST_S));
+        }
+        let errors = self.finish_writing();
+        let mut writes: Vec<Write> = Vec::new();
+        if self.settings.follow(settings, now_s) {
+            writes.extend(self.write_settings(settings));
+        }
+        if self.keeps_session() && self.replaces_session {
             let open = Some((FileId::of(&session.preset_file), session.preset_file.preset.clone()));
             if self.open.follow(&open, now_s) {
-                place.write_session(&LastSession::of(&session.preset_file, session.as_filed()));
+                writes.extend(self.write_session(LastSession::of(&session.preset_file, session.as_filed())));
             }
         }
-        let wait_s = [self.settings.wait_s(now_s), self.open.wait_s(now_s)].into_iter().flatten().reduce(f64::min);
-        (place.writer.error(), wait_s)
+        let mut wait_s = [self.settings.wait_s(now_s), self.open.wait_s(now_s)].into_iter().flatten().reduce(f64::min);
+        if !writes.is_empty() {
+            self.writing = Some(std::thread::spawn(|| writes.into_iter().filter_map(|write| write().err()).collect()));
+            wait_s = Some(wait_s.unwrap_or(REST_S));
+        }
+        ((!errors.is_empty()).then(|| errors.join("; ")), wait_s)
     }
 
     /// The window closes in order, with its unsaved edits or without.
     pub fn close(&mut self, settings: &Settings, session: &Session, keeps_edits: bool) {
-        let Some(place) = &mut self.place else { return };
+        let mut errors = self.finish_writing();
+        let mut writes: Vec<Write> = Vec::new();
         if self.settings.changed_at_s.is_some() || self.settings.latest != *settings {
-            place.write_settings(settings);
+            writes.extend(self.write_settings(settings));
         }
-        if place.lock.is_some() && place.replaces_session {
+        if self.keeps_session() && self.replaces_session {
             let last = LastSession::of(&session.preset_file, session.as_filed()).closed();
-            place.write_session(&if keeps_edits { last } else { last.without_edits() });
+            writes.extend(self.write_session(if keeps_edits { last } else { last.without_edits() }));
         }
+        errors.extend(writes.into_iter().filter_map(|write| write().err()));
+        errors.iter().for_each(|error| eprintln!("rasterlab: settings or session could not be kept: {error}"));
+    }
+
+    /// Waits until everything is written. Returns the errors.
+    fn finish_writing(&mut self) -> Vec<String> {
+        let ended = self.writing.take().map(JoinHandle::join);
+        // A panic of the thread was printed by it.
+        ended.and_then(Result::ok).unwrap_or_default()
+    }
+
+    fn write_settings(&self, settings: &Settings) -> Option<Write> {
+        let (path, settings, mut document) = (self.folder.as_ref()?.join(SETTINGS), settings.clone(), self.document.clone());
+        Some(Box::new(move || plain_file::write(&settings, &mut document, &path)))
+    }
+
+    fn write_session(&self, session: LastSession) -> Option<Write> {
+        let path = self.folder.as_ref()?.join(SESSION);
+        Some(Box::new(move || plain_file::write(&session, &mut LastSession::document(), &path)))
+    }
+}
+
+impl Drop for Keeper {
+    fn drop(&mut self) {
+        self.finish_writing();
     }
 }
 
 /// Names of the files.
 const SETTINGS: &str = "settings.toml";
-const BROKEN: &str = "settings.toml.broken";
 const SESSION: &str = "session.toml";
 const LOCK: &str = "session.lock";
 
-impl Place {
-    fn write_settings(&mut self, settings: &Settings) {
-        toml::write(settings, &mut self.document);
-        self.writer.write(self.folder.join(SETTINGS), self.document.to_string());
-    }
-
-    fn write_session(&self, session: &LastSession) {
-        self.writer.write(self.folder.join(SESSION), session.to_toml());
-    }
-}
-
-/// The settings of a folder; the default ones where there are none. If `puts_aside`, a broken file gets another name, so that the next write
-/// does not replace what the user has typed into it.
-pub fn read_settings(folder: &Path, remarks: &mut Vec<String>, puts_aside: bool) -> (Settings, DocumentMut) {
-    let path = folder.join(SETTINGS);
-    let name = path.display().to_string();
-    let text = match std::fs::read_to_string(&path) {
-        Ok(text) => text,
-        Err(error) => {
-            if error.kind() != std::io::ErrorKind::NotFound {
-                remarks.push(format!("{name}: it cannot be read, so the default settings are used: {error}"));
-            }
-            return Default::default();
-        }
-    };
-    match toml::read(&text, &name) {
-        Ok((settings, document, refused)) => {
-            remarks.extend(refused);
-            (settings, document)
-        }
-        Err(_) if !puts_aside => Default::default(),
-        Err(error) => {
-            let aside = folder.join(BROKEN);
-            let kept = match std::fs::rename(&path, &aside) {
-                Ok(()) => format!("it is kept as {}", aside.display()),
-                Err(error) => format!("it could not be put aside: {error}"),
-            };
-            remarks.push(format!("{error}; the default settings are used, and {kept}"));
-            Default::default()
-        }
-    }
+/// The place that the window had, by the settings of `folder`. What is wrong with them is said by [`Keeper::new`].
+pub fn window_place(folder: &Path) -> WindowPlace {
+    let text = std::fs::read_to_string(folder.join(SETTINGS)).unwrap_or_default();
+    plain_file::parse(&text, SETTINGS, &mut Vec::new()).map_or_else(|_| WindowPlace::default(), |(settings, _): (Settings, _)| settings.window)
 }
 
 /// The lock of the session; none if another window has it.
@@ -299,7 +294,7 @@ mod tests {
         std::fs::write(folder.path().join(SETTINGS), "theme = = 1").expect("a file");
         let (_, settings, remarks) = keeper(folder.path());
         assert_eq!((settings, remarks.len()), (Settings::default(), 1), "{remarks:?}");
-        assert_eq!(std::fs::read_to_string(folder.path().join(BROKEN)).expect("it is kept"), "theme = = 1");
+        assert_eq!(std::fs::read_to_string(folder.path().join("settings.toml.broken")).expect("it is kept"), "theme = = 1");
     }
 
     #[test]

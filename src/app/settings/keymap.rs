@@ -1,11 +1,15 @@
 //! Shortcuts that the user has bound. An action that is not bound anew keeps the shortcuts of the table of actions.
 
+use std::collections::BTreeMap;
+
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+use serde::{Deserialize, Serialize};
 
 use crate::app::action::{ACTIONS, Action, modifiers_text, shortcut_text, show_shortcuts};
 
 /// Which keys carry out which action.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "BTreeMap<String, Vec<String>>", into = "BTreeMap<String, Vec<String>>")]
 pub struct Keymap {
     /// The actions that were bound anew, with all of their shortcuts; none where the user took them away.
     bound: Vec<(Action, Vec<KeyboardShortcut>)>,
@@ -31,11 +35,6 @@ impl Keymap {
         self.bound.iter().any(|(bound, _)| *bound == action)
     }
 
-    /// The actions that were bound anew.
-    pub fn bound(&self) -> impl Iterator<Item = (Action, &[KeyboardShortcut])> {
-        self.bound.iter().map(|(action, shortcuts)| (*action, shortcuts.as_slice()))
-    }
-
     /// The action of a pressed key. A shortcut with exactly these modifiers comes before one that leaves Shift open, such as `?`, which some
     /// keyboards type with Shift.
     pub fn action_of(&self, key: Key, modifiers: Modifiers, is_allowed: impl Fn(&KeyboardShortcut) -> bool) -> Option<Action> {
@@ -58,16 +57,6 @@ impl Keymap {
     pub fn bind(&mut self, action: Action, shortcut: KeyboardShortcut) -> Result<(), String> {
         self.check(action, &shortcut)?;
         self.set(action, vec![shortcut]);
-        Ok(())
-    }
-
-    /// Gives `action` these shortcuts, as a settings file states them.
-    ///
-    /// # Errors
-    /// As [`Keymap::bind`]; then nothing is bound.
-    pub fn bind_all(&mut self, action: Action, shortcuts: Vec<KeyboardShortcut>) -> Result<(), String> {
-        shortcuts.iter().try_for_each(|shortcut| self.check(action, shortcut))?;
-        self.set(action, shortcuts);
         Ok(())
     }
 
@@ -108,6 +97,32 @@ impl Keymap {
             Some(owner) => Err(format!("{text} belongs to {:?}. Give that another key first, or press another key.", owner.label())),
             None => Ok(()),
         }
+    }
+}
+
+/// Binds the keys of all actions of a settings file. An action gives its keys up first, so that two can exchange theirs.
+impl TryFrom<BTreeMap<String, Vec<String>>> for Keymap {
+    type Error = String;
+
+    fn try_from(written: BTreeMap<String, Vec<String>>) -> Result<Self, String> {
+        let (mut keys, mut stated) = (Self::default(), Vec::new());
+        for (id, texts) in &written {
+            let action = Action::of_id(id).ok_or("it is no action")?;
+            let shortcuts: Option<Vec<KeyboardShortcut>> = texts.iter().map(|text| parse(text)).collect();
+            keys.clear(action);
+            stated.push((action, shortcuts.ok_or("it takes a list of shortcuts such as \"Ctrl+Shift+Z\" or \"F5\"")?));
+        }
+        for (action, shortcuts) in stated {
+            shortcuts.iter().try_for_each(|shortcut| keys.check(action, shortcut))?;
+            keys.set(action, shortcuts);
+        }
+        Ok(keys)
+    }
+}
+
+impl From<Keymap> for BTreeMap<String, Vec<String>> {
+    fn from(keys: Keymap) -> Self {
+        keys.bound.iter().map(|(action, shortcuts)| (action.id(), shortcuts.iter().map(written).collect())).collect()
     }
 }
 

@@ -5,7 +5,8 @@
 
 use std::path::{Path, PathBuf};
 
-use toml_edit::{DocumentMut, value};
+use serde::{Deserialize, Serialize};
+use toml_edit::DocumentMut;
 
 use crate::{
     preset::SceneSource,
@@ -13,13 +14,15 @@ use crate::{
 };
 
 /// What was open.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LastSession {
     /// The window that wrote it has not closed in order.
+    #[serde(rename = "running")]
     pub is_running: bool,
     id: String,
     /// The file of the preset; none for built-in, pasted and new ones.
     path: Option<PathBuf>,
+    #[serde(rename = "read_only", default)]
     is_read_only: bool,
     /// The preset without the edits, as TOML.
     filed: String,
@@ -49,7 +52,7 @@ impl LastSession {
         Self {
             is_running: true,
             id: open.id.clone(),
-            path: open.path.as_deref().and_then(|path| std::path::absolute(path).ok()),
+            path: open.path.as_deref().and_then(|path| std::path::absolute(path).ok()).map(|path| path.to_string_lossy().into_owned().into()),
             is_read_only: open.read_only,
             filed: preset_file::to_shared_toml(&absolute(filed)),
             edited,
@@ -70,20 +73,11 @@ impl LastSession {
         self
     }
 
-    /// The session as a file.
-    pub fn to_toml(&self) -> String {
+    /// The empty document of a session.
+    pub fn document() -> DocumentMut {
         let mut document = DocumentMut::new();
-        document["running"] = value(self.is_running);
-        document["id"] = value(&self.id);
-        if let Some(path) = &self.path {
-            document["path"] = value(path.to_string_lossy().into_owned());
-        }
-        document["read_only"] = value(self.is_read_only);
-        document["filed"] = value(&self.filed);
-        if let Some(edited) = &self.edited {
-            document["edited"] = value(edited);
-        }
-        format!("# What was open in the window of rasterlab when it ran last.\n{document}")
+        document.decor_mut().set_prefix("# What was open in the window of rasterlab when it ran last.\n");
+        document
     }
 
     /// Reads a file.
@@ -91,18 +85,7 @@ impl LastSession {
     /// # Errors
     /// It is no session: why, in one line.
     pub fn parse(text: &str, file: &str) -> Result<Self, String> {
-        let document: DocumentMut = text.parse().map_err(|_| format!("{file}: it is no TOML"))?;
-        let text_of = |key: &str| document.get(key).and_then(|item| item.as_str()).map(str::to_owned);
-        let flag = |key: &str| document.get(key).and_then(|item| item.as_bool());
-        let missing = |key: &str| format!("{file}: {key} is missing");
-        Ok(Self {
-            is_running: flag("running").ok_or_else(|| missing("running"))?,
-            id: text_of("id").ok_or_else(|| missing("id"))?,
-            path: text_of("path").map(PathBuf::from),
-            is_read_only: flag("read_only").unwrap_or_default(),
-            filed: text_of("filed").ok_or_else(|| missing("filed"))?,
-            edited: text_of("edited"),
-        })
+        toml_edit::de::from_str(text).map_err(|error| format!("{file}: {}", error.message().replace('\n', " ")))
     }
 
     /// The preset that was open, with its edits. Without edits its file is read again.
@@ -172,7 +155,8 @@ mod tests {
 
     fn read_back(open: &PresetFile, filed: &PresetFile) -> LastSession {
         let session = LastSession::of(open, filed);
-        let read = LastSession::parse(&session.to_toml(), "session.toml").expect("a session");
+        let text = toml_edit::ser::to_string(&session).expect("TOML");
+        let read = LastSession::parse(&text, "session.toml").expect("a session");
         assert_eq!(read, session);
         read
     }

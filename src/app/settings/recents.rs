@@ -2,13 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
+use serde::{Deserialize, Serialize};
+
 use crate::{preset::SceneSource, preset_file::PresetFile};
 
 /// Files that are remembered.
 pub const CAPACITY: usize = 12;
 
 /// What was opened or saved last, newest first; absolute paths, each once.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "Vec<String>", into = "Vec<String>")]
 pub struct Recents(Vec<PathBuf>);
 
 impl Recents {
@@ -70,6 +73,18 @@ impl<P: AsRef<Path>> FromIterator<P> for Recents {
             }
         }
         recents
+    }
+}
+
+impl From<Vec<String>> for Recents {
+    fn from(paths: Vec<String>) -> Self {
+        paths.iter().collect()
+    }
+}
+
+impl From<Recents> for Vec<String> {
+    fn from(recents: Recents) -> Self {
+        recents.iter().map(|path| path.to_string_lossy().into_owned()).collect()
     }
 }
 

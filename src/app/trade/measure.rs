@@ -12,7 +12,6 @@ use super::{
 };
 use crate::{
     accuracy::{Axis, PinnedOptions},
-    app::calibrated::calibrated,
     effects::Stack,
     gpu::{Capture, Gpu, device::AdapterChoice},
     oracle,
@@ -29,7 +28,7 @@ const LOOK: Duration = Duration::from_millis(20);
 /// In a sentence for people.
 pub fn measure(adapter: String, scene: &Arc<Scene>, request: &Request, progress: &Progress) -> Result<Vec<Point>, String> {
     let Request { preset, size, axes, title } = request;
-    let gpu = calibrated(Gpu::open(&AdapterChoice::Named(adapter)).map_err(|e| e.to_string())?);
+    let gpu = Gpu::open(&AdapterChoice::Named(adapter)).map_err(|e| e.to_string())?;
     let view = preset.view(scene, *size);
     let began = Instant::now();
     let factors = factors(preset, axes);

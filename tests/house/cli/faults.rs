@@ -84,31 +84,6 @@ fn a_command_killed_at_any_moment_leaves_the_old_file_or_the_new_one() {
     }
 }
 
-#[test]
-fn a_preset_whose_save_is_killed_is_the_old_one_or_the_new_one() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("old.toml");
-    // Long enough that it takes a while to write.
-    let keys: String = (0..5000).map(|number| format!("# note {number}\n")).collect();
-    let old = format!("schema = 1\n{keys}[clock]\nloops = false\n");
-    fs::write(&path, &old).unwrap();
-    let migrate =
-        || command(folder.path()).args(["migrate", "--write", "old.toml"]).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-    let began = Instant::now();
-    assert!(migrate().wait().unwrap().success());
-    let (whole_us, new) = (began.elapsed().as_micros() as u64, fs::read_to_string(&path).unwrap());
-    assert_ne!(new, old);
-    for round in 0..rounds(24) {
-        fs::write(&path, &old).unwrap();
-        let mut child = migrate();
-        std::thread::sleep(Duration::from_micros(whole_us * u64::from(hash(round) % 1200) / 1000));
-        child.kill().unwrap();
-        child.wait().unwrap();
-        let left = fs::read_to_string(&path).unwrap();
-        assert!(left == old || left == new, "{} of {} or {} bytes", left.len(), old.len(), new.len());
-    }
-}
-
 /// Runs the program with files of at most `blocks` blocks of 512 bytes (or of 1024, as the shell has them): the write beyond fails as on
 /// a full disk.
 fn with_full_disk(folder: &Path, blocks: u32, args: &[&str]) -> Run {
@@ -147,12 +122,6 @@ fn a_full_disk_is_one_sentence_and_the_old_file_stays() {
         assert_eq!(unfinished(folder.path()).len(), 0, "{args:?}");
         assert_eq!(frames(folder.path()).len(), 1, "{args:?}");
     }
-    // A preset that grows.
-    let keys: String = (0..400).map(|number| format!("# note {number}\n")).collect();
-    let text = format!("schema = 1\n{keys}[clock]\nloops = false\n");
-    fs::write(folder.path().join("old.toml"), &text).unwrap();
-    assert_full(&with_full_disk(folder.path(), 1, &["migrate", "--write", "old.toml"]), "old.toml");
-    assert_eq!(fs::read_to_string(folder.path().join("old.toml")).unwrap(), text);
 }
 
 #[test]

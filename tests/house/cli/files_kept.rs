@@ -210,7 +210,6 @@ fn files_that_cannot_be_what_they_are_called_are_refused_with_what_to_do() {
     refused(&["render", "folder", "--adapter", "cpu"], "models in .glb and .gltf files");
     refused(&["render", "facet", "--adapter", "cpu", "-o", "a.jpg"], "a.jpg: pictures are written as PNG");
     refused(&["explain", "facet", "--adapter", "cpu", "--measure"], "the built-in oracle, is not timed");
-    refused(&["calibrate", "--seed", "7"], "--check");
     let missing = run_in(folder.path(), &["render", "facet", "--adapter", "cpu", "--size", "4x3", "-o", "no/a.png"]);
     assert!(missing.code != 0 && missing.err.contains("there is no folder no") && !missing.err.contains(".tmp"), "{}", missing.err);
     assert!(!at("a.jpg").exists());

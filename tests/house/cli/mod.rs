@@ -1,7 +1,6 @@
 //! Promise: stdout carries data only, exit codes mean what they say, nothing is overwritten unasked, a closed pipe is no error.
 
 mod arrays;
-mod calibrations;
 mod effects;
 mod faults;
 mod files_kept;
@@ -113,7 +112,7 @@ fn adapters_always_end_with_cpu() {
 
 #[test]
 fn usage_errors_exit_with_2_and_leave_stdout_empty() {
-    let cases: [&[&str]; 24] = [
+    let cases: [&[&str]; 21] = [
         &["--no-such-flag"],
         &["--log", "no-such-folder/window.log"],
         &["--log", "window.log", "list"],
@@ -132,9 +131,6 @@ fn usage_errors_exit_with_2_and_leave_stdout_empty() {
         &["bench", "--adapter", "cpu"],
         &["stress", "--adapter", "cpu"],
         &["fuzz", "--adapter", "cpu", "--set", "facet"],
-        &["calibrate", "--adapter", "cpu"],
-        &["calibrate", "--adapter", "cpu", "--set", "facet"],
-        &["calibrate", "--check", "0"],
         &["stress", "--filter", "no-such-case"],
         &["bless", "facet", "--adapter", "cpu"],
         &["facet", "list"],
@@ -189,8 +185,32 @@ fn a_model_that_breaks_its_standard_loads_and_strictness_refuses_it() {
 }
 
 #[test]
+fn a_preset_is_found_by_its_id_and_else_by_its_name_in_any_case() {
+    let folder = tempfile::tempdir().unwrap();
+    for (id, name) in [("mine", "First light"), ("facet", "Second light"), ("other", "second light"), ("third", "mine")] {
+        let text = format!("schema = 2\nname = \"{name}\"\n[scene]\nbuiltin = \"teapot?tess=2\"\n[effects.facet]\n");
+        fs::write(folder.path().join(format!("{id}.toml")), text).unwrap();
+    }
+    let render = |name: &str| {
+        let args = ["render", name, "--presets", ".", "--adapter", "cpu", "--size", "8x6", "--json", "--force"];
+        run_in(folder.path(), &args)
+    };
+    for (name, id) in [("First light", "mine"), ("FIRST LIGHT", "mine"), ("Third", "third"), ("mine", "mine"), ("cel", "toon")] {
+        let drawn = render(name);
+        assert_eq!((drawn.code, &json(&drawn)["results"][0]["preset"]), (0, &Value::from(id)), "{name}: {}", drawn.err);
+    }
+    for (name, ids) in [("SECOND LIGHT", "facet, other"), ("Mine", "mine, third")] {
+        let refused = render(name);
+        let wanted = format!("several presets are called {name:?}: {ids}; give the id of one");
+        assert!(refused.code == 2 && refused.err.contains(&wanted), "{}", refused.err);
+    }
+}
+
+#[test]
 fn errors_suggest_what_was_meant() {
-    assert!(run(&["render", "fascet", "--adapter", "cpu"]).err.contains("did you mean \"facet\"?"));
+    assert!(run(&["render", "fascet", "--adapter", "cpu"]).err.contains("did you mean \"facet\" (Half cut)?"));
+    let near_name = run(&["render", "Coperplate", "--adapter", "cpu"]);
+    assert!(near_name.code == 2 && near_name.err.contains("did you mean \"hero-etching\" (Copperplate)?"), "{}", near_name.err);
     assert!(run(&["render", "facet", "--adapter", "cpu", "--set", "facet.amuont=1"]).err.contains("did you mean \"amount\"?"));
     assert!(run(&["render", "facet", "--adapter", "cpu", "--set", "facet.amount=2"]).err.contains("lies outside 0..=1"));
 }
@@ -445,38 +465,6 @@ fn check_finds_every_bad_preset_and_lists_all() {
 }
 
 #[test]
-fn migrate_shows_the_changed_lines_and_writes_when_told() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("old.toml");
-    let old = "# mine\nschema = 1\n[accuracy]\nscale = \"whole\" # all of it\n";
-    fs::write(&path, old).unwrap();
-    let shown = run_in(folder.path(), &["migrate", "old.toml"]);
-    assert_eq!(shown.code, 0, "{}", shown.err);
-    for line in [
-        "--- old.toml (schema 1)",
-        "+++ old.toml (schema 2)",
-        "@@ line 4 @@",
-        "-scale = \"whole\" # all of it",
-        "+render_scale = \"full\" # all of it",
-    ] {
-        assert!(shown.out.lines().any(|shown| shown == line), "{line:?} is missing in\n{}", shown.out);
-    }
-    assert!(
-        !shown.out.contains("# mine") && shown.err.contains("1 of 1 files change to schema 2; --write changes the files"),
-        "{}",
-        shown.err
-    );
-    assert_eq!(fs::read_to_string(&path).unwrap(), old);
-    let written = run_in(folder.path(), &["migrate", "old.toml", "--write", "--json"]);
-    assert_eq!((written.code, &json(&written)["results"][0]["written"]), (0, &true.into()), "{}", written.err);
-    assert_eq!(fs::read_to_string(&path).unwrap(), "# mine\nschema = 2\n[accuracy]\nrender_scale = \"full\" # all of it\n");
-    assert_eq!(run_in(folder.path(), &["migrate", "old.toml"]).out, "");
-    fs::write(&path, "schema = 1\n[clock]\nspeed = 0\n").unwrap();
-    let broken = run_in(folder.path(), &["migrate", "old.toml", "--write"]);
-    assert!(broken.code == 2 && broken.err.contains("old.toml:3: clock.speed 0 lies outside"), "{}", broken.err);
-}
-
-#[test]
 fn bless_draws_what_check_then_accepts() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("presets")).unwrap();
@@ -592,6 +580,23 @@ fn explain_describes_a_preset_without_an_adapter() {
     let explained = run(&["explain", "facet", "--adapter", "cpu"]);
     assert_eq!(explained.code, 0, "{}", explained.err);
     assert!(explained.out.contains("facet (surface), lambert (surface)"), "{}", explained.out);
+}
+
+#[test]
+fn explain_measures_the_frame_and_its_passes_when_asked() {
+    if std::env::var("RASTERLAB_GPU").as_deref() == Ok("skip") {
+        return eprintln!("RASTERLAB_GPU=skip: GPU tests are left out");
+    }
+    let asked = ["explain", "facet", "--size", "64x48", "--quiet", "--measure"];
+    let measured = run(&[&asked[..], &["--json"]].concat());
+    let times = &json(&measured)["results"][0]["times"];
+    assert!(times["whole_ms"].as_f64().is_some_and(|ms| ms > 0.0) && times["frames"].as_u64().is_some_and(|frames| frames > 2), "{times}");
+    let passes = times["passes"].as_array().expect("a list");
+    let is_timed = |pass: &Value| pass[0].as_str().is_some_and(|label| !label.is_empty()) && pass[1].as_f64().is_some_and(|ms| ms >= 0.0);
+    assert!(passes.iter().all(is_timed), "{times}");
+    assert!(run(&asked).out.contains(" ms, measured in "), "the time of the frame");
+    let unasked = run(&["explain", "facet", "--size", "64x48", "--quiet", "--json"]);
+    assert!(json(&unasked)["results"][0]["times"].is_null(), "{}", unasked.out);
 }
 
 #[test]

@@ -216,7 +216,7 @@ fn the_unit_is_a_key_of_the_file_and_of_the_command_line() {
     set(&mut changed, "scene.unit", "m").expect("a unit");
     assert_eq!(changed.preset.unit, LengthUnit::Meter);
     assert!(preset_file::to_toml(&changed).contains("unit = \"m\" # kept"), "{}", preset_file::to_toml(&changed));
-    assert_eq!(parse("schema = 1\n[effects.fog]\n").preset.unit, LengthUnit::Meter, "older files count in meters");
+    assert_eq!(parse("schema = 2\n[effects.fog]\n").preset.unit, LengthUnit::Meter, "meters unless the file says otherwise");
     let refused = refusal("schema = 2\n[scene]\nunit = \"feet\"\n");
     assert!(refused.contains("scene.unit") && refused.contains("m, scene"), "{refused}");
 }

@@ -1,10 +1,9 @@
-//! Promise: presets survive a round trip to the bit, keep unknown keys, load from every older schema, and refuse harmful values.
+//! Promise: presets survive a round trip to the bit, keep unknown keys, and refuse harmful values.
 
 mod custom_effects;
 mod fitting;
 mod landing;
 mod merging;
-mod migrations;
 mod refused;
 mod round_trip;
 mod saving;

@@ -55,7 +55,11 @@ fn errors_name_line_key_value_and_range() {
         ("schema = 2\neffects = 3\n", "preset.toml:2: effects must be a table, written [effects]"),
         ("schema = 2\neffects.facet = true\n", "preset.toml:2: effects.facet must be a table, written [effects.facet]"),
         ("schema = 2\n[[camera]]\n", "preset.toml:2: camera must be a table, written [camera]"),
-        ("schema = 0\n", "preset.toml:1: schema must be a whole number from 1 up"),
+        (
+            "# mine\nschema = 1\n",
+            "preset.toml:2: schema 1 is older than 2, the oldest that this program reads; write schema = 2, then mend the keys that are reported as unknown",
+        ),
+        ("schema = \"2\"\n", "preset.toml:1: schema must be the whole number 2"),
         ("schema = 2\n[scene]\npath = \"https://example.org/a.glb\"\n", "preset.toml:3: scene.path must be a file, not an address"),
         ("schema = 2\n[scene]\npath = \"a.glb\"\nbuiltin = \"knot\"\n", "preset.toml:3: scene.path and scene.builtin exclude each other"),
     ];

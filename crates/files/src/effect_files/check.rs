@@ -174,7 +174,7 @@ pub fn error_at(parts: Parts<'_>, linked: &Linked, spans: &[naga::Span], message
     let message = in_names_of_author(stem, declaration, message);
     let message = message.replace("`{AbstractFloat}`", "a number with a point").replace("`{AbstractInt}`", "a whole number");
     let name = format!("effects/{stem}");
-    let first_line = linked.files.iter().find(|(file, _)| *file == name).map_or(0, |(_, line)| *line);
+    let first_line = linked.parts.iter().find(|part| part.name == name).map_or(0, |part| part.line);
     let begin: usize = linked.text.split_inclusive('\n').take(first_line).map(str::len).sum();
     let place = spans.iter().filter_map(|span| span.to_range()).find_map(|range| {
         let offset = rewritten.origin(range.start.checked_sub(begin)?)?;

@@ -12,7 +12,7 @@ use super::{
     words,
 };
 use crate::{
-    effects::{Effect, EffectSource, SetupRows, SurfaceInput, hooks::Hooks},
+    effects::{Effect, EffectSource, SurfaceInput, hooks::Hooks},
     evaluator::Precision,
     shader::library::Library,
 };
@@ -130,9 +130,6 @@ fn read_anew(file: &str, stem: &str, written: &str) -> Result<&'static Effect, E
         source: Some(source),
         base: None,
         is_repeatable: |_| true,
-        turns: |_| 0.0,
-        neighbors: |_| 0.0,
-        setup_rows: |_| SetupRows::None,
     };
     let parts = Parts { text: &text, stem, declaration: &declaration, rewritten: &rewritten };
     let checked = check::check(parts, leak(copy(&effect)))?;

@@ -5,7 +5,7 @@ use toml_edit::{Item, Value as Toml};
 use super::{
     error::{Position, PresetError},
     file::PresetFile,
-    keyframes, migrate, order,
+    keyframes, order,
     reader::{INSTANCE_KEY, Reader, number_text},
     scope::{self, SCOPE_KEY},
     toml_value,
@@ -13,7 +13,7 @@ use super::{
 use crate::{
     effect_files::Catalog,
     effects::Effect,
-    params::{Field, Param, Value, ValueType, did_you_mean, suggestion},
+    params::{Field, Param, Value, ValueType, did_you_mean},
     preset::{
         Animation,
         settings::{Section, Setting, settings},
@@ -64,18 +64,12 @@ fn target(path: &str, catalog: &Catalog) -> Result<Target, String> {
     if field == SCOPE_KEY {
         return Ok(Target::Scope(effect));
     }
-    let unknown = || match migrate::renamed_key(short) {
-        Some(new) => format!("is unknown{}", suggestion(&new)),
-        None => format!("is unknown{}", did_you_mean(field, effect.fields.iter().map(|field| field.name).chain([SCOPE_KEY]))),
-    };
+    let unknown = || format!("is unknown{}", did_you_mean(field, effect.fields.iter().map(|field| field.name).chain([SCOPE_KEY])));
     effect.field(field).map(|field| Target::Field(effect, field)).ok_or_else(unknown)
 }
 
-/// The new name of a path of an older schema, or the closest of all paths.
+/// The closest of all paths.
 fn suggestion_for_path(path: &str, catalog: &Catalog) -> String {
-    if let Some(new) = migrate::renamed_key(path) {
-        return suggestion(&new);
-    }
     let fields = catalog.effects().flat_map(|e| e.fields.iter().map(move |f| format!("{}.{}", e.name, f.name)));
     let known: Vec<String> = settings().map(Setting::path).chain(fields).chain(catalog.names().map(str::to_owned)).collect();
     did_you_mean(path, known.iter().map(String::as_str))

@@ -1,7 +1,7 @@
 //! The values of one effect as text: what is copied from one preset and pasted into another, and what files of saved values hold.
 //!
 //! The text is a preset file with nothing but that effect: `effects.toon = { steps = 3 }`, and `animation.toon = { … }` if it has keyframes.
-//! So it can be pasted into a preset file too, and its values are read, checked and migrated as those of presets are.
+//! So it can be pasted into a preset file too, and its values are read and checked as those of presets are.
 
 use std::path::{Path, PathBuf};
 

@@ -36,6 +36,8 @@ pub enum PresetError {
     Strict(Vec<String>),
     #[error("there is no preset {what:?}{hint}")]
     NoPreset { what: String, hint: String },
+    #[error("several presets are called {name:?}: {ids}; give the id of one")]
+    Ambiguous { name: String, ids: String },
     #[error("{what} holds no rasterlab preset: {reason}")]
     NotOurs { what: String, reason: String },
     #[error("{id} cannot be changed: {reason}")]

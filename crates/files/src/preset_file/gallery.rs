@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use etcetera::base_strategy::{BaseStrategy as _, choose_native_strategy};
 use include_dir::{Dir, File, include_dir};
 
 use super::{
@@ -10,7 +11,10 @@ use super::{
     load::{load_with, parse_file},
     picture::load_picture,
 };
-use crate::{effect_files::Catalog, params::did_you_mean, preset::SceneSource};
+use crate::{effect_files::Catalog, params::likeness, preset::SceneSource};
+
+/// The most presets that an error suggests.
+const MAX_NEAR: usize = 3;
 
 /// The presets inside the binary.
 pub static BUILTIN_DIR: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../presets");
@@ -41,10 +45,23 @@ pub struct GalleryEntry {
     pub shadows: Vec<Origin>,
 }
 
+impl GalleryEntry {
+    /// The name that the preset shows; its id where it has none or cannot be read.
+    pub fn title(&self) -> &str {
+        self.preset_file.as_ref().map_or(&self.id, |preset_file| preset_file.title())
+    }
+
+    /// Is `what` its id or its name, whatever the case of the letters?
+    fn is_called(&self, what: &str) -> bool {
+        let what = what.to_lowercase();
+        [&self.id, self.title()].iter().any(|name| name.to_lowercase() == what)
+    }
+}
+
 /// Where presets and effects are looked for, beside the built-in ones.
 #[derive(Clone, Debug, Default)]
 pub struct Folders {
-    /// The user's own folder, `rasterlab` in the configuration folder of the system: `presets`, `effects`, `effect-values`, `trash` and
+    /// The user's own folder, `rasterlab` in the configuration folder of the system: `presets`, `effects`, `effect-values` and
     /// `favorites.toml` are in it. None: the user has no presets, and nothing is kept.
     pub user: Option<PathBuf>,
     /// `--presets DIR`.
@@ -68,11 +85,6 @@ impl Folders {
     /// The folder of the user's own presets.
     pub fn user_presets(&self) -> Option<PathBuf> {
         Some(self.user.as_ref()?.join("presets"))
-    }
-
-    /// The folder of deleted files.
-    pub fn trash(&self) -> Option<PathBuf> {
-        Some(self.user.as_ref()?.join("trash"))
     }
 
     /// The folder of saved values of effects.
@@ -125,21 +137,17 @@ fn places(folders: &Folders) -> Vec<(Origin, PathBuf)> {
 
 /// The folder of the user's presets: `rasterlab/presets` in the configuration folder of the system.
 pub fn user_folder() -> Option<PathBuf> {
-    let variable = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
-    let config = if cfg!(windows) {
-        variable("APPDATA")
-    } else if cfg!(target_os = "macos") {
-        std::env::home_dir().map(|home| home.join("Library/Application Support"))
-    } else {
-        variable("XDG_CONFIG_HOME").or_else(|| std::env::home_dir().map(|home| home.join(".config")))
-    };
-    Some(config?.join("rasterlab/presets"))
+    let system = choose_native_strategy().ok()?;
+    // On macOS, *Preferences* is for files of the system's own format.
+    let config = if cfg!(target_os = "macos") { system.data_dir() } else { system.config_dir() };
+    Some(config.join("rasterlab/presets"))
 }
 
-/// Opens what a person names: a preset of the gallery, a `.toml` file, a PNG saved by rasterlab, a model, or `builtin:QUERY`.
+/// Opens what a person names: a preset of the gallery by its id, or by its id or name in other letters; a `.toml` file; a PNG saved by
+/// rasterlab; a model; or `builtin:QUERY`.
 ///
 /// # Errors
-/// No such preset or file, or a file that cannot be read.
+/// No such preset or file, a name that several presets have, or a file that cannot be read.
 pub fn open(what: &str, folders: &Folders) -> Result<PresetFile, PresetError> {
     if let Some(query) = what.strip_prefix("builtin:") {
         let name = query.split('?').next().unwrap_or(query);
@@ -159,18 +167,40 @@ pub fn open(what: &str, folders: &Folders) -> Result<PresetFile, PresetError> {
     if let Some(found) = by_id(what, folders) {
         return found;
     }
-    let mut entries = gallery(folders);
-    // A file whose extension is written in capitals, for instance.
-    if let Some(at) = entries.iter().position(|entry| entry.id == what) {
-        return entries.swap_remove(at).preset_file;
+    let entries = gallery(folders);
+    // An entry may have exactly this id: a file whose extension is written in capitals, for instance.
+    let exact = entries.iter().find(|entry| entry.id == what);
+    let named: Vec<&GalleryEntry> =
+        exact.map_or_else(|| entries.iter().filter(|entry| entry.is_called(what)).collect(), |entry| vec![entry]);
+    match named[..] {
+        [] => {}
+        [entry] => return by_id(&entry.id, folders).unwrap_or_else(|| entry.preset_file.clone()),
+        _ => {
+            let ids: Vec<&str> = named.iter().map(|entry| entry.id.as_str()).collect();
+            return Err(PresetError::Ambiguous { name: what.into(), ids: ids.join(", ") });
+        }
     }
     if path.exists() {
         let reason = "rasterlab opens .toml files, .png pictures that it has saved, and models in .glb and .gltf files";
         return Err(PresetError::NotOurs { what: what.into(), reason: reason.into() });
     }
-    let hint = did_you_mean(what, entries.iter().map(|entry| entry.id.as_str()));
-    let hint = if hint.is_empty() { "; rasterlab list shows all of them".into() } else { hint };
-    Err(PresetError::NoPreset { what: what.into(), hint })
+    Err(PresetError::NoPreset { what: what.into(), hint: near_presets(what, &entries) })
+}
+
+/// `; did you mean "facet" (Half cut)?`: the presets whose ids or names are nearest to `what`, or where all of them are listed.
+fn near_presets(what: &str, entries: &[GalleryEntry]) -> String {
+    let near = entries.iter().filter_map(|entry| {
+        let names = [&entry.id, entry.title()].into_iter();
+        Some((names.filter_map(|name| likeness(what, name)).max_by(f64::total_cmp)?, entry))
+    });
+    let mut near: Vec<(f64, &GalleryEntry)> = near.collect();
+    near.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let described = |(_, entry): &(f64, &GalleryEntry)| match entry.title() {
+        title if title == entry.id => format!("{:?}", entry.id),
+        title => format!("{:?} ({title})", entry.id),
+    };
+    let near: Vec<String> = near.iter().take(MAX_NEAR).map(described).collect();
+    if near.is_empty() { "; rasterlab list presets shows all of them".into() } else { format!("; did you mean {}?", near.join(" or ")) }
 }
 
 /// The preset called `id`, read from the first place that has it; no other preset is read.

@@ -1,4 +1,4 @@
-//! Loading: bytes to text, text of any schema to a preset.
+//! Loading: bytes to text, text to a preset.
 
 use std::{io::Read as _, path::Path};
 
@@ -22,10 +22,10 @@ pub fn parse(text: &str, id: &str) -> Result<PresetFile, PresetError> {
     parse_file(text, id, &format!("{id}.toml"))
 }
 
-/// Reads the text of a preset; `file` is what errors and warnings call it. Text of an older schema is migrated.
+/// Reads the text of a preset; `file` is what errors and warnings call it.
 ///
 /// # Errors
-/// No TOML, or a value that is not allowed, with its line.
+/// No TOML, an older schema, or a value that is not allowed, with its line.
 pub fn parse_file(text: &str, id: &str, file: &str) -> Result<PresetFile, PresetError> {
     parse_with(text, id, file, &Catalog::default())
 }
@@ -35,19 +35,11 @@ pub fn parse_file(text: &str, id: &str, file: &str) -> Result<PresetFile, Preset
 /// # Errors
 /// As [`parse_file`], or an effect whose file is faulty.
 pub fn parse_with(text: &str, id: &str, file: &str, catalog: &Catalog) -> Result<PresetFile, PresetError> {
-    let original = document(text, file)?;
     let mut warnings = Vec::new();
-    let schema = schema(&original, file, &mut warnings)?;
-    // A migration changes names inside their lines, so the lines of the migrated text are those of the file.
-    let current = if migrate::is_outdated(original.as_table(), schema) {
-        document(&migrate::migrate(original.into_mut(), schema).to_string(), file)?
-    } else {
-        original
-    };
+    let (current, is_newer) = migrate::migrate(document(text, file)?, file, &mut warnings)?;
     let read = read::read(&current, file, catalog)?;
     warnings.extend(read.warnings);
-    let (preset, is_newer) = (read.preset, schema > migrate::CURRENT);
-    let document = current.into_mut();
+    let (preset, document) = (read.preset, current.into_mut());
     Ok(PresetFile {
         id: id.into(),
         path: None,
@@ -83,28 +75,6 @@ pub fn load_with(path: &Path, catalog: &Catalog) -> Result<PresetFile, PresetErr
     Ok(PresetFile { path: Some(path.to_owned()), ..preset_file })
 }
 
-/// A preset's text as the current schema has it.
-pub struct Migrated {
-    /// The schema of the file.
-    pub from: i64,
-    pub before: String,
-    pub after: String,
-}
-
-/// The text of the file at `path`, migrated to the current schema; it must be a preset that loads.
-///
-/// # Errors
-/// As [`load`].
-pub fn migrated(path: &Path) -> Result<Migrated, PresetError> {
-    let (before, file) = (read_text(path)?, path.display().to_string());
-    parse_file(&before, &stem(path), &file)?;
-    let document = document(&before, &file)?;
-    let from = schema(&document, &file, &mut Vec::new())?;
-    let is_outdated = migrate::is_outdated(document.as_table(), from);
-    let after = if is_outdated { migrate::migrate(document.into_mut(), from).to_string() } else { before.clone() };
-    Ok(Migrated { from, before, after })
-}
-
 /// The text of a preset file, or of another file of at most [`MAX_BYTES`].
 pub(super) fn read_text(path: &Path) -> Result<String, PresetError> {
     let bytes = read_capped(path, MAX_BYTES as u64)?;
@@ -137,24 +107,4 @@ fn document(text: &str, file: &str) -> Result<Document<String>, PresetError> {
         let line = error.span().map(|span| reader::line_of(text, span.start));
         PresetError::Syntax { at: at(line), reason: legible_line(&error.message().trim().replace('\n', ", ")) }
     })
-}
-
-/// The schema that a document states; a missing one is taken for the current one.
-fn schema(document: &Document<String>, file: &str, warnings: &mut Vec<String>) -> Result<i64, PresetError> {
-    let Some(item) = document.get("schema") else {
-        warnings.push(format!("{file}: schema is missing; write schema = {} on the first line", migrate::CURRENT));
-        return Ok(migrate::CURRENT);
-    };
-    let at = reader::position(document.as_table(), "schema", file, document.raw());
-    match item.as_integer() {
-        Some(schema) if schema >= 1 => {
-            if schema > migrate::CURRENT {
-                let newest = migrate::CURRENT;
-                warnings
-                    .push(format!("{at}: schema {schema} is newer than {newest}, the newest that this program knows; opened read-only"));
-            }
-            Ok(schema)
-        }
-        _ => Err(PresetError::value(at, "schema", "must be a whole number from 1 up")),
-    }
 }

@@ -5,7 +5,6 @@
 
 mod apng;
 mod atomic;
-mod calibrations;
 mod edit;
 mod effect_values;
 mod error;
@@ -32,12 +31,10 @@ mod scope;
 mod share;
 pub mod sweep;
 pub mod toml_value;
-mod trash;
 mod write;
 
 pub use apng::{AnimatedPng, AnimationOptions};
 pub use atomic::{AtomicFile, Existing, is_taken, write_atomically};
-pub use calibrations::{Calibration, CalibrationKey, Kept, calibrations_folder};
 pub use edit::{set, unset};
 pub use effect_values::{EffectValues, SavedValues, is_effect_text, load_values, save_values, saved_values};
 pub use error::{Position, PresetError};
@@ -46,11 +43,10 @@ pub use frame_status::{FrameStatus, frame_status};
 pub use gallery::{BUILTIN_DIR, Folders, GalleryEntry, Origin, gallery, open, user_effects_folder, user_folder};
 pub use goldens::{golden_folder, golden_paths};
 pub use hash::{Fnv, hex, preset_hash, scene_hash};
-pub use load::{Migrated, load, load_with, migrated, parse, parse_file, parse_with};
+pub use load::{load, load_with, parse, parse_file, parse_with};
 pub use look::Look;
 pub use manage::{duplicate, file_stem, rename};
 pub use merge::{Merged, merge};
 pub use picture::{Provenance, png_bytes, png_of_frame, png_pixels, png_with_preset, preset_from_png};
 pub use scene::{SceneError, load_scene, scene_bounds};
 pub use share::{from_line, to_line};
-pub use trash::{Trashed, move_to_trash, restore, trashed};

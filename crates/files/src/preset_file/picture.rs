@@ -15,8 +15,6 @@ use super::{
 use crate::{frame::Frame, params::legible_line, preset::SceneSource};
 
 const PRESET: &str = "rasterlab preset";
-/// The keyword of the preset in pictures of schema 1.
-const PRESET_BEFORE: &str = "rasterlab look";
 
 /// Longest PNG that is read, bytes.
 const MAX_FILE_BYTES: u64 = 1 << 28;
@@ -136,7 +134,7 @@ pub fn preset_from_png(bytes: &[u8], file: &str) -> Result<PresetFile, PresetErr
     // Texts come before the pixels, so only the header is read.
     let info = decoder.read_header_info().map(|_| ()).and_then(|()| decoder.read_info());
     let reader = info.map_err(|e| not_ours(format!("it is no readable PNG ({e})")))?;
-    let chunk = reader.info().utf8_text.iter().find(|chunk| [PRESET, PRESET_BEFORE].contains(&chunk.keyword.as_str()));
+    let chunk = reader.info().utf8_text.iter().find(|chunk| chunk.keyword == PRESET);
     let absent = || match is_damaged(bytes) {
         true => not_ours("the file is damaged: it is cut off, or a checksum is wrong".into()),
         false => not_ours("it was not saved by rasterlab, or saved with --bare".into()),

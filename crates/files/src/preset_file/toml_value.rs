@@ -5,7 +5,7 @@
 
 use toml_edit::Value as Toml;
 
-use crate::params::{Param, Value, ValueType, did_you_mean, suggestion};
+use crate::params::{Param, Value, ValueType, did_you_mean};
 
 /// The text of a number as it stands in the file.
 pub type NumberText<'a> = &'a dyn Fn(&Toml) -> String;
@@ -101,11 +101,7 @@ fn text(toml: &Toml) -> Result<String, String> {
 fn word(toml: &Toml, words: &'static [&'static str]) -> Result<usize, String> {
     let written = toml.as_str().ok_or_else(|| format!("must be one of {}, not {}", words.join(", "), description(toml)))?;
     words.iter().position(|word| *word == written).ok_or_else(|| {
-        let hint = match super::migrate::renamed_word(written, words) {
-            Some(new) => suggestion(new),
-            None => did_you_mean(written, words.iter().copied()),
-        };
-        format!("{written:?} is not one of {}{hint}", words.join(", "))
+        format!("{written:?} is not one of {}{}", words.join(", "), did_you_mean(written, words.iter().copied()))
     })
 }
 

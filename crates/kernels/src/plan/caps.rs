@@ -1,7 +1,5 @@
 //! Capabilities of an adapter, and how work is divided on it.
 
-use super::measured::Measured;
-
 /// Kernels bind at most 8 storage buffers, and at most 2 more in place of uniforms or to clear what a draw order counts. A resolve that reads
 /// a shadow map from a buffer binds one more.
 pub(super) const MANY_STORAGE_BUFFERS: u32 = 10;
@@ -24,10 +22,6 @@ pub struct Caps {
     pub software: bool,
     /// The atomic maximum costs far more than compare and exchange: SwiftShader calls a function for each.
     pub slow_atomic_maximum: bool,
-    /// What a calibration of this adapter measured, if one was kept: it decides how work is divided, and which of the options that a tolerance allows
-    /// is taken.
-    #[serde(skip)]
-    pub measured: Option<Measured>,
 }
 
 impl Caps {
@@ -42,7 +36,6 @@ impl Caps {
         max_storage_buffers: u32::MAX,
         software: false,
         slow_atomic_maximum: false,
-        measured: None,
     };
 
     /// `native-int64` or `portable`.
@@ -55,7 +48,6 @@ impl Caps {
     /// by it.
     pub fn tuning(&self) -> Tuning {
         let (max_small_samples, max_small_side) = if self.software { (MOST_SMALL_SAMPLES, 128) } else { (32, 32) };
-        let max_small_samples = self.measured.map_or(max_small_samples, |measured| measured.max_small_samples);
         let group_size = if self.software { 64 } else { 256 };
         Tuning {
             max_small_samples,
@@ -84,7 +76,7 @@ pub const MOST_SMALL_SAMPLES: u32 = 128 * 128;
 /// benches and tests try others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tuning {
-    /// Most candidate samples of a triangle that one invocation walks, 1 to [`MOST_SMALL_SAMPLES`]. A calibration chooses it.
+    /// Most candidate samples of a triangle that one invocation walks, 1 to [`MOST_SMALL_SAMPLES`].
     pub max_small_samples: u32,
     /// Most pixels per side of such a triangle's box, 1 to 128.
     pub max_small_side: u32,

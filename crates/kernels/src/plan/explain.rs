@@ -48,11 +48,6 @@ impl Plan {
         super::plan(&self.needs, &StackTraits::of(stack, request)?, &self.caps, tuning, request)
     }
 
-    /// Time of a frame as a fraction of the time with the default options, as far as options were measured.
-    pub fn expected_time(&self) -> f64 {
-        costs::expected(&self.key.options, &self.needs, &self.caps)
-    }
-
     /// The parts of the frame that the key omits, each with the reason.
     pub fn omissions(&self) -> Vec<Note> {
         self.key.omissions(&self.needs).into_iter().map(|(name, why)| note(name, why)).collect()
@@ -70,8 +65,9 @@ impl Plan {
                 format!("{word}: {}", lowercase_first(about))
             }
             Cause::Cheaper => {
-                let (fraction, own) = (costs::of(axis, option, &self.needs, &self.caps), predict(index, option, &self.needs));
-                let measured = if self.caps.measured.is_some() { " as calibrated" } else { "" };
+                let fraction = costs::of(axis, option, &self.needs, &self.caps, &self.measured);
+                let own = predict(index, option, &self.needs);
+                let measured = if self.measured.fraction(index, option).is_some() { " as measured here" } else { "" };
                 format!(
                     "{word}: {fraction:.2} of the default's time{measured}, predicted error {:.0} of {:.0} ppm, {:.1} of {} in color",
                     own.wrong_ppm, self.tolerance.wrong_ppm, own.channel, self.tolerance.channel
@@ -104,7 +100,6 @@ impl Plan {
     fn small_reason(&self) -> Note {
         let why = match (self.has_default_tuning, self.caps.software) {
             (false, _) => "as the tuning says",
-            (true, _) if self.caps.measured.is_some() => "as the calibration measured",
             (true, true) => "a CPU adapter runs invocations one after another",
             (true, false) => "a workgroup takes over early on a GPU",
         };

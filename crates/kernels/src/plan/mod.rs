@@ -1,26 +1,22 @@
 //! The planner: the cheapest kernel that scene, stack and tolerance allow on this adapter.
 
 mod caps;
-pub mod cost_model;
 mod costs;
 mod error;
 mod explain;
 mod key;
-mod least_squares;
 mod loops;
-mod measured;
 mod options;
 pub mod predict;
 mod traits;
 
 use std::sync::Arc;
 
-pub use crate::accuracy::{AccuracyRequest, Tier, Tolerance};
+pub use crate::accuracy::{AccuracyRequest, MeasuredCosts, Tier, Tolerance};
 
 pub use self::{
     caps::{Caps, MOST_SMALL_SAMPLES, Tuning},
     error::PlanError,
-    measured::{MEASURED_OPTIONS, MEASURED_TRIANGLES, Measured, OptionCosts},
     traits::{InexactEffect, StackTraits},
 };
 use self::{
@@ -57,6 +53,7 @@ pub struct Plan {
     pub classes: Option<SizeClasses>,
     /// Why each axis is on its option.
     causes: [Cause; AXES.len()],
+    measured: MeasuredCosts,
     caps: Caps,
     has_default_tuning: bool,
 }
@@ -83,6 +80,7 @@ pub fn plan(needs: &Arc<Needs>, stack: &StackTraits, caps: &Caps, tuning: &Tunin
         prediction,
         tolerance: request.tolerance(),
         causes,
+        measured: request.measured,
         caps: *caps,
         has_default_tuning: *tuning == caps.tuning(),
     })

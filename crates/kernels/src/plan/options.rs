@@ -147,7 +147,7 @@ fn far_from_origin(options: &AccuracyOptions, inputs: &Inputs) -> Option<Predict
 /// The option of the axis that saves the most time within the tolerance, if any does.
 fn cheapest(axis: &Axis, options: &AccuracyOptions, inputs: &Inputs) -> Option<usize> {
     let Inputs { needs, caps, request, .. } = *inputs;
-    let cost = |option: usize| costs::of(axis, option, needs, caps);
+    let cost = |option: usize| costs::of(axis, option, needs, caps, &request.measured);
     let saves = |option: &usize| axis.index() != Skinning::AXIS && cost(*option) < cost(options.get(axis));
     let mut cheaper: Vec<usize> = (0..axis.words.len()).filter(saves).collect();
     cheaper.sort_by(|a, b| cost(*a).total_cmp(&cost(*b)));

@@ -1,27 +1,30 @@
-//! The linker: concatenates the files that a pass uses, each once. Module scope in WGSL has no order, so a variant is
-//! which files are taken; there is no preprocessor.
+//! The linker: concatenates the files, and sections of files, that a pass uses, each once. Module scope in WGSL has no order, so a
+//! variant is which sections are taken; there is no preprocessor.
 //!
 //! | directive | takes |
 //! |---|---|
 //! | `//@ use lib/frame` | a file of `lib` or `effects` |
-//! | `//@ use variants/depth` | the file of that folder that the kernel key chooses, visible through the folder's interface |
-//! | `//@ use steps/sample_test` | a function that calls every chosen file of that folder, in order |
+//! | `//@ use variants/depth` | the section of that file that the kernel key chooses, visible through the interface in its head |
+//! | `//@ use steps/sample_test` | a function that calls every chosen section of that file of `variants`, in order |
+//! | `//@ steps fn setup_step(…)` | such a function of steps that are sections of this file |
 //! | `//@ use glue/surface` | the effects of the stack on that hook, with their call chain |
 //! | `//@ use glue/draws` | a buffer that the key declares in one of several ways, with the functions that depend on it |
 //!
-//! A file may name only what it declares itself, and what the files that it uses directly declare. Anything else is an
-//! error, so that each file can be read alone. No file can use a stage.
+//! The text of a file is its head; sections, begun by `//@ variant NAME` and `//@ step NAME`, are taken when they are chosen. A head or a
+//! section may name only what it declares itself, and what it uses directly declares. Anything else is an error, so that each can be
+//! read alone. No file can use a stage.
 
 use std::{
     collections::{BTreeMap, BTreeSet, HashMap},
     fmt::Write,
+    ops::Range,
     sync::{Arc, LazyLock},
 };
 
 use super::{
     glue::{self, Chain},
     key::{Fetch, KernelKey},
-    library::Library,
+    library::{Library, sections},
     pass::Pass,
     source::{Directive, Signature, Source},
 };
@@ -31,84 +34,104 @@ use crate::{accuracy::Visibility, effects::Effect};
 #[derive(Clone, Debug)]
 pub struct Linked {
     pub text: String,
-    /// Name of each file and the line (from 0) at which it begins in `text`.
-    pub files: Vec<(String, usize)>,
+    pub parts: Vec<Part>,
+}
+
+/// A part of a linked module: the head of a file, a section, or generated text. Lines count from 0.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// `lib/fixed` for the head of that file, `variants/coverage/float` for a section; for generated text what it is.
+    pub name: String,
+    /// The file below `shaders`, without `.wgsl`, and its line at which the part begins; none for generated text.
+    pub origin: Option<(String, usize)>,
+    /// The line at which it begins in the linked text.
+    pub line: usize,
 }
 
 impl Linked {
     /// `shaders/<file>.wgsl:<line>` of a line (from 1) of the linked text.
     pub fn origin(&self, line: u32) -> String {
         let line = line as usize - 1;
-        match self.files.iter().rev().find(|(_, first)| *first <= line) {
-            Some((name, first)) => format!("shaders/{name}.wgsl:{}", line - first + 1),
+        match self.parts.iter().rev().find(|part| part.line <= line) {
+            Some(Part { origin: Some((file, first)), line: begin, .. }) => place(file, first + line - begin),
+            Some(part) => format!("{}:{}", part.name, line - part.line + 1),
             None => format!("linked text:{}", line + 1),
         }
     }
 
-    /// The files below `shaders` that are part of the module; generated text is not.
-    pub fn sources(&self) -> impl Iterator<Item = &str> {
-        self.files.iter().map(|(name, _)| name.as_str()).filter(|name| !name.ends_with(GENERATED))
+    /// The files below `shaders`, without `.wgsl`, that the module takes heads or sections of.
+    pub fn files(&self) -> BTreeSet<&str> {
+        self.parts.iter().filter_map(|part| part.origin.as_ref()).map(|(file, _)| file.as_str()).collect()
     }
 }
 
-/// End of the names of generated parts of a module.
-const GENERATED: &str = "(generated)";
+/// A line (from 0) of a file as errors name it.
+fn place(file: &str, line: usize) -> String {
+    format!("shaders/{file}.wgsl:{}", line + 1)
+}
 
 /// Why a module could not be put together. Lines count from 1.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LinkError {
     #[error("{user} uses {name}, but there is no shaders/{name}.wgsl")]
     Missing { user: String, name: String },
-    #[error("{user} uses variants/{folder}, but this kernel chooses no file of it")]
-    NoVariant { user: String, folder: String },
+    #[error("{user} uses variants/{file}, but this kernel chooses no variant of it")]
+    NoVariant { user: String, file: String },
+    #[error("shaders/{file}.wgsl has no section {section}, which this kernel chooses")]
+    NoSection { file: String, section: String },
     #[error("shaders/{user}.wgsl:{line}: uses {name}, and a stage cannot be used")]
     UsesStage { user: String, line: u32, name: String },
     #[error("shaders/{user}.wgsl:{line}: unknown {name} in //@ use")]
     UnknownUse { user: String, line: u32, name: String },
     #[error("shaders/{file}.wgsl:{line}: names {name}, which {declared_in} declares; add //@ use for it")]
     Undeclared { file: String, line: u32, name: String, declared_in: String },
-    #[error("shaders/{file}.wgsl does not define {signature}, which {interface} declares")]
-    Incomplete { file: String, signature: String, interface: String },
+    #[error("section {section} of shaders/{file}.wgsl does not define {signature}, which the file declares")]
+    Incomplete { section: String, file: String, signature: String },
 }
 
-/// A file of the library: its text, and what it declares and refers to.
-struct File {
+/// The head or a section of a file: its text, and what it declares and refers to.
+struct Section {
+    /// The line (from 0) of the file at which it begins.
+    first_line: usize,
     text: String,
     source: Source,
 }
 
-impl File {
-    fn new(text: String) -> Self {
-        Self { source: Source::parse(&text), text }
+impl Section {
+    fn new(first_line: usize, text: &str) -> Arc<Self> {
+        Arc::new(Self { first_line, source: Source::parse(text), text: text.to_owned() })
     }
 }
 
+/// A file of the library: its sections by name; the name of its head is empty.
+type File = HashMap<String, Arc<Section>>;
+
+fn file_of(text: &str) -> Arc<File> {
+    let section = |(name, range): (&str, Range<usize>)| {
+        let first_line = text[..range.start].matches('\n').count();
+        (name.to_owned(), Section::new(first_line, &text[range]))
+    };
+    Arc::new(sections(text).into_iter().map(section).collect())
+}
+
 /// The embedded files, read once.
-static EMBEDDED: LazyLock<HashMap<String, Arc<File>>> = LazyLock::new(|| {
-    let texts = Library::embedded();
-    texts.map(|(name, text)| (name, Arc::new(File::new(text.to_owned())))).collect()
-});
+static EMBEDDED: LazyLock<HashMap<String, Arc<File>>> =
+    LazyLock::new(|| Library::embedded().map(|(name, text)| (name, file_of(text))).collect());
 
 fn file(library: &Library, name: &str) -> Option<Arc<File>> {
     match library {
         Library::Embedded => EMBEDDED.get(name).cloned(),
-        Library::Folder(_) => library.text(name).map(|text| Arc::new(File::new(text.into_owned()))),
+        Library::Folder(_) => library.text(name).map(|text| file_of(&text)),
     }
 }
 
-/// Puts together the module of `shaders/<root>.wgsl` for `key`. `variants` gives the stem of the file that the key chooses in
-/// each folder of `shaders/variants`; a folder of steps has as many entries as there are steps.
+/// Puts together the module of `shaders/<root>.wgsl` for `key`. `variants` gives the section that the key chooses in each file of
+/// `shaders/variants`; steps have as many entries as are chosen.
 ///
 /// # Errors
 /// When a file is missing, names what no file that it uses declares, or does not define what its interface declares.
 pub fn link(library: &Library, root: &str, key: &KernelKey, variants: &[(&str, &str)]) -> Result<Linked, LinkError> {
-    let linked = Linked { text: String::new(), files: Vec::new() };
-    let mut linker = Linker { library, key, variants, linked, files: BTreeMap::new(), generated: BTreeMap::new(), has_effects: false };
-    linker.take(root, "the program")?;
-    linker.declare_bindings(root);
-    linker.append_effects()?;
-    linker.check()?;
-    Ok(linker.linked)
+    Linker::new(library, key, variants, false).link(root)
 }
 
 /// Puts together the module of one effect alone: its functions and what they use.
@@ -118,15 +141,7 @@ pub fn link(library: &Library, root: &str, key: &KernelKey, variants: &[(&str, &
 pub fn link_effect(library: &Library, effect: &'static Effect) -> Result<Linked, LinkError> {
     let key = KernelKey::complete(Fetch::Indexed, Visibility::Split32, vec![effect]);
     let variants = key.variants(Pass::Resolve);
-    let linked = Linked { text: String::new(), files: Vec::new() };
-    let mut linker =
-        Linker { library, key: &key, variants: &variants, linked, files: BTreeMap::new(), generated: BTreeMap::new(), has_effects: true };
-    let root = format!("effects/{}", effect.file_stem());
-    linker.take(&root, "the program")?;
-    linker.declare_bindings(&root);
-    linker.append_effects()?;
-    linker.check()?;
-    Ok(linker.linked)
+    Linker::new(library, &key, &variants, true).link(&format!("effects/{}", effect.file_stem()))
 }
 
 struct Linker<'a> {
@@ -134,86 +149,131 @@ struct Linker<'a> {
     key: &'a KernelKey,
     variants: &'a [(&'a str, &'a str)],
     linked: Linked,
-    files: BTreeMap<String, Arc<File>>,
+    /// What was read.
+    files: HashMap<String, Arc<File>>,
+    /// What was taken, by the names of parts, each with its file.
+    taken: BTreeMap<String, (String, Arc<Section>)>,
     /// Names that generated text declares, each with the directive that brings it.
     generated: BTreeMap<String, String>,
     /// Some file uses the parameters of effects.
     has_effects: bool,
 }
 
-impl Linker<'_> {
-    fn load(&self, name: &str, user: &str) -> Result<Arc<File>, LinkError> {
+impl<'a> Linker<'a> {
+    fn new(library: &'a Library, key: &'a KernelKey, variants: &'a [(&'a str, &'a str)], has_effects: bool) -> Self {
+        let linked = Linked { text: String::new(), parts: Vec::new() };
+        let (files, taken, generated) = (HashMap::new(), BTreeMap::new(), BTreeMap::new());
+        Self { library, key, variants, linked, files, taken, generated, has_effects }
+    }
+
+    fn link(mut self, root: &str) -> Result<Linked, LinkError> {
+        self.take_head(root, "the program")?;
+        self.declare_bindings(root);
+        self.append_effects()?;
+        self.check()?;
+        self.library.record(self.taken.keys().map(String::as_str));
+        Ok(self.linked)
+    }
+
+    fn load(&mut self, name: &str, user: &str) -> Result<Arc<File>, LinkError> {
+        if let Some(file) = self.files.get(name) {
+            return Ok(file.clone());
+        }
         let custom = name.strip_prefix("effects/").and_then(|stem| {
             let sources = self.key.effects.list.iter().filter_map(|effect| effect.source);
             sources.into_iter().find(|source| source.stem == stem)
         });
-        if let Some(source) = custom {
-            return Ok(Arc::new(File::new(source.linked.clone())));
-        }
-        file(self.library, name).ok_or_else(|| LinkError::Missing { user: user.into(), name: name.into() })
+        let file = match custom {
+            Some(source) => Arc::new(File::from([(String::new(), Section::new(0, &source.linked))])),
+            None => file(self.library, name).ok_or_else(|| LinkError::Missing { user: user.into(), name: name.into() })?,
+        };
+        self.files.insert(name.to_owned(), file.clone());
+        Ok(file)
     }
 
-    /// Takes a file and all that it uses.
-    fn take(&mut self, name: &str, user: &str) -> Result<(), LinkError> {
-        if self.files.contains_key(name) {
+    fn load_head(&mut self, name: &str, user: &str) -> Result<Arc<Section>, LinkError> {
+        Ok(self.load(name, user)?[""].clone())
+    }
+
+    /// Takes a file without its sections, and all that it uses.
+    fn take_head(&mut self, name: &str, user: &str) -> Result<(), LinkError> {
+        let head = self.load_head(name, user)?;
+        self.take(name, name, &head)
+    }
+
+    /// Takes a section of a file and all that it uses.
+    fn take_section(&mut self, file: &str, section: &str) -> Result<Arc<Section>, LinkError> {
+        let none = || LinkError::NoSection { file: file.into(), section: section.into() };
+        let found = self.load(file, "the program")?.get(section).cloned().ok_or_else(none)?;
+        self.take(&format!("{file}/{section}"), file, &found)?;
+        Ok(found)
+    }
+
+    fn take(&mut self, part: &str, file: &str, section: &Arc<Section>) -> Result<(), LinkError> {
+        if self.taken.contains_key(part) {
             return Ok(());
         }
-        let file = self.load(name, user)?;
-        self.append(name, &file.text);
-        self.files.insert(name.to_owned(), file.clone());
-        for (used, line) in file.source.uses() {
+        self.append(part, Some((file.to_owned(), section.first_line)), &section.text);
+        self.taken.insert(part.to_owned(), (file.to_owned(), section.clone()));
+        for (directive, line) in &section.source.directives {
+            let line = section.first_line as u32 + line;
+            let user = place(file, line as usize - 1);
+            let used = match directive {
+                Directive::Use(used) => used,
+                Directive::Steps(signature) => {
+                    self.take_steps(file, signature)?;
+                    continue;
+                }
+                _ => continue,
+            };
             let (kind, rest) = used.split_once('/').unwrap_or(("", used));
             match kind {
-                "stages" => return Err(LinkError::UsesStage { user: name.into(), line, name: used.into() }),
-                "variants" => self.take_variant(rest, name)?,
-                "steps" => self.take_steps(rest, name)?,
-                "glue" => self.take_glue(rest).ok_or_else(|| LinkError::UnknownUse { user: name.into(), line, name: used.into() })??,
-                _ => self.take(used, name)?,
+                "stages" => return Err(LinkError::UsesStage { user: file.into(), line, name: used.into() }),
+                "variants" => self.take_variant(rest, &user)?,
+                "steps" => {
+                    let interface = format!("variants/{rest}");
+                    let head = self.load_head(&interface, &user)?;
+                    let steps = head.source.steps().next().ok_or_else(|| LinkError::Missing { user, name: used.into() })?;
+                    self.take_steps(&interface, steps)?;
+                }
+                "glue" => self.take_glue(rest).ok_or_else(|| LinkError::UnknownUse { user: file.into(), line, name: used.into() })??,
+                _ => self.take_head(used, &user)?,
             }
         }
         Ok(())
     }
 
-    /// Takes the file that the key chooses in a folder, and checks it against the folder's interface.
-    fn take_variant(&mut self, folder: &str, user: &str) -> Result<(), LinkError> {
-        let chosen = self.variants.iter().find(|(name, _)| *name == folder).map(|(_, stem)| *stem);
-        let stem = chosen.ok_or_else(|| LinkError::NoVariant { user: user.into(), folder: folder.into() })?;
-        let name = format!("variants/{folder}/{stem}");
-        let interface = interface_of(folder);
-        let declared = self.load(&interface, user)?;
-        self.take(&name, user)?;
-        for (directive, _) in &declared.source.directives {
+    /// Takes the section that the key chooses in a file of variants, and checks it against the interface in the file's head.
+    fn take_variant(&mut self, variants: &str, user: &str) -> Result<(), LinkError> {
+        let chosen = self.variants.iter().find(|(name, _)| *name == variants).map(|(_, section)| *section);
+        let section = chosen.ok_or_else(|| LinkError::NoVariant { user: user.into(), file: variants.into() })?;
+        let file = format!("variants/{variants}");
+        let interface = self.load_head(&file, user)?;
+        let taken = self.take_section(&file, section)?;
+        let source = &taken.source;
+        for (directive, _) in &interface.source.directives {
             if let Directive::Declare(signature) = directive
-                && !self.files[&name].source.defines(signature)
+                && !source.defines(signature)
+                && !binding_names(source).any(|name| name == signature.name)
             {
-                return Err(LinkError::Incomplete { file: name, signature: signature.text.clone(), interface });
+                return Err(LinkError::Incomplete { section: section.into(), file, signature: signature.text.clone() });
             }
         }
         Ok(())
     }
 
-    /// Takes every chosen file of a folder of steps, and generates the function that calls them in order.
-    fn take_steps(&mut self, folder: &str, user: &str) -> Result<(), LinkError> {
-        let interface = interface_of(folder);
-        let part = format!("steps of {folder} {GENERATED}");
-        if self.linked.files.iter().any(|(taken, _)| *taken == part) {
+    /// Takes every chosen step among the sections of a file, and generates the function that calls them in order.
+    fn take_steps(&mut self, file: &str, signature: &Signature) -> Result<(), LinkError> {
+        let steps: Vec<&str> = self.variants.iter().filter(|(name, _)| *name == signature.name).map(|(_, step)| *step).collect();
+        if !self.generate(&format!("steps of {}", signature.name), || steps_text(signature, &steps)) {
             return Ok(());
         }
-        let declared = self.load(&interface, user)?;
-        let steps = declared.source.directives.iter().find_map(|(directive, _)| match directive {
-            Directive::Steps(signature) => Some(signature.clone()),
-            _ => None,
-        });
-        let signature = steps.ok_or_else(|| LinkError::Missing { user: user.into(), name: format!("steps/{folder}") })?;
-        let stems: Vec<&str> = self.variants.iter().filter(|(name, _)| *name == folder).map(|(_, stem)| *stem).collect();
-        self.append(&part, &steps_text(&signature, &stems));
-        self.generated.insert(signature.name.clone(), format!("steps/{folder}"));
-        for stem in stems {
-            let name = format!("variants/{folder}/{stem}");
-            self.take(&name, &interface)?;
-            let wanted = signature.renamed(&format!("{}_{stem}", signature.name));
-            if !self.files[&name].source.functions.iter().any(|function| same_types(function, &wanted)) {
-                return Err(LinkError::Incomplete { file: name, signature: wanted, interface });
+        self.generated.insert(signature.name.clone(), format!("steps/{}", signature.name));
+        for step in steps {
+            let wanted = signature.renamed(&format!("{}_{step}", signature.name));
+            let section = self.take_section(file, step)?;
+            if !section.source.functions.iter().any(|function| same_types(function, &wanted)) {
+                return Err(LinkError::Incomplete { section: step.into(), file: file.into(), signature: wanted });
             }
         }
         Ok(())
@@ -224,31 +284,30 @@ impl Linker<'_> {
         if let Some(declaration) = glue::binding(name, self.key) {
             self.generated.insert(name.to_owned(), format!("glue/{name}"));
             // Where the stage declares the buffer with another access, its declaration counts.
-            let is_declared = self.files.values().any(|file| file.source.declared.contains(name));
-            let part = format!("glue of {name} {GENERATED}");
-            if !self.linked.files.iter().any(|(taken, _)| *taken == part) {
-                let mut text = if is_declared { String::new() } else { declaration };
-                if name == "draws" {
-                    glue::DRAW_FUNCTIONS.iter().for_each(|function| drop(self.generated.insert((*function).into(), "glue/draws".into())));
-                    text.push_str(&glue::draw_functions(self.key));
-                }
-                self.append(&part, &text);
+            let is_declared = self.taken.values().any(|(_, section)| section.source.declared.contains(name));
+            let key = self.key;
+            self.generate(&format!("glue of {name}"), || {
+                let functions = if name == "draws" { glue::draw_functions(key) } else { String::new() };
+                if is_declared { functions } else { declaration + &functions }
+            });
+            if name != "draws" {
+                return Some(Ok(()));
             }
+            glue::DRAW_FUNCTIONS.iter().for_each(|function| drop(self.generated.insert((*function).into(), "glue/draws".into())));
             // The record that the buffer holds.
-            return Some(if name == "draws" { self.take("lib/triangle", "glue/draws") } else { Ok(()) });
+            return Some(self.take_head("lib/triangle", "glue/draws"));
         }
         if name == "effects" {
             self.has_effects = true;
             return Some(Ok(()));
         }
         let chain = Chain::ALL.into_iter().find(|chain| chain.name() == name)?;
-        let part = format!("glue of {name} {GENERATED}");
-        if !self.linked.files.iter().any(|(taken, _)| *taken == part) {
+        let key = self.key;
+        if self.generate(&format!("glue of {name}"), || chain.text(&key.effects)) {
             self.has_effects = true;
-            self.append(&part, &chain.text(&self.key.effects));
             self.generated.insert(format!("glue_{name}"), format!("glue/{name}"));
             for effect in chain.effects(&self.key.effects.list) {
-                if let Err(error) = self.take(&format!("effects/{}", effect.file_stem()), &format!("glue/{name}")) {
+                if let Err(error) = self.take_head(&format!("effects/{}", effect.file_stem()), &format!("glue/{name}")) {
                     return Some(Err(error));
                 }
             }
@@ -258,9 +317,9 @@ impl Linker<'_> {
 
     /// Declares the buffers of `//@ binding` lines that the stage does not declare with another access.
     fn declare_bindings(&mut self, root: &str) {
-        let of_stage = self.files[root].source.declared.clone();
+        let of_stage = self.taken[root].1.source.declared.clone();
         let mut bindings: BTreeMap<String, String> = BTreeMap::new();
-        for (directive, _) in self.files.values().flat_map(|file| &file.source.directives) {
+        for (directive, _) in self.taken.values().flat_map(|(_, section)| &section.source.directives) {
             if let Directive::Binding { name, declaration } = directive
                 && !of_stage.contains(name)
             {
@@ -269,7 +328,7 @@ impl Linker<'_> {
         }
         let text: String = bindings.values().map(|declaration| format!("{declaration}\n")).collect();
         if !text.is_empty() {
-            self.append(&format!("bindings {GENERATED}"), &text);
+            self.append("bindings", None, &text);
         }
     }
 
@@ -284,10 +343,10 @@ impl Linker<'_> {
         let mut declared: BTreeSet<&str> = BTreeSet::new();
         for effect in &self.key.effects.list {
             let name = format!("effects/{}", effect.file_stem());
-            if !self.files.contains_key(&name) && declared.insert(effect.file_stem()) {
+            if !self.taken.contains_key(&name) && declared.insert(effect.file_stem()) {
                 match effect.source {
                     Some(_) => text.push_str(&glue::struct_of(effect)),
-                    None => text.push_str(glue::struct_text(&self.load(&name, "the stack")?.text, effect.wgsl_struct)),
+                    None => text.push_str(glue::struct_text(&self.load_head(&name, "the stack")?.text, effect.wgsl_struct)),
                 }
             }
         }
@@ -296,72 +355,75 @@ impl Linker<'_> {
             self.key.effects.list.iter().flat_map(|effect| effect.fields).filter_map(|field| Some(field.group?.wgsl_struct)).collect();
         for group in groups {
             let name = format!("lib/{}", group.to_lowercase());
-            if !self.files.contains_key(&name) {
-                text.push_str(glue::struct_text(&self.load(&name, "the stack")?.text, group));
+            if !self.taken.contains_key(&name) {
+                text.push_str(glue::struct_text(&self.load_head(&name, "the stack")?.text, group));
             }
         }
-        self.append(&format!("glue {GENERATED}"), &text);
+        self.append("glue", None, &text);
         Ok(())
     }
 
-    /// Refuses names that a file neither declares itself nor finds in a file that it uses directly.
+    /// Refuses names that a head or a section neither declares itself nor finds in what it uses directly.
     fn check(&self) -> Result<(), LinkError> {
         let mut declared_in: BTreeMap<&str, String> = BTreeMap::new();
-        for (file_name, file) in &self.files {
-            let where_used = match file_name.split('/').collect::<Vec<_>>()[..] {
-                ["variants", folder, _] => format!("variants/{folder}"),
-                _ => file_name.clone(),
-            };
-            let names = file.source.declared.iter().map(String::as_str).chain(binding_names(&file.source));
-            names.for_each(|name| drop(declared_in.insert(name, where_used.clone())));
+        for (file, section) in self.taken.values() {
+            let names = section.source.declared.iter().map(String::as_str).chain(binding_names(&section.source));
+            names.for_each(|name| drop(declared_in.insert(name, file.clone())));
         }
         self.generated.iter().for_each(|(name, part)| drop(declared_in.insert(name, part.clone())));
-        for (file_name, file) in &self.files {
-            let visible = self.visible(file_name, &file.source)?;
-            for (name, line) in &file.source.references {
-                if let Some(place) = declared_in.get(name.as_str())
+        for (file, section) in self.taken.values() {
+            let visible = self.visible(&section.source);
+            for (name, line) in &section.source.references {
+                if let Some(declared_in) = declared_in.get(name.as_str())
                     && !visible.contains(name.as_str())
                 {
-                    let (file, declared_in) = (file_name.clone(), place.clone());
-                    return Err(LinkError::Undeclared { file, line: *line, name: name.clone(), declared_in });
+                    let (line, declared_in) = (section.first_line as u32 + line, declared_in.clone());
+                    return Err(LinkError::Undeclared { file: file.clone(), line, name: name.clone(), declared_in });
                 }
             }
         }
         Ok(())
     }
 
-    /// Names that a file may refer to.
-    fn visible(&self, file_name: &str, source: &Source) -> Result<BTreeSet<String>, LinkError> {
+    /// Names that a head or a section may refer to.
+    fn visible(&self, source: &Source) -> BTreeSet<String> {
         let mut visible = source.declared.clone();
-        visible.extend(binding_names(source).map(str::to_owned));
-        for (used, _) in source.uses() {
-            let (kind, rest) = used.split_once('/').unwrap_or(("", used));
-            match kind {
+        visible.extend(binding_names(source).chain(source.steps().map(|steps| steps.name.as_str())).map(str::to_owned));
+        for used in source.uses() {
+            match used.split_once('/').map_or("", |(kind, _)| kind) {
                 "variants" => {
-                    let interface = self.load(&interface_of(rest), file_name)?;
+                    let interface = &self.files[used][""];
                     visible.extend(interface.source.directives.iter().filter_map(|(directive, _)| match directive {
                         Directive::Declare(signature) | Directive::MayDeclare(signature) => Some(signature.name.clone()),
                         _ => None,
                     }));
-                    visible.extend(binding_names(&interface.source).map(str::to_owned));
                 }
                 "steps" | "glue" => {
                     visible.extend(self.generated.iter().filter(|(_, part)| *part == used).map(|(name, _)| name.clone()));
                 }
                 _ => {
-                    if let Some(file) = self.files.get(used) {
-                        visible.extend(file.source.declared.iter().cloned());
-                        visible.extend(binding_names(&file.source).map(str::to_owned));
+                    if let Some((_, section)) = self.taken.get(used) {
+                        visible.extend(section.source.declared.iter().cloned());
+                        visible.extend(binding_names(&section.source).map(str::to_owned));
                     }
                 }
             }
         }
-        Ok(visible)
+        visible
     }
 
-    fn append(&mut self, name: &str, text: &str) {
+    /// Appends generated text, unless the module has this part already.
+    fn generate(&mut self, part: &str, text: impl FnOnce() -> String) -> bool {
+        let is_new = self.linked.parts.iter().all(|taken| taken.origin.is_some() || taken.name != part);
+        if is_new {
+            self.append(part, None, &text());
+        }
+        is_new
+    }
+
+    fn append(&mut self, name: &str, origin: Option<(String, usize)>, text: &str) {
         let line = self.linked.text.lines().count();
-        self.linked.files.push((name.to_owned(), line));
+        self.linked.parts.push(Part { name: name.to_owned(), origin, line });
         self.linked.text.push_str(text);
         if !text.is_empty() && !text.ends_with('\n') {
             self.linked.text.push('\n');
@@ -369,12 +431,7 @@ impl Linker<'_> {
     }
 }
 
-/// The file that says what the variants of a folder define.
-fn interface_of(folder: &str) -> String {
-    format!("variants/{folder}/interface")
-}
-
-/// Buffers that a file declares by directive: its bindings, and those that the glue declares for it.
+/// Buffers that a head or a section declares by directive: its bindings, and those that the glue declares for it.
 fn binding_names(source: &Source) -> impl Iterator<Item = &str> {
     source.directives.iter().filter_map(|(directive, _)| match directive {
         Directive::Binding { name, .. } => Some(name.as_str()),

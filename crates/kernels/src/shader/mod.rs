@@ -11,7 +11,6 @@ pub mod link;
 pub mod pass;
 pub mod reflect;
 mod source;
-pub mod weight;
 
 pub use key::{Fetch, KernelKey};
 pub use pass::Pass;

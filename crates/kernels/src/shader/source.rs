@@ -1,4 +1,4 @@
-//! Sources: what one WGSL file declares, what it refers to, and its `//@` directives. A scan of tokens, not a compiler: it
+//! Sources: what the head or a section of a WGSL file declares, what it refers to, and its `//@` directives. A scan of tokens, not a compiler: it
 //! needs no more of the language than declarations, local names and member access.
 
 use std::collections::BTreeSet;
@@ -10,15 +10,15 @@ pub enum Directive {
     Use(String),
     /// `//@ binding DECLARATION`: declared here, unless the stage declares the same name with another access.
     Binding { name: String, declaration: String },
-    /// `//@ declare SIGNATURE` in an interface: what every variant of its folder must define.
+    /// `//@ declare SIGNATURE` in the head of variants: what each of them must define.
     Declare(Signature),
-    /// `//@ may declare SIGNATURE` in an interface: what a variant may define besides.
+    /// `//@ may declare SIGNATURE` in the head of variants: what one of them may define besides.
     MayDeclare(Signature),
-    /// `//@ steps SIGNATURE` in an interface: the function that calls all chosen steps of its folder.
+    /// `//@ steps SIGNATURE`: the function that calls all chosen steps among the sections of this file.
     Steps(Signature),
 }
 
-/// `fn name(parameters) -> type`, `struct name` or `const name`, as an interface writes it.
+/// `fn name(parameters) -> type`, `struct name` or `var name`, as an interface writes it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Signature {
     pub name: String,
@@ -51,14 +51,14 @@ impl Signature {
     }
 }
 
-/// What one file declares and refers to.
+/// What a head or a section declares and refers to.
 #[derive(Clone, Debug, Default)]
 pub struct Source {
     /// Directives with their lines, from 1.
     pub directives: Vec<(Directive, u32)>,
-    /// Names that the file's own text declares at module scope.
+    /// Names that its own text declares at module scope.
     pub declared: BTreeSet<String>,
-    /// Names that the text refers to and no scope inside the file declares, each with the first line that does.
+    /// Names that the text refers to and no scope inside it declares, each with the first line that does.
     pub references: Vec<(String, u32)>,
     /// Every function's signature with single spaces, without attributes.
     pub functions: Vec<String>,
@@ -215,7 +215,7 @@ impl Source {
         }
     }
 
-    /// Does a function with this signature stand in the file? Where the signature has no parameters, any function of its name.
+    /// Does a function with this signature stand in the text? Where the signature has no parameters, any function of its name.
     pub fn defines(&self, signature: &Signature) -> bool {
         match signature.text.contains('(') {
             true => self.functions.contains(&signature.text),
@@ -223,10 +223,18 @@ impl Source {
         }
     }
 
-    /// Names of files, variants, steps and glue that it uses, with their lines.
-    pub fn uses(&self) -> impl Iterator<Item = (&str, u32)> {
-        self.directives.iter().filter_map(|(directive, line)| match directive {
-            Directive::Use(name) => Some((name.as_str(), *line)),
+    /// Names of files, variants, steps and glue that it uses.
+    pub fn uses(&self) -> impl Iterator<Item = &str> {
+        self.directives.iter().filter_map(|(directive, _)| match directive {
+            Directive::Use(name) => Some(name.as_str()),
+            _ => None,
+        })
+    }
+
+    /// Functions that call steps among the sections of its file.
+    pub fn steps(&self) -> impl Iterator<Item = &Signature> {
+        self.directives.iter().filter_map(|(directive, _)| match directive {
+            Directive::Steps(signature) => Some(signature),
             _ => None,
         })
     }

@@ -3,9 +3,13 @@
 //! An option is another shader file, or an override where only arithmetic changes. One list, [`AXES`], drives the settings of
 //! presets, panels, benches and tests. The planner chooses the cheapest option within a tolerance.
 
+mod measured;
 mod request;
 
-pub use self::request::{AccuracyRequest, Tier, Tolerance};
+pub use self::{
+    measured::MeasuredCosts,
+    request::{AccuracyRequest, Tier, Tolerance},
+};
 
 /// One option of an axis, known by its type.
 pub trait AxisOption: Copy {

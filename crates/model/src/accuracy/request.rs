@@ -1,8 +1,8 @@
 //! Accuracy requests: the tolerance that a preset asks for, and the options that it pins.
 
 use super::{
-    AXES, AccuracyOptions, AxisOption, DepthFormat, Parameters, PinnedOptions, RenderScale, SampleCounter, ShaderChecks, Skinning,
-    VertexTransform, Visibility,
+    AXES, AccuracyOptions, AxisOption, DepthFormat, MeasuredCosts, Parameters, PinnedOptions, RenderScale, SampleCounter, ShaderChecks,
+    Skinning, VertexTransform, Visibility,
 };
 
 /// Named tolerances.
@@ -77,6 +77,8 @@ pub struct AccuracyRequest {
     pub wrong_ppm: Option<f64>,
     /// Tolerance instead of the tier's: difference of a color channel, of 255.
     pub channel: Option<u8>,
+    /// What options cost on the adapter at hand, as far as it was measured. The window fills it in; no preset holds it.
+    pub measured: MeasuredCosts,
 }
 
 impl AccuracyRequest {

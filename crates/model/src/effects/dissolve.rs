@@ -7,7 +7,6 @@ use glam::{DVec2, DVec3, DVec4};
 
 use super::{
     Effect, Surface, SurfaceEffect, SurfaceInput,
-    effect::{SetupRows, read},
     hooks::{TriangleSetup, Front, Pattern, Sample, SampleEffect},
 };
 use crate::{
@@ -50,18 +49,7 @@ params! {
 }
 
 pub const EFFECT: Effect =
-    Effect::new::<Dissolve>("dissolve", "Dissolve", "fills every triangle to a fraction of its area").on_sample::<Dissolve>().on_surface::<Dissolve>()
-        .visiting_rows(rows_visited);
-
-/// All rows are counted, and once more those that are filled, unless all are; or the first two samples are looked for.
-fn rows_visited(words: &[u32]) -> SetupRows {
-    let dissolve: Dissolve = read(words);
-    let fill = f64::from(dissolve.fill);
-    match Mode::of(dissolve.mode) {
-        Mode::Scanline => SetupRows::All(if fill < 1.0 { 1.0 + fill } else { 1.0 }),
-        _ => SetupRows::First,
-    }
-}
+    Effect::new::<Dissolve>("dissolve", "Dissolve", "fills every triangle to a fraction of its area").on_sample::<Dissolve>().on_surface::<Dissolve>();
 
 /// The whole triangle, in units of the fractions.
 const ONE: u32 = 1 << 24;

@@ -24,24 +24,6 @@ pub struct Effect {
     pub base: Option<&'static Effect>,
     /// Is every frame the same with these parameter words?
     pub is_repeatable: fn(&[u32]) -> bool,
-    /// How often the longest loop over what belongs to one pixel runs with these parameter words; the cost model alone asks.
-    pub turns: fn(&[u32]) -> f64,
-    /// How many pixels its image hook reads for each, with these parameter words; the cost model alone asks.
-    pub neighbors: fn(&[u32]) -> f64,
-    /// Which rows of a triangle its sample setup visits with these parameter words; the cost model alone asks.
-    pub setup_rows: fn(&[u32]) -> SetupRows,
-}
-
-/// The rows of a triangle that the sample setup of an effect visits, one after another.
-#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
-pub enum SetupRows {
-    /// It has no loop over rows.
-    #[default]
-    None,
-    /// Those until the second sample that the triangle covers.
-    First,
-    /// All, so many times.
-    All(f64),
 }
 
 impl Effect {
@@ -57,9 +39,6 @@ impl Effect {
             source: None,
             base: None,
             is_repeatable: |_| true,
-            turns: |_| 0.0,
-            neighbors: |_| 0.0,
-            setup_rows: |_| SetupRows::None,
         }
     }
 
@@ -138,24 +117,6 @@ impl Effect {
     /// The same effect, whose pictures depend on the order of the hardware unless `is_repeatable` holds.
     pub const fn repeatable_if(mut self, is_repeatable: fn(&[u32]) -> bool) -> Self {
         self.is_repeatable = is_repeatable;
-        self
-    }
-
-    /// The same effect, with a loop over what belongs to a pixel that runs so often.
-    pub const fn with_turns(mut self, turns: fn(&[u32]) -> f64) -> Self {
-        self.turns = turns;
-        self
-    }
-
-    /// The same effect, whose image hook reads so many pixels for each.
-    pub const fn with_neighbors(mut self, neighbors: fn(&[u32]) -> f64) -> Self {
-        self.neighbors = neighbors;
-        self
-    }
-
-    /// The same effect, whose sample setup visits these rows of a triangle.
-    pub const fn visiting_rows(mut self, setup_rows: fn(&[u32]) -> SetupRows) -> Self {
-        self.setup_rows = setup_rows;
         self
     }
 

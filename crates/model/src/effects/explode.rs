@@ -27,6 +27,9 @@ params! {
     }
 }
 
+/// What the seed is multiplied by, so that triangles scatter by other hashes than those of the front.
+const SCATTER_SEED: u32 = 0x85eb_ca6b;
+
 pub const EFFECT: Effect =
     Effect::new::<Explode>("explode", "Explode", "triangles fly out along their own normals, turn and shrink").on_vertex::<Explode>();
 
@@ -113,7 +116,7 @@ impl Explode {
     /// How far a triangle has moved along its path, 0 to 1.
     fn progress(&self, v: &Vertex) -> f64 {
         let reached = self.spread.reached(v.center, v.center_screen, v.triangle);
-        reached * (1.0 - f64::from(self.scatter) * hash_unit(v.triangle ^ self.spread.seed.wrapping_mul(0x85eb_ca6b)))
+        reached * (1.0 - f64::from(self.scatter) * hash_unit(v.triangle ^ self.spread.seed.wrapping_mul(SCATTER_SEED)))
     }
 
 }

@@ -8,7 +8,6 @@ use glam::DVec3;
 
 use super::{
     Effect, Surface, SurfaceEffect, SurfaceInput,
-    effect::read,
     hooks::tone::{luminance, rgb, turned},
 };
 use crate::{choice, params, params::Color};
@@ -50,8 +49,7 @@ params! {
     }
 }
 
-pub const EFFECT: Effect = Effect::surface::<Hatch>("hatch", "Hatch", "cross-hatching in ink, whose lines grow as the tone darkens")
-    .with_turns(|words| read::<Hatch>(words).layers.into());
+pub const EFFECT: Effect = Effect::surface::<Hatch>("hatch", "Hatch", "cross-hatching in ink, whose lines grow as the tone darkens");
 
 impl SurfaceEffect for Hatch {
     const INPUTS: &[SurfaceInput] = &[SurfaceInput::Color, SurfaceInput::Pixel, SurfaceInput::Normal, SurfaceInput::View, SurfaceInput::PixelSize, SurfaceInput::Position, SurfaceInput::Depth];

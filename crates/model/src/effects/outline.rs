@@ -5,7 +5,6 @@
 
 use super::{
     Effect,
-    effect::read,
     hooks::{ImageEffect, Picture, Pixel, tone::encoded},
 };
 use crate::{
@@ -45,14 +44,7 @@ params! {
 }
 
 pub const EFFECT: Effect =
-    Effect::new::<Outline>("outline", "Outline", "lines at silhouettes, between objects and at steps of depth")
-        .on_image::<Outline>()
-        .with_neighbors(|words| {
-            let outline: Outline = read(words);
-            // A circle of them; steps of depth are found by those on the other side, too.
-            let circle = (std::f64::consts::PI * f64::from(outline.width_px).powi(2)).max(4.0);
-            if outline.depth == 0 { circle } else { 2.0 * circle }
-        });
+    Effect::new::<Outline>("outline", "Outline", "lines at silhouettes, between objects and at steps of depth").on_image::<Outline>();
 
 /// Triangle id, depth key and draw of a pixel.
 type Seen = (Option<u32>, u32, u32);
@@ -99,25 +91,5 @@ impl Outline {
             Side::Inside => curvature < -jump,
             Side::Both => curvature.abs() > jump,
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn it_reads_the_circle_of_its_width() {
-        let read_of = |width_px: f64, depth: f64| {
-            let mut words = (EFFECT.defaults)();
-            for (name, value) in [("width_px", width_px), ("depth", depth)] {
-                EFFECT.field(name).expect("a parameter").set(&mut words, &[value]).expect("an allowed value");
-            }
-            (EFFECT.neighbors)(&words)
-        };
-        // Twelve pixels lie within two of another.
-        assert!((read_of(2.0, 0.0) - 12.0).abs() < 1.0);
-        assert_eq!(read_of(2.0, 1.0), 2.0 * read_of(2.0, 0.0), "steps of depth need those on the other side, too");
-        assert_eq!(read_of(1.0, 0.0), 4.0);
     }
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{
     dots, draw_order,
-    effect::{Effect, SetupRows, read},
+    effect::{Effect, read},
     hooks::{self, Hooks, Layers, Picture, Pixel, Shape, Slot, Surface},
     points, race, shadow, smear, xray,
 };
@@ -252,24 +252,6 @@ impl Stack {
     /// Is every picture of this stack the same, to the bit, on one adapter?
     pub fn is_repeatable(&self) -> bool {
         self.0.iter().all(|enabled| (enabled.effect.is_repeatable)(&enabled.words))
-    }
-
-    /// How often the longest loop of an effect over what belongs to one pixel runs.
-    pub fn turns(&self) -> f64 {
-        self.0.iter().map(|enabled| (enabled.effect.turns)(&enabled.words)).fold(0.0, f64::max)
-    }
-
-    /// The most pixels that an image effect reads for each.
-    pub fn neighbors(&self) -> f64 {
-        self.0.iter().map(|enabled| (enabled.effect.neighbors)(&enabled.words)).fold(0.0, f64::max)
-    }
-
-    /// The rows of a triangle that its sample setups visit.
-    pub fn setup_rows(&self) -> SetupRows {
-        self.0
-            .iter()
-            .map(|enabled| (enabled.effect.setup_rows)(&enabled.words))
-            .fold(SetupRows::None, |most, rows| if rows > most { rows } else { most })
     }
 
     /// Parameters of the effect called `name`, if it is on; `P` must be its own.

@@ -3,7 +3,10 @@
 use glam::DVec3;
 
 use super::{Effect, Surface, SurfaceEffect, SurfaceInput};
-use crate::{math::hash, params};
+use crate::{
+    math::{HASH_GOLDEN, hash},
+    params,
+};
 
 params! {
     pub struct TriangleId {
@@ -20,7 +23,7 @@ impl SurfaceEffect for TriangleId {
     const INPUTS: &[SurfaceInput] = &[SurfaceInput::TriangleId, SurfaceInput::Glow, SurfaceInput::Color];
 
     fn apply(mut s: Surface, p: &Self) -> Surface {
-        let h = hash(s.triangle_id ^ p.seed.wrapping_mul(0x9e37_79b9));
+        let h = hash(s.triangle_id ^ p.seed.wrapping_mul(HASH_GOLDEN));
         let byte = |shift: u32| f64::from(h >> shift & 255) / 255.0;
         let shade = DVec3::splat(0.08) + DVec3::new(byte(0), byte(8), byte(16)) * 0.8;
         let base = s.color.truncate();

@@ -13,13 +13,13 @@ use std::ops::{Deref, RangeInclusive};
 
 pub use legible::{is_hidden, legible, legible_line};
 pub use measure::Measure;
-pub use suggest::{did_you_mean, suggestion};
+pub use suggest::{did_you_mean, likeness, suggestion};
 pub use value::{Stored, Value, ValueError, ValueType, format_number};
 
 /// One parameter: what every surface of the program needs to know about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Param {
-    /// Stable name: key in preset files, end of a `--set` path, WGSL member. A new name needs a migration.
+    /// Stable name: key in preset files, end of a `--set` path, WGSL member. A new name needs a new schema.
     pub name: &'static str,
     /// Tooltip and help text.
     pub doc: &'static str,

@@ -5,20 +5,19 @@ const NEAR: f64 = 0.55;
 
 /// `; did you mean "facet"?`, or nothing when no candidate is close.
 pub fn did_you_mean<'a>(written: &str, candidates: impl Iterator<Item = &'a str>) -> String {
-    let lower = written.to_lowercase();
-    let length = lower.chars().count();
+    let near = candidates.filter_map(|candidate| Some((likeness(written, candidate)?, candidate)));
+    near.max_by(|a, b| a.0.total_cmp(&b.0)).map_or_else(String::new, |(_, candidate)| suggestion(candidate))
+}
+
+/// How much alike two names are, up to 1 for names that differ in the case of letters alone; None if they are not close.
+pub fn likeness(written: &str, candidate: &str) -> Option<f64> {
     // Every character more or less is a difference, so that names of another length are not compared: a long one would take long.
-    let may_be_near = |candidate: &&str| {
-        let [shorter, longer] = [length.min(candidate.len()), length.max(candidate.len())];
-        shorter as f64 >= NEAR * longer as f64
-    };
-    let near = candidates
-        .filter(may_be_near)
-        .map(|candidate| (strsim::normalized_damerau_levenshtein(&lower, &candidate.to_lowercase()), candidate));
-    match near.filter(|(likeness, _)| *likeness >= NEAR).max_by(|a, b| a.0.total_cmp(&b.0)) {
-        Some((_, candidate)) => suggestion(candidate),
-        None => String::new(),
+    let [written, candidate] = [written, candidate].map(str::to_lowercase);
+    let lengths = [&written, &candidate].map(|name| name.chars().count() as f64);
+    if lengths[0].min(lengths[1]) < NEAR * lengths[0].max(lengths[1]) {
+        return None;
     }
+    Some(strsim::normalized_damerau_levenshtein(&written, &candidate)).filter(|likeness| *likeness >= NEAR)
 }
 
 /// `; did you mean "facet"?`.

@@ -26,13 +26,11 @@ pub mod parts;
 pub mod pick;
 pub mod pose;
 pub mod quaternion;
-pub mod raster_work;
 pub mod rig;
 mod room;
 pub mod shadow_resolution;
 pub mod sizes;
 pub mod texture;
-pub mod triangle_rows;
 pub mod view;
 
 pub use accessor::{Accessor, ComponentType};

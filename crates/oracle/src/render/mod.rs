@@ -6,7 +6,6 @@ pub mod snap;
 pub mod vertex;
 
 pub mod clip;
-pub mod moved_sizes;
 pub mod project;
 pub mod strict;
 pub mod triangles;

@@ -13,7 +13,7 @@ use crate::{
         read,
     },
     frame::ParticleState,
-    math::{hash, hash_unit},
+    math::{HASH_GOLDEN, hash, hash_unit},
     scene::{
         Scene,
         draw::DrawError,
@@ -182,7 +182,7 @@ fn pull(p: &Particles, position: DVec3) -> DVec3 {
 
 /// Velocity of the flow at a position, at the step that leads to a frame.
 pub fn flow(p: &Particles, position: DVec3, step: u32) -> DVec3 {
-    let salt = hash(p.seed ^ 0x9e37_79b9);
+    let salt = hash(p.seed ^ HASH_GOLDEN);
     let (mut sum, mut amplitude, mut amplitudes) = (DVec3::ZERO, 1.0, 0.0);
     for octave in 0..p.octaves {
         sum += amplitude * curl(lattice_position(p, position, step, octave), salt.wrapping_add(octave));

@@ -1,23 +1,23 @@
-//! The folder of accuracy: one slider from draft to strict, what each position is expected to cost and to err by beside what was
-//! measured, and below it, folded, the axes that the picture can use, each with the option that the planner took and why.
+//! The folder of accuracy: one slider from draft to strict, what each tier was measured to cost and judged to err by on the open picture, and
+//! below it, folded, the axes that the picture can use, each with the option that the planner took and why.
 
-use eframe::egui::{self, Align2, RichText, Sense, Ui, pos2, vec2};
+use eframe::egui::{self, Align2, Color32, RichText, Sense, Ui, pos2, vec2};
 
 use super::rows::{folder, setting_ui};
 use crate::{
     accuracy::{AXES, Axis},
     app::{
         anti_aliasing,
-        command::{Commands, Edit},
-        expectation::{Expectation, expectation},
+        command::{Command, Commands, Edit},
         findings::Findings,
         measured::time_line,
         state::State,
         text::short,
         theme,
+        tier_times::{self, TierNumbers, TierTime},
     },
     params::Value,
-    preset::{AccuracyRequest, Tier, settings::Setting},
+    preset::{Tier, settings::Setting},
 };
 
 const TIER: &str = "accuracy.tier";
@@ -25,8 +25,9 @@ const TIER: &str = "accuracy.tier";
 pub fn accuracy_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     folder(ui, "Accuracy", true, |ui| {
         let accuracy = state.session.preset().accuracy;
-        tier_ui(ui, state, commands, accuracy.tier);
-        numbers_ui(ui, state, &accuracy);
+        tier_ui(ui, commands, accuracy.tier);
+        tiers_ui(ui, state, commands, accuracy.tier);
+        numbers_ui(ui, state);
         for path in ["accuracy.max_wrong_ppm", "accuracy.max_channel"] {
             setting_ui(ui, state, commands, path); // Only where the preset has a tolerance of its own.
         }
@@ -46,7 +47,7 @@ const fn about(tier: Tier) -> &'static str {
 }
 
 /// The slider: five marks with their names.
-fn tier_ui(ui: &mut Ui, state: &State, commands: &Commands, tier: Tier) {
+fn tier_ui(ui: &mut Ui, commands: &Commands, tier: Tier) {
     let Some(setting) = Setting::find(TIER) else { return };
     let mut index = tier as usize;
     ui.horizontal(|ui| {
@@ -57,9 +58,6 @@ fn tier_ui(ui: &mut Ui, state: &State, commands: &Commands, tier: Tier) {
         let slider = ui.add(slider).accessible_name(TIER).on_hover_ui(|ui| {
             for tier in Tier::ALL {
                 ui.label(format!("{}: {}", tier.name(), about(tier)));
-                if let Some(expected) = expectation(state, tier) {
-                    ui.label(theme::weak(expected_text(&expected)));
-                }
             }
         });
         if slider.changed() && index != tier as usize {
@@ -96,13 +94,50 @@ fn names_ui(ui: &mut Ui, setting: &'static Setting, commands: &Commands, chosen:
     }
 }
 
-/// `about 12 ms, 0 wrong ppm, color Δ 0`.
-fn expected_text(expected: &Expectation) -> String {
-    let ms = expected.ms.map_or_else(String::new, |ms| format!("about {} ms, ", short(ms)));
-    let Some(error) = expected.error else { return "this picture cannot be drawn so".into() };
-    let wrong = if error.wrong_ppm.is_finite() { short(error.wrong_ppm) } else { "any number of".into() };
-    let channel = if error.channel.is_finite() { short(error.channel.min(255.0)) } else { "255".into() };
-    format!("{ms}{wrong} wrong ppm, color Δ {channel}")
+/// What each tier costs and errs by on the open picture. While this is looked at, tiers are measured.
+fn tiers_ui(ui: &mut Ui, state: &State, commands: &Commands, chosen: Tier) {
+    let shown = ui.vertical(|ui| {
+        for tier in Tier::ALL {
+            let text = match tier_times::numbers(state, tier) {
+                Some(numbers) => format!("{}, {}", time_text(numbers.time, state.screen.gpu.caps.timestamps), error_text(&numbers)),
+                None if state.screen.plan().is_none() => "not measured yet".into(),
+                None => "this picture cannot be drawn so".into(),
+            };
+            line_ui(ui, tier.name(), text, if tier == chosen { theme::text_strong() } else { theme::text_weak() });
+        }
+    });
+    let hint = "Milliseconds of a frame, measured on this picture while the window is at rest. Wrong pixels per million and the largest \
+                difference of a color, as Verify has judged this picture, or (≤) what the options of the tier may err by.";
+    if ui.is_rect_visible(shown.response.on_hover_text(hint).rect) {
+        commands.send(Command::MeasureTiers);
+    }
+}
+
+/// A name and what there is to say of it.
+fn line_ui(ui: &mut Ui, name: &str, text: String, color: Color32) {
+    ui.horizontal(|ui| {
+        ui.add_space(theme::GAP);
+        ui.add_sized([64.0, 16.0], egui::Label::new(theme::weak(name).size(11.5)));
+        ui.add(egui::Label::new(RichText::new(text).size(11.5).color(color)).truncate());
+    });
+}
+
+fn time_text(time: TierTime, has_timer: bool) -> String {
+    match time {
+        _ if !has_timer => "no GPU timer".into(),
+        TierTime::NotYet => "not measured yet".into(),
+        TierTime::Failed => "not measured, see the log".into(),
+        TierTime::Ms(ms) => format!("{} ms", short(ms)),
+    }
+}
+
+/// `0 ppm, 17 true, Δ 1`, or what the options may err by: `≤ 400 ppm, Δ ≤ 2`.
+fn error_text(numbers: &TierNumbers) -> String {
+    if let Some(judged) = numbers.judged {
+        let against_true = judged.true_ppm.map_or_else(String::new, |ppm| format!(", {} true", short(ppm)));
+        return format!("{} ppm{against_true}, Δ {}", short(judged.wrong_ppm), judged.channel);
+    }
+    format!("≤ {} ppm, Δ ≤ {}", short(numbers.bound.wrong_ppm.min(1e6)), short(numbers.bound.channel.min(255.0)))
 }
 
 /// `12.34 ms GPU, color Δ 0` and `wrong ppm: 0 snapped, 17 true`.
@@ -113,24 +148,15 @@ fn measured_texts(time: &str, findings: &Findings) -> (String, String) {
     (format!("{time}, color Δ {}", report.max_color_delta), format!("wrong ppm: {} snapped{against_true}", ppm(report.wrong_triangles)))
 }
 
-/// Milliseconds and error: expected and measured.
-fn numbers_ui(ui: &mut Ui, state: &State, accuracy: &AccuracyRequest) {
-    let expected = expectation(state, accuracy.tier);
-    let line = |ui: &mut Ui, name: &str, text: String| {
-        ui.horizontal(|ui| {
-            ui.add_space(theme::GAP);
-            ui.add_sized([64.0, 16.0], egui::Label::new(theme::weak(name).size(11.5)));
-            ui.add(egui::Label::new(RichText::new(text).monospace().size(11.5).color(theme::text_strong())).truncate());
-        });
-    };
-    line(ui, "expected", expected.as_ref().map_or_else(|| "after the first picture".into(), expected_text));
+/// Milliseconds and error of the picture that is shown.
+fn numbers_ui(ui: &mut Ui, state: &State) {
     let time = time_line(Some(&state.screen)).0;
     let (measured, wrong) = match state.verification.verdict_on(state.screen.drawn()) {
         Some(verdict) => measured_texts(&time, &verdict.findings),
         None => (time, "error not measured (V)".to_owned()),
     };
-    line(ui, "measured", measured);
-    line(ui, "", wrong);
+    line_ui(ui, "measured", measured, theme::text_strong());
+    line_ui(ui, "", wrong, theme::text_strong());
 }
 
 /// The axes that decide about something in the picture, and those that the preset pins.

@@ -36,13 +36,6 @@ pub struct Responses {
 }
 
 impl Shown<'_> {
-    pub fn name(&self) -> &str {
-        match &self.entry.preset_file {
-            Ok(preset_file) => preset_file.title(),
-            Err(_) => &self.entry.id,
-        }
-    }
-
     fn about(&self) -> String {
         match &self.entry.preset_file {
             Ok(preset_file) => preset_file.preset.about.clone(),
@@ -71,7 +64,7 @@ pub fn entry_size(layout: Layout, width: f32) -> (egui::Vec2, usize) {
 pub fn entry_ui(ui: &mut Ui, shown: &Shown<'_>, layout: Layout, rect: Rect) -> Responses {
     let id = egui::Id::unique(("preset", &shown.entry.id));
     let response = ui.interact(rect, id, Sense::click());
-    let name = shown.name();
+    let name = shown.entry.title();
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, shown.is_open, format!("Preset {name}")));
     let is_near = ui.rect_contains_pointer(rect) || response.has_focus();
     if shown.is_open {
@@ -95,7 +88,10 @@ pub fn entry_ui(ui: &mut Ui, shown: &Shown<'_>, layout: Layout, rect: Rect) -> R
     let star = star_ui(ui, shown, star_rect, is_near, layout == Layout::Grid);
     let about = shown.about();
     let entry = response.on_hover_ui(|ui| {
-        ui.label(RichText::new(name).color(theme::text_strong()));
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(name).color(theme::text_strong()));
+            ui.label(theme::weak(&shown.entry.id));
+        });
         ui.label(&about);
         if let Ok(found) = &shown.entry.preset_file {
             let effects: Vec<&str> = found.preset.stack.0.iter().map(|enabled| enabled.effect.name).collect();
@@ -138,7 +134,7 @@ fn text_ui(ui: &Ui, shown: &Shown<'_>, rect: Rect) {
 fn name_ui(ui: &Ui, shown: &Shown<'_>, rect: Rect) {
     let dot = if shown.is_modified { 12.0 } else { 0.0 };
     let format = egui::TextFormat::simple(FontId::proportional(13.0), shown.color());
-    let mut job = egui::text::LayoutJob::single_section(shown.name().to_owned(), format);
+    let mut job = egui::text::LayoutJob::single_section(shown.entry.title().to_owned(), format);
     job.wrap =
         egui::text::TextWrapping { max_width: rect.width() - dot, max_rows: 1, break_anywhere: true, overflow_character: Some('…') };
     let painter = ui.painter_at(rect);
@@ -153,7 +149,7 @@ fn name_ui(ui: &Ui, shown: &Shown<'_>, rect: Rect) {
 /// The star of a favorite, or a faint one to click while the pointer is near.
 fn star_ui(ui: &Ui, shown: &Shown<'_>, rect: Rect, is_near: bool, is_over_picture: bool) -> Response {
     let response = ui.interact(rect, egui::Id::unique(("star", &shown.entry.id)), Sense::click());
-    let name = format!("Favorite {}", shown.name());
+    let name = format!("Favorite {}", shown.entry.title());
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, shown.is_favorite, &name));
     let is_seen = shown.is_favorite || is_near || response.has_focus();
     if is_seen && is_over_picture {

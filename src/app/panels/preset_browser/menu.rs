@@ -13,7 +13,7 @@ use crate::{
 
 /// Shows the entries.
 pub fn menu_ui(ui: &mut Ui, entry: &GalleryEntry, commands: &Commands) {
-    let title = entry.preset_file.as_ref().map_or(entry.id.as_str(), |found| found.title());
+    let title = entry.title();
     let mut chosen = None;
     let with_scene = ui.add_enabled(entry.preset_file.is_ok(), button("Open with its scene"));
     if with_scene.on_hover_text("Its own scene in place of the open one").clicked() {

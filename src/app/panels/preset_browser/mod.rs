@@ -156,7 +156,7 @@ impl PresetBrowser {
                     if icon_button(ui, Icon::Cross, "Keep it in the trash").clicked() {
                         commands.send(Command::Library(LibraryCommand::ForgetDeleted));
                     }
-                    let undo = ui.button("Undo").on_hover_text(format!("Put {} back", deleted.from.display()));
+                    let undo = ui.button("Undo").on_hover_text(format!("Put {} back", deleted.path.display()));
                     if undo.accessible_name("Undo the deletion").clicked() {
                         commands.send(Command::Library(LibraryCommand::Restore));
                     }

@@ -136,7 +136,8 @@ impl Viewport {
             let is_full_size = [drawn.view.width, drawn.view.height] == size;
             Finished::new(options, screen.timings().cost_ms(), is_full_size)
         });
-        self.anti_aliasing.applied(state.session.preset().accuracy, (scene, stack, size), &screen.gpu.caps, finished)
+        let accuracy = state.tier_times.informed(state.session.preset().accuracy);
+        self.anti_aliasing.applied(accuracy, (scene, stack, size), &screen.gpu.caps, finished)
     }
 
     /// Seconds until the picture counts as at rest; none when it does.

@@ -5,20 +5,20 @@ use crate::{
     shader::{key::KernelKey, pass::Pass},
 };
 
-/// Takes no file of a folder of steps.
+/// Takes no step.
 pub(super) const NO_STEP: &str = "";
 
-/// The stem if the condition holds, else the interface of the folder, which defines its default.
-pub(super) const fn stem_if(condition: bool, stem: &'static str) -> &'static str {
-    if condition { stem } else { "interface" }
+/// The variant if the condition holds, else the default.
+pub(super) const fn variant_if(condition: bool, variant: &'static str) -> &'static str {
+    if condition { variant } else { "default" }
 }
 
 /// The step if the condition holds.
-pub(super) const fn step_if(condition: bool, stem: &'static str) -> &'static str {
-    if condition { stem } else { NO_STEP }
+pub(super) const fn step_if(condition: bool, step: &'static str) -> &'static str {
+    if condition { step } else { NO_STEP }
 }
 
-/// A folder of variants, and the stem of the file that a pass takes from it.
+/// A file of `shaders/variants`, or a function of steps, and the section that a pass takes.
 pub(super) type VariantChoice = (&'static str, fn(&KernelKey, Pass) -> &'static str);
 
 /// An override, and its value in a pass.
@@ -30,7 +30,7 @@ pub(super) struct Feature {
     pub label: fn(&KernelKey) -> String,
     /// A part of the frame that exists only with this feature.
     pub part: Option<Part>,
-    /// Folders of `shaders/variants`, and the stem of the file that a pass takes from each; [`NO_STEP`] where it takes none.
+    /// Files of variants and functions of steps, and the section that a pass takes of each; [`NO_STEP`] where it takes none.
     pub variants: &'static [VariantChoice],
     /// Overrides, and their values in a pass.
     pub constants: &'static [ConstantChoice],

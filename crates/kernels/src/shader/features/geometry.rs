@@ -1,6 +1,6 @@
 //! Geometry features: vertex formats, generated vertices, vertex effects, culling and clipping.
 
-use super::feature::{Feature, Part, flag, stem_if, step_if, word_if};
+use super::feature::{Feature, Part, flag, step_if, variant_if, word_if};
 use crate::{
     accuracy::{Clipping, Culling, PositionFormat, VertexTransform},
     frame::vertex_flags,
@@ -39,13 +39,13 @@ const PARTICLES: Feature = Feature {
 
 const JOINTS: Feature = Feature {
     label: |key| word_if(key.generated.has_joints, "joints"),
-    variants: &[("skinning", |key, _| stem_if(key.generated.has_joints, key.options.skinning.name()))],
+    variants: &[("skinning", |key, _| variant_if(key.generated.has_joints, key.options.skinning.name()))],
     ..Feature::NONE
 };
 
 const MORPH_TARGETS: Feature = Feature {
     label: |key| word_if(key.generated.has_morph_targets, "morph_targets"),
-    variants: &[("morph_targets", |key, _| stem_if(key.generated.has_morph_targets, "weighted"))],
+    variants: &[("morph_targets", |key, _| variant_if(key.generated.has_morph_targets, "weighted"))],
     ..Feature::NONE
 };
 
@@ -58,7 +58,7 @@ const VERTEX_EFFECTS: Feature = Feature {
     label: |key| word_if(key.moves(), "vertex_effects"),
     part: Some(Part { name: "vertex effects", is_used: KernelKey::moves, why_omitted: |_| "no effect of the stack moves a vertex".into() }),
     variants: &[
-        ("vertex_effects", |key, _| stem_if(key.moves(), "applied")),
+        ("vertex_effects", |key, _| variant_if(key.moves(), "applied")),
         ("corner_step", |key, _| step_if(key.unshares_vertices(), "triangle")),
     ],
     ..Feature::NONE
@@ -71,7 +71,7 @@ const UNSHARED_VERTICES: Feature = Feature {
         is_used: KernelKey::unshares_vertices,
         why_omitted: |_| "no effect moves triangles apart, so neighbors share projected vertices".into(),
     }),
-    variants: &[("vertex_records", |key, _| stem_if(key.unshares_vertices(), "unshared"))],
+    variants: &[("vertex_records", |key, _| variant_if(key.unshares_vertices(), "unshared"))],
     constants: &[("UNSHARES_VERTICES", |key, _| flag(key.unshares_vertices()))],
 };
 
@@ -82,12 +82,12 @@ const CULLING: Feature = Feature {
         why_omitted: |_| "culling = none, so each triangle is tested on its own".into(),
     }),
     variants: &[
-        ("triangle_source", |key, _| stem_if(key.culls(), "meshlets")),
+        ("triangle_source", |key, _| variant_if(key.culls(), "meshlets")),
         ("occlusion", |_, pass| match pass {
             Pass::Cull(CullPhase::PreviousFrame) => "previous_frame",
             Pass::Cull(CullPhase::Early) => "early",
             Pass::Cull(CullPhase::Late) => "late",
-            _ => "interface",
+            _ => "default",
         }),
     ],
     constants: &[
@@ -127,7 +127,7 @@ const VERTEX_FORMATS: Feature = Feature {
         is_used: |key| key.vertices.fetch != Fetch::Direct,
         why_omitted: |_| "no primitive has indices".into(),
     }),
-    variants: &[("loads", |key, pass| stem_if(key.work.wide_loads && pass.resolves(), "wide"))],
+    variants: &[("loads", |key, pass| variant_if(key.work.wide_loads && pass.resolves(), "wide"))],
     constants: &[
         ("ONLY_TRIANGLE_LISTS", |key, _| flag(key.vertices.only_triangle_lists)),
         ("HAS_INDICES", |key, _| flag(key.vertices.fetch != Fetch::Direct)),

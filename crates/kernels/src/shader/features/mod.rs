@@ -1,4 +1,4 @@
-//! Features: one table says what every part of the kernel key means: which shader files it selects, which overrides it sets,
+//! Features: one table says what every part of the kernel key means: which sections of shader files it selects, which overrides it sets,
 //! how it reads in the key's label, and which part of the frame is omitted without it.
 
 mod feature;
@@ -18,11 +18,11 @@ fn features() -> impl Iterator<Item = &'static Feature> {
 }
 
 impl KernelKey {
-    /// The stem of the file that a pass takes from each folder of `shaders/variants`. A folder of steps has an entry for each
-    /// step, in the order in which they are called.
+    /// The section that a pass takes of each file of `shaders/variants`. A function of steps has an entry for each step, in the order in
+    /// which they are called.
     pub fn variants(&self, pass: Pass) -> Vec<(&'static str, &'static str)> {
-        let all = features().flat_map(|feature| feature.variants.iter().map(|(folder, stem)| (*folder, stem(self, pass))));
-        all.filter(|(_, stem)| *stem != NO_STEP).collect()
+        let all = features().flat_map(|feature| feature.variants.iter().map(|(file, section)| (*file, section(self, pass))));
+        all.filter(|(_, section)| *section != NO_STEP).collect()
     }
 
     /// Values of the overrides. Those that a pass does not declare are dropped by the pipeline builder.

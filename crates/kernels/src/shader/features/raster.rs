@@ -1,6 +1,6 @@
 //! Raster features: coverage, depth, framebuffer, size classes, tiles, draw order and sample tests.
 
-use super::feature::{Feature, NO_STEP, Part, flag, stem_if, step_if, word_if};
+use super::feature::{Feature, NO_STEP, Part, flag, step_if, variant_if, word_if};
 use crate::{
     accuracy::{AXES, AxisOption, Coverage, DepthFormat, SampleCounter, Visibility},
     effects::{draw_order, hooks::Shape},
@@ -126,7 +126,7 @@ const OTHER_OPTIONS: Feature = Feature {
 const DEPTH: Feature = Feature {
     variants: &[("depth", depth_interpolation), ("large_depth", depth_interpolation)],
     constants: &[
-        // As variants/depth/float numbers them; integer depth has the keys of reversed depth.
+        // As variants/depth numbers them; integer depth has the keys of reversed depth.
         ("DEPTH_FORMAT", |key, _| match key.options.depth {
             DepthFormat::Reversed | DepthFormat::Integer => 0.0,
             DepthFormat::Standard => 1.0,
@@ -180,7 +180,7 @@ const QUEUES: Feature = Feature { constants: &[("HAS_QUEUES", |key, _| flag(key.
 const MEDIUM_PATH: Feature = Feature {
     label: |key| word_if(key.paths.has_medium, "medium"),
     part: Some(Part { name: "raster_medium", is_used: |key| key.paths.has_medium, why_omitted: largest_triangle }),
-    variants: &[("medium_boxes", |key, _| stem_if(key.shares_entries(), "shared"))],
+    variants: &[("medium_boxes", |key, _| variant_if(key.shares_entries(), "shared"))],
     constants: &[("DRAWS_MEDIUM", |key, _| flag(key.paths.has_medium))],
 };
 
@@ -188,7 +188,7 @@ const LARGE_PATH: Feature = Feature {
     label: |key| word_if(key.paths.has_large, "large"),
     part: Some(Part { name: "tile_large, raster_large", is_used: |key| key.paths.has_large, why_omitted: largest_triangle }),
     variants: &[
-        ("large_tiles", |key, _| stem_if(key.shares_entries(), "shared")),
+        ("large_tiles", |key, _| variant_if(key.shares_entries(), "shared")),
         ("divide_step", |key, pass| step_if(key.divides_in_medium() && key.is_first_visit(pass), "large_queue")),
     ],
     constants: &[("HAS_LARGE", |key, _| flag(key.paths.has_large)), ("DRAWS_LARGE", |key, _| flag(key.paths.has_large))],
@@ -255,7 +255,7 @@ const DRAW_ORDER: Feature = Feature {
     constants: &[
         ("TESTS_EVERY_SAMPLE", |key, _| flag(key.samples.draw_order == Some(draw_order::Mode::Scheduler))),
         ("HAS_RANKS", |key, _| flag(key.samples.draw_order.is_some())),
-        // As variants/sample_test/draw_order numbers them.
+        // As variants/sample_test numbers them.
         ("ORDER_TEST", |key, pass| match order(key, pass) {
             None | Some(OrderTest::Submission) => 0.0,
             Some(OrderTest::Scheduler) => 1.0,

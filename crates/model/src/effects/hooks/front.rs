@@ -3,7 +3,12 @@
 use glam::{DVec2, DVec3};
 
 use super::{ErrorBound, ROUNDING};
-use crate::{choice, math::hash_unit, params, params::Point};
+use crate::{
+    choice,
+    math::{HASH_GOLDEN, hash_unit},
+    params,
+    params::Point,
+};
 
 choice! {
     /// How an effect is spread over the triangles.
@@ -62,7 +67,7 @@ impl Front {
             Pattern::Uniform => 1.0,
             Pattern::Sweep => passed(0.5 + (center_screen - 0.5).dot(self.along()) / self.sweep_length()),
             Pattern::Radial => (f64::from(self.radius_m) - self.distance(center)) / f64::from(self.width_m) + 0.5,
-            Pattern::Random => passed(hash_unit(triangle ^ self.seed.wrapping_mul(0x9e37_79b9))),
+            Pattern::Random => passed(hash_unit(triangle ^ self.seed.wrapping_mul(HASH_GOLDEN))),
         }
     }
 

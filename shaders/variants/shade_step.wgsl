@@ -1,0 +1,181 @@
+// Shade steps: what is added to the surface at a sample before surface effects. `at`: vertices of the triangle within its draw.
+// Chosen by the scene and the stack: textures where materials are more than a base color, shadow_map where an effect reads
+// how much light arrives.
+//@ steps fn shade_step(surface: Surface, t: Triangle, at: vec3u, position: SamplePosition) -> Surface
+
+//@ step textures
+// The base color texture multiplies the color, and emitted light is added. The number of texels that a
+// pixel spans follows exactly from the triangle's own plane, not from neighboring invocations.
+//@ use lib/frame
+//@ use lib/fixed
+//@ use lib/triangle
+//@ use lib/attributes
+//@ use lib/shape
+//@ use lib/surface
+//@ use lib/shade
+//@ use lib/material_atlas
+//@ use variants/vertex_effects
+
+fn shade_step_textures(surface: Surface, t: Triangle, at: vec3u, position: SamplePosition) -> Surface {
+    var s = surface;
+    let record = atlas_record(t.draw);
+    let material = atlas_material(record);
+    var slopes: Slopes;
+    if (material.flags & (MATERIAL_BASE_TEXTURE | MATERIAL_EMISSION_TEXTURE)) != 0u { slopes = slopes_of(t, at, position, s.screen); }
+    if (material.flags & MATERIAL_BASE_TEXTURE) != 0u {
+        s.color = vec4f(s.color.rgb * texture_at(atlas_lookup(record + ATLAS_MATERIAL), at, position.weights, slopes), s.color.a);
+    }
+    if (material.flags & MATERIAL_UNLIT) != 0u {
+        s.glow = s.color.rgb;
+        return s;
+    }
+    var glow = vec3f(material.red, material.green, material.blue);
+    if (material.flags & MATERIAL_EMISSION_TEXTURE) != 0u {
+        glow *= texture_at(atlas_lookup(record + ATLAS_MATERIAL + ATLAS_LOOKUP), at, position.weights, slopes);
+    }
+    s.glow = glow;
+    s.color = vec4f(s.color.rgb + glow, s.color.a);
+    return s;
+}
+
+// Changes of the corners' weights from pixel to pixel.
+struct Slopes {
+    right: vec3f, // one pixel to the right
+    down: vec3f,
+}
+
+// Weights are quotients of terms that are linear on screen, over their sum. Boxes and discs have no slopes.
+fn slopes_of(t: Triangle, at: vec3u, position: SamplePosition, screen: vec2f) -> Slopes {
+    if SHAPE != SHAPE_TRIANGLES { return Slopes(vec3f(0.0), vec3f(0.0)); }
+    if shade_is_clipped(t) { return slopes_clipped(t, at, position.weights, screen); }
+    let a = vertex_at(t.a);
+    let b = vertex_at(t.b);
+    let c = vertex_at(t.c);
+    let inv_w = select(bitcast<vec3f>(vec3u(t.a.w, t.b.w, t.c.w)), vec3f(1.0), IS_AFFINE);
+    let unit = f32(grid_unit());
+    let right = vec3f(vec3i(b.y - c.y, c.y - a.y, a.y - b.y)) * unit * inv_w;
+    let down = vec3f(vec3i(c.x - b.x, a.x - c.x, b.x - a.x)) * unit * inv_w;
+    return slopes_of_quotient(right, down, position.weights, dot(position.barycentrics, inv_w) * fixed_weight(a, b, c));
+}
+
+// The same on the plane of a triangle that was clipped, at a position in the picture from 0 to 1.
+fn slopes_clipped(t: Triangle, at: vec3u, weights: vec3f, screen: vec2f) -> Slopes {
+    // A loop, because compilers inline the vertex effects wherever they are called.
+    var corners: array<vec4f, 3>;
+    for (var i = 0u; i < 3u; i += 1u) { corners[i] = vertex_effects_clip_of(t.draw, at[i], t.id); }
+    let a = corners[0];
+    let b = corners[1];
+    let c = corners[2];
+    let lines = transpose(mat3x3f(cross(b.xyw, c.xyw), cross(c.xyw, a.xyw), cross(a.xyw, b.xyw)));
+    let terms = lines * vec3f(screen.x * 2.0 - 1.0, 1.0 - screen.y * 2.0, 1.0);
+    let sum = dot(terms, vec3f(1.0));
+    return slopes_of_quotient(lines[0] * (2.0 / f32(frame.size.x)), lines[1] * (-2.0 / f32(frame.size.y)), weights, sum);
+}
+
+fn slopes_of_quotient(right: vec3f, down: vec3f, weights: vec3f, sum: f32) -> Slopes {
+    return Slopes((right - weights * dot(right, vec3f(1.0))) / sum, (down - weights * dot(down, vec3f(1.0))) / sum);
+}
+
+// Texture coordinates of a vertex.
+fn texture_coordinates(lookup: Lookup, vertex: u32) -> vec2f {
+    let byte = lookup.offset + vertex * lookup.stride;
+    let stored = vec2f(pull_component(lookup.format, byte), pull_component(lookup.format, byte + pull_bytes(lookup.format)));
+    return vec2f(
+        lookup.u_per_u * stored.x + lookup.u_per_v * stored.y + lookup.u_offset,
+        lookup.v_per_u * stored.x + lookup.v_per_v * stored.y + lookup.v_offset);
+}
+
+// Whole images between a coordinate and the equivalent one near 0.
+fn texture_repeats(at: f32, wrap: u32) -> f32 {
+    if wrap == WRAP_CLAMP { return 0.0; }
+    return select(floor(at), 2.0 * floor(0.5 * at), wrap == WRAP_MIRRORED);
+}
+
+// Linear RGB of a texture at a sample. Coordinates are measured from the first corner, which is moved near 0, so that errors
+// grow with the size of the triangle and not with its distance from the image's edge.
+fn texture_at(lookup: Lookup, at: vec3u, weights: vec3f, slopes: Slopes) -> vec3f {
+    let a = texture_coordinates(lookup, at.x);
+    let ab = texture_coordinates(lookup, at.y) - a;
+    let ac = texture_coordinates(lookup, at.z) - a;
+    let whole = vec2f(texture_repeats(a.x, lookup.sampling & 3u), texture_repeats(a.y, (lookup.sampling >> 2u) & 3u));
+    let uv = (a - whole) + ab * weights.y + ac * weights.z;
+    let size = vec2f(vec2u(lookup.size & 0xffffu, lookup.size >> 16u));
+    let right = (ab * slopes.right.y + ac * slopes.right.z) * size;
+    let down = (ab * slopes.down.y + ac * slopes.down.z) * size;
+    let squared = max(dot(right, right), dot(down, down));
+    return atlas_filtered(lookup, uv, 0.5 * log2(max(squared, 1e-30)));
+}
+
+//@ step shadow_map
+// The fraction of a directional light that reaches a sample, from the depths that the light sees.
+// Mirrors `gpu::records::ShadowMapUniform`.
+//@ use lib/triangle
+//@ use lib/surface
+//@ use lib/shade
+//@ use variants/shadow_map
+//@ use glue/effects
+
+// The transform from world space to the shadow map.
+struct ShadowMapView {
+    column: vec4f, // texels to the right, of a point (x, y, z, 1)
+    row: vec4f,    // texels down
+    depth: vec4f,  // reversed depth: 1 near the light
+    texel_m: f32,
+    range_m: f32,  // meters from depth 0 to depth 1
+    side: u32,     // texels
+    spare: u32,
+}
+
+@group(0) @binding(30) var<uniform> light: ShadowMapView;
+
+// Texels along a side of the filter: 1, 3 or 5.
+override SHADOW_TAPS_SIDE: i32 = 3;
+// Largest tangent of the angle between light and normal for which the bias grows.
+override MAX_SHADOW_SLOPE: f32 = 8.0;
+
+// Is the depth at least that of what the light sees in a texel? Reversed depths are floats from 0 up, which order like their
+// bits. There is no shadow outside the map.
+fn shadow_map_is_lit(texel: vec2i, depth: f32) -> bool {
+    let is_inside = all(texel >= vec2i(0)) && all(texel < vec2i(i32(light.side)));
+    let key = shadow_map_key(vec2u(clamp(texel, vec2i(0), vec2i(i32(light.side) - 1))), light.side);
+    return !is_inside || bitcast<u32>(max(depth, 1e-9)) >= key;
+}
+
+// Weight of a tap along one axis; the weights sum to `SHADOW_TAPS_SIDE - 1`. The outermost taps fade as the sample crosses its
+// texel, so that the sum is continuous.
+fn shadow_map_weight(tap: i32, fraction: f32) -> f32 {
+    let radius = SHADOW_TAPS_SIDE / 2;
+    if radius == 0 { return 1.0; }
+    return select(select(1.0, fraction, tap == radius), 1.0 - fraction, tap == -radius);
+}
+
+fn shade_step_shadow_map(surface: Surface, t: Triangle, vertices_at: vec3u, position: SamplePosition) -> Surface {
+    var s = surface;
+    let p = vec4f(s.position, 1.0);
+    let at = vec2f(dot(light.column, p), dot(light.row, p));
+    let texel_depth = light.texel_m / light.range_m;
+    // The slope of the triangle's plane: its change of depth from texel to texel.
+    let across = vec2f(dot(light.column.xyz, s.flat_normal), dot(light.row.xyz, s.flat_normal)) * light.texel_m;
+    let along = dot(light.depth.xyz, s.flat_normal) * light.range_m;
+    let slant = across / select(max(along, 1e-3), min(along, -1e-3), along < 0.0);
+    let tangent = length(slant);
+    let clamped = min(tangent, MAX_SHADOW_SLOPE);
+    let fall = -slant * (clamped / max(tangent, 1e-9)) * texel_depth;
+    let depth = dot(light.depth, p) + (effects.shadow.bias + effects.shadow.slope * clamped) * texel_depth;
+
+    let first = floor(at);
+    let fraction = at - first;
+    let radius = SHADOW_TAPS_SIDE / 2;
+    var sum = 0.0;
+    for (var y = -radius; y <= radius; y += 1) {
+        for (var x = -radius; x <= radius; x += 1) {
+            let texel = vec2i(x, y);
+            let middle = vec2f(texel) + 0.5 - fraction;
+            let weight = shadow_map_weight(x, fraction.x) * shadow_map_weight(y, fraction.y);
+            sum += select(0.0, weight, shadow_map_is_lit(vec2i(first) + texel, depth + dot(fall, middle)));
+        }
+    }
+    let whole = f32(max(SHADOW_TAPS_SIDE - 1, 1));
+    s.lit = sum / (whole * whole);
+    return s;
+}
