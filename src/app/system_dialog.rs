@@ -6,6 +6,7 @@ use std::{
 };
 
 use super::command::Purpose;
+use crate::preset_file::MODEL_FORMATS;
 
 /// How the system's dialog ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,11 +18,11 @@ pub enum Answer {
 }
 
 /// File types that a dialog offers.
-pub const fn extensions(purpose: Purpose) -> &'static [&'static str] {
+pub fn extensions(purpose: Purpose) -> Vec<&'static str> {
     match purpose {
-        Purpose::Open => &["toml", "glb", "gltf", "png", "wgsl"],
-        Purpose::SaveAs => &["toml"],
-        Purpose::Export => &["png"],
+        Purpose::Open => ["toml"].into_iter().chain(MODEL_FORMATS.iter().map(|format| format.extension)).chain(["png", "wgsl"]).collect(),
+        Purpose::SaveAs => vec!["toml"],
+        Purpose::Export => vec!["png"],
     }
 }
 
@@ -46,7 +47,7 @@ pub fn may_exist() -> bool {
 
 /// The dialog, beginning at `start`; what it returns shows it and waits for its end.
 pub fn prepare(purpose: Purpose, start: &Path) -> impl FnOnce() -> Answer + Send + 'static {
-    let mut dialog = rfd::AsyncFileDialog::new().add_filter(types_name(purpose), extensions(purpose));
+    let mut dialog = rfd::AsyncFileDialog::new().add_filter(types_name(purpose), &extensions(purpose));
     if let Some(folder) = start.parent().filter(|folder| folder.is_dir()) {
         dialog = dialog.set_directory(folder);
     }

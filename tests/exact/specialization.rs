@@ -38,7 +38,7 @@ fn pictures(options: &[Visibility]) -> Vec<(String, Arc<Scene>, View, Stack, Vis
             let scene = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref())
                 .unwrap_or_else(|error| panic!("{}: {error}", preset_file.id));
             let view = preset_file.preset.view(&scene, preset_file.preset.output.size);
-            let brings_new = preset_file.preset.stack.0.iter().filter(|enabled| met.insert(enabled.effect.name)).count() > 0;
+            let brings_new = preset_file.preset.stack.0.iter().filter(|enabled| met.insert(enabled.effect.name.clone())).count() > 0;
             if brings_new && preset_file.preset.stack.is_repeatable() {
                 pictures.push((preset_file.id.clone(), scene, view, preset_file.preset.evaluated_stack(), options[0]));
             }
@@ -125,7 +125,7 @@ fn an_effect_that_is_switched_off_again_leaves_no_pass_and_no_buffer() {
     let bare = explained(&[]);
     let mut has_own = 0;
     for effect in EFFECTS.iter().filter(|effect| effect.name != "particles") {
-        let on = explained(&[effect.name]);
+        let on = explained(&[effect.name.as_str()]);
         let off = explained(&[]);
         assert_eq!(names(&off), names(&bare), "{}", effect.name);
         has_own += usize::from(names(&on) != names(&bare));

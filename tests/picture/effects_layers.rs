@@ -362,8 +362,8 @@ fn a_card_lists_the_covered_samples_of_a_small_box_and_draws_each_of_them() {
 #[test]
 fn every_effect_of_the_slot_is_known_to_the_planner() {
     let of = |name: &str| stack(&[name]).layers(1000);
-    let slot = |effect: &&&Effect| effect.hooks.slot == Some(rasterlab::effects::hooks::Slot::Visibility);
+    let slot = |effect: &&std::sync::Arc<Effect>| effect.hooks.slot == Some(rasterlab::effects::hooks::Slot::Visibility);
     for effect in rasterlab::effects::EFFECTS.iter().filter(slot) {
-        assert_eq!(of(effect.name).map(Layers::name), Some(effect.name));
+        assert_eq!(of(&effect.name).map(Layers::name), Some(effect.name.as_str()));
     }
 }

@@ -189,7 +189,8 @@ const LOCK: &str = "session.lock";
 /// The place that the window had, by the settings of `folder`. What is wrong with them is said by [`Keeper::new`].
 pub fn window_place(folder: &Path) -> WindowPlace {
     let text = std::fs::read_to_string(folder.join(SETTINGS)).unwrap_or_default();
-    plain_file::parse(&text, SETTINGS, &mut Vec::new()).map_or_else(|_| WindowPlace::default(), |(settings, _): (Settings, _)| settings.window)
+    plain_file::parse(&text, SETTINGS, &mut Vec::new())
+        .map_or_else(|_| WindowPlace::default(), |(settings, _): (Settings, _)| settings.window)
 }
 
 /// The lock of the session; none if another window has it.

@@ -52,7 +52,11 @@ impl LastSession {
         Self {
             is_running: true,
             id: open.id.clone(),
-            path: open.path.as_deref().and_then(|path| std::path::absolute(path).ok()).map(|path| path.to_string_lossy().into_owned().into()),
+            path: open
+                .path
+                .as_deref()
+                .and_then(|path| std::path::absolute(path).ok())
+                .map(|path| path.to_string_lossy().into_owned().into()),
             is_read_only: open.read_only,
             filed: preset_file::to_shared_toml(&absolute(filed)),
             edited,

@@ -325,7 +325,7 @@ fn scenes_by_effects(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         for query in all_scenes() {
             let scene = context.scene(query)?;
             for is_random in [false, true] {
-                let mut stack = stack(&["lambert", effect.name]);
+                let mut stack = stack(&["lambert", &effect.name]);
                 if is_random {
                     stack = with_random_values(stack, &mut rng);
                 }
@@ -420,6 +420,6 @@ mod tests {
         let levels = factors.iter().flatten().filter_map(|level| if let Level::Effects(names) = level { Some(*names) } else { None });
         let effects: BTreeSet<&str> = levels.flatten().copied().collect();
         // A trail needs the pictures before.
-        assert_eq!(effects, EFFECTS.iter().map(|effect| effect.name).filter(|name| *name != "smear").collect());
+        assert_eq!(effects, EFFECTS.iter().map(|effect| effect.name.as_str()).filter(|name| *name != "smear").collect());
     }
 }
