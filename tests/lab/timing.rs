@@ -101,6 +101,7 @@ fn frames_of_the_preset_before_do_not_count_for_the_next() {
 
 #[test]
 fn a_new_size_and_another_preset_reset_time_and_verdict() {
+    draw_pictures();
     let Some(mut lab) = lab("lambert") else { return };
     let size = lab.get_by_label("Picture").rect().size();
     click(&mut lab, Role::Button, "Verify");
@@ -124,6 +125,7 @@ fn a_new_size_and_another_preset_reset_time_and_verdict() {
 
 #[test]
 fn header_and_legend_count_the_same_wrong_pixels() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let text = "schema = 2\n[scene]\nbuiltin = \"teapot\"\n[effects.facet]\n[accuracy]\ncoverage = \"fixed4\"\n";
     let Some(mut lab) = lab_of(folder.path(), text) else { return };
@@ -176,6 +178,7 @@ fn the_timing_panel_lists_passes_rest_and_latency() {
 
 #[test]
 fn the_file_of_the_log_tells_the_longest_frame_and_the_slowest_picture_and_a_window_at_rest_writes_nothing() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("window.log");
     let Some(mut lab) = lab_with_log("lambert", std::fs::File::create(&path).expect("a file")) else { return };
