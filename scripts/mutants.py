@@ -32,7 +32,7 @@ import time
 
 sys.dont_write_bytecode = True
 
-from mutation import choose, equivalent, results, run, suite  # noqa: E402
+from mutation import choose, equivalent, planted, results, run, suite  # noqa: E402
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 EQUIVALENTS = os.path.join(ROOT, "scripts", "mutants-equivalent.txt")
@@ -53,6 +53,7 @@ def arguments():
     parser.add_argument("--from", dest="first", type=int, default=0, metavar="I", help="begin with this one, from 0")
     parser.add_argument("--count", type=int, metavar="N", help="run only this many")
     parser.add_argument("--only", action="append", default=[], metavar="ID", help="run only this mutant, listed or not; may be repeated")
+    parser.add_argument("--planted", action="store_true", help="try the mistakes of scripts/mutation/planted.toml, and no others")
     parser.add_argument("--file", action="append", default=[], metavar="FILE",
                         help="only mutants of this file (lib/fixed), section (variants/coverage/boxes) or folder (lib/)")  # fmt: skip
     parser.add_argument("--survivors", action="store_true", help="with --resume: run those again that survived")
@@ -121,9 +122,13 @@ class Campaign:
 
     def chosen(self):
         args = self.args
-        every = choose.mutants(self.texts, args.mutants, args.seed)
+        try:
+            every = planted.mutants(self.texts, planted.entries()) if args.planted else choose.mutants(self.texts, args.mutants, args.seed)
+        except planted.BadEntry as error:
+            raise Fault(str(error)) from error
         if args.only:
-            possible = {mutant["id"]: mutant for found in choose.every(self.texts).values() for mutant in found}
+            found = [every] if args.planted else choose.every(self.texts).values()
+            possible = {mutant["id"]: mutant for of_file in found for mutant in of_file}
             missing = [one for one in args.only if one not in possible]
             if missing:
                 raise Fault(f"there is no mutant {missing[0]}; --list shows all, and an id changes with the text of its line")
@@ -151,7 +156,8 @@ class Campaign:
             say("note: this program has no command fuzz; that step is left out")
             leave_out.add("fuzz")
         listed = subprocess.run([self.program, "stress", "--list", "--filter", "d3d-snap,translation"], capture_output=True, check=False, timeout=60)
-        self.probes = suite.probes(args.root, args.fuzz, args.fuzz_seed, leave_out, joins_stress=listed.returncode == 0)
+        cases = planted.cases(planted.entries()) if args.planted else []
+        self.probes = suite.probes(args.root, args.fuzz, args.fuzz_seed, leave_out, listed.returncode == 0, cases)
         self.same = {
             "program": file_digest(self.program),
             "shaders": digest(*(part for item in self.texts.items() for part in item)),
@@ -225,7 +231,8 @@ class Campaign:
         try:
             times = {name: one["seconds"] for name, one in self.baseline.items()}
             stem = mutant["part"].split("/")[-1]
-            for group in suite.commands(linked_by, stem, times):
+            named = [probe for probe in linked_by if mutant.get("case") and mutant["case"] in probe.words]
+            for group in [[probe] for probe in named] + suite.commands(linked_by, stem, times):
                 probe = suite.merged(group)
                 usual = sum(times[one.name] for one in group)
                 limit = 20.0 + self.args.limit_factor * usual

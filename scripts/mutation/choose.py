@@ -112,7 +112,9 @@ def mutants(texts, count, seed):
 
 
 def changed(text, mutant):
-    """The file with the mutant's line, which must stand where the mutant says."""
+    """The file with the mutant's line, which must stand where the mutant says; a planted mutant may replace several lines or a part of one."""
+    if mutant["operator"] == "planted":
+        return text.replace(mutant["before"], mutant["after"])
     lines = text.split("\n")
     if lines[mutant["line"] - 1] != mutant["before"]:
         raise ValueError(f"{mutant['file']}.wgsl has another line {mutant['line']} than mutant {mutant['id']}")

@@ -7,7 +7,7 @@ import sys
 import tempfile
 import unittest
 
-from . import choose, equivalent, operators, results, run, suite, wgsl
+from . import choose, equivalent, operators, planted, results, run, suite, wgsl
 
 FILE = """// A comment with a < b and 1u.
 //@ use lib/frame
@@ -166,6 +166,16 @@ class Choice(unittest.TestCase):
             self.assertEqual(pairs, [(mutant["before"], mutant["after"])])
 
 
+class Planted(unittest.TestCase):
+    def test_a_text_that_stands_once_is_replaced_in_whichever_file_it_is(self):
+        texts = {"lib/a": "let x = 1u;\nlet y = 2u;\nlet z = 3u;\n", "lib/b": "let x = 4u;\n"}
+        mutant, = planted.mutants(texts, [{"from": "2u;\nlet z", "to": "5u;\nlet z", "case": "sizes"}])
+        self.assertEqual((mutant["file"], mutant["line"], mutant["case"]), ("lib/a", 2, "sizes"))
+        self.assertEqual(choose.changed(texts["lib/a"], mutant), "let x = 1u;\nlet y = 5u;\nlet z = 3u;\n")
+        for entry in ({"from": "let x", "to": "var x"}, {"from": "7u", "to": "8u"}, {"from": "4u", "to": "4u"}):
+            self.assertRaises(planted.BadEntry, planted.mutants, texts, [entry])
+
+
 class Equivalents(unittest.TestCase):
     MUTANT = {"id": "1", "part": "lib/a", "file": "lib/a", "line": 3, "before": "    let x = a | b; // c", "after": "    let x = a & b; // c"}
 
@@ -316,6 +326,13 @@ class Repository(unittest.TestCase):
         self.assertEqual(equivalent.stale(entries, choose.parts(texts)), [])
         possible = {key(mutant) for found in choose.every(texts).values() for mutant in found}
         self.assertEqual([entry for entry in entries if entry not in possible], [])
+
+    def test_every_planted_mistake_replaces_text_that_the_shaders_have_once(self):
+        listed = planted.entries()
+        found = planted.mutants(choose.files(os.path.join(self.root, "shaders")), listed)
+        self.assertEqual(len({mutant["id"] for mutant in found}), len(listed))
+        named = [probe.words[-1] for probe in suite.probes(self.root, 0, 0, cases=planted.cases(listed)) if probe.step == "stress"]
+        self.assertLessEqual(set(planted.cases(listed)), set(named))
 
     def test_the_suite_has_commands_of_every_step_and_groups_run_each_of_them_once(self):
         probes = suite.probes(self.root, 60, 1)

@@ -49,8 +49,8 @@ class Probe:
         return [program, "--shaders", shaders, *self.words]
 
 
-def probes(root, fuzz_count, fuzz_seed, leave_out=(), joins_stress=True):
-    """All probes, in the order of their steps. `joins_stress`: the program takes several cases at once."""
+def probes(root, fuzz_count, fuzz_seed, leave_out=(), joins_stress=True, cases=()):
+    """All probes, in the order of their steps. `joins_stress`: the program takes several cases at once. `cases`: more cases of `stress`."""
 
     def presets(step, head, folder, but=()):
         paths = sorted(glob.glob(os.path.join(root, folder, "*.toml")))
@@ -59,10 +59,8 @@ def probes(root, fuzz_count, fuzz_seed, leave_out=(), joins_stress=True):
 
     found = presets("verify", ["verify", *SMALL], "presets")
     found += presets("options", ["verify", "--frames", "2"], os.path.join("scripts", "mutation", "presets"))
-    if joins_stress:
-        found += [Probe("stress", ["stress", "--filter"], [name], ",") for name in STRESS]
-    else:
-        found += [Probe("stress", ["stress", "--filter", name], []) for name in STRESS]
+    for name in STRESS + [case for case in cases if case not in STRESS]:
+        found.append(Probe("stress", ["stress", "--filter"], [name], ",") if joins_stress else Probe("stress", ["stress", "--filter", name], []))
     for begin in range(0, fuzz_count, FUZZ_PART):
         part = min(FUZZ_PART, fuzz_count - begin)
         found.append(Probe("fuzz", ["fuzz", "--seed", str(fuzz_seed + begin), "--count", str(part)], []))

@@ -55,6 +55,16 @@ pub struct Devices {
     /// The same on a graphics card. On a CPU adapter it is a second one, because compiling and drawing keep everything waiting that is
     /// submitted to the same device, the window's own frames included.
     pub picture: Arc<Gpu>,
+    pub painter: Painter,
+}
+
+/// What paints the picture of a window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Painter {
+    /// The rasterizer.
+    Kernels,
+    /// Nothing: every picture is gray, at once. For tests of what lies round the picture.
+    Plain,
 }
 
 impl Devices {
@@ -63,7 +73,7 @@ impl Devices {
         let choice = AdapterChoice::Named(window.summary.name.clone());
         let opened = || started_as(Urgency::Picture, || Gpu::open(&choice).block_on().ok());
         let second = if window.summary.software { opened() } else { None };
-        Self { picture: second.unwrap_or_else(|| window.clone()), window }
+        Self { picture: second.unwrap_or_else(|| window.clone()), window, painter: Painter::Kernels }
     }
 }
 

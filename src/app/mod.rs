@@ -87,7 +87,7 @@ mod verification;
 mod watch;
 mod window;
 
-pub use device::{Devices, adopt, wgpu_setup};
+pub use device::{Devices, Painter, adopt, wgpu_setup};
 #[cfg(target_arch = "wasm32")]
 pub use page::start;
 pub use recovery::{FIRST_PRESET, config_folder};

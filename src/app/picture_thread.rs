@@ -23,6 +23,7 @@ use web_time::Instant;
 
 use super::{
     background::{Urgency, yield_processor},
+    device::{Devices, Painter},
     ending::EndingThreads,
     inputs::Inputs,
     timings::{Sample, has_settled},
@@ -137,9 +138,8 @@ pub struct PictureThread {
 }
 
 impl PictureThread {
-    /// Starts a thread that draws on `gpu` for a window on the device `window`, which may be the same.
-    /// When it is dropped, `ending` gets it.
-    pub fn start(gpu: Arc<Gpu>, window: Arc<Gpu>, ctx: egui::Context, ending: Arc<EndingThreads>) -> Self {
+    /// Starts a thread that draws on the devices of a window. When it is dropped, `ending` gets it.
+    pub fn start(devices: Devices, ctx: egui::Context, ending: Arc<EndingThreads>) -> Self {
         let shared = Arc::new(Shared {
             orders: Mutex::default(),
             changed: Condvar::new(),
@@ -152,8 +152,9 @@ impl PictureThread {
         let watched = shared.clone();
         let watch = Arc::new(CompileWatch::new(move || watched.begin_compiling()));
         let (sender, finished) = mpsc::channel();
-        let worker =
-            Worker { shared: shared.clone(), watch: watch.clone(), sender: sender.clone(), gpu, window, texture: None, renderer: None };
+        let Devices { picture: gpu, window, painter } = devices;
+        let (own, watching) = (shared.clone(), watch.clone());
+        let worker = Worker { shared: own, watch: watching, sender: sender.clone(), gpu, window, painter, texture: None, renderer: None };
         let handle = std::thread::Builder::new().name("picture".into()).spawn(move || worker.run()).ok();
         Self { shared, watch, sender, finished, handle, ending }
     }
@@ -234,6 +235,7 @@ struct Worker {
     gpu: Arc<Gpu>,
     /// Shows.
     window: Arc<Gpu>,
+    painter: Painter,
     /// What the window shows, where it is on another device.
     texture: Option<(wgpu::Texture, wgpu::TextureView)>,
     renderer: Option<Renderer>,
@@ -354,6 +356,10 @@ impl Worker {
 
     /// Dispatches one frame and waits until the device has finished it; true if something was compiled for it.
     fn frame(&mut self, Inputs { scene, view, stack, accuracy }: &Inputs) -> Result<(Option<Report>, bool), RenderError> {
+        if self.painter == Painter::Plain {
+            self.shared.draws.fetch_add(1, Ordering::Relaxed);
+            return Ok((None, false));
+        }
         let (gpu, watch) = (&self.gpu, &self.watch);
         let renderer = self.renderer.get_or_insert_with(|| {
             let mut renderer = Renderer::new(gpu.clone());
@@ -373,9 +379,14 @@ impl Worker {
         if self.shared.is_outdated(inputs) {
             return Ok(None);
         }
+        let size = [inputs.view.width, inputs.view.height];
+        if self.painter == Painter::Plain {
+            let view = (inputs.view.pixels() > 0).then(|| self.upload(&vec![[90, 90, 90, 255]; inputs.view.pixels()], size));
+            let explanation = Arc::default();
+            return Ok(Some(Drawn { view, size, report, options: None, plan: None, explanation, is_compiled, is_partial: false }));
+        }
         let Some(renderer) = &mut self.renderer else { return Err(RenderError::NoScene) };
         let (options, plan, explanation) = (renderer.key().map(|key| key.options), renderer.plan().cloned(), renderer.explained());
-        let size = [inputs.view.width, inputs.view.height];
         let view = if Arc::ptr_eq(&self.gpu, &self.window) {
             renderer.texture_view().cloned()
         } else {

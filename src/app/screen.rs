@@ -64,7 +64,7 @@ impl Screen {
 
     fn with(devices: Devices, blitter: Blitter, ctx: egui::Context, ending: Arc<EndingThreads>) -> Self {
         Self {
-            thread: PictureThread::start(devices.picture.clone(), devices.window.clone(), ctx.clone(), ending.clone()),
+            thread: PictureThread::start(devices.clone(), ctx.clone(), ending.clone()),
             ending,
             gpu: devices.picture.clone(),
             devices,

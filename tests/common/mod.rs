@@ -5,7 +5,7 @@ use std::{
     collections::{BTreeMap, VecDeque},
     fs,
     ops::{Deref, DerefMut},
-    path::Path,
+    path::{Path, PathBuf},
     sync::{Arc, Condvar, LazyLock, Mutex, MutexGuard, OnceLock},
     thread,
 };
@@ -16,7 +16,9 @@ use pollster::FutureExt as _;
 
 pub use rasterlab::stress::{
     adversarial::near_miss_triangle,
-    exactness, pinned,
+    exactness,
+    matrix::{DEFORMED_SCENES, GALLERY_SCENES, SCENES},
+    pinned,
     scenes::{Rng, SimpleMesh, camera_view, pixel_view, scene_of_meshes, triangle_soup, triangle_soup_in_units},
     stack, tunings,
 };
@@ -33,33 +35,6 @@ use rasterlab::{
     shader::library::Library,
     stress,
 };
-
-/// A scene of every builtin: together they take each path through the kernels.
-pub const SCENES: &[&str] = &[
-    "teapot?tess=8",
-    "sphere?triangles=5000",
-    "sphere?triangles=200",
-    "knot?tess=24",
-    "cube-wall",
-    "field?count=27&triangles=200",
-    "globe?tess=6",
-    "panels",
-    "leaves?n=40",
-    "grid?cell=1",
-    "grid?cell=0.4",
-    "fan?n=13",
-    "sizes",
-    "slivers",
-    "stack",
-    "near",
-    "chamber",
-];
-
-/// Scenes of the gallery that stress nothing in particular, so that sweeps over options leave them out.
-pub const GALLERY_SCENES: &[&str] = &["town?houses=3", "still-life?tess=1"];
-
-/// Scenes with deformed meshes, which the strict vertex stage refuses.
-pub const DEFORMED_SCENES: &[&str] = &["tentacle?tess=3", "walker?tess=1"];
 
 /// The adapter under test: `RASTERLAB_ADAPTER` (a part of its name) or the best there is. A missing one fails the test;
 /// only `RASTERLAB_GPU=skip` leaves GPU tests out, and says so.
@@ -276,18 +251,33 @@ impl Mutated {
 
     /// One more mistake, as in [`mutated`].
     #[must_use]
-    pub fn and(self, part: &str, from: &str, to: &str) -> Self {
-        let (path, mut text, range) = shader_parts::find(self.0.path(), part).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(text[range.clone()].matches(from).count(), 1, "{from:?} is not once in {part}");
-        text.replace_range(range.clone(), &text[range].replace(from, to));
-        fs::write(&path, text).expect("a shader is written");
+    pub fn and(self, from: &str, to: &str) -> Self {
+        let mut files = Vec::new();
+        files_below(self.0.path(), &mut files);
+        let texts = files.into_iter().map(|path| (fs::read_to_string(&path).expect("a shader is read"), path));
+        let found: Vec<_> = texts.filter(|(text, _)| text.contains(from)).collect();
+        let [(text, path)] = &found[..] else { panic!("{from:?} stands in {} shader files", found.len()) };
+        assert_eq!(text.matches(from).count(), 1, "{from:?} in {}", path.display());
+        fs::write(path, text.replace(from, to)).expect("a shader is written");
         self
     }
 }
 
-/// The project's shaders with `from`, which stands exactly once in a part (the head of a file, or `file/section`), replaced by `to`.
-pub fn mutated(part: &str, from: &str, to: &str) -> Mutated {
-    Mutated(shader_parts::copied()).and(part, from, to)
+/// The project's shaders with `from`, which stands in them exactly once, replaced by `to`.
+pub fn mutated(from: &str, to: &str) -> Mutated {
+    own_shaders().and(from, to)
+}
+
+/// A copy of the project's shaders.
+pub fn own_shaders() -> Mutated {
+    Mutated(shader_parts::copied())
+}
+
+fn files_below(folder: &Path, files: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).expect("a folder of shaders can be read") {
+        let path = entry.expect("a folder of shaders can be read").path();
+        if path.is_dir() { files_below(&path, files) } else { files.push(path) }
+    }
 }
 
 /// The oracle's own picture of a scene, from its own vertices.

@@ -1,25 +1,6 @@
-//! Parts of the shaders, to make mistakes in: the head of a file (`lib/fixed`) or a section of one (`variants/coverage/fixed`).
+//! A copy of the shaders, to make mistakes in.
 
-use std::{
-    fs,
-    ops::Range,
-    path::{Path, PathBuf},
-};
-
-use rasterlab::shader::library::sections;
-
-/// The file of a part, its text, and where the part lies in it.
-pub fn find(shaders: &Path, part: &str) -> Result<(PathBuf, String, Range<usize>), String> {
-    let file = |name: &str| shaders.join(format!("{name}.wgsl"));
-    let (path, section) = match part.rsplit_once('/') {
-        Some((name, section)) if !file(part).exists() => (file(name), section),
-        _ => (file(part), ""),
-    };
-    let text = fs::read_to_string(&path).map_err(|error| format!("{part}: {error}"))?;
-    let found = sections(&text).into_iter().find(|(name, _)| *name == section).map(|(_, range)| range);
-    let range = found.ok_or_else(|| format!("{} has no section {section}", path.display()))?;
-    Ok((path, text, range))
-}
+use std::{fs, path::Path};
 
 /// A copy of the project's shaders.
 pub fn copied() -> tempfile::TempDir {

@@ -7,7 +7,7 @@ use pollster::FutureExt as _;
 use crate::common::*;
 use rasterlab::{
     accuracy::{DotCulling, PinnedOptions, Visibility},
-    effects::{Stack, hooks::Shape},
+    effects::{EFFECTS, Stack, hooks::Shape},
     frame::{AdapterPicture, Frame},
     gpu::{Explanation, Renderer, ResourceId},
     measure::compare,
@@ -113,6 +113,27 @@ fn names(explanation: &Explanation) -> (Vec<&str>, Vec<&str>) {
     let passes = explanation.passes.iter().map(|pass| pass.name.as_str()).collect();
     let buffers = explanation.buffers.iter().map(|buffer| buffer.name.as_str()).collect();
     (passes, buffers)
+}
+
+#[test]
+fn an_effect_that_is_switched_off_again_leaves_no_pass_and_no_buffer() {
+    let Some(gpu) = gpu() else { return };
+    let (mut renderer, scene) = (Renderer::new(gpu), scene("teapot?tess=4"));
+    let view = view(&scene, [64, 48]);
+    let mut explained = |names: &[&str]| {
+        captured(&mut renderer, &scene, &view, &stack(names), &pinned(Visibility::Split32));
+        renderer.explain()
+    };
+    let bare = explained(&[]);
+    let mut has_own = 0;
+    for effect in EFFECTS.iter().filter(|effect| effect.name != "particles") {
+        let on = explained(&[effect.name.as_str()]);
+        let off = explained(&[]);
+        assert_eq!(names(&off), names(&bare), "{}", effect.name);
+        has_own += usize::from(names(&on) != names(&bare));
+    }
+    assert!(has_own > 5, "{has_own} effects have passes or buffers of their own");
+    assert!(!names(&bare).1.contains(&"particle_states") && bare.omitted.iter().any(|note| note.name == "particles"));
 }
 
 #[test]

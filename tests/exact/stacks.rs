@@ -1,6 +1,4 @@
-//! Promise: any set of effects composes. Random stacks with random legal parameters draw the same integers on the adapter
-//! and in the oracle, and two effects in one slot are refused with one sentence. Seeded: a failure prints the seed, and
-//! `RASTERLAB_SEED=n` draws that stack again. Needs an adapter.
+//! Promise: two effects in one slot are refused with one sentence, and a stack is read back in its own order. Needs an adapter.
 
 use pollster::FutureExt as _;
 
@@ -8,43 +6,14 @@ use crate::common::*;
 use rasterlab::{
     effects::{EFFECTS, Stack, hooks::Slot},
     gpu::RenderError,
-    measure::Budget,
     preset::Preset,
     preset_file,
     stress::random::{self, Values},
 };
 
-/// Stacks that every run draws.
-const STACKS: u32 = 20;
-
 /// As a preset, which a person can save and open.
 fn as_preset(stack: &Stack) -> String {
     preset_file::to_toml(&preset_file::PresetFile::new("random", Preset { stack: stack.clone(), ..Preset::default() }))
-}
-
-#[test]
-fn random_stacks_draw_the_same_integers_on_the_adapter_and_in_the_oracle() {
-    let Some(mut renderer) = renderer() else { return };
-    let seeds = match std::env::var("RASTERLAB_SEED") {
-        Ok(seed) => vec![seed.parse().expect("RASTERLAB_SEED is a whole number")],
-        Err(_) => (0..STACKS).collect::<Vec<u32>>(),
-    };
-    let options = options(&renderer);
-    let scenes = ["teapot?tess=4", "sphere?triangles=200", "near", "sizes", "cube-wall", "grid?cell=0.4", "stack?layers=5"];
-    let mut failures = Vec::new();
-    for seed in seeds {
-        let mut rng = Rng(seed.wrapping_mul(0x1234_5679));
-        let stack = random::stack(&mut rng, Values::OfSlider);
-        let scene = scene(scenes[rng.between(0, scenes.len() as i32) as usize]);
-        let view = view(&scene, [64, 48]);
-        renderer.set_tuning(tunings()[rng.between(0, 4) as usize]);
-        let option = options[rng.between(0, options.len() as i32) as usize];
-        let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &pinned(option));
-        if let Err(faults) = verdict.report.within(&Budget::default()) {
-            failures.push(format!("RASTERLAB_SEED={seed}: {} on {}: {faults}\n{}", scene.name, option.name(), as_preset(&stack)));
-        }
-    }
-    assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
 #[test]

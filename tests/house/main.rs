@@ -9,7 +9,6 @@ mod features;
 mod layout;
 mod loader;
 mod meshlets;
-mod mutants;
 mod mutation_campaign;
 mod plans;
 mod presets;

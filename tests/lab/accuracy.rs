@@ -18,6 +18,7 @@ fn tier(lab: &Lab) -> Tier {
 
 #[test]
 fn the_slider_chooses_a_tier_beside_its_cost_and_error() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else { return };
     assert_eq!(tier(&lab), Tier::Precise);
     slider(&lab, "accuracy.tier").scroll_to_me();
@@ -52,6 +53,7 @@ fn measure_tiers(lab: &mut Lab) {
 
 #[test]
 fn tiers_are_measured_at_rest_and_their_times_dropped_when_the_picture_changes() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else { return };
     if !lab.state().gpu().caps.timestamps {
         return eprintln!("this adapter has no timestamps, so tiers are not measured");
@@ -78,6 +80,7 @@ fn tiers_are_measured_at_rest_and_their_times_dropped_when_the_picture_changes()
 
 #[test]
 fn axes_are_folded_and_only_those_that_decide_are_shown_with_their_reasons() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else { return };
     let has = |lab: &Lab, axis: &str| lab.query_by_role_and_label(Role::ComboBox, axis).is_some();
     assert!(!has(&lab, "accuracy.coverage"), "the axes are folded");

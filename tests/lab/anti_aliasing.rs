@@ -31,6 +31,7 @@ fn wrong_pixels(lab: &mut Lab, factor: f64) -> usize {
 
 #[test]
 fn two_by_two_samples_are_the_oracles_averages_and_one_step() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else { return };
     let before = (pinned(&lab), lab.state().undo_steps());
     assert_eq!(before, (None, 0));

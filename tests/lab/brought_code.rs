@@ -32,6 +32,7 @@ fn is_asked(lab: &Lab) -> bool {
 
 #[test]
 fn the_code_of_a_pasted_preset_runs_only_when_it_is_allowed() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let line = preset_file::to_line(&inked(folder.path()));
     let Some(mut lab) = lab("lambert") else { return };

@@ -7,6 +7,7 @@ use crate::harness::*;
 
 #[test]
 fn the_wipe_shows_the_reference_on_its_left_and_is_dragged() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else { return };
     let alone = middle(&mut lab);
     let (draws, preset) = (lab.state().draws(), lab.state().preset_file().preset.clone());
@@ -42,6 +43,7 @@ fn the_wipe_shows_the_reference_on_its_left_and_is_dragged() {
 
 #[test]
 fn a_key_flips_between_a_and_b_and_both_sides_are_measured() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else { return };
     press(&mut lab, Modifiers::SHIFT, Key::Backslash);
     click(&mut lab, Role::Button, "Keep B");
@@ -68,6 +70,7 @@ fn black(image: &image::RgbaImage) -> f64 {
 
 #[test]
 fn both_sides_stand_beside_each_other_and_their_difference_shows_what_changed() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else { return };
     press(&mut lab, Modifiers::SHIFT, Key::Backslash);
     click(&mut lab, Role::Button, "Keep B");

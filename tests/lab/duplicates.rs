@@ -31,6 +31,7 @@ fn written(folder: &Path) -> Vec<String> {
 
 #[test]
 fn a_duplicate_takes_the_place_of_its_original_and_undo_brings_that_back() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let Some(mut lab) = lab_of(folder.path(), PRESET) else { return };
     let before = middle(&mut lab);

@@ -96,6 +96,7 @@ fn effects_are_found_enabled_and_starred_in_the_browser() {
 
 #[test]
 fn pictures_show_the_open_model_and_closing_the_browser_gives_up_the_rest() {
+    draw_pictures();
     let Some(mut lab) = lab("builtin:teapot?tess=4") else { return };
     let tile = |lab: &mut Lab| {
         let rect = lab.get_by_role_and_label(Role::Button, "Effect lambert").rect();

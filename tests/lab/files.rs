@@ -55,6 +55,7 @@ pub fn tiny_glb() -> Vec<u8> {
 
 #[test]
 fn a_dropped_model_is_shown_and_undo_brings_the_preset_back() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let model = folder.path().join("tri.glb");
     std::fs::write(&model, tiny_glb()).expect("a file");
@@ -75,6 +76,7 @@ fn a_dropped_model_is_shown_and_undo_brings_the_preset_back() {
 
 #[test]
 fn a_dropped_file_that_is_malformed_keeps_the_picture_and_is_one_sentence() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let Some(mut lab) = lab("lambert") else { return };
     let before = picture(&mut lab);
@@ -130,6 +132,7 @@ fn long_glb(triangles: u32) -> Vec<u8> {
 
 #[test]
 fn loading_a_model_shows_its_progress_and_can_be_stopped_while_the_picture_stays() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("long.glb");
     std::fs::write(&path, long_glb(3_000_000)).expect("a file");
@@ -168,6 +171,7 @@ fn wait_for_label(lab: &mut Lab, text: &str) {
 
 #[test]
 fn a_model_that_cannot_be_read_leaves_preset_scene_and_title_and_is_not_said_to_be_open() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let Some(mut lab) = lab("lambert") else { return };
     let path = folder.path().join("broken.glb");

@@ -60,6 +60,7 @@ fn spinner(lab: &Lab, label: &str) -> Option<Pos2> {
 
 #[test]
 fn the_window_goes_on_while_the_kernels_of_an_effect_are_compiled() {
+    draw_pictures();
     let Some(mut lab) = lab_on_new_devices("lambert") else { return };
     let (before, draws) = (drawn(&mut lab), lab.state().draws());
     // Compiling takes as long as the test wants; a window that waits for it would never come back.
@@ -99,6 +100,7 @@ fn the_window_goes_on_while_the_kernels_of_an_effect_are_compiled() {
 
 #[test]
 fn an_effect_that_is_taken_back_while_it_is_compiled_is_never_drawn() {
+    draw_pictures();
     let Some(mut lab) = lab_on_new_devices("lambert") else { return };
     let before = drawn(&mut lab);
     lab.state_mut().hold_compiling(true);
@@ -120,6 +122,7 @@ fn an_effect_that_is_taken_back_while_it_is_compiled_is_never_drawn() {
 
 #[test]
 fn a_picture_that_is_refused_is_reported_in_words_and_replaced_by_the_next() {
+    draw_pictures();
     let Some(mut lab) = lab("lambert") else { return };
     let before = drawn(&mut lab);
     let camera = lab.state().preset_file().preset.camera;
@@ -139,7 +142,7 @@ fn a_picture_that_is_refused_is_reported_in_words_and_replaced_by_the_next() {
 #[test]
 fn a_cpu_adapter_compiles_and_draws_on_another_device_than_the_one_that_shows_the_window() {
     let Some(window) = crate::common::gpu() else { return };
-    let Devices { window, picture } = Devices::of(window);
+    let Devices { window, picture, .. } = Devices::of(window);
     assert_eq!(Arc::ptr_eq(&window, &picture), !window.summary.software, "{}", window.summary.name);
     assert_eq!(picture.summary.name, window.summary.name);
 }

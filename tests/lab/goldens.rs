@@ -27,6 +27,7 @@ fn bless(folder: &Path) {
 
 #[test]
 fn a_reload_compares_the_golden_of_the_preset() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("effects/ink.wgsl");
     write(&file, INK);
@@ -54,6 +55,7 @@ fn a_reload_compares_the_golden_of_the_preset() {
 
 #[test]
 fn a_preset_without_a_golden_has_no_badge() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("effects/ink.wgsl");
     write(&file, INK);

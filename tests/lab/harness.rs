@@ -1,6 +1,7 @@
 //! The window without a display: the whole app in a harness that sends pointer and key events, on the adapter under test.
 
 use std::{
+    cell::Cell,
     iter,
     ops::{Deref, DerefMut},
     path::{Path, PathBuf},
@@ -18,7 +19,7 @@ use egui_kittest::{
     kittest::{NodeT as _, Queryable as _},
 };
 use rasterlab::{
-    app::{App, Devices, Options, wgpu_setup},
+    app::{App, Devices, Options, Painter, wgpu_setup},
     gpu::{Gpu, device::AdapterChoice},
     preset_file::Folders,
 };
@@ -61,6 +62,15 @@ impl TestRenderer for Window {
     }
 }
 
+thread_local! {
+    static PAINTER: Cell<Painter> = const { Cell::new(Painter::Plain) };
+}
+
+/// From here on the windows of this test show what the rasterizer draws. Those of other tests are gray, at once.
+pub fn draw_pictures() {
+    PAINTER.set(Painter::Kernels);
+}
+
 /// The devices that all windows of this program share, with the pipelines that were compiled for it: compiling them for each window
 /// would take most of the time of its test.
 fn shared_devices(adapter: &AdapterChoice) -> (RenderState, Devices) {
@@ -72,7 +82,7 @@ fn shared_devices(adapter: &AdapterChoice) -> (RenderState, Devices) {
     });
     // Textures belong to one window.
     let renderer = egui_wgpu::Renderer::new(&first.device, first.target_format, RendererOptions::PREDICTABLE);
-    (RenderState { renderer: Arc::new(RwLock::new(renderer)), ..first.clone() }, devices.clone())
+    (RenderState { renderer: Arc::new(RwLock::new(renderer)), ..first.clone() }, Devices { painter: PAINTER.get(), ..devices.clone() })
 }
 
 /// A device without a surface, opened with the program's settings.

@@ -73,6 +73,7 @@ fn a_changed_value_has_a_reset_button_that_leads_to_its_default() {
 
 #[test]
 fn muting_changes_the_picture_and_not_the_preset() {
+    draw_pictures();
     let Some(mut lab) = lab("lambert") else { return };
     let (preset, draws) = (lab.state().preset_file().preset.clone(), lab.state().draws());
     click(&mut lab, Role::Button, "Mute lambert");
@@ -140,6 +141,7 @@ fn a_second_effect_of_a_slot_is_refused_and_offered_instead_of_the_first() {
 
 #[test]
 fn clips_are_chosen_held_and_blended_in_their_folder() {
+    draw_pictures();
     let Some(mut lab) = lab("builtin:tentacle?tess=3") else { return };
     let play = |lab: &Lab| lab.state().preset_file().preset.playback.clone();
     let choose = |lab: &mut Lab, menu: &str, entry: &str| {
@@ -170,6 +172,7 @@ fn clips_are_chosen_held_and_blended_in_their_folder() {
 
 #[test]
 fn the_scene_shows_its_images_and_lets_one_look_through_its_cameras() {
+    draw_pictures();
     let Some(mut lab) = lab("builtin:grid?cell=16") else { return };
     let chosen = |lab: &Lab| lab.state().preset_file().preset.scene_camera.clone();
     let choose = |lab: &mut Lab, entry: &str| {
@@ -207,6 +210,7 @@ fn the_title_of_an_effect_folds_it_and_only_its_box_removes_it() {
 
 #[test]
 fn the_tick_of_the_gradient_adds_a_color_at_the_bottom_and_removes_it() {
+    draw_pictures();
     let Some(mut lab) = lab("lambert") else { return };
     let bottom = |lab: &Lab| lab.state().preset_file().preset.output.background_bottom;
     let corners = |lab: &mut Lab| {

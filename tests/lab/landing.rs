@@ -281,6 +281,7 @@ fn a_model_in_place_of_a_moving_scene_is_said_to_be_open_and_nothing_is_missed()
 
 #[test]
 fn thumbnails_show_the_presets_on_the_users_model() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let Some(mut lab) = lab("hatch") else { return };
     assert!(lab.query_by_role_and_label(Role::CheckBox, "Thumbnails on tri").is_none());
@@ -329,6 +330,7 @@ fn a_look_brings_its_ground_and_its_gradient_to_the_model() {
 
 #[test]
 fn lengths_in_radii_of_the_scene_are_drawn_as_those_lengths_in_meters() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let radius = builtin::build("knot?tess=4").expect("a scene").bounds().radius();
     assert!((radius - 1.0).abs() > 0.2, "a radius of {radius} m tells nothing");

@@ -75,6 +75,7 @@ fn in_a_small_window_no_word_of_the_top_bar_covers_another_when_there_is_most_to
 /// At every width of the picture, its notes lie beside the buttons or below them, and never over each other.
 #[test]
 fn notes_on_the_picture_cover_no_button_and_no_other_note() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("notes.toml");
     let text = "schema = 2\n[scene]\nbuiltin = \"teapot?tess=4\"\n[effects.draw_order]\n[effects.race]\n[effects.facet]\n";
@@ -193,6 +194,7 @@ fn contrast(window: &image::RgbaImage, area: Rect) -> f64 {
 
 #[test]
 fn icons_show_in_both_themes_and_over_pictures_of_any_color() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     for (theme, color) in [("Dark", "1.0"), ("Light", "0.0"), ("Dark", "0.7"), ("Light", "0.3")] {
         let text = format!(

@@ -7,7 +7,7 @@ use std::{
 };
 
 use crate::{
-    common::mutated,
+    common::own_shaders,
     files::{drop_files, tiny_glb},
     harness::*,
 };
@@ -58,6 +58,7 @@ fn middle_pixel(lab: &mut Lab) -> [u8; 4] {
 
 #[test]
 fn an_effect_that_is_edited_is_seen_breaks_and_heals() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("effects/ink.wgsl");
     write(&file, INK);
@@ -282,6 +283,7 @@ fn a_new_effect_is_written_beside_the_preset_and_enabled() {
 
 #[test]
 fn a_dropped_effect_is_enabled_and_a_model_that_changes_is_loaded_again() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let (model, ink) = (folder.path().join("tri.glb"), folder.path().join("elsewhere/ink.wgsl"));
     write(&ink, INK);
@@ -308,6 +310,7 @@ fn a_dropped_effect_is_enabled_and_a_model_that_changes_is_loaded_again() {
 #[test]
 #[ignore = "run by shaders_of_a_folder_are_reloaded"]
 fn child_whose_shaders_change() {
+    draw_pictures();
     let file = std::path::PathBuf::from(std::env::var_os("RASTERLAB_SHADERS").expect("the parent's folder")).join("effects/lambert.wgsl");
     let text = std::fs::read_to_string(&file).expect("a shader");
     let mut lab = lab("lambert").expect("the parent has an adapter");
@@ -328,7 +331,7 @@ fn shaders_of_a_folder_are_reloaded() {
     if crate::common::gpu().is_none() {
         return;
     }
-    let copied = mutated("effects/lambert", "return s;", "return s;");
+    let copied = own_shaders();
     let child = std::process::Command::new(std::env::current_exe().expect("this test"))
         .args(["--exact", "live::child_whose_shaders_change", "--ignored"])
         .env("RASTERLAB_SHADERS", copied.folder())

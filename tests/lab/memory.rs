@@ -50,6 +50,7 @@ fn extremes(lab: &mut Lab) {
 
 /// Does the job twice, so that what is kept once, as compiled kernels are, is not taken for what grows.
 fn returns(job: fn(&mut Lab)) {
+    draw_pictures();
     let mut lab = lab("facet-sweep").expect("the parent has an adapter");
     let before = resident_mb();
     let after = [(); 2].map(|()| {

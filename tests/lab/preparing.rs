@@ -15,6 +15,7 @@ const PICTURES: u64 = 12;
 
 #[test]
 fn a_drag_of_a_slider_prepares_nothing() {
+    draw_pictures();
     let Some(mut lab) = lab_on_new_devices("facet") else { return };
     let rail = slider(&lab, "facet.amount").rect();
     // To and fro, never the same twice in a row.

@@ -298,6 +298,7 @@ fn a_preset_that_another_program_has_changed_is_not_lost_by_deleting_or_renaming
 
 #[test]
 fn the_star_over_a_picture_shows_on_any_color() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::create_dir_all(folder.path().join("presets")).expect("a folder");
     let white = TEXT.replace("[effects.facet]", "[output]\nbackground = [1.0, 1.0, 1.0, 1.0]\n[effects.facet]");

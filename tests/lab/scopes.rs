@@ -19,6 +19,7 @@ fn type_text(lab: &mut Lab, text: &str) {
 
 #[test]
 fn boxes_of_the_picker_set_the_scope_and_undo_takes_each_back() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let Some(mut lab) = lab_of(folder.path(), PRESET) else { return };
     let everywhere = middle(&mut lab);

@@ -13,6 +13,7 @@ fn choose(lab: &mut Lab, menu: &str, entry: &str) {
 
 #[test]
 fn a_click_on_a_picture_of_the_sheet_takes_its_values_in_one_step() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else { return };
     press(&mut lab, Modifiers::SHIFT, Key::S);
     choose(&mut lab, "Parameter along the rows", "facet.amount");

@@ -10,6 +10,7 @@ use crate::harness::*;
 
 #[test]
 fn a_keyed_value_follows_the_clock_and_a_change_at_a_time_is_a_key() {
+    draw_pictures();
     let Some(mut lab) = lab("lambert") else { return };
     let first = value(&lab, "lambert", "headlight");
     click(&mut lab, Role::Button, "Animate lambert.headlight");
@@ -103,6 +104,7 @@ fn a_selected_key_is_eased_and_removed() {
 
 #[test]
 fn without_a_name_the_window_starts_on_the_first_preset_playing_and_with_one_at_rest() {
+    draw_pictures();
     let Some(mut lab) = opened(None, None) else { return };
     assert_eq!(lab.state().preset_file().id, rasterlab::app::FIRST_PRESET);
     let start_s = lab.state().shown_time_s();
@@ -122,6 +124,7 @@ fn without_a_name_the_window_starts_on_the_first_preset_playing_and_with_one_at_
 
 #[test]
 fn play_runs_loops_and_pauses() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let text = format!("{MOVING}[clock]\ntime_s = 0.5\nrange_s = [0.25, 1.25]\n");
     let Some(mut lab) = lab_of(folder.path(), &text) else { return };
@@ -181,6 +184,7 @@ fn time_is_stepped_by_frames_and_kept_on_request() {
 
 #[test]
 fn the_window_shows_the_picture_of_the_moment() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let Some(mut lab) = lab_of(folder.path(), MOVING) else { return };
     scrub(&mut lab, 0.1, 0.6);

@@ -24,6 +24,7 @@ fn has_timer(lab: &Lab) -> bool {
 
 #[test]
 fn the_cost_is_a_median_at_rest_and_then_nothing_is_drawn() {
+    draw_pictures();
     let Some(mut lab) = lab("lambert") else { return };
     if !has_timer(&lab) {
         assert!(!texts(&lab, "no GPU timer").is_empty());
@@ -50,6 +51,7 @@ fn the_cost_is_a_median_at_rest_and_then_nothing_is_drawn() {
 /// The next picture is held back, so that nothing but the change itself can take the old time away.
 #[test]
 fn the_time_of_the_picture_before_is_gone_before_the_next_is_drawn() {
+    draw_pictures();
     let Some(mut lab) = lab_on_new_devices("lambert") else { return };
     if !has_timer(&lab) {
         return;
@@ -69,6 +71,7 @@ fn the_time_of_the_picture_before_is_gone_before_the_next_is_drawn() {
 /// A picture in motion is timed by the median of its newest frames; those of another preset with the same kernels do not count.
 #[test]
 fn frames_of_the_preset_before_do_not_count_for_the_next() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     for (id, amount) in [("aa1", 0.25), ("aa2", 0.75)] {
         let text = format!("schema = 2\n[scene]\nbuiltin = \"teapot?tess=4\"\n[effects.facet]\namount = {amount}\n");
@@ -98,6 +101,7 @@ fn frames_of_the_preset_before_do_not_count_for_the_next() {
 
 #[test]
 fn a_new_size_and_another_preset_reset_time_and_verdict() {
+    draw_pictures();
     let Some(mut lab) = lab("lambert") else { return };
     let size = lab.get_by_label("Picture").rect().size();
     click(&mut lab, Role::Button, "Verify");
@@ -121,6 +125,7 @@ fn a_new_size_and_another_preset_reset_time_and_verdict() {
 
 #[test]
 fn header_and_legend_count_the_same_wrong_pixels() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let text = "schema = 2\n[scene]\nbuiltin = \"teapot\"\n[effects.facet]\n[accuracy]\ncoverage = \"fixed4\"\n";
     let Some(mut lab) = lab_of(folder.path(), text) else { return };
@@ -142,6 +147,7 @@ fn header_and_legend_count_the_same_wrong_pixels() {
 
 #[test]
 fn the_timing_panel_lists_passes_rest_and_latency() {
+    draw_pictures();
     let Some(mut lab) = lab("lambert") else { return };
     if !has_timer(&lab) {
         return;
@@ -172,6 +178,7 @@ fn the_timing_panel_lists_passes_rest_and_latency() {
 
 #[test]
 fn the_file_of_the_log_tells_the_longest_frame_and_the_slowest_picture_and_a_window_at_rest_writes_nothing() {
+    draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("window.log");
     let Some(mut lab) = lab_with_log("lambert", std::fs::File::create(&path).expect("a file")) else { return };

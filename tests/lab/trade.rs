@@ -14,6 +14,7 @@ fn pinned_depth(lab: &Lab) -> Option<DepthFormat> {
 
 #[test]
 fn a_measured_combination_is_a_point_and_a_click_on_it_switches_the_preset_in_one_step() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else { return };
     press(&mut lab, Modifiers::NONE, Key::M);
     assert!(lab.query_by_label_contains("Nothing is measured yet").is_some());
@@ -114,6 +115,7 @@ fn spread_is_shown(lab: &Lab, csv: &str) {
 
 #[test]
 fn a_measurement_is_canceled_and_leaves_nothing_behind() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else { return };
     press(&mut lab, Modifiers::NONE, Key::M);
     lab.get_by_role_and_label(Role::CheckBox, "Measure depth").click();
@@ -162,6 +164,7 @@ fn until(lab: &mut Lab, what: &str, mut is_there: impl FnMut(&mut Lab) -> bool) 
 
 #[test]
 fn what_was_timed_before_a_measurement_was_canceled_is_kept() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else { return };
     measure_depth(&mut lab);
     // The first is measured when the third begins.
@@ -184,6 +187,7 @@ fn what_was_timed_before_a_measurement_was_canceled_is_kept() {
 
 #[test]
 fn a_measurement_waits_while_the_person_works_in_the_window() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else { return };
     measure_depth(&mut lab);
     let mut x = 400.0;
@@ -201,6 +205,7 @@ fn a_measurement_waits_while_the_person_works_in_the_window() {
 
 #[test]
 fn a_measurement_that_is_canceled_while_pictures_are_timed_ends_with_the_samples_that_it_has() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else { return };
     measure_depth(&mut lab);
     let [first, last] = [DepthFormat::ALL[0].name(), DepthFormat::ALL[DepthFormat::ALL.len() - 1].name()];
@@ -221,6 +226,7 @@ fn a_measurement_that_is_canceled_while_pictures_are_timed_ends_with_the_samples
 /// The words say that it waits; this says that it does. A measurement that went on would come to its third combination in this time, on any machine.
 #[test]
 fn nothing_is_measured_while_the_person_works_however_long_that_takes() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else { return };
     let begun = Instant::now();
     measure_depth(&mut lab);
@@ -328,6 +334,7 @@ fn a_canceled_measurement_does_not_wait_for_the_oracle() {
 
 #[test]
 fn a_picture_that_plays_is_paused_when_a_measurement_begins() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-motion") else { return };
     lab.key_press(Key::Space);
     lab.run_steps(6);
@@ -344,6 +351,7 @@ fn a_picture_that_plays_is_paused_when_a_measurement_begins() {
 /// The window gets no input, but its device is busy.
 #[test]
 fn a_measurement_waits_as_long_as_a_picture_plays() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-motion") else { return };
     measure_depth(&mut lab);
     lab.key_press(Key::Space);

@@ -10,6 +10,7 @@ use crate::harness::*;
 
 #[test]
 fn verify_measures_the_picture_and_a_change_makes_the_result_stale() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else { return };
     assert!(lab.query_by_label("error not measured").is_some());
     click(&mut lab, Role::Button, "Verify");
@@ -24,6 +25,7 @@ fn verify_measures_the_picture_and_a_change_makes_the_result_stale() {
 
 #[test]
 fn verifying_can_be_canceled_and_leaves_the_picture_unjudged() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else { return };
     lab.get_by_role_and_label(Role::Button, "Verify").click();
     lab.run_steps(2);
@@ -45,6 +47,7 @@ fn bar(lab: &Lab) -> Option<(String, f64)> {
 
 #[test]
 fn verifying_shows_how_far_it_is_and_ends_in_the_middle_when_it_is_canceled() {
+    draw_pictures();
     let Some(mut lab) = created(Some("facet-sweep"), Folders::default(), None, [1600.0, 1000.0]) else { return };
     settle(&mut lab);
     let begin = |lab: &mut Lab| {
@@ -87,6 +90,7 @@ fn verifying_shows_how_far_it_is_and_ends_in_the_middle_when_it_is_canceled() {
 
 #[test]
 fn the_extremes_run_beside_the_window_and_can_be_stopped() {
+    draw_pictures();
     let Some(mut lab) = lab("facet") else { return };
     click(&mut lab, Role::Button, "View");
     click(&mut lab, Role::Button, "Run extreme cases…");
@@ -141,6 +145,7 @@ fn show_overlay(lab: &mut Lab, name: &str) {
 
 #[test]
 fn overlays_are_laid_over_the_picture_and_counted_in_a_legend() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else { return };
     let (plain, draws) = (middle(&mut lab), lab.state().draws());
     show_overlay(&mut lab, "triangle edges");
@@ -163,6 +168,7 @@ fn overlays_are_laid_over_the_picture_and_counted_in_a_legend() {
 
 #[test]
 fn the_legend_says_that_nothing_is_wrong_where_nothing_is() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else { return };
     show_overlay(&mut lab, "wrong (snapped)");
     show_overlay(&mut lab, "holes");

@@ -78,6 +78,7 @@ fn brackets_walk_through_the_gallery() {
 
 #[test]
 fn an_idle_window_neither_draws_nor_asks_to_be_shown_again() {
+    draw_pictures();
     let Some(mut lab) = lab("lambert") else { return };
     let draws = lab.state().draws();
     // The pointer may move over the picture and the panels: nothing changes by it.
@@ -94,6 +95,7 @@ fn an_idle_window_neither_draws_nor_asks_to_be_shown_again() {
 
 #[test]
 fn a_scene_that_cannot_be_loaded_keeps_the_last_picture_and_is_reported_once() {
+    draw_pictures();
     let Some(mut lab) = lab("lambert") else { return };
     let draws = lab.state().draws();
     lab.state_mut().preset_mut().scene = SceneSource::Builtin("no-such-scene".into());
@@ -111,6 +113,7 @@ fn a_scene_that_cannot_be_loaded_keeps_the_last_picture_and_is_reported_once() {
 
 #[test]
 fn a_picture_that_cannot_be_drawn_keeps_the_last_one_and_is_reported_once() {
+    draw_pictures();
     let Some(mut lab) = lab("lambert") else { return };
     let before = picture(&mut lab);
     lab.state_mut().preset_mut().camera = Some(rasterlab::scene::camera::Camera { eye: glam::DVec3::splat(1e13), ..Default::default() });
@@ -127,6 +130,7 @@ fn a_picture_that_cannot_be_drawn_keeps_the_last_one_and_is_reported_once() {
 
 #[test]
 fn the_window_shows_the_picture_of_the_oracle() {
+    draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else { return };
     let shown = picture(&mut lab);
     let preset = lab.state().preset_file().preset.clone();

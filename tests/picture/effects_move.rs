@@ -13,9 +13,7 @@ use rasterlab::{
     },
     gpu::Renderer,
     math::hash_unit,
-    measure::Budget,
     oracle,
-    params::ValueType,
     plan::Tuning,
     scene::{
         Scene,
@@ -74,37 +72,6 @@ fn lit(mut stack: Stack) -> Stack {
 }
 
 #[test]
-fn every_builtin_scene_is_exact_under_every_moving_effect() {
-    let Some(mut renderer) = renderer() else { return };
-    let ways: Vec<(Visibility, Tuning)> =
-        options(&renderer).into_iter().flat_map(|option| tunings().map(|tuning| (option, tuning))).collect();
-    let (mut failures, mut turn) = (Vec::new(), 0);
-    for query in SCENES {
-        let scene = scene(query);
-        let view = view(&scene, [160, 120]);
-        // Small scenes take a few ways through the kernels, large ones one: each time the next in turn, so that every way meets
-        // several effects and scenes.
-        let count = if scene.triangle_count() <= 3000 { 2 } else { 1 };
-        for effect in MOVING {
-            let stack = lit(suited(effect, &scene));
-            for (option, tuning) in ways.iter().cycle().skip(turn).take(count) {
-                renderer.set_tuning(*tuning);
-                let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &pinned(*option));
-                let what = format!("{query} {effect} {} small={}", option.name(), tuning.max_small_samples);
-                failures.extend(exactness(&verdict.report).err().map(|faults| format!("{what}: {faults}")));
-                let ill = verdict.report.ill_conditioned;
-                if ill * 100 > verdict.report.vertices {
-                    failures.push(format!("{what}: {ill} of {} corners are not judged", verdict.report.vertices));
-                }
-            }
-            turn += count;
-        }
-    }
-    assert!(turn >= 2 * ways.len(), "{turn} pictures do not take each of {} ways twice", ways.len());
-    assert!(failures.is_empty(), "{}", failures.join("\n"));
-}
-
-#[test]
 fn all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_parallel_rays() {
     let Some(mut renderer) = renderer() else { return };
     let mut far = Scene::clone(&scene("knot?tess=6"));
@@ -133,7 +100,7 @@ fn all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_paral
 
 #[test]
 fn an_effect_that_moves_nothing_changes_nothing() {
-    for query in ["teapot?tess=4", "cube-wall", "near", "slivers"] {
+    for query in ["cube-wall", "near"] {
         let scene = scene(query);
         let view = view(&scene, [160, 120]);
         let none = oracle::render(&scene, &view, &lit(Stack::default())).expect("a builtin fits");
@@ -148,7 +115,7 @@ fn an_effect_that_moves_nothing_changes_nothing() {
     }
     let Some(mut renderer) = renderer() else { return };
     let usual = renderer.gpu().caps.tuning();
-    for query in ["teapot?tess=4", "cube-wall", "near", "slivers"] {
+    for query in ["cube-wall", "near"] {
         let scene = scene(query);
         let view = view(&scene, [160, 120]);
         // With nothing left out, so that no shorter way round a sum rounds otherwise.
@@ -197,58 +164,6 @@ fn stated_bounds_hold_under_a_telescope_and_are_not_idle() {
         eprintln!("{effect}: {} corners, median bound {middle:.1} units, largest share used {largest:.3}", median.len());
         assert!(middle > 4.0, "{effect}: the telescope shows nothing, {middle} units");
         assert!((0.01..=1.0).contains(&largest), "{effect}: {largest} of the bound");
-    }
-}
-
-/// Any value of a field's hard range: its ends, its middle, by decades or evenly.
-fn any_value(rng: &mut Rng, field: &rasterlab::params::Field) -> Vec<f64> {
-    let [low, high] = field.hard;
-    let mut lane = || {
-        let value = match rng.between(0, 6) {
-            0 => low,
-            1 => high,
-            2 => 0.0f64.clamp(low, high),
-            3 | 4 => {
-                let decade = libm::pow(10.0, rng.real(-4.0, 3.0));
-                if rng.next_u32().is_multiple_of(2) { decade } else { -decade }
-            }
-            _ => rng.real(low, high),
-        };
-        let value = f64::from(value.clamp(low, high) as f32).clamp(low, high);
-        if matches!(field.value_type, ValueType::F32 | ValueType::Point | ValueType::Color) {
-            value
-        } else {
-            value.trunc().clamp(low, high)
-        }
-    };
-    (0..field.value_type.components()).map(|_| lane()).collect()
-}
-
-#[test]
-fn any_parameters_within_the_hard_ranges_are_drawn_exactly() {
-    let Some(mut renderer) = renderer() else { return };
-    let mut rng = Rng(7);
-    let scenes = ["sphere?triangles=300", "teapot?tess=2", "near"].map(scene);
-    for case in 0..72 {
-        let scene = &scenes[case % scenes.len()];
-        let view = view(scene, [96, 72]);
-        let mut stack = stack(&MOVING[case / 3 % 3..][..1]);
-        if case % 10 == 9 {
-            stack = crate::common::stack(&MOVING);
-        }
-        for enabled in &mut stack.0 {
-            for field in &enabled.effect.fields {
-                let values = any_value(&mut rng, field);
-                field.set(&mut enabled.words, &values).unwrap_or_else(|error| panic!("{error}"));
-            }
-        }
-        let what = format!("case {case}, {}: {stack:?}", scene.name);
-        let (capture, verdict) = judged(&mut renderer, scene, &view, &stack, &Default::default());
-        let sound = capture.geometry.vertices.iter().all(|v| v.depth.is_finite() && v.inv_w.is_finite());
-        assert!(sound, "{what}: a corner is no number");
-        if let Err(faults) = verdict.report.within(&Budget::default()) {
-            panic!("{what}: {faults}");
-        }
     }
 }
 
@@ -381,46 +296,34 @@ fn still_life(query: &str) -> (Arc<Scene>, View) {
 fn kernels_that_move_wrongly_are_caught() {
     let Some(mut healthy) = renderer() else { return };
     let mutants = [
-        (
-            "a wave turns normals the wrong way",
-            "wobble",
-            "effects/wobble",
-            "- direction * dot(sway, v.normal)",
-            "+ direction * dot(sway, v.normal)",
-        ),
+        ("a wave turns normals the wrong way", "wobble", "- direction * dot(sway, v.normal)", "+ direction * dot(sway, v.normal)"),
         (
             "corners take their neighbor's record",
             "explode",
-            "lib/triangle",
             "var at = 3u * id + vec3u(0u, 1u, 2u);",
             "var at = 3u * id + vec3u(0u, 1u, 3u);",
         ),
         (
             "movement is forgotten where triangles are clipped",
             "explode",
-            "variants/vertex_effects/applied",
-            "return vertex_effects_clip(draw, vertex, id, floats_of_class(position_bits(draw, vertex), 0u));",
-            "return transform_clip(draw, floats_of_class(position_bits(draw, vertex), 0u));",
+            "    return vertex_effects_clip(draw, vertex, id, floats_of_class(position_bits(draw, vertex), 0u));\n}\n\n// What the samples",
+            "    return transform_clip(draw, floats_of_class(position_bits(draw, vertex), 0u));\n}\n\n// What the samples",
         ),
-        ("the plane stays behind", "wobble", "variants/vertex_effects/applied", "if moved.is_deformed {", "if false {"),
-        ("the last term of the sine is halved", "wobble", "lib/angle", "y * 39.5367061", "y * 20.0"),
+        ("the last term of the sine is halved", "wobble", "y * 39.5367061", "y * 20.0"),
     ];
     let mut failures = Vec::new();
-    for (what, effect, file, from, to) in mutants {
-        let (scene, view) = match (effect, file) {
-            (_, "lib/angle") => telescope(),
-            ("explode", "variants/vertex_effects/applied") => still_life("near"),
+    for (what, effect, from, to) in mutants {
+        let (scene, view) = match what {
+            "the last term of the sine is halved" => telescope(),
+            "movement is forgotten where triangles are clipped" => still_life("near"),
             _ => still_life("sphere?triangles=200"),
         };
         let mut stack = lit(suited(effect, &scene));
-        if (effect, file) == ("wobble", "variants/vertex_effects/applied") {
-            stack.enable(Effect::find("facet").expect("there are facets"));
-        }
         if effect == "wobble" {
             set(&mut stack, effect, "amplitude_m", &[0.15]);
         }
         exact(&mut healthy, &scene, &view, &stack, &pinned(Visibility::Split32), &format!("without the mistake: {what}"));
-        let library = mutated(file, from, to);
+        let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &pinned(Visibility::Split32));
         match exactness(&verdict.report) {

@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// Which passes and buffers exist for the last picture, and why.
-#[derive(Clone, Debug, serde::Serialize)]
+#[derive(Clone, Debug, Default, serde::Serialize)]
 pub struct Explanation {
     pub key: String,
     pub passes: Vec<Note>,

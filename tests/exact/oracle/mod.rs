@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use rasterlab::{
     effects::{Effect, Stack},
     frame::{AdapterPicture, ClippedTriangle, Counters, Frame, Geometry, NO_TRIANGLE, SnappedVertex, vertex_flags},
-    math::{GUARD_BAND, SMALL_EXTENT},
+    math::GUARD_BAND,
     measure::{Budget, ErrorReport},
     oracle::{self, OrientedTriangle, ResolveInput, SampleTests, Shot, cover, cover_claims, judge, owns, render, shade},
     scene::{
@@ -22,7 +22,7 @@ use rasterlab::{
         draw::draws,
         view::View,
     },
-    stress::scenes::{Rng, SimpleMesh, Winding, pixel_view, quad, rotated_square, scene_of_meshes, square_perspective, triangle_soup},
+    stress::scenes::{Rng, SimpleMesh, pixel_view, scene_of_meshes, square_perspective, triangle_soup},
 };
 
 fn scene(meshes: &[SimpleMesh]) -> Scene {

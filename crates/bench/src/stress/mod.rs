@@ -14,6 +14,7 @@ mod depth;
 mod drawing;
 mod effects;
 mod hardware;
+pub mod matrix;
 mod normals;
 mod occlusion;
 mod parameters;
@@ -69,7 +70,7 @@ mod tests {
         let is_plain = |name: &str| name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-');
         assert!(names.iter().all(|name| is_plain(name)), "{names:?}");
         let rows: BTreeSet<_> = cases.iter().map(|case| case.number).collect();
-        assert_eq!(rows, (1..=35).collect());
+        assert_eq!(rows, (1..=36).collect());
     }
 
     #[test]

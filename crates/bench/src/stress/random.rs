@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::scenes::Rng;
 use crate::{
     accuracy::{AXES, Visibility},
-    effects::{EFFECTS, Stack},
+    effects::{EFFECTS, EnabledEffect, Stack},
     math::hash_unit,
     params::{Field, Param, ValueType},
     plan::Tier,
@@ -108,14 +108,18 @@ pub fn stack(rng: &mut Rng, values: Values) -> Stack {
         if stack.rival_of(effect).is_some() {
             continue;
         }
-        let words = &mut stack.enable(effect).words;
-        for field in &effect.fields {
-            let value = components(rng, field, values);
-            field.set(words, &value).unwrap_or_else(|error| panic!("{}.{}: {error}", effect.name, field.name));
-        }
+        shake(rng, stack.enable(effect), values);
     }
     rng.shuffle(&mut stack.0);
     stack
+}
+
+/// Gives every parameter of an effect a random value.
+pub(super) fn shake(rng: &mut Rng, enabled: &mut EnabledEffect, values: Values) {
+    for field in &enabled.effect.fields {
+        let value = components(rng, field, values);
+        field.set(&mut enabled.words, &value).unwrap_or_else(|error| panic!("{}.{}: {error}", enabled.effect.name, field.name));
+    }
 }
 
 /// A value of a built-in scene's parameter: small scenes are likelier than large ones.

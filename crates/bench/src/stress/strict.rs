@@ -23,11 +23,14 @@ const LONG: [u32; 8] = [16, 18, 19, 20, 21, 22, 23, 27];
 /// Rows of effects, which adapters with slow compilers skip here because they have compiled their kernels once.
 const SLOW: [u32; 4] = [12, 25, 26, 28];
 
+/// The row whose pictures pin what strict accuracy decides otherwise.
+const MATRIX: u32 = 36;
+
 fn strict_rows(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let (is_software, is_slow) = (context.is_software(), context.is_slow());
     let is_meant = |case: &&Case| {
         let is_long = is_software && LONG.contains(&case.number) || is_slow && SLOW.contains(&case.number);
-        case.expectation == Expectation::Exact && !is_long
+        case.expectation == Expectation::Exact && case.number != MATRIX && !is_long
     };
     let (mut rows, mut pictures, mut floats) = (Vec::new(), 0, 0);
     let mut hashes = Vec::new();
