@@ -6,9 +6,9 @@ use super::entry::{Choice, Entry, Kind, axis_path};
 use crate::{
     accuracy::AXES,
     app::{
-        action::{ACTIONS, Action},
+        editing::session::Session,
         panels::inspector::rows::has_row,
-        session::Session,
+        shell::action::{ACTIONS, Action},
     },
     effects::Effect,
     params::{Field, Param, Value},

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::app::{
+use crate::app::shell::{
     action::Action,
     command::{Command, Edit, FileCommand},
     log::Level,

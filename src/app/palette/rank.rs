@@ -1,7 +1,7 @@
 //! Which entries of the palette answer what is typed, best first; and values that are typed behind a path, as `facet.amount 0.5`.
 
 use super::entry::{Choice, Entry, Kind};
-use crate::app::fuzzy;
+use crate::app::widgets::fuzzy;
 
 /// Most entries that are listed.
 const MAX_LISTED: usize = 60;

@@ -5,9 +5,11 @@ use eframe::egui::{ComboBox, RichText, Ui};
 use crate::{
     accuracy::{AXES, Axis, AxisOption, PinnedOptions, RenderScale},
     app::{
-        anti_aliasing::{AUTOMATIC, CHOICES, name},
-        command::{Command, Commands},
-        state::State,
+        picture::anti_aliasing::{AUTOMATIC, CHOICES, name},
+        shell::{
+            command::{Command, Commands},
+            state::State,
+        },
     },
 };
 
@@ -16,12 +18,12 @@ const AXIS: &Axis = &AXES[RenderScale::AXIS];
 /// Shows what the picture is drawn with, and pins another number of samples or none.
 pub fn anti_aliasing_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     let pinned: Option<RenderScale> = state.session.preset().accuracy.pins.option();
-    let drawn = state.screen.requested().map(|inputs| inputs.accuracy.scale());
+    let drawn = state.picture.screen.requested().map(|inputs| inputs.accuracy.scale());
     let shown = name(pinned.or(drawn).unwrap_or_default());
     let menu = ComboBox::from_id_salt("anti-aliasing").selected_text(RichText::new(format!("AA {shown}")).size(12.0)).width(64.0);
     let response = menu.show_ui(ui, |ui| {
         ui.set_min_width(150.0);
-        let automatic = if state.screen.gpu.caps.software { "off on this adapter" } else { name(AUTOMATIC) };
+        let automatic = if state.picture.screen.gpu.caps.software { "off on this adapter" } else { name(AUTOMATIC) };
         if ui.selectable_label(pinned.is_none(), format!("Automatic ({automatic})")).clicked() && pinned.is_some() {
             commands.send(Command::PinOptions(PinnedOptions::default(), vec![AXIS]));
         }

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, RichText, Ui};
 
-use crate::{app::theme, preset_file::PresetFile};
+use crate::{app::widgets::theme, preset_file::PresetFile};
 
 /// Shows what `preset_file` brings.
 pub fn code_ui(ui: &mut Ui, preset_file: &PresetFile) {

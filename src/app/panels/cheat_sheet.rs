@@ -3,11 +3,12 @@
 use eframe::egui::{self, Key, RichText, Ui};
 
 use crate::app::{
-    action::{ACTIONS, Action, POINTER, shortcut_text},
-    command::{Command, Commands, Toggle},
-    panel::Panel,
-    state::State,
-    theme,
+    shell::{
+        action::{ACTIONS, Action, POINTER, shortcut_text},
+        command::{Command, Commands, Toggle},
+        state::State,
+    },
+    widgets::{panel::Panel, theme},
 };
 
 /// Every action with its shortcut and its present value, to be searched.
@@ -82,7 +83,7 @@ fn value_text(action: Action, state: &State) -> Option<String> {
         Action::Play => Some(if state.session.playback.playing { "playing".into() } else { "paused".into() }),
         Action::Randomize => Some(format!("seed {}", state.session.randomizer.seed())),
         Action::Timeline => Some(shown(state.open.timeline)),
-        Action::Overlays => Some(shown(state.overlays.is_any())),
+        Action::Overlays => Some(shown(state.picture.overlays.is_any())),
         Action::Handles => Some(shown(state.open.handles)),
         Action::Trade => Some(shown(state.open.trade)),
         Action::Log => Some(shown(state.open.log)),

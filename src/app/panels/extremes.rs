@@ -12,15 +12,18 @@ use web_time::Instant;
 
 use crate::{
     app::{
-        background::{Urgency, yield_processor},
-        command::{Command, Commands},
-        computing::Computing,
-        log::Level,
-        memory,
-        panel::Panel,
-        state::State,
-        theme,
+        jobs::{
+            background::{Urgency, yield_processor},
+            computing::Computing,
+            memory,
+        },
+        shell::{
+            command::{Command, Commands},
+            log::Level,
+            state::State,
+        },
         trade::pace::about,
+        widgets::{panel::Panel, theme},
     },
     gpu::{Gpu, Renderer, device::AdapterChoice},
     stress::{self, Case, Outcome, Report},
@@ -198,7 +201,7 @@ impl Extremes {
                 let text = if found == 1 { "Run 1 case".to_owned() } else { format!("Run {found} cases") };
                 let button = egui::Button::new(text).fill(theme::accent_ground());
                 if ui.add_enabled(found > 0, button).clicked() {
-                    self.start(state.screen.gpu.summary.name.clone(), state.jobs.busy(), ui.ctx());
+                    self.start(state.picture.screen.gpu.summary.name.clone(), state.jobs.busy(), ui.ctx());
                 }
             }
             let filter = egui::TextEdit::singleline(&mut self.filter).hint_text("All; a number or part of a name");

@@ -7,13 +7,14 @@ use eframe::egui::{self, ComboBox, DragValue, Grid, Key, RichText, Ui};
 use crate::{
     accuracy::RenderScale,
     app::{
-        command::{Command, Commands},
-        film::{Failure, Finished, Format, Progress, Request, time_left_text},
-        log::Level,
-        panel::Panel,
+        jobs::film::{Failure, Finished, Format, Progress, Request, time_left_text},
         settings::film::FilmSettings,
-        state::State,
-        theme,
+        shell::{
+            command::{Command, Commands},
+            log::Level,
+            state::State,
+        },
+        widgets::{panel::Panel, theme},
     },
     film::{Turntable, find_ffmpeg},
     preset::Clock,
@@ -65,7 +66,7 @@ impl Form {
         let session = &state.session;
         let id = if session.preset_file.id.is_empty() { "film" } else { &session.preset_file.id };
         let output = session.preset().output.size;
-        let shown = state.screen.requested().map_or(output, |inputs| [inputs.view.width, inputs.view.height]);
+        let shown = state.picture.screen.requested().map_or(output, |inputs| [inputs.view.width, inputs.view.height]);
         let own_range_s = last.range_s.filter(|_| last.range_of.as_ref() == Some(&session.preset_file.id));
         let path = last.format.named(&std::env::current_dir().unwrap_or_default().join(format!("{id}.png")));
         Self {

@@ -3,12 +3,16 @@
 use eframe::egui::{self, Rect, RichText, Ui};
 
 use crate::app::{
-    command::{Command, Commands},
-    icons::{Icon, icon_button},
-    log::{Entry, Log, times},
-    panel::Panel,
-    state::State,
-    theme,
+    shell::{
+        command::{Command, Commands},
+        log::{Entry, Log, times},
+        state::State,
+    },
+    widgets::{
+        icons::{Icon, icon_button},
+        panel::Panel,
+        theme,
+    },
 };
 
 /// Lists every message.

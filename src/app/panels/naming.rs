@@ -4,10 +4,11 @@ use eframe::egui::{self, Button, Key, RichText, TextEdit, Ui};
 
 use crate::{
     app::{
-        command::{Command, Commands, LibraryCommand, Naming},
-        panel::Panel,
-        state::State,
-        theme,
+        shell::{
+            command::{Command, Commands, LibraryCommand, Naming},
+            state::State,
+        },
+        widgets::{panel::Panel, theme},
     },
     preset_file::MAX_NAME,
 };

@@ -4,13 +4,10 @@ use eframe::egui::{self, Align, Align2, FontId, Key, Modifiers, Rect, RichText, 
 
 use crate::{
     app::{
-        action::Action,
-        command::Commands,
+        editing::session::Session,
         palette::{Choice, Entry, commands, entries, rank},
-        panel::Panel,
-        session::Session,
-        state::State,
-        theme,
+        shell::{action::Action, command::Commands, state::State},
+        widgets::{panel::Panel, theme},
     },
     preset_file::{self, GalleryEntry, PresetFile},
 };

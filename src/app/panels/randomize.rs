@@ -6,14 +6,17 @@ use eframe::egui::{self, RichText, Sense, Ui, vec2};
 
 use crate::{
     app::{
-        action::Action,
-        cells::{self, CellOf, CellResult, Cells},
-        command::{Command, Commands},
-        panel::Panel,
-        randomize::Seeded,
-        screen::Inputs,
-        state::State,
-        theme,
+        editing::randomize::Seeded,
+        picture::{
+            cells::{self, CellOf, CellResult, Cells},
+            screen::Inputs,
+        },
+        shell::{
+            action::Action,
+            command::{Command, Commands},
+            state::State,
+        },
+        widgets::{panel::Panel, theme},
     },
     effects::{EnabledEffect, Stack},
 };
@@ -57,7 +60,7 @@ impl RandomizePanel {
     /// Begins to draw the newest seed that has no picture, one at a time, when the picture is at rest.
     fn request(&mut self, state: &State, commands: &Commands) {
         let (Some(requested), false) =
-            (state.screen.requested(), self.is_drawing() || state.screen.is_awaited(state.session.playback.playing))
+            (state.picture.screen.requested(), self.is_drawing() || state.picture.screen.is_awaited(state.session.playback.playing))
         else {
             return;
         };

@@ -3,13 +3,17 @@
 use eframe::egui::{self, Event, Key, RichText, Ui, vec2};
 
 use crate::app::{
-    action::{ACTIONS, Action, shortcut_text},
-    command::{Command, Commands, SettingsCommand, Toggle},
-    icons::{Icon, icon_button},
-    panel::Panel,
     settings::{SCALES, keymap},
-    state::State,
-    theme::{self, ThemeChoice},
+    shell::{
+        action::{ACTIONS, Action, shortcut_text},
+        command::{Command, Commands, SettingsCommand, Toggle},
+        state::State,
+    },
+    widgets::{
+        icons::{Icon, icon_button},
+        panel::Panel,
+        theme::{self, ThemeChoice},
+    },
 };
 
 /// The settings window.

@@ -9,12 +9,15 @@ use eframe::egui::{self, RichText, Sense, Ui, vec2};
 
 use crate::{
     app::{
-        cells::{self, CellOf, CellResult, Cells},
-        command::{Command, Commands},
-        panel::Panel,
-        screen::Inputs,
-        state::State,
-        theme,
+        picture::{
+            cells::{self, CellOf, CellResult, Cells},
+            screen::Inputs,
+        },
+        shell::{
+            command::{Command, Commands},
+            state::State,
+        },
+        widgets::{panel::Panel, theme},
     },
     params::{Field, ValueType},
     preset::Preset,
@@ -184,7 +187,7 @@ impl SweepPanel {
             ui.horizontal(|ui| varied_ui(ui, index, varied, &known));
         }
         ui.horizontal(|ui| {
-            let requested = state.screen.requested();
+            let requested = state.picture.screen.requested();
             let button = egui::Button::new("Draw the sheet").fill(theme::accent_ground());
             let is_clicked = ui.add_enabled(requested.is_some(), button).clicked();
             if let Some(requested) = requested.filter(|_| is_clicked) {

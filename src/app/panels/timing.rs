@@ -5,16 +5,17 @@ use egui_plot::{Bar, BarChart, HLine, LineStyle, Plot};
 
 use crate::{
     app::{
-        action::Action,
-        command::Commands,
-        icons::{Icon, icon_button},
-        measured::time_line,
-        panel::Panel,
-        state::State,
-        text::short,
-        theme,
-        timings::{Cost, Occasion, Spread, Summary, Timings},
-        ui_frames::UiFrames,
+        picture::{
+            measured::time_line,
+            timings::{Cost, Occasion, Spread, Summary, Timings},
+        },
+        shell::{action::Action, command::Commands, state::State, ui_frames::UiFrames},
+        widgets::{
+            icons::{Icon, icon_button},
+            panel::Panel,
+            text::short,
+            theme,
+        },
     },
     measure::timing::percentile,
 };
@@ -41,10 +42,10 @@ pub struct TimingPanel;
 
 impl Panel for TimingPanel {
     fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
-        let timings = state.screen.timings();
+        let timings = state.picture.screen.timings();
         header_ui(ui, state, commands);
         ui.add_space(theme::HALF);
-        if !state.screen.gpu.caps.timestamps {
+        if !state.picture.screen.gpu.caps.timestamps {
             ui.label(theme::weak("This adapter has no timer, so frames cannot be timed."));
             return;
         }
@@ -60,7 +61,7 @@ impl Panel for TimingPanel {
 fn header_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     ui.horizontal(|ui| {
         ui.label(theme::heading("Timing"));
-        let (text, hint) = time_line(Some(&state.screen));
+        let (text, hint) = time_line(Some(&state.picture.screen));
         ui.label(theme::weak(text)).on_hover_text(hint);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if icon_button(ui, Icon::Cross, "Close timing").clicked() {
@@ -140,7 +141,7 @@ fn top_ms(frames: &[(f64, Occasion)]) -> f64 {
 
 /// Frame, passes and rest: median, spread and fraction of the frame; and how long an input takes to be seen.
 fn table_ui(ui: &mut Ui, state: &State) {
-    let timings = state.screen.timings();
+    let timings = state.picture.screen.timings();
     if let Some((latency, count)) = timings.latency() {
         let text = format!("input to picture: {:.0} ms, p95 {:.0} ms, {count} pictures", latency.median, latency.p95);
         let hint =

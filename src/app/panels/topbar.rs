@@ -6,16 +6,22 @@ use eframe::egui::{self, Align, Layout, RichText, Sense, Ui, vec2};
 
 use super::anti_aliasing::anti_aliasing_ui;
 use crate::app::{
-    action::Action,
-    command::{Command, Commands, FileCommand, SettingsCommand},
-    fields::dot,
-    icons::{Icon, icon_button},
-    measured::{error_line, time_line},
-    panel::Panel,
-    state::State,
-    theme::{self, ThemeChoice},
+    picture::{
+        measured::{error_line, time_line},
+        verification::Progress,
+    },
+    shell::{
+        action::Action,
+        command::{Command, Commands, FileCommand, SettingsCommand},
+        state::State,
+    },
     trade::pace::about,
-    verification::Progress,
+    widgets::{
+        fields::dot,
+        icons::{Icon, icon_button},
+        panel::Panel,
+        theme::{self, ThemeChoice},
+    },
 };
 
 /// The bar at the top: menus, the open preset, the adapter, and the cost and error of the picture.
@@ -150,7 +156,7 @@ fn recents_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         return;
     }
     for path in recents.iter() {
-        let is_missing = state.missing_files.contains(path);
+        let is_missing = state.files.missing_files.contains(path);
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let folder = path.parent().and_then(Path::file_name).unwrap_or_default().to_string_lossy();
         let detail = if is_missing { "missing" } else { &folder };
@@ -221,7 +227,7 @@ fn name_ui(ui: &mut Ui, state: &State) {
 
 /// The adapter; in amber if it is software. A dot alone where there is little room.
 fn adapter_ui(ui: &mut Ui, state: &State, is_narrow: bool) {
-    let gpu = &state.screen.gpu;
+    let gpu = &state.picture.screen.gpu;
     let summary = &gpu.summary;
     let name = summary.name.split('(').next().unwrap_or_default().trim();
     let text = if summary.software { format!("{name} · software") } else { name.to_owned() };
@@ -245,11 +251,11 @@ fn adapter_ui(ui: &mut Ui, state: &State, is_narrow: bool) {
 /// Cost and error, always side by side.
 fn cost_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     ui.spacing_mut().item_spacing.x = 6.0;
-    let (color, error, hint) = error_line(state.verification.verdict(), state.screen.requested());
-    match state.verification.progress() {
+    let (color, error, hint) = error_line(state.picture.verification.verdict(), state.picture.screen.requested());
+    match state.picture.verification.progress() {
         Some(progress) => verifying_ui(ui, &progress, commands),
         None => {
-            let verify = ui.add_enabled(state.screen.requested().is_some(), egui::Button::new("Verify"));
+            let verify = ui.add_enabled(state.picture.screen.requested().is_some(), egui::Button::new("Verify"));
             if verify.on_hover_text(format!("Compare every pixel with the exact CPU oracle ({})", Action::Verify.shortcut_text())).clicked()
             {
                 commands.perform(Action::Verify);
@@ -258,7 +264,7 @@ fn cost_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     }
     ui.label(RichText::new(error).color(color)).on_hover_text(hint);
     ui.label(theme::weak("·"));
-    let (time, hint) = time_line(Some(&state.screen));
+    let (time, hint) = time_line(Some(&state.picture.screen));
     ui.label(RichText::new(time).color(theme::text_strong())).on_hover_text(hint);
     pins_ui(ui, &state.session.preset().accuracy.pins.words());
 }

@@ -3,7 +3,7 @@
 use eframe::egui;
 
 use super::Settings;
-use crate::app::command::SettingsCommand;
+use crate::app::shell::command::SettingsCommand;
 
 impl Settings {
     /// Carries out `command`, and shows what it changes at once.

@@ -5,8 +5,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use crate::{
     accuracy::RenderScale,
     app::{
-        film::Format,
-        plain_file::{checked, number_in, word_of},
+        files::plain_file::{checked, number_in, word_of},
+        jobs::film::Format,
     },
 };
 

@@ -14,8 +14,8 @@ use super::{
 };
 use crate::{
     app::{
-        plain_file,
-        session::{FileId, Session},
+        editing::session::{FileId, Session},
+        files::plain_file,
     },
     preset::Preset,
     preset_file::Folders,

@@ -13,9 +13,9 @@ use eframe::egui;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use self::{browsing::Browsing, film::FilmSettings, keymap::Keymap, recents::Recents};
-use super::{
-    plain_file::{checked, number_in, write_rounded},
-    theme::ThemeChoice,
+use crate::app::{
+    files::plain_file::{checked, number_in, write_rounded},
+    widgets::theme::ThemeChoice,
 };
 
 /// Sizes of texts and controls that can be chosen, as a factor of the system's.
@@ -202,7 +202,7 @@ mod tests {
     };
     use crate::{
         accuracy::RenderScale,
-        app::{action::Action, film::Format, plain_file},
+        app::{files::plain_file, jobs::film::Format, shell::action::Action},
         film::Container,
     };
 

@@ -16,16 +16,17 @@ use self::{
     path::{PathDialog, path_ui},
     questions::{brought_ui, changed_ui, muted_ui, restore_ui, unsaved_ui},
 };
+use super::new_effect::{NewEffect, fields_ui};
 use crate::{
     app::{
-        command::{CodeUse, Command, Commands, FileCommand, Origin, Purpose},
-        completion::Listing,
-        panel::Panel,
-        panels::new_effect::{NewEffect, fields_ui},
-        session::Session,
+        editing::session::Session,
+        files::{completion::Listing, system_dialog::Answer},
         settings::last_session::Restored,
-        state::State,
-        system_dialog::Answer,
+        shell::{
+            command::{CodeUse, Command, Commands, FileCommand, Origin, Purpose},
+            state::State,
+        },
+        widgets::panel::Panel,
     },
     effect_files::Catalog,
     effects::Effect,
@@ -210,7 +211,7 @@ impl Panel for Dialogs {
         let modal = egui::Modal::new(egui::Id::unique("dialog")).frame(frame).show(ui.ctx(), |ui| {
             ui.set_width(460.0f32.min(ui.ctx().content_rect().width() - 64.0));
             chosen = match dialog {
-                Dialog::Path(dialog) => path_ui(ui, dialog, &state.settings.recents, &state.missing_files),
+                Dialog::Path(dialog) => path_ui(ui, dialog, &state.settings.recents, &state.files.missing_files),
                 Dialog::Muted { .. } => muted_ui(ui, &state.session.muted.iter().map(String::as_str).collect::<Vec<_>>()),
                 Dialog::Unsaved => unsaved_ui(ui, state.session.title(), state.keeps_session),
                 Dialog::NewEffect(dialog) => new_effect_ui(ui, dialog),

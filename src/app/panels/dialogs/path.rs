@@ -16,10 +16,13 @@ use eframe::egui::{
 use super::buttons::{Choice, buttons};
 use crate::{
     app::{
-        command::{Command, Commands, FileCommand, Purpose},
-        completion::{self, Entry, Listing},
+        files::{
+            completion::{self, Entry, Listing},
+            system_dialog,
+        },
         settings::recents::Recents,
-        system_dialog, theme,
+        shell::command::{Command, Commands, FileCommand, Purpose},
+        widgets::theme,
     },
     preset_file::ModelFormat,
 };

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3, DVec4};
 
 use crate::{
-    app::fuzzy,
+    app::widgets::fuzzy,
     effects::{Effect, Surface, hooks::Slot},
 };
 

@@ -23,15 +23,18 @@ use super::{
 };
 use crate::{
     app::{
-        command::{Command, Commands, Edit, FileCommand, LibraryCommand},
-        effect_picture::EffectPicture,
-        favorites::Starred,
-        icons::{Icon, toggle_button},
-        log::Level,
-        session::Session,
-        stack_drag::StackDrag,
-        state::State,
-        theme,
+        editing::{session::Session, stack_drag::StackDrag},
+        files::favorites::Starred,
+        picture::effect_picture::EffectPicture,
+        shell::{
+            command::{Command, Commands, Edit, FileCommand, LibraryCommand},
+            log::Level,
+            state::State,
+        },
+        widgets::{
+            icons::{Icon, toggle_button},
+            theme,
+        },
     },
     effects::{Effect, lambert},
     preset::{AccuracyRequest, Preset},
@@ -103,7 +106,7 @@ impl EffectBrowser {
         ui.add_space(theme::HALF);
         let session = &state.session;
         let all = session.preset_file.effects.effects_with(session.preset().stack.0.iter().map(|enabled| &enabled.effect));
-        let is_kept = |effect: &Effect| !self.only_favorites || state.favorites.has(Starred::Effect, &effect.name);
+        let is_kept = |effect: &Effect| !self.only_favorites || state.files.favorites.has(Starred::Effect, &effect.name);
         let groups = grouped(&all, &self.search, is_kept);
         self.pictures.begin_frame();
         ScrollArea::vertical().id_salt("effects").auto_shrink(false).show(ui, |ui| {
@@ -151,7 +154,7 @@ impl EffectBrowser {
                     picture: self.pictures.picture(&effect.name, Size::Small, ui.is_rect_visible(rect)),
                     is_enabled: stack.get(&effect.name).is_some(),
                     rival: stack.rival_of(effect).map(|rival| rival.name.as_str()),
-                    is_favorite: state.favorites.has(Starred::Effect, &effect.name),
+                    is_favorite: state.files.favorites.has(Starred::Effect, &effect.name),
                 };
                 let responses = tile_ui(ui, &tile, rect);
                 responses.tile.dnd_set_drag_payload(StackDrag::Enable((*effect).clone()));

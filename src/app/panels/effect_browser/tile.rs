@@ -6,9 +6,11 @@ use eframe::egui::{self, Align2, FontId, Pos2, Rect, Response, RichText, Sense, 
 
 use crate::{
     app::{
-        effect_picture,
-        icons::{Icon, paint},
-        theme,
+        picture::effect_picture,
+        widgets::{
+            icons::{Icon, paint},
+            theme,
+        },
     },
     effects::Effect,
 };

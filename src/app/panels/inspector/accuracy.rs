@@ -7,14 +7,17 @@ use super::rows::{folder, setting_ui};
 use crate::{
     accuracy::{AXES, Axis},
     app::{
-        anti_aliasing,
-        command::{Command, Commands, Edit},
-        findings::Findings,
-        measured::time_line,
-        state::State,
-        text::short,
-        theme,
-        tier_times::{self, TierNumbers, TierTime},
+        picture::{
+            anti_aliasing,
+            findings::Findings,
+            measured::time_line,
+            tier_times::{self, TierNumbers, TierTime},
+        },
+        shell::{
+            command::{Command, Commands, Edit},
+            state::State,
+        },
+        widgets::{text::short, theme},
     },
     params::Value,
     preset::{Tier, settings::Setting},
@@ -99,8 +102,8 @@ fn tiers_ui(ui: &mut Ui, state: &State, commands: &Commands, chosen: Tier) {
     let shown = ui.vertical(|ui| {
         for tier in Tier::ALL {
             let text = match tier_times::numbers(state, tier) {
-                Some(numbers) => format!("{}, {}", time_text(numbers.time, state.screen.gpu.caps.timestamps), error_text(&numbers)),
-                None if state.screen.plan().is_none() => "not measured yet".into(),
+                Some(numbers) => format!("{}, {}", time_text(numbers.time, state.picture.screen.gpu.caps.timestamps), error_text(&numbers)),
+                None if state.picture.screen.plan().is_none() => "not measured yet".into(),
                 None => "this picture cannot be drawn so".into(),
             };
             line_ui(ui, tier.name(), text, if tier == chosen { theme::text_strong() } else { theme::text_weak() });
@@ -150,8 +153,8 @@ fn measured_texts(time: &str, findings: &Findings) -> (String, String) {
 
 /// Milliseconds and error of the picture that is shown.
 fn numbers_ui(ui: &mut Ui, state: &State) {
-    let time = time_line(Some(&state.screen)).0;
-    let (measured, wrong) = match state.verification.verdict_on(state.screen.drawn()) {
+    let time = time_line(Some(&state.picture.screen)).0;
+    let (measured, wrong) = match state.picture.verification.verdict_on(state.picture.screen.drawn()) {
         Some(verdict) => measured_texts(&time, &verdict.findings),
         None => (time, "error not measured (V)".to_owned()),
     };
@@ -162,7 +165,7 @@ fn numbers_ui(ui: &mut Ui, state: &State) {
 /// The axes that decide about something in the picture, and those that the preset pins.
 fn axes_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     let pins = &state.session.preset().accuracy.pins;
-    let reason = |axis: &Axis| state.screen.plan().and_then(|plan| plan.reason(axis));
+    let reason = |axis: &Axis| state.picture.screen.plan().and_then(|plan| plan.reason(axis));
     let shown: Vec<(&Axis, Option<String>)> = AXES.iter().map(|axis| (axis, reason(axis))).collect();
     let shown: Vec<_> = shown.into_iter().filter(|(axis, reason)| reason.is_some() || pins.get(axis).is_some()).collect();
     let pinned = AXES.iter().filter(|axis| pins.get(axis).is_some()).count();
@@ -177,7 +180,7 @@ fn axes_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             let why = reason.unwrap_or_else(|| "pinned, and this picture has nothing that it decides about".into());
             ui.horizontal(|ui| {
                 ui.add_space(2.0 * theme::GAP);
-                let text = if anti_aliasing::is_automatic(axis, state.session.preset(), state.screen.requested()) {
+                let text = if anti_aliasing::is_automatic(axis, state.session.preset(), state.picture.screen.requested()) {
                     "2×2 anti-aliasing, a viewing aid that is not saved".to_owned()
                 } else {
                     why

@@ -5,9 +5,11 @@ use eframe::egui::{self, ComboBox, Ui};
 use super::rows::{folder, setting_ui};
 use crate::{
     app::{
-        command::{Commands, Edit},
-        state::State,
-        theme,
+        shell::{
+            command::{Commands, Edit},
+            state::State,
+        },
+        widgets::theme,
     },
     preset::{ClipPlayback, Clock},
     scene::{Scene, rig::Clip},
@@ -75,7 +77,7 @@ fn clip_ui(ui: &mut Ui, name: &str, none: &str, scene: &Scene, chosen: &mut Stri
         let menu = menu.show_ui(ui, |ui| {
             ui.selectable_value(chosen, String::new(), none);
             for (index, clip) in scene.rig.clips.iter().enumerate() {
-                let id = crate::app::scene_loader::clip_id(scene, index);
+                let id = crate::app::files::scene_loader::clip_id(scene, index);
                 let about = format!("{:.2} s, {} channels", clip.duration_s, clip.channels.len());
                 ui.selectable_value(chosen, id.clone(), id).on_hover_text(about);
             }

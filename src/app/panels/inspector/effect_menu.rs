@@ -6,11 +6,15 @@ use eframe::egui::{self, Ui};
 
 use crate::{
     app::{
-        action::Action,
-        command::{Command, Commands, Edit, FileCommand, LibraryCommand, Naming, RowCommand},
-        icons::{Icon, icon_button},
-        state::State,
-        theme,
+        shell::{
+            action::Action,
+            command::{Command, Commands, Edit, FileCommand, LibraryCommand, Naming, RowCommand},
+            state::State,
+        },
+        widgets::{
+            icons::{Icon, icon_button},
+            theme,
+        },
     },
     effect_files::duplicate,
     effects::Effect,
@@ -62,7 +66,7 @@ fn values_ui(ui: &mut Ui, state: &State, effect: &Arc<Effect>) -> Option<Command
     if ui.add(entry("Paste effect")).on_hover_text("Enable the effect that is on the clipboard, with its values").clicked() {
         chosen = Some(Command::Perform(Action::PastePreset));
     }
-    let mut saved = state.values.iter().filter(|saved| saved.effect == effect.name).peekable();
+    let mut saved = state.files.values.iter().filter(|saved| saved.effect == effect.name).peekable();
     if is_enabled || saved.peek().is_some() {
         let menu = ui.menu_button("Saved values", |ui| {
             for saved in saved {

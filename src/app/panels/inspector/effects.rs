@@ -7,16 +7,19 @@ use eframe::egui::{self, Rect, RichText, Sense, Ui, vec2};
 use super::{effect_menu, precision::precision_ui, scope::scope_ui};
 use crate::{
     app::{
-        action::Action,
-        command::{Command, Commands, Edit, FileCommand, Parameter, Picking, ViewCommand},
-        fields::{Row, row_ui},
-        icons::{Icon, icon_button, paint},
-        log::Level,
+        editing::stack_drag::{StackDrag, drop_ui},
         panels::effect_browser::groups::depends_on_order,
-        reveal,
-        stack_drag::{StackDrag, drop_ui},
-        state::State,
-        theme,
+        shell::{
+            action::Action,
+            command::{Command, Commands, Edit, FileCommand, Parameter, Picking, ViewCommand},
+            log::Level,
+            state::State,
+        },
+        widgets::{
+            fields::{Row, row_ui},
+            icons::{Icon, icon_button, paint},
+            reveal, theme,
+        },
     },
     effects::{EFFECTS, Effect},
     params::Measure,
@@ -65,7 +68,7 @@ fn own_effects_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&Arc
     for effect in own.filter(|effect| !stack.iter().any(|enabled| enabled.name == effect.name)) {
         ui.horizontal(|ui| disabled_ui(ui, state, commands, effect));
     }
-    for (name, error) in state.live.effect_faults() {
+    for (name, error) in state.files.live.effect_faults() {
         ui.horizontal(|ui| {
             ui.set_min_height(theme::ROW);
             ui.add_space(theme::GAP);
@@ -165,7 +168,7 @@ fn parameters_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<E
         let row = if state.session.preset().unit == LengthUnit::Scene { row.in_radii() } else { row };
         row_ui(ui, commands, &row, &field.value(&words));
         if field.measure() == Measure::Point {
-            pick_ui(ui, state.picking.as_ref(), commands, (effect.clone(), field.clone()));
+            pick_ui(ui, state.picture.picking.as_ref(), commands, (effect.clone(), field.clone()));
         }
     }
 }

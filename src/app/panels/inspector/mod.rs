@@ -16,11 +16,12 @@ use eframe::egui::{self, Ui};
 use self::rows::{folder, setting_ui, settings_folder};
 use crate::{
     app::{
-        action::Action,
-        command::{Commands, Edit},
-        panel::Panel,
-        state::State,
-        theme,
+        shell::{
+            action::Action,
+            command::{Commands, Edit},
+            state::State,
+        },
+        widgets::{panel::Panel, theme},
     },
     preset::settings::CAMERA,
 };

@@ -3,16 +3,16 @@
 use eframe::egui::{self, RichText, Ui};
 
 use crate::app::{
-    command::{Command, Commands, ViewCommand},
-    icons::swatch,
-    overlay::Overlay,
-    state::State,
-    text::grouped,
-    theme,
+    picture::overlay::Overlay,
+    shell::{
+        command::{Command, Commands, ViewCommand},
+        state::State,
+    },
+    widgets::{icons::swatch, text::grouped, theme},
 };
 
 pub fn overlays_ui(ui: &mut Ui, state: &State, commands: &Commands) {
-    let findings = state.findings();
+    let findings = state.picture.findings();
     for overlay in Overlay::listed() {
         if overlay == Overlay::Ties {
             ui.add_space(theme::HALF);
@@ -20,14 +20,14 @@ pub fn overlays_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         ui.horizontal(|ui| {
             ui.set_min_height(theme::ROW);
             ui.spacing_mut().item_spacing.x = 6.0;
-            let mut on = state.overlays.contains(overlay);
+            let mut on = state.picture.overlays.contains(overlay);
             let label = format!("Overlay {}", overlay.name().to_lowercase());
             if ui.checkbox(&mut on, overlay.name()).on_hover_text(overlay.doc()).accessible_name(label).clicked() {
                 commands.send(Command::View(ViewCommand::ShowOverlay(overlay, on)));
             }
             swatch(ui, overlay.color());
             if overlay == Overlay::Color {
-                gain_ui(ui, state.overlays.gain, commands);
+                gain_ui(ui, state.picture.overlays.gain, commands);
             }
             if let Some(findings) = findings {
                 let count = findings.count(overlay);

@@ -6,10 +6,12 @@ use eframe::egui::{self, Ui};
 
 use crate::{
     app::{
-        command::{Command, Commands, Marker, ViewCommand},
-        precision::Error,
-        state::State,
-        theme,
+        picture::precision::Error,
+        shell::{
+            command::{Command, Commands, Marker, ViewCommand},
+            state::State,
+        },
+        widgets::theme,
     },
     effect_files::Quantity,
     effects::Effect,
@@ -28,11 +30,11 @@ pub fn precision_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Ar
 }
 
 fn errors_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effect>) {
-    let requested = state.screen.requested();
-    let Some(measured) = state.precision.of(requested) else {
-        let text = if state.precision.has_failed(requested) {
+    let requested = state.picture.screen.requested();
+    let Some(measured) = state.picture.precision.of(requested) else {
+        let text = if state.picture.precision.has_failed(requested) {
             "f32 error: not measured, see the log"
-        } else if state.precision.is_running() {
+        } else if state.picture.precision.is_running() {
             "f32 error: measuring"
         } else {
             "f32 error: measured at rest"

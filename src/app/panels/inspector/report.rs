@@ -4,27 +4,31 @@ use eframe::egui::{self, RichText, Ui};
 
 use crate::{
     app::{
-        findings::Findings,
-        measured::time_line,
-        state::State,
-        text::{self, grouped},
-        theme,
-        timings::{Cost, Summary},
+        picture::{
+            findings::Findings,
+            measured::time_line,
+            timings::{Cost, Summary},
+        },
+        shell::state::State,
+        widgets::{
+            text::{self, grouped},
+            theme,
+        },
     },
     gpu::{Explanation, Report},
 };
 
 /// What the newest frame cost, pass by pass, beside its error.
 pub fn timing_ui(ui: &mut Ui, state: &State) {
-    let Some(report) = state.screen.report() else {
+    let Some(report) = state.picture.screen.report() else {
         ui.label(theme::weak("Times appear with the first frame."));
         return;
     };
-    let drawn = state.verification.verdict_on(state.screen.drawn());
-    let mut main = vec![("frame".to_owned(), time_line(Some(&state.screen)).0)];
+    let drawn = state.picture.verification.verdict_on(state.picture.screen.drawn());
+    let mut main = vec![("frame".to_owned(), time_line(Some(&state.picture.screen)).0)];
     main.extend(error_lines(drawn.map(|verdict| &*verdict.findings)));
     let main_count = main.len();
-    let summary = match state.screen.timings().cost() {
+    let summary = match state.picture.screen.timings().cost() {
         Cost::Settled(summary) => Some(summary),
         _ => None,
     };
@@ -36,7 +40,7 @@ pub fn timing_ui(ui: &mut Ui, state: &State) {
             ui.end_row();
         }
     });
-    if state.screen.gpu.summary.software {
+    if state.picture.screen.gpu.summary.software {
         ui.label(RichText::new("Compare software-adapter timings only with each other.").color(theme::amber()));
     }
 }
@@ -79,7 +83,7 @@ fn lines(report: &Report, summary: Option<&Summary>) -> Vec<(String, String)> {
 
 /// Which passes and buffers the newest picture has, and why.
 pub fn kernel_ui(ui: &mut Ui, state: &State) {
-    let Some(Explanation { key, passes, buffers, reasons, omitted, .. }) = state.screen.explanation() else {
+    let Some(Explanation { key, passes, buffers, reasons, omitted, .. }) = state.picture.screen.explanation() else {
         ui.label(theme::weak("The kernel appears with the first frame."));
         return;
     };

@@ -4,11 +4,11 @@ use eframe::egui::{self, Ui};
 
 use crate::{
     app::{
-        command::Commands,
-        fields::{Row, row_ui},
-        reveal,
-        state::State,
-        theme,
+        shell::{command::Commands, state::State},
+        widgets::{
+            fields::{Row, row_ui},
+            reveal, theme,
+        },
     },
     preset::settings::Setting,
 };

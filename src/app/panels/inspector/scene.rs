@@ -5,9 +5,11 @@ use eframe::egui::{ComboBox, Ui};
 use super::rows::{folder, setting_ui};
 use crate::{
     app::{
-        command::{Command, Commands, Edit, RowCommand},
-        state::State,
-        text, theme,
+        shell::{
+            command::{Command, Commands, Edit, RowCommand},
+            state::State,
+        },
+        widgets::{text, theme},
     },
     params::{Stored as _, Value},
     preset::{

@@ -6,9 +6,11 @@ use eframe::egui::{self, Popup, PopupCloseBehavior, RichText, ScrollArea, TextEd
 
 use crate::{
     app::{
-        command::{Command, Commands, Edit, Picking, ViewCommand},
-        state::State,
-        theme,
+        shell::{
+            command::{Command, Commands, Edit, Picking, ViewCommand},
+            state::State,
+        },
+        widgets::theme,
     },
     effects::Effect,
     scene::{
@@ -48,7 +50,7 @@ struct Missing {
 pub fn scope_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effect>) {
     let Some(enabled) = state.session.preset().stack.get(&effect.name).filter(|enabled| enabled.effect.has_scope()) else { return };
     let on = enabled.on.clone();
-    let is_picking = matches!(&state.picking, Some(Picking::Part(picking, _)) if picking == effect);
+    let is_picking = matches!(&state.picture.picking, Some(Picking::Part(picking, _)) if picking == effect);
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         ui.label(theme::weak("On"));

@@ -2,7 +2,7 @@
 
 use std::{cmp::Reverse, collections::BTreeMap, time::SystemTime};
 
-use crate::app::{fuzzy, settings::browsing::Sort};
+use crate::app::{settings::browsing::Sort, widgets::fuzzy};
 
 /// What is known of a preset.
 #[derive(Clone, Debug, Default)]

@@ -4,10 +4,12 @@ use eframe::egui::{self, Align2, FontId, Pos2, Rect, Response, RichText, Sense, 
 
 use crate::{
     app::{
-        effect_picture,
-        icons::{Icon, paint},
+        picture::effect_picture,
         settings::browsing::Layout,
-        theme,
+        widgets::{
+            icons::{Icon, paint},
+            theme,
+        },
     },
     preset_file::{GalleryEntry, Origin},
 };

@@ -4,9 +4,11 @@ use eframe::egui::{self, Ui};
 
 use crate::{
     app::{
-        command::{Command, Commands, FileCommand, LibraryCommand, Manner, Naming},
-        log::Level,
-        theme,
+        shell::{
+            command::{Command, Commands, FileCommand, LibraryCommand, Manner, Naming},
+            log::Level,
+        },
+        widgets::theme,
     },
     preset_file::GalleryEntry,
 };

@@ -19,19 +19,25 @@ use self::{
     pictures::Pictures,
     thumbnails::Size,
 };
+use super::effect_browser::EffectBrowser;
 use crate::{
     app::{
-        action::Action,
-        command::{Command, Commands, LibraryCommand, Manner},
-        favorites::{Favorites, Starred},
-        icons::{Icon, icon_button},
-        panel::Panel,
-        panels::effect_browser::EffectBrowser,
-        scene_loader::SceneKey,
-        session::FileId,
+        editing::session::FileId,
+        files::{
+            favorites::{Favorites, Starred},
+            scene_loader::SceneKey,
+        },
         settings::browsing::{Browsing, Layout, Tab},
-        state::State,
-        theme,
+        shell::{
+            action::Action,
+            command::{Command, Commands, LibraryCommand, Manner},
+            state::State,
+        },
+        widgets::{
+            icons::{Icon, icon_button},
+            panel::Panel,
+            theme,
+        },
     },
     preset_file::{self, Folders, GalleryEntry, PresetFile},
 };
@@ -139,17 +145,17 @@ impl PresetBrowser {
     }
 
     fn presets_ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
-        self.mark_favorites(&state.favorites);
+        self.mark_favorites(&state.files.favorites);
         let chips = tags(&self.items, &self.filter);
         self.pictures.switch_ui(ui, &state.session);
         toolbar::toolbar_ui(ui, &mut self.filter, &mut self.layout, &mut self.shows_all_tags, &chips);
         self.listed = arrange(&self.items, &self.filter);
         count_ui(ui, &mut self.filter, self.listed.len(), self.entries.len());
-        let has_undo = !state.deleted.is_empty();
+        let has_undo = !state.files.deleted.is_empty();
         let footer = if has_undo { theme::ROW + theme::GAP } else { 0.0 };
         let area = egui::ScrollArea::vertical().id_salt("presets").auto_shrink(false).max_height(ui.available_height() - footer);
         area.show(ui, |ui| self.gallery_ui(ui, state, commands));
-        if let Some(deleted) = state.deleted.last() {
+        if let Some(deleted) = state.files.deleted.last() {
             ui.horizontal(|ui| {
                 ui.set_min_height(theme::ROW);
                 ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {

@@ -7,7 +7,7 @@ use eframe::egui::{self, ColorImage, Context, TextureHandle, Ui};
 
 use super::thumbnails::{Size, Thumbnails};
 use crate::{
-    app::{scene_loader::SceneKey, session::Session},
+    app::{editing::session::Session, files::scene_loader::SceneKey},
     preset_file::{GalleryEntry, PresetFile},
     scene::Scene,
 };

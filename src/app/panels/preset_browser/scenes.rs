@@ -6,12 +6,13 @@ use eframe::egui::{self, Align2, DragValue, Label, RichText, Sense, Ui, vec2};
 
 use crate::{
     app::{
-        action::Action,
-        command::{Command, Commands, Edit, FileCommand},
-        session::Session,
-        state::State,
-        text::grouped,
-        theme,
+        editing::session::Session,
+        shell::{
+            action::Action,
+            command::{Command, Commands, Edit, FileCommand},
+            state::State,
+        },
+        widgets::{text::grouped, theme},
     },
     preset::SceneSource,
     preset_file::ModelFormat,

@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use eframe::egui::{self, TextureHandle};
 
-use crate::app::effect_picture;
+use crate::app::picture::effect_picture;
 
 /// How large a thumbnail is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -4,9 +4,11 @@ use eframe::egui::{self, Align, Button, ComboBox, RichText, TextEdit, Ui, vec2};
 
 use super::arrange::Filter;
 use crate::app::{
-    icons::{Icon, icon_button, toggle_button},
     settings::browsing::{Layout, Sort},
-    theme,
+    widgets::{
+        icons::{Icon, icon_button, toggle_button},
+        theme,
+    },
 };
 
 /// Tags that are seen before *more* is chosen.

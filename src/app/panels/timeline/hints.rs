@@ -5,11 +5,10 @@ use eframe::egui::{self, Label, Ui, vec2};
 use super::tracks::TRACK;
 use crate::{
     app::{
-        command::{Command, Commands, Edit, TimeCommand},
-        icons::paint_diamond,
-        scene_loader::clip_id,
-        session::Session,
-        theme,
+        editing::session::Session,
+        files::scene_loader::clip_id,
+        shell::command::{Command, Commands, Edit, TimeCommand},
+        widgets::{icons::paint_diamond, theme},
     },
     preset::Clock,
     scene::{Scene, rig::Clip},

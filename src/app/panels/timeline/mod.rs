@@ -12,14 +12,17 @@ use eframe::egui::{self, Align, DragValue, Layout, Rect, RichText, Ui, pos2, vec
 use self::span::Span;
 use crate::{
     app::{
-        action::Action,
-        command::{Command, Commands, Edit, KeyframeEdit, TimeCommand},
-        icons::{Icon, icon_button, toggle_button},
-        key_id::KeyId,
-        panel::Panel,
-        session::Session,
-        state::State,
-        theme,
+        editing::{key_id::KeyId, session::Session},
+        shell::{
+            action::Action,
+            command::{Command, Commands, Edit, KeyframeEdit, TimeCommand},
+            state::State,
+        },
+        widgets::{
+            icons::{Icon, icon_button, toggle_button},
+            panel::Panel,
+            theme,
+        },
     },
     params::Value,
     preset::{

@@ -4,9 +4,9 @@ use eframe::egui::{self, Align2, FontId, Rect, Sense, Shape, Stroke, Ui, pos2, v
 
 use super::span::Span;
 use crate::app::{
-    command::{Command, Commands, TimeCommand},
-    session::Session,
-    theme,
+    editing::session::Session,
+    shell::command::{Command, Commands, TimeCommand},
+    widgets::theme,
 };
 
 /// Least distance between labeled ticks, points.

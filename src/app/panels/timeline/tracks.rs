@@ -7,12 +7,12 @@ use eframe::egui::{self, Align, Align2, Color32, FontId, Layout, Pos2, Rect, Sen
 use super::span::Span;
 use crate::{
     app::{
-        command::{Command, Commands, KeyframeEdit, TimeCommand},
-        icons::{Icon, icon_button},
-        key_id::KeyId,
-        playback::STEP_S,
-        session::Session,
-        theme,
+        editing::{key_id::KeyId, playback::STEP_S, session::Session},
+        shell::command::{Command, Commands, KeyframeEdit, TimeCommand},
+        widgets::{
+            icons::{Icon, icon_button},
+            theme,
+        },
     },
     params::{ValueType, format_number},
     preset::animation::{Easing, Keyframe, Track, steps},

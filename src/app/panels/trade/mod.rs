@@ -11,19 +11,23 @@ use eframe::egui::{self, RichText, Ui};
 use crate::{
     accuracy::{AXES, Axis},
     app::{
-        action::Action,
-        command::{Command, Commands, TimeCommand},
-        icons::{Icon, icon_button},
-        log::Level,
-        panel::Panel,
-        screen::Inputs,
-        state::State,
-        text::first_line,
-        theme,
+        picture::screen::Inputs,
+        shell::{
+            action::Action,
+            command::{Command, Commands, TimeCommand},
+            log::Level,
+            state::State,
+        },
         trade::{
             pace::{Pace, Rates, about},
             point::{Metric, Point, csv},
             request::{Progress, Request, SAMPLES},
+        },
+        widgets::{
+            icons::{Icon, icon_button},
+            panel::Panel,
+            text::first_line,
+            theme,
         },
     },
     preset::{AccuracyRequest, Preset},
@@ -190,7 +194,7 @@ impl TradePanel {
 
     /// The button that measures `count` combinations.
     fn measure_ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands, count: usize) {
-        let shown = state.session.scene().and(state.screen.requested());
+        let shown = state.session.scene().and(state.picture.screen.requested());
         let request = shown.filter(|_| count <= MAX_COMBINATIONS).map(|inputs| self.request(state, inputs));
         ui.horizontal(|ui| {
             let is_ready = request.is_some() && count >= 2;
@@ -229,7 +233,7 @@ impl TradePanel {
             title: state.session.title().to_owned(),
         };
         // Without a timer, a frame of a software adapter.
-        let frame_ms = state.screen.timings().cost_ms().or(state.screen.timings().newest_ms()).unwrap_or(30.0);
+        let frame_ms = state.picture.screen.timings().cost_ms().or(state.picture.screen.timings().newest_ms()).unwrap_or(30.0);
         let workload = Workload::of(&request, frame_ms);
         (request, workload)
     }
@@ -258,7 +262,7 @@ impl TradePanel {
             return None;
         };
         let metric = self.metric;
-        let options = state.screen.options();
+        let options = state.picture.screen.options();
         let axes = &request.axes;
         let is_current =
             |point: &Point| options.is_some_and(|options| axes.iter().all(|axis| point.pins.get(axis) == Some(options.get(axis))));
@@ -278,7 +282,8 @@ impl TradePanel {
         ui.vertical(|ui| {
             let [width, height] = request.size;
             let is_stale = picture_of(&request.preset) != picture_of(&state.session.visible_preset());
-            let software = if state.screen.gpu.summary.software { "; compare software-adapter timings only with each other" } else { "" };
+            let software =
+                if state.picture.screen.gpu.summary.software { "; compare software-adapter timings only with each other" } else { "" };
             let of = format!("{}, {width} × {height} px{software}", request.title);
             let (color, text) = if is_stale {
                 (theme::amber(), format!("stale: measured on an earlier picture of {of}"))

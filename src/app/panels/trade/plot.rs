@@ -5,9 +5,8 @@ use eframe::egui::{self, Pos2, Rect, RichText, Sense, Ui, Vec2, vec2};
 use egui_plot::{GridMark, HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints};
 
 use crate::app::{
-    text::short,
-    theme,
     trade::point::{Metric, Point, Standing, standings},
+    widgets::{text::short, theme},
 };
 
 /// Least distance of two points, so that each can be clicked, points of the screen.

@@ -5,9 +5,8 @@ use eframe::egui::{self, RichText, Ui};
 use crate::{
     accuracy::Axis,
     app::{
-        text::short,
-        theme,
         trade::point::{Metric, Point, Standing, standings},
+        widgets::{text::short, theme},
     },
 };
 

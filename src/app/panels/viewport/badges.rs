@@ -2,12 +2,12 @@
 
 use eframe::egui::{self, Rect, RichText, Ui};
 
-use crate::app::{live::Subject, state::State, theme};
+use crate::app::{files::live::Subject, shell::state::State, widgets::theme};
 
 /// Shows the badges at the lower left of `rect`.
 pub fn badges_ui(ui: &mut Ui, state: &State, rect: Rect) {
     let stack = &state.session.preset().stack;
-    let faults: Vec<(&Subject, &str)> = state.live.shown_faults(|name| stack.get(name).is_some()).collect();
+    let faults: Vec<(&Subject, &str)> = state.files.live.shown_faults(|name| stack.get(name).is_some()).collect();
     if faults.is_empty() {
         return;
     }

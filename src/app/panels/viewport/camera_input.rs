@@ -3,7 +3,7 @@
 use eframe::egui::{Key, PointerButton, Response, Ui, Vec2};
 
 use crate::{
-    app::{orbit, session::Session},
+    app::{editing::session::Session, picture::orbit},
     scene::camera::Camera,
 };
 

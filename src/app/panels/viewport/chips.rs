@@ -4,13 +4,17 @@ use eframe::egui::{self, Align2, Color32, FontId, Rect, RichText, Ui, pos2};
 
 use crate::{
     app::{
-        action::Action,
-        command::{Command, Commands, Picking},
-        golden_check::Outcome,
-        icons::{Icon, icon_button},
-        session::FileId,
-        state::State,
-        theme,
+        editing::session::FileId,
+        picture::golden_check::Outcome,
+        shell::{
+            action::Action,
+            command::{Command, Commands, Picking},
+            state::State,
+        },
+        widgets::{
+            icons::{Icon, icon_button},
+            theme,
+        },
     },
     scene::camera::Projection,
 };
@@ -109,14 +113,14 @@ fn note_ui(ui: &mut Ui, note: &Note) {
 /// Whether the preset still gives its golden, after a file was reloaded.
 fn golden(state: &State) -> Option<Note> {
     let open = FileId::of(&state.session.preset_file);
-    let check = state.live.golden.as_ref().filter(|check| check.file == open)?;
+    let check = state.files.live.golden.as_ref().filter(|check| check.file == open)?;
     let color = if check.outcome == Outcome::Same { theme::green() } else { theme::amber() };
     Some(Note { color, text: check.text(), hint: Some(check.hint()) })
 }
 
 /// What is unusual about the picture, each with its color.
 fn states(state: &State) -> Vec<(Color32, String)> {
-    let (session, screen) = (&state.session, &state.screen);
+    let (session, screen) = (&state.session, &state.picture.screen);
     let mut states = Vec::new();
     if screen.picture().is_some() {
         if session.scenes.has_failed() {
@@ -144,7 +148,7 @@ fn states(state: &State) -> Vec<(Color32, String)> {
         }
         states.push((theme::text(), format!("drew {} of {} samples ({percent:.1} %), {over} too many", order.drawn, order.covered)));
     }
-    if let Some(picking) = &state.picking {
+    if let Some(picking) = &state.picture.picking {
         let what = match picking {
             Picking::Point(_) => "a point".to_owned(),
             Picking::Part(_, kind) => format!("a {}", kind.name()),
@@ -175,7 +179,8 @@ fn views_ui(ui: &mut Ui, state: &State, commands: &Commands, is_comparing: bool,
         sides_ui(ui, is_orthographic, commands);
     }
     ui.add_space(theme::GAP);
-    for (text, on, action) in [("Overlays", state.overlays.is_any(), Action::Overlays), ("Compare", is_comparing, Action::Compare)] {
+    for (text, on, action) in [("Overlays", state.picture.overlays.is_any(), Action::Overlays), ("Compare", is_comparing, Action::Compare)]
+    {
         let button = egui::Button::new(text).small().selected(on);
         if ui.add(button).on_hover_text(action.hint()).accessible_name(action.label()).clicked() {
             commands.perform(action);

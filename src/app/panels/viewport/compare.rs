@@ -7,10 +7,11 @@ use eframe::egui::Rect;
 use crate::{
     accuracy::{PinnedOptions, RenderScale},
     app::{
-        log::Level,
-        screen::{Inputs, Screen},
-        state::State,
-        verification::Verdict,
+        picture::{
+            screen::{Inputs, Screen},
+            verification::Verdict,
+        },
+        shell::{log::Level, state::State},
     },
     preset::{AccuracyRequest, Preset, Tier},
 };
@@ -191,11 +192,11 @@ impl Compare {
         if matches!(self.mode, None | Some(Mode::B)) {
             return;
         }
-        let Some(live) = state.screen.requested() else { return };
+        let Some(live) = state.picture.screen.requested() else { return };
         let inputs = self.inputs(state, live);
-        let screen = self.screen.get_or_insert_with(|| state.screen.sibling());
+        let screen = self.screen.get_or_insert_with(|| state.picture.screen.sibling());
         let polled = screen.poll();
-        screen.show(inputs, state.screen.divisor());
+        screen.show(inputs, state.picture.screen.divisor());
         if let Err(error) = polled {
             state.notify(Level::Error, format!("The comparison cannot be drawn: {error}"));
         }

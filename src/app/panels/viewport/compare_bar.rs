@@ -4,7 +4,11 @@ use eframe::egui::{self, Align2, FontId, Rect, RichText, Ui, pos2, vec2};
 
 use super::compare::{Compare, Difference, Mode};
 use crate::{
-    app::{screen::Inputs, state::State, text::grouped, theme, verification::Verdict},
+    app::{
+        picture::{screen::Inputs, verification::Verdict},
+        shell::state::State,
+        widgets::{text::grouped, theme},
+    },
     measure::compare::{pictures, triangle_ids},
 };
 
@@ -67,7 +71,7 @@ pub fn bar_ui(ui: &mut Ui, compare: &mut Compare, state: &State, rect: Rect) {
 fn difference_text(compare: &mut Compare, state: &State) -> String {
     let on = |verdict: Option<&Verdict>, requested: Option<&Inputs>| verdict.filter(|verdict| requested == Some(&verdict.of)).cloned();
     let a = on(compare.verdict.as_ref(), compare.requested());
-    let b = on(state.verification.verdict(), state.screen.requested());
+    let b = on(state.picture.verification.verdict(), state.picture.screen.requested());
     let Some((a, b)) = a.zip(b) else { return "A and B not compared yet".into() };
     let is_known = |known: &&Difference| known.of[0].of == a.of && known.of[1].of == b.of;
     if let Some(known) = compare.difference.as_ref().filter(is_known) {

@@ -4,11 +4,15 @@ use eframe::egui::{self, Color32, Rect, RichText, Ui, pos2, vec2};
 
 use super::compare::{Compare, Mode};
 use crate::app::{
-    icons::{Icon, icon_button},
-    measured::{error_line, time_line},
-    screen::Screen,
-    state::State,
-    theme,
+    picture::{
+        measured::{error_line, time_line},
+        screen::Screen,
+    },
+    shell::state::State,
+    widgets::{
+        icons::{Icon, icon_button},
+        theme,
+    },
 };
 use crate::preset::{Animation, Preset};
 
@@ -56,9 +60,9 @@ fn plate_a_ui(ui: &mut Ui, compare: &mut Compare, state: &State) {
 }
 
 fn plate_b_ui(ui: &mut Ui, compare: &mut Compare, state: &State) {
-    let (color, error, hint) = error_line(state.verification.verdict(), state.screen.requested());
-    let time = time_line(Some(&state.screen));
-    let key = state.screen.explanation().map_or(String::new(), |explanation| explanation.key.clone());
+    let (color, error, hint) = error_line(state.picture.verification.verdict(), state.picture.screen.requested());
+    let time = time_line(Some(&state.picture.screen));
+    let key = state.picture.screen.explanation().map_or(String::new(), |explanation| explanation.key.clone());
     plate(ui, "B · this preset", &key, ((&time.0, &time.1), (&error, color, &hint)), |ui| {
         if icon_button(ui, Icon::Cross, "Close the comparison").clicked() {
             compare.close();

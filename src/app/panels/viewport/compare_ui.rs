@@ -9,7 +9,7 @@ use super::{
     layout::fitted,
     overlays::OverlayPainter,
 };
-use crate::app::{screen::Screen, state::State, theme};
+use crate::app::{picture::screen::Screen, shell::state::State, widgets::theme};
 
 /// Shows A over B, the overlays of B, the divider, the bar and the plates. `rect` is the whole viewport and `at` where B
 /// is. Returns what they do not cover.
@@ -29,7 +29,7 @@ pub fn compare_ui(ui: &mut Ui, compare: &mut Compare, state: &State, (rect, at):
     let picture = compare.screen.as_ref().and_then(Screen::picture);
     if let Some((blit, size)) = picture.filter(|_| side_a.width() >= 1.0) {
         let blit = match mode {
-            Mode::Difference => compare.screen.as_ref().and_then(|a| a.difference(&state.screen, compare.gain)),
+            Mode::Difference => compare.screen.as_ref().and_then(|a| a.difference(&state.picture.screen, compare.gain)),
             _ => Some(blit.clone()),
         };
         let target = fitted(if mode == Mode::SideBySide { half_a } else { rect }, size);

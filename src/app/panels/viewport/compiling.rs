@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Rect, RichText, Sense, Ui, vec2};
 
-use crate::app::{state::State, theme};
+use crate::app::{shell::state::State, widgets::theme};
 
 /// Seconds between two steps of the spinner. Each step draws the whole window, on the processor that compiles.
 const STEP_S: f64 = 0.12;
@@ -12,7 +12,7 @@ const STEPS: u32 = 12;
 
 /// Shows a spinner and words at the top of `rect` while something is compiled.
 pub fn compiling_ui(ui: &mut Ui, state: &State, rect: Rect) {
-    let Some(text) = state.screen.compiling().filter(|_| state.screen.picture().is_some()) else { return };
+    let Some(text) = state.picture.screen.compiling().filter(|_| state.picture.screen.picture().is_some()) else { return };
     egui::Area::new(egui::Id::unique("compiling"))
         .pivot(egui::Align2::CENTER_TOP)
         .fixed_pos(rect.center_top() + vec2(0.0, 44.0))

@@ -9,9 +9,11 @@ use super::{
 };
 use crate::{
     app::{
-        command::{Commands, Edit, Parameter},
-        state::State,
-        theme,
+        shell::{
+            command::{Commands, Edit, Parameter},
+            state::State,
+        },
+        widgets::theme,
     },
     params::{Measure, Stored as _},
     scene::{Scene, pick, view::View},

@@ -2,7 +2,7 @@
 
 use eframe::egui::{Align2, Color32, FontId, Mesh, Rect, Ui, pos2, vec2};
 
-use crate::{app::theme, effects::overdraw::Overdraw};
+use crate::{app::widgets::theme, effects::overdraw::Overdraw};
 
 /// Size of the bar, points.
 const BAR: [f32; 2] = [168.0, 8.0];

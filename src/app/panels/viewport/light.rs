@@ -5,10 +5,10 @@ use glam::{DQuat, DVec3};
 
 use crate::{
     app::{
-        command::{Commands, Edit, Parameter},
-        orbit,
-        session::Session,
-        theme,
+        editing::session::Session,
+        picture::orbit,
+        shell::command::{Commands, Edit, Parameter},
+        widgets::theme,
     },
     effects::{Stack, shadow},
     math::srgb_byte,

@@ -1,6 +1,6 @@
 //! The marker: a place in the picture that another panel points at.
 
-use crate::app::{state::State, theme};
+use crate::app::{shell::state::State, widgets::theme};
 use eframe::egui::{self, Align2, FontId, Rect, Sense, Ui, pos2, vec2};
 
 /// Radius of the ring, and lengths of its four strokes, points.
@@ -9,7 +9,7 @@ const STROKE: f32 = 7.0;
 
 /// Draws the marker over the picture at `at`, as long as that picture is shown.
 pub fn marker_ui(ui: &Ui, state: &State, at: Rect) {
-    let Some(marker) = state.marker.as_ref().filter(|marker| state.screen.requested() == Some(&marker.of)) else { return };
+    let Some(marker) = state.picture.marker.as_ref().filter(|marker| state.picture.screen.requested() == Some(&marker.of)) else { return };
     let center = at.min + vec2(marker.uv[0], marker.uv[1]) * at.size();
     let painter = ui.painter_at(at);
     for (width, color) in [(3.5, theme::view()), (1.5, theme::accent())] {

@@ -26,15 +26,19 @@ use eframe::egui::{self, Align2, FontId, Rect, Response, Sense, Ui, vec2};
 
 use self::{compare::Compare, layout::fitted, overlays::OverlayPainter};
 use crate::app::{
-    anti_aliasing::{AutomaticAntiAliasing, Finished},
-    command::{Commands, Edit},
-    log::Level,
-    scene_loader::SceneKey,
-    screen::Inputs,
-    session::FileId,
-    state::State,
-    theme,
-    timings::Measurable,
+    editing::session::FileId,
+    files::scene_loader::SceneKey,
+    picture::{
+        anti_aliasing::{AutomaticAntiAliasing, Finished},
+        screen::Inputs,
+        timings::Measurable,
+    },
+    shell::{
+        command::{Commands, Edit},
+        log::Level,
+        state::State,
+    },
+    widgets::theme,
 };
 use crate::{effects::Stack, preset::AccuracyRequest, scene::Scene};
 
@@ -72,7 +76,7 @@ impl Viewport {
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
         let pixels = (rect.size() * ui.pixels_per_point()).round();
-        let max_side = state.screen.gpu.caps.max_texture_side;
+        let max_side = state.picture.screen.gpu.caps.max_texture_side;
         let size = [pixels.x, pixels.y].map(|side| (side.max(0.0) as u32).min(max_side));
         let camera = if particle_input::attract(&response, &state.session, commands) {
             None
@@ -83,7 +87,7 @@ impl Viewport {
         if camera.is_some() {
             commands.edit(Edit::Camera(camera));
         }
-        if let Some(picking) = &state.picking {
+        if let Some(picking) = &state.picture.picking {
             pick_input::pick(&response, self.compare.side_b(rect), picking, state, commands);
         }
         Interaction { response, size, is_moved }
@@ -92,37 +96,37 @@ impl Viewport {
     /// Draws the preset, at a lower resolution while it moves on a slow adapter.
     pub fn draw(&mut self, ctx: &egui::Context, state: &mut State, interaction: &Interaction) {
         let now_s = state.now_s;
-        if let Err(error) = state.screen.poll() {
+        if let Err(error) = state.picture.screen.poll() {
             state.log.add(Level::Error, error); // Words stay in the picture as long as this is so.
         }
         // While the scene of another preset is shown there is nothing to draw.
         let Some(scene) = state.session.scenes.shown_for(&SceneKey::of(&state.session.preset_file)).cloned() else { return };
         let file = &state.session.preset_file;
         if self.measured.resets((FileId::of(file), SceneKey::of(file)), interaction.size) {
-            state.screen.reset_timings();
-            state.verification.reset();
+            state.picture.screen.reset_timings();
+            state.picture.verification.reset();
             self.compare.reset_measurements();
         }
         let stack = state.session.visible_stack();
         let accuracy = self.accuracy(state, &scene, &stack, interaction.size);
         let requested = Inputs { view: state.session.view_at(&scene, interaction.size), scene, stack, accuracy };
         let is_held = ctx.input(|i| i.pointer.any_down());
-        let is_changed = state.screen.requested().is_some_and(|before| *before != requested);
+        let is_changed = state.picture.screen.requested().is_some_and(|before| *before != requested);
         if interaction.is_moved || state.session.playback.playing || (is_changed && is_held) {
             self.last_motion_s = now_s;
         }
-        let rest_in_s = self.rest_in_s(now_s).filter(|_| state.screen.requested().is_some());
+        let rest_in_s = self.rest_in_s(now_s).filter(|_| state.picture.screen.requested().is_some());
         let divisor = if rest_in_s.is_some() { self.divisor(state, interaction.size) } else { 1 };
         if divisor > 1 {
             ctx.request_repaint_after_secs(rest_in_s.unwrap_or(0.0) as f32 + 0.01);
         }
-        state.screen.show(requested, divisor);
+        state.picture.screen.show(requested, divisor);
         self.compare.draw(state);
         // What else runs would be measured, too.
         let is_busy = is_held || state.session.playback.playing || state.jobs.is_computing() || self.compare.is_waiting();
         if rest_in_s.is_none() && !is_busy {
-            state.screen.measure();
-            if !state.screen.is_measuring() {
+            state.picture.screen.measure();
+            if !state.picture.screen.is_measuring() {
                 self.compare.measure();
             }
         }
@@ -130,13 +134,13 @@ impl Viewport {
 
     /// The preset's accuracy, with automatic anti-aliasing where the card can afford it.
     fn accuracy(&mut self, state: &State, scene: &Arc<Scene>, stack: &Stack, size: [u32; 2]) -> AccuracyRequest {
-        let screen = &state.screen;
+        let screen = &state.picture.screen;
         let newest = screen.options().zip(screen.drawn().filter(|drawn| screen.requested().is_some_and(|next| next.shares_kernels(drawn))));
         let finished = newest.map(|(options, drawn)| {
             let is_full_size = [drawn.view.width, drawn.view.height] == size;
             Finished::new(options, screen.timings().cost_ms(), is_full_size)
         });
-        let accuracy = state.tier_times.informed(state.session.preset().accuracy);
+        let accuracy = state.picture.tier_times.informed(state.session.preset().accuracy);
         self.anti_aliasing.applied(accuracy, (scene, stack, size), &screen.gpu.caps, finished)
     }
 
@@ -148,7 +152,7 @@ impl Viewport {
 
     /// By how much a moving picture of `full` pixels must be smaller along a side to stay smooth, from the time of the last one.
     fn divisor(&self, state: &State, full: [u32; 2]) -> u32 {
-        let screen = &state.screen;
+        let screen = &state.picture.screen;
         let Some(ms) = screen.timings().newest_ms().map(|ms| ms + self.compare.ms()) else {
             return if screen.gpu.summary.software { 2 } else { 1 };
         };
@@ -165,10 +169,10 @@ impl Viewport {
 
     /// True if overlays are shown and the picture is at rest but not judged; repaints when it comes to rest.
     pub fn needs_verdict(&self, ctx: &egui::Context, state: &State) -> bool {
-        if state.overlays_are_ready() || state.verification.is_running() || state.session.playback.playing {
+        if state.picture.overlays_are_ready() || state.picture.verification.is_running() || state.session.playback.playing {
             return false;
         }
-        let screen = &state.screen;
+        let screen = &state.picture.screen;
         let is_drawn =
             screen.requested().is_some() && screen.drawn() == screen.requested() && !screen.is_waiting() && !screen.is_measuring();
         if !is_drawn || ctx.input(|i| i.pointer.any_down()) {
@@ -208,7 +212,7 @@ impl Viewport {
 /// The newest picture, or why there is none. Returns where the picture is.
 fn picture_ui(ui: &Ui, state: &State, rect: Rect) -> Rect {
     let painter = ui.painter_at(rect);
-    if let Some((blit, size)) = state.screen.picture().filter(|(_, size)| size.iter().all(|&side| side > 0)) {
+    if let Some((blit, size)) = state.picture.screen.picture().filter(|(_, size)| size.iter().all(|&side| side > 0)) {
         let at = fitted(rect, size);
         if at != rect {
             painter.rect_filled(rect, 0.0, theme::view());
@@ -217,12 +221,12 @@ fn picture_ui(ui: &Ui, state: &State, rect: Rect) -> Rect {
         return at;
     }
     painter.rect_filled(rect, 0.0, theme::view());
-    let compiling = state.screen.compiling();
+    let compiling = state.picture.screen.compiling();
     let (title, detail) = if let Some(compiling) = &compiling {
         (compiling.as_str(), "The first picture takes longest.")
     } else if state.session.scenes.has_failed() {
         ("This scene cannot be shown", "See the log. Choose another scene on the left, or drop a model here.")
-    } else if state.screen.is_refused() {
+    } else if state.picture.screen.is_refused() {
         ("This picture cannot be drawn", "See the log.")
     } else {
         ("Loading the scene", "Large scenes take a moment.")

@@ -4,7 +4,7 @@ use eframe::egui::{Color32, ColorImage};
 use rayon::prelude::*;
 
 use crate::{
-    app::{findings::Findings, overlay::Overlay},
+    app::picture::{findings::Findings, overlay::Overlay},
     effects::overdraw::Overdraw,
     frame::NO_TRIANGLE,
     math::hash,

@@ -4,12 +4,12 @@ use eframe::egui::{self, Color32, Rect, RichText, Ui, pos2, vec2};
 
 use crate::{
     app::{
-        findings::Findings,
-        icons::swatch,
-        overlay::{Overlay, OverlaySelection},
-        state::State,
-        text::grouped,
-        theme,
+        picture::{
+            findings::Findings,
+            overlay::{Overlay, OverlaySelection},
+        },
+        shell::state::State,
+        widgets::{icons::swatch, text::grouped, theme},
     },
     effect_files::Crossing,
     effects::Stack,
@@ -84,25 +84,25 @@ fn line(overlay: Overlay, gain: u8, found: &Findings) -> Line {
 
 /// What is known of the pixel under the pointer.
 fn hovered_line(ui: &Ui, state: &State, at: Rect) -> Option<Line> {
-    let found = state.findings().filter(|_| state.screen.divisor() == 1)?;
+    let found = state.picture.findings().filter(|_| state.picture.screen.divisor() == 1)?;
     let pointer = ui.input(|i| i.pointer.hover_pos()).filter(|pointer| at.contains(*pointer) && ui.rect_contains_pointer(at))?;
     let uv = (pointer - at.min) / at.size();
     let [x, y] = [(uv.x, found.size[0]), (uv.y, found.size[1])].map(|(t, side)| ((t * side as f32) as u32).min(side - 1));
     let i = (y * found.size[0] + x) as usize;
-    let crossing = found.crossing(i).filter(|_| state.overlays.contains(Overlay::Unsound));
+    let crossing = found.crossing(i).filter(|_| state.picture.overlays.contains(Overlay::Unsound));
     let crossing = crossing.map_or(String::new(), |crossing| format!(", {}", crossing_text(crossing, &state.session.visible_stack())));
     Some(Line::sentence(theme::text_weak(), format!("{x}, {y}: {}{crossing}", found.pixel_text(i))))
 }
 
 /// Shows the legend at the lower left of `free`; the picture is at `at`. Returns what of `free` it does not cover.
 pub fn legend_ui(ui: &mut Ui, state: &State, free: Rect, at: Rect) -> Rect {
-    if !state.overlays.is_any() || state.screen.picture().is_none() {
+    if !state.picture.overlays.is_any() || state.picture.screen.picture().is_none() {
         return free;
     }
-    let mut lines = match state.findings() {
-        Some(found) if state.screen.divisor() == 1 => lines(&state.overlays, found, &state.session.visible_stack()),
-        _ if state.verification.is_running() => vec![Line::sentence(theme::text(), "Comparing this picture with the oracle")],
-        _ if state.overlays_are_ready() => vec![Line::sentence(theme::red(), "This picture could not be verified. See the log.")],
+    let mut lines = match state.picture.findings() {
+        Some(found) if state.picture.screen.divisor() == 1 => lines(&state.picture.overlays, found, &state.session.visible_stack()),
+        _ if state.picture.verification.is_running() => vec![Line::sentence(theme::text(), "Comparing this picture with the oracle")],
+        _ if state.picture.overlays_are_ready() => vec![Line::sentence(theme::red(), "This picture could not be verified. See the log.")],
         _ => vec![Line::sentence(theme::text_weak(), "Overlays appear when the picture is at rest")],
     };
     lines.extend(hovered_line(ui, state, at));

@@ -5,7 +5,10 @@ use std::sync::Arc;
 use eframe::egui::{self, Color32, Pos2, Rect, Ui, pos2, vec2};
 
 use super::overlay_image::{image, rings};
-use crate::app::{findings::Findings, overlay::OverlaySelection, state::State};
+use crate::app::{
+    picture::{findings::Findings, overlay::OverlaySelection},
+    shell::state::State,
+};
 
 /// Keeps the newest image of the overlays.
 #[derive(Default)]
@@ -22,11 +25,11 @@ struct Painted {
 impl OverlayPainter {
     /// Paints the overlays over the picture at `at`, inside `clip`. Nothing while the picture has no verdict.
     pub fn paint(&mut self, ui: &Ui, state: &State, at: Rect, clip: Rect) {
-        if !state.overlays.is_any() || state.screen.divisor() > 1 {
+        if !state.picture.overlays.is_any() || state.picture.screen.divisor() > 1 {
             return;
         }
-        let Some(findings) = state.findings() else { return };
-        let painted = self.painted(ui.ctx(), findings, &state.overlays);
+        let Some(findings) = state.picture.findings() else { return };
+        let painted = self.painted(ui.ctx(), findings, &state.picture.overlays);
         let painter = ui.painter_at(at).with_clip_rect(clip.intersect(at));
         let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
         painter.image(painted.texture.id(), at, whole, Color32::WHITE);

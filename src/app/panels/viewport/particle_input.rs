@@ -9,8 +9,8 @@ use super::{
 };
 use crate::{
     app::{
-        command::{Commands, Edit},
-        session::Session,
+        editing::session::Session,
+        shell::command::{Commands, Edit},
     },
     effects::particles::EFFECT,
     params::Stored as _,

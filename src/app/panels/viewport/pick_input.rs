@@ -8,7 +8,7 @@ use super::{
     points::PointSpace,
 };
 use crate::{
-    app::{
+    app::shell::{
         command::{Command, Commands, Edit, Picking, ViewCommand},
         log::Level,
         state::State,

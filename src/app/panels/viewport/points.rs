@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec2, DVec3};
 
 use crate::{
-    app::session::Session,
+    app::editing::session::Session,
     effects::{Effect, particles},
     preset::Fit,
     scene::view::View,

@@ -1,0 +1,468 @@
+//! Jobs: work that would make the window stutter, on other threads: loading scenes, judging pictures, drawing thumbnails,
+//! saving pictures, waiting for file dialogs.
+
+pub mod background;
+pub mod computing;
+pub mod film;
+pub mod finished;
+pub mod memory;
+
+use std::{
+    collections::HashSet,
+    path::{Path, PathBuf},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc,
+    },
+    thread::JoinHandle,
+};
+
+use eframe::egui;
+use pollster::FutureExt as _;
+
+use self::{
+    background::{Urgency, yield_processor},
+    computing::{Computing, Count},
+};
+use crate::app::{
+    files::{completion::Listing, live::Reload, scene_loader::SceneKey, system_dialog},
+    picture::{
+        cells::{self, CellOf, CellResult, Cells},
+        effect_picture::EffectPicture,
+        findings::Findings,
+        golden_check::{self, GoldenCheck},
+        precision::{self, Measured},
+        screen::Inputs,
+        tier_times::{self, TierDrawing, Timed},
+    },
+    shell::command::{Origin, Purpose},
+    trade::{
+        measure,
+        point::Point,
+        request::{Progress, Request},
+    },
+};
+use crate::{
+    effect_files,
+    effects::Stack,
+    gpu::{CompileWatch, Gpu, Renderer},
+    oracle,
+    preset::{AccuracyRequest, Fit, Preset, SceneSource},
+    preset_file::{self, Existing, PresetFile, Provenance},
+    scene::{Bounds, Scene, view::View},
+    shader::key::KernelKey,
+    work::Work,
+};
+
+/// Finished work. Errors are sentences for people.
+pub enum Done {
+    Scene(SceneKey, Result<Arc<Scene>, String>),
+    /// A scene whose loading was canceled.
+    Canceled,
+    /// The box of a scene, without a room.
+    SceneBox(SceneSource, Result<Bounds, String>),
+    /// The verdict on a picture; none if the judgement was canceled.
+    Verdict(Box<Inputs>, Arc<Work>, Result<Option<Box<Findings>>, String>),
+    /// A small picture.
+    Cell(CellOf, CellResult),
+    /// Measured combinations of accuracy options.
+    Trade(Result<Vec<Point>, String>),
+    Thumbnail(String, Option<egui::ColorImage>),
+    /// The thumbnail of a preset on the user's own scene.
+    ThumbnailOn(SceneKey, String, Option<egui::ColorImage>),
+    /// The picture of an effect on the open model; none if it was cancelled or cannot be drawn.
+    EffectPicture(String, Option<egui::ColorImage>),
+    /// The favorites were written.
+    Favorites(Result<(), String>),
+    Export(PathBuf, Result<(), String>),
+    Film(Arc<film::Progress>, Result<film::Finished, film::Failure>),
+    /// How the system's file dialog ended.
+    Path(Purpose, system_dialog::Answer),
+    /// What is in a folder.
+    Folder(Listing),
+    /// Which recent files are not there.
+    Missing(HashSet<PathBuf>),
+    /// Pipelines for what was changed on disk.
+    Compiled(Reload, Result<(), String>),
+    /// The f32 errors of the user's effects in a picture; none if the measurement was cancelled.
+    Precision(Box<Inputs>, Result<Option<Box<Measured>>, String>),
+    /// A tier of the open picture was timed.
+    TierTime(Box<Timed>),
+    /// The golden of a preset, compared again, by the number of its request; none if the preset has no golden.
+    Golden(u64, Option<GoldenCheck>),
+    /// The file of a new effect.
+    EffectWritten(PathBuf, Origin, Result<(), String>),
+    /// A file that could not be opened in the user's editor.
+    NoEditor(PathBuf, String),
+}
+
+/// Starts threads and receives their results.
+pub struct Jobs {
+    ctx: egui::Context,
+    sender: mpsc::Sender<Done>,
+    receiver: mpsc::Receiver<Done>,
+    computing: Count,
+}
+
+impl Jobs {
+    pub fn new(ctx: egui::Context) -> Self {
+        let (sender, receiver) = mpsc::channel();
+        Self { ctx, sender, receiver, computing: Count::default() }
+    }
+
+    /// The next finished piece of work, if any.
+    pub fn next(&self) -> Option<Done> {
+        self.receiver.try_recv().ok()
+    }
+
+    /// True while a job keeps the processor busy: times that are measured meanwhile are not those of a picture at rest.
+    pub fn is_computing(&self) -> bool {
+        self.computing.is_any()
+    }
+
+    /// Starts work that keeps the processor busy, and leaves it to the window.
+    fn spawn(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
+        self.spawn_urgent(name, move || {
+            yield_processor(Urgency::Later);
+            work()
+        });
+    }
+
+    /// Draws or judges pictures with the oracle.
+    fn spawn_oracle(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
+        self.spawn(name, || background::compute(work));
+    }
+
+    /// The same for work that takes much memory; the system gets it back at the end.
+    fn spawn_large_oracle(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
+        self.spawn(name, || giving_back(|| background::compute(work)));
+    }
+
+    /// Starts work that keeps the processor busy, as urgent as the window.
+    fn spawn_urgent(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
+        let computing = self.busy();
+        self.spawn_idle(name, move || {
+            let _computing = computing;
+            work()
+        });
+    }
+
+    /// Starts work that mostly waits. None if no thread could be started.
+    fn spawn_idle(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) -> Option<JoinHandle<()>> {
+        let (sender, ctx) = (self.sender.clone(), self.ctx.clone());
+        let started = std::thread::Builder::new().name(name.into()).spawn(move || {
+            // The window may be closed by now; then the result is dropped.
+            if sender.send(work()).is_ok() {
+                ctx.request_repaint();
+            }
+        });
+        started.inspect_err(|error| eprintln!("rasterlab: no thread could be started for {name}: {error}")).ok()
+    }
+
+    /// Loads a scene as `work`.
+    pub fn load_scene(&self, key: SceneKey, work: Arc<Work>) {
+        self.spawn_urgent("scene", move || {
+            let preset = Preset { scene: key.source.clone(), room: key.room, ground: key.ground, ..Preset::default() };
+            let load = || preset_file::load_scene(&preset, None).map_err(|e| e.to_string());
+            let scene = giving_back(|| caught("loading the scene", || background::compute_urgently(|| work.run(load)).transpose()));
+            match scene.transpose() {
+                Some(scene) => Done::Scene(key, scene),
+                None => Done::Canceled,
+            }
+        });
+    }
+
+    /// Finds the box of a scene.
+    pub fn measure_scene(&self, source: SceneSource) {
+        self.spawn("scene box", move || {
+            let bounds = caught("measuring a scene", || preset_file::scene_bounds(&source, None).map_err(|e| e.to_string()));
+            Done::SceneBox(source, bounds)
+        });
+    }
+
+    /// Draws `inputs` with a second renderer, reads everything back and judges it with the oracle.
+    pub fn verify(&self, gpu: Arc<Gpu>, inputs: Inputs, work: Arc<Work>) {
+        self.spawn_large_oracle("verify", move || {
+            let verdict = caught("judging the picture", || work.run(|| verify(gpu, &inputs, &work)).transpose());
+            Done::Verdict(Box::new(inputs), work, verdict)
+        });
+    }
+
+    /// Compiles what `inputs` need, with the shaders as they are on disk now.
+    pub fn compile(&self, gpu: Arc<Gpu>, inputs: Inputs, reload: Reload) {
+        self.spawn("compile", move || {
+            let compiled = caught("compiling", || compile(gpu, &inputs));
+            Done::Compiled(reload, compiled)
+        });
+    }
+
+    /// Measures the f32 errors of the user's effects with the oracle.
+    pub fn measure_precision(&self, inputs: Inputs, cancelled: Arc<AtomicBool>) {
+        self.spawn_large_oracle("precision", move || {
+            let measured =
+                caught("measuring the f32 error", || precision::measure(&inputs, &cancelled).map(|measured| measured.map(Box::new)));
+            Done::Precision(Box::new(inputs), measured)
+        });
+    }
+
+    /// Times a tier of the open picture. It does not count as work that would be measured: it stops before such work.
+    pub fn time_tier(
+        &self,
+        gpu: Arc<Gpu>,
+        inputs: Inputs,
+        kernel: KernelKey,
+        drawing: TierDrawing,
+        watch: Arc<CompileWatch>,
+    ) -> Option<JoinHandle<()>> {
+        self.spawn_idle("tier", move || {
+            let (picture, mut drawing) = (inputs, drawing);
+            let outcome = caught("timing a tier", || tier_times::measure(&gpu, &picture, &mut drawing, &watch));
+            Done::TierTime(Box::new(Timed { picture, kernel, outcome, drawing }))
+        })
+    }
+
+    /// Draws the golden of a preset again and compares.
+    pub fn check_golden(&self, number: u64, preset_file: PresetFile) {
+        self.spawn_oracle("golden", move || {
+            let checked = caught("drawing the golden", || Ok(golden_check::check(&preset_file)));
+            Done::Golden(number, checked.ok().flatten())
+        });
+    }
+
+    /// Writes the file of a new effect.
+    pub fn write_effect(&self, path: PathBuf, origin: Origin, write: impl FnOnce(&Path) -> Result<(), String> + Send + 'static) {
+        self.spawn("new effect", move || {
+            let outcome = caught("writing the effect", || write(&path));
+            Done::EffectWritten(path, origin, outcome)
+        });
+    }
+
+    /// Opens a file in the program that the system has for it.
+    pub fn open_editor(&self, path: PathBuf) {
+        let opener = if cfg!(windows) {
+            "explorer"
+        } else if cfg!(target_os = "macos") {
+            "open"
+        } else {
+            "xdg-open"
+        };
+        let failed = match std::process::Command::new(opener).arg(&path).stdin(std::process::Stdio::null()).spawn() {
+            Ok(mut child) => {
+                let sender = (self.sender.clone(), self.ctx.clone());
+                std::thread::spawn(move || {
+                    // Some systems start the editor as a part of the opener, so this may take as long as it is open. The explorer of
+                    // Windows always reports a failure.
+                    if !cfg!(windows)
+                        && let Ok(status) = child.wait()
+                        && !status.success()
+                        && sender.0.send(Done::NoEditor(path, format!("{opener} ended with {status}"))).is_ok()
+                    {
+                        sender.1.request_repaint();
+                    }
+                });
+                return;
+            }
+            Err(error) => format!("{opener}: {error}"),
+        };
+        // The receiver lives as long as `self`.
+        let _ = self.sender.send(Done::NoEditor(path, failed));
+        self.ctx.request_repaint();
+    }
+
+    /// Measures combinations of accuracy options on a second device, so that the window stays responsive.
+    pub fn measure(&self, adapter: String, scene: Arc<Scene>, request: Request, progress: Arc<Progress>) {
+        let work = move || measure::measure(adapter, &scene, &request, &progress);
+        // What it measures is time, so it yields to nothing.
+        self.spawn_urgent("trade", || giving_back(|| Done::Trade(caught("measuring the trade", work))));
+    }
+
+    /// Writes the favorites with this function.
+    pub fn write_favorites(&self, write: impl FnOnce() -> Result<(), String> + Send + 'static) {
+        self.spawn("favorites", move || Done::Favorites(caught("writing the favorites", write)));
+    }
+
+    /// Draws the picture of a preset with the oracle, which needs no device. Width and height are in pixels.
+    pub fn thumbnail(&self, preset_file: PresetFile, size: [u32; 2]) {
+        self.spawn_oracle("thumbnail", move || {
+            let image = caught("drawing a thumbnail", || thumbnail(&preset_file, size).ok_or_else(String::new));
+            Done::Thumbnail(preset_file.id, image.ok())
+        });
+    }
+
+    /// Draws small pictures on the device of the picture and hands over one after another.
+    pub fn draw_cells(&self, gpu: Arc<Gpu>, cells: Cells) {
+        let (sender, ctx, computing) = (self.sender.clone(), self.ctx.clone(), self.busy());
+        let work = move || {
+            let _computing = computing;
+            yield_processor(Urgency::Later);
+            let take = |of, picture| {
+                // The window may be closed by now; then the picture is dropped.
+                if sender.send(Done::Cell(of, picture)).is_ok() {
+                    ctx.request_repaint();
+                }
+            };
+            let drawn = caught("drawing a small picture", || {
+                cells::draw(&gpu, &cells, take);
+                Ok(())
+            });
+            if let Err(error) = drawn {
+                eprintln!("rasterlab: {error}");
+            }
+        };
+        if let Err(error) = std::thread::Builder::new().name("cells".into()).spawn(work) {
+            eprintln!("rasterlab: no thread could be started for small pictures: {error}");
+        }
+    }
+
+    /// Draws the picture of a preset on the scene of `own` with the oracle.
+    pub fn thumbnail_on(&self, look: PresetFile, own: PresetFile, scene: Arc<Scene>, size: [u32; 2]) {
+        self.spawn_oracle("thumbnail", move || {
+            let image = caught("drawing a thumbnail", || thumbnail_on(&look, &own, &scene, size).ok_or_else(String::new));
+            Done::ThumbnailOn(SceneKey::of(&own), look.id, image.ok())
+        });
+    }
+
+    /// Draws the picture of an effect on the open model with the oracle.
+    pub fn effect_picture(&self, EffectPicture { effect, preset, scene, size, cancelled }: EffectPicture) {
+        self.spawn_oracle("effect picture", move || {
+            let draw = || match cancelled.load(Ordering::Relaxed) {
+                true => Err(String::new()),
+                false => thumbnail_of(&preset, &scene, size).ok_or_else(String::new),
+            };
+            let image = caught("drawing a picture of an effect", draw).ok();
+            Done::EffectPicture(effect, image)
+        });
+    }
+
+    /// Draws `inputs` and writes a PNG that contains the preset.
+    pub fn export(&self, gpu: Arc<Gpu>, inputs: Inputs, preset_file: PresetFile, path: PathBuf) {
+        self.spawn("export", move || {
+            let saved = caught("saving the picture", || export(gpu, &inputs, &preset_file, &path));
+            Done::Export(path, saved)
+        });
+    }
+
+    /// Draws a film on a second device.
+    pub fn export_film(
+        &self,
+        adapter: String,
+        scene: Arc<Scene>,
+        preset_file: PresetFile,
+        request: film::Request,
+        progress: Arc<film::Progress>,
+    ) {
+        let ctx = self.ctx.clone();
+        self.spawn("film", move || {
+            let work = || Ok(film::export(adapter, scene, preset_file, &request, &progress, &ctx));
+            let ended = giving_back(|| caught("drawing the film", work)).unwrap_or_else(|bug| Err(film::Failure::Other(bug)));
+            Done::Film(progress, ended)
+        });
+    }
+
+    /// Counts work on another thread, which keeps the processor busy, for as long as what is returned exists.
+    pub fn busy(&self) -> Computing {
+        self.computing.add()
+    }
+
+    /// Shows the system's file dialog.
+    pub fn ask_path(&self, purpose: Purpose, start: &Path) {
+        let show = system_dialog::prepare(purpose, start);
+        self.spawn_idle("file dialog", move || Done::Path(purpose, show()));
+    }
+
+    /// Reads what is in a folder.
+    pub fn list_folder(&self, folder: PathBuf) {
+        self.spawn_idle("folder", move || Done::Folder(Listing::read(&folder)));
+    }
+
+    /// Looks which of these files are not there.
+    pub fn find_missing(&self, files: Vec<PathBuf>) {
+        self.spawn_idle("recent files", move || Done::Missing(files.into_iter().filter(|file| !file.exists()).collect()));
+    }
+}
+
+/// Runs `work`, and gives back the memory that it has freed.
+fn giving_back<T>(work: impl FnOnce() -> T) -> T {
+    let done = work();
+    memory::give_back();
+    done
+}
+
+/// Runs `work`. A panic becomes an error, so that the window does not wait for a result that never comes.
+fn caught<T>(what: &str, work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    std::panic::catch_unwind(std::panic::AssertUnwindSafe(work))
+        .unwrap_or_else(|_| Err(format!("{what} failed because of a bug; see the terminal for details")))
+}
+
+/// Draws `inputs` with a second renderer; all renderers of a device share their pipelines.
+fn compile(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs) -> Result<(), String> {
+    let mut renderer = Renderer::new(gpu);
+    renderer.set_scene(scene).block_on().map_err(|e| e.to_string())?;
+    renderer.draw(view, stack, accuracy).block_on().map_err(|e| e.to_string())
+}
+
+fn verify(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs, work: &Work) -> Result<Box<Findings>, String> {
+    work.begin("drawing");
+    let mut renderer = Renderer::new(gpu);
+    renderer.set_scene(scene).block_on().map_err(|e| e.to_string())?;
+    let capture = renderer.capture(view, stack, accuracy).block_on().map_err(|e| e.to_string())?;
+    let judged = effect_files::crossings(stack, |stack| oracle::judge(scene, view, stack, &capture.picture()));
+    let (verdict, crossings) = judged.map_err(|e| e.to_string())?;
+    work.begin("the reference picture");
+    let reference = if stack.is_repeatable() { Some(reference_ids(scene, view, stack, accuracy)?) } else { None };
+    verdict.map(|verdict| Box::new(Findings::new(capture, verdict, reference, crossings))).map_err(|e| e.to_string())
+}
+
+/// Triangle ids of all pixels in the exact picture on the finest grid.
+fn reference_ids(scene: &Scene, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Vec<u32>, String> {
+    let factor = accuracy.scale().factor();
+    let frame = oracle::render_finest(scene, &view.scaled(factor), &stack.scaled(factor)).map_err(|e| e.to_string())?;
+    Ok(frame.triangle_id)
+}
+
+/// A scene with more triangles gets no thumbnail: it would take too long.
+const THUMBNAIL_TRIANGLES: u64 = 400_000;
+
+fn thumbnail(preset_file: &PresetFile, size: [u32; 2]) -> Option<egui::ColorImage> {
+    let scene = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref()).ok()?;
+    thumbnail_of(&preset_file.preset, &scene, size)
+}
+
+fn thumbnail_on(look: &PresetFile, own: &PresetFile, scene: &Scene, size: [u32; 2]) -> Option<egui::ColorImage> {
+    let fit = match look.needs_fit() {
+        true => Fit::between(&preset_file::scene_bounds(&look.scene_source(), None).ok()?, &scene.content_bounds()),
+        false => None,
+    };
+    // The whole model is shown, so that the picture stays right when the camera moves.
+    let preset = Preset { camera: None, ..look.landed_on(own, fit.as_ref()).preset };
+    if preset.ground == own.preset.ground {
+        return thumbnail_of(&preset, scene, size);
+    }
+    thumbnail_of(&preset, &*preset_file::load_scene(&preset, None).ok()?, size)
+}
+
+/// The picture of a preset on `scene`; none if the scene is too large or the preset cannot be drawn.
+fn thumbnail_of(preset: &Preset, scene: &Scene, size: [u32; 2]) -> Option<egui::ColorImage> {
+    if scene.triangle_count() > THUMBNAIL_TRIANGLES {
+        return None;
+    }
+    let frame = oracle::render_scaled(scene, &preset.moments(scene, size), preset.accuracy.scale().factor()).ok()?;
+    let bytes: Vec<u8> = frame.color.concat();
+    Some(egui::ColorImage::from_rgba_unmultiplied([frame.width as usize, frame.height as usize], &bytes))
+}
+
+fn export(
+    gpu: Arc<Gpu>,
+    Inputs { scene, view, stack, accuracy }: &Inputs,
+    preset_file: &PresetFile,
+    path: &std::path::Path,
+) -> Result<(), String> {
+    let provenance = Provenance { adapter: gpu.summary.name.clone(), driver: gpu.summary.driver.clone() };
+    let mut renderer = Renderer::new(gpu);
+    renderer.set_scene(scene).block_on().map_err(|e| e.to_string())?;
+    let capture = renderer.capture(view, stack, accuracy).block_on().map_err(|e| e.to_string())?;
+    let png =
+        preset_file::png_with_preset(&capture.into_shown(), &preset_file.for_picture(path), &provenance).map_err(|e| e.to_string())?;
+    preset_file::write_atomically(path, &png, Existing::Replace).map_err(|e| e.to_string())
+}

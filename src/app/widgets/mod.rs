@@ -1,0 +1,10 @@
+//! What panels are made of: rows, numbers, icons, texts and the theme.
+
+pub mod fields;
+pub mod fuzzy;
+pub mod icons;
+pub mod numbers;
+pub mod panel;
+pub mod reveal;
+pub mod text;
+pub mod theme;
