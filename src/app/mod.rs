@@ -16,9 +16,11 @@ mod trade;
 mod widgets;
 
 pub use files::recovery::{FIRST_PRESET, config_folder};
-pub use shell::device::{Devices, Painter, adopt, wgpu_setup};
 #[cfg(target_arch = "wasm32")]
 pub use shell::page::start;
 #[cfg(not(target_arch = "wasm32"))]
 pub use shell::run::{DeviceLost, run};
-pub use shell::window::{App, Options};
+pub use shell::{
+    device::{Devices, Painter, adopt, wgpu_setup},
+    window::{App, Options},
+};

@@ -1,8 +1,6 @@
 //! `verify`: compares every buffer of each preset with the oracle, with every visibility option of the adapter.
 
-use std::path::Path;
-
-use std::sync::Arc;
+use std::{path::Path, sync::Arc};
 
 use serde_json::{Value, json};
 

@@ -13,7 +13,6 @@ use std::{
 mod shader_parts;
 
 use pollster::FutureExt as _;
-
 pub use rasterlab::stress::{
     adversarial::near_miss_triangle,
     exactness,

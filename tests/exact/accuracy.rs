@@ -3,7 +3,6 @@
 
 use std::sync::Arc;
 
-use crate::common::*;
 use glam::{DMat4, DVec3};
 use pollster::FutureExt as _;
 use rasterlab::{
@@ -20,6 +19,8 @@ use rasterlab::{
         view::View,
     },
 };
+
+use crate::common::*;
 
 /// Scenes with the camera given: what each is for, the scene, and the view.
 fn viewpoints() -> Vec<(String, Arc<Scene>, View)> {

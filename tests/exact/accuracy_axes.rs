@@ -2,8 +2,6 @@
 //! Needs an adapter.
 
 use pollster::FutureExt as _;
-
-use crate::common::*;
 use rasterlab::{
     accuracy::{
         Clipping, Coverage, Culling, DepthFormat, Parameters, Perspective, PinnedOptions, PositionFormat, RenderScale, SampleCounter,
@@ -15,6 +13,8 @@ use rasterlab::{
     plan::{AccuracyRequest, PlanError, Tier},
     scene::{Scene, camera::Camera, view::View},
 };
+
+use crate::common::*;
 
 fn on(pins: PinnedOptions) -> AccuracyRequest {
     AccuracyRequest { pins, ..AccuracyRequest::default() }

@@ -4,8 +4,6 @@
 use std::sync::Arc;
 
 use pollster::FutureExt as _;
-
-use crate::common::*;
 use rasterlab::{
     accuracy::Visibility,
     effects::{Stack, dots},
@@ -16,6 +14,8 @@ use rasterlab::{
     plan::{AccuracyRequest, Tuning},
     scene::{Scene, draw::draws, view::View},
 };
+
+use crate::common::*;
 
 const SIZE: [u32; 2] = [256, 192];
 

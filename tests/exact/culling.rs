@@ -3,7 +3,6 @@
 
 use std::sync::{Arc, Mutex, OnceLock};
 
-use crate::common::*;
 use glam::{DMat4, DVec3};
 use pollster::FutureExt as _;
 use rasterlab::{
@@ -19,6 +18,8 @@ use rasterlab::{
     },
     stress::culling::walk,
 };
+
+use crate::common::*;
 
 const SIZE: [u32; 2] = [128, 96];
 

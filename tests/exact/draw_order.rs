@@ -4,8 +4,6 @@
 use std::sync::Arc;
 
 use pollster::FutureExt as _;
-
-use crate::common::*;
 use rasterlab::{
     effects::{Effect, Stack, draw_order::Unit},
     frame::NO_TRIANGLE,
@@ -13,6 +11,8 @@ use rasterlab::{
     plan::AccuracyRequest,
     scene::Scene,
 };
+
+use crate::common::*;
 
 /// What the counting pass adds for each sample, in place of 1: a picture of 1,024 pixels counts as 6 million of them, and its 2,048
 /// sheets as 2.9 times 2^32 samples.

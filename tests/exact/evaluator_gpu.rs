@@ -3,12 +3,12 @@
 //! Needs an adapter.
 
 use pollster::FutureExt as _;
-
-use crate::common::*;
 use rasterlab::{
     evaluator::{NoHost, Options, Precision, Program, Word},
     gpu::{Gpu, buffers},
 };
+
+use crate::common::*;
 
 /// Results of every expression for every input: `bits[input * expressions + expression]`.
 fn by_adapter(gpu: &Gpu, text: &str, inputs: &[[u32; 4]], expressions: usize) -> Vec<u32> {

@@ -3,11 +3,12 @@
 
 use std::{cell::Cell, collections::BTreeSet, fs, path::Path};
 
-use crate::common::*;
 use rasterlab::{
     gpu::Renderer,
     stress::{self, Outcome, Report},
 };
+
+use crate::common::*;
 
 fn seed() -> u32 {
     std::env::var("RASTERLAB_SEED").map_or(0, |seed| seed.parse().expect("RASTERLAB_SEED is a whole number"))

@@ -3,7 +3,6 @@
 
 use std::sync::Arc;
 
-use crate::common::*;
 use glam::{DMat4, DVec3};
 use pollster::FutureExt as _;
 use rasterlab::{
@@ -11,6 +10,8 @@ use rasterlab::{
     gpu::hardware::Hardware,
     scene::{Accessor, ComponentType, Scene, Topology, view::View},
 };
+
+use crate::common::*;
 
 const SIZE: [u32; 2] = [200, 150];
 

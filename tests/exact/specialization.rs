@@ -3,8 +3,6 @@
 use std::{collections::BTreeSet, path::Path, sync::Arc};
 
 use pollster::FutureExt as _;
-
-use crate::common::*;
 use rasterlab::{
     accuracy::{DotCulling, PinnedOptions, Visibility},
     effects::{EFFECTS, Stack, hooks::Shape},
@@ -17,6 +15,8 @@ use rasterlab::{
     scene::{Scene, view::View},
     shader::{Fetch, key::AttributeFormat},
 };
+
+use crate::common::*;
 
 /// Every built-in scene on two options, each time the next in turn, and on one option a preset for every effect: the resolve of its effects
 /// hardly knows the option.

@@ -1,8 +1,6 @@
 //! Promise: two effects in one slot are refused with one sentence, and a stack is read back in its own order. Needs an adapter.
 
 use pollster::FutureExt as _;
-
-use crate::common::*;
 use rasterlab::{
     effects::{EFFECTS, Stack, hooks::Slot},
     gpu::RenderError,
@@ -10,6 +8,8 @@ use rasterlab::{
     preset_file,
     stress::random::{self, Values},
 };
+
+use crate::common::*;
 
 /// As a preset, which a person can save and open.
 fn as_preset(stack: &Stack) -> String {

@@ -3,7 +3,6 @@
 
 use std::{fs, path::Path, sync::Arc};
 
-use crate::common::*;
 use glam::{DMat4, DVec3};
 use pollster::FutureExt as _;
 use rasterlab::{
@@ -22,6 +21,8 @@ use rasterlab::{
     },
     shader::library::Library,
 };
+
+use crate::common::*;
 
 // ---------------------------------------------------------------- soft floats
 

@@ -7,7 +7,6 @@ use std::{
     sync::{Arc, Mutex},
 };
 
-use super::shader_parts;
 use rasterlab::{
     accuracy::{AXES, Axis, Culling, DotCulling, Parameters, Visibility},
     effects::{
@@ -25,6 +24,8 @@ use rasterlab::{
         reflect::{self, BindingKind},
     },
 };
+
+use super::shader_parts;
 
 pub fn key(fetch: Fetch, visibility: Visibility, has_queues: bool, effects: Vec<Arc<Effect>>) -> KernelKey {
     let mut key = KernelKey::complete(fetch, visibility, effects);

@@ -6,13 +6,14 @@ use std::{
     time::{Duration, Instant},
 };
 
+use eframe::egui::Role;
+use egui_kittest::kittest::Queryable as _;
+
 use crate::{
     common::own_shaders,
     files::{drop_files, tiny_glb},
     harness::*,
 };
-use eframe::egui::Role;
-use egui_kittest::kittest::Queryable as _;
 
 /// Paints everything in the color of a parameter.
 pub const INK: &str = "// Ink: paints the surface.\n//@ use lib/surface\n\nstruct Ink {\n    /// How much.\n    @range(0.0, 1.0, 1.0) amount: f32,\n}\n\n\

@@ -4,8 +4,6 @@
 use std::sync::Arc;
 
 use pollster::FutureExt as _;
-
-use crate::common::*;
 use rasterlab::{
     accuracy::{DotCulling, PinnedOptions, Visibility},
     effects::{
@@ -20,6 +18,8 @@ use rasterlab::{
     preset::{Preset, SceneSource},
     scene::{Scene, draw::draws, view::View},
 };
+
+use crate::common::*;
 
 const WAYS: [DotCulling; 3] = [DotCulling::Brute, DotCulling::Cpu, DotCulling::Gpu];
 

@@ -3,7 +3,6 @@
 
 use std::sync::Arc;
 
-use crate::common::*;
 use glam::DVec3;
 use pollster::FutureExt as _;
 use rasterlab::{
@@ -16,6 +15,8 @@ use rasterlab::{
     preset_file,
     scene::{Scene, view::View},
 };
+
+use crate::common::*;
 
 /// A stack of effects with values: `"xray.weight=facing"`, or a name alone.
 fn with(values: &[&str]) -> Stack {

@@ -3,7 +3,6 @@
 
 use std::sync::Arc;
 
-use crate::common::*;
 use glam::{DMat3, DVec2, DVec3};
 use rasterlab::{
     accuracy::Visibility,
@@ -22,6 +21,8 @@ use rasterlab::{
         view::View,
     },
 };
+
+use crate::common::*;
 
 const MOVING: [&str; 3] = ["explode", "inflate", "wobble"];
 

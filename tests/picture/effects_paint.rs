@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::common::*;
 use glam::{DVec2, DVec3, DVec4};
 use pollster::FutureExt as _;
 use rasterlab::{
@@ -19,6 +18,8 @@ use rasterlab::{
     preset::{Clock, Preset, SceneSource},
     scene::{Scene, view::View},
 };
+
+use crate::common::*;
 
 const SIZE: [u32; 2] = [96, 72];
 

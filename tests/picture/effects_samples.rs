@@ -4,13 +4,14 @@
 
 use std::{collections::BTreeMap, sync::Arc};
 
-use crate::common::*;
 use rasterlab::{
     effects::{Effect, Stack, dissolve::Mode, draw_order::Unit},
     frame::Geometry,
     oracle::{self, SampleTests, Shot},
     scene::{Scene, draw::draws, view::View},
 };
+
+use crate::common::*;
 
 /// A stack of one effect with some of its fields set.
 fn only(name: &str, fields: &[(&str, f64)]) -> Stack {

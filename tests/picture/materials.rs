@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::common::*;
 use glam::DVec3;
 use pollster::FutureExt as _;
 use rasterlab::{
@@ -22,6 +21,8 @@ use rasterlab::{
     },
     shader::{Fetch, KernelKey, Pass, library::Library, link, reflect},
 };
+
+use crate::common::*;
 
 type Picture = Vec<[u8; 4]>;
 

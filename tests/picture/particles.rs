@@ -3,7 +3,6 @@
 
 use std::sync::Arc;
 
-use crate::common::*;
 use glam::DVec3;
 use pollster::FutureExt as _;
 use rasterlab::{
@@ -24,6 +23,8 @@ use rasterlab::{
     },
     scene::{Scene, camera::Camera, view::View},
 };
+
+use crate::common::*;
 
 const SIZE: [u32; 2] = [96, 72];
 

@@ -3,7 +3,6 @@
 
 use std::sync::Arc;
 
-use crate::common::*;
 use rasterlab::{
     accuracy::Parameters,
     effects::{Effect, Stack},
@@ -17,6 +16,8 @@ use rasterlab::{
         view::View,
     },
 };
+
+use crate::common::*;
 
 fn scope(patterns: &[&str]) -> Scope {
     Scope::new(patterns.iter().map(|text| text.parse::<PartPattern>().unwrap_or_else(|error| panic!("{error}"))))

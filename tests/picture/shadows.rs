@@ -3,7 +3,6 @@
 
 use std::sync::Arc;
 
-use crate::common::*;
 use glam::{DMat4, DVec3};
 use rasterlab::{
     accuracy::{PinnedOptions, ShadowMapSize, ShadowTaps, Visibility},
@@ -21,6 +20,8 @@ use rasterlab::{
     },
     shader::{Fetch, KernelKey, library::Library, link},
 };
+
+use crate::common::*;
 
 /// A stack with the light and with fields of its effects set.
 fn lit(effects: &[&str], values: &[(&str, &str, f64)]) -> Stack {

@@ -3,7 +3,6 @@
 
 use std::sync::Arc;
 
-use crate::common::*;
 use glam::{DMat4, DQuat, DVec3};
 use rasterlab::{
     accuracy::{Skinning, Visibility},
@@ -22,6 +21,8 @@ use rasterlab::{
         view::View,
     },
 };
+
+use crate::common::*;
 
 /// The default view of a scene at a time of one or two clips.
 fn moment(scene: &Scene, clips: [&str; 2], time_s: f64, skinning: Skinning, size: [u32; 2]) -> View {

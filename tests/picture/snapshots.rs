@@ -10,7 +10,6 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::common::*;
 use rasterlab::{
     cli::golden::{self, Golden},
     frame::{Frame, NO_TRIANGLE},
@@ -24,6 +23,8 @@ use rasterlab::{
     preset_file::{self, PresetFile},
     scene::Scene,
 };
+
+use crate::common::*;
 
 type Picture = Vec<[u8; 4]>;
 

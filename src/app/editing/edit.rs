@@ -1,11 +1,11 @@
 //! Edits of the preset: each variant of [`Edit`] is carried out here.
 
 use super::session::Session;
-use crate::app::{
-    picture::orbit,
-    shell::command::{Edit, Parameter},
-};
 use crate::{
+    app::{
+        picture::orbit,
+        shell::command::{Edit, Parameter},
+    },
     params::Value,
     preset::{Preset, SceneSource},
     preset_file,

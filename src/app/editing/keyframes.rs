@@ -1,11 +1,12 @@
 //! Edits of keyframes: values become keys at the time shown, and keys are moved, eased and removed.
 
 use super::{
+    command::KeyframeEdit,
     key_id::{KeyId, Keying},
     session::Session,
 };
-use crate::app::shell::command::{KeyframeEdit, Parameter};
 use crate::{
+    app::shell::command::Parameter,
     effect_files::Catalog,
     effects::Effect,
     params::Field,

@@ -1,5 +1,7 @@
 //! Changes of the open preset: the session, its history, and every edit.
 
+pub mod apply;
+pub mod command;
 pub mod edit;
 pub mod history;
 pub mod key_id;

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::app::{
-    files::reload::add_effect_file,
-    shell::{command::Origin, log::Level, state::State},
-};
 use crate::{
+    app::{
+        files::{command::Origin, reload::add_effect_file},
+        shell::{log::Level, state::State},
+    },
     effect_files::{duplicate, template},
     preset_file::{self, Existing, user_effects_folder},
 };

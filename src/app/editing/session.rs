@@ -7,9 +7,9 @@ use std::{
     sync::Arc,
 };
 
-use super::{particle_trail::Trail, playback::Playback, randomize::Randomizer};
-use crate::app::{files::scene_loader::SceneLoader, shell::command::TimeCommand};
+use super::{command::TimeCommand, particle_trail::Trail, playback::Playback, randomize::Randomizer};
 use crate::{
+    app::files::scene_loader::SceneLoader,
     effect_files::Catalog,
     effects::{Effect, Stack},
     params::Field,

@@ -4,11 +4,13 @@ use std::sync::Arc;
 
 use eframe::egui::{self, DragAndDrop, Pos2, Rect, Stroke, Ui};
 
-use crate::app::{
-    shell::command::{Commands, Edit},
-    widgets::theme,
+use crate::{
+    app::{
+        shell::command::{Commands, Edit},
+        widgets::theme,
+    },
+    effects::Effect,
 };
-use crate::effects::Effect;
 
 /// What is dragged.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -4,20 +4,19 @@ use std::{path::Path, sync::Arc};
 
 use eframe::egui;
 
-use super::deleted::Deleted;
-use crate::app::{
-    editing::{
-        history::History,
-        session::{FileId, UndoState},
-    },
-    panels::Panels,
-    shell::{
-        command::{LibraryCommand, Naming},
-        log::Level,
-        state::State,
-    },
+use super::{
+    command::{LibraryCommand, Naming},
+    deleted::Deleted,
 };
 use crate::{
+    app::{
+        editing::{
+            history::History,
+            session::{FileId, UndoState},
+        },
+        panels::Panels,
+        shell::{log::Level, state::State},
+    },
     effects::Effect,
     preset_file::{self, EffectValues, PresetError, PresetFile},
 };

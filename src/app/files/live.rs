@@ -3,8 +3,9 @@
 use std::{collections::BTreeMap, path::PathBuf, sync::Arc};
 
 use super::watch::Watcher;
-use crate::app::picture::golden_check::GoldenCheck;
-use crate::{effect_files::Catalog, effects::Effect, preset::rebind::Replaced, preset_file::PresetFile};
+use crate::{
+    app::picture::golden_check::GoldenCheck, effect_files::Catalog, effects::Effect, preset::rebind::Replaced, preset_file::PresetFile,
+};
 
 /// What a fault is about.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]

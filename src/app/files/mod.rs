@@ -1,5 +1,7 @@
 //! What the window opens, saves, watches and remembers on disk.
 
+pub mod apply;
+pub mod command;
 pub mod completion;
 pub mod deleted;
 pub mod desktop_dialog;
@@ -12,6 +14,7 @@ pub mod plain_file;
 pub mod recovery;
 pub mod reload;
 pub mod scene_loader;
+pub mod state;
 pub mod system_dialog;
 pub mod system_watch;
 pub mod watch;

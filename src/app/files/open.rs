@@ -6,19 +6,16 @@
 use std::path::Path;
 
 use super::{
+    command::{CodeUse, Manner},
     opening::{Opening, Request},
     scene_loader::SceneKey,
 };
-use crate::app::{
-    panels::{Panels, timeline::Timeline},
-    settings::last_session::Restored,
-    shell::{
-        command::{CodeUse, Manner},
-        log::Level,
-        state::State,
-    },
-};
 use crate::{
+    app::{
+        panels::{Panels, timeline::Timeline},
+        settings::last_session::Restored,
+        shell::{log::Level, state::State},
+    },
     preset::{Fit, Output, SceneSource},
     preset_file::PresetFile,
     scene::Bounds,

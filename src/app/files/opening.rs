@@ -1,7 +1,6 @@
 //! What is being opened: a preset that waits for its model, or for the boxes of scenes.
 
-use super::scene_loader::SceneKey;
-use crate::app::shell::command::Manner;
+use super::{command::Manner, scene_loader::SceneKey};
 use crate::{preset::SceneSource, preset_file::PresetFile, scene::Bounds};
 
 /// What was chosen and waits.

@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 
-use crate::app::{
-    editing::{session::Session, trust::Trust},
-    settings::{
-        keeper::{Keeper, PreviousSession},
-        last_session::Restored,
-    },
-    shell::log::{Level, Log},
-};
 use crate::{
+    app::{
+        editing::{session::Session, trust::Trust},
+        settings::{
+            keeper::{Keeper, PreviousSession},
+            last_session::Restored,
+        },
+        shell::log::{Level, Log},
+    },
     preset::SceneSource,
     preset_file::{self, Folders, PresetFile},
 };

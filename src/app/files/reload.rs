@@ -7,20 +7,17 @@ use std::{
 };
 
 use super::{
+    command::CodeUse,
     live::{EffectReload, Reload, Subject, Waiting},
     scene_loader::SceneKey,
     watch::{Change, Effects, Targets},
 };
-use crate::app::{
-    panels::Panels,
-    picture::screen::Inputs,
-    shell::{
-        command::{CodeUse, Edit},
-        log::Level,
-        state::State,
-    },
-};
 use crate::{
+    app::{
+        panels::Panels,
+        picture::screen::Inputs,
+        shell::{command::Edit, log::Level, state::State},
+    },
     effect_files::Catalog,
     effects::Effect,
     host,

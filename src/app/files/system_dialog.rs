@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::desktop_dialog;
-use crate::app::shell::command::Purpose;
+use super::{command::Purpose, desktop_dialog};
 use crate::preset_file::MODEL_FORMATS;
 
 /// How the system's dialog ended.

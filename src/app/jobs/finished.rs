@@ -6,17 +6,14 @@ use super::Done;
 use crate::app::{
     editing::new_effect,
     files::{
+        apply::save_failed,
+        command::Purpose,
         library, open,
         reload::{compiled, model_reloaded},
     },
     panels::Panels,
     picture::{cells::CellOf, findings::Findings, measured::error_text, screen::Inputs, tier_times, verification::Verdict},
-    shell::{
-        apply,
-        command::{Commands, Purpose},
-        log::Level,
-        state::State,
-    },
+    shell::{command::Commands, log::Level, state::State},
 };
 
 /// Takes in the result of a job.
@@ -74,7 +71,7 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
                 state.notify(level, text);
             }
         }
-        Done::Export(path, Err(error)) => apply::save_failed(state, panels, Purpose::Export, &path, error),
+        Done::Export(path, Err(error)) => save_failed(state, panels, Purpose::Export, &path, error),
         Done::Compiled(reload, outcome) => compiled(state, panels, reload, outcome),
         Done::Precision(of, measured) => {
             if let Some(error) = state.picture.precision.arrived(*of, measured) {

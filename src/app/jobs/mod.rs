@@ -25,25 +25,30 @@ use self::{
     background::{Urgency, yield_processor},
     computing::{Computing, Count},
 };
-use crate::app::{
-    files::{completion::Listing, live::Reload, scene_loader::SceneKey, system_dialog},
-    picture::{
-        cells::{self, CellOf, CellResult, Cells},
-        effect_picture::EffectPicture,
-        findings::Findings,
-        golden_check::{self, GoldenCheck},
-        precision::{self, Measured},
-        screen::Inputs,
-        tier_times::{self, TierDrawing, Timed},
-    },
-    shell::command::{Origin, Purpose},
-    trade::{
-        measure,
-        point::Point,
-        request::{Progress, Request},
-    },
-};
 use crate::{
+    app::{
+        files::{
+            command::{Origin, Purpose},
+            completion::Listing,
+            live::Reload,
+            scene_loader::SceneKey,
+            system_dialog,
+        },
+        picture::{
+            cells::{self, CellOf, CellResult, Cells},
+            effect_picture::EffectPicture,
+            findings::Findings,
+            golden_check::{self, GoldenCheck},
+            precision::{self, Measured},
+            screen::Inputs,
+            tier_times::{self, TierDrawing, Timed},
+        },
+        trade::{
+            measure,
+            point::Point,
+            request::{Progress, Request},
+        },
+    },
     effect_files,
     effects::Stack,
     gpu::{CompileWatch, Gpu, Renderer},

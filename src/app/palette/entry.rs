@@ -2,12 +2,18 @@
 
 use std::sync::Arc;
 
-use crate::app::shell::{
-    action::Action,
-    command::{Command, Edit, FileCommand},
-    log::Level,
+use crate::{
+    accuracy::Axis,
+    app::{
+        files::command::FileCommand,
+        shell::{
+            action::Action,
+            command::{Command, Edit},
+            log::Level,
+        },
+    },
+    effects::Effect,
 };
-use crate::{accuracy::Axis, effects::Effect};
 
 /// What kind of thing an entry is, for its first column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,8 +4,9 @@ use eframe::egui::{self, Button, Key, RichText, TextEdit, Ui};
 
 use crate::{
     app::{
+        files::command::{LibraryCommand, Naming},
         shell::{
-            command::{Command, Commands, LibraryCommand, Naming},
+            command::{Command, Commands},
             state::State,
         },
         widgets::{panel::Panel, theme},

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use eframe::egui::{self, RichText, Ui};
 
 use crate::{
-    app::{shell::command::Origin, widgets::theme},
+    app::{files::command::Origin, widgets::theme},
     effect_files::{Catalog, Hook, check_name},
     effects::Effect,
 };

@@ -6,13 +6,14 @@ use eframe::egui::{self, Align, Layout, RichText, Sense, Ui, vec2};
 
 use super::anti_aliasing::anti_aliasing_ui;
 use crate::app::{
+    files::command::FileCommand,
     picture::{
         measured::{error_line, time_line},
         verification::Progress,
     },
     shell::{
         action::Action,
-        command::{Command, Commands, FileCommand, SettingsCommand},
+        command::{Command, Commands, SettingsCommand},
         state::State,
     },
     trade::pace::about,

@@ -1,8 +1,8 @@
 //! Findings: what the oracle found in a picture, pixel by pixel.
 
 use super::overlay::Overlay;
-use crate::app::widgets::text::grouped;
 use crate::{
+    app::widgets::text::grouped,
     effect_files::Crossing,
     frame::NO_TRIANGLE,
     gpu::Capture,

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::app::editing::session::FileId;
 use crate::{
+    app::editing::session::FileId,
     measure::compare::pictures,
     oracle,
     preset_file::{self, PresetFile, golden_folder, golden_paths},

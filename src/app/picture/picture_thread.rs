@@ -25,15 +25,15 @@ use super::{
     inputs::Inputs,
     timings::{Sample, has_settled},
 };
-use crate::app::{
-    jobs::background::{Urgency, yield_processor},
-    shell::{
-        device::{Devices, Painter},
-        ending::EndingThreads,
-    },
-};
 use crate::{
     accuracy::AccuracyOptions,
+    app::{
+        jobs::background::{Urgency, yield_processor},
+        shell::{
+            device::{Devices, Painter},
+            ending::EndingThreads,
+        },
+    },
     gpu::{CompileWatch, Explanation, Gpu, RenderError, Renderer, Report, preparations::Preparation},
     plan::Plan,
 };

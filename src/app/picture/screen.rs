@@ -12,9 +12,9 @@ use super::{
     picture_thread::{Drawn, Finished, Outcome, PictureThread},
     timings::{Sample, Subject, Timings},
 };
-use crate::app::shell::{device::Devices, ending::EndingThreads, ui_frames::UiFrames};
 use crate::{
     accuracy::AccuracyOptions,
+    app::shell::{device::Devices, ending::EndingThreads, ui_frames::UiFrames},
     gpu::{Explanation, Gpu, Report},
     plan::Plan,
 };

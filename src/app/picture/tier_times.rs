@@ -13,11 +13,11 @@ use super::{
     timings::{Sample, Summary, has_settled},
     verification::Verdict,
 };
-use crate::app::{
-    jobs::background::{Urgency, yield_processor},
-    shell::{log::Level, state::State},
-};
 use crate::{
+    app::{
+        jobs::background::{Urgency, yield_processor},
+        shell::{log::Level, state::State},
+    },
     gpu::{CompileWatch, Gpu, RenderError, Renderer, device::AdapterChoice},
     plan::{MeasuredCosts, Plan, Tier, predict::Prediction},
     preset::AccuracyRequest,

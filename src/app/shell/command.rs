@@ -4,46 +4,24 @@
 //! An [`Action`] is an entry of the table of shortcuts and menu entries; `Command::from` turns it into the command that carries it
 //! out. An [`Edit`] is a change of the preset, the payload of [`Command::Edit`].
 
-use std::{cell::RefCell, path::PathBuf, sync::Arc};
+use std::{cell::RefCell, sync::Arc};
 
-use super::{action::Action, log::Level};
-use crate::app::{
-    editing::key_id::KeyId,
-    files::favorites::Starred,
-    jobs::film,
-    picture::{cells::Cells, overlay::Overlay, screen::Inputs},
-    settings::last_session::Restored,
-    trade::request::{Progress, Request},
-    widgets::theme::ThemeChoice,
-};
-use crate::{
-    accuracy::{Axis, PinnedOptions},
-    effect_files::Hook,
-    effects::Effect,
-    preset::animation::Easing,
-    preset_file::PresetFile,
-    scene::parts::PartKind,
-};
 use eframe::egui::KeyboardShortcut;
 
+use super::{action::Action, log::Level};
 pub use crate::app::editing::preset_edit::{Edit, Parameter};
-
-/// What a click on the model sets.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Picking {
-    /// A point.
-    Point(Parameter),
-    /// A part of this kind that the effect changes.
-    Part(Arc<Effect>, PartKind),
-}
-
-impl Picking {
-    pub fn effect(&self) -> &Arc<Effect> {
-        match self {
-            Self::Point((effect, _)) | Self::Part(effect, _) => effect,
-        }
-    }
-}
+use crate::{
+    accuracy::{Axis, PinnedOptions},
+    app::{
+        editing::command::{KeyframeEdit, TimeCommand},
+        files::command::{FileCommand, LibraryCommand, Purpose},
+        jobs::film,
+        picture::{cells::Cells, command::ViewCommand},
+        trade::request::{Progress, Request},
+        widgets::theme::ThemeChoice,
+    },
+    effects::Effect,
+};
 
 /// What a panel, a shortcut or a dropped file asks the window to do.
 pub enum Command {
@@ -112,29 +90,6 @@ pub enum Command {
     Notify(Level, String),
 }
 
-/// A change of the keyframes of an animated parameter.
-pub enum KeyframeEdit {
-    Move(KeyId, f64),
-    Ease(KeyId, Easing),
-    Remove(KeyId),
-}
-
-/// A change of the time that is shown. Seconds.
-pub enum TimeCommand {
-    Show(f64),
-    /// Goes to `clock.time_s`.
-    ShowOwn,
-    /// Writes the shown time to `clock.time_s`.
-    Keep,
-    PlayOrPause,
-    Pause,
-    /// Frames to step by, negative for back.
-    Step(f64),
-    Rewind,
-    /// True while the pointer holds the playhead: playing does not advance the time.
-    Hold(bool),
-}
-
 /// What a row of the inspector does besides changing its value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RowCommand {
@@ -147,167 +102,6 @@ pub enum RowCommand {
     Paste(String),
     /// Sets a keyframe of this parameter at the time shown, or removes the one that is there.
     ToggleKey(String),
-}
-
-/// What a file dialog is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Purpose {
-    Open,
-    SaveAs,
-    Export,
-}
-
-/// Whose changes of a preset stay.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
-    Mine,
-    Theirs,
-    /// Both, key by key; mine where both have changed the same.
-    Both,
-}
-
-/// What becomes of the scene that is shown when something is opened.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Manner {
-    /// The preset brings its own scene.
-    WithScene,
-    /// Its look lands on the user's own scene, if there is one.
-    Look,
-    /// A model or built-in scene that is chosen: it takes the look that is shown.
-    Scene,
-}
-
-/// What happens to a preset that brings effects when the user has decided about them.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum CodeUse {
-    /// It is opened, and this is said.
-    Open(Manner, String),
-    /// It replaces the open preset, whose file has changed.
-    Reload,
-}
-
-/// What a new effect begins as.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Origin {
-    /// A commented template.
-    Template(Hook),
-    /// The text of another effect, which it replaces in the stack.
-    Duplicate(Arc<Effect>),
-}
-
-pub enum FileCommand {
-    /// Shows the dialog for this purpose.
-    Ask(Purpose),
-    /// Shows the system's file dialog, beginning at this path.
-    Browse(Purpose, PathBuf),
-    /// Opens a preset, model or picture by path, id or `builtin:QUERY`, or enables the effect of a file.
-    Open(String),
-    OpenPreset(Box<PresetFile>, Manner),
-    /// Opens the preset whose look is shown on the user's own scene, with its scene.
-    OpenWithScene,
-    /// Opens the preset this many entries further in the gallery, wrapping round.
-    OpenNeighbor(isize),
-    /// Saves to the preset's own file, or asks for one.
-    Save,
-    /// Saves there; asks first if effects are muted.
-    SaveTo(PathBuf),
-    /// Saves there, without the muted effects if `drops_muted`.
-    Write {
-        path: PathBuf,
-        drops_muted: bool,
-    },
-    /// Draws the picture at this size and saves it as a PNG.
-    Export {
-        path: PathBuf,
-        size: [u32; 2],
-    },
-    /// Asks for the name of a new effect, and for its hook unless it duplicates another effect.
-    AskNewEffect(Option<Arc<Effect>>),
-    /// Writes a new effect for the user to change, and enables it.
-    NewEffect {
-        name: String,
-        origin: Origin,
-    },
-    /// Opens a file in the user's editor.
-    Edit(PathBuf),
-    /// Decides between the open preset and what another program has made of its file. The outcome is saved to `saving`, if that led to the
-    /// question.
-    Resolve {
-        theirs: Box<PresetFile>,
-        side: Side,
-        saving: Option<PathBuf>,
-    },
-    /// Goes on with a preset that brings effects, now that the user has decided whether they run.
-    UseCode {
-        preset_file: Box<PresetFile>,
-        then: CodeUse,
-        runs: bool,
-    },
-    /// Closes the window without saving; the edits may come back at the next start.
-    Quit {
-        keeps_edits: bool,
-    },
-    /// Reads what is in a folder.
-    List(PathBuf),
-    /// Opens what was open in the last session.
-    Restore(Box<Restored>),
-    /// Forgets the recent files.
-    ForgetRecents,
-}
-
-/// What a name is asked for.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Naming {
-    /// Another name for the preset of this file.
-    Preset { path: PathBuf, title: String },
-    /// A name for the present values of this effect.
-    Values(Arc<Effect>),
-}
-
-/// Favorites, files of presets, and values of effects.
-pub enum LibraryCommand {
-    /// Makes the preset of this id, or the effect of this name, a favorite (true), or takes its star away.
-    Star(Starred, String, bool),
-    AskName(Naming),
-    /// Uses the name that was asked for.
-    Name(Naming, String),
-    /// Writes a copy of the preset, as its file has it.
-    Duplicate(Box<PresetFile>),
-    /// Moves the preset at this path to the trash.
-    Delete(PathBuf),
-    /// Puts the preset that was deleted last back.
-    Restore,
-    /// What was deleted stays in the trash.
-    ForgetDeleted,
-    /// Puts the effect with its values on the clipboard.
-    CopyEffect(Arc<Effect>),
-    /// Gives an effect the values of this file.
-    UseValues(PathBuf),
-    /// Moves this file of values to the trash.
-    DeleteValues(PathBuf),
-}
-
-/// A place in a picture.
-#[derive(Clone, Debug)]
-pub struct Marker {
-    /// The picture; in another one the place is not marked.
-    pub of: Inputs,
-    /// As a fraction of the picture's width and height.
-    pub uv: [f32; 2],
-    /// What is there.
-    pub text: String,
-}
-
-pub enum ViewCommand {
-    ToggleOverlays,
-    ShowOverlay(Overlay, bool),
-    OverlayGain(u8),
-    CycleCompare,
-    FlipCompare,
-    /// What the next click on the model sets; none cancels.
-    Pick(Option<Picking>),
-    /// Marks a place in the picture; none removes the mark.
-    Mark(Option<Box<Marker>>),
 }
 
 /// What can be shown or hidden.

@@ -6,10 +6,12 @@ use anyhow::Context as _;
 use eframe::{egui_wgpu, wgpu};
 use pollster::FutureExt as _;
 
-use crate::app::jobs::background::{Urgency, started_as};
-use crate::gpu::{
-    Gpu,
-    device::{self, AdapterChoice},
+use crate::{
+    app::jobs::background::{Urgency, started_as},
+    gpu::{
+        Gpu,
+        device::{self, AdapterChoice},
+    },
 };
 
 /// How the window and its tests open their device: the chosen adapter, the features and limits that the kernels need, and

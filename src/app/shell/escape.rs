@@ -3,10 +3,10 @@
 use eframe::egui::{self, Key, Modifiers};
 
 use super::{
-    command::{Command, Commands, Toggle, ViewCommand},
+    command::{Command, Commands, Toggle},
     state::State,
 };
-use crate::app::panels::Panels;
+use crate::app::{panels::Panels, picture::command::ViewCommand};
 
 /// What Escape closes next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,12 +6,18 @@ use eframe::egui::{self, Event, KeyboardShortcut};
 
 use super::{
     action::Action,
-    command::{Command, Commands, FileCommand, Purpose, RowCommand},
+    command::{Command, Commands, RowCommand},
     log::Level,
     state::State,
     typing::HeldTyping,
 };
-use crate::app::{files::system_dialog, settings::keymap::Keymap};
+use crate::app::{
+    files::{
+        command::{FileCommand, Purpose},
+        system_dialog,
+    },
+    settings::keymap::Keymap,
+};
 
 /// Sends the actions whose shortcuts were pressed, in the order of the keys. Shortcuts without Ctrl do nothing while a widget has the focus
 /// or the camera flies; those with Ctrl, but for the palette's, do

@@ -41,8 +41,8 @@ impl Drop for App {
     /// Keeps settings and session. Not after a crash: then the session is marked as running, and the next start asks.
     fn drop(&mut self) {
         if !std::thread::panicking() && !self.loss.is_set() {
-            let State { settings, session, may_quit, keeps_edits, .. } = &self.state;
-            self.keeper.close(settings, session, *keeps_edits || !*may_quit);
+            let State { settings, session, closing, .. } = &self.state;
+            self.keeper.close(settings, session, closing.keeps_edits || !closing.may_quit);
         }
     }
 }

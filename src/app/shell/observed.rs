@@ -3,12 +3,21 @@
 use std::sync::Arc;
 
 use super::{state::State, window::App};
-use crate::app::{
-    panels::Panels,
-    picture::tier_times::{self, TierTime},
-};
 use crate::{
-    accuracy::RenderScale, gpu::Gpu, measure::ErrorReport, plan::Tier, preset::Preset, preset_file::PresetFile, scene::view::View,
+    accuracy::RenderScale,
+    app::{
+        panels::Panels,
+        picture::{
+            state::PictureState,
+            tier_times::{self, TierTime},
+        },
+    },
+    gpu::Gpu,
+    measure::ErrorReport,
+    plan::Tier,
+    preset::Preset,
+    preset_file::PresetFile,
+    scene::view::View,
 };
 
 impl App {
@@ -44,7 +53,7 @@ impl App {
 
     /// True if the picture shows the preset and nothing is still to come.
     pub fn is_idle(&self) -> bool {
-        let State { session, screen, verification, .. } = &self.state;
+        let State { session, picture: PictureState { screen, verification, .. }, .. } = &self.state;
         let Panels { viewport, trade, browser, film, .. } = &self.panels;
         let is_playing = session.playback.playing;
         let is_loaded = !self.state.files.opening.is_waiting() && !session.scenes.is_loading() && session.scene().is_some();

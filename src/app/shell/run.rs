@@ -9,11 +9,13 @@ use super::{
     loss::LossFlag,
     window::{App, Options},
 };
-use crate::app::{
-    files::recovery::recovery_path,
-    settings::{WindowSize, keeper::window_size},
+use crate::{
+    app::{
+        files::recovery::recovery_path,
+        settings::{WindowSize, keeper::window_size},
+    },
+    gpu::device::AdapterChoice,
 };
-use crate::gpu::device::AdapterChoice;
 
 /// Smallest size of the window's contents, points.
 const MIN_SIZE: [f32; 2] = [900.0, 600.0];

@@ -6,7 +6,7 @@ use eframe::egui::{self, Ui, ViewportCommand};
 
 use super::{
     apply,
-    command::{CodeUse, Commands, Manner},
+    command::Commands,
     device::{self, Devices},
     escape::escape,
     frame_notes::FrameNotes,
@@ -14,26 +14,30 @@ use super::{
     log::{Level, Log},
     loss::LossFlag,
     pointer_frames::PointerFrames,
-    state::{Clipboard, State},
+    state::{Clipboard, Closing, State},
     typing::HeldTyping,
     ui_frames::UiFrames,
 };
-use crate::app::{
-    editing::{history::History, trust::Trust},
-    files::{favorites::Favorites, live::Live, open, opening::Opening, recovery, reload, scene_loader::SceneKey, watch::Watcher},
-    jobs::{Jobs, finished::finish},
-    panels::{Panels, log::toasts_ui},
-    picture::{
-        overlay::OverlaySelection,
-        precision::{PrecisionState, REST_S},
-        screen::Screen,
-        tier_times::{self, TierTimes},
-        verification::Verification,
-    },
-    settings::{keeper::Keeper, recents::Recents},
-    widgets::{panel::Panel, theme},
-};
 use crate::{
+    app::{
+        editing::{history::History, trust::Trust},
+        files::{
+            command::{CodeUse, Manner},
+            favorites::Favorites,
+            live::Live,
+            open,
+            opening::Opening,
+            recovery, reload,
+            scene_loader::SceneKey,
+            state::FileState,
+            watch::Watcher,
+        },
+        jobs::{Jobs, finished::finish},
+        panels::{Panels, log::toasts_ui},
+        picture::{apply::verify_shown, precision::REST_S, screen::Screen, state::PictureState, tier_times},
+        settings::{keeper::Keeper, recents::Recents},
+        widgets::{panel::Panel, theme},
+    },
     gpu::device::AdapterChoice,
     host,
     preset_file::{self, Folders, PresetFile},
@@ -130,31 +134,25 @@ impl App {
         Ok(Self {
             panels,
             state: State {
-                live: Live::new(Watcher::new(cc.egui_ctx.clone(), session.preset_file.effects.clone()), options.opens_editor),
-                folders: options.folders,
-                trust,
+                files: FileState {
+                    live: Live::new(Watcher::new(cc.egui_ctx.clone(), session.preset_file.effects.clone()), options.opens_editor),
+                    folders: options.folders,
+                    trust,
+                    favorites,
+                    deleted: Vec::new(),
+                    values,
+                    opening: Opening::default(),
+                    missing_files: HashSet::new(),
+                },
                 history: History::new(session.undo_state()),
-                opening: Opening::default(),
                 session,
-                favorites,
-                deleted: Vec::new(),
-                values,
                 jobs: Jobs::new(cc.egui_ctx.clone()),
-                tier_times: TierTimes::default(),
-                screen: Screen::new(&window, devices, cc.egui_ctx.clone()),
-                verification: Verification::default(),
-                overlays: OverlaySelection::default(),
-                precision: PrecisionState::default(),
-                marker: None,
-                picking: None,
+                picture: PictureState::new(Screen::new(&window, devices, cc.egui_ctx.clone())),
                 clipboard: Clipboard::default(),
                 log,
                 open: settings.open,
                 settings,
-                missing_files: HashSet::new(),
-                keeps_session: keeper.keeps_session(),
-                may_quit: false,
-                keeps_edits: false,
+                closing: Closing { keeps_session: keeper.keeps_session(), may_quit: false, keeps_edits: false },
                 now_s: 0.0,
             },
             commands: Commands::default(),
@@ -193,7 +191,7 @@ impl App {
         let saved = recovery::write_recovery(&self.state.session.preset_file);
         eprintln!("rasterlab: the graphics device was lost; {saved}");
         self.loss.set();
-        self.state.may_quit = true;
+        self.state.closing.may_quit = true;
         ctx.send_viewport_cmd(ViewportCommand::Close);
     }
 
@@ -208,7 +206,7 @@ impl App {
 
     /// Asks before the window closes with unsaved changes.
     fn guard_close(&mut self, ctx: &egui::Context) {
-        if ctx.input(|i| i.viewport().close_requested()) && self.state.session.is_modified() && !self.state.may_quit {
+        if ctx.input(|i| i.viewport().close_requested()) && self.state.session.is_modified() && !self.state.closing.may_quit {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.panels.dialogs.ask_unsaved();
         }
@@ -216,7 +214,7 @@ impl App {
 
     /// Advances the time while the preset plays.
     fn play(&mut self, ctx: &egui::Context) {
-        let State { session, screen, now_s, .. } = &mut self.state;
+        let State { session, picture: PictureState { screen, .. }, now_s, .. } = &mut self.state;
         if !session.playback.playing {
             self.played_at_s = None;
             return;
@@ -263,7 +261,7 @@ impl App {
 
     /// Starts to measure the f32 errors of the user's effects when the picture is at rest. They are shown in the inspector alone.
     fn request_precision(&mut self, ctx: &egui::Context, is_held: bool) {
-        let State { precision, screen, session, jobs, verification, open, now_s, .. } = &mut self.state;
+        let State { picture: PictureState { precision, screen, verification, .. }, session, jobs, open, now_s, .. } = &mut self.state;
         let Some(requested) = screen.requested() else { return };
         let rest_s = precision.rest_s(requested, *now_s);
         let is_known = precision.is_running() || precision.of(Some(requested)).is_some() || precision.has_failed(Some(requested));
@@ -327,7 +325,7 @@ impl App {
         self.apply(ui.ctx());
         self.panels.viewport.draw(ui.ctx(), &mut self.state, &interaction);
         if self.panels.viewport.needs_verdict(ui.ctx(), &self.state) {
-            apply::verify_shown(&mut self.state);
+            verify_shown(&mut self.state);
         }
         self.panels.viewport.show(ui, &self.state, &self.commands, interaction.response.rect);
         self.apply(ui.ctx());

@@ -8,14 +8,14 @@ use super::{
     numbers::NumberField,
     reveal, theme,
 };
-use crate::app::{
-    editing::key_id::Keying,
-    shell::{
-        command::{Command, Commands, Edit, Parameter, RowCommand},
-        log::Level,
-    },
-};
 use crate::{
+    app::{
+        editing::key_id::Keying,
+        shell::{
+            command::{Command, Commands, Edit, Parameter, RowCommand},
+            log::Level,
+        },
+    },
     params::{Param, Value, ValueType},
     preset::{Preset, settings::Setting},
     preset_file::toml_value,

@@ -1,8 +1,9 @@
 //! Promise: `render --triangle-ids` and `--depths` write what the picture shows as NumPy arrays, by the rules of pictures: several presets
 //! need several names, nothing is overwritten unasked, and a wrong name is refused before anything is drawn.
 
-use super::*;
 use rasterlab::{oracle, preset_file};
+
+use super::*;
 
 /// Two triangles, a square from (-1, -1) to (1, 1) in the plane z = x; number 0 lies below its diagonal.
 const MODEL: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],

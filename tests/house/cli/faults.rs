@@ -4,9 +4,10 @@
 
 use std::time::{Duration, Instant, SystemTime};
 
+use rasterlab::math::hash;
+
 use super::*;
 use crate::rounds::rounds;
-use rasterlab::math::hash;
 
 /// Ends as a PNG does, and its pixels can be read.
 fn is_whole(png: &[u8]) -> bool {

@@ -1,8 +1,9 @@
 //! Promise: no file is lost: what is not ours is never overwritten, drawing at once never takes a name twice, and pipes, devices and
 //! unfinished files are left alone or refused in words.
 
-use super::*;
 use rasterlab::preset_file::{FrameStatus, frame_status};
+
+use super::*;
 
 /// Bytes of a PNG's signature and its first chunk.
 const AFTER_HEADER: usize = 33;

@@ -1,8 +1,9 @@
 //! Promise: a film becomes a video through ffmpeg: every frame reaches it once and in order, the file takes its name when it is whole, nothing
 //! is overwritten unasked, ffmpeg's own error is one line, and without ffmpeg a sentence says so. A turntable turns once.
 
-use super::*;
 use rasterlab::preset_file::{png_pixels, preset_from_png};
+
+use super::*;
 
 const VIDEO: [&str; 8] = ["sequence", "move.toml", "--fps", "8", "--adapter", "cpu", "--video", "film.mp4"];
 

@@ -1,8 +1,11 @@
 //! Built-in functions that pack, and those of vectors and matrices, against formulas in plain Rust.
 
-use super::common::program;
-use super::lattice::{Scalar, larger, one, smaller, two, vectors};
 use rasterlab::evaluator::Word;
+
+use super::{
+    common::program,
+    lattice::{Scalar, larger, one, smaller, two, vectors},
+};
 
 #[test]
 fn packing() {

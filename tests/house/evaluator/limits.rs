@@ -1,8 +1,11 @@
 //! Limits, errors, and what cannot be lowered.
 
-use super::common;
-use super::common::{call, limits, parse, program, program_with};
 use rasterlab::evaluator::{EvalError, Host, Limits, LowerError, NoHost, Options, Program, Word};
+
+use super::{
+    common,
+    common::{call, limits, parse, program, program_with},
+};
 
 fn refused(source: &str, function: &str) -> LowerError {
     match Program::new(&parse(source), function, &Options::default()) {

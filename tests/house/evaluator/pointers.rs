@@ -1,8 +1,11 @@
 //! Pointers, aliases, and the time that lowering takes.
 
-use super::common;
-use super::common::{call, program};
 use rasterlab::evaluator::Word;
+
+use super::{
+    common,
+    common::{call, program},
+};
 
 fn evaluated(source: &str, arguments: &[i32]) -> Vec<i32> {
     let words: Vec<Word> = arguments.iter().map(|&x| Word::from_i32(x)).collect();

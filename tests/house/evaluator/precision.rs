@@ -1,9 +1,12 @@
 //! Literals, precision, and threads.
 
-use super::common;
-use super::common::{call, link, parse, program, program_with, single};
 use rasterlab::evaluator::{NoHost, Options, Precision, Program, Word};
 use rayon::prelude::*;
+
+use super::{
+    common,
+    common::{call, link, parse, program, program_with, single},
+};
 
 fn float(program: &Program, x: f64) -> f64 {
     call(program, &[Word::from_f64(x)])[0].to_f64()

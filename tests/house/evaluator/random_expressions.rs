@@ -1,8 +1,9 @@
 //! Random expressions on integers, against direct evaluation.
 
-use super::common::program;
 use proptest::prelude::*;
 use rasterlab::evaluator::{NoHost, Word};
+
+use super::common::program;
 
 #[derive(Clone, Debug)]
 enum Expr {

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Ui};
 
-use crate::app::{shell::command::Side, widgets::theme};
+use crate::app::{files::command::Side, widgets::theme};
 
 /// The buttons of all dialogs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

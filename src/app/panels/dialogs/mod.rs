@@ -20,10 +20,14 @@ use super::new_effect::{NewEffect, fields_ui};
 use crate::{
     app::{
         editing::session::Session,
-        files::{completion::Listing, system_dialog::Answer},
+        files::{
+            command::{CodeUse, FileCommand, Origin, Purpose},
+            completion::Listing,
+            system_dialog::Answer,
+        },
         settings::last_session::Restored,
         shell::{
-            command::{CodeUse, Command, Commands, FileCommand, Origin, Purpose},
+            command::{Command, Commands},
             state::State,
         },
         widgets::panel::Panel,
@@ -213,7 +217,7 @@ impl Panel for Dialogs {
             chosen = match dialog {
                 Dialog::Path(dialog) => path_ui(ui, dialog, &state.settings.recents, &state.files.missing_files),
                 Dialog::Muted { .. } => muted_ui(ui, &state.session.muted.iter().map(String::as_str).collect::<Vec<_>>()),
-                Dialog::Unsaved => unsaved_ui(ui, state.session.title(), state.keeps_session),
+                Dialog::Unsaved => unsaved_ui(ui, state.session.title(), state.closing.keeps_session),
                 Dialog::NewEffect(dialog) => new_effect_ui(ui, dialog),
                 Dialog::Changed(theirs, saving) => changed_ui(ui, theirs.title(), saving.is_some()),
                 Dialog::Code(preset_file, _) => brought_ui(ui, preset_file),

@@ -17,11 +17,12 @@ use super::buttons::{Choice, buttons};
 use crate::{
     app::{
         files::{
+            command::{FileCommand, Purpose},
             completion::{self, Entry, Listing},
             system_dialog,
         },
         settings::recents::Recents,
-        shell::command::{Command, Commands, FileCommand, Purpose},
+        shell::command::{Command, Commands},
         widgets::theme,
     },
     preset_file::ModelFormat,

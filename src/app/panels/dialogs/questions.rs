@@ -4,7 +4,7 @@ use eframe::egui::{RichText, Ui};
 
 use super::buttons::{Choice, buttons};
 use crate::{
-    app::{panels::brought_code::code_ui, settings::last_session::Restored, shell::command::Side, widgets::theme},
+    app::{files::command::Side, panels::brought_code::code_ui, settings::last_session::Restored, widgets::theme},
     preset_file::PresetFile,
 };
 

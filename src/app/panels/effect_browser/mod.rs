@@ -24,10 +24,13 @@ use super::{
 use crate::{
     app::{
         editing::{session::Session, stack_drag::StackDrag},
-        files::favorites::Starred,
+        files::{
+            command::{FileCommand, LibraryCommand},
+            favorites::Starred,
+        },
         picture::effect_picture::EffectPicture,
         shell::{
-            command::{Command, Commands, Edit, FileCommand, LibraryCommand},
+            command::{Command, Commands, Edit},
             log::Level,
             state::State,
         },

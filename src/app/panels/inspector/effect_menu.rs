@@ -6,9 +6,10 @@ use eframe::egui::{self, Ui};
 
 use crate::{
     app::{
+        files::command::{FileCommand, LibraryCommand, Naming},
         shell::{
             action::Action,
-            command::{Command, Commands, Edit, FileCommand, LibraryCommand, Naming, RowCommand},
+            command::{Command, Commands, Edit, RowCommand},
             state::State,
         },
         widgets::{

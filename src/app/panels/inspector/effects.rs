@@ -8,10 +8,12 @@ use super::{effect_menu, precision::precision_ui, scope::scope_ui};
 use crate::{
     app::{
         editing::stack_drag::{StackDrag, drop_ui},
+        files::command::FileCommand,
         panels::effect_browser::groups::depends_on_order,
+        picture::command::{Picking, ViewCommand},
         shell::{
             action::Action,
-            command::{Command, Commands, Edit, FileCommand, Parameter, Picking, ViewCommand},
+            command::{Command, Commands, Edit, Parameter},
             log::Level,
             state::State,
         },

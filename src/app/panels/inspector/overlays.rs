@@ -3,9 +3,9 @@
 use eframe::egui::{self, RichText, Ui};
 
 use crate::app::{
-    picture::overlay::Overlay,
+    picture::{command::ViewCommand, overlay::Overlay},
     shell::{
-        command::{Command, Commands, ViewCommand},
+        command::{Command, Commands},
         state::State,
     },
     widgets::{icons::swatch, text::grouped, theme},

@@ -6,9 +6,12 @@ use eframe::egui::{self, Ui};
 
 use crate::{
     app::{
-        picture::precision::Error,
+        picture::{
+            command::{Marker, ViewCommand},
+            precision::Error,
+        },
         shell::{
-            command::{Command, Commands, Marker, ViewCommand},
+            command::{Command, Commands},
             state::State,
         },
         widgets::theme,

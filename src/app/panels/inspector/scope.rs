@@ -6,8 +6,9 @@ use eframe::egui::{self, Popup, PopupCloseBehavior, RichText, ScrollArea, TextEd
 
 use crate::{
     app::{
+        picture::command::{Picking, ViewCommand},
         shell::{
-            command::{Command, Commands, Edit, Picking, ViewCommand},
+            command::{Command, Commands, Edit},
             state::State,
         },
         widgets::theme,

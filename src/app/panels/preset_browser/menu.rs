@@ -4,8 +4,9 @@ use eframe::egui::{self, Ui};
 
 use crate::{
     app::{
+        files::command::{FileCommand, LibraryCommand, Manner, Naming},
         shell::{
-            command::{Command, Commands, FileCommand, LibraryCommand, Manner, Naming},
+            command::{Command, Commands},
             log::Level,
         },
         widgets::theme,

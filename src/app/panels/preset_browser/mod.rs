@@ -24,13 +24,14 @@ use crate::{
     app::{
         editing::session::FileId,
         files::{
+            command::{LibraryCommand, Manner},
             favorites::{Favorites, Starred},
             scene_loader::SceneKey,
         },
         settings::browsing::{Browsing, Layout, Tab},
         shell::{
             action::Action,
-            command::{Command, Commands, LibraryCommand, Manner},
+            command::{Command, Commands},
             state::State,
         },
         widgets::{

@@ -7,9 +7,10 @@ use eframe::egui::{self, Align2, DragValue, Label, RichText, Sense, Ui, vec2};
 use crate::{
     app::{
         editing::session::Session,
+        files::command::FileCommand,
         shell::{
             action::Action,
-            command::{Command, Commands, Edit, FileCommand},
+            command::{Command, Commands, Edit},
             state::State,
         },
         widgets::{text::grouped, theme},

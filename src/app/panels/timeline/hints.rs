@@ -5,9 +5,9 @@ use eframe::egui::{self, Label, Ui, vec2};
 use super::tracks::TRACK;
 use crate::{
     app::{
-        editing::session::Session,
+        editing::{command::TimeCommand, session::Session},
         files::scene_loader::clip_id,
-        shell::command::{Command, Commands, Edit, TimeCommand},
+        shell::command::{Command, Commands, Edit},
         widgets::{icons::paint_diamond, theme},
     },
     preset::Clock,

@@ -12,10 +12,14 @@ use eframe::egui::{self, Align, DragValue, Layout, Rect, RichText, Ui, pos2, vec
 use self::span::Span;
 use crate::{
     app::{
-        editing::{key_id::KeyId, session::Session},
+        editing::{
+            command::{KeyframeEdit, TimeCommand},
+            key_id::KeyId,
+            session::Session,
+        },
         shell::{
             action::Action,
-            command::{Command, Commands, Edit, KeyframeEdit, TimeCommand},
+            command::{Command, Commands, Edit},
             state::State,
         },
         widgets::{

@@ -4,8 +4,8 @@ use eframe::egui::{self, Align2, FontId, Rect, Sense, Shape, Stroke, Ui, pos2, v
 
 use super::span::Span;
 use crate::app::{
-    editing::session::Session,
-    shell::command::{Command, Commands, TimeCommand},
+    editing::{command::TimeCommand, session::Session},
+    shell::command::{Command, Commands},
     widgets::theme,
 };
 

@@ -7,8 +7,13 @@ use eframe::egui::{self, Align, Align2, Color32, FontId, Layout, Pos2, Rect, Sen
 use super::span::Span;
 use crate::{
     app::{
-        editing::{key_id::KeyId, playback::STEP_S, session::Session},
-        shell::command::{Command, Commands, KeyframeEdit, TimeCommand},
+        editing::{
+            command::{KeyframeEdit, TimeCommand},
+            key_id::KeyId,
+            playback::STEP_S,
+            session::Session,
+        },
+        shell::command::{Command, Commands},
         widgets::{
             icons::{Icon, icon_button},
             theme,

@@ -11,10 +11,11 @@ use eframe::egui::{self, RichText, Ui};
 use crate::{
     accuracy::{AXES, Axis},
     app::{
+        editing::command::TimeCommand,
         picture::screen::Inputs,
         shell::{
             action::Action,
-            command::{Command, Commands, TimeCommand},
+            command::{Command, Commands},
             log::Level,
             state::State,
         },

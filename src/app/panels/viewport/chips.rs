@@ -5,10 +5,10 @@ use eframe::egui::{self, Align2, Color32, FontId, Rect, RichText, Ui, pos2};
 use crate::{
     app::{
         editing::session::FileId,
-        picture::golden_check::Outcome,
+        picture::{command::Picking, golden_check::Outcome},
         shell::{
             action::Action,
-            command::{Command, Commands, Picking},
+            command::{Command, Commands},
             state::State,
         },
         widgets::{

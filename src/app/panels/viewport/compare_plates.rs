@@ -3,18 +3,20 @@
 use eframe::egui::{self, Color32, Rect, RichText, Ui, pos2, vec2};
 
 use super::compare::{Compare, Mode};
-use crate::app::{
-    picture::{
-        measured::{error_line, time_line},
-        screen::Screen,
+use crate::{
+    app::{
+        picture::{
+            measured::{error_line, time_line},
+            screen::Screen,
+        },
+        shell::state::State,
+        widgets::{
+            icons::{Icon, icon_button},
+            theme,
+        },
     },
-    shell::state::State,
-    widgets::{
-        icons::{Icon, icon_button},
-        theme,
-    },
+    preset::{Animation, Preset},
 };
-use crate::preset::{Animation, Preset};
 
 /// Size of a plate, points.
 const PLATE: egui::Vec2 = vec2(312.0, 54.0);

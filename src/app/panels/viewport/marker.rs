@@ -1,7 +1,8 @@
 //! The marker: a place in the picture that another panel points at.
 
-use crate::app::{shell::state::State, widgets::theme};
 use eframe::egui::{self, Align2, FontId, Rect, Sense, Ui, pos2, vec2};
+
+use crate::app::{shell::state::State, widgets::theme};
 
 /// Radius of the ring, and lengths of its four strokes, points.
 const RADIUS: f32 = 9.0;

@@ -25,22 +25,26 @@ use std::sync::Arc;
 use eframe::egui::{self, Align2, FontId, Rect, Response, Sense, Ui, vec2};
 
 use self::{compare::Compare, layout::fitted, overlays::OverlayPainter};
-use crate::app::{
-    editing::session::FileId,
-    files::scene_loader::SceneKey,
-    picture::{
-        anti_aliasing::{AutomaticAntiAliasing, Finished},
-        screen::Inputs,
-        timings::Measurable,
+use crate::{
+    app::{
+        editing::session::FileId,
+        files::scene_loader::SceneKey,
+        picture::{
+            anti_aliasing::{AutomaticAntiAliasing, Finished},
+            screen::Inputs,
+            timings::Measurable,
+        },
+        shell::{
+            command::{Commands, Edit},
+            log::Level,
+            state::State,
+        },
+        widgets::theme,
     },
-    shell::{
-        command::{Commands, Edit},
-        log::Level,
-        state::State,
-    },
-    widgets::theme,
+    effects::Stack,
+    preset::AccuracyRequest,
+    scene::Scene,
 };
-use crate::{effects::Stack, preset::AccuracyRequest, scene::Scene};
 
 /// After this long without motion the picture is drawn at full size, seconds.
 const REST_S: f64 = 0.2;

@@ -8,10 +8,13 @@ use super::{
     points::PointSpace,
 };
 use crate::{
-    app::shell::{
-        command::{Command, Commands, Edit, Picking, ViewCommand},
-        log::Level,
-        state::State,
+    app::{
+        picture::command::{Picking, ViewCommand},
+        shell::{
+            command::{Command, Commands, Edit},
+            log::Level,
+            state::State,
+        },
     },
     params::Stored as _,
     scene::{

@@ -4,11 +4,12 @@ mod generator;
 mod run;
 mod text;
 
-use super::common::{Random, program};
 use proptest::prelude::*;
 use rasterlab::evaluator::{NoHost, Word};
 use run::{End, State, result, run};
 use text::{PRELUDE, RESULT, text};
+
+use super::common::{Random, program};
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(256), failure_persistence: None, ..ProptestConfig::default() })]

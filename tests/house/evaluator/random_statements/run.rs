@@ -1,7 +1,6 @@
 //! Direct execution of programs.
 
-use super::generator::Statement;
-use super::text::index;
+use super::{generator::Statement, text::index};
 
 pub type V = [i32; 4];
 

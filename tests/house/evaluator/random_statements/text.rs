@@ -1,7 +1,9 @@
 //! Programs as WGSL, and values of their operands.
 
-use super::generator::{Number, Source, Statement};
-use super::run::{State, V};
+use super::{
+    generator::{Number, Source, Statement},
+    run::{State, V},
+};
 
 /// Functions that the random statements call.
 pub const PRELUDE: &str = "var<private> zero: i32;

@@ -1,0 +1,46 @@
+//! Commands to the picture: overlays, comparison, and clicks on the model.
+
+use std::sync::Arc;
+
+use super::{overlay::Overlay, screen::Inputs};
+use crate::{app::editing::preset_edit::Parameter, effects::Effect, scene::parts::PartKind};
+
+/// What a click on the model sets.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Picking {
+    /// A point.
+    Point(Parameter),
+    /// A part of this kind that the effect changes.
+    Part(Arc<Effect>, PartKind),
+}
+
+impl Picking {
+    pub fn effect(&self) -> &Arc<Effect> {
+        match self {
+            Self::Point((effect, _)) | Self::Part(effect, _) => effect,
+        }
+    }
+}
+
+/// A place in a picture.
+#[derive(Clone, Debug)]
+pub struct Marker {
+    /// The picture; in another one the place is not marked.
+    pub of: Inputs,
+    /// As a fraction of the picture's width and height.
+    pub uv: [f32; 2],
+    /// What is there.
+    pub text: String,
+}
+
+pub enum ViewCommand {
+    ToggleOverlays,
+    ShowOverlay(Overlay, bool),
+    OverlayGain(u8),
+    CycleCompare,
+    FlipCompare,
+    /// What the next click on the model sets; none cancels.
+    Pick(Option<Picking>),
+    /// Marks a place in the picture; none removes the mark.
+    Mark(Option<Box<Marker>>),
+}
