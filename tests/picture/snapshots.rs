@@ -402,7 +402,8 @@ fn exchanged_triangle_ids_a_wrong_seed_and_a_reversed_stack_are_caught() {
     let input = oracle::ResolveInput { triangle_ids: &exchanged, depth_keys: &whole.depth_key, dots: &whole.dots, previous: None };
     let (stack, plain) = (preset_file.preset.evaluated_stack(), rasterlab::effects::Stack::default());
     let shot = oracle::Shot::new(&scene, &draws, &view, &stack);
-    let colors = oracle::shade(&shot, &input, &oracle::project(&oracle::Shot { stack: &plain, ..shot }));
+    let colors = oracle::shade(&shot, &input, &oracle::project(&oracle::Shot { stack: &plain, ..shot }).expect("nobody cancels it"))
+        .expect("nobody cancels it");
     let changed = whole.triangle_id.iter().filter(|&&o| o == a || o == b).count() as u64;
     assert_eq!(triangle_ids(&exchanged, &whole.triangle_id).different, changed);
     assert!(complaint(&preset_file.preset, &colors, &whole.color).is_some(), "exchanged triangle ids");

@@ -1,7 +1,7 @@
 //! Loads a model: reads its files, follows its parts in order, and assembles the scene.
 
 use std::{
-    panic::{AssertUnwindSafe, catch_unwind, resume_unwind},
+    panic::{AssertUnwindSafe, catch_unwind},
     path::Path,
 };
 
@@ -23,12 +23,12 @@ use super::{
 };
 use crate::{
     scene::{memory::MemoryBudget, model::Scene, pose, rig::Rig},
-    work::{checkpoint, is_cancellation},
+    work::checkpoint,
 };
 
 /// Loads a `.gltf` or `.glb` file within the memory budget of the process. Only files in its folder and below are read.
 ///
-/// Within [`Work`](crate::work::Work) it counts its bytes, and unwinds where that was canceled.
+/// Within [`Work`](crate::work::Work) it counts its bytes, and ends where that was canceled.
 ///
 /// # Errors
 /// If a file cannot be read, is malformed, or exceeds [`limits`](super::limits); the sentence begins with the file name.
@@ -50,7 +50,7 @@ pub fn load_within(path: &Path, budget: MemoryBudget) -> Result<Scene, LoadError
             ModelFile::Whole(bytes) => parse_within(&bytes, budget, read),
             ModelFile::Glb { json, binary, size } => {
                 let scene = caught(|| read_model(&json, Some(Bytes::File(&binary)), (size, budget), read))?;
-                checkpoint().advance(binary.unread());
+                checkpoint().advance(binary.unread())?;
                 Ok(scene)
             }
         }
@@ -82,10 +82,8 @@ pub fn parse_within(bytes: &[u8], budget: MemoryBudget, read: &mut ReadFile) -> 
 
 /// Runs `work`. A panic in the validation of the crate `gltf` must not close the window.
 fn caught(work: impl FnOnce() -> Result<Scene, LoadError>) -> Result<Scene, LoadError> {
-    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|payload| match is_cancellation(&*payload) {
-        true => resume_unwind(payload),
-        false => Err(LoadError::new("the loader failed on this file, which is a bug: please report it")),
-    })
+    catch_unwind(AssertUnwindSafe(work))
+        .unwrap_or_else(|_| Err(LoadError::new("the loader failed on this file, which is a bug: please report it")))
 }
 
 /// Reads `beside`, a relative path without `..`, from the folder of `model`. Symbolic links must not lead out of the folder.

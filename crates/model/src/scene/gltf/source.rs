@@ -60,7 +60,7 @@ impl Bytes<'_> {
         let checkpoint = checkpoint();
         for part in known[range.start as usize..range.end as usize].chunks(PART_BYTES) {
             bytes.extend_from_slice(part);
-            checkpoint.pass();
+            checkpoint.pass()?;
         }
         Ok(())
     }
@@ -103,7 +103,7 @@ impl FilePart {
             }
             left -= read;
             self.read.set(self.read.get() + read);
-            checkpoint.advance(read);
+            checkpoint.advance(read)?;
         }
         Ok(())
     }
@@ -153,7 +153,7 @@ fn read_all(mut file: fs::File, length: u64, most: u64, limits: &Limits) -> Resu
     // The file may grow while it is read.
     while bytes.len() as u64 <= most {
         let read = file.by_ref().take(PART_BYTES as u64).read_to_end(&mut bytes).map_err(failed)?;
-        checkpoint.advance(read as u64);
+        checkpoint.advance(read as u64)?;
         if read == 0 {
             return Ok(bytes);
         }
@@ -177,7 +177,7 @@ impl ModelFile {
     pub fn open(path: &Path, most: u64, limits: &Limits) -> Result<Self, LoadError> {
         let (mut file, size) = open_regular(path, most, limits)?;
         if let Some((json, start, length)) = glb(&mut file, size).map_err(failed)? {
-            checkpoint().advance(size - length);
+            checkpoint().advance(size - length)?;
             let binary = FilePart { file, start, length, whole: OnceCell::new(), read: Cell::new(0) };
             return Ok(Self::Glb { json, binary, size });
         }
