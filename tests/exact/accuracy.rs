@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::common::*;
 use glam::{DMat4, DVec3};
+use pollster::FutureExt as _;
 use rasterlab::{
     accuracy::Visibility,
     gpu::{
@@ -152,7 +153,7 @@ fn dense_grids_have_no_hole_where_the_beginners_kernel_has_thousands() {
             }
             let key = renderer.key().expect("something was drawn").clone();
             let gpu = renderer.gpu().clone();
-            let naive = Naive::new(&gpu, &scene, &view, &key, Viewport::Folded).and_then(|naive| naive.picture(&gpu));
+            let naive = Naive::new(&gpu, &scene, &view, &key, Viewport::Folded).block_on().and_then(|naive| naive.picture(&gpu).block_on());
             let picture = naive.unwrap_or_else(|error| panic!("{query}: {error}"));
             let holes = picture.iter().filter(|pixel| pixel[3] == 0).count();
             eprintln!("{query}: the naive kernel leaves {holes} holes in 65,536 samples, ours none");

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use crate::common::*;
 use glam::{DMat4, DVec3};
+use pollster::FutureExt as _;
 use rasterlab::{
     accuracy::{Coverage, Culling, DepthFormat, PinnedOptions, PositionFormat, RenderScale, VertexTransform, Visibility},
     frame::{CullingStats, Frame},
@@ -36,7 +37,8 @@ fn assert_same(a: &Frame, b: &Frame, what: &str) {
 
 /// The next picture, and what was left out of it.
 fn drawn(renderer: &mut Renderer, view: &View, pins: PinnedOptions) -> (Capture, CullingStats) {
-    let capture = renderer.capture_next(view, &stack(&["lambert"]), &on(pins)).unwrap_or_else(|error| panic!("{}: {error}", pins.words()));
+    let capture =
+        renderer.capture_next(view, &stack(&["lambert"]), &on(pins)).block_on().unwrap_or_else(|error| panic!("{}: {error}", pins.words()));
     (capture, renderer.culled().unwrap_or_default())
 }
 
@@ -102,7 +104,7 @@ fn no_camera_sees_what_frustum_and_cones_leave_out() {
     let Some(mut renderer) = renderer() else { return };
     let (mut rng, mut total) = (Rng(7), CullingStats::default());
     for (place, (what, scene)) in scenes().into_iter().enumerate() {
-        renderer.set_scene(&scene).expect("it fits");
+        renderer.set_scene(&scene).block_on().expect("it fits");
         let tuning = both_tunings(&renderer)[place % 2];
         renderer.set_tuning(tuning);
         let options = options(&renderer);
@@ -123,7 +125,7 @@ fn no_camera_sees_what_frustum_and_cones_leave_out() {
 /// Follows a walk with two-pass culling, what each picture leaves for the next included; the first difference, and what was
 /// left out in all.
 fn followed(renderer: &mut Renderer, scene: &Arc<Scene>, views: &[View], pins: PinnedOptions) -> Result<CullingStats, String> {
-    renderer.set_scene(scene).expect("it fits");
+    renderer.set_scene(scene).block_on().expect("it fits");
     let mut total = CullingStats::default();
     for (step, view) in views.iter().enumerate() {
         let (culled, stats) = drawn(renderer, view, pins);
@@ -379,7 +381,7 @@ fn more_meshlets_than_one_row_of_workgroups_are_all_drawn() {
     let scene = scene_of_meshes(&[SimpleMesh { transforms: transforms.collect(), ..triangle_soup(positions) }]);
     let usual = renderer.gpu().caps.tuning();
     renderer.set_tuning(Tuning { group_size: 64, ..usual });
-    renderer.set_scene(&scene).expect("it fits");
+    renderer.set_scene(&scene).block_on().expect("it fits");
     let view = pixel_view(260, 260);
     for option in [Culling::Frustum, Culling::TwoPass] {
         for visibility in options(&renderer) {
@@ -395,8 +397,8 @@ fn more_meshlets_than_one_row_of_workgroups_are_all_drawn() {
 fn explained(query: &str, effects: &[&str], pins: PinnedOptions) -> Option<(Vec<String>, Vec<String>, String)> {
     let mut renderer = Renderer::new(gpu()?);
     let scene = scene(query);
-    renderer.set_scene(&scene).expect("a builtin fits");
-    renderer.draw_complete(&view(&scene, SIZE), &stack(effects), &on(pins)).expect("a builtin is drawn");
+    renderer.set_scene(&scene).block_on().expect("a builtin fits");
+    renderer.draw_complete(&view(&scene, SIZE), &stack(effects), &on(pins)).block_on().expect("a builtin is drawn");
     let explanation = renderer.explain();
     let passes = explanation.passes.into_iter().map(|pass| pass.name).collect();
     let buffers = explanation.buffers.into_iter().map(|buffer| buffer.name).collect();
@@ -455,7 +457,7 @@ fn effects_and_layers_keep_their_picture() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("field?count=27&triangles=400");
     let views = walk(&scene, &mut Rng(9), 4, SIZE);
-    renderer.set_scene(&scene).expect("it fits");
+    renderer.set_scene(&scene).block_on().expect("it fits");
     for effects in
         [&["dissolve", "outline"][..], &["stipple", "lambert"], &["wireframe"], &["xray"], &["overdraw"], &["boxes"], &["facet", "fog"]]
     {
@@ -463,7 +465,10 @@ fn effects_and_layers_keep_their_picture() {
             for visibility in options(&renderer) {
                 let mut draw = |option| {
                     let pins = PinnedOptions::of(visibility).with(option);
-                    renderer.capture_next(view, &stack(effects), &on(pins)).unwrap_or_else(|error| panic!("{effects:?}: {error}"))
+                    renderer
+                        .capture_next(view, &stack(effects), &on(pins))
+                        .block_on()
+                        .unwrap_or_else(|error| panic!("{effects:?}: {error}"))
                 };
                 let culled = draw(Culling::TwoPass);
                 let whole = draw(Culling::None);
@@ -478,7 +483,7 @@ fn effects_and_layers_keep_their_picture() {
 fn the_picture_before_hides_what_has_come_out_since() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("field?count=216&triangles=400");
-    renderer.set_scene(&scene).expect("it fits");
+    renderer.set_scene(&scene).block_on().expect("it fits");
     let pins = PinnedOptions::of(Culling::Hiz).with(Visibility::Split32);
     let view = walk(&scene, &mut Rng(1), 1, SIZE).remove(0);
     let reference = whole(&renderer, &scene, &view, pins);
@@ -506,8 +511,8 @@ fn what_lies_outside_the_picture_is_not_deformed() {
     let view = View::new(&camera, SIZE[0], SIZE[1], &bounds, DMat4::IDENTITY, [0.0; 4]);
     let drawn = [Culling::None, Culling::Frustum].map(|option| {
         let mut renderer = Renderer::new(gpu()?);
-        renderer.set_scene(&scene).expect("it fits");
-        renderer.draw_complete(&view, &stack(&["lambert"]), &on(PinnedOptions::of(option))).expect("it is drawn");
+        renderer.set_scene(&scene).block_on().expect("it fits");
+        renderer.draw_complete(&view, &stack(&["lambert"]), &on(PinnedOptions::of(option))).block_on().expect("it is drawn");
         let buffers = renderer.explain().buffers;
         let capture = captured(&mut renderer, &scene, &view, &stack(&["lambert"]), &on(PinnedOptions::of(option)));
         Some((capture.frame, buffers.into_iter().find(|buffer| buffer.name == "joints").map_or(0, |buffer| buffer.bytes)))
