@@ -156,7 +156,7 @@ impl Backend {
                 let ((view, stack), before) = moments.split_last().expect("a preset has at least one frame");
                 let previous = if before.is_empty() { None } else { Some(oracle::render_sequence(scene, before)?.color) };
                 let frame = oracle::render_next(scene, view, stack, previous.as_deref())?;
-                let mut geometry = oracle::project(&Shot::new(scene, &stack.draws(scene, view)?, view, stack));
+                let mut geometry = oracle::project(&Shot::new(scene, &stack.draws(scene, view)?, view, stack)).map_err(DrawError::from)?;
                 geometry.shadow_map = oracle::shadow_map(scene, view, stack)?;
                 Ok(Capture { frame, geometry, layers: None, previous, shown: None })
             }

@@ -161,8 +161,9 @@ fn packed32_loses_depth_and_nothing_else() {
         // Another triangle id than the nearest is one that a step of the key cannot tell from it: as deep when cut, and smaller.
         let (draws, geometry) = (draws(&scene, &view).expect("a builtin fits"), &capture.geometry);
         let plain = stack(&[]);
-        let (triangles, _) = oracle::triangles(&oracle::Shot::new(&scene, &draws, &view, &plain), geometry);
-        let claimed = oracle::cover_claims(&oracle::SampleTests::default(), &triangles, &view, &frame.triangle_id);
+        let (triangles, _) = oracle::triangles(&oracle::Shot::new(&scene, &draws, &view, &plain), geometry).expect("nobody cancels it");
+        let claimed =
+            oracle::cover_claims(&oracle::SampleTests::default(), &triangles, &view, &frame.triangle_id).expect("nobody cancels it");
         for (pixel, sample) in claimed.samples.iter().enumerate() {
             if frame.triangle_id[pixel] != reference.triangle_id[pixel] {
                 let [_, high] = sample.claimed.unwrap_or_else(|| panic!("{query}: pixel {pixel}"));

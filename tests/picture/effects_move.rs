@@ -151,7 +151,7 @@ fn stated_bounds_hold_under_a_telescope_and_are_not_idle() {
     for effect in MOVING {
         let stack = suited(effect, &scene);
         let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &pinned(Visibility::Split32), effect);
-        let reference = oracle::project(&oracle::Shot::new(&scene, &draws, &view, &stack));
+        let reference = oracle::project(&oracle::Shot::new(&scene, &draws, &view, &stack)).expect("nobody cancels it");
         let bounds = oracle::snap_bounds(&oracle::Shot::new(&scene, &draws, &view, &stack));
         let (mut largest, mut median) = (0.0f64, Vec::new());
         for ((found, own), bound) in capture.geometry.vertices.iter().zip(&reference.vertices).zip(bounds) {
@@ -218,7 +218,7 @@ fn exploding_and_turning_keeps_every_triangle_and_its_area() {
     set(&mut stack, "explode", "spin_turns", &[0.37]);
     set(&mut stack, "explode", "scatter", &[0.6]);
     let draws = draws(&scene, &view).expect("a builtin fits");
-    let geometry = oracle::project(&oracle::Shot::new(&scene, &draws, &view, &stack));
+    let geometry = oracle::project(&oracle::Shot::new(&scene, &draws, &view, &stack)).expect("nobody cancels it");
     assert_eq!(geometry.vertices.len() as u64, 3 * scene.triangle_count());
     assert!(geometry.has_unshared_vertices);
 

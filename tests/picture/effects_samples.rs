@@ -40,23 +40,25 @@ impl Drawn {
     fn of(scene: &Scene, view: &View, stack: &Stack) -> Self {
         let draws = draws(scene, view).expect("a scene that fits");
         let shot = Shot::new(scene, &draws, view, stack);
-        let mut geometry = oracle::project(&Shot { stack: &Stack::default(), ..shot });
+        let mut geometry = oracle::project(&Shot { stack: &Stack::default(), ..shot }).expect("nobody cancels it");
         geometry.sample_setups = oracle::sample_setups(&shot, &geometry);
-        let (triangles, _) = oracle::triangles(&shot, &geometry);
+        let (triangles, _) = oracle::triangles(&shot, &geometry).expect("nobody cancels it");
         Self { geometry, triangles }
     }
 
     /// Layers of every pixel.
     fn layers(&self, view: &View, stack: &Stack) -> Vec<u32> {
-        let tests = oracle::limited(SampleTests::of_effects(stack, &self.geometry), stack, &self.triangles, view);
-        oracle::cover_with(&tests, &self.triangles, view).layers()
+        let tests =
+            oracle::limited(SampleTests::of_effects(stack, &self.geometry), stack, &self.triangles, view).expect("nobody cancels it");
+        oracle::cover_with(&tests, &self.triangles, view).expect("nobody cancels it").layers()
     }
 
     /// Samples of each triangle, clipped ones one by one.
     fn samples(&self, view: &View, stack: &Stack) -> BTreeMap<usize, u64> {
-        let tests = oracle::limited(SampleTests::of_effects(stack, &self.geometry), stack, &self.triangles, view);
+        let tests =
+            oracle::limited(SampleTests::of_effects(stack, &self.geometry), stack, &self.triangles, view).expect("nobody cancels it");
         let one = |t: &oracle::OrientedTriangle| {
-            let layers = oracle::cover_with(&tests, std::slice::from_ref(t), view).layers();
+            let layers = oracle::cover_with(&tests, std::slice::from_ref(t), view).expect("nobody cancels it").layers();
             (t.entry, layers.iter().map(|&count| u64::from(count)).sum())
         };
         self.triangles.iter().map(one).collect()

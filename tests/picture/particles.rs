@@ -141,7 +141,9 @@ fn disc(corners: [[i32; 2]; 3], view: &View) -> Vec<u32> {
     let corners = corners.map(|[x, y]| SnappedVertex { x, y, depth: 0.5, inv_w: 1.0, flags: 0 });
     let geometry = Geometry { particle_discs: 0..1, ..Geometry::default() };
     let stack = stack(&[]);
-    oracle::cover_with(&SampleTests::of_effects(&stack, &geometry), &[OrientedTriangle::clockwise(0, corners)], view).layers()
+    oracle::cover_with(&SampleTests::of_effects(&stack, &geometry), &[OrientedTriangle::clockwise(0, corners)], view)
+        .expect("nobody cancels it")
+        .layers()
 }
 
 #[test]

@@ -275,7 +275,7 @@ fn finer_maps_are_nearer_to_the_rays() {
         let light = oracle::shadow_map(&scene, &view, &stack).expect("a scene that fits");
         let geometry = rasterlab::frame::Geometry {
             shadow_map: light,
-            ..oracle::project(&oracle::Shot::new(&scene, &draws, &view, &Stack::default()))
+            ..oracle::project(&oracle::Shot::new(&scene, &draws, &view, &Stack::default())).expect("nobody cancels it")
         };
         oracle::shadow_errors(&scene, &view, &stack, &triangle_ids, &geometry).expect("a scene that fits").expect("there is a light")
     };

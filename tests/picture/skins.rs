@@ -39,7 +39,9 @@ fn moment(scene: &Scene, clips: [&str; 2], time_s: f64, skinning: Skinning, size
 
 /// Every vertex of all draws as the oracle deforms it, rounded to f32: position and normal.
 fn deformed(scene: &Scene, view: &View) -> Vec<[f32; 6]> {
-    oracle::project(&oracle::Shot::new(scene, &draws(scene, view).expect("a builtin fits"), view, &Stack::default())).deformed
+    oracle::project(&oracle::Shot::new(scene, &draws(scene, view).expect("a builtin fits"), view, &Stack::default()))
+        .expect("nobody cancels it")
+        .deformed
 }
 
 fn place(deformed: &[f32; 6]) -> DVec3 {

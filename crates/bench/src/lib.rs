@@ -7,5 +7,5 @@ pub mod trade;
 
 use rasterlab_gpu as gpu;
 use rasterlab_kernels::{plan, shader};
-use rasterlab_model::{accuracy, effects, frame, math, measure, params, preset, scene, work};
+use rasterlab_model::{accuracy, effects, frame, math, measure, params, preset, scene};
 use rasterlab_oracle as oracle;

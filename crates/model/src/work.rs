@@ -1,14 +1,12 @@
 //! Work that can be canceled: it ends at the next row, triangle or stage.
 //!
-//! Canceled work unwinds, so that a picture which is half finished never looks like one that is finished. [`Work::run`] catches that.
-//! Loops that take long ask for a [`Checkpoint`] on the thread that begins them and pass it in every turn, on whatever thread.
+//! What takes long returns a `Result`, so that a picture which is half finished never looks like one that is finished. Its loops ask for a
+//! [`Checkpoint`] on the thread that begins them and pass it in every turn, on whatever thread.
 
 use std::{
-    any::Any,
     cell::RefCell,
     fmt,
     ops::Range,
-    panic::{AssertUnwindSafe, catch_unwind, resume_unwind},
     sync::{
         Arc, Mutex, OnceLock, PoisonError,
         atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering},
@@ -23,8 +21,19 @@ thread_local! {
     static CURRENT: RefCell<Option<Arc<Work>>> = const { RefCell::new(None) };
 }
 
-/// The payload with which canceled work unwinds.
-struct Canceled;
+/// Work ended before it was finished, because somebody canceled it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("it was canceled")]
+pub struct Canceled;
+
+/// Gives the thread back the work that it did before.
+struct Resumed(Option<Arc<Work>>);
+
+impl Drop for Resumed {
+    fn drop(&mut self) {
+        CURRENT.set(self.0.take());
+    }
+}
 
 /// A piece of work that another thread can watch and cancel.
 #[derive(Debug, Default)]
@@ -97,38 +106,28 @@ impl Work {
         Some(Progress { done, expected, elapsed: self.begun.get()?.elapsed() })
     }
 
-    /// Does `work` on this thread; none if it was canceled before it was finished, even if only its last checkpoint has passed.
+    /// Does `work` on this thread; none if it was canceled, even if only its last checkpoint has passed.
     pub fn run<T>(self: &Arc<Self>, work: impl FnOnce() -> T) -> Option<T> {
-        self.run_to_its_end(work).filter(|_| !self.is_canceled())
+        Some(self.run_to_its_end(work)).filter(|_| !self.is_canceled())
     }
 
-    /// Does `work` on this thread, and returns what it returns even if it was canceled, unless it unwound.
-    pub fn run_to_its_end<T>(self: &Arc<Self>, work: impl FnOnce() -> T) -> Option<T> {
-        let before = CURRENT.replace(Some(self.clone()));
-        let outcome = catch_unwind(AssertUnwindSafe(work));
-        CURRENT.set(before);
-        match outcome {
-            Ok(result) => Some(result),
-            Err(payload) if is_cancellation(&*payload) => None,
-            Err(payload) => resume_unwind(payload),
-        }
+    /// Does `work` on this thread, and returns what it returns even if it was canceled.
+    pub fn run_to_its_end<T>(self: &Arc<Self>, work: impl FnOnce() -> T) -> T {
+        let _resumed = Resumed(CURRENT.replace(Some(self.clone())));
+        work()
     }
-}
-
-/// Returns true if work unwound because it was canceled, and not because of a bug.
-pub fn is_cancellation(payload: &(dyn Any + Send)) -> bool {
-    payload.is::<Canceled>()
 }
 
 /// Where canceled work ends.
 pub struct Checkpoint(Option<Arc<Work>>);
 
 impl Checkpoint {
-    /// Goes on, or ends the work if it was canceled.
-    pub fn pass(&self) {
-        if self.0.as_ref().is_some_and(|work| work.is_canceled()) {
-            resume_unwind(Box::new(Canceled));
-        }
+    /// Goes on, unless the work was canceled.
+    ///
+    /// # Errors
+    /// The work was canceled.
+    pub fn pass(&self) -> Result<(), Canceled> {
+        if self.0.as_ref().is_some_and(|work| work.is_canceled()) { Err(Canceled) } else { Ok(()) }
     }
 
     /// Says that so many more bytes are to be done.
@@ -139,12 +138,15 @@ impl Checkpoint {
         }
     }
 
-    /// Says that so many more bytes are done, and goes on, or ends the work if it was canceled.
-    pub fn advance(&self, bytes: u64) {
+    /// Says that so many more bytes are done, and goes on, unless the work was canceled.
+    ///
+    /// # Errors
+    /// The work was canceled.
+    pub fn advance(&self, bytes: u64) -> Result<(), Canceled> {
         if let Some(work) = &self.0 {
             work.done.fetch_add(bytes, Ordering::Relaxed);
         }
-        self.pass();
+        self.pass()
     }
 }
 
@@ -153,30 +155,57 @@ pub fn checkpoint() -> Checkpoint {
     Checkpoint(CURRENT.with_borrow(Clone::clone))
 }
 
-/// Begins a stage of the work that this thread does, and ends it if it was canceled.
-pub fn stage(name: &'static str) {
+/// Begins a stage of the work that this thread does.
+///
+/// # Errors
+/// The work was canceled.
+pub fn stage(name: &'static str) -> Result<(), Canceled> {
     let checkpoint = checkpoint();
     if let Some(work) = &checkpoint.0 {
         work.begin(name);
     }
-    checkpoint.pass();
+    checkpoint.pass()
 }
 
 /// Elements that are handled between two checkpoints: some milliseconds of work.
 const PART: u32 = 1 << 16;
 
-/// What `of_part` gives for every part of `count` elements, in their order. Parts are handled on all threads; canceled work ends between two.
-pub fn map_parts<T: Send>(count: u32, of_part: impl Fn(Range<u32>) -> T + Sync) -> Vec<T> {
+/// What `of_part` gives for every part of `count` elements, in their order. Parts are handled on all threads.
+///
+/// # Errors
+/// The work was canceled between two parts.
+pub fn map_parts<T: Send>(count: u32, of_part: impl Fn(Range<u32>) -> T + Sync) -> Result<Vec<T>, Canceled> {
     let checkpoint = checkpoint();
     let part = |index: u32| {
-        checkpoint.pass();
-        of_part(index * PART..count.min((index + 1).saturating_mul(PART)))
+        checkpoint.pass()?;
+        Ok(of_part(index * PART..count.min((index + 1).saturating_mul(PART))))
     };
     match count.div_ceil(PART) {
         // Waking other threads costs more than a part.
         parts @ 0..=1 => (0..parts).map(part).collect(),
         parts => (0..parts).into_par_iter().map(part).collect(),
     }
+}
+
+/// Most items that [`map_each`] handles between two checkpoints.
+const MOST_ITEMS: usize = 128;
+
+/// What `each` gives for every item, in their order, on all threads.
+///
+/// # Errors
+/// The work was canceled.
+pub fn map_each<I: Send, T: Send>(items: impl IndexedParallelIterator<Item = I>, each: impl Fn(I) -> T + Sync) -> Result<Vec<T>, Canceled> {
+    let (checkpoint, count) = (checkpoint(), items.len());
+    let run = |items: Vec<I>| {
+        checkpoint.pass()?;
+        Ok(items.into_iter().map(&each).collect::<Vec<T>>())
+    };
+    // Few items are shared among the threads, too.
+    let together = (count / (8 * rayon::current_num_threads())).clamp(1, MOST_ITEMS);
+    let runs = items.chunks(together).map(run).collect::<Result<Vec<_>, Canceled>>()?;
+    let mut mapped = Vec::with_capacity(count);
+    runs.into_iter().for_each(|run| mapped.extend(run));
+    Ok(mapped)
 }
 
 #[cfg(test)]
@@ -189,13 +218,14 @@ mod tests {
         let visited = AtomicU32::new(0);
         let result = work.run(|| {
             let checkpoint = checkpoint();
-            (0..1_000_000).into_par_iter().for_each(|_| {
-                checkpoint.pass();
+            (0..1_000_000).into_par_iter().try_for_each(|_| {
+                checkpoint.pass()?;
                 if visited.fetch_add(1, Ordering::Relaxed) == 10 {
                     work.cancel();
                 }
-            });
-            "finished"
+                Ok::<_, Canceled>(())
+            })?;
+            Ok::<_, Canceled>("finished")
         });
         assert_eq!(result, None);
         assert!(visited.load(Ordering::Relaxed) < 1_000_000);
@@ -205,13 +235,27 @@ mod tests {
     #[test]
     fn parts_are_all_elements_in_order() {
         for count in [0, 1, PART, PART + 1, 3 * PART + 7] {
-            let parts = map_parts(count, |part| part);
+            let parts = map_parts(count, |part| part).expect("nobody cancels it");
             assert!(parts.iter().all(|part| part.len() <= PART as usize && !part.is_empty()));
             assert!(parts.into_iter().flatten().eq(0..count), "{count}");
         }
         let work = Arc::new(Work::default());
         work.cancel();
-        assert_eq!(work.run_to_its_end(|| map_parts(3 * PART, |_| panic!("canceled work goes on"))), None::<Vec<()>>);
+        assert_eq!(work.run_to_its_end(|| map_parts(3 * PART, |_| panic!("canceled work goes on"))), Err::<Vec<()>, _>(Canceled));
+    }
+
+    #[test]
+    fn each_item_is_mapped_in_order_until_the_work_is_canceled() {
+        for count in [0, 1, MOST_ITEMS, 99 * MOST_ITEMS + 3] {
+            let mapped = map_each((0..count).into_par_iter(), |item| 2 * item).expect("nobody cancels it");
+            assert!(mapped.into_iter().eq((0..count).map(|item| 2 * item)), "{count}");
+        }
+        let work = Arc::new(Work::default());
+        work.cancel();
+        assert_eq!(
+            work.run_to_its_end(|| map_each((0..9).into_par_iter(), |_| panic!("canceled work goes on"))),
+            Err::<Vec<()>, _>(Canceled)
+        );
     }
 
     #[test]
@@ -220,13 +264,13 @@ mod tests {
         assert_eq!(work.progress(), None);
         work.run(|| {
             checkpoint().expect(580_000_000);
-            (0..4).into_par_iter().map(|_| 30_000_000).collect::<Vec<u64>>().into_iter().for_each(|bytes| checkpoint().advance(bytes));
+            (0..4).into_par_iter().map(|_| 30_000_000).collect::<Vec<u64>>().into_iter().try_for_each(|bytes| checkpoint().advance(bytes))
         });
         let progress = Progress { elapsed: Duration::from_secs(2), ..work.progress().expect("bytes are expected") };
         assert_eq!((progress.done, progress.expected), (120_000_000, 580_000_000));
         assert_eq!(progress.to_string(), "120 of 580 MB, 8 s left");
         assert_eq!(Progress { elapsed: Duration::ZERO, ..progress }.to_string(), "120 of 580 MB", "no speed is known yet");
-        checkpoint().advance(1);
+        assert_eq!(checkpoint().advance(1), Ok(()));
         assert_eq!(work.progress().map(|progress| progress.done), Some(120_000_000), "other work is not counted");
     }
 
@@ -234,13 +278,12 @@ mod tests {
     fn work_that_is_not_canceled_gives_its_result_and_a_bug_stays_a_panic() {
         let work = Arc::new(Work::default());
         let result = work.run(|| {
-            stage("one");
-            stage("two");
-            checkpoint().pass();
-            7
+            stage("one")?;
+            stage("two")?;
+            checkpoint().pass().map(|()| 7)
         });
-        assert_eq!((result, work.stage()), (Some(7), ("two", 2)));
-        let bug = catch_unwind(AssertUnwindSafe(|| work.run(|| panic!("a bug"))));
-        assert!(!is_cancellation(&*bug.expect_err("it is not hidden")));
+        assert_eq!((result, work.stage()), (Some(Ok(7)), ("two", 2)));
+        let bug = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| work.run(|| panic!("a bug"))));
+        assert!(bug.is_err() && CURRENT.with_borrow(Option::is_none), "it is not hidden, and the thread is free");
     }
 }

@@ -83,7 +83,7 @@ impl Run {
                 })
             };
             // A case that is canceled ends as stopped, with a report.
-            let Some(report) = self.work.run_to_its_end(run) else { break };
+            let report = self.work.run_to_its_end(run);
             let (is_failure, is_stopped) = (report.outcome.is_failure(), report.outcome == Outcome::Stopped);
             self.progress().reports.push(report);
             ctx.request_repaint();

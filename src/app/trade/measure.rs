@@ -15,7 +15,7 @@ use crate::{
     effects::Stack,
     gpu::{Capture, Gpu, device::AdapterChoice},
     oracle,
-    scene::{Scene, view::View},
+    scene::{Scene, draw::DrawError, view::View},
     trade::{Judged, Phase, Reference, Step, TradeOptions, TradeRow, Watch, factors, trade},
 };
 
@@ -38,12 +38,12 @@ pub fn measure(adapter: String, scene: &Arc<Scene>, request: &Request, progress:
     let references = references.map_err(|e| e.to_string())?;
     progress.report("", |pace| pace.add(Kind::Reference, began.elapsed().as_secs_f64()));
     let judge = |view: &View, stack: &Stack, capture: &Capture| {
-        progress.work.run(|| {
-            let verdict = oracle::judge(scene, view, stack, &capture.picture());
-            let light = oracle::shadow_errors(scene, view, stack, &capture.frame.triangle_id, &capture.geometry);
-            let reason = "a scene that was drawn can be judged";
-            Judged { verdict: verdict.expect(reason), light: light.expect(reason) }
-        })
+        let judged = progress.work.run(|| {
+            let verdict = oracle::judge(scene, view, stack, &capture.picture())?;
+            let light = oracle::shadow_errors(scene, view, stack, &capture.frame.triangle_id, &capture.geometry)?;
+            Ok::<_, DrawError>(Judged { verdict, light })
+        });
+        judged.map(|judged| judged.expect("a scene that was drawn can be judged"))
     };
     let options = TradeOptions { size: *size, samples: SAMPLES, axes: axes.clone(), is_one_option_at_a_time: false };
     let reference = Reference { references: &references, judge: &judge };

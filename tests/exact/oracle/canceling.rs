@@ -43,7 +43,7 @@ fn a_canceled_picture_ends_at_its_next_row_or_triangle() {
         for after_ms in [5, 400] {
             let what = format!("{names:?} after {after_ms} ms");
             ends_when_canceled(&what, Duration::from_millis(after_ms), || {
-                (0..100).map(|_| render(&scene, &view, &stack).expect("a picture").covered()).sum::<usize>()
+                (0..100).try_for_each(|_| render(&scene, &view, &stack).map(drop))
             });
         }
     }

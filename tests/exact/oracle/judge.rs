@@ -58,7 +58,7 @@ impl Adapter {
                 }
             }
         }
-        frame.color = shade(&Shot::new(scene, &draws, view, stack), &seen(&frame), geometry);
+        frame.color = shade(&Shot::new(scene, &draws, view, stack), &seen(&frame), geometry).expect("nobody cancels it");
         frame.counters = counters;
         (frame, layers)
     }
@@ -250,7 +250,8 @@ fn either_triangle_is_right_in_the_depth_band_and_nowhere_else() {
                 }
                 let (scene, view) = &fixture;
                 let draws = draws(scene, view).unwrap();
-                frame.color = shade(&Shot::new(scene, &draws, view, &all_effects()), &seen(frame), &projected(scene, view));
+                frame.color = shade(&Shot::new(scene, &draws, view, &all_effects()), &seen(frame), &projected(scene, view))
+                    .expect("nobody cancels it");
             },
         )
     };
@@ -272,7 +273,7 @@ fn affine_weights_are_caught() {
     let (mut frame, layers) = Adapter::default().draw(&scene, &view, &stack, &geometry);
     let mut affine = geometry.clone();
     affine.vertices.iter_mut().for_each(|vertex| vertex.inv_w = 0.25);
-    frame.color = shade(&Shot::new(&scene, &draws, &view, &stack), &seen(&frame), &affine);
+    frame.color = shade(&Shot::new(&scene, &draws, &view, &stack), &seen(&frame), &affine).expect("nobody cancels it");
     let accuracy =
         judge(&scene, &view, &stack, &AdapterPicture { layers: Some(&layers), ..AdapterPicture::new(&frame, &geometry) }).unwrap().report;
     assert!(geometry.clipped_triangles.is_empty() && accuracy.wrong_triangles == 0 && accuracy.max_color_delta > 20, "{accuracy:?}");

@@ -85,17 +85,17 @@ fn only(name: &str, words: &[(usize, f32)]) -> Stack {
 
 /// The geometry of a scene without effects.
 fn projected(scene: &Scene, view: &View) -> Geometry {
-    oracle::project(&Shot::new(scene, &draws(scene, view).unwrap(), view, &Stack::default()))
+    oracle::project(&Shot::new(scene, &draws(scene, view).unwrap(), view, &Stack::default())).expect("nobody cancels it")
 }
 
 /// The triangles that are drawn of such a geometry.
 fn assembled(scene: &Scene, view: &View, geometry: &Geometry) -> (Vec<OrientedTriangle>, Counters) {
-    oracle::triangles(&Shot::new(scene, &draws(scene, view).unwrap(), view, &Stack::default()), geometry)
+    oracle::triangles(&Shot::new(scene, &draws(scene, view).unwrap(), view, &Stack::default()), geometry).expect("nobody cancels it")
 }
 
 /// What covers every sample, with bounds and without claims.
 fn bounded(triangles: &[OrientedTriangle], view: &View) -> oracle::BoundedCoverage {
-    cover_claims(&SampleTests::default(), triangles, view, &vec![NO_TRIANGLE; view.pixels()])
+    cover_claims(&SampleTests::default(), triangles, view, &vec![NO_TRIANGLE; view.pixels()]).expect("nobody cancels it")
 }
 
 /// What a picture is colored from.
@@ -124,11 +124,11 @@ fn triangle(id: u32, mut points: [[i32; 2]; 3], depth: f32) -> Option<OrientedTr
 }
 
 fn layers(triangles: &[OrientedTriangle], width: u32, height: u32) -> Vec<u32> {
-    cover(triangles, &pixel_view(width, height)).layers()
+    cover(triangles, &pixel_view(width, height)).expect("nobody cancels it").layers()
 }
 
 /// Projects, clips, assembles and covers.
 fn covered(scene: &Scene, view: &View) -> (Vec<u32>, Counters) {
     let (drawn, counters) = assembled(scene, view, &projected(scene, view));
-    (cover(&drawn, view).layers(), counters)
+    (cover(&drawn, view).expect("nobody cancels it").layers(), counters)
 }

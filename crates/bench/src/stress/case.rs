@@ -6,7 +6,7 @@ use web_time::Instant;
 
 use super::checks::EarlyEnd;
 use super::context::{CaseContext, Counts};
-use crate::{gpu::Renderer, work};
+use crate::gpu::Renderer;
 
 /// The expected outcome of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,16 +102,12 @@ pub struct Report {
 
 impl Case {
     /// Runs the case. `keep_going` receives what is drawn next and may stop the run by returning false. The renderer can be used
-    /// for the next case after every outcome. Within [`Work`](crate::work::Work) that is canceled, the case ends as stopped.
+    /// for the next case after every outcome. Within [`Work`](rasterlab_model::work::Work) that is canceled, the case ends as stopped.
     pub fn run(&self, renderer: &mut Renderer, seed: u32, keep_going: &dyn Fn(&str) -> bool) -> Report {
         let began = Instant::now();
         let mut context = CaseContext::new(renderer, seed, keep_going);
-        let result = catch_unwind(AssertUnwindSafe(|| (self.run)(&mut context))).unwrap_or_else(|panic| {
-            match work::is_cancellation(panic.as_ref()) {
-                true => Err(EarlyEnd::Stopped),
-                false => Err(EarlyEnd::Failed(format!("the program panicked: {}", said(panic.as_ref())))),
-            }
-        });
+        let result = catch_unwind(AssertUnwindSafe(|| (self.run)(&mut context)))
+            .unwrap_or_else(|panic| Err(EarlyEnd::Failed(format!("the program panicked: {}", said(panic.as_ref())))));
         let left = context.leave();
         let outcome = match (result, self.expectation) {
             (Err(EarlyEnd::Failed(why)), _) => Outcome::Failed(why),

@@ -24,13 +24,13 @@ impl From<String> for EarlyEnd {
 
 impl From<RenderError> for EarlyEnd {
     fn from(error: RenderError) -> Self {
-        Self::Failed(error.to_string())
+        if let RenderError::Draw(error) = error { error.into() } else { Self::Failed(error.to_string()) }
     }
 }
 
 impl From<DrawError> for EarlyEnd {
     fn from(error: DrawError) -> Self {
-        Self::Failed(error.to_string())
+        if let DrawError::Canceled(_) = error { Self::Stopped } else { Self::Failed(error.to_string()) }
     }
 }
 

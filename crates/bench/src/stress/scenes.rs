@@ -154,8 +154,8 @@ pub fn reference_coverage(scene: &Scene, view: &View) -> Result<oracle::Coverage
     let draws = draws(scene, view)?;
     let stack = Stack::default();
     let shot = Shot::new(scene, &draws, view, &stack);
-    let (triangles, _) = oracle::triangles(&shot, &oracle::project(&shot));
-    Ok(oracle::cover(&triangles, view))
+    let (triangles, _) = oracle::triangles(&shot, &oracle::project(&shot)?)?;
+    Ok(oracle::cover(&triangles, view)?)
 }
 
 /// The four corners of a rotated square; `half` is half its diagonal.

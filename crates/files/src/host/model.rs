@@ -40,7 +40,7 @@ pub fn load_within(path: &Path, budget: MemoryBudget) -> Result<Scene, LoadError
     let load = || {
         let model = OpenFile::open(path, limits.file_bytes, &limits)?;
         let scene = gltf::load_within(&model, budget, &mut |beside, most| read_beside(path, beside, most, &limits))?;
-        checkpoint().advance(model.unread());
+        checkpoint().advance(model.unread())?;
         Ok(scene)
     };
     match load() {
@@ -112,7 +112,7 @@ impl Source for OpenFile {
             }
             left -= read;
             self.read.set(self.read.get() + read);
-            checkpoint.advance(read);
+            checkpoint.advance(read)?;
         }
         Ok(())
     }

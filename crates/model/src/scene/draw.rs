@@ -10,7 +10,7 @@ use super::{
     pose::{Deform, Pose},
     view::View,
 };
-use crate::math::rounded_columns;
+use crate::{math::rounded_columns, work::Canceled};
 
 /// An instance with everything that its projection needs.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,6 +61,8 @@ impl Draw {
 /// Why a scene and a viewpoint exceed the arithmetic.
 #[derive(Debug, thiserror::Error)]
 pub enum DrawError {
+    #[error("the picture was canceled")]
+    Canceled(#[from] Canceled),
     #[error("{instance}: its transform or the camera has a matrix entry of {value:e}; entries must be finite and below 2^40 (1.1e12)")]
     Matrix { instance: String, value: f64 },
     #[error("the scene has {count} {what}; a picture may have at most {limit}")]

@@ -156,7 +156,8 @@ impl MeshBuilder {
             deformation: Default::default(),
         });
         let index = scene.primitives.len() - 1;
-        scene.primitives[index].normals_agree = scene.primitives[index].normals_agree(scene);
+        // The scene of canceled work is thrown away.
+        scene.primitives[index].normals_agree = scene.primitives[index].normals_agree(scene).unwrap_or_default();
         index
     }
 }

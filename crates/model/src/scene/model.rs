@@ -11,7 +11,7 @@ use super::{
     rig::Rig,
     texture::Image,
 };
-use crate::work::map_parts;
+use crate::work::{Canceled, map_parts};
 
 /// How consecutive corners form triangles. A corner is a position in the index list, or in the vertex list without indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -96,14 +96,17 @@ impl Primitive {
 
     /// Returns true if all normals are finite, have a length between 1/2 and 2, and lie within 90 degrees of each other in every
     /// triangle. Their interpolations are then at least 1/4 long and never need a substitute.
-    pub fn normals_agree(&self, scene: &Scene) -> bool {
+    ///
+    /// # Errors
+    /// The work was canceled.
+    pub fn normals_agree(&self, scene: &Scene) -> Result<bool, Canceled> {
         let normal = |vertex: u32| DVec3::from(self.normals.vector(&scene.vertex_bytes, vertex));
         let is_sound = |n: DVec3| (0.25..=4.0).contains(&n.length_squared());
         let agree = |t: u32| {
             let [a, b, c] = self.corners(scene, t).map(normal);
             is_sound(a) && is_sound(b) && is_sound(c) && a.dot(b) >= 0.0 && b.dot(c) >= 0.0 && c.dot(a) >= 0.0
         };
-        map_parts(self.triangle_count(), |mut part| part.all(agree)).into_iter().all(|agree| agree)
+        Ok(map_parts(self.triangle_count(), |mut part| part.all(agree))?.into_iter().all(|agree| agree))
     }
 
     /// The box of all positions that can be drawn: finite, and below the largest magnitude.

@@ -27,7 +27,12 @@ use super::{
     perturbations::{Search, WIDE_SLACK, color_steps, interpolations, of_pictures, places},
     surface::{CornerErrors, Doubt},
 };
-use crate::{effects::Surface, frame::Geometry, measure::Budget, work::checkpoint};
+use crate::{
+    effects::Surface,
+    frame::Geometry,
+    measure::Budget,
+    work::{Canceled, map_each},
+};
 
 /// The pictures that are right.
 pub struct AcceptedColors {
@@ -50,35 +55,38 @@ fn span(colors: impl Iterator<Item = [u8; 4]>) -> Option<[[u8; 4]; 2]> {
 
 impl AcceptedColors {
     /// Of a picture that shows the nearest triangle of each pixel.
-    pub fn of_surfaces(shot: &Shot, input: &ResolveInput, geometry: &Geometry) -> Self {
+    pub fn of_surfaces(shot: &Shot, input: &ResolveInput, geometry: &Geometry) -> Result<Self, Canceled> {
         let shaded = |perturbation: &Perturbation| shade_perturbed(shot, input, geometry, perturbation);
         // Taps of a shadow map change one by one, so any fraction between the extremes is right.
         let is_span = !shot.scene.images.is_empty() || shot.stack.light().is_some();
-        let pictures: Vec<_> = of_pictures(shot.scene, shot.stack).iter().map(shaded).collect();
+        let pictures = of_pictures(shot.scene, shot.stack).iter().map(shaded).collect::<Result<Vec<_>, _>>()?;
         let per_step = pictures.len() / color_steps(shot.stack).len();
-        Self { pictures, is_span, per_step, unsure: HashMap::new(), unsure_pixels: 0 }
+        Ok(Self { pictures, is_span, per_step, unsure: HashMap::new(), unsure_pixels: 0 })
     }
 
     /// Of a picture of layers.
-    pub fn of_layers(shot: &Shot, input: &ResolveInput, image: &LayerImage, bounds: &LayerBounds) -> Self {
+    pub fn of_layers(shot: &Shot, input: &ResolveInput, image: &LayerImage, bounds: &LayerBounds) -> Result<Self, Canceled> {
         let ends = [0, 1].map(|end| bounds.colors.iter().map(|bounds| bounds[end]).collect::<Vec<_>>());
         // The exact picture comes first, then those between which every right one lies.
-        let finished = |&step: &f64| {
-            let spanned = [&image.colors, &ends[0], &ends[1]].map(|colors| finish_at_ties(shot, input, colors, step));
-            std::iter::once(finish(shot, input, &image.colors, step)).chain(spanned.into_iter().flatten())
-        };
-        Self {
-            pictures: color_steps(shot.stack).iter().flat_map(finished).collect(),
-            is_span: true,
-            per_step: 7,
-            unsure: HashMap::new(),
-            unsure_pixels: 0,
+        let mut pictures = Vec::new();
+        for &step in color_steps(shot.stack) {
+            pictures.push(finish(shot, input, &image.colors, step)?);
+            for colors in [&image.colors, &ends[0], &ends[1]] {
+                pictures.extend(finish_at_ties(shot, input, colors, step)?);
+            }
         }
+        Ok(Self { pictures, is_span: true, per_step: 7, unsure: HashMap::new(), unsure_pixels: 0 })
     }
 
     /// Adds what is right where places and interpolated normals and depths err, at the pixels where `adapter` has another color. Those
     /// of other pixels are not asked for, which saves most of the work.
-    pub fn with_interpolations(mut self, shot: &Shot, input: &ResolveInput, geometry: &Geometry, adapter: &[[u8; 4]]) -> Self {
+    pub fn with_interpolations(
+        mut self,
+        shot: &Shot,
+        input: &ResolveInput,
+        geometry: &Geometry,
+        adapter: &[[u8; 4]],
+    ) -> Result<Self, Canceled> {
         let nearest = self.nearest(adapter);
         let difference = |i: usize| (0..4).map(|c| nearest[i][c].abs_diff(adapter[i][c])).max().unwrap_or(0);
         // Of one step, only where they are more than any picture may have.
@@ -86,14 +94,12 @@ impl AcceptedColors {
         let least = if of_one_step > Budget::ROUNDING_PIXELS { 1 } else { 2 };
         let pixels: Vec<usize> = (0..adapter.len()).filter(|&i| difference(i) >= least).collect();
         if pixels.is_empty() {
-            return self;
+            return Ok(self);
         }
-        let (ranks, light) = (ranks(shot, geometry), Light::of(shot, geometry));
+        let (ranks, light) = (ranks(shot, geometry)?, Light::of(shot, geometry));
         let tables = PictureTables::of(shot);
         let (finish, background) = (Finish::new(shot, input, &tables), background(shot.view));
-        let checkpoint = checkpoint();
         let right = |&i: &usize| {
-            checkpoint.pass();
             let id = input.triangle_ids[i];
             let (x, y) = (i % shot.view.width as usize, i / shot.view.width as usize);
             let known = span(self.pictures.iter().map(|picture| picture[i]))?;
@@ -117,9 +123,9 @@ impl AcceptedColors {
             let all = span(known.into_iter().chain(wide).chain(places(shot.stack).flat_map(&finished)))?;
             (all != known).then_some((i, all))
         };
-        self.unsure = pixels.par_iter().filter_map(right).collect();
+        self.unsure = map_each(pixels.par_iter(), right)?.into_iter().flatten().collect();
         self.unsure_pixels = self.unsure.keys().filter(|&&i| difference(i) > 1).count() as u64;
-        self
+        Ok(self)
     }
 
     /// Number of pixels whose color, more than a step of 255 away, only the errors of places and of interpolated normals and depths

@@ -12,7 +12,7 @@ use super::super::{
         triangles::OrientedTriangle,
     },
 };
-use crate::{frame::NO_TRIANGLE, scene::view::View};
+use crate::{frame::NO_TRIANGLE, scene::view::View, work::Canceled};
 
 /// What is visible at the sample of one pixel, and what a float renderer may find instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,18 +89,18 @@ impl BoundedCoverage {
 }
 
 /// Finds what covers every sample of `view`, with bounds; `claims` has the triangle id that a renderer found at each pixel.
-pub fn cover_claims(tests: &SampleTests, triangles: &[OrientedTriangle], view: &View, claims: &[u32]) -> BoundedCoverage {
+pub fn cover_claims(tests: &SampleTests, triangles: &[OrientedTriangle], view: &View, claims: &[u32]) -> Result<BoundedCoverage, Canceled> {
     let mut samples = vec![BoundedSample::EMPTY; view.pixels()];
     scatter(tests, triangles, view, &mut samples, |triangle| {
         move |sample: &mut BoundedSample, x: usize, y: usize, hit: Hit| {
             sample.add(triangle.id, hit.depth, depth_interval(triangle, &hit), claims[y * view.width as usize + x]);
         }
-    });
-    BoundedCoverage { samples }
+    })?;
+    Ok(BoundedCoverage { samples })
 }
 
 /// The interval in which the nearest float key of every sample of `view` lies; negative infinities where nothing is.
-pub fn nearest_intervals(tests: &SampleTests, triangles: &[OrientedTriangle], view: &View) -> Vec<[f64; 2]> {
+pub fn nearest_intervals(tests: &SampleTests, triangles: &[OrientedTriangle], view: &View) -> Result<Vec<[f64; 2]>, Canceled> {
     let mut intervals = vec![[f64::NEG_INFINITY; 2]; view.pixels()];
     scatter(tests, triangles, view, &mut intervals, |triangle| {
         move |nearest: &mut [f64; 2], _, _, hit: Hit| {
@@ -108,8 +108,8 @@ pub fn nearest_intervals(tests: &SampleTests, triangles: &[OrientedTriangle], vi
             // Any triangle whose interval reaches farthest may be in front.
             *nearest = [0, 1].map(|end| nearest[end].max(interval[end]));
         }
-    });
-    intervals
+    })?;
+    Ok(intervals)
 }
 
 /// The depths between which a float renderer's depth of a hit lies.

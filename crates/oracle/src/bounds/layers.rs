@@ -20,7 +20,10 @@ use super::{
     perturbations::{Search, WIDE_SLACK, interpolations, of_layers},
     surface::{CornerErrors, Doubt},
 };
-use crate::effects::{Surface, xray, xray::Xray};
+use crate::{
+    effects::{Surface, xray, xray::Xray},
+    work::Canceled,
+};
 
 /// Bound of the error of a shaded f32 color, of 1.
 const COLOR_ERROR: f64 = 1.0 / (1 << 16) as f64;
@@ -37,27 +40,31 @@ pub struct LayerBounds {
 }
 
 /// The right answers round `image`, without those that only a [wider search](LayerBounds::widen) finds.
-pub fn layer_bounds(input: &LayerInput, image: &LayerImage) -> LayerBounds {
+///
+/// # Errors
+/// The work was canceled.
+pub fn layer_bounds(input: &LayerInput, image: &LayerImage) -> Result<LayerBounds, Canceled> {
     let LayerMode::Xray { params, bits } = &image.mode else {
         let colors = image.colors.iter().map(|&color| [color; 2]).collect();
-        return LayerBounds { colors, counted: image.counted.iter().map(|&layers| [layers.into(); 2]).collect() };
+        return Ok(LayerBounds { colors, counted: image.counted.iter().map(|&layers| [layers.into(); 2]).collect() });
     };
-    let sums = sums(input, params, *bits, None);
+    let sums = sums(input, params, *bits, None)?;
     let rows = Rows::of(input);
     let color = |(i, sum): (usize, &SumBounds)| sum.pixel(i, image, &rows, params, *bits);
-    LayerBounds { colors: sums.iter().enumerate().map(color).collect(), counted: sums.iter().map(SumBounds::weights).collect() }
+    Ok(LayerBounds { colors: sums.iter().enumerate().map(color).collect(), counted: sums.iter().map(SumBounds::weights).collect() })
 }
 
 impl LayerBounds {
     /// Adds the answers at these pixels that are right where interpolated normals and depths err so far that colors do not change in
     /// proportion: hundreds of shades a layer, which are not computed where the adapter's answer is known to be right without them.
-    pub fn widen(&mut self, input: &LayerInput, image: &LayerImage, pixels: &[bool]) {
-        let LayerMode::Xray { params, bits } = &image.mode else { return };
+    pub fn widen(&mut self, input: &LayerInput, image: &LayerImage, pixels: &[bool]) -> Result<(), Canceled> {
+        let LayerMode::Xray { params, bits } = &image.mode else { return Ok(()) };
         let rows = Rows::of(input);
-        for (i, sum) in sums(input, params, *bits, Some(pixels)).iter().enumerate().filter(|(i, _)| pixels[*i]) {
+        for (i, sum) in sums(input, params, *bits, Some(pixels))?.iter().enumerate().filter(|(i, _)| pixels[*i]) {
             self.colors[i] = sum.pixel(i, image, &rows, params, *bits);
             self.counted[i] = sum.weights();
         }
+        Ok(())
     }
 }
 
@@ -99,10 +106,10 @@ struct Layer {
 }
 
 /// Bounds of the sums of every pixel; of a wider search, at the pixels for which it is asked.
-fn sums(input: &LayerInput, params: &Xray, bits: u32, wider_at: Option<&[bool]>) -> Vec<SumBounds> {
+fn sums(input: &LayerInput, params: &Xray, bits: u32, wider_at: Option<&[bool]>) -> Result<Vec<SumBounds>, Canceled> {
     let (view, stack) = (input.shot.view, input.shot.stack);
     let mut sums: Vec<SumBounds> = (0..view.pixels()).map(|_| SumBounds::default()).collect();
-    let (ranks, light) = (ranks(&input.shot, input.geometry), Light::of(&input.shot, input.geometry));
+    let (ranks, light) = (ranks(&input.shot, input.geometry)?, Light::of(&input.shot, input.geometry));
     let perturbations = of_layers(input.shot.scene, view, stack);
     let (ranks, light, perturbations) = (&ranks, light.as_ref(), &perturbations);
     let search = if wider_at.is_some() { Search::Wide } else { Search::Quick };
@@ -161,8 +168,8 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32, wider_at: Option<&[bool]>)
                 bits,
             );
         }
-    });
-    sums
+    })?;
+    Ok(sums)
 }
 
 impl SumBounds {

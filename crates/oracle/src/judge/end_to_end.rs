@@ -23,7 +23,7 @@ use crate::{
     frame::{BitExact, Frame, Geometry},
     measure::ErrorReport,
     scene::draw::Draw,
-    work::checkpoint,
+    work::{Canceled, checkpoint},
 };
 
 /// An adapter's picture beside the oracle's own.
@@ -41,13 +41,13 @@ pub struct EndToEnd<'a> {
 impl EndToEnd<'_> {
     /// Counts the pixels that differ from the oracle's own picture, explained by the snap or not. `coverage` is that of the
     /// adapter's geometry.
-    pub fn judge(&self, report: &mut ErrorReport, coverage: &BoundedCoverage, frame: &Frame, freedom: Freedom) {
+    pub fn judge(&self, report: &mut ErrorReport, coverage: &BoundedCoverage, frame: &Frame, freedom: Freedom) -> Result<(), Canceled> {
         if freedom.is_scheduled() {
-            return;
+            return Ok(());
         }
-        let (triangles, _) = triangles(self.shot, self.own);
-        let tests = limited(SampleTests::new(self.shot, self.own), self.shot.stack, &triangles, self.shot.view);
-        let own = cover_claims(&tests, &triangles, self.shot.view, &frame.triangle_id);
+        let (triangles, _) = triangles(self.shot, self.own)?;
+        let tests = limited(SampleTests::new(self.shot, self.own), self.shot.stack, &triangles, self.shot.view)?;
+        let own = cover_claims(&tests, &triangles, self.shot.view, &frame.triangle_id)?;
         let checkpoint = checkpoint();
         for (pixel, (reference, sample)) in own.samples.iter().zip(&coverage.samples).enumerate() {
             let triangle_id = frame.triangle_id[pixel];
@@ -56,13 +56,14 @@ impl EndToEnd<'_> {
             if is_right || !sample.allows(triangle_id) {
                 continue;
             }
-            checkpoint.pass();
+            checkpoint.pass()?;
             if !self.is_strict() && self.may_differ(pixel, reference.nearest.triangle_id, triangle_id, tests.limit()) {
                 report.explained_by_snap += 1;
             } else {
                 report.unexplained += 1;
             }
         }
+        Ok(())
     }
 
     /// Records and keys are the same everywhere, so nothing may differ.

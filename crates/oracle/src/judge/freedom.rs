@@ -9,7 +9,7 @@ use super::super::{
     },
     shot::Shot,
 };
-use crate::frame::NO_TRIANGLE;
+use crate::{frame::NO_TRIANGLE, work::Canceled};
 
 /// The freedom that the effect stack leaves to the adapter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,13 +24,13 @@ pub enum Freedom {
 
 impl Freedom {
     /// Of a stack, given the tests without a draw limit and the triangles that are drawn.
-    pub fn of(shot: &Shot, tests: &SampleTests, triangles: &[OrientedTriangle]) -> Self {
-        let limit = is_free(shot.stack).then(|| draw_limit(shot.stack, tests, triangles, shot.view)).flatten();
-        match limit {
+    pub fn of(shot: &Shot, tests: &SampleTests, triangles: &[OrientedTriangle]) -> Result<Self, Canceled> {
+        let limit = if is_free(shot.stack) { draw_limit(shot.stack, tests, triangles, shot.view)? } else { None };
+        Ok(match limit {
             Some(limit) => Self::Scheduled { limit: limit.limit },
             None if shot.stack.is_racing() => Self::Racing,
             None => Self::Exact,
-        }
+        })
     }
 
     pub fn is_scheduled(self) -> bool {

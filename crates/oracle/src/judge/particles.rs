@@ -17,6 +17,7 @@ use crate::{
     frame::{ParticleReadback, ParticleState},
     measure::ErrorReport,
     scene::{particle_discs::PARTICLE_DISC_WORDS, view::View},
+    work::Canceled,
 };
 
 /// What was found about one particle.
@@ -32,17 +33,18 @@ struct ParticleError {
 ///
 /// # Panics
 /// If the particles are of another preset.
-pub fn judge_particles(report: &mut ErrorReport, view: &View, stack: &Stack, readback: &ParticleReadback) {
-    let judged = particle_errors(view, stack, readback);
+pub fn judge_particles(report: &mut ErrorReport, view: &View, stack: &Stack, readback: &ParticleReadback) -> Result<(), Canceled> {
+    let judged = particle_errors(view, stack, readback)?;
     report.particles = judged.len() as u64;
     report.particles_outside_bound = judged.iter().filter(|one| one.is_outside).count() as u64;
     report.particles_diverged = judged.iter().filter(|one| one.divergence_px > 1.0).count() as u64;
     report.max_divergence_px = judged.iter().map(|one| one.divergence_px).fold(0.0, f64::max);
     report.mean_divergence_m = judged.iter().map(|one| one.divergence_m).sum::<f64>() / judged.len().max(1) as f64;
+    Ok(())
 }
 
-fn particle_errors(view: &View, stack: &Stack, readback: &ParticleReadback) -> Vec<ParticleError> {
-    let (timeline, drawn_params, references) = (timeline(view, stack), drawn_params(stack), particles_at(view, stack));
+fn particle_errors(view: &View, stack: &Stack, readback: &ParticleReadback) -> Result<Vec<ParticleError>, Canceled> {
+    let (timeline, drawn_params, references) = (timeline(view, stack), drawn_params(stack), particles_at(view, stack)?);
     assert_eq!(readback.after.len(), references.len(), "the particles are of another preset");
     let params: Particles = read(timeline.words(timeline.frame));
     let bounds = StepBounds::new(&params, readback, timeline.frame);
@@ -65,7 +67,7 @@ fn particle_errors(view: &View, stack: &Stack, readback: &ParticleReadback) -> V
             divergence_m: after.position.distance(reference.position),
         }
     };
-    readback.after.par_iter().zip(&references).enumerate().map(judged).collect()
+    Ok(readback.after.par_iter().zip(&references).enumerate().map(judged).collect())
 }
 
 /// A position of the scene in the picture, in pixels from its center; none between the eye and the near plane.

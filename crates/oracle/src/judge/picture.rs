@@ -44,7 +44,7 @@ use crate::{
     frame::{AdapterPicture, BitExact, Counters, Frame, Geometry},
     measure::{ErrorReport, Verdict, compare},
     scene::{Scene, draw::DrawError, view::View},
-    work::stage,
+    work::{Canceled, stage},
 };
 
 /// Stages of [`judge`], as [`Work::stage`](crate::work::Work::stage) counts them.
@@ -68,53 +68,53 @@ pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture
     if words.is_none() {
         check_particles(view, stack)?;
     }
-    let scene = &*scene_with_particles(scene, view, stack, words);
+    let scene = &*scene_with_particles(scene, view, stack, words)?;
     let draws = stack.draws(scene, view)?;
     let shot = Shot::new(scene, &draws, view, stack);
     budget::check(&shot, Purpose::Judge)?;
-    stage("vertices");
-    let own = own_geometry(&shot, geometry.bit_exact);
+    stage("vertices")?;
+    let own = own_geometry(&shot, geometry.bit_exact)?;
     check_sizes(&shot, picture, &own);
 
     let mut report = ErrorReport { pixels: view.pixels() as u64, ..Default::default() };
-    let vertices = vertex_errors(&shot, geometry, &own);
+    let vertices = vertex_errors(&shot, geometry, &own)?;
     count_vertices(&mut report, &vertices);
     let dots = dot_strengths(view, stack, &geometry.dots, &picture.frame.depth_key);
     report.clips_wrong = wrong_clips(view, geometry, &own, picture.frame.counters.flipped_clips);
     judge_geometry(&mut report, &shot, picture, &dots)?;
 
-    stage("coverage");
-    let (triangles, counters) = triangles(&shot, geometry);
+    stage("coverage")?;
+    let (triangles, counters) = triangles(&shot, geometry)?;
     let tests = SampleTests::new(&shot, geometry);
     check_samples("picture", &triangles, &tests, view)?;
-    let freedom = Freedom::of(&shot, &tests, &triangles);
-    let tests = if freedom.is_scheduled() { tests } else { limited(tests, stack, &triangles, view) };
-    let coverage = cover_claims(&tests, &triangles, view, &picture.frame.triangle_id);
+    let freedom = Freedom::of(&shot, &tests, &triangles)?;
+    let tests = if freedom.is_scheduled() { tests } else { limited(tests, stack, &triangles, view)? };
+    let coverage = cover_claims(&tests, &triangles, view, &picture.frame.triangle_id)?;
     let end_to_end = EndToEnd { shot: &shot, own: &own, adapter: geometry, limit: tests.limit(), vertices: &vertices };
     judge_samples(&mut report, &coverage, picture, freedom);
     judge_counters(&mut report, &counters, picture.frame);
-    stage("the whole picture");
-    end_to_end.judge(&mut report, &coverage, picture.frame, freedom);
+    stage("the whole picture")?;
+    end_to_end.judge(&mut report, &coverage, picture.frame, freedom)?;
 
     let (triangle_ids, keys) = (&picture.frame.triangle_id, &picture.frame.depth_key);
     let layer_input = LayerInput { shot, geometry, tests: &tests, triangles: &triangles, triangle_ids, depth_keys: keys };
-    stage("colors");
-    let colors = JudgedColors::new(&layer_input, &coverage, picture, &dots, freedom);
+    stage("colors")?;
+    let colors = JudgedColors::new(&layer_input, &coverage, picture, &dots, freedom)?;
     let nearest = colors.judge(&mut report, &shot, &coverage, picture, freedom);
-    stage("the error map");
+    stage("the error map")?;
     let mut faults = error_map(&shot, &coverage, picture, &nearest, freedom);
     let step_band = colors.accepted.step_band();
-    let (expected_colors, counted) = colors.expected(&shot, &coverage, picture, nearest);
+    let (expected_colors, counted) = colors.expected(&shot, &coverage, picture, nearest)?;
     faults.compare_again(&picture.frame.color, &expected_colors);
     let expected = expected_frame(view, &coverage, expected_colors, counted, counters);
     Ok(Verdict { report, expected, step_band, error_map: faults })
 }
 
 /// The geometry that the oracle computes under the same promises.
-fn own_geometry(shot: &Shot, exact: BitExact) -> Geometry {
-    let geometry = if exact.vertices { project_strict(shot) } else { project(shot) };
+fn own_geometry(shot: &Shot, exact: BitExact) -> Result<Geometry, Canceled> {
+    let geometry = if exact.vertices { project_strict(shot) } else { project(shot)? };
     let geometry = Geometry { bit_exact: exact, ..geometry };
-    Geometry { sample_setups: sample_setups(shot, &geometry), ..geometry }
+    Ok(Geometry { sample_setups: sample_setups(shot, &geometry), ..geometry })
 }
 
 fn check_sizes(shot: &Shot, picture: &AdapterPicture, own: &Geometry) {
@@ -130,7 +130,7 @@ fn check_sizes(shot: &Shot, picture: &AdapterPicture, own: &Geometry) {
 fn judge_geometry(report: &mut ErrorReport, shot: &Shot, picture: &AdapterPicture, dots: &[u32]) -> Result<(), DrawError> {
     let geometry = picture.geometry;
     if let Some(readback) = &geometry.particle_readback {
-        judge_particles(report, shot.view, shot.stack, readback);
+        judge_particles(report, shot.view, shot.stack, readback)?;
     }
     judge_deformed(report, shot, &geometry.deformed);
     judge_dots(report, shot, &geometry.dots, &picture.frame.dots, dots)?;
@@ -167,34 +167,38 @@ struct JudgedColors {
 }
 
 impl JudgedColors {
-    fn new(input: &LayerInput, coverage: &BoundedCoverage, picture: &AdapterPicture, dots: &[u32], freedom: Freedom) -> Self {
+    fn new(
+        input: &LayerInput,
+        coverage: &BoundedCoverage,
+        picture: &AdapterPicture,
+        dots: &[u32],
+        freedom: Freedom,
+    ) -> Result<Self, Canceled> {
         let resolve = ResolveInput { triangle_ids: input.triangle_ids, depth_keys: input.depth_keys, dots, previous: picture.previous };
         let layers = || coverage.samples.iter().map(|sample| sample.nearest.layers).collect();
-        let mut layers = layer_image(input, layers).map(|image| {
-            let bounds = layer_bounds(input, &image);
-            (image, bounds)
-        });
+        let with_bounds = |image| layer_bounds(input, &image).map(|bounds| (image, bounds));
+        let mut layers = layer_image(input, layers)?.map(with_bounds).transpose()?;
         let of_layers = |(image, bounds): &(LayerImage, LayerBounds)| AcceptedColors::of_layers(&input.shot, &resolve, image, bounds);
         let accepted = match &mut layers {
             Some(layers) => {
-                let accepted = of_layers(layers);
+                let accepted = of_layers(layers)?;
                 let doubtful = doubtful_pixels(&accepted, &layers.1, picture.frame);
                 // The colors of layers that the scheduler chooses are not judged.
                 if freedom.is_scheduled() || !doubtful.contains(&true) {
                     accepted
                 } else {
-                    layers.1.widen(input, &layers.0, &doubtful);
-                    of_layers(layers)
+                    layers.1.widen(input, &layers.0, &doubtful)?;
+                    of_layers(layers)?
                 }
             }
-            None => AcceptedColors::of_surfaces(&input.shot, &resolve, input.geometry).with_interpolations(
+            None => AcceptedColors::of_surfaces(&input.shot, &resolve, input.geometry)?.with_interpolations(
                 &input.shot,
                 &resolve,
                 input.geometry,
                 &picture.frame.color,
-            ),
+            )?,
         };
-        Self { accepted, layers }
+        Ok(Self { accepted, layers })
     }
 
     /// Judges the adapter's colors and returns the right ones nearest to them.
@@ -232,19 +236,19 @@ impl JudgedColors {
         coverage: &BoundedCoverage,
         picture: &AdapterPicture,
         nearest: Vec<[u8; 4]>,
-    ) -> (Vec<[u8; 4]>, Vec<u32>) {
+    ) -> Result<(Vec<[u8; 4]>, Vec<u32>), Canceled> {
         if let Some((image, _)) = self.layers {
-            return (self.accepted.exact(), image.counted);
+            return Ok((self.accepted.exact(), image.counted));
         }
         let (triangle_ids, keys) = (&coverage.triangle_ids(), &coverage.depth_keys());
         if *triangle_ids == picture.frame.triangle_id {
-            return (nearest, Vec::new());
+            return Ok((nearest, Vec::new()));
         }
         let dots = &dot_strengths(shot.view, shot.stack, &picture.geometry.dots, keys);
         let input = ResolveInput { triangle_ids, depth_keys: keys, dots, previous: picture.previous };
         let adapter = &picture.frame.color;
-        let accepted = AcceptedColors::of_surfaces(shot, &input, picture.geometry);
-        (accepted.with_interpolations(shot, &input, picture.geometry, adapter).nearest(adapter), Vec::new())
+        let accepted = AcceptedColors::of_surfaces(shot, &input, picture.geometry)?;
+        Ok((accepted.with_interpolations(shot, &input, picture.geometry, adapter)?.nearest(adapter), Vec::new()))
     }
 }
 

@@ -38,19 +38,19 @@ pub fn judge_shadow_map(report: &mut ErrorReport, shot: &Shot, map: &ShadowMap) 
     let casting = shot.stack.shadow_casters();
     let draws = casting.draws(shot.scene, &view)?;
     let shot = Shot::new(shot.scene, &draws, &view, &casting);
-    let own = project(&shot);
+    let own = project(&shot)?;
     assert_eq!(map.geometry.vertices.len(), own.vertices.len(), "the shadow map is of another scene or stack");
-    let (triangles, _) = triangles(&shot, &map.geometry);
+    let (triangles, _) = triangles(&shot, &map.geometry)?;
     let tests = SampleTests::new(&shot, &map.geometry);
     check_samples("shadow map", &triangles, &tests, &view)?;
-    let intervals = nearest_intervals(&tests, &triangles, &view);
+    let intervals = nearest_intervals(&tests, &triangles, &view)?;
     for (interval, &key) in intervals.iter().zip(&map.depth_keys) {
         let is_covered = interval[1] > f64::NEG_INFINITY;
         report.holes += u64::from(is_covered && key == 0);
         report.double_hits += u64::from(!is_covered && key != 0);
         report.key_outside_bound += u64::from(is_covered && key != 0 && !key_fits(key, &DepthRounding::default(), *interval));
     }
-    count_vertices(report, &bounded_errors(&shot, &map.geometry, &own));
+    count_vertices(report, &bounded_errors(&shot, &map.geometry, &own)?);
     report.sample_setups_wrong += wrong_setups(&shot, &map.geometry);
     Ok(())
 }
@@ -78,7 +78,7 @@ pub fn shadow_errors(
         let point = triangle.lit_point(&surface);
         let reference = f64::from(u8::from(rays.reach(point.on_triangle, surface.triangle_id)));
         Some(mapped.arrives(&point, surface.triangle_id, 0.0) - reference)
-    });
+    })?;
     let errors: Vec<f64> = errors.into_iter().flatten().collect();
     let squares: f64 = errors.iter().map(|error| error * error).sum();
     Ok(Some(ShadowErrors {

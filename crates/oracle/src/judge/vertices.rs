@@ -14,8 +14,7 @@ use crate::{
     frame::{Geometry, SnappedVertex, vertex_flags},
     math::GUARD_BAND,
     measure::ErrorReport,
-    scene::draw::Draw,
-    work::checkpoint,
+    work::{Canceled, map_each},
 };
 
 /// What was found about one record.
@@ -33,28 +32,27 @@ pub struct VertexError {
 }
 
 /// Compares an adapter's records with the oracle's.
-pub fn vertex_errors(shot: &Shot, adapter: &Geometry, own: &Geometry) -> Vec<VertexError> {
+pub fn vertex_errors(shot: &Shot, adapter: &Geometry, own: &Geometry) -> Result<Vec<VertexError>, Canceled> {
     let pairs = adapter.vertices.iter().zip(&own.vertices);
     if adapter.bit_exact.vertices {
-        return pairs.map(|(adapter, own)| strict_error(adapter, own)).collect();
+        return Ok(pairs.map(|(adapter, own)| strict_error(adapter, own)).collect());
     }
     bounded_errors(shot, adapter, own)
 }
 
 /// Compares an adapter's records with the bounds of float vertices.
-pub fn bounded_errors(shot: &Shot, adapter: &Geometry, own: &Geometry) -> Vec<VertexError> {
-    let checkpoint = checkpoint();
-    let of_draw = |draw: &Draw| {
+pub fn bounded_errors(shot: &Shot, adapter: &Geometry, own: &Geometry) -> Result<Vec<VertexError>, Canceled> {
+    let mut errors = Vec::with_capacity(own.vertices.len());
+    for draw in shot.draws {
         let evaluator = VertexEvaluator::new(shot.scene, draw, shot.view, shot.stack);
         let bounds = VertexBounds::new(&evaluator, adapter.packed_bits);
         let error = |(i, corner)| {
-            checkpoint.pass();
             let at = evaluator.first_record() + i;
             bounded_error(&evaluator, &bounds, shot, corner, &adapter.vertices[at], &own.vertices[at])
         };
-        evaluator.corners().into_par_iter().enumerate().map(error).collect::<Vec<_>>()
-    };
-    shot.draws.iter().flat_map(of_draw).collect()
+        errors.extend(map_each(evaluator.corners().into_par_iter().enumerate(), error)?);
+    }
+    Ok(errors)
 }
 
 /// Adds what was found to a report.

@@ -18,7 +18,7 @@ use crate::{
     effects::hooks::Shape,
     frame::{NO_TRIANGLE, SnappedVertex},
     scene::view::View,
-    work::checkpoint,
+    work::{Canceled, checkpoint},
 };
 
 /// What is visible at the sample of one pixel.
@@ -68,24 +68,30 @@ impl Coverage {
 }
 
 /// Finds what covers every sample of `view`.
-pub fn cover(triangles: &[OrientedTriangle], view: &View) -> Coverage {
+///
+/// # Errors
+/// The work was canceled.
+pub fn cover(triangles: &[OrientedTriangle], view: &View) -> Result<Coverage, Canceled> {
     cover_with(&SampleTests::default(), triangles, view)
 }
 
 /// The same, where `tests` may leave samples out.
-pub fn cover_with(tests: &SampleTests, triangles: &[OrientedTriangle], view: &View) -> Coverage {
+///
+/// # Errors
+/// The work was canceled.
+pub fn cover_with(tests: &SampleTests, triangles: &[OrientedTriangle], view: &View) -> Result<Coverage, Canceled> {
     let mut samples = vec![Sample::EMPTY; view.pixels()];
     scatter(tests, triangles, view, &mut samples, |triangle| {
         move |sample: &mut Sample, _, _, hit: Hit| _ = sample.add(triangle.id, hit.depth)
-    });
-    Coverage { samples }
+    })?;
+    Ok(Coverage { samples })
 }
 
 /// The nearest depth at every sample of `view`; negative infinity where nothing is.
-pub fn nearest_depths(tests: &SampleTests, triangles: &[OrientedTriangle], view: &View) -> Vec<f64> {
+pub fn nearest_depths(tests: &SampleTests, triangles: &[OrientedTriangle], view: &View) -> Result<Vec<f64>, Canceled> {
     let mut depths = vec![f64::NEG_INFINITY; view.pixels()];
-    scatter(tests, triangles, view, &mut depths, |_| |depth: &mut f64, _, _, hit: Hit| *depth = depth.max(hit.depth));
-    depths
+    scatter(tests, triangles, view, &mut depths, |_| |depth: &mut f64, _, _, hit: Hit| *depth = depth.max(hit.depth))?;
+    Ok(depths)
 }
 
 /// Where a triangle covers a sample.
@@ -98,17 +104,20 @@ pub struct Hit {
 
 /// Visits every drawn sample of `view`, triangle by triangle, with the cell of its pixel; `visitor` makes the visitor of a
 /// triangle. Parallel by bands of rows, so a triangle may have several visitors, each sample one visit.
+///
+/// # Errors
+/// The work was canceled.
 pub fn scatter<'a, T: Send, V: FnMut(&mut T, usize, usize, Hit)>(
     tests: &SampleTests,
     triangles: &'a [OrientedTriangle],
     view: &View,
     cells: &mut [T],
     visitor: impl Fn(&'a OrientedTriangle) -> V + Sync,
-) {
+) -> Result<(), Canceled> {
     const ROWS: usize = 8;
     let (width, height) = (view.width as usize, view.height as usize);
     if cells.is_empty() {
-        return;
+        return Ok(());
     }
     let mut bands: Vec<Vec<&'a OrientedTriangle>> = vec![Vec::new(); height.div_ceil(ROWS)];
     for triangle in triangles {
@@ -118,10 +127,10 @@ pub fn scatter<'a, T: Send, V: FnMut(&mut T, usize, usize, Hit)>(
         }
     }
     let checkpoint = checkpoint();
-    cells.par_chunks_mut(ROWS * width).zip(bands).enumerate().for_each(|(band, (cells, triangles))| {
+    cells.par_chunks_mut(ROWS * width).zip(bands).enumerate().try_for_each(|(band, (cells, triangles))| {
         let first_row = band * ROWS;
         for triangle in triangles {
-            checkpoint.pass();
+            checkpoint.pass()?;
             let (columns, rows) = triangle.bounds(view, tests);
             let mut visit = visitor(triangle);
             for y in rows.start.max(first_row)..rows.end.min(first_row + ROWS) {
@@ -131,7 +140,8 @@ pub fn scatter<'a, T: Send, V: FnMut(&mut T, usize, usize, Hit)>(
                 }
             }
         }
-    });
+        Ok(())
+    })
 }
 
 impl OrientedTriangle {

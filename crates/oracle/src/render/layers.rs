@@ -17,6 +17,7 @@ use crate::{
     effects::{Surface, hooks::Layers, overdraw::Overdraw, xray, xray::Xray},
     frame::Geometry,
     math::linear_light,
+    work::Canceled,
 };
 
 /// A picture of layers. Images are row-major.
@@ -49,13 +50,13 @@ pub struct LayerInput<'a> {
 
 /// The picture that the effect in the visibility slot makes, given the number of layers per pixel; none if the nearest triangle is
 /// shown.
-pub fn layer_image(input: &LayerInput, layers: impl FnOnce() -> Vec<u32>) -> Option<LayerImage> {
+pub fn layer_image(input: &LayerInput, layers: impl FnOnce() -> Vec<u32>) -> Result<Option<LayerImage>, Canceled> {
     let stack = input.shot.stack;
-    match stack.layers(input.shot.scene.triangle_count())? {
-        Layers::Xray { bits } => Some(averaged(input, stack.params("xray")?, bits)),
-        Layers::Overdraw => Some(heat(input, layers(), &stack.params("overdraw")?)),
-        Layers::Race => None,
-    }
+    Ok(match stack.layers(input.shot.scene.triangle_count()) {
+        Some(Layers::Xray { bits }) => stack.params("xray").map(|params| averaged(input, params, bits)).transpose()?,
+        Some(Layers::Overdraw) => stack.params("overdraw").map(|params| heat(input, layers(), &params)),
+        Some(Layers::Race) | None => None,
+    })
 }
 
 fn heat(input: &LayerInput, layers: Vec<u32>, params: &Overdraw) -> LayerImage {
@@ -68,8 +69,8 @@ fn heat(input: &LayerInput, layers: Vec<u32>, params: &Overdraw) -> LayerImage {
     LayerImage { colors: layers.iter().enumerate().map(color).collect(), counted: layers, mode: LayerMode::Overdraw }
 }
 
-fn averaged(input: &LayerInput, params: Xray, bits: u32) -> LayerImage {
-    let sums = sums(input, &params, bits);
+fn averaged(input: &LayerInput, params: Xray, bits: u32) -> Result<LayerImage, Canceled> {
+    let sums = sums(input, &params, bits)?;
     let largest = sums.iter().map(|sum| sum.weight).max().unwrap_or(0);
     // An overflow in any pixel draws the whole picture again with fewer bits.
     if let (true, Some(fewer)) = (largest > xray::capacity(bits).into(), xray::fewer(bits)) {
@@ -83,11 +84,11 @@ fn averaged(input: &LayerInput, params: Xray, bits: u32) -> LayerImage {
             xray_color(background[pixel / width], &params, DVec3::from_array(average), weight)
         }
     };
-    LayerImage {
+    Ok(LayerImage {
         colors: sums.iter().enumerate().map(pixel).collect(),
         counted: sums.iter().map(|sum| u32::try_from(sum.weight).unwrap_or(u32::MAX)).collect(),
         mode: LayerMode::Xray { params, bits },
-    }
+    })
 }
 
 /// The gamma-encoded color of a pixel whose layers have this average and sum of weights, over a gamma-encoded background.
@@ -122,10 +123,10 @@ struct LayerSum {
     weight: u64,
 }
 
-fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<LayerSum> {
+fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Result<Vec<LayerSum>, Canceled> {
     let Shot { view, stack, .. } = input.shot;
     let mut sums = vec![LayerSum::default(); view.pixels()];
-    let (ranks, light) = (ranks(&input.shot, input.geometry), Light::of(&input.shot, input.geometry));
+    let (ranks, light) = (ranks(&input.shot, input.geometry)?, Light::of(&input.shot, input.geometry));
     let (ranks, light) = (&ranks, light.as_ref());
     scatter(input.tests, input.triangles, view, &mut sums, |triangle| {
         let mut surface: Option<Option<SurfaceTriangle<'_>>> = None;
@@ -144,8 +145,8 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Vec<LayerSum> {
             (0..3).for_each(|c| sum.sums[c] += color[c] * weight);
             sum.weight += weight;
         }
-    });
-    sums
+    })?;
+    Ok(sums)
 }
 
 /// A color plus an error, rounded to whole steps.

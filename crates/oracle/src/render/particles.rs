@@ -20,7 +20,7 @@ use crate::{
         particle_discs::{PARTICLE_DISC_WORDS, ParticleTimeline},
         view::View,
     },
-    work::checkpoint,
+    work::{Canceled, map_each},
 };
 
 /// A particle between two steps.
@@ -77,16 +77,18 @@ pub fn check_particle_work(view: &View, stack: &Stack, limit: u64) -> Result<(),
 ///
 /// # Panics
 /// If `words`, the discs that an adapter drew in their place, are those of another preset.
-pub fn scene_with_particles<'a>(scene: &'a Scene, view: &View, stack: &Stack, words: Option<&[u32]>) -> Cow<'a, Scene> {
+pub fn scene_with_particles<'a>(scene: &'a Scene, view: &View, stack: &Stack, words: Option<&[u32]>) -> Result<Cow<'a, Scene>, Canceled> {
     let mut scene = scene.with_particles(stack.particle_settings().as_ref());
     let range = scene.particle_disc_bytes();
     if !range.is_empty() {
-        let own = || discs(&particles_at(view, stack), &drawn_params(stack), view);
-        let words = words.map_or_else(own, <[u32]>::to_vec);
+        let words = match words {
+            Some(words) => words.to_vec(),
+            None => discs(&particles_at(view, stack)?, &drawn_params(stack), view),
+        };
         assert_eq!(4 * words.len(), range.len(), "the particles are of another preset");
         scene.to_mut().vertex_bytes[range].copy_from_slice(bytemuck::cast_slice(&words));
     }
-    scene
+    Ok(scene)
 }
 
 /// Parameters with which the particles of a stack are drawn.
@@ -103,17 +105,17 @@ pub fn timeline(view: &View, stack: &Stack) -> ParticleTimeline {
 }
 
 /// The particles of a stack at a view.
-pub fn particles_at(view: &View, stack: &Stack) -> Vec<ReferenceParticle> {
+///
+/// # Errors
+/// The work was canceled.
+pub fn particles_at(view: &View, stack: &Stack) -> Result<Vec<ReferenceParticle>, Canceled> {
     let timeline = timeline(view, stack);
     let params: Vec<Particles> = (1..=timeline.len() as u32).map(|step| read(timeline.words(step))).collect();
     let of_step = |step: u32| &params[(step.max(1) as usize - 1).min(params.len() - 1)];
     let count = stack.particle_settings().map_or(0, |settings| settings.count);
-    let checkpoint = checkpoint();
-    let simulated = |id: u32| {
-        checkpoint.pass();
-        (1..=timeline.frame).fold(first(of_step(0), id), |particle, step| stepped(of_step(step), id, &particle, step))
-    };
-    (0..count).into_par_iter().map(simulated).collect()
+    let simulated =
+        |id: u32| (1..=timeline.frame).fold(first(of_step(0), id), |particle, step| stepped(of_step(step), id, &particle, step));
+    map_each((0..count).into_par_iter(), simulated)
 }
 
 fn vector(v: [f32; 4]) -> DVec3 {

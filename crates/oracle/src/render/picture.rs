@@ -43,27 +43,27 @@ pub fn render_next(scene: &Scene, view: &View, stack: &Stack, previous: Option<&
         return Ok(Frame { width: view.width, height: view.height, ..Frame::default() });
     }
     check_particles(view, stack)?;
-    let scene = &*scene_with_particles(scene, view, stack, None);
+    let scene = &*scene_with_particles(scene, view, stack, None)?;
     let draws = stack.draws(scene, view)?;
     let shot = Shot::new(scene, &draws, view, stack);
     budget::check(&shot, Purpose::Draw)?;
-    let mut geometry = project(&shot);
+    let mut geometry = project(&shot)?;
     geometry.sample_setups = sample_setups(&shot, &geometry);
     geometry.dots = dot_records(&shot)?;
     geometry.shadow_map = shadow_map(scene, view, stack)?;
-    let (triangles, counters) = triangles(&shot, &geometry);
+    let (triangles, counters) = triangles(&shot, &geometry)?;
     let tests = SampleTests::new(&shot, &geometry);
     check_samples("picture", &triangles, &tests, view)?;
-    let tests = limited(tests, stack, &triangles, view);
-    let coverage = cover_with(&tests, &triangles, view);
+    let tests = limited(tests, stack, &triangles, view)?;
+    let coverage = cover_with(&tests, &triangles, view)?;
     let (triangle_id, depth_key) = (coverage.triangle_ids(), coverage.depth_keys());
     let (triangle_ids, depth_keys) = (&*triangle_id, &*depth_key);
     let dots = dot_strengths(view, stack, &geometry.dots, depth_keys);
     let input = ResolveInput { triangle_ids, depth_keys, dots: &dots, previous };
     let layer_input = LayerInput { shot, geometry: &geometry, tests: &tests, triangles: &triangles, triangle_ids, depth_keys };
-    let (color, counted) = match layer_image(&layer_input, || coverage.layers()) {
-        Some(image) => (finish(&shot, &input, &image.colors, 0.0), image.counted),
-        None => (shade(&shot, &input, &geometry), Vec::new()),
+    let (color, counted) = match layer_image(&layer_input, || coverage.layers())? {
+        Some(image) => (finish(&shot, &input, &image.colors, 0.0)?, image.counted),
+        None => (shade(&shot, &input, &geometry)?, Vec::new()),
     };
     Ok(Frame {
         width: view.width,
@@ -104,7 +104,7 @@ pub fn strict_frame(scene: &Scene, view: &View, stack: &Stack) -> Result<(Vec<u3
     let mut geometry = project_strict(&shot);
     geometry.bit_exact.depth_keys = true;
     geometry.sample_setups = sample_setups(&shot, &geometry);
-    let (triangles, _) = triangles(&shot, &geometry);
-    let coverage = cover_with(&limited(SampleTests::new(&shot, &geometry), stack, &triangles, view), &triangles, view);
+    let (triangles, _) = triangles(&shot, &geometry)?;
+    let coverage = cover_with(&limited(SampleTests::new(&shot, &geometry), stack, &triangles, view)?, &triangles, view)?;
     Ok((coverage.triangle_ids(), coverage.depth_keys()))
 }

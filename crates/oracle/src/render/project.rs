@@ -6,30 +6,31 @@ use super::{super::shot::Shot, clip, deform, snap::snap, vertex::VertexEvaluator
 use crate::{
     frame::{Geometry, SnappedVertex},
     scene::draw::totals,
-    work::checkpoint,
+    work::{Canceled, map_each},
 };
 
 /// Everything between the stored scene and integer coverage: one record per vertex of each draw, or three per triangle if the
 /// stack unshares vertices, and the clipped triangles of every triangle that the near plane or the guard band cuts, including
 /// those that flip.
-pub fn project(shot: &Shot) -> Geometry {
+///
+/// # Errors
+/// The work was canceled.
+pub fn project(shot: &Shot) -> Result<Geometry, Canceled> {
     let Shot { scene, draws, view, stack } = *shot;
     let evaluators: Vec<VertexEvaluator> = draws.iter().map(|draw| VertexEvaluator::new(scene, draw, view, stack)).collect();
-    let checkpoint = checkpoint();
     let records = |evaluator: &VertexEvaluator| {
-        let record = |corner| {
-            checkpoint.pass();
-            match evaluator.clip(corner) {
-                Ok(position) => snap(&position, view),
-                Err(flags) => SnappedVertex { flags, ..Default::default() },
-            }
+        let record = |corner| match evaluator.clip(corner) {
+            Ok(position) => snap(&position, view),
+            Err(flags) => SnappedVertex { flags, ..Default::default() },
         };
-        evaluator.corners().into_par_iter().map(record).collect::<Vec<_>>()
+        map_each(evaluator.corners().into_par_iter(), record)
     };
     // One list of the right size: growing it would need twice the memory.
     let [shared, triangles] = totals(scene, draws);
     let mut vertices = Vec::with_capacity(if stack.unshares_vertices() { 3 * triangles } else { shared } as usize);
-    evaluators.iter().for_each(|evaluator| vertices.extend(records(evaluator)));
+    for evaluator in &evaluators {
+        vertices.extend(records(evaluator)?);
+    }
     let mut geometry = Geometry {
         vertices,
         has_unshared_vertices: stack.unshares_vertices(),
@@ -43,5 +44,5 @@ pub fn project(shot: &Shot) -> Geometry {
         clip::clipped_triangles(shot, evaluator.draw, &geometry, position)
     };
     geometry.clipped_triangles = evaluators.iter().flat_map(clipped).collect();
-    geometry
+    Ok(geometry)
 }

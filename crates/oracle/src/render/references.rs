@@ -58,7 +58,7 @@ pub fn render_finest(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame,
 /// As [`render`].
 pub fn project_finest(scene: &Scene, view: &View, stack: &Stack) -> Result<Geometry, DrawError> {
     let view = finest(view, stack);
-    Ok(project(&Shot::new(scene, &stack.draws(scene, &view)?, &view, stack)))
+    Ok(project(&Shot::new(scene, &stack.draws(scene, &view)?, &view, stack))?)
 }
 
 /// The picture of [`render_finest`] with traced shadows: the reference for shadow maps. If effects leave samples out, of which rays

@@ -14,7 +14,7 @@ use crate::{
         hooks::{Picture, Pixel, tone::encoded},
     },
     frame::Geometry,
-    work::checkpoint,
+    work::{Canceled, map_each},
 };
 
 /// The images that a picture is colored from, row-major.
@@ -34,25 +34,36 @@ pub struct ResolveInput<'a> {
 const TIE: f64 = 1.0 / (255.0 * 1024.0);
 
 /// Bytes of all pixels, row-major, gamma-encoded.
-pub fn shade(shot: &Shot, input: &ResolveInput, geometry: &Geometry) -> Vec<[u8; 4]> {
+///
+/// # Errors
+/// The work was canceled.
+pub fn shade(shot: &Shot, input: &ResolveInput, geometry: &Geometry) -> Result<Vec<[u8; 4]>, Canceled> {
     shade_perturbed(shot, input, geometry, &Perturbation::default())
 }
 
 /// The same under a perturbation.
-pub fn shade_perturbed(shot: &Shot, input: &ResolveInput, geometry: &Geometry, perturbation: &Perturbation) -> Vec<[u8; 4]> {
-    let colors = surface_colors(shot, input.triangle_ids, geometry, perturbation);
+///
+/// # Errors
+/// The work was canceled.
+pub fn shade_perturbed(
+    shot: &Shot,
+    input: &ResolveInput,
+    geometry: &Geometry,
+    perturbation: &Perturbation,
+) -> Result<Vec<[u8; 4]>, Canceled> {
+    let colors = surface_colors(shot, input.triangle_ids, geometry, perturbation)?;
     finish(shot, input, &colors, perturbation.color_step)
 }
 
 /// Bytes of a picture from its gamma-encoded surface colors: dots and image effects, whose steps are moved by `color_step`.
-pub fn finish(shot: &Shot, input: &ResolveInput, colors: &[DVec4], color_step: f64) -> Vec<[u8; 4]> {
+pub fn finish(shot: &Shot, input: &ResolveInput, colors: &[DVec4], color_step: f64) -> Result<Vec<[u8; 4]>, Canceled> {
     finished_each(shot, input, colors, |finish, i, color| finish.pixel(i, color, color_step))
 }
 
 /// The same with both bytes of each channel whose color lies in the middle between two: all lower ones, and all upper ones.
-pub fn finish_at_ties(shot: &Shot, input: &ResolveInput, colors: &[DVec4], color_step: f64) -> [Vec<[u8; 4]>; 2] {
-    let both = finished_each(shot, input, colors, |finish, i, color| finish.pixel_at_ties(i, color, color_step));
-    both.into_iter().map(|[lower, upper]| (lower, upper)).unzip::<_, _, Vec<_>, Vec<_>>().into()
+pub fn finish_at_ties(shot: &Shot, input: &ResolveInput, colors: &[DVec4], color_step: f64) -> Result<[Vec<[u8; 4]>; 2], Canceled> {
+    let both = finished_each(shot, input, colors, |finish, i, color| finish.pixel_at_ties(i, color, color_step))?;
+    Ok(both.into_iter().map(|[lower, upper]| (lower, upper)).unzip::<_, _, Vec<_>, Vec<_>>().into())
 }
 
 /// What `pixel` makes of every pixel's gamma-encoded color.
@@ -61,15 +72,10 @@ fn finished_each<T: Send>(
     input: &ResolveInput,
     colors: &[DVec4],
     pixel: impl Fn(&Finish, usize, DVec4) -> T + Sync,
-) -> Vec<T> {
+) -> Result<Vec<T>, Canceled> {
     let tables = PictureTables::of(shot);
     let finish = Finish::new(shot, input, &tables);
-    let checkpoint = checkpoint();
-    let finished = |(i, &color): (usize, &DVec4)| {
-        checkpoint.pass();
-        pixel(&finish, i, color)
-    };
-    colors.par_iter().enumerate().map(finished).collect()
+    map_each(colors.par_iter().enumerate(), |(i, &color)| pixel(&finish, i, color))
 }
 
 /// What image effects read beside the images.

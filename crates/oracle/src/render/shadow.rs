@@ -40,12 +40,12 @@ pub fn shadow_map(scene: &Scene, view: &View, stack: &Stack) -> Result<Option<Bo
     let casting = stack.shadow_casters();
     let draws = casting.draws(scene, &view)?;
     let shot = Shot::new(scene, &draws, &view, &casting);
-    let mut geometry = project(&shot);
+    let mut geometry = project(&shot)?;
     geometry.sample_setups = sample_setups(&shot, &geometry);
-    let (triangles, _) = triangles(&shot, &geometry);
+    let (triangles, _) = triangles(&shot, &geometry)?;
     let tests = SampleTests::new(&shot, &geometry);
     check_samples("shadow map", &triangles, &tests, &view)?;
-    let depths = nearest_depths(&tests, &triangles, &view);
+    let depths = nearest_depths(&tests, &triangles, &view)?;
     let keys = depths.iter().map(|depth| if depth.is_finite() { depth_key(*depth) } else { 0 }).collect();
     Ok(Some(Box::new(ShadowMap { depth_keys: keys, geometry })))
 }

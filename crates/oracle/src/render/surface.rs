@@ -30,15 +30,15 @@ use crate::{
     frame::{Geometry, SnappedVertex},
     math::srgb,
     scene::{Accessor, Scene, view::View},
-    work::checkpoint,
+    work::{Canceled, checkpoint},
 };
 
 /// Surface colors of all pixels, given the triangle of each; the background without one. Row-major, gamma-encoded.
 ///
 /// `geometry` supplies the snapped corners from which weights follow; triangles that were clipped are weighted in clip space.
-pub fn surface_colors(shot: &Shot, triangle_ids: &[u32], geometry: &Geometry, perturbation: &Perturbation) -> Vec<DVec4> {
+pub fn surface_colors(shot: &Shot, triangle_ids: &[u32], geometry: &Geometry, perturbation: &Perturbation) -> Result<Vec<DVec4>, Canceled> {
     let background = background(shot.view);
-    let ranks = ranks(shot, geometry);
+    let ranks = ranks(shot, geometry)?;
     let light = Light::of(shot, geometry);
     each_surface(shot, triangle_ids, geometry, perturbation, |y, found| {
         let Some((triangle, surface)) = found else { return background[y] };
@@ -61,11 +61,11 @@ pub fn each_surface<T: Send>(
     geometry: &Geometry,
     perturbation: &Perturbation,
     visit: impl Fn(usize, Option<(&SurfaceTriangle, Surface)>) -> T + Sync,
-) -> Vec<T> {
+) -> Result<Vec<T>, Canceled> {
     let width = shot.view.width.max(1) as usize;
     let checkpoint = checkpoint();
     let row = |(y, ids): (usize, &[u32])| {
-        checkpoint.pass();
+        checkpoint.pass()?;
         let mut triangle: Option<SurfaceTriangle> = None;
         let pixel = |(x, &id): (usize, &u32)| {
             // Neighbors usually show the same triangle.
@@ -74,9 +74,12 @@ pub fn each_surface<T: Send>(
             }
             visit(y, triangle.as_ref().map(|triangle| (triangle, triangle.surface(x, y, perturbation))))
         };
-        ids.iter().enumerate().map(pixel).collect::<Vec<_>>()
+        Ok(ids.iter().enumerate().map(pixel).collect::<Vec<_>>())
     };
-    triangle_ids.par_chunks(width).enumerate().flat_map_iter(row).collect()
+    let rows = triangle_ids.par_chunks(width).enumerate().map(row).collect::<Result<Vec<_>, Canceled>>()?;
+    let mut all = Vec::with_capacity(triangle_ids.len());
+    rows.into_iter().for_each(|row| all.extend(row));
+    Ok(all)
 }
 
 /// Linear RGBA as sRGB, each channel from 0 to 1; alpha is not gamma-encoded.

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     frame::{ClippedTriangle, Counters, Geometry, SnappedVertex, vertex_flags},
     scene::draw::{Draw, totals},
-    work::checkpoint,
+    work::{Canceled, checkpoint},
 };
 
 /// A triangle to be drawn, wound clockwise on the screen (positive doubled area with y down).
@@ -48,7 +48,10 @@ impl OrientedTriangle {
 ///
 /// Clipped triangles replace their parent. One that has no area, or that runs against the sum of its parent's clipped
 /// triangles, flipped in the snap and is dropped.
-pub fn triangles(shot: &Shot, geometry: &Geometry) -> (Vec<OrientedTriangle>, Counters) {
+///
+/// # Errors
+/// The work was canceled.
+pub fn triangles(shot: &Shot, geometry: &Geometry) -> Result<(Vec<OrientedTriangle>, Counters), Canceled> {
     const CHUNK: u32 = 1 << 16;
     let mut clipped: Vec<(usize, &ClippedTriangle)> = geometry.clipped_triangles.iter().enumerate().collect();
     clipped.sort_by_key(|(_, triangle)| triangle.parent);
@@ -60,13 +63,13 @@ pub fn triangles(shot: &Shot, geometry: &Geometry) -> (Vec<OrientedTriangle>, Co
         let ids = draw.first_triangle..draw.first_triangle + shot.scene.primitives[draw.primitive].triangle_count();
         let starts: Vec<u32> = ids.clone().step_by(CHUNK as usize).collect();
         let chunk = |start: u32| {
-            checkpoint.pass();
+            checkpoint.pass()?;
             let (drawn, counters) = (Vec::new(), Counters::default());
             let mut assembly = Assembly { shot, draw, geometry, clipped: &clipped, clipped_entries, drawn, counters };
             (start..ids.end.min(start.saturating_add(CHUNK))).for_each(|id| assembly.triangle(id));
-            (assembly.drawn, assembly.counters)
+            Ok((assembly.drawn, assembly.counters))
         };
-        for (triangles, counts) in starts.into_par_iter().map(chunk).collect::<Vec<_>>() {
+        for (triangles, counts) in starts.into_par_iter().map(chunk).collect::<Result<Vec<_>, Canceled>>()? {
             drawn.extend(triangles);
             counters.rejected_nonfinite += counts.rejected_nonfinite;
             counters.rejected_range += counts.rejected_range;
@@ -75,7 +78,7 @@ pub fn triangles(shot: &Shot, geometry: &Geometry) -> (Vec<OrientedTriangle>, Co
             counters.flipped_clips += counts.flipped_clips;
         }
     }
-    (drawn, counters)
+    Ok((drawn, counters))
 }
 
 /// Assembly of a run of triangles of one draw.

@@ -89,12 +89,12 @@ pub fn can_draw_sequence(scene: &Scene, sequence: &[(View, Stack)], scale: f64) 
 fn samples_of_images(scene: &Scene, view: &View, stack: &Stack) -> Result<[u64; 2], DrawError> {
     let count = |view: &View, stack: &Stack| {
         if view.pixels() == 0 {
-            return Ok(0);
+            return Ok::<u64, DrawError>(0);
         }
         let draws = stack.draws(scene, view)?;
         let shot = Shot::new(scene, &draws, view, stack);
-        let geometry = project(&shot);
-        Ok(samples(&triangles(&shot, &geometry).0, &SampleTests::of_effects(stack, &geometry), view))
+        let geometry = project(&shot)?;
+        Ok(samples(&triangles(&shot, &geometry)?.0, &SampleTests::of_effects(stack, &geometry), view))
     };
     let light = stack.shadow_map_view(scene, view);
     Ok([count(view, stack)?, light.map_or(Ok(0), |light| count(&light, &stack.shadow_casters()))?])

@@ -385,7 +385,7 @@ fn append(limits: &Limits, bytes: &mut Vec<u8>, more: &[u8]) -> Result<u32, Load
     let checkpoint = checkpoint();
     for part in more.chunks(PART_BYTES) {
         bytes.extend_from_slice(part);
-        checkpoint.pass();
+        checkpoint.pass()?;
     }
     bytes.resize(bytes.len().next_multiple_of(4), 0);
     Ok(start)

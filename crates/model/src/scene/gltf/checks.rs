@@ -11,7 +11,7 @@ use crate::{
         model::{Primitive, Scene},
         texture::{MAX_REPEATS, Texture, texcoord},
     },
-    work::{checkpoint, map_parts},
+    work::{Canceled, checkpoint, map_parts},
 };
 
 /// Below this a single thread adds up normals.
@@ -20,8 +20,8 @@ const FEW_VERTICES: usize = 1 << 16;
 const MOST_THREADS: usize = 8;
 
 /// The first of `count` elements of which `is_wrong` is true.
-fn first(count: u32, is_wrong: impl Fn(u32) -> bool + Sync) -> Option<u32> {
-    map_parts(count, |mut part| part.find(|&element| is_wrong(element))).into_iter().flatten().next()
+fn first(count: u32, is_wrong: impl Fn(u32) -> bool + Sync) -> Result<Option<u32>, Canceled> {
+    Ok(map_parts(count, |mut part| part.find(|&element| is_wrong(element)))?.into_iter().flatten().next())
 }
 
 /// Checks that all values of a copied attribute are finite.
@@ -31,7 +31,7 @@ pub fn check_finite(scene: &Scene, accessor: &Accessor) -> Result<(), LoadError>
         3 => accessor.vector(bytes, vertex).into_iter().all(f64::is_finite),
         components => (0..components).all(|component| accessor.value(bytes, vertex, component).is_finite()),
     };
-    match first(accessor.count, |vertex| !is_finite(vertex)) {
+    match first(accessor.count, |vertex| !is_finite(vertex))? {
         Some(vertex) => Err(LoadError::new(format!("vertex {vertex} has a value that is not finite"))),
         None => Ok(()),
     }
@@ -41,7 +41,7 @@ pub fn check_finite(scene: &Scene, accessor: &Accessor) -> Result<(), LoadError>
 pub fn check_indices(scene: &Scene, primitive: &Primitive) -> Result<(), LoadError> {
     let Some(indices) = &primitive.indices else { return Ok(()) };
     let count = primitive.vertex_count();
-    match first(indices.count, |corner| indices.integer(&scene.index_bytes, corner, 0) >= i64::from(count)) {
+    match first(indices.count, |corner| indices.integer(&scene.index_bytes, corner, 0) >= i64::from(count))? {
         Some(corner) => {
             let index = indices.integer(&scene.index_bytes, corner, 0);
             Err(LoadError::new(format!("corner {corner} refers to vertex {index}, but there are only {count}")))
@@ -53,7 +53,7 @@ pub fn check_indices(scene: &Scene, primitive: &Primitive) -> Result<(), LoadErr
 /// Checks that no texture coordinates repeat an image more often than a lookup can tell.
 pub fn check_repeats(scene: &Scene, accessor: &Accessor, texture: &Texture) -> Result<(), LoadError> {
     let coordinates = |vertex| texture.image_coordinates(texcoord(accessor, &scene.vertex_bytes, vertex));
-    match first(accessor.count, |vertex| coordinates(vertex).abs().max_element() > MAX_REPEATS) {
+    match first(accessor.count, |vertex| coordinates(vertex).abs().max_element() > MAX_REPEATS)? {
         Some(vertex) => {
             let at = coordinates(vertex);
             let reason = format!("vertex {vertex} has the image coordinates {} {}; allowed: magnitudes up to {MAX_REPEATS}", at.x, at.y);
@@ -71,14 +71,14 @@ pub fn measure(scene: &Scene, primitive: &mut Primitive) -> Result<(), LoadError
         let mut bounds = Bounds::EMPTY;
         part.for_each(|vertex| bounds.include(at(vertex)));
         bounds
-    });
+    })?;
     let longest = map_parts(primitive.triangle_count(), |part| {
         let edge = |t| {
             let [a, b, c] = primitive.corners(scene, t).map(at);
             a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a))
         };
         part.map(edge).fold(0.0, f64::max)
-    });
+    })?;
     let mut bounds = Bounds::EMPTY;
     boxes.iter().for_each(|part| {
         bounds.include(part.min);
@@ -92,7 +92,10 @@ pub fn measure(scene: &Scene, primitive: &mut Primitive) -> Result<(), LoadError
 ///
 /// glTF asks for flat normals. Without indices the result is flat. Shared vertices would have to be split first, so theirs
 /// are smooth instead and the bytes of the file stay as they are.
-pub fn smooth_normals(scene: &Scene, primitive: &Primitive) -> Vec<DVec3> {
+///
+/// # Errors
+/// The work was canceled.
+pub fn smooth_normals(scene: &Scene, primitive: &Primitive) -> Result<Vec<DVec3>, Canceled> {
     let at = |vertex: u32| DVec3::from(primitive.position(scene, vertex).map(f64::from));
     let mut sums = vec![DVec3::ZERO; primitive.vertex_count() as usize];
     let checkpoint = checkpoint();
@@ -100,12 +103,12 @@ pub fn smooth_normals(scene: &Scene, primitive: &Primitive) -> Vec<DVec3> {
     // seen in its last bits.
     let threads = if sums.len() < FEW_VERTICES { 1 } else { rayon::current_num_threads().min(MOST_THREADS) };
     let share = sums.len().div_ceil(threads).max(1);
-    sums.par_chunks_mut(share).enumerate().for_each(|(part, sums)| {
+    sums.par_chunks_mut(share).enumerate().try_for_each(|(part, sums)| {
         let first = part * share;
         let own = |corner: u32| (corner as usize).wrapping_sub(first);
         for t in 0..primitive.triangle_count() {
             if t.is_multiple_of(1 << 16) {
-                checkpoint.pass();
+                checkpoint.pass()?;
             }
             let corners = primitive.corners(scene, t);
             if corners.iter().all(|&corner| own(corner) >= sums.len()) {
@@ -119,8 +122,9 @@ pub fn smooth_normals(scene: &Scene, primitive: &Primitive) -> Vec<DVec3> {
                 }
             }
         }
-    });
-    sums
+        Ok(())
+    })?;
+    Ok(sums)
 }
 
 /// The normal from a sum of normals.
@@ -138,7 +142,7 @@ mod tests {
         let scene = builtin::build("sphere?triangles=200000").expect("a builtin");
         let normals = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-            pool.install(|| smooth_normals(&scene, &scene.primitives[0]))
+            pool.install(|| smooth_normals(&scene, &scene.primitives[0]).expect("nobody cancels it"))
         };
         let alone = normals(1);
         assert!(alone.len() > FEW_VERTICES && alone.iter().all(|sum| sum.length() > 0.0));

@@ -41,7 +41,7 @@ pub fn morph_targets(writer: &mut SceneWriter, about: &json::mesh::Primitive, co
 }
 
 fn morph_target(writer: &mut SceneWriter, target: &json::mesh::MorphTarget, count: u32) -> Result<MorphTarget, LoadError> {
-    let mut read = |index: Option<json::Index<json::Accessor>>, what: &str| {
+    let mut read = |index: Option<json::Index<json::Accessor>>, what: &str| -> Result<_, LoadError> {
         let Some(index) = index else { return Ok(None) };
         let formats = if writer.is_quantized { QUANTIZED_DISPLACEMENTS } else { FLOAT };
         let accessor = writer.attribute(index.value(), count, &[3], formats).map_err(|error| error.within(what))?;

@@ -2,7 +2,7 @@
 
 use std::{fmt::Display, path::Path};
 
-use crate::scene::parts::MAX_NAME_CHARS;
+use crate::{scene::parts::MAX_NAME_CHARS, work::Canceled};
 
 /// Why a model cannot be loaded; one sentence.
 #[derive(Debug, PartialEq, thiserror::Error)]
@@ -17,6 +17,12 @@ impl LoadError {
     /// Prepends the place of the error.
     pub fn within(self, context: impl Display) -> Self {
         Self(format!("{context}: {}", self.0))
+    }
+}
+
+impl From<Canceled> for LoadError {
+    fn from(canceled: Canceled) -> Self {
+        Self::new(canceled)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Loads a model: follows its parts in order and assembles the scene.
 
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use gltf::json;
 
@@ -18,14 +18,11 @@ use super::{
     skin,
     source::{Bytes, Source, reserve},
 };
-use crate::{
-    scene::{memory::MemoryBudget, model::Scene, pose, rig::Rig},
-    work::is_cancellation,
-};
+use crate::scene::{memory::MemoryBudget, model::Scene, pose, rig::Rig};
 
 /// Loads a model from memory, within the least memory budget. `read` supplies the files that it refers to.
 ///
-/// Within [`Work`](crate::work::Work) it unwinds where that was canceled.
+/// Within [`Work`](crate::work::Work) it ends where that was canceled.
 ///
 /// # Errors
 /// If the model is malformed, exceeds [`limits`](super::limits), or `read` fails.
@@ -50,10 +47,8 @@ pub fn load_within(model: &dyn Source, budget: MemoryBudget, read: &mut ReadFile
 
 /// Runs `work`. A panic in the validation of the crate `gltf` must not close the window.
 fn caught(work: impl FnOnce() -> Result<Scene, LoadError>) -> Result<Scene, LoadError> {
-    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|payload| match is_cancellation(&*payload) {
-        true => resume_unwind(payload),
-        false => Err(LoadError::new("the loader failed on this file, which is a bug: please report it")),
-    })
+    catch_unwind(AssertUnwindSafe(work))
+        .unwrap_or_else(|_| Err(LoadError::new("the loader failed on this file, which is a bug: please report it")))
 }
 
 /// The JSON and, of a GLB, the binary chunk.

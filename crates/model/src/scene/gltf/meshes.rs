@@ -189,19 +189,19 @@ impl<'a> Loader<'a> {
             },
         };
         let (checkpoint, step) = (checkpoint(), self.step_bytes(about));
-        checkpoint.advance(step);
+        checkpoint.advance(step)?;
         check_indices(&self.writer.scene, &primitive).map_err(at("indices"))?;
-        checkpoint.advance(step);
+        checkpoint.advance(step)?;
         measure(&self.writer.scene, &mut primitive).map_err(at("POSITION"))?;
-        checkpoint.advance(step);
+        checkpoint.advance(step)?;
         if normals.is_none() {
-            let smooth = smooth_normals(&self.writer.scene, &primitive);
+            let smooth = smooth_normals(&self.writer.scene, &primitive)?;
             primitive.normals = self.writer.append_vectors(smooth.len(), smooth.iter().copied().map(normal)).map_err(at("NORMAL"))?;
         } else {
             check_finite(&self.writer.scene, &primitive.normals).map_err(at("NORMAL"))?;
         }
-        checkpoint.advance(step);
-        primitive.normals_agree = primitive.normals_agree(&self.writer.scene);
+        checkpoint.advance(step)?;
+        primitive.normals_agree = primitive.normals_agree(&self.writer.scene)?;
         if let Some(colors) = &primitive.colors {
             check_finite(&self.writer.scene, colors).map_err(at("COLOR_0"))?;
             if colors.components == 4 && self.writer.scene.materials[material].alpha_cutoff.is_some() {

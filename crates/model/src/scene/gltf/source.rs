@@ -34,7 +34,7 @@ impl Source for &[u8] {
         let checkpoint = checkpoint();
         for part in self[range.start as usize..range.end as usize].chunks(PART_BYTES) {
             bytes.extend_from_slice(part);
-            checkpoint.pass();
+            checkpoint.pass()?;
         }
         Ok(())
     }
