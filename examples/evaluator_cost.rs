@@ -67,15 +67,15 @@ fn main() {
     let surfaces: Vec<Surface> = (0..SURFACES).map(|_| surface(&mut rng)).collect();
     println!("{:12} {:>8} {:>10} {:>6}", "effect", "Rust ns", "WGSL ns", "ratio");
     let mut product = (0.0, 0);
-    for effect in EFFECTS {
-        let Some(native) = effect.hooks.surface else { continue };
+    for effect in EFFECTS.iter() {
+        let Some(native) = &effect.hooks.surface else { continue };
         let of_text = evaluated(&Library::Embedded, effect).map(|hooks| hooks.surface);
         let Ok(Some(text)) = of_text else {
             println!("{:12} cannot be evaluated", effect.name);
             continue;
         };
-        let words = (effect.defaults)();
-        let [native, text] = [cost(native, &surfaces, &words), cost(text, &surfaces, &words)];
+        let words = &effect.defaults;
+        let [native, text] = [cost(&**native, &surfaces, words), cost(&*text, &surfaces, words)];
         println!("{:12} {native:8.1} {text:10.1} {:6.1}", effect.name, text / native);
         product = (product.0 + (text / native).ln(), product.1 + 1);
     }

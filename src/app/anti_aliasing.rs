@@ -60,7 +60,7 @@ fn with_automatic(accuracy: AccuracyRequest) -> AccuracyRequest {
 #[derive(Clone, Debug)]
 struct Subject {
     scene: Weak<Scene>,
-    effects: Vec<&'static str>,
+    effects: Vec<String>,
     size: [u32; 2],
 }
 
@@ -101,7 +101,8 @@ impl AutomaticAntiAliasing {
         caps: &Caps,
         finished: Option<Finished>,
     ) -> AccuracyRequest {
-        let subject = Subject { scene: Arc::downgrade(scene), effects: stack.0.iter().map(|enabled| enabled.effect.name).collect(), size };
+        let subject =
+            Subject { scene: Arc::downgrade(scene), effects: stack.0.iter().map(|enabled| enabled.effect.name.clone()).collect(), size };
         // The first report after a change may still be that of the picture before.
         let is_same = self.drawn.as_ref() == Some(&subject);
         let is_slow = |finished: &Finished| {

@@ -52,7 +52,7 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
             None => state.notify(Level::Info, "No effect is enabled, so there is nothing to randomize"),
         },
         Command::VaryBy(percent) => state.session.randomizer.vary_percent = percent.clamp(1.0, 100.0),
-        Command::Lock((effect, field), is_locked) => state.session.randomizer.lock(effect, field, is_locked),
+        Command::Lock((effect, field), is_locked) => state.session.randomizer.lock(&effect, &field, is_locked),
         Command::RecallSeed(seed) => recall_seed(state, seed),
         Command::SetValues(values) => set_values(state, &values),
         Command::DrawCells(cells) => state.jobs.draw_cells(state.screen.gpu.clone(), cells),
@@ -95,8 +95,8 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
         Command::Verify => verify(state, panels),
         Command::CancelVerify => state.verification.cancel(),
         Command::CancelLoading => open::cancel_loading(state, panels),
-        Command::Mute(effect, true) => drop(state.session.muted.insert(effect.name)),
-        Command::Mute(effect, false) => drop(state.session.muted.remove(effect.name)),
+        Command::Mute(effect, true) => drop(state.session.muted.insert(effect.name.clone())),
+        Command::Mute(effect, false) => drop(state.session.muted.remove(&effect.name)),
         Command::HoverRow { path, value } => state.clipboard.hovered_row = Some((path, value)),
         Command::CopyPreset => {
             ctx.copy_text(preset_file::to_line(&state.session.preset_file));

@@ -32,16 +32,16 @@ use eframe::egui::KeyboardShortcut;
 pub use super::preset_edit::{Edit, Parameter};
 
 /// What a click on the model sets.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Picking {
     /// A point.
     Point(Parameter),
     /// A part of this kind that the effect changes.
-    Part(&'static Effect, PartKind),
+    Part(Arc<Effect>, PartKind),
 }
 
 impl Picking {
-    pub const fn effect(&self) -> &'static Effect {
+    pub fn effect(&self) -> &Arc<Effect> {
         match self {
             Self::Point((effect, _)) | Self::Part(effect, _) => effect,
         }
@@ -93,7 +93,7 @@ pub enum Command {
     /// Stops loading a scene.
     CancelLoading,
     /// Hides an effect (true) or shows it again. Muting is a viewing aid and is not saved.
-    Mute(&'static Effect, bool),
+    Mute(Arc<Effect>, bool),
     /// The pointer is over the row of this parameter or setting: copy and paste apply to its value.
     HoverRow {
         path: String,
@@ -190,12 +190,12 @@ pub enum CodeUse {
 }
 
 /// What a new effect begins as.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Origin {
     /// A commented template.
     Template(Hook),
     /// The text of another effect, which it replaces in the stack.
-    Duplicate(&'static Effect),
+    Duplicate(Arc<Effect>),
 }
 
 pub enum FileCommand {
@@ -225,7 +225,7 @@ pub enum FileCommand {
         size: [u32; 2],
     },
     /// Asks for the name of a new effect, and for its hook unless it duplicates another effect.
-    AskNewEffect(Option<&'static Effect>),
+    AskNewEffect(Option<Arc<Effect>>),
     /// Writes a new effect for the user to change, and enables it.
     NewEffect {
         name: String,
@@ -264,7 +264,7 @@ pub enum Naming {
     /// Another name for the preset of this file.
     Preset { path: PathBuf, title: String },
     /// A name for the present values of this effect.
-    Values(&'static Effect),
+    Values(Arc<Effect>),
 }
 
 /// Favorites, files of presets, and values of effects.
@@ -283,7 +283,7 @@ pub enum LibraryCommand {
     /// What was deleted stays in the trash.
     ForgetDeleted,
     /// Puts the effect with its values on the clipboard.
-    CopyEffect(&'static Effect),
+    CopyEffect(Arc<Effect>),
     /// Gives an effect the values of this file.
     UseValues(PathBuf),
     /// Moves this file of values to the trash.

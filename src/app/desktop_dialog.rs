@@ -20,7 +20,7 @@ mod native {
         extensions: &[&str],
         start: &Path,
         is_to_open: bool,
-    ) -> impl FnOnce() -> Result<Option<PathBuf>, String> + Send + 'static {
+    ) -> impl FnOnce() -> Result<Option<PathBuf>, String> + Send + use<> {
         let mut dialog = rfd::AsyncFileDialog::new().add_filter(types_name, extensions);
         if let Some(folder) = start.parent().filter(|folder| folder.is_dir()) {
             dialog = dialog.set_directory(folder);
@@ -101,7 +101,7 @@ mod native {
 mod page {
     use std::path::{Path, PathBuf};
 
-    pub fn prepare(_: &str, _: &[&str], _: &Path, _: bool) -> impl FnOnce() -> Result<Option<PathBuf>, String> + Send + 'static {
+    pub fn prepare(_: &str, _: &[&str], _: &Path, _: bool) -> impl FnOnce() -> Result<Option<PathBuf>, String> + Send + use<> {
         || Err("a page has no folders".into())
     }
 }

@@ -18,11 +18,11 @@ impl Session {
     /// # Errors
     /// In a sentence that names the parameter.
     pub fn set_parameter(&mut self, (effect, field): Parameter, value: &Value) -> Result<(), String> {
-        if self.preset().animation.get(effect.name, field.name).is_some() {
+        if self.preset().animation.get(&effect.name, &field.name).is_some() {
             self.playback.playing = false; // Otherwise every frame would set a keyframe.
             return self.set_keyframe((effect, field), value.components());
         }
-        let Some(enabled) = self.preset_mut().stack.get_mut(effect.name) else { return Ok(()) };
+        let Some(enabled) = self.preset_mut().stack.get_mut(&effect.name) else { return Ok(()) };
         field.set_value(&mut enabled.words, value).map_err(|error| format!("{}.{}: {error}", effect.name, field.name))
     }
 
@@ -42,28 +42,28 @@ impl Session {
                 }
             }
             Edit::Parameter(parameter, value) => return self.set_parameter(parameter, &value),
-            Edit::Enable(effect) => drop(preset.stack.enable(effect)),
-            Edit::Disable(effect) => self.disable(effect.name),
-            Edit::Scope(effect, on) => preset.stack.limit(effect, on).map_err(|conflict| conflict.to_string())?,
+            Edit::Enable(effect) => drop(preset.stack.enable(&effect)),
+            Edit::Disable(effect) => self.disable(&effect.name),
+            Edit::Scope(effect, on) => preset.stack.limit(&effect, on).map_err(|conflict| conflict.to_string())?,
             Edit::Replace(other, effect) => {
-                self.disable(other);
-                self.preset_mut().stack.enable(effect);
+                self.disable(&other);
+                self.preset_mut().stack.enable(&effect);
             }
             Edit::Rebind(old, new) => {
-                preset.rebind(&[(old, new)]);
-                if self.muted.remove(old.name) {
-                    self.muted.insert(new.name);
+                preset.rebind(&[(old.clone(), new.clone())]);
+                if self.muted.remove(&old.name) {
+                    self.muted.insert(new.name.clone());
                 }
             }
             Edit::Swap(a, b) if a.max(b) < preset.stack.0.len() => preset.stack.0.swap(a, b),
             Edit::Swap(..) => {}
             Edit::Move(from, to) => preset.stack.move_effect(from, to),
             Edit::EnableAt(effect, index) => {
-                if let Some(conflict) = preset.stack.conflict_with(effect) {
+                if let Some(conflict) = preset.stack.conflict_with(&effect) {
                     return Err(conflict.to_string());
                 }
                 let before = preset.stack.0.len();
-                preset.stack.enable(effect);
+                preset.stack.enable(&effect);
                 let from = preset.stack.0.iter().position(|enabled| enabled.effect == effect).unwrap_or(index);
                 // A new effect in front of the index moves it by one.
                 let moved = usize::from(preset.stack.0.len() > before && from < index);
@@ -97,7 +97,7 @@ impl Session {
     /// Disables every muted effect.
     pub fn drop_muted(&mut self) {
         for name in std::mem::take(&mut self.muted) {
-            self.preset_mut().disable(name);
+            self.preset_mut().disable(&name);
         }
     }
 
@@ -129,7 +129,7 @@ impl Session {
         if stack.0.is_empty() {
             return None;
         }
-        Some(self.randomizer.randomize(stack, |effect, field| animation.get(effect.name, field.name).is_some()))
+        Some(self.randomizer.randomize(stack, |effect, field| animation.get(&effect.name, &field.name).is_some()))
     }
 
     /// Goes back to the values that a seed gave. Returns false if they are not known any more.
@@ -144,10 +144,11 @@ impl Session {
     pub fn reset_group(&mut self, group: &str) -> Result<(), String> {
         match self.preset_file.effects.find(group) {
             Ok(Some(effect)) => {
+                let defaults = effect.defaults.clone();
                 let Preset { animation, stack, .. } = self.preset_mut();
                 animation.remove_effect(group);
                 if let Some(enabled) = stack.get_mut(group) {
-                    enabled.words = (effect.defaults)();
+                    enabled.words = defaults;
                 }
                 Ok(())
             }

@@ -12,7 +12,7 @@ pub const LARGE_THUMBNAIL: [u32; 2] = [288, 216];
 
 /// A picture of an effect that is to be drawn.
 pub struct EffectPicture {
-    pub effect: &'static str,
+    pub effect: String,
     pub preset: Preset,
     pub scene: Arc<Scene>,
     pub size: [u32; 2],

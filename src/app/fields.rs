@@ -31,7 +31,7 @@ pub struct Row {
 }
 
 /// What a row edits.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 enum Edited {
     Setting(&'static Setting),
     Parameter(Parameter),
@@ -40,18 +40,18 @@ enum Edited {
 impl Row {
     /// The row of an effect's parameter.
     pub fn of_parameter((effect, field): Parameter, words: &[u32]) -> Self {
-        let (path, modified) = (format!("{}.{}", effect.name, field.name), !field.same(words, &(effect.defaults)()));
-        Self::new(path, field.param, modified, Edited::Parameter((effect, field)))
+        let (path, modified) = (format!("{}.{}", effect.name, field.name), !field.same(words, &effect.defaults));
+        Self::new(path, field.param.clone(), modified, Edited::Parameter((effect, field)))
     }
 
     /// The row of a parameter whose lengths are radii of the scene's box.
     pub fn in_radii(mut self) -> Self {
-        self.param.unit = match self.param.unit {
-            "m" => "r",
-            "m/s" => "r/s",
-            "m/s²" => "r/s²",
-            "per m" => "per r",
-            other => other,
+        self.param.unit = match self.param.unit.as_str() {
+            "m" => "r".into(),
+            "m/s" => "r/s".into(),
+            "m/s²" => "r/s²".into(),
+            "per m" => "per r".into(),
+            _ => self.param.unit,
         };
         self
     }
@@ -63,24 +63,24 @@ impl Row {
 
     /// The row of a setting of the preset.
     pub fn of_setting(setting: &'static Setting, preset: &Preset) -> Self {
-        Self::new(setting.path(), setting.param, setting.is_modified(preset), Edited::Setting(setting))
+        Self::new(setting.path(), setting.param.clone(), setting.is_modified(preset), Edited::Setting(setting))
     }
 
     fn new(path: String, param: Param, modified: bool, edited: Edited) -> Self {
-        Self { path, label: label(param.name, param.unit), param, modified, keying: None, edited }
+        Self { path, label: label(&param.name, &param.unit), param, modified, keying: None, edited }
     }
 
     /// The edit after which the row shows `value`.
     fn edit(&self, value: Value) -> Edit {
-        match self.edited {
+        match &self.edited {
             Edited::Setting(setting) => Edit::Setting(setting, value),
-            Edited::Parameter(parameter) => Edit::Parameter(parameter, value),
+            Edited::Parameter(parameter) => Edit::Parameter(parameter.clone(), value),
         }
     }
 
     /// The value as TOML, as copied and pasted.
     pub fn written(&self, value: &Value) -> String {
-        toml_value::write_text(self.param.value_type, value)
+        toml_value::write_text(&self.param.value_type, value)
     }
 
     /// What the slider spans; none where there is a number field alone.
@@ -176,8 +176,8 @@ fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<RowComm
         }
     });
     response.on_hover_ui(|ui| {
-        ui.label(RichText::new(row.param.doc).color(theme::text_strong()));
-        ui.label(theme::weak(format!("{}   {}{}", row.path, row.param.allowed(), spaced(row.param.unit))));
+        ui.label(RichText::new(&row.param.doc).color(theme::text_strong()));
+        ui.label(theme::weak(format!("{}   {}{}", row.path, row.param.allowed(), spaced(&row.param.unit))));
     });
     command
 }
@@ -187,7 +187,7 @@ fn spaced(unit: &str) -> String {
 }
 
 fn control_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) -> Option<Value> {
-    match (row.param.value_type, value) {
+    match (&row.param.value_type, value) {
         (_, Value::Bool(on)) => {
             let mut on = *on;
             let shown = ui.checkbox(&mut on, "").accessible_name(&row.path);
@@ -202,7 +202,7 @@ fn control_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) -> Opt
         },
         (ValueType::Text { max_chars }, Value::Text(text)) => {
             let mut text = text.clone();
-            let edit = egui::TextEdit::singleline(&mut text).char_limit(max_chars).desired_width(ui.available_width());
+            let edit = egui::TextEdit::singleline(&mut text).char_limit(*max_chars).desired_width(ui.available_width());
             let shown = ui.add(edit).accessible_name(&row.path);
             reveal::focus(&row.path, &shown);
             shown.changed().then_some(Value::Text(text))
@@ -211,14 +211,14 @@ fn control_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) -> Opt
     }
 }
 
-fn word_ui(ui: &mut Ui, row: &Row, words: &[&str], chosen: usize) -> Option<Value> {
+fn word_ui(ui: &mut Ui, row: &Row, words: &[String], chosen: usize) -> Option<Value> {
     let mut now = chosen;
     let shown = egui::ComboBox::from_id_salt(&row.path)
-        .selected_text(words.get(chosen).copied().unwrap_or_default())
+        .selected_text(words.get(chosen).map_or("", String::as_str))
         .width(ui.available_width())
         .show_ui(ui, |ui| {
             for (index, word) in words.iter().enumerate() {
-                ui.selectable_value(&mut now, index, *word);
+                ui.selectable_value(&mut now, index, word);
             }
         })
         .response
@@ -249,7 +249,7 @@ fn number_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: f64) -> Option<
     }
     let speed = soft.map_or_else(|| value.abs().max(1.0) * 0.01, |[from, to]| (to - from) / 300.0);
     let width = if soft.is_some() { NUMBER_WIDTH } else { ui.available_width().min(120.0) };
-    let unit = spaced(row.param.unit);
+    let unit = spaced(&row.param.unit);
     let speed = if whole { speed.max(0.05) } else { speed };
     let field = NumberField { range: [low, high], speed, is_whole: whole, decimals: decimals(soft), unit: &unit };
     let (response, said) = field.show(ui, width, &mut now);
@@ -263,7 +263,7 @@ fn number_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: f64) -> Option<
 /// Says that a typed number was not taken as it was.
 fn say(commands: &Commands, row: &Row, said: Option<String>) {
     if let Some(said) = said {
-        let text = format!("{} takes {}{}: {said}.", row.path, row.param.allowed(), spaced(row.param.unit));
+        let text = format!("{} takes {}{}: {said}.", row.path, row.param.allowed(), spaced(&row.param.unit));
         commands.send(Command::Notify(Level::Warning, text));
     }
 }
@@ -340,9 +340,13 @@ mod tests {
 
     #[test]
     fn no_row_of_an_effect_with_defaults_is_marked_as_modified() {
-        for &effect in EFFECTS {
-            let words = (effect.defaults)();
-            assert!(effect.fields.iter().all(|field| !Row::of_parameter((effect, field), &words).modified), "{}", effect.name);
+        for effect in EFFECTS.iter() {
+            let words = &effect.defaults;
+            assert!(
+                effect.fields.iter().all(|field| !Row::of_parameter((effect.clone(), field.clone()), words).modified),
+                "{}",
+                effect.name
+            );
         }
     }
 }

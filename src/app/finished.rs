@@ -61,7 +61,7 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
         Done::Cell(CellOf::Seed(seed), picture) => panels.randomize.arrived(ctx, seed, picture),
         Done::Thumbnail(id, image) => panels.browser.pictures.arrived(ctx, &id, image),
         Done::ThumbnailOn(key, id, image) => panels.browser.pictures.on_model_arrived(ctx, &key, &id, image),
-        Done::EffectPicture(effect, image) => panels.browser.effects.picture_arrived(ctx, effect, image),
+        Done::EffectPicture(effect, image) => panels.browser.effects.picture_arrived(ctx, &effect, image),
         Done::Favorites(outcome) => {
             state.favorites.write_ended();
             match outcome {

@@ -6,10 +6,11 @@ use eframe::egui::{self, Event, KeyboardShortcut};
 
 use super::{
     action::Action,
-    command::{Command, Commands, FileCommand, RowCommand},
+    command::{Command, Commands, FileCommand, Purpose, RowCommand},
     log::Level,
     settings::keymap::Keymap,
     state::State,
+    system_dialog,
     typing::HeldTyping,
 };
 
@@ -66,7 +67,8 @@ pub fn dropped_files(ctx: &egui::Context, commands: &Commands) {
     let mut dropped = ctx.input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect::<Vec<_>>());
     let rank = |path: &PathBuf| {
         let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
-        ["toml", "glb", "gltf", "png", "wgsl"].iter().position(|known| extension.as_ref().is_some_and(|e| e == known)).unwrap_or(usize::MAX)
+        let order = system_dialog::extensions(Purpose::Open);
+        order.iter().position(|known| extension.as_ref().is_some_and(|e| e == known)).unwrap_or(usize::MAX)
     };
     dropped.sort_by_key(rank);
     let Some(first) = dropped.first() else { return };

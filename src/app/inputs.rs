@@ -42,13 +42,14 @@ impl Inputs {
 
     /// True if both are drawn by the same kernels, unless the camera requires others.
     pub fn shares_kernels(&self, other: &Self) -> bool {
-        let effects = |inputs: &Self| inputs.stack.0.iter().map(|enabled| enabled.effect).collect::<Vec<_>>();
-        Arc::ptr_eq(&self.scene, &other.scene) && self.accuracy == other.accuracy && effects(self) == effects(other)
+        let has_same_effects =
+            || self.stack.0.iter().map(|enabled| &enabled.effect).eq(other.stack.0.iter().map(|enabled| &enabled.effect));
+        Arc::ptr_eq(&self.scene, &other.scene) && self.accuracy == other.accuracy && has_same_effects()
     }
 
     /// Names of the effects that `shown` does not have.
-    pub fn new_effects(&self, shown: Option<&Self>) -> Vec<&'static str> {
-        let is_new = |name: &&str| shown.is_none_or(|shown| shown.stack.get(name).is_none());
-        self.stack.0.iter().map(|enabled| enabled.effect.name).filter(is_new).collect()
+    pub fn new_effects(&self, shown: Option<&Self>) -> Vec<String> {
+        let is_new = |name: &&String| shown.is_none_or(|shown| shown.stack.get(name).is_none());
+        self.stack.0.iter().map(|enabled| &enabled.effect.name).filter(is_new).cloned().collect()
     }
 }

@@ -67,7 +67,7 @@ pub enum Done {
     /// The thumbnail of a preset on the user's own scene.
     ThumbnailOn(SceneKey, String, Option<egui::ColorImage>),
     /// The picture of an effect on the open model; none if it was cancelled or cannot be drawn.
-    EffectPicture(&'static str, Option<egui::ColorImage>),
+    EffectPicture(String, Option<egui::ColorImage>),
     /// The favorites were written.
     Favorites(Result<(), String>),
     Export(PathBuf, Result<(), String>),
@@ -325,7 +325,8 @@ impl Jobs {
                 true => Err(String::new()),
                 false => thumbnail_of(&preset, &scene, size).ok_or_else(String::new),
             };
-            Done::EffectPicture(effect, caught("drawing a picture of an effect", draw).ok())
+            let image = caught("drawing a picture of an effect", draw).ok();
+            Done::EffectPicture(effect, image)
         });
     }
 

@@ -1,5 +1,7 @@
 //! Names of keyframes, and what a row shows of them.
 
+use std::sync::Arc;
+
 use crate::{
     effects::Effect,
     preset::{Preset, animation::Track},
@@ -17,10 +19,11 @@ pub enum Keying {
 }
 
 /// One keyframe of one parameter.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct KeyId {
-    pub effect: &'static Effect,
-    pub field: &'static str,
+    pub effect: Arc<Effect>,
+    /// Name of the parameter.
+    pub field: String,
     pub time_s: f64,
 }
 
@@ -32,7 +35,7 @@ impl KeyId {
 
     /// Its track and its index there.
     pub fn find<'a>(&self, preset: &'a Preset) -> Option<(&'a Track, usize)> {
-        let track = preset.animation.get(self.effect.name, self.field)?;
+        let track = preset.animation.get(&self.effect.name, &self.field)?;
         Some((track, track.at(self.time_s)?))
     }
 }

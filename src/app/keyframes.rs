@@ -23,7 +23,7 @@ const SAME_S: f64 = 5e-4;
 fn parameter(path: &str, catalog: &Catalog) -> Option<Parameter> {
     let (effect, field) = path.split_once('.')?;
     let effect = catalog.find(effect).ok()??;
-    Some((effect, effect.field(field)?))
+    Some((effect.clone(), effect.field(field)?.clone()))
 }
 
 /// Index of the key at `now_s`.
@@ -33,21 +33,21 @@ fn key_at(track: &Track, now_s: f64) -> Option<usize> {
 
 /// Sets a key at `now_s`. It is eased as the key before it.
 fn set_key(preset: &mut Preset, now_s: f64, (effect, field): Parameter, value: Vec<f64>) -> Result<(), KeyframeError> {
-    let Some(track) = preset.animation.get_mut(effect.name, field.name) else {
-        let first = Keyframe { time_s: now_s, value, easing: default_easing(field) };
-        preset.animation.put(Track::new(effect, field, vec![first])?);
+    let Some(track) = preset.animation.get_mut(&effect.name, &field.name) else {
+        let first = Keyframe { time_s: now_s, value, easing: default_easing(&field) };
+        preset.animation.put(Track::new(&effect, &field, vec![first])?);
         return Ok(());
     };
     let here = key_at(track, now_s);
     let before = here.or_else(|| track.keys().partition_point(|key| key.time_s <= now_s).checked_sub(1));
     let time_s = here.map_or(now_s, |index| track.keys()[index].time_s);
-    let easing = before.map_or(default_easing(field), |index| track.keys()[index].easing);
+    let easing = before.map_or(default_easing(&field), |index| track.keys()[index].easing);
     track.set(Keyframe { time_s, value, easing })
 }
 
 impl Session {
     pub fn keying(&self, effect: &Effect, field: &Field) -> Keying {
-        match self.preset().animation.get(effect.name, field.name) {
+        match self.preset().animation.get(&effect.name, &field.name) {
             None => Keying::Still,
             Some(track) if key_at(track, self.shown_time_s()).is_some() => Keying::OnKey,
             Some(_) => Keying::Between,
@@ -60,7 +60,8 @@ impl Session {
     /// In a sentence that names the parameter.
     pub fn set_keyframe(&mut self, (effect, field): Parameter, value: Vec<f64>) -> Result<(), String> {
         let now_s = self.shown_time_s();
-        set_key(self.preset_mut(), now_s, (effect, field), value).map_err(|error| format!("{}.{}: {error}", effect.name, field.name))
+        let path = format!("{}.{}", effect.name, field.name);
+        set_key(self.preset_mut(), now_s, (effect, field), value).map_err(|error| format!("{path}: {error}"))
     }
 
     /// Sets a key of the parameter at `path` at the time shown, or removes the one that is there.
@@ -70,27 +71,27 @@ impl Session {
     pub fn toggle_key(&mut self, path: &str) -> Result<(), String> {
         let Some((effect, field)) = parameter(path, &self.preset_file.effects) else { return Ok(()) };
         let now_s = self.shown_time_s();
-        let here = self.preset().animation.get(effect.name, field.name).and_then(|track| {
+        let here = self.preset().animation.get(&effect.name, &field.name).and_then(|track| {
             let index = key_at(track, now_s)?;
-            Some(KeyId { effect, field: field.name, time_s: track.keys()[index].time_s })
+            Some(KeyId { effect: effect.clone(), field: field.name.clone(), time_s: track.keys()[index].time_s })
         });
         if let Some(key) = here {
             return self.remove_key(key);
         }
-        let Some(value) = self.shown_value(effect, field) else { return Ok(()) };
+        let Some(value) = self.shown_value(&effect, &field) else { return Ok(()) };
         self.set_keyframe((effect, field), value)
     }
 
     /// Removes a key. The value of the last one stays.
     fn remove_key(&mut self, key: KeyId) -> Result<(), String> {
         let preset = self.preset_mut();
-        let Some(track) = preset.animation.get(key.effect.name, key.field).cloned() else { return Ok(()) };
+        let Some(track) = preset.animation.get(&key.effect.name, &key.field).cloned() else { return Ok(()) };
         let Some(index) = track.at(key.time_s) else { return Ok(()) };
-        let (field, last) = (track.field(), track.keys()[index].value.clone());
+        let (field, last) = (track.field().clone(), track.keys()[index].value.clone());
         match track.without(index) {
             Some(track) => preset.animation.put(track),
             None => {
-                preset.animation.remove(key.effect.name, key.field);
+                preset.animation.remove(&key.effect.name, &key.field);
                 if let Some(last) = field.value_type.value(&last) {
                     return self.set_parameter((key.effect, field), &last);
                 }
@@ -101,7 +102,7 @@ impl Session {
 
     /// Moves a key in time; it stays where it is if another key is there. Returns the key as it is then.
     fn move_keyframe(&mut self, key: KeyId, time_s: f64) -> KeyId {
-        let track = self.preset_mut().animation.get_mut(key.effect.name, key.field);
+        let track = self.preset_mut().animation.get_mut(&key.effect.name, &key.field);
         let moved = track.and_then(|track| {
             let index = track.at(key.time_s)?;
             let index = track.move_keyframe(index, time_s);
@@ -118,7 +119,7 @@ impl Session {
         match edit {
             KeyframeEdit::Move(key, time_s) => Ok(Some(self.move_keyframe(key, time_s))),
             KeyframeEdit::Ease(key, easing) => {
-                if let Some(track) = self.preset_mut().animation.get_mut(key.effect.name, key.field)
+                if let Some(track) = self.preset_mut().animation.get_mut(&key.effect.name, &key.field)
                     && let Some(index) = track.at(key.time_s)
                 {
                     track.set_easing(index, easing);
@@ -136,12 +137,12 @@ impl Session {
     pub fn set_text(&mut self, path: &str, text: &str) -> Result<(), String> {
         let short = path.strip_prefix("effects.").unwrap_or(path);
         let animated = parameter(short, &self.preset_file.effects)
-            .filter(|(effect, field)| self.preset().animation.get(effect.name, field.name).is_some());
+            .filter(|(effect, field)| self.preset().animation.get(&effect.name, &field.name).is_some());
         let sentence = |error: PresetError| error.to_string();
         let Some((effect, field)) = animated else { return preset_file::set(&mut self.preset_file, path, text).map_err(sentence) };
         let mut probe = self.preset_file.clone();
         preset_file::set(&mut probe, path, text).map_err(sentence)?;
-        let value = probe.preset.stack.get(effect.name).map(|enabled| field.value(&enabled.words));
+        let value = probe.preset.stack.get(&effect.name).map(|enabled| field.value(&enabled.words));
         value.map_or(Ok(()), |value| self.set_parameter((effect, field), &value))
     }
 }

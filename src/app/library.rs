@@ -1,6 +1,6 @@
 //! The user's library: favorites, files of presets, and values of effects.
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use eframe::egui;
 
@@ -34,7 +34,7 @@ pub fn library(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comm
         LibraryCommand::Delete(path) => said(state, |state| delete(state, panels, &path)),
         LibraryCommand::Restore => said(state, |state| restore(state, panels)),
         LibraryCommand::ForgetDeleted => state.deleted.clear(),
-        LibraryCommand::CopyEffect(effect) => copy_effect(ctx, state, effect),
+        LibraryCommand::CopyEffect(effect) => copy_effect(ctx, state, &effect),
         LibraryCommand::UseValues(path) => {
             let loaded = preset_file::load_values(&path, &state.session.preset_file.effects);
             said(state, |state| put(state, &loaded.map_err(sentence)?, "Took the values of"));
@@ -168,8 +168,8 @@ fn stem(path: &Path) -> String {
     path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-fn copy_effect(ctx: &egui::Context, state: &mut State, effect: &'static Effect) {
-    let Some(values) = EffectValues::of(state.session.preset(), effect.name) else { return };
+fn copy_effect(ctx: &egui::Context, state: &mut State, effect: &Arc<Effect>) {
+    let Some(values) = EffectValues::of(state.session.preset(), &effect.name) else { return };
     ctx.copy_text(values.to_text(&state.session.preset_file.effects));
     state.notify(Level::Info, format!("Copied {}; paste it into another preset with Ctrl+V", effect.name));
 }
@@ -190,9 +190,9 @@ fn put(state: &mut State, values: &EffectValues, verb: &str) -> Result<String, S
     Ok(format!("{verb} {}", values.enabled.effect.name))
 }
 
-fn save_values(state: &mut State, effect: &'static Effect, name: &str) -> Result<String, String> {
+fn save_values(state: &mut State, effect: &Arc<Effect>, name: &str) -> Result<String, String> {
     let folder = state.folders.effect_values().ok_or("There is no folder for values of effects")?;
-    let values = EffectValues::of(state.session.preset(), effect.name).ok_or_else(|| format!("{} is not enabled", effect.name))?;
+    let values = EffectValues::of(state.session.preset(), &effect.name).ok_or_else(|| format!("{} is not enabled", effect.name))?;
     preset_file::save_values(&values, &state.session.preset_file.effects, name, &folder).map_err(sentence)?;
     state.values = preset_file::saved_values(&folder);
     Ok(format!("Saved the values of {} as {}", effect.name, name.trim()))

@@ -1,6 +1,6 @@
 //! Live files: what is wrong with files on disk, and what is compiled before it replaces what is shown.
 
-use std::{collections::BTreeMap, path::PathBuf};
+use std::{collections::BTreeMap, path::PathBuf, sync::Arc};
 
 use super::{golden_check::GoldenCheck, watch::Watcher};
 use crate::{effect_files::Catalog, effects::Effect, preset::rebind::Replaced, preset_file::PresetFile};
@@ -40,7 +40,7 @@ pub struct EffectReload {
 pub struct Waiting {
     pub path: PathBuf,
     /// The effect of the stack that it replaces.
-    pub replaces: Option<&'static Effect>,
+    pub replaces: Option<Arc<Effect>>,
 }
 
 /// What is watched on disk, and its faults.

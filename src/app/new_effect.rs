@@ -12,9 +12,9 @@ use crate::{
 pub fn create(state: &mut State, name: &str, origin: Origin) {
     let (path, name) = (folder(state).join(format!("{name}.wgsl")), name.to_owned());
     state.live.writing += 1;
-    state.jobs.write_effect(path, origin, move |path| {
-        let text = match origin {
-            Origin::Template(hook) => template(&name, hook),
+    state.jobs.write_effect(path, origin.clone(), move |path| {
+        let text = match &origin {
+            Origin::Template(hook) => template(&name, *hook),
             Origin::Duplicate(effect) => duplicate(effect, &name).map_err(|reason| format!("{} {reason}", effect.name))?,
         };
         write(path, &text)

@@ -54,7 +54,7 @@ mod tests {
     #[test]
     fn a_hand_changes_what_comes_and_not_what_was() {
         let [a, b] = [1.0, 2.0].map(|x| {
-            let mut words = (EFFECT.defaults)();
+            let mut words = EFFECT.defaults.clone();
             EFFECT.field("attractor").expect("a field").set(&mut words, &[x, 0.0, 0.0]).expect("in range");
             words
         });

@@ -23,7 +23,9 @@ pub fn read<T: Default + DeserializeOwned>(path: &Path, remarks: &mut Vec<String
         }
     };
     parse(&text, &name, remarks).unwrap_or_else(|error| {
-        let kept = match std::fs::rename(path, format!("{name}.broken")) {
+        let mut aside = path.as_os_str().to_owned();
+        aside.push(".broken");
+        let kept = match std::fs::rename(path, &aside) {
             Ok(()) => format!("it is kept as {name}.broken"),
             Err(error) => format!("it could not be put aside: {error}"),
         };

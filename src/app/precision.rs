@@ -36,7 +36,7 @@ pub struct Measured {
     pub of: Inputs,
     /// Size of the picture that was measured, pixels.
     pub size: [u32; 2],
-    pub effects: Vec<(&'static Effect, Vec<Error>)>,
+    pub effects: Vec<(Arc<Effect>, Vec<Error>)>,
 }
 
 /// What is measured and what is being measured.

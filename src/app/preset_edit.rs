@@ -1,5 +1,7 @@
 //! Changes of the preset that a panel can ask for.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use crate::{
@@ -10,27 +12,27 @@ use crate::{
 };
 
 /// A parameter of an effect.
-pub type Parameter = (&'static Effect, &'static Field);
+pub type Parameter = (Arc<Effect>, Arc<Field>);
 
 /// A change of the preset.
 pub enum Edit {
     Setting(&'static Setting, Value),
     /// Sets a parameter; an animated one gets a keyframe at the time shown.
     Parameter(Parameter, Value),
-    Enable(&'static Effect),
-    Disable(&'static Effect),
+    Enable(Arc<Effect>),
+    Disable(Arc<Effect>),
     /// Limits an effect to parts of the scene.
-    Scope(&'static Effect, Scope),
+    Scope(Arc<Effect>, Scope),
     /// Disables the first effect and enables the second.
-    Replace(&'static str, &'static Effect),
+    Replace(String, Arc<Effect>),
     /// Uses the second effect in place of the first, with the same values and keyframes.
-    Rebind(&'static Effect, &'static Effect),
+    Rebind(Arc<Effect>, Arc<Effect>),
     /// Swaps two positions of the stack.
     Swap(usize, usize),
     /// Moves the effect at the first index of the stack in front of the one at the second; the length of the stack is its end.
     Move(usize, usize),
     /// Enables an effect in front of the one at this index of the stack.
-    EnableAt(&'static Effect, usize),
+    EnableAt(Arc<Effect>, usize),
     /// The same built-in scene with other parameters.
     BuiltinQuery(String),
     /// Removes the preset's camera and uses the scene camera of this name; empty = the first.

@@ -24,7 +24,7 @@ pub struct Randomizer {
     /// How far a value may go from where it is, in percent of its soft range; at 100, anywhere in that range.
     pub vary_percent: f64,
     /// Effect and parameter.
-    locked: BTreeSet<(&'static str, &'static str)>,
+    locked: BTreeSet<(String, String)>,
     /// The newest first.
     seeds: VecDeque<Seeded>,
     seed: u32,
@@ -48,12 +48,12 @@ impl Randomizer {
     }
 
     pub fn is_locked(&self, effect: &Effect, field: &Field) -> bool {
-        self.locked.contains(&(effect.name, field.name))
+        self.locked.iter().any(|(of, name)| *of == effect.name && *name == field.name)
     }
 
     /// Keeps a parameter as it is, or lets it vary again.
-    pub fn lock(&mut self, effect: &'static Effect, field: &'static Field, is_locked: bool) {
-        let name = (effect.name, field.name);
+    pub fn lock(&mut self, effect: &Effect, field: &Field, is_locked: bool) {
+        let name = (effect.name.clone(), field.name.clone());
         let _ = if is_locked { self.locked.insert(name) } else { self.locked.remove(&name) };
     }
 
@@ -152,7 +152,7 @@ mod tests {
     #[test]
     fn values_stay_in_their_soft_range_and_depend_on_the_seed_alone() {
         for stack in everything() {
-            let name = stack.0[0].effect.name;
+            let name = &stack.0[0].effect.name;
             let [mut a, mut b] = [Randomizer::default(), Randomizer::default()];
             let first = drawn(&stack, &mut a);
             assert_eq!(first, drawn(&stack, &mut b), "{name}");
@@ -164,7 +164,7 @@ mod tests {
             // At 100 % it does not matter where a value was.
             assert_eq!(second, drawn(&stack, &mut b), "{name}");
             for enabled in &second.0 {
-                for field in enabled.effect.fields {
+                for field in &enabled.effect.fields {
                     let [from, to] = field.soft;
                     assert!(field.get(&enabled.words).iter().all(|v| (from..=to).contains(v)), "{name}.{}", field.name);
                 }
@@ -180,7 +180,7 @@ mod tests {
             for _ in 0..40 {
                 let after = drawn(&stack, &mut randomizer);
                 let (before, after) = (&stack.0[0], &after.0[0]);
-                for field in before.effect.fields {
+                for field in &before.effect.fields {
                     let (was, is) = (field.get(&before.words), field.get(&after.words));
                     if matches!(field.value_type, ValueType::Bool | ValueType::Choice(_)) {
                         from_words_changed += usize::from(was != is);
@@ -212,7 +212,7 @@ mod tests {
         let [amount, width] = ["amount", "width"].map(|name| facet.field(name).expect("a parameter"));
         randomizer.lock(facet, amount, true);
         let mut after = stack.clone();
-        randomizer.randomize(&mut after, |effect, field| (effect.name, field.name) == ("facet", "width"));
+        randomizer.randomize(&mut after, |effect, field| (effect.name.as_str(), field.name.as_str()) == ("facet", "width"));
         let same = |field: &Field| field.get(&stack.0[0].words) == field.get(&after.0[0].words);
         assert!(same(amount) && same(width) && after != stack);
         randomizer.lock(facet, amount, false);

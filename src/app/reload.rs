@@ -1,7 +1,10 @@
 //! Reloading what has changed on disk: effects, the open preset, the model and shaders. What cannot be used leaves the last good
 //! version in place, with a fault that is shown until it is mended.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use super::{
     command::{CodeUse, Edit},
@@ -66,7 +69,7 @@ fn effects_changed(state: &mut State, panels: &mut Panels, effects: Effects) {
         before.only(|name, effect| effect.path.is_none() || open.custom().all(|(other, _)| other != name) && stack.get(name).is_some());
     let gone: Vec<String> = kept.custom().filter(|(_, effect)| effect.path.is_some()).map(|(name, _)| name.to_owned()).collect();
     let open = kept.joined(&open);
-    let good = |catalog: &Catalog, name: &str| catalog.find(name).ok().flatten();
+    let good = |catalog: &Catalog, name: &str| catalog.find(name).ok().flatten().cloned();
     let mut replaced: Vec<Replaced> = Vec::new();
     for (old, new) in [(before, &open), (&state.folders.effects, &shared)] {
         for (name, _) in new.custom() {
@@ -78,14 +81,14 @@ fn effects_changed(state: &mut State, panels: &mut Panels, effects: Effects) {
             }
         }
     }
-    let instances: Vec<&'static Effect> = state.session.catalogs().flat_map(Catalog::instances).collect();
+    let instances: Vec<Arc<Effect>> = state.session.catalogs().flat_map(Catalog::instances).cloned().collect();
     for instance in instances {
-        let of_base = replaced.iter().find(|(old, _)| instance.base == Some(old)).map(|(_, new)| *new);
+        let of_base = replaced.iter().find(|(old, _)| instance.base.as_ref() == Some(old)).map(|(_, new)| new);
         if let Some(base) = of_base
             && !replaced.iter().any(|(known, _)| *known == instance)
         {
-            // Effects live as long as the program.
-            replaced.push((instance, Box::leak(Box::new(Effect::instance(instance.name, base)))));
+            let renewed = Effect::instance(&instance.name, base);
+            replaced.push((instance, Arc::new(renewed)));
         }
     }
     let open = open.replaced(&replaced);
@@ -112,8 +115,8 @@ fn effects_changed(state: &mut State, panels: &mut Panels, effects: Effects) {
 /// What is to be drawn with the new effects; none if the picture shows none of them.
 fn compiled_inputs(state: &State, replaced: &[Replaced]) -> Option<Inputs> {
     let requested = state.screen.requested()?;
-    let is_replaced = |effect: &Effect| replaced.iter().any(|(old, _)| *old == effect);
-    requested.stack.0.iter().find(|enabled| is_replaced(enabled.effect))?;
+    let is_replaced = |effect: &Effect| replaced.iter().any(|(old, _)| **old == *effect);
+    requested.stack.0.iter().find(|enabled| is_replaced(&enabled.effect))?;
     let mut inputs = requested.clone();
     rebind_stack(&mut inputs.stack, replaced);
     Some(inputs)
@@ -130,7 +133,7 @@ pub fn compiled(state: &mut State, panels: &mut Panels, reload: Reload, outcome:
             match outcome {
                 Ok(()) => use_effects(state, panels, *reload),
                 Err(error) => {
-                    let names: Vec<&str> = reload.replaced.iter().map(|(_, new)| new.name).collect();
+                    let names: Vec<&str> = reload.replaced.iter().map(|(_, new)| new.name.as_str()).collect();
                     fault(state, Subject::Pipelines, format!("{}: {error}", names.join(", ")));
                 }
             }
@@ -155,19 +158,19 @@ fn use_effects(state: &mut State, panels: &mut Panels, reload: EffectReload) {
     state.folders.effects = shared;
     state.session.rebind(&replaced, &open);
     state.history.change_all(|step| step.preset.rebind(&replaced));
-    let is_replaced = |effect: &Effect| replaced.iter().any(|(old, _)| *old == effect);
-    if state.picking.is_some_and(|picking| is_replaced(picking.effect())) {
+    let is_replaced = |effect: &Effect| replaced.iter().any(|(old, _)| **old == *effect);
+    if state.picking.as_ref().is_some_and(|picking| is_replaced(picking.effect())) {
         state.picking = None;
     }
-    if panels.timeline.selected.is_some_and(|key| is_replaced(key.effect)) {
+    if panels.timeline.selected.as_ref().is_some_and(|key| is_replaced(&key.effect)) {
         panels.timeline.selected = None;
     }
     for (_, effect) in &replaced {
-        if state.session.preset().stack.get(effect.name).is_some() {
+        if state.session.preset().stack.get(&effect.name).is_some() {
             state.notify(Level::Info, format!("{} was reloaded", effect.name));
         }
     }
-    if replaced.iter().any(|(_, new)| state.session.as_filed().preset.stack.get(new.name).is_some()) {
+    if replaced.iter().any(|(_, new)| state.session.as_filed().preset.stack.get(&new.name).is_some()) {
         recheck_golden(state);
     }
     warn_of_other_file(state);
@@ -201,12 +204,12 @@ fn warn_of_other_file(state: &mut State) {
 /// Enables the effect of a new or dropped file when it has been read.
 fn enable_waiting(state: &mut State) {
     let Some(Waiting { path, replaces }) = &state.live.enable else { return };
-    let (path, replaces) = (path.as_path(), *replaces);
+    let (path, replaces) = (path.as_path(), replaces.clone());
     let found = state.session.preset_file.effects.custom().find(|(_, effect)| effect.path.as_deref() == Some(path));
-    let Some(effect) = found.and_then(|(_, effect)| effect.read.as_ref().ok().copied()) else { return };
+    let Some(effect) = found.and_then(|(_, effect)| effect.read.as_ref().ok().cloned()) else { return };
     state.live.enable = None;
     state.history.close();
-    let edit = match replaces.filter(|old| state.session.preset().stack.get(old.name).is_some()) {
+    let edit = match replaces.filter(|old| state.session.preset().stack.get(&old.name).is_some()) {
         Some(old) => Edit::Rebind(old, effect),
         None => Edit::Enable(effect),
     };

@@ -48,7 +48,7 @@ pub struct Session {
     files: HashMap<FileId, PresetFile>,
     pub scenes: SceneLoader,
     /// Names of the effects that are hidden: a viewing aid, not saved.
-    pub muted: BTreeSet<&'static str>,
+    pub muted: BTreeSet<String>,
     pub playback: Playback,
     pub trail: Trail,
     pub randomizer: Randomizer,
@@ -219,15 +219,15 @@ impl Session {
             (LengthUnit::Scene, Some(scene)) => self.preset().in_meters(scene).stack_at(self.shown_time_s()),
             _ => self.preset().stack_at(self.shown_time_s()),
         };
-        stack.0.retain(|enabled| !self.muted.contains(enabled.effect.name));
+        stack.0.retain(|enabled| !self.muted.contains(&enabled.effect.name));
         stack
     }
 
     /// Parameter words of an enabled effect at the time shown.
     pub fn shown_words(&self, effect: &Effect) -> Option<Vec<u32>> {
         let preset = self.preset();
-        let enabled = preset.stack.get(effect.name)?;
-        Some(preset.animation.evaluate_words(effect.name, &enabled.words, self.shown_time_s()))
+        let enabled = preset.stack.get(&effect.name)?;
+        Some(preset.animation.evaluate_words(&effect.name, &enabled.words, self.shown_time_s()))
     }
 
     /// A parameter's value at the time shown.

@@ -1,5 +1,7 @@
 //! Dragging effects: to another place of the stack, or from the browser of effects into it.
 
+use std::sync::Arc;
+
 use eframe::egui::{self, DragAndDrop, Pos2, Rect, Stroke, Ui};
 
 use super::{
@@ -9,12 +11,12 @@ use super::{
 use crate::effects::Effect;
 
 /// What is dragged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum StackDrag {
     /// The effect at this index of the stack.
     Move(usize),
     /// An effect that is to be enabled.
-    Enable(&'static Effect),
+    Enable(Arc<Effect>),
 }
 
 /// How far above and below the stack an effect can be dropped, points.
@@ -30,9 +32,9 @@ pub fn drop_ui(ui: &Ui, commands: &Commands, names: &[&str], rects: &[Rect], are
     let ctx = ui.ctx();
     let Some(dragged) = DragAndDrop::payload::<StackDrag>(ctx) else { return };
     let Some(at) = ctx.pointer_interact_pos() else { return };
-    let name = match *dragged {
-        StackDrag::Move(index) => names.get(index).copied().unwrap_or_default(),
-        StackDrag::Enable(effect) => effect.name,
+    let name = match &*dragged {
+        StackDrag::Move(index) => names.get(*index).copied().unwrap_or_default(),
+        StackDrag::Enable(effect) => &effect.name,
     };
     ghost(ctx, name, at);
     if !area.expand2(egui::vec2(0.0, REACH)).intersect(ui.clip_rect()).contains(at) {
@@ -49,10 +51,10 @@ pub fn drop_ui(ui: &Ui, commands: &Commands, names: &[&str], rects: &[Rect], are
         return;
     }
     DragAndDrop::clear_payload(ctx);
-    match *dragged {
-        StackDrag::Move(from) if index == from || index == from + 1 => {}
-        StackDrag::Move(from) => commands.edit(Edit::Move(from, index)),
-        StackDrag::Enable(effect) => commands.edit(Edit::EnableAt(effect, index)),
+    match &*dragged {
+        &StackDrag::Move(from) if index == from || index == from + 1 => {}
+        &StackDrag::Move(from) => commands.edit(Edit::Move(from, index)),
+        StackDrag::Enable(effect) => commands.edit(Edit::EnableAt(effect.clone(), index)),
     }
 }
 

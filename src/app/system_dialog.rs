@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{command::Purpose, desktop_dialog};
+use crate::preset_file::MODEL_FORMATS;
 
 /// How the system's dialog ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -14,11 +15,11 @@ pub enum Answer {
 }
 
 /// File types that a dialog offers.
-pub const fn extensions(purpose: Purpose) -> &'static [&'static str] {
+pub fn extensions(purpose: Purpose) -> Vec<&'static str> {
     match purpose {
-        Purpose::Open => &["toml", "glb", "gltf", "png", "wgsl"],
-        Purpose::SaveAs => &["toml"],
-        Purpose::Export => &["png"],
+        Purpose::Open => ["toml"].into_iter().chain(MODEL_FORMATS.iter().map(|format| format.extension)).chain(["png", "wgsl"]).collect(),
+        Purpose::SaveAs => vec!["toml"],
+        Purpose::Export => vec!["png"],
     }
 }
 
@@ -43,7 +44,7 @@ pub fn may_exist() -> bool {
 
 /// The dialog, beginning at `start`; what it returns shows it and waits for its end.
 pub fn prepare(purpose: Purpose, start: &Path) -> impl FnOnce() -> Answer + Send + 'static {
-    let show = desktop_dialog::prepare(types_name(purpose), extensions(purpose), start, purpose == Purpose::Open);
+    let show = desktop_dialog::prepare(types_name(purpose), &extensions(purpose), start, purpose == Purpose::Open);
     move || match show() {
         Ok(Some(path)) => Answer::Chosen(path),
         Ok(None) => Answer::Canceled,

@@ -12,7 +12,7 @@ use eframe::egui;
 use super::system_watch::SystemWatch;
 use crate::{
     effect_files::{Catalog, EffectError},
-    preset_file::{self, PresetFile},
+    preset_file::{self, MODEL_FORMATS, ModelFormat, PresetFile},
 };
 
 /// Files are read when nothing has changed for this long: an editor may write a file in several steps.
@@ -21,8 +21,11 @@ const DEBOUNCE: Duration = Duration::from_millis(50);
 /// How often folders are looked at that the system does not watch, or that do not exist yet.
 const POLL: Duration = Duration::from_secs(1);
 
-/// Extensions of the files that matter.
-const EXTENSIONS: [&str; 9] = ["wgsl", "toml", "glb", "gltf", "bin", "png", "jpg", "jpeg", "ktx2"];
+/// Do files of this extension matter?
+fn is_watched(extension: &str) -> bool {
+    let models = MODEL_FORMATS.iter().flat_map(|format| format.beside.iter().chain([&format.extension]));
+    ["wgsl", "toml"].iter().chain(models).any(|known| extension.eq_ignore_ascii_case(known))
+}
 
 /// What is watched.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -287,7 +290,7 @@ impl Watched {
     fn new(events: mpsc::Sender<Message>) -> Self {
         let matters = |path: &PathBuf| {
             let extension = path.extension().and_then(|extension| extension.to_str());
-            path.is_dir() || extension.is_none_or(|extension| EXTENSIONS.iter().any(|known| known.eq_ignore_ascii_case(extension)))
+            path.is_dir() || extension.is_none_or(is_watched)
         };
         let system = SystemWatch::new(move |paths| {
             if paths.is_none_or(|paths| paths.iter().any(matters)) {
@@ -350,8 +353,8 @@ fn stamps_in(folder: &Path, extensions: &[&str], is_deep: bool) -> Vec<Stamp> {
 fn model_stamps(targets: &Targets) -> Vec<Stamp> {
     let Some(model) = &targets.model else { return Vec::new() };
     let mut stamps: Vec<Stamp> = stamp(model).into_iter().collect();
-    if model.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gltf")) {
-        stamps.extend(stamps_in(folder_of(model), &["bin", "png", "jpg", "jpeg", "ktx2"], false));
+    if let Some(format) = ModelFormat::of(model).filter(|format| !format.beside.is_empty()) {
+        stamps.extend(stamps_in(folder_of(model), format.beside, false));
     }
     stamps
 }

@@ -60,10 +60,10 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
 /// No effect, and every effect alone with the values of the preset of its name.
 fn each_effect(common: &Common) -> Result<Vec<(String, Stack)>, CliError> {
     let mut stacks = vec![("no effect".to_owned(), Stack::default())];
-    for effect in EFFECTS {
+    for effect in EFFECTS.iter() {
         // Each effect has the values of its own preset; --preset does not change them.
-        let preset_file = open_alone(common, effect.name)?;
-        let enabled = preset_file.preset.evaluated_stack().get(effect.name).cloned().unwrap_or_else(|| EnabledEffect::new(effect));
+        let preset_file = open_alone(common, &effect.name)?;
+        let enabled = preset_file.preset.evaluated_stack().get(&effect.name).cloned().unwrap_or_else(|| EnabledEffect::new(effect));
         stacks.push((format!("+{}", effect.name), Stack(vec![enabled])));
     }
     Ok(stacks)

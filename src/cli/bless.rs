@@ -1,6 +1,9 @@
 //! `bless`: redraws goldens with the oracle and prints what changes. Only this command writes goldens.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use serde_json::{Value, json};
 
@@ -86,17 +89,17 @@ fn named(name: &str, folder: &Path) -> Result<(PresetFile, bool), CliError> {
 }
 
 /// The first preset of a new effect: on the teapot, with default parameters.
-fn first_preset(effect: &'static Effect) -> PresetFile {
+fn first_preset(effect: &Arc<Effect>) -> PresetFile {
     let mut preset = Preset {
         name: effect.name.replace('_', " "),
-        about: effect.about.into(),
+        about: effect.about.clone(),
         tags: vec!["canonical".into()],
         output: Output { size: golden::MAX_SIZE, ..Output::default() },
         test: Some(GoldenTest::default()),
         ..Preset::default()
     };
     preset.stack.enable(effect);
-    PresetFile::new(effect.name, preset)
+    PresetFile::new(&effect.name, preset)
 }
 
 fn store(

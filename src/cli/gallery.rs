@@ -72,7 +72,7 @@ fn hero_cell(preset_file: &PresetFile) -> String {
 }
 
 fn cell(effect: &Effect, preset_files: &[String]) -> String {
-    let name = effect.name;
+    let name = &effect.name;
     let is_further = |id: &str| id != name && id.starts_with(&format!("{name}-"));
     let further: Vec<String> =
         preset_files.iter().filter(|id| is_further(id)).map(|id| format!("<a href=\"tests/snapshots/{id}.png\">{id}</a>")).collect();

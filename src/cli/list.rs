@@ -1,5 +1,7 @@
 //! `list`: presets, built-in scenes, effects with every parameter and its range, and the accuracy axes.
 
+use std::sync::Arc;
+
 use serde_json::{Value, json};
 
 use super::{
@@ -18,7 +20,7 @@ use crate::{
 pub fn run(common: &Common, args: &List, streams: &mut Streams) -> Result<Exit, CliError> {
     let entries = if args.has(ListKind::Presets) { gallery(&common.folders()) } else { Vec::new() };
     let folders = common.folders();
-    let effects: Vec<&Effect> = if args.has(ListKind::Effects) { folders.effects.effects().collect() } else { Vec::new() };
+    let effects: Vec<&Arc<Effect>> = if args.has(ListKind::Effects) { folders.effects.effects().collect() } else { Vec::new() };
     let scenes = if args.has(ListKind::Scenes) { BUILTINS } else { &[] };
     let axes = if args.has(ListKind::Axes) { AXES } else { &[] };
     if streams.json {
@@ -49,8 +51,8 @@ fn origin(entry: &GalleryEntry) -> String {
     if shadows.is_empty() { word(entry.origin).into() } else { format!("{}, shadows {}", word(entry.origin), shadows.join(" and ")) }
 }
 
-fn effect_names(preset_file: &preset_file::PresetFile) -> Vec<&'static str> {
-    preset_file.preset.stack.0.iter().map(|enabled| enabled.effect.name).collect()
+fn effect_names(preset_file: &preset_file::PresetFile) -> Vec<&str> {
+    preset_file.preset.stack.0.iter().map(|enabled| enabled.effect.name.as_str()).collect()
 }
 
 fn presets_text(entries: &[GalleryEntry]) -> String {
@@ -66,26 +68,26 @@ fn presets_text(entries: &[GalleryEntry]) -> String {
 }
 
 fn default_text(field: &Field, words: &[u32]) -> String {
-    toml_value::write_text(field.value_type, &field.value(words))
+    toml_value::write_text(&field.value_type, &field.value(words))
 }
 
-fn effects_text(effects: &[&Effect]) -> String {
+fn effects_text(effects: &[&Arc<Effect>]) -> String {
     if effects.is_empty() {
         return String::new();
     }
     let mut rows = vec![["EFFECT", "DEFAULT", "ALLOWED", "UNIT", "WHAT"].map(str::to_owned).to_vec()];
     for effect in effects {
         rows.push(vec![
-            effect.name.into(),
+            effect.name.clone(),
             String::new(),
             String::new(),
             String::new(),
             format!("{} ({} hook)", effect.about, effect.hooks.names()),
         ]);
-        let defaults = (effect.defaults)();
+        let defaults = &effect.defaults;
         rows.extend(effect.fields.iter().map(|field| {
             let name = format!("  {}.{}", effect.name, field.name);
-            vec![name, default_text(field, &defaults), field.allowed(), field.unit.into(), field.doc.trim().into()]
+            vec![name, default_text(field, defaults), field.allowed(), field.unit.clone(), field.doc.trim().into()]
         }));
     }
     table(&rows)
@@ -151,11 +153,11 @@ fn preset_json(entry: &GalleryEntry) -> Value {
 }
 
 fn effect_json(effect: &Effect) -> Value {
-    let defaults = (effect.defaults)();
-    let parameter = |field: &Field| {
+    let defaults = &effect.defaults;
+    let parameter = |field: &Arc<Field>| {
         json!({
             "name": field.name, "about": field.doc.trim(), "type": field.wgsl.name(), "unit": field.unit,
-            "default": default_text(field, &defaults), "allowed": field.allowed(),
+            "default": default_text(field, defaults), "allowed": field.allowed(),
             "hard": field.hard, "soft": field.soft, "log": field.log,
         })
     };

@@ -1,6 +1,6 @@
 //! What `bench` and `bench --axes` share: the measured presets, the judge, and the output of rows.
 
-use std::sync::Arc;
+use std::{path::Path, sync::Arc};
 
 use serde_json::Value;
 
@@ -17,7 +17,7 @@ use crate::{
     measure::Verdict,
     oracle,
     preset::SceneSource,
-    preset_file::PresetFile,
+    preset_file::{ModelFormat, PresetFile},
     scene::{Scene, view::View},
 };
 
@@ -26,7 +26,7 @@ pub fn subjects(common: &Common, args: &Bench, streams: &Streams) -> Result<Vec<
     let named = args.inputs.iter().map(|what| open(common, what)).collect::<Result<Vec<_>, _>>()?;
     let mut preset_files = Vec::new();
     for scene in &args.scene {
-        let mut base = open(common, &if is_model(scene) { scene.clone() } else { format!("builtin:{scene}") })?;
+        let mut base = open(common, &if ModelFormat::of(Path::new(scene)).is_some() { scene.clone() } else { format!("builtin:{scene}") })?;
         if named.is_empty() {
             base.id.clone_from(scene);
             preset_files.push(base);
@@ -43,11 +43,6 @@ pub fn subjects(common: &Common, args: &Bench, streams: &Streams) -> Result<Vec<
         preset_files = if named.is_empty() { vec![PresetFile::of_scene("teapot", SceneSource::Builtin("teapot".into()))] } else { named };
     }
     preset_files.into_iter().map(|preset_file| Ok((preset_file.clone(), scene_of(common, &preset_file, streams)?))).collect()
-}
-
-fn is_model(scene: &str) -> bool {
-    let lower = scene.to_lowercase();
-    lower.ends_with(".glb") || lower.ends_with(".gltf")
 }
 
 /// Compares what an adapter drew of `scene` through `view` with the oracle.

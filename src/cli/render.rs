@@ -122,7 +122,7 @@ fn open_with_flags(common: &Common, args: &Render, what: &str) -> Result<PresetF
 }
 
 pub fn names(preset_file: &PresetFile, backend: &Backend) -> Names {
-    let effects: Vec<_> = preset_file.preset.stack.0.iter().map(|enabled| enabled.effect.name).collect();
+    let effects: Vec<_> = preset_file.preset.stack.0.iter().map(|enabled| enabled.effect.name.as_str()).collect();
     Names {
         preset: preset_file.id.clone(),
         effect: if effects.is_empty() { "plain".into() } else { effects.join("+") },

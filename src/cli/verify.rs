@@ -47,7 +47,7 @@ pub struct Row {
     /// Look and scene, where a look has landed on another scene.
     landed: Option<[String; 2]>,
     /// Effects that have no independent twin.
-    judged_by_own_text: Vec<&'static str>,
+    judged_by_own_text: Vec<String>,
     pub option: &'static str,
     accuracy: ErrorReport,
     /// Pixels with a color channel over the preset's budget.
@@ -136,8 +136,8 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
 }
 
 /// The effects of a preset that have no independent twin: the oracle evaluates their own text in f64.
-fn judged_by_own_text(preset: &Preset) -> Vec<&'static str> {
-    preset.stack.0.iter().map(|enabled| enabled.effect).filter(|effect| effect.is_of_file()).map(|effect| effect.name).collect()
+fn judged_by_own_text(preset: &Preset) -> Vec<String> {
+    preset.stack.0.iter().map(|enabled| &enabled.effect).filter(|effect| effect.is_of_file()).map(|effect| effect.name.clone()).collect()
 }
 
 /// Compares a preset with the oracle, with every visibility option that it allows.

@@ -134,7 +134,7 @@ fn what_reads_the_background_reads_that_of_its_row() {
     for listed in [false, true] {
         renderer.set_tuning(tunings().into_iter().find(|tuning| tuning.listed_tiles == listed).expect("a tuning"));
         for stack in readers() {
-            let names: Vec<&str> = stack.0.iter().map(|enabled| enabled.effect.name).collect();
+            let names: Vec<&str> = stack.0.iter().map(|enabled| enabled.effect.name.as_str()).collect();
             exact(&mut renderer, &scene, &view, &stack, &pinned(Visibility::Split32), &format!("{names:?}, listed tiles: {listed}"));
         }
     }

@@ -40,7 +40,7 @@ fn pictures(options: &[Visibility]) -> Vec<(String, Arc<Scene>, View, Stack, Vis
             let scene = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref())
                 .unwrap_or_else(|error| panic!("{}: {error}", preset_file.id));
             let view = preset_file.preset.view(&scene, preset_file.preset.output.size);
-            let brings_new = preset_file.preset.stack.0.iter().filter(|enabled| met.insert(enabled.effect.name)).count() > 0;
+            let brings_new = preset_file.preset.stack.0.iter().filter(|enabled| met.insert(enabled.effect.name.clone())).count() > 0;
             if brings_new && preset_file.preset.stack.is_repeatable() {
                 pictures.push((preset_file.id.clone(), scene, view, preset_file.preset.evaluated_stack(), options[0]));
             }

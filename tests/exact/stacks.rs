@@ -55,14 +55,14 @@ fn two_effects_in_one_slot_are_refused_by_name() {
     for slot in Slot::ALL {
         let takers: Vec<_> = EFFECTS.iter().filter(|effect| effect.hooks.slot == Some(slot)).collect();
         for (a, b) in takers.iter().zip(takers.iter().skip(1)) {
-            let stack = stack(&[a.name, b.name]);
+            let stack = stack(&[&a.name, &b.name]);
             renderer.set_scene(&scene).block_on().expect("it fits");
             let Err(error) = renderer.draw(&view, &stack, &Default::default()).block_on() else {
                 panic!("{} and {} were drawn", a.name, b.name)
             };
             assert!(matches!(error, RenderError::Plan(_)));
             let text = error.to_string();
-            assert!(text.contains(a.name) && text.contains(b.name) && text.contains(slot.name()), "{text}");
+            assert!(text.contains(&a.name) && text.contains(&b.name) && text.contains(slot.name()), "{text}");
         }
     }
 }

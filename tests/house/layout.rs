@@ -1,7 +1,7 @@
 //! Promise: every struct shared by Rust and WGSL agrees by name, order, kind, offset and size, and every binding has a resource. Needs
 //! no adapter.
 
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, sync::Arc};
 
 use naga::{Module, TypeInner};
 use rasterlab::{
@@ -21,8 +21,8 @@ fn reflected(key: &KernelKey, pass: Pass) -> Reflected {
     reflect::reflect(&linked, true).expect("validates")
 }
 
-fn whole(visibility: Visibility, effects: &[&'static Effect]) -> KernelKey {
-    KernelKey::complete(Fetch::Indexed, visibility, effects.to_vec())
+fn whole(visibility: Visibility, effects: &[&Arc<Effect>]) -> KernelKey {
+    KernelKey::complete(Fetch::Indexed, visibility, effects.iter().map(|&effect| effect.clone()).collect())
 }
 
 /// Keys that together bind every resource and declare every shared struct.
@@ -143,9 +143,9 @@ fn every_binding_has_a_resource_and_every_bound_struct_is_shared() {
 
 #[test]
 fn every_effect_has_the_same_fields_on_both_sides() {
-    for effect in EFFECTS {
+    for effect in EFFECTS.iter() {
         let reflected = reflected(&whole(Visibility::Split32, &[effect]), Pass::Resolve);
-        let (_, members) = reflected.layout(effect.wgsl_struct).unwrap_or_else(|| panic!("no WGSL struct {}", effect.wgsl_struct));
+        let (_, members) = reflected.layout(&effect.wgsl_struct).unwrap_or_else(|| panic!("no WGSL struct {}", effect.wgsl_struct));
         // A group of parameters that several effects share is a struct of its own, at the beginning.
         let is_group = |kind: &str| effect.fields.iter().any(|field| field.group.is_some_and(|group| group.wgsl_struct == kind));
         let (groups, own): (Vec<_>, Vec<_>) = members.into_iter().partition(|member| is_group(&member.kind));
@@ -160,7 +160,7 @@ fn every_effect_has_the_same_fields_on_both_sides() {
             (f.group.map_or(String::new(), |group| group.member.to_owned()), f.name.to_owned(), f.offset, f.wgsl.name().to_owned())
         });
         assert_eq!(wgsl, rust.collect::<Vec<_>>(), "{}: WGSL on the left, Rust on the right", effect.name);
-        let words = (effect.defaults)();
+        let words = &effect.defaults;
         let last = fields.last().expect("an effect has fields");
         assert_eq!(words.len() * 4, last.offset + last.wgsl.words() * 4, "{}: padding at the end", effect.name);
     }
@@ -168,9 +168,9 @@ fn every_effect_has_the_same_fields_on_both_sides() {
 
 #[test]
 fn defaults_lie_inside_their_hard_ranges() {
-    for effect in EFFECTS {
-        let mut words = (effect.defaults)();
-        for field in effect.fields {
+    for effect in EFFECTS.iter() {
+        let mut words = effect.defaults.clone();
+        for field in &effect.fields {
             let values = field.get(&words);
             field.set(&mut words, &values).unwrap_or_else(|error| panic!("{}: {error}", effect.name));
             assert!(

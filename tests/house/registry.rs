@@ -14,7 +14,7 @@ use rasterlab::{
         SceneSource,
         settings::{SECTIONS, settings},
     },
-    preset_file::{self, BUILTIN_DIR, PresetFile},
+    preset_file::{self, BUILTIN_DIR, MODEL_FORMATS, PresetFile},
 };
 
 fn root() -> &'static Path {
@@ -176,9 +176,9 @@ fn the_gallery_of_the_readme_is_what_the_command_writes() {
 
 #[test]
 fn parameters_are_documented_and_their_ranges_nest() {
-    for effect in EFFECTS {
-        let defaults = (effect.defaults)();
-        for field in effect.fields {
+    for effect in EFFECTS.iter() {
+        let defaults = &effect.defaults;
+        for field in &effect.fields {
             let name = format!("{}.{}", effect.name, field.name);
             assert!(field.doc.trim().ends_with(['.', '?']), "{name}: its sentence does not end");
             let ([low, high], [soft_low, soft_high]) = (field.hard, field.soft);
@@ -189,15 +189,26 @@ fn parameters_are_documented_and_their_ranges_nest() {
                 field.hard
             );
             assert!(!field.log || soft_low > 0.0, "{name}: a slider in decades begins above 0");
-            assert!(field.get(&defaults).iter().all(|lane| (low..=high).contains(lane)), "{name}: its default is outside its hard range");
+            assert!(field.get(defaults).iter().all(|lane| (low..=high).contains(lane)), "{name}: its default is outside its hard range");
         }
     }
 }
 
 #[test]
 fn no_effect_file_can_take_the_name_of_a_setting_or_a_section() {
-    let tops = settings().filter(|setting| setting.section.is_empty()).map(|setting| setting.name);
+    let tops = settings().filter(|setting| setting.section.is_empty()).map(|setting| setting.name.as_str());
     let names = SECTIONS.iter().map(|section| section.name).filter(|name| !name.is_empty()).chain(tops);
     let free: Vec<&str> = names.filter(|name| check_name(name).is_ok()).collect();
     assert!(free.is_empty(), "{free:?} would hide an effect file of that name from --set");
+}
+
+#[test]
+fn help_texts_name_every_format_of_models() {
+    let key = settings().find(|setting| setting.path() == "scene.path").expect("a key");
+    let help = fs::read_to_string(root().join("src/cli/args.rs")).expect("the help of the command line");
+    for format in MODEL_FORMATS {
+        let name = format!(".{}", format.extension);
+        assert!(key.doc.contains(&name), "scene.path: {}", key.doc);
+        assert_eq!(help.matches(&name).count(), 2, "{name} of a model to open, and of a PRESET");
+    }
 }

@@ -1,5 +1,7 @@
 //! Promise: effects with a scope are called where their draw has the scope's bit, and text without scopes reads no bits. Needs no adapter.
 
+use std::sync::Arc;
+
 use rasterlab::{
     accuracy::Visibility,
     effects::{EFFECTS, Effect},
@@ -9,7 +11,7 @@ use rasterlab::{
 use super::shaders::all_passes;
 
 fn key(names: &[&str], scope_bits: &[Option<u32>]) -> KernelKey {
-    let effects = names.iter().map(|name| Effect::find(name).expect("a listed effect")).collect();
+    let effects = names.iter().map(|name| Effect::find(name).expect("a listed effect").clone()).collect();
     let mut key = KernelKey::complete(Fetch::Indexed, Visibility::Split32, effects);
     key.effects.scope_bits = scope_bits.to_vec();
     key
@@ -21,8 +23,8 @@ fn text(key: &KernelKey, pass: Pass) -> String {
 
 #[test]
 fn text_without_scopes_reads_no_bits() {
-    let mut stacks: Vec<Vec<&'static Effect>> = EFFECTS.iter().map(|effect| vec![*effect]).collect();
-    stacks.extend([vec![], EFFECTS.iter().copied().filter(|effect| effect.hooks.slot.is_none()).collect()]);
+    let mut stacks: Vec<Vec<Arc<Effect>>> = EFFECTS.iter().map(|effect| vec![effect.clone()]).collect();
+    stacks.extend([vec![], EFFECTS.iter().filter(|&effect| effect.hooks.slot.is_none()).cloned().collect()]);
     for effects in stacks {
         let key = KernelKey::complete(Fetch::Indexed, Visibility::Split32, effects);
         for pass in all_passes(&key) {

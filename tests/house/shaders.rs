@@ -2,7 +2,10 @@
 //! atomics only where an option asks for them, within eight storage buffers; every file names only what it and the files that
 //! it uses declare; and few files must be opened to read a pass. Needs no adapter.
 
-use std::{collections::BTreeMap, sync::Mutex};
+use std::{
+    collections::BTreeMap,
+    sync::{Arc, Mutex},
+};
 
 use super::shader_parts;
 use rasterlab::{
@@ -23,7 +26,7 @@ use rasterlab::{
     },
 };
 
-pub fn key(fetch: Fetch, visibility: Visibility, has_queues: bool, effects: Vec<&'static Effect>) -> KernelKey {
+pub fn key(fetch: Fetch, visibility: Visibility, has_queues: bool, effects: Vec<Arc<Effect>>) -> KernelKey {
     let mut key = KernelKey::complete(fetch, visibility, effects);
     (key.paths.has_clipping, key.paths.has_medium, key.paths.has_large) = (has_queues, has_queues, has_queues);
     key.work.listed_tiles = has_queues;
@@ -40,11 +43,11 @@ pub fn all_passes(key: &KernelKey) -> Vec<Pass> {
 }
 
 /// Nothing, and each effect in the visibility slot alone and together with effects on other hooks.
-fn slot_stacks() -> Vec<Vec<&'static Effect>> {
+fn slot_stacks() -> Vec<Vec<Arc<Effect>>> {
     let mut stacks = vec![vec![]];
-    for effect in EFFECTS.iter().copied().filter(|effect| effect.hooks.slot == Some(Slot::Visibility)) {
-        let others = EFFECTS.iter().copied().filter(|other| other.hooks.slot.is_none());
-        stacks.extend([vec![effect], others.chain([effect]).collect()]);
+    for effect in EFFECTS.iter().filter(|&effect| effect.hooks.slot == Some(Slot::Visibility)).cloned() {
+        let others = EFFECTS.iter().filter(|&other| other.hooks.slot.is_none()).cloned();
+        stacks.extend([vec![effect.clone()], others.chain([effect]).collect()]);
     }
     stacks
 }
@@ -99,7 +102,7 @@ fn every_shape_and_order_validates_within_eight_storage_buffers() {
     for shape in [Shape::Triangles, Shape::Boxes, Shape::Points] {
         for draw_order in [None, Some(Mode::Submission), Some(Mode::Scheduler)] {
             for has_large in [false, true] {
-                let effects = ["dissolve", "draw_order", "xray"].map(|name| Effect::find(name).expect("a listed effect")).to_vec();
+                let effects = ["dissolve", "draw_order", "xray"].map(|name| Effect::find(name).expect("a listed effect").clone()).to_vec();
                 let mut key = key(Fetch::Indexed, Visibility::Split32, true, effects);
                 (key.samples.shape, key.samples.draw_order, key.paths.has_large) = (shape, draw_order, has_large);
                 for pass in all_passes(&key) {
@@ -114,7 +117,7 @@ fn every_shape_and_order_validates_within_eight_storage_buffers() {
 /// Every option of every axis, alone and with the effects that choose among the same variants.
 #[test]
 fn every_option_of_every_axis_links_and_validates() {
-    let effect = |name| Effect::find(name).expect("an effect");
+    let effect = |name| Effect::find(name).expect("an effect").clone();
     let stacks =
         [vec![], vec![effect("overdraw"), effect("outline")], vec![effect("dissolve"), effect("draw_order")], vec![effect("xray")]];
     // Only these choose among the variants in which the stacks differ.
@@ -126,7 +129,7 @@ fn every_option_of_every_axis_links_and_validates() {
                 key.options.set(axis, index);
                 key.samples.draw_order = effects.contains(&effect("draw_order")).then_some(Mode::Submission);
                 if key.options.parameters == Parameters::Baked {
-                    key.effects.baked = effects.iter().map(|effect| (effect.defaults)()).collect();
+                    key.effects.baked = effects.iter().map(|effect| effect.defaults.clone()).collect();
                 }
                 for pass in all_passes(&key) {
                     let storage = validate(&key, pass);
@@ -156,10 +159,10 @@ fn every_way_of_culling_validates_on_every_exact_rung() {
 
 #[test]
 fn every_effect_alone_in_pairs_and_all_together_validates() {
-    let mut stacks: Vec<Vec<&'static Effect>> = vec![vec![], EFFECTS.to_vec()];
-    for a in EFFECTS {
-        stacks.push(vec![a]);
-        stacks.extend(EFFECTS.iter().filter(|b| *b != a).map(|b| vec![*a, *b]));
+    let mut stacks: Vec<Vec<Arc<Effect>>> = vec![vec![], EFFECTS.to_vec()];
+    for a in EFFECTS.iter() {
+        stacks.push(vec![a.clone()]);
+        stacks.extend(EFFECTS.iter().filter(|b| *b != a).map(|b| vec![a.clone(), b.clone()]));
     }
     for effects in stacks {
         let key = key(Fetch::Indexed, Visibility::Split32, true, effects);
@@ -181,7 +184,7 @@ fn an_empty_stack_leaves_no_trace_of_effects() {
 
 #[test]
 fn a_stack_that_moves_nothing_leaves_no_trace_of_movement() {
-    for effects in [vec![], EFFECTS.iter().copied().filter(|effect| effect.hooks.vertex.is_none()).collect()] {
+    for effects in [vec![], EFFECTS.iter().filter(|&effect| effect.hooks.vertex.is_none()).cloned().collect()] {
         let key = key(Fetch::Indexed, Visibility::Split32, true, effects);
         assert!(!key.to_string().contains("vertex_effects"), "{key}");
         for pass in all_passes(&key) {
@@ -197,7 +200,7 @@ fn a_stack_that_moves_nothing_leaves_no_trace_of_movement() {
 fn triangles_that_stay_together_share_their_vertices() {
     let effect = |name: &str| Effect::find(name).expect("a listed effect");
     for (name, has_unshared_vertices) in [("inflate", false), ("wobble", false), ("explode", true)] {
-        let key = key(Fetch::Indexed, Visibility::Split32, true, vec![effect(name)]);
+        let key = key(Fetch::Indexed, Visibility::Split32, true, vec![effect(name).clone()]);
         assert!(key.moves() && key.unshares_vertices() == has_unshared_vertices, "{name}");
         let project = linked(&key, Pass::Project);
         let reads_indices = reflect::reflect(&project, false).expect("valid").bindings("project").iter().any(|b| b.name == "index_bytes");
@@ -237,7 +240,7 @@ fn every_way_of_choosing_dots_validates_for_every_line_and_backend() {
     for visibility in Visibility::ALL {
         for way in DotCulling::ALL {
             for line_source in [LineSource::Edges, LineSource::Creases, LineSource::Polyline] {
-                let mut key = key(Fetch::Indexed, *visibility, true, vec![dots]);
+                let mut key = key(Fetch::Indexed, *visibility, true, vec![dots.clone()]);
                 key.effects.dots = Some(line_source);
                 key.options.dot_culling = *way;
                 for pass in all_passes(&key) {
@@ -270,7 +273,7 @@ fn a_pass_is_read_in_few_files() {
 fn every_use_line_is_needed_and_a_missing_one_is_refused() {
     let folder = shader_parts::copied();
     let library = host::shaders::library(folder.path());
-    let effects = ["dissolve", "explode", "shadow", "outline"].map(|name| Effect::find(name).expect("an effect")).to_vec();
+    let effects = ["dissolve", "explode", "shadow", "outline"].map(|name| Effect::find(name).expect("an effect").clone()).to_vec();
     let mut full = key(Fetch::Indexed, Visibility::Split32, true, effects);
     full.samples.has_mask = true;
     let mut seen = std::collections::BTreeSet::new();

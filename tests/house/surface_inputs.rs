@@ -1,6 +1,6 @@
 //! Promise: every effect declares exactly the members of the surface that its WGSL reads. Needs no adapter.
 
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, sync::Arc};
 
 use naga::{Expression, Function, Handle, Module, Statement, Type};
 use rasterlab::{
@@ -15,8 +15,8 @@ use rasterlab::{
 };
 
 /// The effect's file with all that it uses, and the constants of its choices.
-fn module_of(effect: &'static Effect) -> Module {
-    let key = KernelKey::complete(Fetch::Indexed, Visibility::Split32, vec![effect]);
+fn module_of(effect: &Arc<Effect>) -> Module {
+    let key = KernelKey::complete(Fetch::Indexed, Visibility::Split32, vec![effect.clone()]);
     let root = format!("effects/{}", effect.name);
     let linked = link::link(&Library::Embedded, &root, &key, &key.variants(Pass::Resolve)).expect("every file is there");
     let text = linked.text + &glue::effects(&key);
@@ -68,20 +68,20 @@ fn member_pointed_to(function: &Function, mut pointer: Handle<Expression>, surfa
     }
 }
 
-fn read_by(effect: &'static Effect) -> BTreeSet<String> {
+fn read_by(effect: &Arc<Effect>) -> BTreeSet<String> {
     let module = module_of(effect);
     module.functions.iter().flat_map(|(_, function)| members_read(&module, function)).collect()
 }
 
-fn declared_by(effect: &'static Effect) -> BTreeSet<String> {
+fn declared_by(effect: &Arc<Effect>) -> BTreeSet<String> {
     effect.hooks.surface_inputs.iter().map(|input| input.member().to_owned()).collect()
 }
 
 #[test]
 fn effects_declare_the_members_of_the_surface_that_they_read() {
-    for effect in EFFECTS {
+    for effect in EFFECTS.iter() {
         assert_eq!(read_by(effect), declared_by(effect), "{}: WGSL on the left, Rust on the right", effect.name);
-        let declared = effect.hooks.surface_inputs;
+        let declared = &effect.hooks.surface_inputs;
         assert_eq!(declared_by(effect).len(), declared.len(), "{}: an input is declared twice", effect.name);
     }
 }

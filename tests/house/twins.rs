@@ -1,6 +1,8 @@
 //! Promise: the WGSL of every built-in effect, evaluated in f64, says what its function in Rust says: integers and booleans exactly,
 //! floats within 1e-9, over random inputs and parameters. Needs no adapter.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 use rasterlab::{
     effect_files::{duplicate, evaluated, read},
@@ -48,8 +50,8 @@ fn direction(rng: &mut Rng) -> DVec3 {
 
 /// Defaults, then ends of ranges, then anything between.
 fn parameters(rng: &mut Rng, effect: &Effect, turn: usize) -> Vec<u32> {
-    let mut words = (effect.defaults)();
-    for field in effect.fields {
+    let mut words = effect.defaults.clone();
+    for field in &effect.fields {
         if turn == 0 || rng.real(0.0, 1.0) < 0.3 {
             continue;
         }
@@ -63,7 +65,7 @@ fn parameters(rng: &mut Rng, effect: &Effect, turn: usize) -> Vec<u32> {
         if !field.value_type.is_continuous() {
             components.iter_mut().for_each(|number| *number = number.round());
         }
-        if let ValueType::Choice(choices) = field.value_type {
+        if let ValueType::Choice(choices) = &field.value_type {
             components = vec![f64::from(whole(rng, choices.len() as u32))];
         }
         field.set(&mut words, &components).unwrap_or_else(|error| panic!("{}.{}: {error}", effect.name, field.name));
@@ -113,12 +115,12 @@ fn same(effect: &Effect, what: &str, given: &[f64], expected: &[f64], case: &dyn
 }
 
 /// Runs every effect that has the hook, and gathers what fails.
-fn each_effect(has: impl Fn(&Hooks) -> bool, compare: impl Fn(&'static Effect, &Hooks) + std::panic::RefUnwindSafe) {
+fn each_effect(has: impl Fn(&Hooks) -> bool, compare: impl Fn(&Arc<Effect>, &Hooks) + std::panic::RefUnwindSafe) {
     let mut faults = Vec::new();
     let mut compared = 0;
-    for effect in EFFECTS.iter().copied().filter(|effect| has(&effect.hooks)) {
-        let hooks = evaluated(&Library::Embedded, effect).unwrap_or_else(|error| panic!("{}: {error}", effect.name));
-        let run = std::panic::AssertUnwindSafe(|| compare(effect, &hooks));
+    for effect in EFFECTS.iter().filter(|&effect| has(&effect.hooks)).cloned() {
+        let hooks = evaluated(&Library::Embedded, &effect).unwrap_or_else(|error| panic!("{}: {error}", effect.name));
+        let run = std::panic::AssertUnwindSafe(|| compare(&effect, &hooks));
         if let Err(panic) = std::panic::catch_unwind(run) {
             faults.push(panic.downcast_ref::<String>().cloned().unwrap_or_default());
         }
@@ -136,7 +138,7 @@ fn surface_functions_agree() {
             let mut rng = Rng(11);
             for turn in 0..TRIES {
                 let (words, s) = (parameters(&mut rng, effect, turn), surface(&mut rng));
-                let of = |hooks: &Hooks| hooks.surface.expect("it is on the hook")(s, &words);
+                let of = |hooks: &Hooks| hooks.surface.as_ref().expect("it is on the hook")(s, &words);
                 let (given, expected) = (of(hooks), of(&effect.hooks));
                 let floats = |s: &Surface| {
                     let vectors = [s.glow, s.position, s.normal, s.flat_normal, s.view, s.center, s.barycentrics, s.edge_distance_px];
@@ -173,7 +175,7 @@ fn vertex_functions_agree() {
                     center_screen: vector(&mut rng, 0.0, 1.0).truncate(),
                     triangle: whole(&mut rng, 1 << 20),
                 };
-                let of = |hooks: &Hooks| (hooks.vertex.expect("it is on the hook").moved)(v, &words);
+                let of = |hooks: &Hooks| (hooks.vertex.as_ref().expect("it is on the hook").moved)(v, &words);
                 let (given, expected) = (of(hooks), of(&effect.hooks));
                 same(effect, "offset", &given.offset.to_array(), &expected.offset.to_array(), &(&words, v));
                 same(effect, "normal", &given.normal.to_array(), &expected.normal.to_array(), &(&words, v));
@@ -203,7 +205,7 @@ fn sample_functions_agree() {
                     center_screen: vector(&mut rng, 0.0, 1.0).truncate(),
                 };
                 let of = |hooks: &Hooks| {
-                    let hook = hooks.sample.expect("it is on the hook");
+                    let hook = hooks.sample.as_ref().expect("it is on the hook");
                     if hook.has_setup { (hook.sample_setup)(&setup, &words, None) } else { [0; 4] }
                 };
                 let (given, expected) = (of(hooks), of(&effect.hooks));
@@ -212,7 +214,7 @@ fn sample_functions_agree() {
                     let areas = std::array::from_fn(|_| whole(&mut rng, 1 << 29));
                     let (x, y) = (whole(&mut rng, 200), whole(&mut rng, 200));
                     let sample = Sample { x, y, triangle: setup.triangle, areas, setup: expected };
-                    let of = |hooks: &Hooks| (hooks.sample.expect("it is on the hook").is_drawn)(&sample, &words);
+                    let of = |hooks: &Hooks| (hooks.sample.as_ref().expect("it is on the hook").is_drawn)(&sample, &words);
                     let (given, expected) = (of(hooks), of(&effect.hooks));
                     assert_eq!(given, expected, "{}: {sample:?} with {words:?}", effect.name);
                     drawn[usize::from(expected)] += 1;
@@ -252,7 +254,7 @@ fn image_functions_agree() {
                     let color =
                         if rng.real(0.0, 1.0) < 0.2 { picture.background(index / width) } else { vector(&mut rng, 0.0, 1.0).extend(1.0) };
                     let q = Pixel { color, x: index % width, y: index / width, step_offset: 0.0 };
-                    let of = |hooks: &Hooks| (hooks.image.expect("it is on the hook").finish)(q, &picture, &words);
+                    let of = |hooks: &Hooks| (hooks.image.as_ref().expect("it is on the hook").finish)(q, &picture, &words);
                     let (given, expected) = (of(hooks), of(&effect.hooks));
                     same(effect, "color", &given.color.to_array(), &expected.color.to_array(), &(&words, q));
                     assert_eq!((given.x, given.y), (expected.x, expected.y), "{}", effect.name);
@@ -265,8 +267,8 @@ fn image_functions_agree() {
 #[test]
 fn a_duplicate_of_an_effect_is_read_and_says_the_same() {
     let (mut duplicates, mut refusals) = (0, Vec::new());
-    for effect in EFFECTS.iter().copied() {
-        let text = match duplicate(effect, "my_own") {
+    for effect in EFFECTS.iter().cloned() {
+        let text = match duplicate(&effect, "my_own") {
             Ok(text) => text,
             Err(reason) => {
                 refusals.push(format!("{} {reason}", effect.name));
@@ -276,22 +278,22 @@ fn a_duplicate_of_an_effect_is_read_and_says_the_same() {
         let mine = read("my_own.wgsl", "my_own", &text).unwrap_or_else(|error| panic!("{}: {error}\n{text}", effect.name));
         duplicates += 1;
         assert_eq!(mine.fields.len(), effect.fields.len(), "{}", effect.name);
-        let (Some(expected), Some(given)) = (effect.hooks.surface, mine.hooks.surface) else { continue };
+        let (Some(expected), Some(given)) = (&effect.hooks.surface, &mine.hooks.surface) else { continue };
         let mut rng = Rng(7);
         for turn in 0..300 {
-            let words = parameters(&mut rng, effect, turn);
-            let mut own_words = (mine.defaults)();
-            for field in mine.fields {
-                let same = effect.field(field.name).unwrap_or_else(|| panic!("{}.{}", effect.name, field.name));
+            let words = parameters(&mut rng, &effect, turn);
+            let mut own_words = mine.defaults.clone();
+            for field in &mine.fields {
+                let same = effect.field(&field.name).unwrap_or_else(|| panic!("{}.{}", effect.name, field.name));
                 field.set(&mut own_words, &same.get(&words)).unwrap_or_else(|error| panic!("{}.{}: {error}", effect.name, field.name));
             }
             if turn == 0 {
-                assert_eq!(own_words, (mine.defaults)(), "{}: the defaults", effect.name);
+                assert_eq!(own_words, mine.defaults, "{}: the defaults", effect.name);
             }
             let input = surface(&mut rng);
             let [given, expected] = [given(input, &own_words), expected(input, &words)];
-            same(effect, "color", &given.color.to_array(), &expected.color.to_array(), &input);
-            same(effect, "normal", &given.normal.to_array(), &expected.normal.to_array(), &input);
+            same(&effect, "color", &given.color.to_array(), &expected.color.to_array(), &input);
+            same(&effect, "normal", &given.normal.to_array(), &expected.normal.to_array(), &input);
         }
     }
     assert!(duplicates >= 12, "{duplicates} duplicates; {refusals:#?}");

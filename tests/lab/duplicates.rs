@@ -15,8 +15,8 @@ fn open_menu(lab: &mut Lab, effect: &str) {
     click(lab, Role::Button, &format!("More of {effect}"));
 }
 
-fn names(lab: &Lab) -> Vec<&'static str> {
-    lab.state().preset_file().preset.stack.0.iter().map(|enabled| enabled.effect.name).collect()
+fn names(lab: &Lab) -> Vec<String> {
+    lab.state().preset_file().preset.stack.0.iter().map(|enabled| enabled.effect.name.clone()).collect()
 }
 
 fn type_text(lab: &mut Lab, text: &str) {
@@ -40,7 +40,7 @@ fn a_duplicate_takes_the_place_of_its_original_and_undo_brings_that_back() {
     // The suggested name is selected, so that typing replaces it.
     type_text(&mut lab, "cel");
     click(&mut lab, Role::Button, "Duplicate");
-    wait_for(&mut lab, "the duplicate is used", |lab| names(lab).contains(&"cel"));
+    wait_for(&mut lab, "the duplicate is used", |lab| names(lab).iter().any(|name| name == "cel"));
     assert_eq!(written(folder.path()), ["cel.wgsl"]);
     let expected: Vec<&str> = stack.iter().map(|name| if *name == "toon" { "cel" } else { name }).collect();
     assert_eq!(names(&lab), expected);

@@ -109,7 +109,7 @@ fn randomize_stays_within_soft_ranges_and_is_one_undo_step() {
     assert_ne!(before.stack, after.stack);
     assert!(lab.state().log_text().contains("seed 1"));
     for enabled in &after.stack.0 {
-        for field in enabled.effect.fields {
+        for field in &enabled.effect.fields {
             let components = field.get(&enabled.words);
             assert!(
                 components.iter().all(|value| (field.soft[0]..=field.soft[1]).contains(value)),

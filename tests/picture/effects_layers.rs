@@ -253,7 +253,7 @@ fn every_builtin_scene_is_exact_in_layers() {
         let second = if i % 2 == 0 { with(&["xray.weight=grazing"]) } else { with(&["overdraw.scale=log"]) };
         for (j, stack) in [with(&["facet", "lambert", "xray"]), second].iter().enumerate() {
             let option = options[(i + j) % options.len()];
-            let what = format!("{query} {} {:?}", option.name(), stack.0.last().map(|enabled| enabled.effect));
+            let what = format!("{query} {} {:?}", option.name(), stack.0.last().map(|enabled| &enabled.effect));
             let (capture, verdict) = exact(&mut renderer, &scene, &view, stack, &pinned(option), &what);
             let is_weighted = stack.params::<Xray>("xray").is_some_and(|xray| xray.unit() > 1);
             if !is_weighted {
@@ -514,8 +514,8 @@ fn a_card_lists_the_covered_samples_of_a_small_box_and_draws_each_of_them() {
 #[test]
 fn every_effect_of_the_slot_is_known_to_the_planner() {
     let of = |name: &str| stack(&[name]).layers(1000);
-    let slot = |effect: &&&Effect| effect.hooks.slot == Some(rasterlab::effects::hooks::Slot::Visibility);
+    let slot = |effect: &&std::sync::Arc<Effect>| effect.hooks.slot == Some(rasterlab::effects::hooks::Slot::Visibility);
     for effect in rasterlab::effects::EFFECTS.iter().filter(slot) {
-        assert_eq!(of(effect.name).map(Layers::name), Some(effect.name));
+        assert_eq!(of(&effect.name).map(Layers::name), Some(effect.name.as_str()));
     }
 }

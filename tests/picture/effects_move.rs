@@ -237,7 +237,7 @@ fn any_parameters_within_the_hard_ranges_are_drawn_exactly() {
             stack = crate::common::stack(&MOVING);
         }
         for enabled in &mut stack.0 {
-            for field in enabled.effect.fields {
+            for field in &enabled.effect.fields {
                 let values = any_value(&mut rng, field);
                 field.set(&mut enabled.words, &values).unwrap_or_else(|error| panic!("{error}"));
             }

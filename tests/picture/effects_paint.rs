@@ -46,7 +46,7 @@ fn drawn(scene: &Scene, view: &View, stack: &Stack) -> Frame {
 /// Gives every parameter of an effect a random legal value from its slider's range.
 fn shake(stack: &mut Stack, name: &str, rng: &mut Rng) {
     let enabled = stack.get_mut(name).expect("it was enabled");
-    for field in enabled.effect.fields {
+    for field in &enabled.effect.fields {
         let [low, high] = field.soft;
         let lane = |rng: &mut Rng| match field.value_type {
             ValueType::F32 | ValueType::Color | ValueType::Point => rng.real(low, high),

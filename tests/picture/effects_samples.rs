@@ -314,7 +314,7 @@ fn effects_that_are_off_leave_no_pass_and_no_buffer() {
     };
     let plain = parts(&mut renderer, &Stack::default());
     for (what, mut stack) in stacks() {
-        let names: Vec<&str> = stack.0.iter().map(|enabled| enabled.effect.name).collect();
+        let names: Vec<String> = stack.0.iter().map(|enabled| enabled.effect.name.clone()).collect();
         parts(&mut renderer, &stack);
         names.iter().for_each(|name| stack.disable(name));
         let off = parts(&mut renderer, &stack);

@@ -394,7 +394,7 @@ fn the_tier_strict_takes_masks_unless_something_masked_is_cut() {
 fn a_scene_of_plain_colors_has_no_texture_and_no_word_of_one() {
     for effects in [
         vec![],
-        EFFECTS.iter().copied().filter(|effect| effect.hooks.slot.is_none() && effect.name != "shadow").collect::<Vec<&'static Effect>>(),
+        EFFECTS.iter().filter(|&effect| effect.hooks.slot.is_none() && effect.name != "shadow").cloned().collect::<Vec<Arc<Effect>>>(),
     ] {
         // A shadow map is a texture, too.
         let mut plain = KernelKey::complete(Fetch::Indexed, Visibility::Split32, effects.clone());

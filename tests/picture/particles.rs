@@ -40,7 +40,7 @@ fn preset_file(fields: &[(&str, &[f64])]) -> Preset {
 }
 
 fn at(preset: &Preset, frame: u32) -> Preset {
-    let rate: Particles = preset.stack.params(EFFECT.name).expect("particles");
+    let rate: Particles = preset.stack.params(&EFFECT.name).expect("particles");
     let clock = Clock { time_s: f64::from(frame) / f64::from(rate.rate), ..preset.clock };
     Preset { clock, ..preset.clone() }
 }
@@ -117,7 +117,7 @@ fn the_flow_is_about_as_fast_as_it_says_and_nowhere_jumps() {
 fn births_fill_the_ellipsoid_evenly_and_lives_begin_at_every_age() {
     let spread = [0.5, 1.0, 2.0];
     let preset = preset_file(&[("count", &[20_000.0]), ("half_axes", &spread), ("center", &[1.0, 2.0, 3.0])]);
-    let p: Particles = preset.stack.params(EFFECT.name).expect("particles");
+    let p: Particles = preset.stack.params(&EFFECT.name).expect("particles");
     let particle_states: Vec<_> = (0..20_000).map(|id| oracle::particles::first(&p, id)).collect();
     let shares: Vec<DVec3> = particle_states.iter().map(|f| (f.position - DVec3::new(1.0, 2.0, 3.0)) / DVec3::from_array(spread)).collect();
     assert!(shares.iter().all(|share| share.length() <= 1.0));
@@ -265,7 +265,7 @@ fn lives_end_and_begin_again_inside_the_room() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("chamber");
     let preset = preset_file(&[("lifetime_s", &[0.25]), ("room_m", &[0.8]), ("half_axes", &[0.4, 0.4, 0.4]), ("speed_mps", &[5.0])]);
-    let p: Particles = preset.stack.params(EFFECT.name).expect("particles");
+    let p: Particles = preset.stack.params(&EFFECT.name).expect("particles");
     let [longest, _] = particles::life_steps(&p);
     assert_eq!(longest, 15);
     for (curl, state) in particle_options() {

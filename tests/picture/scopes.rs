@@ -22,7 +22,7 @@ fn scope(patterns: &[&str]) -> Scope {
     Scope::new(patterns.iter().map(|text| text.parse::<PartPattern>().unwrap_or_else(|error| panic!("{error}"))))
 }
 
-fn enable(stack: &mut Stack, effect: &'static Effect, patterns: &[&str], fields: &[(&str, f64)]) {
+fn enable(stack: &mut Stack, effect: &Arc<Effect>, patterns: &[&str], fields: &[(&str, f64)]) {
     let enabled = stack.enable(effect);
     enabled.on = scope(patterns);
     for (name, value) in fields {
@@ -31,7 +31,7 @@ fn enable(stack: &mut Stack, effect: &'static Effect, patterns: &[&str], fields:
     }
 }
 
-fn effect(name: &str) -> &'static Effect {
+fn effect(name: &str) -> &'static Arc<Effect> {
     Effect::find(name).unwrap_or_else(|| panic!("no effect {name}"))
 }
 
@@ -142,10 +142,10 @@ fn a_vertex_effect_moves_its_parts_and_their_shadows_alone() {
 fn instances_of_one_effect_act_on_parts_of_their_own() {
     let Some(mut renderer) = renderer() else { return };
     let picture = wall();
-    let [skin, coat] = ["skin", "coat"].map(|name| -> &'static Effect { Box::leak(Box::new(Effect::instance(name, effect("toon")))) });
+    let [skin, coat] = ["skin", "coat"].map(|name| Arc::new(Effect::instance(name, effect("toon"))));
     let mut stack = only("fog", &["material:ink", "material:chalk"], &[]);
-    enable(&mut stack, skin, &["material:amber"], &[("steps", 2.0)]);
-    enable(&mut stack, coat, &["material:coral", "material:amber"], &[("steps", 4.0)]);
+    enable(&mut stack, &skin, &["material:amber"], &[("steps", 2.0)]);
+    enable(&mut stack, &coat, &["material:coral", "material:amber"], &[("steps", 4.0)]);
     let mut swapped = stack.clone();
     let [a, b] = [2, 3].map(|index| stack.0[index].on.clone());
     (swapped.0[2].on, swapped.0[3].on) = (b, a);

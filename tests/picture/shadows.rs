@@ -201,7 +201,7 @@ fn cases() -> Vec<(Arc<Scene>, Stack)> {
 fn every_case_is_what_the_oracle_draws_with_every_option() {
     let Some(mut renderer) = renderer() else { return };
     for (scene, stack) in cases() {
-        let names: Vec<&str> = stack.0.iter().map(|enabled| enabled.effect.name).collect();
+        let names: Vec<&str> = stack.0.iter().map(|enabled| enabled.effect.name.as_str()).collect();
         let view = on(&view(&scene, [120, 90]), ShadowMapSize::Side512, ShadowTaps::Nine);
         let mut first: Option<Capture> = None;
         for option in options(&renderer) {
@@ -331,9 +331,11 @@ fn rays_know_a_plate_from_the_sky() {
 
 #[test]
 fn a_preset_without_a_light_has_no_pass_buffer_or_text_of_it() {
-    let key = |effects: Vec<&'static Effect>| KernelKey::complete(Fetch::Indexed, Visibility::Split32, effects);
+    let key = |effects: Vec<Arc<Effect>>| KernelKey::complete(Fetch::Indexed, Visibility::Split32, effects);
     let shadow = Effect::find("shadow").expect("an effect");
-    for (effects, is_there) in [(vec![], false), (vec![Effect::find("lambert").expect("an effect")], false), (vec![shadow], true)] {
+    for (effects, is_there) in
+        [(vec![], false), (vec![Effect::find("lambert").expect("an effect").clone()], false), (vec![shadow.clone()], true)]
+    {
         let key = key(effects);
         for pass in key.frame() {
             let linked = link::link(&Library::Embedded, &pass.path(), &key, &key.variants(pass)).expect("links");

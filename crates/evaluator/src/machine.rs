@@ -32,53 +32,35 @@ pub struct Machine<'p> {
 impl Program {
     /// Registers for calls from one thread.
     pub fn machine(&self) -> Machine<'_> {
-        Machine::new(self)
-    }
-}
-
-impl<'p> Machine<'p> {
-    pub(crate) fn new(program: &'p Program) -> Machine<'p> {
-        Machine { program, registers: program.image.clone() }
+        Machine { program: self, registers: self.registers() }
     }
 
-    pub fn program(&self) -> &'p Program {
-        self.program
+    /// The registers of a machine, for [`Program::call`].
+    pub fn registers(&self) -> Vec<Word> {
+        self.image.clone()
     }
 
-    /// Sets the global variable `index` of `Options::globals` for the calls that follow; variables are zero until then. A variable that the
-    /// function does not reach is ignored.
-    pub fn set_global(&mut self, index: usize, words: &[Word]) -> Result<(), EvalError> {
-        let Some(range) = self.program.globals.get(index).cloned().flatten() else { return Ok(()) };
-        if range.len() != words.len() {
-            return Err(EvalError::Global { index, expected: range.len(), given: words.len() });
-        }
-        self.registers[range].copy_from_slice(words);
-        Ok(())
-    }
-
-    /// Evaluates the function. `arguments` and the result are flattened in the order in which members, components, columns and elements
-    /// are declared; in single precision floats must be f32 values. Takes no longer than `Limits::steps` allow.
-    pub fn call(&mut self, arguments: &[Word], host: &mut dyn Host) -> Result<&[Word], EvalError> {
-        let inputs = self.program.arguments.clone();
+    /// [`Machine::call`] on registers that [`Program::registers`] of this program gave.
+    pub fn call<'r>(&self, registers: &'r mut [Word], arguments: &[Word], host: &mut dyn Host) -> Result<&'r [Word], EvalError> {
+        let inputs = self.arguments.clone();
         if inputs.len() != arguments.len() {
             return Err(EvalError::Arguments { expected: inputs.len(), given: arguments.len() });
         }
-        self.registers[inputs].copy_from_slice(arguments);
-        let stopped = match self.program.precision {
-            Precision::Double => self.run::<false>(host),
-            Precision::Single => self.run::<true>(host),
+        registers[inputs].copy_from_slice(arguments);
+        let stopped = match self.precision {
+            Precision::Double => self.run::<false>(registers, host),
+            Precision::Single => self.run::<true>(registers, host),
         };
         if let Some(at) = stopped {
-            return Err(EvalError::Steps { steps: self.program.steps, function: self.program.function_at(at).to_owned() });
+            return Err(EvalError::Steps { steps: self.steps, function: self.function_at(at).to_owned() });
         }
-        Ok(&self.registers[self.program.result.clone()])
+        Ok(&registers[self.result.clone()])
     }
 
     /// Runs the program; the instruction at which its steps ran out, if they did.
-    fn run<const SINGLE: bool>(&mut self, host: &mut dyn Host) -> Option<usize> {
-        let code = self.program.code.as_slice();
-        let r = self.registers.as_mut_slice();
-        let mut steps = self.program.steps;
+    fn run<const SINGLE: bool>(&self, r: &mut [Word], host: &mut dyn Host) -> Option<usize> {
+        let code = self.code.as_slice();
+        let mut steps = self.steps;
         let mut next = 0;
         while let Some(&i) = code.get(next) {
             next += 1;
@@ -127,5 +109,28 @@ impl<'p> Machine<'p> {
             }
         }
         None
+    }
+}
+
+impl<'p> Machine<'p> {
+    pub fn program(&self) -> &'p Program {
+        self.program
+    }
+
+    /// Sets the global variable `index` of `Options::globals` for the calls that follow; variables are zero until then. A variable that the
+    /// function does not reach is ignored.
+    pub fn set_global(&mut self, index: usize, words: &[Word]) -> Result<(), EvalError> {
+        let Some(range) = self.program.globals.get(index).cloned().flatten() else { return Ok(()) };
+        if range.len() != words.len() {
+            return Err(EvalError::Global { index, expected: range.len(), given: words.len() });
+        }
+        self.registers[range].copy_from_slice(words);
+        Ok(())
+    }
+
+    /// Evaluates the function. `arguments` and the result are flattened in the order in which members, components, columns and elements
+    /// are declared; in single precision floats must be f32 values. Takes no longer than `Limits::steps` allow.
+    pub fn call(&mut self, arguments: &[Word], host: &mut dyn Host) -> Result<&[Word], EvalError> {
+        self.program.call(&mut self.registers, arguments, host)
     }
 }

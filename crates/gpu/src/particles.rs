@@ -66,7 +66,7 @@ struct Requested {
 impl Requested {
     /// None where no effect puts particles into the scene.
     fn of(view: &View, stack: &Stack) -> Option<Self> {
-        let words = &stack.get(particles::EFFECT.name)?.words;
+        let words = &stack.get(&particles::EFFECT.name)?.words;
         let count = stack.particle_settings()?.count;
         let particle_timeline =
             view.scene_state.particles.as_deref().filter(|particle_timeline| particle_timeline.stride == words.len()).cloned();

@@ -1,5 +1,7 @@
 //! Everything that the palette offers, from the lists that menus, inspector and preset files use too.
 
+use std::sync::Arc;
+
 use super::entry::{Choice, Entry, Kind, axis_path};
 use crate::{
     accuracy::AXES,
@@ -9,7 +11,7 @@ use crate::{
         session::Session,
     },
     effects::Effect,
-    params::{Param, Value},
+    params::{Field, Param, Value},
     preset::{
         Tier,
         settings::{Setting, settings},
@@ -24,8 +26,8 @@ const MAX_VALUE: usize = 40;
 /// Every entry, those of the open preset first.
 pub fn entries(session: &Session, presets: &[GalleryEntry]) -> Vec<Entry> {
     let mut entries: Vec<Entry> = ACTIONS.iter().filter(|(action, ..)| *action != Action::Palette).map(|row| action(row.0)).collect();
-    let enabled = session.preset().stack.0.iter().map(|enabled| enabled.effect);
-    let effects: Vec<&'static Effect> = session.preset_file.effects.effects_with(enabled);
+    let enabled = session.preset().stack.0.iter().map(|enabled| &enabled.effect);
+    let effects = session.preset_file.effects.effects_with(enabled);
     for effect in &effects {
         entries.extend(of_effect(session, effect));
     }
@@ -40,7 +42,7 @@ pub fn entries(session: &Session, presets: &[GalleryEntry]) -> Vec<Entry> {
         kind: Kind::Scene,
         text: format!("Scene {}", builtin.name),
         detail: builtin.about.into(),
-        about: builtin.about,
+        about: builtin.about.into(),
         keys: String::new(),
         choice: Choice::Builtin(builtin.name),
     }));
@@ -52,48 +54,58 @@ fn action(action: Action) -> Entry {
         kind: Kind::Action,
         text: action.label().into(),
         detail: String::new(),
-        about: "",
+        about: String::new(),
         keys: action.shortcut_text(),
         choice: Choice::Perform(action),
     }
 }
 
-fn of_effect(session: &Session, effect: &'static Effect) -> Option<Entry> {
+fn of_effect(session: &Session, effect: &Arc<Effect>) -> Option<Entry> {
     let stack = &session.preset().stack;
-    let (verb, choice) = match (stack.get(effect.name), stack.rival_of(effect)) {
-        (Some(_), _) => ("Disable", Choice::Disable(effect)),
-        (None, Some(rival)) => ("Enable", Choice::Replace(rival.name, effect)),
-        (None, None) => ("Enable", Choice::Enable(effect)),
+    let (verb, choice) = match (stack.get(&effect.name), stack.rival_of(effect)) {
+        (Some(_), _) => ("Disable", Choice::Disable(effect.clone())),
+        (None, Some(rival)) => ("Enable", Choice::Replace(rival.name.clone(), effect.clone())),
+        (None, None) => ("Enable", Choice::Enable(effect.clone())),
     };
     let detail = match &choice {
         Choice::Replace(rival, _) => format!("instead of {rival}: {}", effect.about),
-        _ => effect.about.into(),
+        _ => effect.about.clone(),
     };
-    Some(Entry { kind: Kind::Effect, text: format!("{verb} {}", effect.name), detail, about: effect.about, keys: String::new(), choice })
+    Some(Entry {
+        kind: Kind::Effect,
+        text: format!("{verb} {}", effect.name),
+        detail,
+        about: effect.about.clone(),
+        keys: String::new(),
+        choice,
+    })
 }
 
 /// The parameters of an effect. One of an effect that is not in the stack enables it; one that is hidden says why.
-fn parameters(session: &Session, effect: &'static Effect) -> impl Iterator<Item = Entry> {
+fn parameters(session: &Session, effect: &Arc<Effect>) -> Vec<Entry> {
     let stack = &session.preset().stack;
     let words = session.shown_words(effect);
     let conflict = stack.conflict_with(effect).map(|conflict| conflict.to_string()).filter(|_| words.is_none());
-    effect.fields.iter().map(move |field| {
+    let entry = |field: &Arc<Field>| {
         let path = format!("{}.{}", effect.name, field.name);
         let (detail, choice) = match (&words, &conflict) {
             (_, Some(conflict)) => (conflict.clone(), Choice::Refuse(conflict.clone())),
-            (None, None) => (format!("enables {}", effect.name), Choice::Reveal(path.clone(), Some(effect))),
-            (Some(words), None) if field.is_shown(effect.fields, words) => {
+            (None, None) => (format!("enables {}", effect.name), Choice::Reveal(path.clone(), Some(effect.clone()))),
+            (Some(words), None) if field.is_shown(&effect.fields, words) => {
                 (written(field, &field.value(words)), Choice::Reveal(path.clone(), None))
             }
             (Some(words), None) => {
-                let condition =
-                    field.when.map_or_else(String::new, |(choice, among)| format!("{}.{choice} is {}", effect.name, among.join(" or ")));
+                let condition = field
+                    .when
+                    .as_ref()
+                    .map_or_else(String::new, |(choice, among)| format!("{}.{choice} is {}", effect.name, among.join(" or ")));
                 let reason = format!("{path} is shown while {condition}");
                 (format!("{}, hidden", written(field, &field.value(words))), Choice::Refuse(reason))
             }
         };
-        Entry { kind: Kind::Parameter, text: path, detail, about: field.doc, keys: String::new(), choice }
-    })
+        Entry { kind: Kind::Parameter, text: path, detail, about: field.doc.clone(), keys: String::new(), choice }
+    };
+    effect.fields.iter().map(entry).collect()
 }
 
 fn of_setting(session: &Session, setting: &'static Setting) -> Option<Entry> {
@@ -105,7 +117,7 @@ fn of_setting(session: &Session, setting: &'static Setting) -> Option<Entry> {
         Some(_) if has_row(&path) => Choice::Reveal(path.clone(), None),
         _ => Choice::Refuse(format!("{path} has no row; type its value, {}", setting.allowed())),
     };
-    Some(Entry { kind: Kind::Setting, text: path, detail, about: setting.doc, keys: String::new(), choice })
+    Some(Entry { kind: Kind::Setting, text: path, detail, about: setting.doc.clone(), keys: String::new(), choice })
 }
 
 /// The tiers, and every option of every axis.
@@ -115,7 +127,7 @@ fn accuracy(session: &Session) -> impl Iterator<Item = Entry> {
         kind: Kind::Accuracy,
         text: format!("accuracy.tier = {}", tier.name()),
         detail: if accuracy.tier == tier { "present".into() } else { String::new() },
-        about: "tolerance",
+        about: "tolerance".into(),
         keys: String::new(),
         choice: Choice::Set("accuracy.tier".into(), tier.name().into()),
     };
@@ -129,7 +141,7 @@ fn accuracy(session: &Session) -> impl Iterator<Item = Entry> {
                 (false, Some(about)) => about.trim().to_owned(),
                 (false, None) => "the planner decides".into(),
             },
-            about: axis.about,
+            about: axis.about.into(),
             keys: String::new(),
             choice: Choice::Set(axis_path(axis), (*option).to_owned()),
         })
@@ -145,7 +157,7 @@ fn preset(entry: &GalleryEntry) -> Option<Entry> {
         kind: Kind::Preset,
         text: format!("Open {title}{id}"),
         detail: found.preset.about.clone(),
-        about: "",
+        about: String::new(),
         keys: String::new(),
         choice: Choice::Open(entry.id.clone()),
     })
@@ -153,7 +165,7 @@ fn preset(entry: &GalleryEntry) -> Option<Entry> {
 
 /// A value with its unit, short enough for a row.
 fn written(param: &Param, value: &Value) -> String {
-    let text = toml_value::write_text(param.value_type, value);
+    let text = toml_value::write_text(&param.value_type, value);
     let short: String = if text.chars().count() > MAX_VALUE { text.chars().take(MAX_VALUE).chain(['…']).collect() } else { text };
     if param.unit.is_empty() { short } else { format!("{short} {}", param.unit) }
 }
@@ -179,8 +191,8 @@ mod tests {
         for (action, label, _) in ACTIONS.iter().filter(|(action, ..)| *action != Action::Palette) {
             assert!(has(label), "{action:?}");
         }
-        for effect in EFFECTS {
-            let verb = if ["xray", "lambert"].contains(&effect.name) { "Disable" } else { "Enable" };
+        for effect in EFFECTS.iter() {
+            let verb = if ["xray", "lambert"].contains(&effect.name.as_str()) { "Disable" } else { "Enable" };
             assert!(has(&format!("{verb} {}", effect.name)), "{}", effect.name);
             effect.fields.iter().for_each(|field| assert!(has(&format!("{}.{}", effect.name, field.name)), "{}", field.name));
         }
@@ -196,9 +208,9 @@ mod tests {
         let all = all();
         let find = |text: &str| all.iter().find(|entry| entry.text == text).expect("an entry").choice.clone();
         let overdraw = Effect::find("overdraw").expect("a built-in effect");
-        assert_eq!(find("Enable overdraw"), Choice::Replace("xray", overdraw));
+        assert_eq!(find("Enable overdraw"), Choice::Replace("xray".into(), overdraw.clone()));
         assert!(matches!(find("overdraw.max_layers"), Choice::Refuse(reason) if reason.contains("slot of the rasterizer")));
         let facet = Effect::find("facet").expect("a built-in effect");
-        assert_eq!(find("facet.amount"), Choice::Reveal("facet.amount".into(), Some(facet)));
+        assert_eq!(find("facet.amount"), Choice::Reveal("facet.amount".into(), Some(facet.clone())));
     }
 }

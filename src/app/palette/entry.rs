@@ -1,5 +1,7 @@
 //! An entry of the palette: what it shows, and the commands that carry it out.
 
+use std::sync::Arc;
+
 use crate::app::{
     action::Action,
     command::{Command, Edit, FileCommand},
@@ -37,12 +39,12 @@ impl Kind {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Choice {
     Perform(Action),
-    Enable(&'static Effect),
-    Disable(&'static Effect),
+    Enable(Arc<Effect>),
+    Disable(Arc<Effect>),
     /// Disables the first effect and enables the second, since both take the same slot.
-    Replace(&'static str, &'static Effect),
+    Replace(String, Arc<Effect>),
     /// Shows the row of this path in the inspector, after enabling the effect that it belongs to.
-    Reveal(String, Option<&'static Effect>),
+    Reveal(String, Option<Arc<Effect>>),
     /// Gives the value at this path.
     Set(String, String),
     /// Opens the preset of this id.
@@ -61,7 +63,7 @@ pub struct Entry {
     /// Shown behind it: the present value, or what it is about.
     pub detail: String,
     /// What is searched, too.
-    pub about: &'static str,
+    pub about: String,
     /// Its keys, for instance `Ctrl+Z`.
     pub keys: String,
     pub choice: Choice,
@@ -71,9 +73,9 @@ pub struct Entry {
 pub fn commands(choice: Choice) -> Vec<Command> {
     match choice {
         Choice::Perform(action) => vec![Command::Perform(action)],
-        Choice::Enable(effect) => vec![Command::Edit(Edit::Enable(effect)), Command::Reveal(effect.name.into())],
+        Choice::Enable(effect) => vec![Command::Edit(Edit::Enable(effect.clone())), Command::Reveal(effect.name.clone())],
         Choice::Disable(effect) => vec![Command::Edit(Edit::Disable(effect))],
-        Choice::Replace(other, effect) => vec![Command::Edit(Edit::Replace(other, effect)), Command::Reveal(effect.name.into())],
+        Choice::Replace(other, effect) => vec![Command::Edit(Edit::Replace(other, effect.clone())), Command::Reveal(effect.name.clone())],
         Choice::Reveal(path, effect) => {
             effect.map(|effect| Command::Edit(Edit::Enable(effect))).into_iter().chain([Command::Reveal(path)]).collect()
         }

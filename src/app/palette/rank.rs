@@ -49,7 +49,7 @@ pub fn rank(entries: &[Entry], query: &str, probe: impl Fn(&str, &str) -> Result
             kind: known.map_or(Kind::Accuracy, |known| known.kind),
             text: format!("Set {path} to {value}"),
             detail,
-            about: "",
+            about: String::new(),
             keys: String::new(),
             choice,
         };
@@ -66,7 +66,7 @@ pub fn rank(entries: &[Entry], query: &str, probe: impl Fn(&str, &str) -> Result
         }
     }
     let mut found: Vec<(i32, &Entry)> =
-        entries.iter().filter_map(|entry| Some((fuzzy::score(query, &entry.text, entry.about)? + preference(entry), entry))).collect();
+        entries.iter().filter_map(|entry| Some((fuzzy::score(query, &entry.text, &entry.about)? + preference(entry), entry))).collect();
     found.sort_by_key(|(points, _)| -points);
     // "Scene sphere" is an entry, and could also set `scene.builtin`: the entry comes first.
     let (whole, rest): (Vec<_>, Vec<_>) = found.into_iter().partition(|(_, entry)| entry.text.eq_ignore_ascii_case(query.trim()));
@@ -91,7 +91,7 @@ mod tests {
     use crate::effects::Effect;
 
     fn entry(kind: Kind, text: &str, choice: Choice) -> Entry {
-        Entry { kind, text: text.into(), detail: "0.25".into(), about: "", keys: String::new(), choice }
+        Entry { kind, text: text.into(), detail: "0.25".into(), about: String::new(), keys: String::new(), choice }
     }
 
     fn entries() -> Vec<Entry> {
@@ -103,7 +103,7 @@ mod tests {
             reveal("facet.pattern"),
             entry(Kind::Setting, "clock.speed", Choice::Reveal("clock.speed".into(), None)),
             entry(Kind::Accuracy, "accuracy.depth = log16", Choice::Set("accuracy.depth".into(), "log16".into())),
-            entry(Kind::Effect, "Disable facet", Choice::Disable(facet)),
+            entry(Kind::Effect, "Disable facet", Choice::Disable(facet.clone())),
             entry(Kind::Preset, "Open Cut knot (facet-knot)", Choice::Open("facet-knot".into())),
         ]
     }

@@ -16,7 +16,7 @@ pub fn code_ui(ui: &mut Ui, preset_file: &PresetFile) {
     ui.add_space(theme::HALF);
     egui::ScrollArea::vertical().max_height(260.0).show(ui, |ui| {
         for effect in preset_file.brought() {
-            let Some(source) = effect.source else { continue };
+            let Some(source) = &effect.source else { continue };
             let (lines, bytes) = (source.written.lines().count(), source.written.len());
             let lines = if lines == 1 { "1 line".to_owned() } else { format!("{lines} lines") };
             let title = format!("{}: {lines}, {bytes} bytes, {}", source.stem, effect.hooks.names());

@@ -1,5 +1,7 @@
 //! The dialog for a new effect: its name and its hook.
 
+use std::sync::Arc;
+
 use eframe::egui::{self, RichText, Ui};
 
 use crate::{
@@ -19,7 +21,7 @@ pub struct NewEffect {
 
 impl NewEffect {
     /// A new effect without a name, or a duplicate with a name that is free.
-    pub fn new(duplicated: Option<&'static Effect>, catalog: &Catalog) -> Self {
+    pub fn new(duplicated: Option<Arc<Effect>>, catalog: &Catalog) -> Self {
         let Some(effect) = duplicated else {
             return Self { name: String::new(), origin: Origin::Template(Hook::Surface), error: None, selects: false };
         };

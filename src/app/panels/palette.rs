@@ -223,7 +223,7 @@ fn one_line(ui: &Ui, text: &str, font: FontId, color: egui::Color32, width: f32)
 /// What the selected entry is about, and the keys.
 fn footer_ui(ui: &mut Ui, open: &Open) {
     ui.add_space(theme::HALF);
-    let about = open.listed.get(open.selected).map_or("", |entry| entry.about);
+    let about = open.listed.get(open.selected).map_or("", |entry| &entry.about);
     ui.horizontal(|ui| {
         ui.set_min_height(16.0);
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {

@@ -74,7 +74,7 @@ impl RandomizePanel {
 fn inputs(state: &State, requested: &Inputs, seeded: &Seeded) -> Inputs {
     let size = cells::size(THUMBNAIL, [requested.view.width, requested.view.height]);
     let mut preset = state.session.visible_preset();
-    preset.stack = Stack(seeded.stack.0.iter().filter(|enabled| preset.stack.get(enabled.effect.name).is_some()).cloned().collect());
+    preset.stack = Stack(seeded.stack.0.iter().filter(|enabled| preset.stack.get(&enabled.effect.name).is_some()).cloned().collect());
     let stack = preset.evaluated_stack();
     Inputs { view: state.session.view_of(preset, &requested.scene, size), stack, ..requested.clone() }
 }
@@ -126,8 +126,8 @@ fn controls_ui(ui: &mut Ui, state: &State, commands: &Commands) {
 
 /// A box for each parameter of an effect: with a mark, it varies.
 fn locks_ui(ui: &mut Ui, state: &State, commands: &Commands, enabled: &EnabledEffect) {
-    let (effect, seeds) = (enabled.effect, &state.session.randomizer);
-    let shown: Vec<_> = effect.fields.iter().filter(|field| field.is_shown(effect.fields, &enabled.words)).collect();
+    let (effect, seeds) = (&enabled.effect, &state.session.randomizer);
+    let shown: Vec<_> = effect.fields.iter().filter(|field| field.is_shown(&effect.fields, &enabled.words)).collect();
     if shown.is_empty() {
         return;
     }
@@ -136,19 +136,19 @@ fn locks_ui(ui: &mut Ui, state: &State, commands: &Commands, enabled: &EnabledEf
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 10.0;
         let mut varies = locked < shown.len();
-        let title = RichText::new(effect.name).strong().color(theme::text_strong());
+        let title = RichText::new(&effect.name).strong().color(theme::text_strong());
         let all = ui.checkbox(&mut varies, title).on_hover_text("Let all of its parameters vary, or lock them all");
         if all.accessible_name(format!("Vary {}", effect.name)).clicked() {
-            shown.iter().for_each(|field| commands.send(Command::Lock((effect, field), !all_locked)));
+            shown.iter().for_each(|field| commands.send(Command::Lock((effect.clone(), (*field).clone()), !all_locked)));
         }
         for field in shown {
-            let is_animated = state.session.preset().animation.get(effect.name, field.name).is_some();
+            let is_animated = state.session.preset().animation.get(&effect.name, &field.name).is_some();
             let mut varies = !seeds.is_locked(effect, field) && !is_animated;
             let name = RichText::new(field.name.replace('_', " ")).size(12.0);
             let response = ui.add_enabled(!is_animated, egui::Checkbox::new(&mut varies, name));
-            let response = response.on_hover_text(field.doc).on_disabled_hover_text("Its keyframes decide");
+            let response = response.on_hover_text(&field.doc).on_disabled_hover_text("Its keyframes decide");
             if response.accessible_name(format!("Vary {}.{}", effect.name, field.name)).clicked() {
-                commands.send(Command::Lock((effect, field), !varies));
+                commands.send(Command::Lock((effect.clone(), field.clone()), !varies));
             }
         }
     });

@@ -65,11 +65,11 @@ pub struct SweepPanel {
 }
 
 /// The parameters of the enabled effects that can be varied: single numbers, words and flags.
-fn parameters(preset: &Preset) -> Vec<(String, &'static Field)> {
-    let is_single = |field: &&Field| field.value_type.components() == 1;
+fn parameters(preset: &Preset) -> Vec<(String, Arc<Field>)> {
+    let is_single = |field: &&Arc<Field>| field.value_type.components() == 1;
     let of_stack = preset.stack.0.iter().flat_map(|enabled| {
-        let fields = enabled.effect.fields.iter().filter(is_single).filter(|field| field.is_shown(enabled.effect.fields, &enabled.words));
-        fields.map(|field| (format!("{}.{}", enabled.effect.name, field.name), field))
+        let fields = enabled.effect.fields.iter().filter(is_single).filter(|field| field.is_shown(&enabled.effect.fields, &enabled.words));
+        fields.map(|field| (format!("{}.{}", enabled.effect.name, field.name), field.clone()))
     });
     of_stack.collect()
 }
@@ -81,10 +81,10 @@ impl Varied {
 
     /// Its values: every word of a choice, both of a flag, or the steps from end to end.
     fn variation(&self, field: &Field) -> Variation {
-        let words = |words: &[&str]| Variation { path: self.path.clone(), values: words.iter().map(|word| (*word).to_owned()).collect() };
-        match field.value_type {
-            ValueType::Bool => words(&["false", "true"]),
-            ValueType::Choice(choices) => words(choices),
+        let words = |values: Vec<String>| Variation { path: self.path.clone(), values };
+        match &field.value_type {
+            ValueType::Bool => words(vec!["false".into(), "true".into()]),
+            ValueType::Choice(choices) => words(choices.clone()),
             ValueType::U32 | ValueType::I32 => {
                 let mut variation = Variation::range(&self.path, self.ends, self.steps);
                 variation
@@ -135,7 +135,7 @@ impl SweepPanel {
     /// Begins to draw a sheet of the picture that is shown.
     fn start(&mut self, state: &State, commands: &Commands, requested: &Inputs) {
         let known = parameters(state.session.preset());
-        let field = |varied: &Varied| known.iter().find(|(path, _)| *path == varied.path).map(|(_, field)| *field);
+        let field = |varied: &Varied| known.iter().find(|(path, _)| *path == varied.path).map(|(_, field)| field);
         let variations: Vec<_> = self.varied.iter().flatten().filter_map(|varied| Some(varied.variation(field(varied)?))).collect();
         let mut base = state.session.preset_file.clone();
         base.preset = state.session.visible_preset();
@@ -204,7 +204,7 @@ impl SweepPanel {
 }
 
 /// The choice of a parameter, with its ends and the number of steps.
-fn varied_ui(ui: &mut Ui, index: usize, varied: &mut Option<Varied>, known: &[(String, &'static Field)]) {
+fn varied_ui(ui: &mut Ui, index: usize, varied: &mut Option<Varied>, known: &[(String, Arc<Field>)]) {
     let name = ["along the rows", "from row to row"][index];
     ui.add_sized([96.0, theme::ROW], egui::Label::new(theme::weak(name)));
     let chosen = varied.as_ref().map_or("none", |varied| varied.path.as_str()).to_owned();

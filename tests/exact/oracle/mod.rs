@@ -70,7 +70,7 @@ fn still_life(size: [u32; 2]) -> (Scene, View) {
 fn all_effects() -> Stack {
     let mut stack = Stack::default();
     for name in ["facet", "depth", "lambert"] {
-        stack.enable(Effect::find(name).expect("a listed effect")).words = (Effect::find(name).unwrap().defaults)();
+        stack.enable(Effect::find(name).expect("a listed effect")).words = Effect::find(name).unwrap().defaults.clone();
     }
     stack
 }

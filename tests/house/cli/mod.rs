@@ -86,8 +86,8 @@ fn list_as_json_has_every_preset_and_effect() {
     let of_kind = |kind: &str| {
         object["results"].as_array().unwrap().iter().filter(|r| r["kind"] == kind).map(|r| r["id"].clone()).collect::<Vec<_>>()
     };
-    for effect in rasterlab::effects::EFFECTS {
-        assert!(of_kind("effect").contains(&effect.name.into()) && of_kind("preset").contains(&effect.name.into()));
+    for effect in rasterlab::effects::EFFECTS.iter() {
+        assert!(of_kind("effect").contains(&effect.name.clone().into()) && of_kind("preset").contains(&effect.name.clone().into()));
     }
     let preset_files = object["results"].as_array().unwrap().iter().filter(|r| r["kind"] == "preset");
     preset_files.for_each(|preset_file| assert_eq!(preset_file["warnings"], Value::Array(vec![])));

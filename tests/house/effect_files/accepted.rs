@@ -1,5 +1,7 @@
 //! Files that are read: what they say reaches the effect, and they link and validate beside anything else.
 
+use std::sync::Arc;
+
 use rasterlab::{
     accuracy::{Parameters, Visibility},
     effect_files::{Hook, check_name, read, template},
@@ -87,17 +89,17 @@ fn turns(pixel: Pixel, p: Ink) -> Pixel {
 }",
 ];
 
-fn accepted(text: &str) -> &'static Effect {
+fn accepted(text: &str) -> Arc<Effect> {
     read_ink(text).unwrap_or_else(|error| panic!("{error}\n---\n{text}"))
 }
 
 /// Validates every pass with these effects.
-fn validates(effects: Vec<&'static Effect>) {
+fn validates(effects: Vec<Arc<Effect>>) {
     for is_baked in [false, true] {
         let mut key = key(Fetch::Indexed, Visibility::Split32, true, effects.clone());
         if is_baked {
             key.options.parameters = Parameters::Baked;
-            key.effects.baked = effects.iter().map(|effect| (effect.defaults)()).collect();
+            key.effects.baked = effects.iter().map(|effect| effect.defaults.clone()).collect();
         }
         for pass in all_passes(&key) {
             validate(&key, pass);
@@ -122,7 +124,7 @@ fn templates_and_examples_link_alone_and_beside_all_others() {
         effects.push(read(&format!("{stem}.wgsl"), &stem, &text).unwrap_or_else(|error| panic!("{error}")));
     }
     validates(effects.clone());
-    validates(EFFECTS.iter().copied().chain(effects).collect());
+    validates(EFFECTS.iter().cloned().chain(effects).collect());
 }
 
 #[test]
@@ -147,7 +149,7 @@ fn templates_suit_every_name() {
         for hook in Hook::ALL {
             let text = template(name, hook);
             let effect = read("x.wgsl", name, &text).unwrap_or_else(|error| panic!("{error}"));
-            validates(vec![effect]);
+            validates(vec![effect.clone()]);
         }
     }
 }
@@ -168,8 +170,8 @@ fn line_ends_comments_and_marks_change_nothing() {
         for other in others {
             let effect = accepted(&other);
             assert_eq!(effect.about, plain.about);
-            assert_eq!((effect.defaults)(), (plain.defaults)());
-            validates(vec![effect]);
+            assert_eq!(effect.defaults, plain.defaults);
+            validates(vec![effect.clone()]);
         }
     }
 }
@@ -239,11 +241,11 @@ fn loops_end() {
     ];
     for statement in statements {
         let effect = accepted(&with_statements(statement));
-        validates(vec![effect]);
+        validates(vec![effect.clone()]);
         let surface = super::super::twins::plain_surface();
-        let apply = effect.hooks.surface.expect("a surface effect");
+        let apply = effect.hooks.surface.as_ref().expect("a surface effect");
         let start = std::time::Instant::now();
-        let result = apply(surface, &(effect.defaults)());
+        let result = apply(surface, &effect.defaults);
         assert!(result.color != DVec4::NAN && !result.color.is_nan(), "{statement} did not end");
         assert!(start.elapsed() < super::MOST_TIME, "{statement} took {:?}", start.elapsed());
     }
@@ -255,17 +257,17 @@ fn what_the_file_says_reaches_the_effect() {
     assert_eq!(effect.about, "loops, helpers and every kind of parameter");
     let field = |name: &str| effect.field(name).unwrap_or_else(|| panic!("no {name}"));
     assert_eq!(field("mode").doc, "How.");
-    assert_eq!(field("mode").value_type, ValueType::Choice(&["plain", "cross-hatch"]));
-    let words = (effect.defaults)();
-    assert_eq!(field("mode").get(&words), [1.0]);
-    assert_eq!((field("amount").hard, field("amount").soft, field("amount").unit), ([-4.0, 4.0], [0.0, 1.0], "m"));
-    assert_eq!(field("amount").when, Some(("mode", &["plain"][..])));
-    assert_eq!(field("offset").get(&words), [-3.0]);
-    assert_eq!(field("count").get(&words), [3.0]);
-    assert_eq!(field("helper").get(&words), [1.0]);
-    assert_eq!(field("tint").get(&words), [1.0, 0.5, 0.25, 1.0]);
-    assert_eq!(field("at").get(&words), [1.0, -2.0, 3.5]);
-    let [one, other] = [accepted(EXAMPLES[2]).hooks, accepted(EXAMPLES[3]).hooks];
+    assert_eq!(field("mode").value_type, ValueType::choice(&["plain", "cross-hatch"]));
+    let words = &effect.defaults;
+    assert_eq!(field("mode").get(words), [1.0]);
+    assert_eq!((field("amount").hard, field("amount").soft, field("amount").unit.as_str()), ([-4.0, 4.0], [0.0, 1.0], "m"));
+    assert_eq!(field("amount").when, Some(("mode".into(), vec!["plain".into()])));
+    assert_eq!(field("offset").get(words), [-3.0]);
+    assert_eq!(field("count").get(words), [3.0]);
+    assert_eq!(field("helper").get(words), [1.0]);
+    assert_eq!(field("tint").get(words), [1.0, 0.5, 0.25, 1.0]);
+    assert_eq!(field("at").get(words), [1.0, -2.0, 3.5]);
+    let [one, other] = [accepted(EXAMPLES[2]).hooks.clone(), accepted(EXAMPLES[3]).hooks.clone()];
     assert!(one.vertex.is_some() && one.surface.is_some() && one.sample.is_none() && one.image.is_none());
     assert!(other.image.is_some_and(|image| image.reads_previous) && other.surface.is_none() && other.vertex.is_none());
 }

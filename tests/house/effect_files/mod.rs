@@ -5,8 +5,12 @@ mod accepted;
 mod mutated;
 mod numerics;
 mod refused;
+mod saved;
 
-use std::time::{Duration, Instant};
+use std::{
+    sync::Arc,
+    time::{Duration, Instant},
+};
 
 use rasterlab::{
     effect_files::{EffectError, read},
@@ -18,7 +22,7 @@ use rasterlab::{
 const MOST_TIME: Duration = Duration::from_secs(1);
 
 /// Reads a file called `ink.wgsl` and checks how a refusal is told.
-fn read_ink(text: &str) -> Result<&'static Effect, EffectError> {
+fn read_ink(text: &str) -> Result<Arc<Effect>, EffectError> {
     let start = Instant::now();
     let result = read("ink.wgsl", "ink", text);
     assert!(start.elapsed() < MOST_TIME, "took {:?}:\n{}", start.elapsed(), beginning(text));

@@ -9,7 +9,7 @@ use rasterlab::{
     scene::{Scene, view::View},
 };
 
-fn effect(body: &str) -> &'static Effect {
+fn effect(body: &str) -> Arc<Effect> {
     let text = format!(
         "// A test.\n//@ use lib/surface\nstruct Probed {{\n    /// A.\n    @range(0, 4, 1) a: f32,\n    /// B.\n    @range(0, 4, 1) b: f32,\n}}\n\
          fn probed(surface: Surface, p: Probed) -> Surface {{\n    var s = surface;\n    {body}\n    return s;\n}}\n"
@@ -18,7 +18,7 @@ fn effect(body: &str) -> &'static Effect {
 }
 
 /// A picture of the teapot with one effect, whose parameters have these values.
-fn drawn(effect: &'static Effect, values: [f64; 2]) -> (Scene, View, Stack) {
+fn drawn(effect: &Arc<Effect>, values: [f64; 2]) -> (Scene, View, Stack) {
     let preset = preset_file::open("builtin:teapot", &preset_file::Folders::default()).expect("a preset").preset;
     let scene = preset_file::load_scene(&preset, None).expect("a scene");
     let view = preset.view(&scene, [48, 36]);
@@ -34,7 +34,7 @@ fn drawn(effect: &'static Effect, values: [f64; 2]) -> (Scene, View, Stack) {
 fn the_largest_error_is_where_f32_loses_digits() {
     // Only right of the middle is anything lost.
     let effect = effect("s.color = vec4f(select(0.5, (p.a * 1.0e6 + 0.3) - p.a * 1.0e6, s.screen.x > 0.5), 0.0, 0.0, 1.0);");
-    let (scene, view, stack) = drawn(effect, [1.0, 1.0]);
+    let (scene, view, stack) = drawn(&effect, [1.0, 1.0]);
     let measure = |cancelled: bool| {
         let cancelled = Arc::new(AtomicBool::new(cancelled));
         precision(&stack, |_| true, &cancelled, |stack| drop(oracle::render(&scene, &view, stack))).expect("it is evaluated")
@@ -59,15 +59,15 @@ fn a_crossing_names_the_effect_the_kind_and_the_parameter() {
         ("s.color.x = exp2(60.0 * p.a) * exp2(60.0 * p.b) * 1.0e-30;", [1.0, 3.0], Unsound::Infinite, Some("b"), true),
     ];
     for (body, values, made, parameter, only_f32) in cases {
-        let (scene, view, stack) = drawn(effect(body), values);
+        let (scene, view, stack) = drawn(&effect(body), values);
         let (frame, found) = crossings(&stack, |stack| oracle::render(&scene, &view, stack)).expect("it is evaluated");
         let frame = frame.expect("a picture");
         assert_eq!(found.len(), frame.covered(), "{body}");
-        let first = found[0];
-        assert_eq!((first.effect.name, first.made, first.only_f32), ("probed", made, only_f32), "{body}");
-        assert_eq!(first.parameter.map(|field| field.param.name), parameter, "{body}");
+        let first = &found[0];
+        assert_eq!((first.effect.name.as_str(), first.made, first.only_f32), ("probed", made, only_f32), "{body}");
+        assert_eq!(first.parameter.as_ref().map(|field| field.name.as_str()), parameter, "{body}");
         assert!(found.is_sorted_by_key(|crossing| [crossing.pixel[1], crossing.pixel[0]]), "{body}");
     }
-    let (scene, view, stack) = drawn(effect("s.color = vec4f(p.a, p.b, 0.5, 1.0);"), [0.5, 0.5]);
+    let (scene, view, stack) = drawn(&effect("s.color = vec4f(p.a, p.b, 0.5, 1.0);"), [0.5, 0.5]);
     assert!(crossings(&stack, |stack| drop(oracle::render(&scene, &view, stack))).expect("it is evaluated").1.is_empty());
 }

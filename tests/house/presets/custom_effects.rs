@@ -41,7 +41,7 @@ fn one_effect_stands_in_the_stack_more_than_once() {
     let text = "schema = 2\nstack = [\"skin\", \"toon\", \"lens\"]\n\n[effects.skin]\neffect = \"toon\"\nsteps = 2\n\n[effects.toon]\n\n[effects.lens]\neffect = \"ink\"\n";
     let mut preset_file = parse_with(text, "mine", "mine.toml", &catalog()).unwrap();
     assert!(preset_file.warnings.is_empty(), "{:?}", preset_file.warnings);
-    let names: Vec<&str> = preset_file.preset.stack.0.iter().map(|enabled| enabled.effect.name).collect();
+    let names: Vec<&str> = preset_file.preset.stack.0.iter().map(|enabled| enabled.effect.name.as_str()).collect();
     assert_eq!(names, ["skin", "toon", "lens"]);
     assert_eq!(to_toml(&preset_file), text);
     preset_file::set(&mut preset_file, "skin.steps", "5").unwrap();
@@ -77,7 +77,7 @@ fn a_shared_preset_brings_its_effects_and_says_so() {
     assert_eq!(back.brought_effects, ["ink"]);
     assert!(back.remarks().iter().any(|remark| remark.contains("brings the effect ink")), "{:?}", back.remarks());
     let [before, after] = [&preset_file, &back].map(|file| &file.preset.stack.0[0]);
-    assert_eq!((before.words.clone(), before.effect.source), (after.words.clone(), after.effect.source));
+    assert_eq!((&before.words, &before.effect.source), (&after.words, &after.effect.source));
     // One that is known with the same text is nothing new.
     let known = parse_with(&to_toml(&back), "mine", "mine.toml", &catalog()).unwrap();
     assert!(known.brought_effects.is_empty());

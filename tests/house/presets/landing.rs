@@ -14,7 +14,7 @@ use super::{round_trip::any_preset, *};
 
 /// Does the setting belong to the scene? The rule as a person would write it down.
 fn is_of_scene(setting: &Setting) -> bool {
-    match (setting.section, setting.name) {
+    match (setting.section, setting.name.as_str()) {
         ("scene", "polyline" | "unit") => false,
         ("scene" | "camera", _) | ("output", "size") => true,
         _ => false,
@@ -27,7 +27,7 @@ proptest! {
     #[test]
     fn every_key_comes_from_the_scene_or_from_the_look(look in any_preset(), own in any_preset()) {
         let landed = look.applied_to(&own);
-        for setting in SECTIONS.iter().filter(|section| section.name != "test").flat_map(|section| section.settings) {
+        for setting in SECTIONS.iter().filter(|section| section.name != "test").flat_map(|section| section.settings.iter()) {
             let from = if is_of_scene(setting) { &own } else { &look };
             prop_assert_eq!(setting.get(&landed), setting.get(from), "{}", setting.path());
         }

@@ -1,5 +1,7 @@
 //! Promise: any preset survives a round trip through its text to the bit.
 
+use std::sync::Arc;
+
 use proptest::prelude::*;
 use rasterlab::{
     effects::{EFFECTS, Effect},
@@ -33,10 +35,10 @@ fn any_effect() -> impl Strategy<Value = (usize, u64)> {
 }
 
 /// Fills every field with values drawn from its hard range.
-fn filled(effect: &'static Effect, seed: u64) -> Vec<u32> {
-    let mut words = (effect.defaults)();
+fn filled(effect: &Arc<Effect>, seed: u64) -> Vec<u32> {
+    let mut words = effect.defaults.clone();
     let mut state = seed as u32;
-    for field in effect.fields {
+    for field in &effect.fields {
         let lanes: Vec<f64> = (0..field.value_type.components())
             .map(|_| {
                 state = rasterlab::math::hash(state.wrapping_add(0x9e37_79b9));
@@ -85,7 +87,7 @@ fn any_keyframes() -> impl Strategy<Value = Vec<AnyKeyframe>> {
 fn animated(stack: &rasterlab::effects::Stack, tracks: Vec<(prop::sample::Index, prop::sample::Index, Vec<AnyKeyframe>)>) -> Animation {
     let mut animation = Animation::default();
     for (effect, field, keys) in tracks.into_iter().filter(|_| !stack.0.is_empty()) {
-        let effect = stack.0[effect.index(stack.0.len())].effect;
+        let effect = &stack.0[effect.index(stack.0.len())].effect;
         if effect.fields.is_empty() {
             continue;
         }
@@ -151,8 +153,8 @@ prop_compose! {
         let mut stack = rasterlab::effects::Stack::default();
         for (index, seed) in effects {
             // A preset has no two effects in one slot.
-            if stack.conflict_with(EFFECTS[index]).is_none() {
-                stack.enable(EFFECTS[index]).words = filled(EFFECTS[index], seed);
+            if stack.conflict_with(&EFFECTS[index]).is_none() {
+                stack.enable(&EFFECTS[index]).words = filled(&EFFECTS[index], seed);
             }
         }
         for (index, enabled) in stack.0.iter_mut().enumerate().filter(|(_, enabled)| enabled.effect.has_scope()) {
@@ -200,7 +202,7 @@ proptest! {
     #[test]
     fn whatever_the_time_every_value_stays_inside_its_hard_range(preset in any_preset(), time_s in any::<f64>()) {
         for enabled in preset.stack_at(time_s).0 {
-            for field in enabled.effect.fields {
+            for field in &enabled.effect.fields {
                 let [low, high] = field.hard.map(|bound| bound as f32);
                 let lanes = field.get(&enabled.words);
                 let inside = |lane: &f64| !matches!(field.value_type, ValueType::F32 | ValueType::Color | ValueType::Point) || (low..=high).contains(&(*lane as f32));

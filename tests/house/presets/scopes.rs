@@ -81,13 +81,13 @@ fn a_faulty_scope_is_refused_with_its_line_and_what_is_allowed() {
 
 #[test]
 fn only_effects_on_draws_take_a_scope() {
-    let taking: Vec<&str> = EFFECTS.iter().filter(|effect| effect.has_scope()).map(|effect| effect.name).collect();
+    let taking: Vec<&str> = EFFECTS.iter().filter(|effect| effect.has_scope()).map(|effect| effect.name.as_str()).collect();
     for name in ["explode", "inflate", "wobble", "dissolve", "stipple", "facet", "lambert", "shadow", "toon", "hatch", "wireframe", "fog"] {
         assert!(taking.contains(&name), "{name}");
     }
     for effect in EFFECTS.iter().filter(|effect| !effect.has_scope()) {
         let error = refusal(&format!("schema = 2\n[effects.{}]\non = [\"node:x\"]\n", effect.name));
-        assert!(error.contains("cannot be set, because") && error.contains(effect.name), "{error}");
+        assert!(error.contains("cannot be set, because") && error.contains(&effect.name), "{error}");
         // The whole scene is what it acts on anyway.
         parse(&format!("schema = 2\n[effects.{}]\non = []\n", effect.name));
     }
@@ -102,16 +102,16 @@ fn an_effect_of_a_file_takes_a_scope_and_keeps_it_when_its_text_changes() {
     catalog.add_text("ink", &template("ink", Hook::Surface)).unwrap();
     let mut preset_file =
         parse_with("schema = 2\n[effects.ink]\non = \"mesh:x\"\n", "mine", "mine.toml", &catalog).unwrap_or_else(|error| panic!("{error}"));
-    let old = preset_file.preset.stack.get("ink").expect("it is on").effect;
+    let old = preset_file.preset.stack.get("ink").expect("it is on").effect.clone();
     let mut edited = Catalog::default();
     edited.add_text("ink", &format!("{}\n// edited\n", template("ink", Hook::Surface))).unwrap();
-    let new = edited.find("ink").unwrap().expect("it is there");
+    let new = edited.find("ink").unwrap().expect("it is there").clone();
     assert_ne!(old, new);
-    preset_file.preset.rebind(&[(old, new)]);
+    preset_file.preset.rebind(&[(old, new.clone())]);
     assert_eq!(on(&preset_file, "ink"), "mesh:x");
     // Edited into an effect on pixels, it has none.
     edited.add_text("ink", &template("ink", Hook::Pixel)).unwrap();
-    preset_file.preset.rebind(&[(new, edited.find("ink").unwrap().expect("it is there"))]);
+    preset_file.preset.rebind(&[(new, edited.find("ink").unwrap().expect("it is there").clone())]);
     assert_eq!(on(&preset_file, "ink"), "whole scene");
 }
 

@@ -70,7 +70,7 @@ why = "because"
     let s = &preset_file.preset;
     assert_eq!(preset_file.warnings, Vec::<String>::new());
     assert_eq!((s.name.as_str(), s.tags.len(), s.spin_deg_per_s, s.clock.time_s), ("Ink on glass", 2, 30.0, 1.25));
-    assert_eq!(s.stack.0.iter().map(|e| e.effect.name).collect::<Vec<_>>(), ["lambert", "facet"]);
+    assert_eq!(s.stack.0.iter().map(|e| e.effect.name.as_str()).collect::<Vec<_>>(), ["lambert", "facet"]);
     let facet = s.stack.get("facet").unwrap();
     let value = |name: &str| facet.effect.field(name).unwrap().get(&facet.words);
     assert_eq!((value("amount"), value("pattern"), value("center")), (vec![f64::from(0.8f32)], vec![2.0], vec![1.0, 2.0, 3.0]));
@@ -293,6 +293,6 @@ fn an_edit_of_one_value_neither_prints_nor_parses_a_whole_preset() {
     // The text of an effect that only a newer program knows counts for the order all the same.
     let mut preset_file = parse("schema = 2\n[effects.facet]\n[effects.lambert]\n[effects.later]\n");
     preset_file::set(&mut preset_file, "stack", "[\"lambert\", \"later\", \"facet\"]").unwrap();
-    assert_eq!(preset_file.preset.stack.0.iter().map(|enabled| enabled.effect.name).collect::<Vec<_>>(), ["lambert", "facet"]);
+    assert_eq!(preset_file.preset.stack.0.iter().map(|enabled| enabled.effect.name.as_str()).collect::<Vec<_>>(), ["lambert", "facet"]);
     assert!(preset_file::set(&mut preset_file, "stack", "[\"lambert\", \"never\", \"facet\"]").is_err());
 }

@@ -42,22 +42,22 @@ const MOST_PARTICLES: f64 = 2000.0;
 
 /// The ends of a field's range as its type can represent them.
 fn ends(field: &Field) -> [f64; 2] {
-    if particles::EFFECT.field("count") == Some(field) {
+    if particles::EFFECT.field("count").is_some_and(|count| **count == *field) {
         return [field.hard[0], MOST_PARTICLES];
     }
     let [low, high] = field.hard;
     if field.value_type.is_continuous() { [low, high].map(|end| f64::from(end as f32).clamp(low, high)) } else { [low, high] }
 }
 
-fn enable(stack: &mut Stack, effect: &'static Effect) {
-    let is_new = stack.get_mut(effect.name).is_none();
+fn enable(stack: &mut Stack, effect: &Arc<Effect>) {
+    let is_new = stack.get_mut(&effect.name).is_none();
     let words = &mut stack.enable(effect).words;
-    if let Some(count) = effect.field("count").filter(|_| is_new && *effect == particles::EFFECT) {
+    if let Some(count) = effect.field("count").filter(|_| is_new && *effect == *particles::EFFECT) {
         count.set(words, &[MOST_PARTICLES]).expect("so many particles may be");
     }
 }
 
-fn set(stack: &mut Stack, effect: &'static Effect, field: &Field, end: usize) -> Result<(), EarlyEnd> {
+fn set(stack: &mut Stack, effect: &Arc<Effect>, field: &Field, end: usize) -> Result<(), EarlyEnd> {
     let values = vec![ends(field)[end]; field.value_type.components()];
     enable(stack, effect);
     field
@@ -126,7 +126,7 @@ fn parameters_at_range_ends(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for (turn, effect) in EFFECTS.iter().enumerate() {
         context.renderer.set_tuning(Tuning { specialized: effect.hooks.vertex.is_some() && !context.is_slow(), ..default });
         for (end, word) in [(0, "minimum"), (1, "maximum")] {
-            for field in effect.fields {
+            for field in &effect.fields {
                 let mut stack = Stack::default();
                 set(&mut stack, effect, field, end)?;
                 let what = format!("{}.{} at its {word}, {}", effect.name, field.name, ends(field)[end]);
@@ -155,7 +155,7 @@ fn all_effects_at_range_ends(context: &mut CaseContext) -> Result<(), EarlyEnd> 
         let chosen = if context.is_slow() { &ends[choice % 3..=choice % 3] } else { &ends[..] };
         for &end in chosen {
             let mut stack = Stack::default();
-            for effect in EFFECTS {
+            for effect in EFFECTS.iter() {
                 let rivals: Vec<_> = EFFECTS.iter().filter(|e| e.hooks.slot.is_some() && e.hooks.slot == effect.hooks.slot).collect();
                 if !rivals.is_empty() && rivals[choice % rivals.len()] != effect {
                     continue;
@@ -170,7 +170,7 @@ fn all_effects_at_range_ends(context: &mut CaseContext) -> Result<(), EarlyEnd> 
                 let spacing = dots.effect.field("spacing_m").expect("dots have a spacing");
                 spacing.set(&mut dots.words, &[1e-3]).expect("a millimeter may be");
             }
-            let names: Vec<_> = stack.0.iter().filter(|e| e.effect.hooks.slot.is_some()).map(|e| e.effect.name).collect();
+            let names: Vec<_> = stack.0.iter().filter(|e| e.effect.hooks.slot.is_some()).map(|e| e.effect.name.as_str()).collect();
             let at = ["at their defaults", "at their minimum", "at their maximum"][end.map_or(0, |end| end + 1)];
             judged(context, &stack, choice, &format!("all effects {at}, in the slots {}", names.join(" and ")))?;
         }

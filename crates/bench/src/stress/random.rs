@@ -44,8 +44,8 @@ impl Rng {
         self.between(0, n) == 0
     }
 
-    fn pick<T: Copy>(&mut self, list: &[T]) -> T {
-        list[self.between(0, list.len() as i32) as usize]
+    fn pick<T: Clone>(&mut self, list: &[T]) -> T {
+        list[self.between(0, list.len() as i32) as usize].clone()
     }
 
     /// A unit vector.
@@ -84,7 +84,7 @@ fn components(rng: &mut Rng, field: &Field, values: Values) -> Vec<f64> {
     let [low, high] = field.soft;
     let mut component = || {
         let chance = rng.between(0, 8);
-        match (field.value_type, values) {
+        match (&field.value_type, values) {
             (ValueType::Choice(_) | ValueType::Bool, _) => f64::from(rng.between(low as i32, high as i32 + 1)),
             (ValueType::U32 | ValueType::I32, Values::Allowed) => rng.number(field).round(),
             (_, Values::Allowed) => rng.number(field),
@@ -104,12 +104,12 @@ fn components(rng: &mut Rng, field: &Field, values: Values) -> Vec<f64> {
 pub fn stack(rng: &mut Rng, values: Values) -> Stack {
     let mut stack = Stack::default();
     for _ in 0..rng.between(1, 6) {
-        let effect = rng.pick(EFFECTS);
+        let effect = &rng.pick(&EFFECTS);
         if stack.rival_of(effect).is_some() {
             continue;
         }
         let words = &mut stack.enable(effect).words;
-        for field in effect.fields {
+        for field in &effect.fields {
             let value = components(rng, field, values);
             field.set(words, &value).unwrap_or_else(|error| panic!("{}.{}: {error}", effect.name, field.name));
         }
@@ -235,10 +235,10 @@ fn thin_out(stack: &mut Stack, unit: f64) {
 /// Limits one effect to one part of the scene.
 fn limit_an_effect(rng: &mut Rng, stack: &mut Stack, scene: &Scene) {
     let parts = parts(scene);
-    let limited: Vec<_> = stack.0.iter().map(|enabled| enabled.effect).filter(|effect| effect.has_scope()).collect();
+    let limited: Vec<_> = stack.0.iter().map(|enabled| enabled.effect.clone()).filter(|effect| effect.has_scope()).collect();
     if !limited.is_empty() && !parts.is_empty() {
         let pattern = parts[rng.between(0, parts.len() as i32) as usize].pattern();
-        stack.limit(rng.pick(&limited), Scope::new([pattern])).expect("one scope is allowed");
+        stack.limit(&rng.pick(&limited), Scope::new([pattern])).expect("one scope is allowed");
     }
 }
 

@@ -2,7 +2,6 @@
 
 use crate::{
     accuracy::AXES,
-    effects::Effect,
     preset::{Preset, SceneSource, animation::Animation, settings::settings},
     scene::parts::Scope,
 };
@@ -41,7 +40,7 @@ fn candidates(preset: &Preset) -> Vec<Preset> {
     };
     let mut candidates = Vec::new();
     for enabled in &preset.stack.0 {
-        candidates.push(changed(&|preset| preset.disable(enabled.effect.name)));
+        candidates.push(changed(&|preset| preset.disable(&enabled.effect.name)));
     }
     candidates.push(changed(&|preset| preset.animation = Animation::default()));
     for axis in AXES.iter().filter(|axis| preset.accuracy.pins.get(axis).is_some()) {
@@ -50,7 +49,7 @@ fn candidates(preset: &Preset) -> Vec<Preset> {
     candidates.push(changed(&|preset| preset.camera = None));
     for setting in settings().filter(|setting| !setting.section.is_empty() && setting.is_modified(preset)) {
         // The size and the scene are made smaller, not given their defaults.
-        if !matches!((setting.section, setting.name), ("output", "size") | ("scene", "builtin" | "path")) {
+        if !matches!((setting.section, setting.name.as_str()), ("output", "size") | ("scene", "builtin" | "path")) {
             candidates.push(changed(&|preset| setting.reset(preset)));
         }
     }
@@ -59,11 +58,11 @@ fn candidates(preset: &Preset) -> Vec<Preset> {
     }
     candidates.extend(smaller_scenes(preset));
     for (at, enabled) in preset.stack.0.iter().enumerate() {
-        let effect: &'static Effect = enabled.effect;
+        let effect = &enabled.effect;
         candidates.push(changed(&|preset| preset.stack.0[at].on = Scope::default()));
-        let defaults = (effect.defaults)();
-        for field in effect.fields {
-            candidates.push(changed(&|preset| field.copy(&defaults, &mut preset.stack.0[at].words)));
+        let defaults = &effect.defaults;
+        for field in &effect.fields {
+            candidates.push(changed(&|preset| field.copy(defaults, &mut preset.stack.0[at].words)));
         }
     }
     candidates.retain(|candidate| candidate != preset);
@@ -96,7 +95,7 @@ mod tests {
         assert_eq!(smallest.stack.0.len(), 1);
         assert_eq!((smallest.output.size, smallest.camera, smallest.accuracy), ([1, 1], None, Preset::default().accuracy));
         let fog = &smallest.stack.0[0];
-        assert_eq!(fog.words, (fog.effect.defaults)());
+        assert_eq!(fog.words, fog.effect.defaults);
     }
 
     #[test]

@@ -8,7 +8,6 @@ use std::{
 
 use super::{
     error::{EffectError, Text},
-    parameters::intern,
     read::{MAX_BYTES, check_name, decoded, read},
 };
 use crate::{
@@ -21,7 +20,7 @@ use crate::{
 pub struct CustomEffect {
     /// The file; none for an effect that came inside a preset.
     pub path: Option<PathBuf>,
-    pub read: Result<&'static Effect, EffectError>,
+    pub read: Result<Arc<Effect>, EffectError>,
 }
 
 /// The effects that a preset may name. Clones share the list.
@@ -29,7 +28,7 @@ pub struct CustomEffect {
 pub struct Catalog {
     custom: Arc<BTreeMap<String, CustomEffect>>,
     /// Further instances of effects, under names of their own.
-    instances: Arc<BTreeMap<String, &'static Effect>>,
+    instances: Arc<BTreeMap<String, Arc<Effect>>>,
 }
 
 impl Catalog {
@@ -68,7 +67,7 @@ impl Catalog {
         let mut custom = (*self.custom).clone();
         for (name, effect) in custom.iter_mut().filter(|(_, effect)| effect.read.is_err()) {
             if let Some(Ok(good)) = earlier.find_custom(name) {
-                effect.read = Ok(good);
+                effect.read = Ok(good.clone());
             }
         }
         Self { custom: Arc::new(custom), ..self.clone() }
@@ -76,12 +75,12 @@ impl Catalog {
 
     /// These effects, with the second of each pair in place of the first.
     #[must_use]
-    pub fn replaced(&self, pairs: &[(&'static Effect, &'static Effect)]) -> Self {
+    pub fn replaced(&self, pairs: &[(Arc<Effect>, Arc<Effect>)]) -> Self {
         let mut replaced = self.clone();
         let customs = Arc::make_mut(&mut replaced.custom).values_mut().filter_map(|effect| effect.read.as_mut().ok());
         for effect in customs.chain(Arc::make_mut(&mut replaced.instances).values_mut()) {
             if let Some((_, new)) = pairs.iter().find(|(old, _)| effect == old) {
-                *effect = new;
+                *effect = new.clone();
             }
         }
         replaced
@@ -100,7 +99,7 @@ impl Catalog {
     pub fn without(&self, names: &[String]) -> Self {
         let is_named = |name: &str| names.iter().any(|named| named == name);
         let mut left = self.only(|name, _| !is_named(name));
-        Arc::make_mut(&mut left.instances).retain(|_, effect| effect.base.is_none_or(|base| !is_named(base.name)));
+        Arc::make_mut(&mut left.instances).retain(|_, effect| effect.base.as_ref().is_none_or(|base| !is_named(&base.name)));
         left
     }
 
@@ -117,7 +116,7 @@ impl Catalog {
             Err(error) => Err(text.whole(error.to_string())),
         };
         let read = written.and_then(|written| match self.find_custom(&name) {
-            Some(Ok(known)) if known.source.is_some_and(|source| source.written == written) => Ok(known),
+            Some(Ok(known)) if known.source.as_ref().is_some_and(|source| source.written == written) => Ok(known.clone()),
             _ => read(&file, &name, &written),
         });
         CustomEffect { path: Some(path.to_owned()), read }
@@ -140,7 +139,7 @@ impl Catalog {
         let mut custom = (*other.custom).clone();
         custom.extend(self.custom.iter().map(|(name, effect)| (name.clone(), effect.clone())));
         let mut instances = (*other.instances).clone();
-        instances.extend(self.instances.iter().map(|(name, effect)| (name.clone(), *effect)));
+        instances.extend(self.instances.iter().map(|(name, effect)| (name.clone(), effect.clone())));
         Self { custom: Arc::new(custom), instances: Arc::new(instances) }
     }
 
@@ -149,9 +148,9 @@ impl Catalog {
     /// # Errors
     /// Completes a sentence that begins with the name of the instance: no such effect, a faulty file, an effect that can stand in
     /// a stack only once, or a name that another effect has.
-    pub fn add_instance(&mut self, name: &str, base: &str) -> Result<&'static Effect, String> {
-        if let Some(known) = self.instances.get(name).filter(|known| known.base.is_some_and(|known| known.name == base)) {
-            return Ok(known);
+    pub fn add_instance(&mut self, name: &str, base: &str) -> Result<Arc<Effect>, String> {
+        if let Some(known) = self.instances.get(name).filter(|known| known.base.as_ref().is_some_and(|known| known.name == base)) {
+            return Ok(known.clone());
         }
         check_name(name)?;
         if self.custom.contains_key(name) {
@@ -164,20 +163,20 @@ impl Catalog {
         if !base.has_instances() {
             return Err(format!("is an instance of {}, which can stand in a stack only once", base.name));
         }
-        let effect: &'static Effect = Box::leak(Box::new(Effect::instance(intern(name), base)));
-        Arc::make_mut(&mut self.instances).insert(name.into(), effect);
+        let effect = Arc::new(Effect::instance(name, base));
+        Arc::make_mut(&mut self.instances).insert(name.into(), effect.clone());
         Ok(effect)
     }
 
-    fn find_custom(&self, name: &str) -> Option<Result<&'static Effect, &EffectError>> {
-        self.custom.get(name).map(|custom| custom.read.as_ref().map(|effect| *effect))
+    fn find_custom(&self, name: &str) -> Option<Result<&Arc<Effect>, &EffectError>> {
+        self.custom.get(name).map(|custom| custom.read.as_ref())
     }
 
     /// The effect called `name`; none if there is no such effect.
     ///
     /// # Errors
     /// What is wrong with its file.
-    pub fn find(&self, name: &str) -> Result<Option<&'static Effect>, &EffectError> {
+    pub fn find(&self, name: &str) -> Result<Option<&Arc<Effect>>, &EffectError> {
         match Effect::find(name) {
             Some(effect) => Ok(Some(effect)),
             None => match self.instances.get(name) {
@@ -188,31 +187,31 @@ impl Catalog {
     }
 
     /// Every effect that can be used: the built-in ones in their order, then those of files and instances by name.
-    pub fn effects(&self) -> impl Iterator<Item = &'static Effect> + '_ {
-        let custom = self.custom.values().filter_map(|custom| custom.read.as_ref().ok().copied());
-        EFFECTS.iter().copied().chain(custom).chain(self.instances.values().copied())
+    pub fn effects(&self) -> impl Iterator<Item = &Arc<Effect>> {
+        let custom = self.custom.values().filter_map(|custom| custom.read.as_ref().ok());
+        EFFECTS.iter().chain(custom).chain(self.instances.values())
     }
 
     /// Every effect of the catalog and of `used`, each name once, in the same order.
-    pub fn effects_with(&self, used: impl Iterator<Item = &'static Effect>) -> Vec<&'static Effect> {
-        let mut all: Vec<&'static Effect> = self.effects().collect();
+    pub fn effects_with<'a>(&'a self, used: impl Iterator<Item = &'a Arc<Effect>>) -> Vec<&'a Arc<Effect>> {
+        let mut all: Vec<&Arc<Effect>> = self.effects().collect();
         for effect in used {
             if !all.iter().any(|known| known.name == effect.name) {
                 all.push(effect);
             }
         }
-        all[EFFECTS.len()..].sort_by_key(|effect| effect.name);
+        all[EFFECTS.len()..].sort_by(|a, b| a.name.cmp(&b.name));
         all
     }
 
     /// Names of all effects, those of faulty files included.
     pub fn names(&self) -> impl Iterator<Item = &str> {
-        EFFECTS.iter().map(|effect| effect.name).chain(self.custom.keys().chain(self.instances.keys()).map(String::as_str))
+        EFFECTS.iter().map(|effect| effect.name.as_str()).chain(self.custom.keys().chain(self.instances.keys()).map(String::as_str))
     }
 
     /// Further instances of effects.
-    pub fn instances(&self) -> impl Iterator<Item = &'static Effect> + '_ {
-        self.instances.values().copied()
+    pub fn instances(&self) -> impl Iterator<Item = &Arc<Effect>> {
+        self.instances.values()
     }
 
     /// The effects of files, by name.

@@ -1,6 +1,8 @@
 //! Checking: an effect file is linked alone and validated, so that every fault is reported at its line before any kernel is
 //! compiled.
 
+use std::sync::Arc;
+
 use naga::{
     Module,
     valid::{Capabilities, ValidationFlags, Validator},
@@ -45,7 +47,7 @@ pub struct Parts<'a> {
 ///
 /// # Errors
 /// What the linker or naga refuses, at its line of the file.
-pub fn check(parts: Parts<'_>, effect: &'static Effect) -> Result<Checked, EffectError> {
+pub fn check(parts: Parts<'_>, effect: &Arc<Effect>) -> Result<Checked, EffectError> {
     let linked = link::link_effect(&Library::of_process(), effect).map_err(|error| of_link(parts, &error))?;
     let module = naga::front::wgsl::parse_str(&linked.text).map_err(|error| {
         let spans: Vec<naga::Span> = error.labels().map(|(span, _)| span).collect();

@@ -1,7 +1,7 @@
 //! Duplicates: a built-in effect as an effect file of one's own, under another name. Its struct gets the attributes that say what the
 //! registry knows of each parameter.
 
-use std::fmt::Write;
+use std::{fmt::Write, sync::Arc};
 
 use super::{
     declaration::LIBRARY,
@@ -19,14 +19,14 @@ use crate::{
 /// # Errors
 /// Completes a sentence that begins with the name of `effect`: it does something that an effect file cannot.
 pub fn duplicate(effect: &Effect, name: &str) -> Result<String, String> {
-    if let Some(source) = effect.source {
+    if let Some(source) = &effect.source {
         return Ok(with_constants(&source.stem, name, &source.written));
     }
     let hooks = &effect.hooks;
     if hooks.slot.is_some() || hooks.has_lines || hooks.particle_settings.is_some() {
         return Err("replaces a part of the rasterizer, which an effect file cannot".into());
     }
-    if hooks.sample.is_some_and(|hook| hook.has_setup) {
+    if hooks.sample.as_ref().is_some_and(|hook| hook.has_setup) {
         return Err("computes a setup for every triangle, which an effect file cannot".into());
     }
     if hooks.vertex.is_some() {
@@ -100,7 +100,7 @@ fn renamed(effect: &Effect, name: &str, text: &str) -> String {
     }
     result.push_str(&text[copied..]);
     if let Some(group) = group {
-        let mut fields: Vec<&Field> = effect.fields.iter().filter(|field| field.group.is_some()).collect();
+        let mut fields: Vec<&Arc<Field>> = effect.fields.iter().filter(|field| field.group.is_some()).collect();
         fields.sort_by_key(|field| field.offset);
         let members: Vec<String> = fields.iter().map(|field| format!("p.{}", field.name)).collect();
         let (function, kind) = (format!("{}_of", group.member), group.wgsl_struct);
@@ -112,12 +112,12 @@ fn renamed(effect: &Effect, name: &str, text: &str) -> String {
 
 /// The struct with its documentation and attributes. Choices come first, since the other parameters may depend on them.
 fn declared(effect: &Effect, new_type: &str) -> String {
-    let words = (effect.defaults)();
-    let mut fields: Vec<&Field> = effect.fields.iter().collect();
+    let words = &effect.defaults;
+    let mut fields: Vec<&Arc<Field>> = effect.fields.iter().collect();
     fields.sort_by_key(|field| (!matches!(field.value_type, ValueType::Choice(_)), field.offset));
     let mut text = format!("struct {new_type} {{\n");
     for field in fields {
-        writeln!(text, "    /// {}\n    {} {}: {},", field.doc.trim(), attributes(field, &words), field.name, field.wgsl.name())
+        writeln!(text, "    /// {}\n    {} {}: {},", field.doc.trim(), attributes(field, words), field.name, field.wgsl.name())
             .expect("writing to a string");
     }
     text.push('}');
@@ -128,7 +128,7 @@ fn declared(effect: &Effect, new_type: &str) -> String {
 fn attributes(field: &Field, words: &[u32]) -> String {
     let numbers = |numbers: &[f64]| numbers.iter().map(|number| format_number(*number)).collect::<Vec<_>>().join(", ");
     let default = field.get(words);
-    let mut text = match field.value_type {
+    let mut text = match &field.value_type {
         ValueType::Bool => format!("@toggle({})", default[0]),
         ValueType::Choice(choices) => {
             format!("@choice({}) @default({})", choices.join(", "), choices.get(default[0] as usize).unwrap_or(&choices[0]))
@@ -146,7 +146,7 @@ fn attributes(field: &Field, words: &[u32]) -> String {
     if field.log && field.soft[0] > 0.0 {
         text.push_str(" @log");
     }
-    if let Some((choice, allowed)) = field.when {
+    if let Some((choice, allowed)) = &field.when {
         write!(text, " @when({choice}, {})", allowed.join(", ")).expect("writing to a string");
     }
     text

@@ -1,6 +1,8 @@
 //! Built-in effects by their own text: the hooks of an effect, evaluated in f64 from its WGSL as those of a file are. They are a third
 //! witness beside the kernels and the functions in Rust.
 
+use std::sync::Arc;
+
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 use super::twin::{self, Function};
@@ -32,7 +34,7 @@ pub enum EvaluatedError {
 ///
 /// # Errors
 /// The text cannot be linked, is not valid, or uses what cannot be evaluated.
-pub fn evaluated(library: &Library, effect: &'static Effect) -> Result<Hooks, EvaluatedError> {
+pub fn evaluated(library: &Library, effect: &Arc<Effect>) -> Result<Hooks, EvaluatedError> {
     evaluated_in(library, effect, Precision::Double)
 }
 
@@ -40,23 +42,23 @@ pub fn evaluated(library: &Library, effect: &'static Effect) -> Result<Hooks, Ev
 ///
 /// # Errors
 /// As [`evaluated`].
-pub fn evaluated_in(library: &Library, effect: &'static Effect, precision: Precision) -> Result<Hooks, EvaluatedError> {
+pub fn evaluated_in(library: &Library, effect: &Arc<Effect>, precision: Precision) -> Result<Hooks, EvaluatedError> {
     let linked = link::link_effect(library, effect)?;
     let text = &linked.text;
     let module = naga::front::wgsl::parse_str(text).map_err(|error| EvaluatedError::Refused(error.emit_to_string(text)))?;
     let validated = Validator::new(ValidationFlags::all(), Capabilities::default()).validate(&module);
     validated.map_err(|error| EvaluatedError::Refused(error.emit_to_string(text)))?;
-    let function = |chain: Chain, precision| Function::new(&module, text, &chain.function(effect), effect.fields, precision);
-    let mut hooks = effect.hooks;
-    if let Some(hook) = hooks.vertex {
+    let function = |chain: Chain, precision| Function::new(&module, text, &chain.function(effect), &effect.fields, precision);
+    let mut hooks = effect.hooks.clone();
+    if let Some(hook) = hooks.vertex.take() {
         let [chosen, single] = [precision, Precision::Single].map(|precision| function(Chain::Vertex, precision));
         hooks.vertex = Some(VertexHook { moved: twin::vertex(chosen?, single?, hook.needs_triangle).moved, ..hook });
     }
-    if let Some(hook) = hooks.sample {
+    if let Some(hook) = hooks.sample.take() {
         let is_drawn = twin::sample(function(Chain::Sample, precision)?).is_drawn;
         let sample_setup = match hook.has_setup {
             true => twin::sample_setup(function(Chain::SampleSetup, precision)?),
-            false => hook.sample_setup,
+            false => hook.sample_setup.clone(),
         };
         hooks.sample = Some(SampleHook { is_drawn, sample_setup, ..hook });
     }

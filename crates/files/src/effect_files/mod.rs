@@ -25,7 +25,7 @@ pub use self::{
     duplicate::duplicate,
     error::{EffectError, Place},
     evaluated::{EvaluatedError, evaluated},
-    precision::{LargestError, Place as ErrorPlace, Quantity, precision},
+    precision::{ErrorsOfEffect, LargestError, Place as ErrorPlace, Quantity, precision},
     read::{MAX_BYTES, RESERVED_NAMES, check_name, read},
     rewrite::MAX_TURNS,
     soundness::{Crossing, Unsound, crossings},

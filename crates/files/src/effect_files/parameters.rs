@@ -1,7 +1,7 @@
 //! Parameters: the struct of an effect file as fields of the registry. Documentation stands in the comment above a member, and
 //! type, range, unit, default and widget in its attributes.
 
-use std::{collections::BTreeSet, ops::Range, sync::Mutex};
+use std::{collections::BTreeSet, ops::Range, sync::Arc};
 
 use super::{
     attributes::{self, Attribute},
@@ -24,23 +24,11 @@ const RESERVED: [&str; 2] = ["effect", "on"];
 /// The struct of an effect's parameters.
 #[derive(Debug)]
 pub struct Parameters {
-    pub fields: &'static [Field],
+    pub fields: Vec<Arc<Field>>,
     /// Parameter words with every default.
     pub defaults: Vec<u32>,
     /// Byte ranges of attributes, which WGSL does not know.
     pub attributes: Vec<Range<usize>>,
-}
-
-/// A text that lives as long as the program. Equal texts are kept once, so that reloading a file adds only what changed.
-pub fn intern(text: &str) -> &'static str {
-    static KEPT: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
-    let mut kept = KEPT.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    if let Some(known) = kept.get(text) {
-        return known;
-    }
-    let new: &'static str = Box::leak(text.to_owned().into_boxed_str());
-    kept.insert(new);
-    new
 }
 
 /// Reads the members between the braces of a struct; `open` is the index of the opening one.
@@ -80,7 +68,7 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
         }
         check_name(text, *name)?;
         let kind = &text.text[tokens[at + 2].offset..tokens[end - 1].end()];
-        if fields.iter().any(|field: &Field| field.name == name.text) {
+        if fields.iter().any(|field: &Arc<Field>| field.name == name.text) {
             return Err(text.error(name.offset, name.text.len(), format!("the parameter {} is declared twice", name.text)));
         }
         if fields.len() == MAX_MEMBERS {
@@ -92,7 +80,7 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
         defaults.resize(offset / 4 + wgsl.words(), 0);
         let field = Field::new(param, wgsl, offset);
         field.set(&mut defaults, &numbers).map_err(|error| member.error(format!("the default of {}: {error}", name.text)))?;
-        fields.push(field);
+        fields.push(Arc::new(field));
         at = end + 1;
     }
     if fields.is_empty() {
@@ -100,7 +88,7 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
     }
     let align = if fields.iter().any(|field| field.wgsl == WgslType::Vec4F32) { 4 } else { 1 };
     defaults.resize(defaults.len().next_multiple_of(align), 0);
-    Ok(Parameters { fields: Box::leak(fields.into_boxed_slice()), defaults, attributes: ranges })
+    Ok(Parameters { fields, defaults, attributes: ranges })
 }
 
 /// Refuses names that presets, the command line or WGSL could not write.
@@ -125,10 +113,10 @@ fn check_name(text: &Text<'_>, name: Token<'_>) -> Result<(), EffectError> {
 /// Two choices make the same name.
 pub fn constants(text: &Text<'_>, stem: &str, parameters: &Parameters) -> Result<BTreeSet<String>, EffectError> {
     let mut constants = BTreeSet::new();
-    for field in parameters.fields {
-        let ValueType::Choice(words) = field.value_type else { continue };
+    for field in &parameters.fields {
+        let ValueType::Choice(words) = &field.value_type else { continue };
         for word in words {
-            let name = constant_name(stem, field.name, word);
+            let name = constant_name(stem, &field.name, word);
             if constants.contains(&name) {
                 return Err(
                     text.whole(format!("two words of choices both have the constant {name}; change a word or the name of a parameter"))
@@ -186,7 +174,7 @@ impl<'a> Member<'a> {
     }
 
     /// The registry's entry, the WGSL type, and the components of the default. `known` are the fields declared so far.
-    fn param(&self, known: &[Field], doc: &str) -> Result<(Param, WgslType, Vec<f64>), EffectError> {
+    fn param(&self, known: &[Arc<Field>], doc: &str) -> Result<(Param, WgslType, Vec<f64>), EffectError> {
         let kind: String = self.kind.split_whitespace().collect();
         let (value_type, wgsl, default) = match kind.as_str() {
             "f32" => {
@@ -214,7 +202,7 @@ impl<'a> Member<'a> {
                 return Err(self.error(format!("{} is {other}; a parameter is {allowed}", self.name.text)));
             }
         };
-        let mut param = Param::new(intern(self.name.text), intern(doc), value_type);
+        let mut param = Param::new(self.name.text, doc, value_type.clone());
         if self.attribute("range").is_some() {
             let (range, _) = self.range("@range(min, max, default)")?;
             self.check_ends("range", range, &param)?;
@@ -229,7 +217,7 @@ impl<'a> Member<'a> {
             if !(ends[0] <= soft[0] && soft[1] <= ends[1] && ends[0] < ends[1]) {
                 return Err(hard.error(self.text, "the range of @hard must be ascending and contain that of @range"));
             }
-            self.check_ends("hard", [ends[0], ends[1]], &Param::new("", "", value_type))?;
+            self.check_ends("hard", [ends[0], ends[1]], &Param::new("", "", value_type.clone()))?;
             (param.hard, param.soft) = ([ends[0], ends[1]], soft);
         }
         if let Some(unit) = self.attribute("unit") {
@@ -238,7 +226,7 @@ impl<'a> Member<'a> {
             if unit_text.is_empty() || unit_text.chars().count() > 8 || !is_plain {
                 return Err(unit.error(self.text, "@unit takes a unit of at most 8 characters, for instance m or px"));
             }
-            param = param.unit(intern(unit_text));
+            param = param.unit(unit_text);
         }
         if let Some(log) = self.attribute("log") {
             if value_type != ValueType::F32 || param.soft[0] <= 0.0 || !log.arguments.is_empty() {
@@ -252,7 +240,7 @@ impl<'a> Member<'a> {
             return Err(default.error(self.text, "@default belongs to @choice; other widgets take the default themselves"));
         }
         if let Some(when) = self.attribute("when") {
-            param = param.when(self.condition(when, known)?);
+            param.when = Some(self.condition(when, known)?);
         }
         Ok((param, wgsl, default))
     }
@@ -322,8 +310,7 @@ impl<'a> Member<'a> {
                         position.ok_or_else(|| default.error(self.text, format!("@default takes one of {}", words.join(", "))))?
                     }
                 };
-                let words: Vec<&'static str> = words.iter().map(|word| intern(word)).collect();
-                Ok((ValueType::Choice(Box::leak(words.into_boxed_slice())), WgslType::U32, vec![chosen as f64]))
+                Ok((ValueType::choice(words), WgslType::U32, vec![chosen as f64]))
             }
             _ => {
                 let (range, default) = self.range(usage)?;
@@ -336,19 +323,18 @@ impl<'a> Member<'a> {
     }
 
     /// `@when(mode, word, …)`.
-    fn condition(&self, when: &Attribute<'_>, known: &[Field]) -> Result<(&'static str, &'static [&'static str]), EffectError> {
+    fn condition(&self, when: &Attribute<'_>, known: &[Arc<Field>]) -> Result<(String, Vec<String>), EffectError> {
         let usage = "@when takes the name of a choice above and some of its words";
         let Some((name, words)) = when.arguments.split_first().filter(|(_, words)| !words.is_empty()) else {
             return Err(when.error(self.text, usage));
         };
         let choice = known.iter().find(|field| field.name == *name);
-        let Some((field, ValueType::Choice(allowed))) = choice.map(|field| (field, field.value_type)) else {
+        let Some((field, ValueType::Choice(allowed))) = choice.map(|field| (field, &field.value_type)) else {
             return Err(when.error(self.text, format!("{usage}; there is no choice {name} above")));
         };
-        if let Some(unknown) = words.iter().find(|word| !allowed.contains(word)) {
+        if let Some(unknown) = words.iter().find(|word| !allowed.iter().any(|known| known == *word)) {
             return Err(when.error(self.text, format!("{name} has no word {unknown}; it has {}", allowed.join(", "))));
         }
-        let words: Vec<&'static str> = words.iter().map(|word| intern(word)).collect();
-        Ok((field.name, Box::leak(words.into_boxed_slice())))
+        Ok((field.name.clone(), words.iter().map(|&word| word.into()).collect()))
     }
 }

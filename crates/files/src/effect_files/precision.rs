@@ -1,12 +1,9 @@
 //! Precision probes: effects that do what another effect does in f64, and record on the way how far its text in f32 is from that. The oracle
 //! draws with them as with any other effect.
 
-use std::{
-    collections::BTreeMap,
-    sync::{
-        Arc, Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicBool, Ordering},
-    },
+use std::sync::{
+    Arc, Mutex, MutexGuard, PoisonError, Weak,
+    atomic::{AtomicBool, Ordering},
 };
 
 use glam::{DVec2, DVec3, DVec4};
@@ -53,6 +50,9 @@ pub struct LargestError {
     pub place: Place,
 }
 
+/// An effect and the largest error of each of its quantities.
+pub type ErrorsOfEffect = (Arc<Effect>, Vec<LargestError>);
+
 /// What the probes of an effect have found.
 #[derive(Default)]
 struct Errors {
@@ -62,7 +62,7 @@ struct Errors {
 
 /// An effect that records the error of its f32 side.
 pub struct PrecisionProbe {
-    effect: &'static Effect,
+    effect: Arc<Effect>,
     errors: Arc<Mutex<Errors>>,
     /// Held by the one measurement that uses it.
     in_use: Mutex<()>,
@@ -72,21 +72,29 @@ pub(super) fn locked<T: ?Sized>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Probes by the address of the effect that they probe.
-pub(super) type Probes<T> = Mutex<BTreeMap<usize, &'static T>>;
+/// Probes, each with the effect that it probes. A probe does not hold that effect, so that both go when nobody uses it any more.
+pub(super) type Probes<T> = Mutex<Vec<(Weak<Effect>, Arc<T>)>>;
 
-/// The probe of `effect`. Probes live as long as the program, like the effects that they probe; there is one of each.
-pub(super) fn kept<T: Sync>(
+/// The probe of `effect`; there is one of each.
+pub(super) fn kept<T>(
     known: &Probes<T>,
-    effect: &'static Effect,
+    effect: &Arc<Effect>,
     make: impl FnOnce() -> Result<T, EvaluatedError>,
-) -> Result<&'static T, EvaluatedError> {
-    let key = std::ptr::from_ref(effect) as usize;
-    if let Some(probe) = locked(known).get(&key) {
+) -> Result<Arc<T>, EvaluatedError> {
+    let find = |known: &[(Weak<Effect>, Arc<T>)]| {
+        let found = known.iter().find(|(probed, _)| std::ptr::eq(probed.as_ptr(), Arc::as_ptr(effect)));
+        found.map(|(_, probe)| probe.clone())
+    };
+    if let Some(probe) = find(&locked(known)) {
         return Ok(probe);
     }
-    let made = make()?;
-    Ok(locked(known).entry(key).or_insert_with(|| Box::leak(Box::new(made))))
+    let made = Arc::new(make()?);
+    let mut known = locked(known);
+    known.retain(|(probed, _)| probed.strong_count() > 0);
+    Ok(find(&known).unwrap_or_else(|| {
+        known.push((Arc::downgrade(effect), made.clone()));
+        made
+    }))
 }
 
 impl Errors {
@@ -121,24 +129,24 @@ pub fn precision(
     is_probed: impl Fn(&Effect) -> bool,
     cancelled: &Arc<AtomicBool>,
     draw: impl FnOnce(&Stack),
-) -> Result<Vec<(&'static Effect, Vec<LargestError>)>, EvaluatedError> {
+) -> Result<Vec<ErrorsOfEffect>, EvaluatedError> {
     let mut probed = stack.clone();
     let mut probes = Vec::new();
-    for enabled in probed.0.iter_mut().filter(|enabled| is_probed(enabled.effect)) {
-        let original = enabled.effect;
-        let probe = PrecisionProbe::of(original)?;
-        enabled.effect = probe.effect;
+    for enabled in probed.0.iter_mut().filter(|enabled| is_probed(&enabled.effect)) {
+        let probe = PrecisionProbe::of(&enabled.effect)?;
+        let original = std::mem::replace(&mut enabled.effect, probe.effect.clone());
         probes.push((original, probe));
     }
     // In one order, so that two measurements never wait for each other.
-    let mut ordered: Vec<&PrecisionProbe> = probes.iter().map(|(_, probe)| *probe).collect();
+    let mut ordered: Vec<&PrecisionProbe> = probes.iter().map(|(_, probe)| &**probe).collect();
     ordered.sort_by_key(|probe| std::ptr::from_ref(*probe) as usize);
     let _in_use: Vec<_> = ordered.iter().map(|probe| locked(&probe.in_use)).collect();
     for (_, probe) in &probes {
         *locked(&probe.errors) = Errors { cancelled: cancelled.clone(), largest: Vec::new() };
     }
     draw(&probed);
-    let mut found: Vec<_> = probes.iter().map(|(effect, probe)| (*effect, std::mem::take(&mut locked(&probe.errors).largest))).collect();
+    let mut found: Vec<_> =
+        probes.iter().map(|(effect, probe)| (effect.clone(), std::mem::take(&mut locked(&probe.errors).largest))).collect();
     found.iter_mut().for_each(|(_, largest)| largest.sort_by_key(|error| error.quantity));
     if cancelled.load(Ordering::Relaxed) {
         found.clear();
@@ -147,15 +155,15 @@ pub fn precision(
 }
 
 impl PrecisionProbe {
-    fn of(effect: &'static Effect) -> Result<&'static Self, EvaluatedError> {
-        static KNOWN: Probes<PrecisionProbe> = Mutex::new(BTreeMap::new());
+    fn of(effect: &Arc<Effect>) -> Result<Arc<Self>, EvaluatedError> {
+        static KNOWN: Probes<PrecisionProbe> = Mutex::new(Vec::new());
         kept(&KNOWN, effect, || {
             let single = evaluated_in(&Library::of_process(), effect, Precision::Single)?;
             let errors = Arc::new(Mutex::new(Errors::default()));
-            let mut hooks = effect.hooks;
-            if let (Some(exact), Some(single)) = (hooks.surface, single.surface) {
+            let mut hooks = effect.hooks.clone();
+            if let (Some(exact), Some(single)) = (hooks.surface.clone(), single.surface) {
                 let errors = errors.clone();
-                hooks.surface = Some(Box::leak(Box::new(move |s: Surface, words: &[u32]| {
+                hooks.surface = Some(Arc::new(move |s: Surface, words: &[u32]| {
                     if is_cancelled(&errors) {
                         return s;
                     }
@@ -170,9 +178,9 @@ impl PrecisionProbe {
                         errors.record(Quantity::Normal, if result.normal == s.normal { 0.0 } else { normal }, place);
                     }
                     result
-                })));
+                }));
             }
-            if let (Some(exact), Some(single)) = (hooks.image, single.image) {
+            if let (Some(exact), Some(single)) = (hooks.image.clone(), single.image) {
                 let errors = errors.clone();
                 let finish = move |q: Pixel, picture: &crate::effects::hooks::Picture<'_>, words: &[u32]| {
                     if is_cancelled(&errors) {
@@ -186,9 +194,9 @@ impl PrecisionProbe {
                     }
                     result
                 };
-                hooks.image = Some(ImageHook { finish: Box::leak(Box::new(finish)), ..exact });
+                hooks.image = Some(ImageHook { finish: Arc::new(finish), ..exact });
             }
-            if let (Some(exact), Some(single)) = (hooks.vertex, single.vertex) {
+            if let (Some(exact), Some(single)) = (hooks.vertex.clone(), single.vertex) {
                 let errors = errors.clone();
                 let moved = move |v: Vertex, words: &[u32]| {
                     if is_cancelled(&errors) {
@@ -200,9 +208,9 @@ impl PrecisionProbe {
                     locked(&errors).record(Quantity::Vertex, error, Place::World(result.position + result.offset));
                     result
                 };
-                hooks.vertex = Some(VertexHook { moved: Box::leak(Box::new(moved)), ..exact });
+                hooks.vertex = Some(VertexHook { moved: Arc::new(moved), ..exact });
             }
-            if let (Some(exact), Some(single)) = (hooks.sample.filter(|hook| !hook.has_setup), single.sample) {
+            if let (Some(exact), Some(single)) = (hooks.sample.clone().filter(|hook| !hook.has_setup), single.sample) {
                 let errors = errors.clone();
                 let is_drawn = move |s: &crate::effects::hooks::Sample, words: &[u32]| {
                     let result = (exact.is_drawn)(s, words);
@@ -212,9 +220,9 @@ impl PrecisionProbe {
                     }
                     result
                 };
-                hooks.sample = Some(SampleHook { is_drawn: Box::leak(Box::new(is_drawn)), ..exact });
+                hooks.sample = Some(SampleHook { is_drawn: Arc::new(is_drawn), ..exact });
             }
-            Ok(Self { effect: Box::leak(Box::new(Effect { hooks, ..*effect })), errors, in_use: Mutex::new(()) })
+            Ok(Self { effect: Arc::new(Effect { hooks, ..Effect::clone(effect) }), errors, in_use: Mutex::new(()) })
         })
     }
 }

@@ -1,12 +1,14 @@
 //! Reading: the text of an effect file becomes an effect with the hooks that its functions are on.
 
-use std::{collections::BTreeMap, sync::Mutex};
+use std::{
+    collections::BTreeMap,
+    sync::{Arc, Mutex, PoisonError},
+};
 
 use super::{
     check::{self, Parts},
     declaration,
     error::{EffectError, Text},
-    parameters::intern,
     rewrite,
     twin::{self, Function},
     words,
@@ -24,6 +26,8 @@ pub const MAX_BYTES: usize = 64 << 10;
 pub const MAX_LOOPED_INSTRUCTIONS: usize = 8192;
 /// Longest name of an effect.
 const MAX_NAME_CHARS: usize = 40;
+/// Effects that are kept although nobody uses them.
+const MAX_UNUSED: usize = 64;
 /// Names that mean something else in preset files, on the command line or in effect files.
 pub const RESERVED_NAMES: [&str; 23] = [
     "about",
@@ -80,31 +84,38 @@ pub fn check_name(name: &str) -> Result<(), String> {
 }
 
 /// Reads the effect `stem` from the text of its file, which messages call `file`. Equal texts of one name give the same effect, which
-/// is checked once: every preset of a folder asks for the effects beside it.
+/// is checked once: every preset of a folder asks for the effects beside it. Few effects that nobody uses any more are kept.
 ///
 /// # Errors
 /// The first fault, at its line.
-pub fn read(file: &str, stem: &str, written: &str) -> Result<&'static Effect, EffectError> {
-    static READ: Mutex<BTreeMap<(String, String), &'static Effect>> = Mutex::new(BTreeMap::new());
-    let known = || READ.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+pub fn read(file: &str, stem: &str, written: &str) -> Result<Arc<Effect>, EffectError> {
+    static READ: Mutex<BTreeMap<(String, String), Arc<Effect>>> = Mutex::new(BTreeMap::new());
+    let known = || READ.lock().unwrap_or_else(PoisonError::into_inner);
     // Files that use a folder of shaders are checked against that folder as it is now.
     let is_kept = matches!(Library::of_process(), Library::Embedded);
     let key = (stem.to_owned(), written.to_owned());
     if let Some(effect) = known().get(&key).filter(|_| is_kept) {
+        return Ok(effect.clone());
+    }
+    let effect = Arc::new(read_anew(file, stem, written)?);
+    if !is_kept {
         return Ok(effect);
     }
-    let effect = read_anew(file, stem, written)?;
-    Ok(if is_kept { known().entry(key).or_insert(effect) } else { effect })
+    let mut known = known();
+    if known.len() >= MAX_UNUSED {
+        known.retain(|_, effect| Arc::strong_count(effect) > 1);
+    }
+    Ok(known.entry(key).or_insert(effect).clone())
 }
 
-fn read_anew(file: &str, stem: &str, written: &str) -> Result<&'static Effect, EffectError> {
+fn read_anew(file: &str, stem: &str, written: &str) -> Result<Effect, EffectError> {
     let text = Text { file, text: written };
     check_name(stem).map_err(|reason| text.whole(format!("{stem:?} {reason}")))?;
     if written.len() > MAX_BYTES {
         return Err(text.whole(format!("the file has {} bytes; an effect has at most {MAX_BYTES}", written.len())));
     }
     let declaration = declaration::read(&text, stem)?;
-    let fields = declaration.parameters.fields;
+    let fields = &declaration.parameters.fields;
     if let Some(vertex) = &declaration.hooks.vertex
         && rewrite::lengths(fields).next().is_none()
     {
@@ -112,27 +123,26 @@ fn read_anew(file: &str, stem: &str, written: &str) -> Result<&'static Effect, E
         let message = "a vertex effect needs an f32 parameter with @unit(m): it moves a vertex by at most the sum of these lengths";
         return Err(name.map_or_else(|| text.whole(message), |name| text.error(name.offset, name.text.len(), message)));
     }
-    let defaults = declaration.parameters.defaults.clone();
     let rewritten = rewrite::rewritten(stem, written, &declaration);
-    let source: &'static EffectSource = leak(EffectSource {
+    let source = Arc::new(EffectSource {
         stem: stem.into(),
         written: written.into(),
         linked: rewritten.text.clone(),
         functions: rewritten.functions.clone(),
     });
     let mut effect = Effect {
-        name: intern(stem),
-        about: intern(&declaration.about),
-        hooks: Hooks::NONE,
-        fields,
-        defaults: Box::leak(Box::new(move || defaults.clone())),
-        wgsl_struct: intern(&EffectSource::unique(stem, declaration.struct_name)),
-        source: Some(source),
+        name: stem.into(),
+        about: declaration.about.clone(),
+        hooks: Hooks::default(),
+        fields: fields.clone(),
+        defaults: declaration.parameters.defaults.clone(),
+        wgsl_struct: EffectSource::unique(stem, declaration.struct_name),
+        source: Some(source.clone()),
         base: None,
         is_repeatable: |_| true,
     };
     let parts = Parts { text: &text, stem, declaration: &declaration, rewritten: &rewritten };
-    let checked = check::check(parts, leak(copy(&effect)))?;
+    let checked = check::check(parts, &Arc::new(effect.clone()))?;
     let function = |name: &str, precision: Precision| {
         let read = Function::new(&checked.module, &checked.linked.text, name, fields, precision);
         let function = read.map_err(|error| {
@@ -159,9 +169,8 @@ fn read_anew(file: &str, stem: &str, written: &str) -> Result<&'static Effect, E
     }
     if let Some(name) = &source.functions.surface {
         hooks.surface = Some(twin::surface(function(name, Precision::Double)?));
-        let inputs: Vec<SurfaceInput> =
+        hooks.surface_inputs =
             SurfaceInput::ALL.into_iter().filter(|input| *input != SurfaceInput::Lit && members.contains(&input.member())).collect();
-        hooks.surface_inputs = Vec::leak(inputs);
     }
     if let Some(name) = &source.functions.image {
         let reads_previous = declaration.tokens.iter().any(|token| token.text == "image_previous");
@@ -169,7 +178,7 @@ fn read_anew(file: &str, stem: &str, written: &str) -> Result<&'static Effect, E
     }
     // Any comparison in the text may be a step of color.
     hooks.has_steps = source.functions.surface.is_some() || source.functions.image.is_some();
-    Ok(leak(effect))
+    Ok(effect)
 }
 
 /// The text of a file.
@@ -183,13 +192,4 @@ pub fn decoded(text: &Text<'_>, bytes: Vec<u8>) -> Result<String, EffectError> {
         let message = "this byte is not UTF-8, and an effect file is UTF-8 text; save it in that encoding";
         Text { text: &lossy, ..*text }.error(valid, 1, message)
     })
-}
-
-/// Keeps a value as long as the program runs. Effects are few, and a reload keeps only files that changed.
-fn leak<T>(value: T) -> &'static T {
-    Box::leak(Box::new(value))
-}
-
-fn copy(effect: &Effect) -> Effect {
-    Effect { ..*effect }
 }

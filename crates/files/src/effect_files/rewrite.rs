@@ -1,7 +1,7 @@
 //! Rewriting: the text of an effect file as it is linked. Attributes are blanked, names that the file declares get a prefix of
 //! their own, and every loop counts its turns.
 
-use std::fmt::Write;
+use std::{fmt::Write, sync::Arc};
 
 use super::declaration::Declaration;
 use crate::{
@@ -167,13 +167,13 @@ pub fn in_names_of_author(stem: &str, declaration: &Declaration<'_>, message: &s
 }
 
 /// Lengths among the parameters: a vertex effect moves a vertex by at most their sum.
-pub fn lengths(fields: &[Field]) -> impl Iterator<Item = &Field> {
+pub fn lengths(fields: &[Arc<Field>]) -> impl Iterator<Item = &Arc<Field>> {
     fields.iter().filter(|field| field.unit == "m" && field.value_type == ValueType::F32)
 }
 
 /// The end of a vertex hook: it changes offset and normal alone, and the offset by at most the sum of the lengths.
 fn limited(declaration: &Declaration<'_>) -> String {
-    let lengths: Vec<String> = lengths(declaration.parameters.fields).map(|field| format!("abs(p.{})", field.name)).collect();
+    let lengths: Vec<String> = lengths(&declaration.parameters.fields).map(|field| format!("abs(p.{})", field.name)).collect();
     format!(
         "    let change = clamp(moved.offset - v.offset, vec3f(-1e12), vec3f(1e12));
     let distance = length(change);

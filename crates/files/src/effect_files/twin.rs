@@ -1,6 +1,10 @@
 //! The f64 side of an effect file: its own text, evaluated on the CPU with integers exact and floats in f64.
 
-use std::{cell::RefCell, collections::HashMap};
+use std::{
+    cell::RefCell,
+    collections::HashMap,
+    sync::{Arc, Weak},
+};
 
 use glam::{DVec2, DVec3, DVec4};
 
@@ -10,7 +14,7 @@ use crate::{
         ErrorBound, ImageHook, Picture, Pixel, ROUNDING, Sample, SampleHook, SetupFunction, Surface, SurfaceFunction, TriangleSetup,
         Vertex, VertexHook,
     },
-    evaluator::{Host, LowerError, Machine, NoHost, Options, Precision, Program, Word},
+    evaluator::{Host, LowerError, NoHost, Options, Precision, Program, Word},
     math::hash,
     params::{Field, WgslType},
 };
@@ -21,15 +25,18 @@ const MAX_STEPS: u64 = 100_000_000;
 const EXTERNALS: [&str; 5] = ["image_has", "image_at", "image_background", "image_size", "image_previous"];
 /// How much the inputs of a color may be off on the f32 side, relative to the largest component of each.
 const INPUT_ERROR: f64 = 1.0 / (1 << 17) as f64;
-/// Machines that a thread keeps.
-const MAX_MACHINES: usize = 64;
+/// Programs whose registers a thread keeps.
+const MAX_PROGRAMS: usize = 64;
+
+/// The registers of a program, which they do not hold.
+type Kept = (Weak<Program>, Vec<Word>);
 
 /// One function of a linked module.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Function {
-    program: &'static Program,
+    program: Arc<Program>,
     /// In the order of the struct.
-    fields: &'static [Field],
+    fields: Vec<Arc<Field>>,
 }
 
 impl Function {
@@ -37,13 +44,12 @@ impl Function {
     ///
     /// # Errors
     /// The function uses what cannot be evaluated, or is too long with all that it calls.
-    pub fn new(module: &naga::Module, text: &str, name: &str, fields: &'static [Field], precision: Precision) -> Result<Self, LowerError> {
+    pub fn new(module: &naga::Module, text: &str, name: &str, fields: &[Arc<Field>], precision: Precision) -> Result<Self, LowerError> {
         let mut options = Options { precision, source: Some(text), externals: EXTERNALS.map(str::to_owned).to_vec(), ..Options::default() };
         options.limits.steps = MAX_STEPS;
-        let program = Box::leak(Box::new(Program::new(module, name, &options)?));
+        let program = Arc::new(Program::new(module, name, &options)?);
         let mut fields = fields.to_vec();
         fields.sort_by_key(|field| field.offset);
-        let fields = Vec::leak(fields);
         Ok(Self { program, fields })
     }
 
@@ -55,21 +61,26 @@ impl Function {
     /// Evaluates the function for arguments and parameter words; none if it does not end.
     fn call<R>(&self, mut arguments: Vec<Word>, words: &[u32], host: &mut dyn Host, read: impl FnOnce(&mut Reader<'_>) -> R) -> Option<R> {
         thread_local! {
-            static MACHINES: RefCell<HashMap<usize, Machine<'static>>> = RefCell::new(HashMap::new());
+            /// By the address of the program, which no other has as long as it is weakly held.
+            static REGISTERS: RefCell<HashMap<usize, Kept>> = RefCell::new(HashMap::new());
         }
-        for field in self.fields {
+        for field in &self.fields {
             let words = &words[field.offset / 4..][..field.wgsl.words()];
             arguments.extend(words.iter().map(|&word| match field.wgsl {
                 WgslType::F32 | WgslType::Vec4F32 => Word::from_f64(f32::from_bits(word).into()),
                 WgslType::I32 | WgslType::U32 => Word::from_u32(word),
             }));
         }
-        MACHINES.with_borrow_mut(|machines| {
-            if machines.len() > MAX_MACHINES {
-                machines.clear();
+        REGISTERS.with_borrow_mut(|kept| {
+            let address = Arc::as_ptr(&self.program) as usize;
+            if kept.len() >= MAX_PROGRAMS && !kept.contains_key(&address) {
+                kept.retain(|_, (program, _)| program.strong_count() > 0);
+                if kept.len() >= MAX_PROGRAMS {
+                    kept.clear();
+                }
             }
-            let machine = machines.entry(std::ptr::from_ref(self.program) as usize).or_insert_with(|| self.program.machine());
-            let result = machine.call(&arguments, host).ok()?;
+            let (_, registers) = kept.entry(address).or_insert_with(|| (Arc::downgrade(&self.program), self.program.registers()));
+            let result = self.program.call(registers, &arguments, host).ok()?;
             Some(read(&mut Reader(result)))
         })
     }
@@ -117,8 +128,8 @@ fn perturbed<const N: usize>(values: [f64; N], index: u32, strength: f64) -> [f6
 }
 
 /// The surface hook.
-pub fn surface(function: Function) -> &'static SurfaceFunction {
-    Box::leak(Box::new(move |mut s: Surface, words: &[u32]| {
+pub fn surface(function: Function) -> Arc<SurfaceFunction> {
+    Arc::new(move |mut s: Surface, words: &[u32]| {
         let strength = INPUT_ERROR * if s.step_offset == 0.0 { 0.0 } else { s.step_offset.signum() };
         let mut arguments = Writer::default();
         arguments
@@ -160,7 +171,7 @@ pub fn surface(function: Function) -> &'static SurfaceFunction {
             s
         });
         read.unwrap_or(Surface { color: DVec4::NAN, ..s })
-    }))
+    })
 }
 
 /// Answers what an image effect asks of the picture.
@@ -202,7 +213,7 @@ pub fn image(function: Function, reads_previous: bool) -> ImageHook {
         });
         read.unwrap_or(Pixel { color: DVec4::NAN, ..q })
     };
-    ImageHook { reads_previous, finish: Box::leak(Box::new(finish)) }
+    ImageHook { reads_previous, finish: Arc::new(finish) }
 }
 
 /// The sample hook.
@@ -215,16 +226,16 @@ pub fn sample(function: Function) -> SampleHook {
     };
     SampleHook {
         has_setup: false,
-        error_bound: &|_, _| 0.0,
-        is_from_floats: &|_| false,
-        sample_setup: &|_, _, _| [0; 4],
-        is_drawn: Box::leak(Box::new(is_drawn)),
+        error_bound: Arc::new(|_, _| 0.0),
+        is_from_floats: Arc::new(|_| false),
+        sample_setup: Arc::new(|_, _, _| [0; 4]),
+        is_drawn: Arc::new(is_drawn),
     }
 }
 
 /// What a sample effect computes for each triangle. The f64 side may be given the word that comes from floats; the text computes it anew.
-pub fn sample_setup(function: Function) -> &'static SetupFunction {
-    Box::leak(Box::new(move |t: &TriangleSetup, words: &[u32], _: Option<u32>| {
+pub fn sample_setup(function: Function) -> Arc<SetupFunction> {
+    Arc::new(move |t: &TriangleSetup, words: &[u32], _: Option<u32>| {
         let mut arguments = Writer::default();
         arguments.whole(t.triangle);
         t.corners.as_flattened().iter().for_each(|at| arguments.0.push(Word::from_i32(*at)));
@@ -232,7 +243,7 @@ pub fn sample_setup(function: Function) -> &'static SetupFunction {
         arguments.floats(t.center.to_array()).floats(t.center_screen.to_array());
         let read = |result: &mut Reader<'_>| std::array::from_fn(|_| result.word().to_u32());
         function.call(arguments.0, words, &mut NoHost, read).unwrap_or([0; 4])
-    }))
+    })
 }
 
 /// A corner with its members moved by up to `bound` times `strength`, by a hash of `turn`.
@@ -256,7 +267,7 @@ fn moved_within(v: &Vertex, bound: &ErrorBound, turn: u32) -> Vertex {
 
 /// The vertex hook: `double` in f64, `single` with every operation rounded to f32.
 pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> VertexHook {
-    let evaluate = |function: Function, v: &Vertex, words: &[u32]| {
+    let evaluate = |function: &Function, v: &Vertex, words: &[u32]| {
         let mut arguments = Writer::default();
         arguments
             .floats(v.position.to_array())
@@ -273,10 +284,12 @@ pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> Verte
         });
         read.map_or(Vertex { offset: DVec3::NAN, ..*v }, |(offset, normal)| Vertex { offset, normal, ..*v })
     };
-    let moved = move |v: Vertex, words: &[u32]| evaluate(double, &v, words);
+    let (moving, fields) = (double.clone(), double.fields.clone());
+    let moved = move |v: Vertex, words: &[u32]| evaluate(&moving, &v, words);
+    let limit = move |_: f64, words: &[u32]| lengths(&fields).map(|field| field.get(words)[0].abs()).sum();
     // The text is evaluated at inputs at the ends of their bounds and in f32. Twice the largest difference is the bound.
     let error_bound = move |v: &Vertex, bound: ErrorBound, words: &[u32]| {
-        let exact = evaluate(double, v, words);
+        let exact = evaluate(&double, v, words);
         let rounded = Vertex {
             position: v.position.as_vec3().as_dvec3(),
             offset: v.offset.as_vec3().as_dvec3(),
@@ -287,7 +300,8 @@ pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> Verte
             center_screen: v.center_screen.as_vec2().as_dvec2(),
             triangle: v.triangle,
         };
-        let others = (0..6).map(|turn| evaluate(double, &moved_within(v, &bound, turn), words)).chain([evaluate(single, &rounded, words)]);
+        let others =
+            (0..6).map(|turn| evaluate(&double, &moved_within(v, &bound, turn), words)).chain([evaluate(&single, &rounded, words)]);
         let (mut offset_m, mut normal) = (0.0_f64, 0.0_f64);
         for other in others {
             offset_m = offset_m.max((other.offset - exact.offset).abs().max_element());
@@ -297,12 +311,5 @@ pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> Verte
         let (offset_m, normal) = (2.0 * offset_m + 16.0 * ROUNDING * scale, 2.0 * normal + 16.0 * ROUNDING);
         ErrorBound { offset_m, along_m: DVec3::ZERO, normal, ..bound }
     };
-    let fields = double.fields;
-    let limit = move |_: f64, words: &[u32]| lengths(fields).map(|field| field.get(words)[0].abs()).sum();
-    VertexHook {
-        needs_triangle,
-        moved: Box::leak(Box::new(moved)),
-        error_bound: Box::leak(Box::new(error_bound)),
-        max_displacement_m: Box::leak(Box::new(limit)),
-    }
+    VertexHook { needs_triangle, moved: Arc::new(moved), error_bound: Arc::new(error_bound), max_displacement_m: Arc::new(limit) }
 }

@@ -1,5 +1,7 @@
 //! Edits of one value by its path, as `--set`, `--unset`, pasted values and resets do them.
 
+use std::sync::Arc;
+
 use toml_edit::{Item, Value as Toml};
 
 use super::{
@@ -26,15 +28,15 @@ const ARGUMENT: &str = "--set";
 
 /// What a `--set` or `--unset` path names.
 enum Target {
-    Effect(&'static Effect),
-    Field(&'static Effect, &'static Field),
+    Effect(Arc<Effect>),
+    Field(Arc<Effect>, Arc<Field>),
     /// The parts of the scene that an effect changes.
-    Scope(&'static Effect),
+    Scope(Arc<Effect>),
     Setting(&'static Setting),
     Section(&'static Section),
     Stack,
     /// Every track, those of an effect, or one.
-    Animation(Option<&'static Effect>, Option<&'static Field>),
+    Animation(Option<Arc<Effect>>, Option<Arc<Field>>),
 }
 
 fn target(path: &str, catalog: &Catalog) -> Result<Target, String> {
@@ -60,12 +62,12 @@ fn target(path: &str, catalog: &Catalog) -> Result<Target, String> {
     let (name, field) = short.split_once('.').map_or((short, None), |(name, field)| (name, Some(field)));
     let found = catalog.find(name).map_err(|error| format!("cannot be used: {error}"))?;
     let Some(effect) = found else { return Err(format!("is unknown{}", suggestion_for_path(short, catalog))) };
-    let Some(field) = field else { return Ok(Target::Effect(effect)) };
+    let Some(field) = field else { return Ok(Target::Effect(effect.clone())) };
     if field == SCOPE_KEY {
-        return Ok(Target::Scope(effect));
+        return Ok(Target::Scope(effect.clone()));
     }
-    let unknown = || format!("is unknown{}", did_you_mean(field, effect.fields.iter().map(|field| field.name).chain([SCOPE_KEY])));
-    effect.field(field).map(|field| Target::Field(effect, field)).ok_or_else(unknown)
+    let unknown = || format!("is unknown{}", did_you_mean(field, effect.fields.iter().map(|field| field.name.as_str()).chain([SCOPE_KEY])));
+    effect.field(field).map(|field| Target::Field(effect.clone(), field.clone())).ok_or_else(unknown)
 }
 
 /// The closest of all paths.
@@ -103,14 +105,14 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
     let wrong = |reason: String| PresetError::value(at.clone(), path, reason);
     if let Some((name, INSTANCE_KEY)) = path.strip_prefix("effects.").unwrap_or(path).split_once('.') {
         let effect = preset_file.effects.add_instance(name, value.trim().trim_matches('"')).map_err(wrong)?;
-        preset_file.preset.stack.enable(effect);
+        preset_file.preset.stack.enable(&effect);
         return Ok(());
     }
     let catalog = preset_file.effects.clone();
     let target = target(path, &catalog).map_err(wrong)?;
     let has_unknown_effect = |name: &str| preset_file.has_effect_table(name);
     let preset = &preset_file.preset;
-    if let Target::Effect(effect) | Target::Field(effect, _) | Target::Scope(effect) | Target::Animation(Some(effect), _) = target
+    if let Target::Effect(effect) | Target::Field(effect, _) | Target::Scope(effect) | Target::Animation(Some(effect), _) = &target
         && let Some(conflict) = preset.stack.conflict_with(effect)
     {
         return Err(PresetError::value(at, "effects", conflict.to_string()));
@@ -119,29 +121,29 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
     let is_missing =
         value.is_empty() && !matches!(&target, Target::Setting(setting) if matches!(setting.value_type, ValueType::Text { .. }));
     match target {
-        Target::Effect(effect) if value.is_empty() => drop(preset_file.preset.stack.enable(effect)),
+        Target::Effect(effect) if value.is_empty() => drop(preset_file.preset.stack.enable(&effect)),
         Target::Section(section) if value.is_empty() => section.add(&mut preset_file.preset),
         Target::Field(..) | Target::Setting(_) | Target::Stack | Target::Animation(_, Some(_)) if is_missing => {
             return Err(wrong(format!("needs a value, as in --set {path}=VALUE")));
         }
         Target::Effect(_) | Target::Section(_) => return Err(wrong("takes no value; name one of its keys".into())),
         Target::Field(effect, field) => {
-            let value = read_text(field, value).map_err(wrong)?;
+            let value = read_text(&field, value).map_err(wrong)?;
             let preset = &mut preset_file.preset;
             let mut stack = preset.stack.clone();
-            field.set_value(&mut stack.enable(effect).words, &value).map_err(|error| wrong(error.to_string()))?;
+            field.set_value(&mut stack.enable(&effect).words, &value).map_err(|error| wrong(error.to_string()))?;
             preset.stack = stack;
-            preset.animation.remove(effect.name, field.name);
+            preset.animation.remove(&effect.name, &field.name);
         }
         Target::Scope(effect) => {
-            let on = scope::read(&command_line_value(value), effect).map_err(wrong)?;
-            let limited = preset_file.preset.stack.limit(effect, on);
+            let on = scope::read(&command_line_value(value), &effect).map_err(wrong)?;
+            let limited = preset_file.preset.stack.limit(&effect, on);
             limited.map_err(|conflict| wrong(format!("cannot be set: {conflict}")))?;
         }
         Target::Animation(Some(effect), Some(field)) => {
             let mut reader = Reader::new(ARGUMENT, None, catalog.clone());
-            let track = keyframes::read_track(&mut reader, None, effect, field, &Item::Value(command_line_value(value)))?;
-            preset_file.preset.stack.enable(effect);
+            let track = keyframes::read_track(&mut reader, None, &effect, &field, &Item::Value(command_line_value(value)))?;
+            preset_file.preset.stack.enable(&effect);
             preset_file.preset.animation.put(track);
         }
         Target::Animation(..) => return Err(wrong("takes no value; name a parameter, for instance animation.facet.amount".into())),
@@ -165,19 +167,19 @@ pub fn unset(preset_file: &mut PresetFile, path: &str) -> Result<(), PresetError
     let at = Position { file: "--unset".into(), line: None };
     let preset = &mut preset_file.preset;
     match target(path, &preset_file.effects).map_err(|reason| PresetError::value(at, path, reason))? {
-        Target::Effect(effect) => preset.disable(effect.name),
+        Target::Effect(effect) => preset.disable(&effect.name),
         Target::Animation(None, _) => preset.animation = Animation::default(),
-        Target::Animation(Some(effect), None) => preset.animation.remove_effect(effect.name),
-        Target::Animation(Some(effect), Some(field)) => preset.animation.remove(effect.name, field.name),
+        Target::Animation(Some(effect), None) => preset.animation.remove_effect(&effect.name),
+        Target::Animation(Some(effect), Some(field)) => preset.animation.remove(&effect.name, &field.name),
         Target::Scope(effect) => {
-            if let Some(enabled) = preset.stack.get_mut(effect.name) {
+            if let Some(enabled) = preset.stack.get_mut(&effect.name) {
                 enabled.on = Scope::default();
             }
         }
         Target::Field(effect, field) => {
-            preset.animation.remove(effect.name, field.name);
-            if let Some(enabled) = preset.stack.get_mut(effect.name) {
-                field.copy(&(effect.defaults)(), &mut enabled.words);
+            preset.animation.remove(&effect.name, &field.name);
+            if let Some(enabled) = preset.stack.get_mut(&effect.name) {
+                field.copy(&effect.defaults, &mut enabled.words);
             }
         }
         Target::Setting(setting) => setting.reset(preset),

@@ -43,7 +43,7 @@ impl EffectValues {
     /// # Errors
     /// Effects that exclude each other; then nothing is changed.
     pub fn put_into(&self, preset: &mut Preset) -> Result<(), Conflict> {
-        let effect = self.enabled.effect;
+        let effect = &self.enabled.effect;
         let mut stack = preset.stack.clone();
         if let Some(conflict) = stack.conflict_with(effect) {
             return Err(conflict);
@@ -51,7 +51,7 @@ impl EffectValues {
         stack.enable(effect).clone_from(&self.enabled);
         stack.check()?;
         preset.stack = stack;
-        preset.animation.remove_effect(effect.name);
+        preset.animation.remove_effect(&effect.name);
         self.tracks.iter().for_each(|track| preset.animation.put(track.clone()));
         Ok(())
     }
@@ -68,7 +68,7 @@ impl EffectValues {
     /// As text: one line, and a second one for keyframes. Only differences from defaults are in it.
     pub fn to_text(&self, catalog: &Catalog) -> String {
         let document: DocumentMut = to_toml(&self.preset_file(catalog)).parse().unwrap_or_default();
-        let name = self.enabled.effect.name;
+        let name = self.enabled.effect.name.as_str();
         let line = |section: &str| -> Option<String> {
             let table = in_one_line(&document.get(section)?.get(name)?.clone().into_value().ok()?);
             Some(format!("{section}.{} = {table}\n", toml_edit::Key::new(name)))
@@ -98,7 +98,7 @@ impl EffectValues {
             None => Vec::new(),
         };
         match (&read.preset.stack.0[..], &named[..]) {
-            ([enabled], [_]) => Self::of(&read.preset, enabled.effect.name).ok_or_else(|| not_ours("it has no effect".into())),
+            ([enabled], [_]) => Self::of(&read.preset, &enabled.effect.name).ok_or_else(|| not_ours("it has no effect".into())),
             ([], [name]) => Err(not_ours(format!("there is no effect {name} here; its file may be missing"))),
             ([], []) => Err(not_ours("it has no effect".into())),
             _ => Err(not_ours(format!("it has {} effects; one is pasted at a time", named.len()))),
@@ -131,7 +131,7 @@ pub fn is_effect_text(text: &str) -> bool {
 /// # Errors
 /// No name for a file, a file of that name exists, or it cannot be written.
 pub fn save_values(values: &EffectValues, catalog: &Catalog, name: &str, folder: &Path) -> Result<PathBuf, PresetError> {
-    let (name, own) = (name.trim(), folder.join(values.enabled.effect.name));
+    let (name, own) = (name.trim(), folder.join(&values.enabled.effect.name));
     let path = own.join(format!("{}.toml", file_stem(name)?));
     std::fs::create_dir_all(&own).map_err(|error| PresetError::Write { file: own.display().to_string(), reason: error.to_string() })?;
     let mut document: DocumentMut = values.to_file(catalog).parse().unwrap_or_default();
@@ -213,7 +213,7 @@ mod tests {
         for entry in crate::preset_file::gallery(&Folders::default()) {
             let found = entry.preset_file.expect("a built-in preset");
             for enabled in &found.preset.stack.0 {
-                let values = EffectValues::of(&found.preset, enabled.effect.name).expect("it is enabled");
+                let values = EffectValues::of(&found.preset, &enabled.effect.name).expect("it is enabled");
                 let text = values.to_text(&found.effects);
                 assert!(text.lines().count() == 1 + usize::from(!values.tracks.is_empty()) && is_effect_text(&text), "{text}");
                 let back = EffectValues::parse(&text, "the clipboard", &found.effects).unwrap_or_else(|error| panic!("{error}\n{text}"));
@@ -233,10 +233,10 @@ mod tests {
     #[test]
     fn pasting_replaces_values_and_keyframes_and_keeps_the_place_in_the_stack() {
         let mut target = preset("moving").preset;
-        let before: Vec<&str> = target.stack.0.iter().map(|enabled| enabled.effect.name).collect();
+        let before: Vec<String> = target.stack.0.iter().map(|enabled| enabled.effect.name.clone()).collect();
         assert!(!target.animation.tracks().is_empty());
         of("cut", "facet").put_into(&mut target).expect("no conflict");
-        assert_eq!(target.stack.0.iter().map(|enabled| enabled.effect.name).collect::<Vec<_>>(), before);
+        assert_eq!(target.stack.0.iter().map(|enabled| enabled.effect.name.clone()).collect::<Vec<_>>(), before);
         assert_eq!(EffectValues::of(&target, "facet"), Some(of("cut", "facet")));
         of("moving", "facet").put_into(&mut target).expect("no conflict");
         assert_eq!(target.animation, preset("moving").preset.animation);

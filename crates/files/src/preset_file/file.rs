@@ -1,6 +1,9 @@
 //! An open preset: the state with the file it came from.
 
-use std::path::{Component, Path, PathBuf};
+use std::{
+    path::{Component, Path, PathBuf},
+    sync::Arc,
+};
 
 use toml_edit::{DocumentMut, Item, Table};
 
@@ -84,14 +87,19 @@ impl PresetFile {
     /// What a person should know after opening it: warnings, and the code that it brings.
     pub fn remarks(&self) -> Vec<String> {
         let lines = |name: &str| {
-            self.effects.find(name).ok().flatten().and_then(|effect| effect.source).map_or(0, |source| source.written.lines().count())
+            self.effects
+                .find(name)
+                .ok()
+                .flatten()
+                .and_then(|effect| effect.source.as_ref())
+                .map_or(0, |source| source.written.lines().count())
         };
         let brought = self.brought_effects.iter().map(|name| format!("the preset brings the effect {name}, {} lines of WGSL", lines(name)));
         self.warnings.iter().cloned().chain(brought).collect()
     }
 
     /// The effects whose text came inside the preset.
-    pub fn brought(&self) -> impl Iterator<Item = &'static Effect> + '_ {
+    pub fn brought(&self) -> impl Iterator<Item = &Arc<Effect>> {
         self.brought_effects.iter().filter_map(|name| self.effects.find(name).ok().flatten())
     }
 
@@ -99,19 +107,20 @@ impl PresetFile {
     #[must_use]
     pub fn without_brought(mut self) -> Self {
         let brought = std::mem::take(&mut self.brought_effects);
-        let is_brought =
-            |effect: &Effect| brought.iter().any(|name| effect.name == name || effect.base.is_some_and(|base| base.name == name));
-        let used: Vec<&str> = self
+        let is_brought = |effect: &Effect| {
+            brought.iter().any(|name| effect.name == *name || effect.base.as_ref().is_some_and(|base| base.name == *name))
+        };
+        let used: Vec<String> = self
             .preset
             .stack
             .0
             .iter()
-            .map(|enabled| enabled.effect)
+            .map(|enabled| &enabled.effect)
             .filter(|effect| is_brought(effect))
-            .map(|effect| effect.name)
+            .map(|effect| effect.name.clone())
             .collect();
         for name in used {
-            self.preset.disable(name);
+            self.preset.disable(&name);
         }
         self.effects = self.effects.without(&brought);
         self.document.remove(EFFECT_FILES);
@@ -178,7 +187,7 @@ pub fn to_toml(preset_file: &PresetFile) -> String {
 
 /// The preset as TOML with the effects of files that it uses, so that it can be opened elsewhere.
 pub fn to_shared_toml(preset_file: &PresetFile) -> String {
-    let sources = preset_file.preset.stack.0.iter().filter_map(|enabled| enabled.effect.source);
+    let sources = preset_file.preset.stack.0.iter().filter_map(|enabled| enabled.effect.source.as_ref());
     let mut document: DocumentMut = match to_toml(preset_file).parse() {
         Ok(document) => document,
         Err(_) => return to_toml(preset_file),

@@ -8,6 +8,7 @@ use include_dir::{Dir, File, include_dir};
 use super::{
     error::PresetError,
     file::{PresetFile, stem},
+    formats::ModelFormat,
     load::{load_with, parse_file},
     picture::load_picture,
 };
@@ -160,7 +161,7 @@ pub fn open(what: &str, folders: &Folders) -> Result<PresetFile, PresetError> {
     if has_extension(path, "png") {
         return load_picture(path);
     }
-    if has_extension(path, "glb") || has_extension(path, "gltf") {
+    if ModelFormat::of(path).is_some() {
         let absolute = std::path::absolute(path).map_err(|e| PresetError::Read { file: what.into(), reason: e.to_string() })?;
         return Ok(PresetFile { effects: folders.effects.clone(), ..PresetFile::of_scene(&stem(path), SceneSource::File(absolute)) });
     }
@@ -181,8 +182,9 @@ pub fn open(what: &str, folders: &Folders) -> Result<PresetFile, PresetError> {
         }
     }
     if path.exists() {
-        let reason = "rasterlab opens .toml files, .png pictures that it has saved, and models in .glb and .gltf files";
-        return Err(PresetError::NotOurs { what: what.into(), reason: reason.into() });
+        let models = ModelFormat::names(" and ");
+        let reason = format!("rasterlab opens .toml files, .png pictures that it has saved, and models in {models} files");
+        return Err(PresetError::NotOurs { what: what.into(), reason });
     }
     Err(PresetError::NoPreset { what: what.into(), hint: near_presets(what, &entries) })
 }

@@ -1,6 +1,8 @@
 //! Keyframes: `[animation.facet]` with one list per parameter, each entry `{ time_s = 1.5, value = 0.25, easing = "linear" }`.
 //! An easing that is the default of its parameter is left out.
 
+use std::sync::Arc;
+
 use toml_edit::{Array, InlineTable, Item, Table, TableLike, Value as Toml};
 
 use super::{
@@ -18,25 +20,15 @@ use crate::{
     },
 };
 
-const EASINGS: &[&str] = &{
-    let mut names = [""; Easing::ALL.len()];
-    let mut index = 0;
-    while index < names.len() {
-        names[index] = Easing::ALL[index].name();
-        index += 1;
-    }
-    names
-};
-
 /// The parameters of an entry: time, value and easing.
 pub fn entry_params(field: &Field) -> [Param; 3] {
     [
         Param::new("time_s", "Time of the clock", ValueType::F64).hard(-MAX_TIME_S..=MAX_TIME_S).unit("s"),
-        Param { name: "value", doc: "The parameter's value at that time", ..field.param },
+        Param { name: "value".into(), doc: "The parameter's value at that time".into(), ..field.param.clone() },
         Param::new(
             "easing",
             "How the value goes to the next keyframe; whole numbers, flags and words always hold",
-            ValueType::Choice(EASINGS),
+            ValueType::choice(&Easing::ALL.map(Easing::name)),
         ),
     ]
 }
@@ -56,10 +48,10 @@ pub fn read(reader: &mut Reader<'_>, effects: &dyn TableLike, preset: &mut Prese
         }
         for (name, item) in table.iter() {
             match effect.field(name) {
-                Some(field) => preset.animation.put(read_track(reader, Some(table), effect, field, item)?),
+                Some(field) => preset.animation.put(read_track(reader, Some(table), &effect, field, item)?),
                 None => {
                     let prefix = format!("animation.{}.", effect.name);
-                    reader.unknown(table, &prefix, name, effect.fields.iter().map(|field| field.name));
+                    reader.unknown(table, &prefix, name, effect.fields.iter().map(|field| field.name.as_str()));
                 }
             }
         }
@@ -71,13 +63,13 @@ pub fn read(reader: &mut Reader<'_>, effects: &dyn TableLike, preset: &mut Prese
 pub fn read_track(
     reader: &mut Reader<'_>,
     table: Option<&dyn TableLike>,
-    effect: &'static Effect,
-    field: &'static Field,
+    effect: &Arc<Effect>,
+    field: &Arc<Field>,
     item: &Item,
 ) -> Result<Track, PresetError> {
     let path = format!("animation.{}.{}", effect.name, field.name);
     let here = |reader: &Reader<'_>| match table {
-        Some(table) => reader.position(table, field.name),
+        Some(table) => reader.position(table, &field.name),
         None => Position { file: reader.file.into(), line: None },
     };
     let wrong = |at: Position, reason: String| PresetError::value(at, path.clone(), reason);
@@ -106,7 +98,7 @@ fn read_keyframe(reader: &mut Reader<'_>, entry: &dyn TableLike, field: &Field, 
     for (name, item) in entry.iter() {
         match params.iter().position(|param| param.name == name) {
             Some(index) => values[index] = Some(reader.value(entry, prefix, &params[index], item)?),
-            None => reader.unknown(entry, prefix, name, params.iter().map(|param| param.name)),
+            None => reader.unknown(entry, prefix, name, params.iter().map(|param| param.name.as_str())),
         }
     }
     let [Some(time), Some(value), easing] = values else {
@@ -143,16 +135,16 @@ pub fn patch(root: &mut Table, catalog: &Catalog, saved: &Animation, now: &Anima
     }
     let tables = root.get_mut("animation").and_then(Item::as_table_like_mut).expect("the animation was read as a table");
     for effect in catalog.effects_with([saved, now].into_iter().flat_map(|animation| animation.tracks().iter().map(Track::effect))) {
-        for field in effect.fields {
-            let [before, after] = [saved, now].map(|animation| animation.get(effect.name, field.name));
+        for field in &effect.fields {
+            let [before, after] = [saved, now].map(|animation| animation.get(&effect.name, &field.name));
             match after {
                 _ if before == after => {}
                 Some(track) => patch_track(tables, track),
                 None => {
-                    if let Some(table) = tables.get_mut(effect.name).and_then(Item::as_table_like_mut) {
-                        table.remove(field.name);
+                    if let Some(table) = tables.get_mut(&effect.name).and_then(Item::as_table_like_mut) {
+                        table.remove(&field.name);
                         if table.is_empty() {
-                            tables.remove(effect.name);
+                            tables.remove(&effect.name);
                         }
                     }
                 }
@@ -171,7 +163,7 @@ fn implicit() -> Table {
 }
 
 fn patch_track(tables: &mut dyn TableLike, track: &Track) {
-    let (effect, field) = (track.effect().name, track.field().name);
+    let (effect, field) = (&track.effect().name, &track.field().name);
     if tables.get(effect).is_none() {
         tables.insert(effect, Item::Table(Table::new()));
     }
@@ -197,7 +189,7 @@ fn to_toml(track: &Track, before: Option<&Item>) -> Array {
         put(&mut entry, &time, &Value::number(key.time_s));
         put(&mut entry, &value, &track.field().value_type.value(&key.value).expect("keyframes hold no texts"));
         if key.easing == default_easing(track.field()) {
-            entry.remove(easing.name);
+            entry.remove(&easing.name);
         } else {
             put(&mut entry, &easing, &Value::Choice(key.easing as usize));
         }
@@ -230,7 +222,7 @@ fn number(value: &Toml) -> Option<f64> {
 
 /// Sets a value; one that is already there keeps its spelling.
 fn put(entry: &mut InlineTable, param: &Param, value: &Value) {
-    let (name, mut value) = (param.name, toml_value::write(param.value_type, value));
+    let (name, mut value) = (&param.name, toml_value::write(&param.value_type, value));
     match entry.get_mut(name) {
         Some(there) if same(there, &value) => {}
         Some(there) => {

@@ -29,7 +29,7 @@ pub fn merge(base: &Preset, mine: &Preset, theirs: &Preset) -> Merged {
 
 /// Compared as text, which tells -0.0 from 0.0.
 fn text(param: &Param, value: Option<&Value>) -> Option<String> {
-    value.map(|value| toml_value::write_text(param.value_type, value))
+    value.map(|value| toml_value::write_text(&param.value_type, value))
 }
 
 impl Merged {
@@ -61,18 +61,18 @@ impl Merged {
 
     fn effects(&mut self, base: &Preset, mine: &Preset, theirs: &Preset) {
         for now in &mine.stack.0 {
-            let name = now.effect.name;
+            let name = &now.effect.name;
             let before = base.stack.get(name);
             if theirs.stack.get(name).is_none() {
                 if before.is_none_or(|before| before != now) {
-                    self.preset.stack.enable(now.effect).clone_from(now);
+                    self.preset.stack.enable(&now.effect).clone_from(now);
                     if before.is_some() {
                         self.conflicts.push(format!("effects.{name}"));
                     }
                 }
                 continue;
             }
-            let new = EnabledEffect::new(now.effect);
+            let new = EnabledEffect::new(&now.effect);
             let EnabledEffect { words: before, on, .. } = before.unwrap_or(&new);
             if let Some(other) = self.preset.stack.get_mut(name).filter(|other| now.on != *on && other.on != now.on) {
                 if other.on != *on {
@@ -82,7 +82,7 @@ impl Merged {
             }
             for field in now.effect.fields.iter().filter(|field| !field.same(&now.words, before)) {
                 let Some(other) = self.preset.stack.get_mut(name) else { continue };
-                let Some(theirs) = other.effect.field(field.name) else { continue };
+                let Some(theirs) = other.effect.field(&field.name) else { continue };
                 if !field.same(&other.words, before) && !field.same(&other.words, &now.words) {
                     self.conflicts.push(format!("{name}.{}", field.name));
                 }
@@ -90,25 +90,25 @@ impl Merged {
                 drop(theirs.set_value(&mut other.words, &field.value(&now.words)));
             }
         }
-        for gone in base.stack.0.iter().filter(|before| mine.stack.get(before.effect.name).is_none()) {
-            self.preset.disable(gone.effect.name);
+        for gone in base.stack.0.iter().filter(|before| mine.stack.get(&before.effect.name).is_none()) {
+            self.preset.disable(&gone.effect.name);
         }
     }
 
     /// The order of `mine`, if it is another than that of `base`.
     fn order(&mut self, base: &Preset, mine: &Preset) {
-        let shared = |of: &Preset, other: &Preset| -> Vec<&'static str> {
-            of.stack.0.iter().map(|enabled| enabled.effect.name).filter(|name| other.stack.get(name).is_some()).collect()
+        let shared = |of: &Preset, other: &Preset| -> Vec<String> {
+            of.stack.0.iter().map(|enabled| enabled.effect.name.clone()).filter(|name| other.stack.get(name).is_some()).collect()
         };
         if shared(base, mine) != shared(mine, base) {
             let position = |name: &str| mine.stack.0.iter().position(|enabled| enabled.effect.name == name).unwrap_or(usize::MAX);
-            self.preset.stack.0.sort_by_key(|enabled| position(enabled.effect.name));
+            self.preset.stack.0.sort_by_key(|enabled| position(&enabled.effect.name));
         }
     }
 
     fn animation(&mut self, base: &Preset, mine: &Preset, theirs: &Preset) {
         for track in mine.animation.tracks().iter().chain(base.animation.tracks()) {
-            let (effect, field) = (track.effect().name, track.field().name);
+            let (effect, field) = (&track.effect().name, &track.field().name);
             let [before, now, other] = [base, mine, theirs].map(|preset| preset.animation.get(effect, field));
             if before == now || other == now || self.preset.stack.get(effect).is_none() {
                 continue;

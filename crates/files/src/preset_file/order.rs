@@ -30,7 +30,7 @@ pub fn read(toml: Option<&Toml>, stack: &Stack, catalog: &Catalog, has_table: &d
             }
         }
     }
-    match stack.0.iter().find(|enabled| !known.contains(enabled.effect.name)) {
+    match stack.0.iter().find(|enabled| !known.contains(enabled.effect.name.as_str())) {
         Some(missing) => Err(format!("leaves out {}, which is enabled", missing.effect.name)),
         None => Ok(Stack(ordered)),
     }

@@ -66,13 +66,13 @@ pub fn read(document: &Document<String>, file: &str, catalog: &Catalog) -> Resul
 }
 
 /// Reads every setting of one section; at the top of the file, tables are left out.
-fn read_section(reader: &mut Reader<'_>, table: &dyn TableLike, section: &Section, preset: &mut Preset) -> Result<(), PresetError> {
+fn read_section(reader: &mut Reader<'_>, table: &dyn TableLike, section: &'static Section, preset: &mut Preset) -> Result<(), PresetError> {
     let (is_top, prefix) = (section.name.is_empty(), if section.name.is_empty() { String::new() } else { format!("{}.", section.name) });
     for (name, item) in table.iter() {
         let Some(setting) = section.setting(name) else {
             let tables = || SECTIONS.iter().map(|section| section.name).chain(OTHER_KEYS).filter(|_| is_top);
             if !tables().any(|known| known == name) {
-                reader.unknown(table, &prefix, name, section.settings.iter().map(|setting| setting.name).chain(tables()));
+                reader.unknown(table, &prefix, name, section.settings.iter().map(|setting| setting.name.as_str()).chain(tables()));
             }
             continue;
         };
@@ -95,7 +95,7 @@ fn read_effect_files(reader: &mut Reader<'_>, table: &dyn TableLike) -> Result<V
             return Err(reader.error(table, &prefix, name, format!("is one effect too many; a preset brings at most {MAX_BROUGHT}")));
         }
         let known = reader.catalog.find(name).ok().flatten();
-        if known.is_some_and(|known| known.source.is_some_and(|source| source.written == text)) {
+        if known.is_some_and(|known| known.source.as_ref().is_some_and(|source| source.written == text)) {
             continue;
         }
         reader.catalog.add_text(name, text).map_err(|error| reader.error(table, &prefix, name, format!("cannot be used: {error}")))?;
@@ -108,7 +108,7 @@ fn read_effects(reader: &mut Reader<'_>, effects: &dyn TableLike, stack: &mut St
     for (name, _) in effects.iter() {
         let Some(table) = reader.table(effects, "effects.", name)? else { continue };
         match reader.effect(effects, "effects.", name)? {
-            Some(effect) => read_effect(reader, table, stack.enable(effect))?,
+            Some(effect) => read_effect(reader, table, stack.enable(&effect))?,
             None => reader.unknown_effect(effects, "effects.", name),
         }
     }
@@ -124,11 +124,11 @@ fn read_effect(reader: &mut Reader<'_>, table: &dyn TableLike, enabled: &mut Ena
         }
         if name == SCOPE_KEY {
             let toml = item.as_value().ok_or_else(|| reader.error(table, &prefix, name, "must be a list, not a table"))?;
-            enabled.on = scope::read(toml, enabled.effect).map_err(|reason| reader.error(table, &prefix, name, reason))?;
+            enabled.on = scope::read(toml, &enabled.effect).map_err(|reason| reader.error(table, &prefix, name, reason))?;
             continue;
         }
         let Some(field) = enabled.effect.field(name) else {
-            reader.unknown(table, &prefix, name, enabled.effect.fields.iter().map(|field| field.name).chain([SCOPE_KEY]));
+            reader.unknown(table, &prefix, name, enabled.effect.fields.iter().map(|field| field.name.as_str()).chain([SCOPE_KEY]));
             continue;
         };
         let value = reader.value(table, &prefix, field, item)?;

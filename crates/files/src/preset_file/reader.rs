@@ -1,5 +1,7 @@
 //! Reading one table of a preset file: its values, and the lines of its errors.
 
+use std::sync::Arc;
+
 use toml_edit::{Item, TableLike, Value as Toml};
 
 use super::{
@@ -69,7 +71,7 @@ impl<'a> Reader<'a> {
 
     /// The effect called `name`, which is a key of `table`; none if it is unknown. Its own table may say which effect it is an
     /// instance of.
-    pub fn effect(&mut self, table: &dyn TableLike, prefix: &str, name: &str) -> Result<Option<&'static Effect>, PresetError> {
+    pub fn effect(&mut self, table: &dyn TableLike, prefix: &str, name: &str) -> Result<Option<Arc<Effect>>, PresetError> {
         let base = table.get(name).and_then(Item::as_table_like).and_then(|own| own.get(INSTANCE_KEY));
         if let Some(base) = base {
             let Some(base) = base.as_str() else {
@@ -78,7 +80,10 @@ impl<'a> Reader<'a> {
             let added = self.catalog.add_instance(name, base);
             return added.map(Some).map_err(|reason| self.error(table, prefix, name, reason));
         }
-        self.catalog.find(name).map_err(|error| self.error(table, prefix, name, format!("cannot be used: {error}")))
+        self.catalog
+            .find(name)
+            .map(Option::<&_>::cloned)
+            .map_err(|error| self.error(table, prefix, name, format!("cannot be used: {error}")))
     }
 
     /// The value of `param`, which stands in `table` as `item`; its type is right, its range is not checked.
@@ -87,7 +92,7 @@ impl<'a> Reader<'a> {
             Some(toml) => toml_value::read(param, toml, &|toml| number_text(toml, self.text)),
             None => Err("must be a value, not a table".into()),
         };
-        read.map_err(|reason| self.error(table, prefix, param.name, reason))
+        read.map_err(|reason| self.error(table, prefix, &param.name, reason))
     }
 
     /// The error of the key `name` in `table`.

@@ -2,9 +2,11 @@
 
 use std::{path::Path, sync::Arc};
 
-use super::file::model_path;
+use super::{
+    file::model_path,
+    formats::{MODEL_FORMATS, ModelFormat},
+};
 use crate::{
-    host,
     preset::{MissingInScene, Preset, SceneSource},
     scene::{Bounds, Scene, builtin, gltf},
 };
@@ -49,7 +51,9 @@ fn load_source(source: &SceneSource, preset_path: Option<&Path>) -> Result<Scene
             if !path.exists() {
                 return Err(SceneError::Absent { path: path.display().to_string() });
             }
-            Ok(host::model::load(&path)?)
+            // What has another extension is loaded too, if it is one by its content.
+            let format = ModelFormat::of(&path).unwrap_or(&MODEL_FORMATS[0]);
+            Ok((format.load)(&path)?)
         }
     }
 }

@@ -1,5 +1,7 @@
 //! The JSON schema of preset files, for editors: generated from the registry that reads them.
 
+use std::sync::Arc;
+
 use serde_json::{Map, Value as Json, json};
 
 use super::{file::EFFECT_FILES, keyframes::entry_params, migrate, scope::SCOPE_KEY};
@@ -19,7 +21,7 @@ pub fn schema() -> Json {
     let mut properties = Map::new();
     properties.insert("schema".into(), json!({ "const": migrate::CURRENT, "description": "Version of the format" }));
     properties.extend(section_schema(&TOP));
-    let names: Vec<_> = EFFECTS.iter().map(|effect| effect.name).collect();
+    let names: Vec<_> = EFFECTS.iter().map(|effect| effect.name.as_str()).collect();
     properties.insert(
         "stack".into(),
         json!({
@@ -75,9 +77,9 @@ fn refused(path: &str) -> Option<Json> {
 }
 
 fn effect_schema(effect: &Effect) -> Json {
-    let defaults = (effect.defaults)();
+    let defaults = &effect.defaults;
     let mut properties: Map<String, Json> =
-        effect.fields.iter().map(|field| (field.name.to_owned(), param_schema(field, Some(field.value(&defaults))))).collect();
+        effect.fields.iter().map(|field| (field.name.clone(), param_schema(field, Some(field.value(defaults))))).collect();
     if effect.has_scope() {
         properties.insert(SCOPE_KEY.into(), scope_schema());
     }
@@ -92,16 +94,16 @@ fn scope_schema() -> Json {
 }
 
 fn animation_schema(effect: &Effect) -> Json {
-    let track = |field: &crate::params::Field| {
-        let entry = entry_params(field).map(|param| (param.name.to_owned(), param_schema(&param, None)));
+    let track = |field: &Arc<crate::params::Field>| {
+        let entry = entry_params(field).map(|param| (param.name.clone(), param_schema(&param, None)));
         let keyframe = json!({ "type": "object", "required": ["time_s", "value"], "properties": Map::from_iter(entry) });
-        (field.name.to_owned(), json!({ "type": "array", "minItems": 1, "maxItems": MAX_KEYFRAMES, "items": keyframe }))
+        (field.name.clone(), json!({ "type": "array", "minItems": 1, "maxItems": MAX_KEYFRAMES, "items": keyframe }))
     };
     json!({ "type": "object", "properties": effect.fields.iter().map(track).collect::<Map<String, Json>>() })
 }
 
 fn param_schema(param: &Param, default: Option<Value>) -> Json {
-    let mut schema = match param.value_type {
+    let mut schema = match &param.value_type {
         ValueType::Text { max_chars } => json!({ "type": "string", "maxLength": max_chars }),
         ValueType::TextList { max_entries, max_chars } => {
             json!({ "type": "array", "maxItems": max_entries, "items": { "type": "string", "maxLength": max_chars } })
@@ -120,13 +122,13 @@ fn param_schema(param: &Param, default: Option<Value>) -> Json {
     let doc = param.doc.trim();
     schema["description"] = if param.unit.is_empty() { doc.into() } else { format!("{doc} ({})", param.unit).into() };
     if let Some(default) = default {
-        schema["default"] = default_json(param.value_type, &default);
+        schema["default"] = default_json(&param.value_type, &default);
     }
     schema
 }
 
 /// A default as the file would have it.
-fn default_json(value_type: ValueType, default: &Value) -> Json {
+fn default_json(value_type: &ValueType, default: &Value) -> Json {
     let shortest = |number: &f64| match value_type.is_single() {
         true => format!("{:?}", *number as f32).parse().map_or(json!(number), exact),
         false => exact(*number),

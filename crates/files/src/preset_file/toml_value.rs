@@ -15,7 +15,7 @@ pub type NumberText<'a> = &'a dyn Fn(&Toml) -> String;
 /// # Errors
 /// The value has another type. Completes a sentence that begins with the parameter's name.
 pub fn read(param: &Param, toml: &Toml, text_of: NumberText<'_>) -> Result<Value, String> {
-    Ok(match param.value_type {
+    Ok(match &param.value_type {
         ValueType::Text { .. } => Value::Text(text(toml)?),
         ValueType::TextList { .. } => {
             let list = toml.as_array().ok_or_else(|| format!("must be a list of texts, not {}", description(toml)))?;
@@ -35,11 +35,11 @@ pub fn read(param: &Param, toml: &Toml, text_of: NumberText<'_>) -> Result<Value
 }
 
 /// The TOML that [`read`] takes back to the same bits. `value` must have this type.
-pub fn write(value_type: ValueType, value: &Value) -> Toml {
+pub fn write(value_type: &ValueType, value: &Value) -> Toml {
     match value {
         Value::Bool(on) => (*on).into(),
         Value::Choice(index) => match value_type {
-            ValueType::Choice(words) => words.get(*index).copied().unwrap_or_default().into(),
+            ValueType::Choice(words) => words.get(*index).map_or("", String::as_str).into(),
             _ => (*index as i64).into(),
         },
         Value::Numbers(numbers) => match numbers[..] {
@@ -52,12 +52,12 @@ pub fn write(value_type: ValueType, value: &Value) -> Toml {
 }
 
 /// [`write()`] as text without surrounding space: what is copied, listed and pasted.
-pub fn write_text(value_type: ValueType, value: &Value) -> String {
+pub fn write_text(value_type: &ValueType, value: &Value) -> String {
     write(value_type, value).to_string().trim().to_owned()
 }
 
 /// The shortest decimal that reads back to this number.
-fn numeral(number: f64, value_type: ValueType) -> Toml {
+fn numeral(number: f64, value_type: &ValueType) -> Toml {
     let shortest = if value_type.is_single() {
         format!("{:?}", number as f32)
     } else if value_type.is_continuous() {
@@ -68,7 +68,7 @@ fn numeral(number: f64, value_type: ValueType) -> Toml {
     shortest.parse().unwrap_or_else(|_| number.into())
 }
 
-fn number(toml: &Toml, written: &str, value_type: ValueType) -> Result<f64, String> {
+fn number(toml: &Toml, written: &str, value_type: &ValueType) -> Result<f64, String> {
     let number = match toml {
         Toml::Integer(integer) if integer.value().unsigned_abs() <= 1 << 53 => *integer.value() as f64,
         Toml::Integer(integer) => return Err(format!("{} is too large", integer.value())),
@@ -98,12 +98,12 @@ fn text(toml: &Toml) -> Result<String, String> {
     toml.as_str().map(str::to_owned).ok_or_else(|| format!("must be a text in quotes, not {}", description(toml)))
 }
 
-fn word(toml: &Toml, words: &'static [&'static str]) -> Result<usize, String> {
+fn word(toml: &Toml, words: &[String]) -> Result<usize, String> {
     let written = toml.as_str().ok_or_else(|| format!("must be one of {}, not {}", words.join(", "), description(toml)))?;
     words
         .iter()
         .position(|word| *word == written)
-        .ok_or_else(|| format!("{written:?} is not one of {}{}", words.join(", "), did_you_mean(written, words.iter().copied())))
+        .ok_or_else(|| format!("{written:?} is not one of {}{}", words.join(", "), did_you_mean(written, words.iter().map(String::as_str))))
 }
 
 /// What a TOML value is, to complete "must be …, not …".
@@ -122,8 +122,13 @@ fn description(toml: &Toml) -> String {
 mod tests {
     use super::*;
 
-    const ANY_F32: Param = Param::new("any", "", ValueType::F32).hard(-3.402_823_5e38..=3.402_823_5e38);
-    const ANY_F64: Param = Param::new("any", "", ValueType::F64).hard(f64::MIN..=f64::MAX);
+    fn any_f32() -> Param {
+        Param::new("any", "", ValueType::F32).hard(-3.402_823_5e38..=3.402_823_5e38)
+    }
+
+    fn any_f64() -> Param {
+        Param::new("any", "", ValueType::F64).hard(f64::MIN..=f64::MAX)
+    }
 
     fn read_number(param: &Param, text: &str) -> Result<f64, String> {
         let toml: Toml = text.parse().expect("valid TOML");
@@ -133,7 +138,7 @@ mod tests {
     }
 
     fn written(param: &Param, number: f64) -> String {
-        write_text(param.value_type, &Value::number(number))
+        write_text(&param.value_type, &Value::number(number))
     }
 
     #[test]
@@ -141,8 +146,8 @@ mod tests {
         let corners = [0.0, -0.0, 0.1, 0.2, 1e-40, f32::from_bits(1), f32::MIN_POSITIVE, f32::MAX, f32::MIN, 1e16, 16_777_216.0];
         let spread = (0..20_000u32).map(|i| f32::from_bits(crate::math::hash(i))).filter(|v| v.is_finite());
         for value in corners.into_iter().chain(spread) {
-            let text = written(&ANY_F32, value.into());
-            let back = read_number(&ANY_F32, &text).unwrap_or_else(|e| panic!("{text}: {e}")) as f32;
+            let text = written(&any_f32(), value.into());
+            let back = read_number(&any_f32(), &text).unwrap_or_else(|e| panic!("{text}: {e}")) as f32;
             assert_eq!(back.to_bits(), value.to_bits(), "{value:?} was written {text}");
         }
     }
@@ -150,18 +155,18 @@ mod tests {
     #[test]
     fn every_f64_is_written_so_that_it_reads_back_to_the_bit() {
         for value in [0.1, -0.0, 1e-320, f64::MAX, 1.0 / 3.0, 1e300] {
-            let text = written(&ANY_F64, value);
-            assert_eq!(read_number(&ANY_F64, &text).unwrap().to_bits(), value.to_bits(), "{text}");
+            let text = written(&any_f64(), value);
+            assert_eq!(read_number(&any_f64(), &text).unwrap().to_bits(), value.to_bits(), "{text}");
         }
     }
 
     #[test]
     fn a_float_is_never_silently_infinite_or_zero() {
-        assert!(read_number(&ANY_F32, "1e39").unwrap_err().contains("1e39 is too large for a 32-bit float"));
-        assert!(read_number(&ANY_F32, "-1e39").unwrap_err().contains("too large"));
-        assert!(read_number(&ANY_F32, "1e-46").unwrap_err().contains("1e-46 is too small for a 32-bit float"));
-        assert!(read_number(&ANY_F32, "inf").unwrap_err().contains("not a finite number"));
-        assert!(read_number(&ANY_F32, "nan").unwrap_err().contains("not a finite number"));
+        assert!(read_number(&any_f32(), "1e39").unwrap_err().contains("1e39 is too large for a 32-bit float"));
+        assert!(read_number(&any_f32(), "-1e39").unwrap_err().contains("too large"));
+        assert!(read_number(&any_f32(), "1e-46").unwrap_err().contains("1e-46 is too small for a 32-bit float"));
+        assert!(read_number(&any_f32(), "inf").unwrap_err().contains("not a finite number"));
+        assert!(read_number(&any_f32(), "nan").unwrap_err().contains("not a finite number"));
     }
 
     #[test]

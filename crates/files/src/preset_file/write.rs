@@ -78,7 +78,7 @@ fn patch_section(root: &mut Table, section: &Section, saved: &Preset, now: &Pres
 
 fn patch_settings(table: &mut dyn TableLike, section: &Section, saved: &Preset, now: &Preset) {
     let baseline = baseline(now);
-    for setting in section.settings {
+    for setting in section.settings.iter() {
         patch_value(table, setting, setting.get(saved), setting.get(now), setting.get(&baseline));
     }
 }
@@ -93,30 +93,30 @@ fn patch_effects(root: &mut Table, catalog: &Catalog, saved: &Stack, now: &Stack
         root.insert("effects", Item::Table(effects));
     }
     let tables = root.get_mut("effects").and_then(Item::as_table_like_mut).expect("effects were read as a table");
-    for effect in catalog.effects_with([saved, now].into_iter().flat_map(|stack| stack.0.iter().map(|enabled| enabled.effect))) {
-        match now.get(effect.name) {
-            None => drop(tables.remove(effect.name)),
+    for effect in catalog.effects_with([saved, now].into_iter().flat_map(|stack| stack.0.iter().map(|enabled| &enabled.effect))) {
+        match now.get(&effect.name) {
+            None => drop(tables.remove(&effect.name)),
             Some(enabled) => {
-                if tables.get(effect.name).is_none() {
-                    tables.insert(effect.name, Item::Table(Table::new()));
+                if tables.get(&effect.name).is_none() {
+                    tables.insert(&effect.name, Item::Table(Table::new()));
                 }
-                let table = tables.get_mut(effect.name).and_then(Item::as_table_like_mut).expect("an effect was read as a table");
-                if let Some(base) = effect.base {
-                    table.insert(INSTANCE_KEY, toml_edit::value(base.name));
+                let table = tables.get_mut(&effect.name).and_then(Item::as_table_like_mut).expect("an effect was read as a table");
+                if let Some(base) = &effect.base {
+                    table.insert(INSTANCE_KEY, toml_edit::value(&base.name));
                 }
-                patch_effect(table, saved.get(effect.name), enabled);
+                patch_effect(table, saved.get(&effect.name), enabled);
             }
         }
     }
 }
 
 fn patch_effect(table: &mut dyn TableLike, saved: Option<&EnabledEffect>, now: &EnabledEffect) {
-    let defaults = EnabledEffect::new(now.effect);
+    let defaults = EnabledEffect::new(&now.effect);
     let saved = saved.unwrap_or(&defaults);
     if saved.on != now.on {
         put(table, SCOPE_KEY, scope::write(&now.on));
     }
-    for field in now.effect.fields {
+    for field in &now.effect.fields {
         let value = |enabled: &EnabledEffect| Some(field.value(&enabled.words));
         patch_value(table, field, value(saved), value(now), value(&defaults));
     }
@@ -124,7 +124,7 @@ fn patch_effect(table: &mut dyn TableLike, saved: Option<&EnabledEffect>, now: &
 
 /// Writes `stack` only where the order is not the default one.
 fn patch_order(root: &mut Table, catalog: &Catalog, saved: &Stack, now: &Stack) {
-    let names = |stack: &Stack| -> Vec<&str> { stack.0.iter().map(|enabled| enabled.effect.name).collect() };
+    let names = |stack: &Stack| -> Vec<String> { stack.0.iter().map(|enabled| enabled.effect.name.clone()).collect() };
     if names(saved) == names(now) {
         return;
     }
@@ -138,7 +138,7 @@ fn patch_order(root: &mut Table, catalog: &Catalog, saved: &Stack, now: &Stack) 
         .filter(|name| !catalog.names().any(|known| known == *name))
         .map(str::to_owned)
         .collect();
-    let order: Toml = names(now).into_iter().chain(unknown.iter().map(String::as_str)).collect();
+    let order: Toml = names(now).into_iter().chain(unknown.iter().cloned()).collect();
     let is_default = now.is_canonical() && unknown.is_empty();
     let is_written = !is_default || has_comment(root, "stack");
     put(root, "stack", Some(order).filter(|_| is_written));
@@ -147,12 +147,12 @@ fn patch_order(root: &mut Table, catalog: &Catalog, saved: &Stack, now: &Stack) 
 /// Sets, keeps or removes one value. A line that carries a comment is kept even when it has the default.
 fn patch_value(table: &mut dyn TableLike, param: &Param, saved: Option<Value>, now: Option<Value>, default: Option<Value>) {
     // Compared as text, which tells -0.0 from 0.0.
-    let text = |value: &Option<Value>| value.as_ref().map(|value| toml_value::write_text(param.value_type, value));
+    let text = |value: &Option<Value>| value.as_ref().map(|value| toml_value::write_text(&param.value_type, value));
     if text(&saved) == text(&now) {
         return;
     }
-    let is_written = text(&now) != text(&default) || has_comment(table, param.name);
-    put(table, param.name, now.filter(|_| is_written).map(|value| toml_value::write(param.value_type, &value)));
+    let is_written = text(&now) != text(&default) || has_comment(table, &param.name);
+    put(table, &param.name, now.filter(|_| is_written).map(|value| toml_value::write(&param.value_type, &value)));
 }
 
 /// Sets one value with the decoration of the one before, or removes it.

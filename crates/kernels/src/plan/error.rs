@@ -10,7 +10,7 @@ pub enum PlanError {
     #[error("visibility packed32 keeps triangle and depth in 32 bits, at most 2^24 triangles, and this scene has {triangles}; use split32")]
     TooManyTriangles { triangles: u64 },
     #[error("coverage {option} cannot draw the effect {effect}, which measures triangles in 1/256 px; use fixed8, float or float-top-left")]
-    SubpixelGrid { option: &'static str, effect: &'static str },
+    SubpixelGrid { option: &'static str, effect: String },
     #[error("xray_sums {option} counts all layers alike, and this xray weighs them; use four32, or weight = \"equal\"")]
     XrayWeights { option: &'static str },
     #[error("coverage fixed12 draws pictures of at most 2047 px a side, and this one has {}x{}; use fixed8", size[0], size[1])]
@@ -29,7 +29,7 @@ pub enum PlanError {
         "shader_checks trusted is for the shaders inside this program, and the effect {effect} comes from a file, whose indices nobody has \
          checked; use checked"
     )]
-    UncheckedEffect { effect: &'static str },
+    UncheckedEffect { effect: String },
     #[error(transparent)]
     Conflict(#[from] Conflict),
 }

@@ -113,7 +113,7 @@ impl Plan {
 
     fn vertex_effects_reason(&self) -> Option<Note> {
         let effects = self.key.effects.list.iter().filter(|effect| effect.hooks.vertex.is_some());
-        let names: Vec<_> = effects.map(|effect| effect.name).collect();
+        let names: Vec<_> = effects.map(|effect| effect.name.as_str()).collect();
         let why = if self.key.unshares_vertices() {
             "triangles move apart, with three projected vertices each"
         } else {
@@ -124,7 +124,8 @@ impl Plan {
 
     fn scopes_reason(&self) -> Option<Note> {
         let effects = &self.key.effects;
-        let names: Vec<_> = effects.list.iter().filter(|effect| effects.scope(effect).is_some()).map(|effect| effect.name).collect();
+        let names: Vec<_> =
+            effects.list.iter().filter(|effect| effects.scope(effect).is_some()).map(|effect| effect.name.as_str()).collect();
         let why = "limited to parts of the scene: one bit per draw decides";
         (!names.is_empty()).then(|| note("scopes", format!("{}: {why}", names.join(", "))))
     }

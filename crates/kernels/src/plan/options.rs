@@ -1,5 +1,7 @@
 //! Options: which one is taken on every accuracy axis, and which combinations no kernel can draw.
 
+use std::sync::Arc;
+
 use super::{
     AccuracyRequest, Tolerance,
     caps::Caps,
@@ -217,7 +219,7 @@ fn check(options: &AccuracyOptions, inputs: &Inputs) -> Result<(), PlanError> {
     if options.shader_checks == ShaderChecks::Trusted
         && let Some(effect) = stack.effects.iter().find(|effect| effect.is_of_file())
     {
-        return Err(PlanError::UncheckedEffect { effect: effect.name });
+        return Err(PlanError::UncheckedEffect { effect: effect.name.clone() });
     }
     check_xray(options, stack)
 }
@@ -235,9 +237,9 @@ fn check_xray(options: &AccuracyOptions, stack: &StackTraits) -> Result<(), Plan
 }
 
 /// An effect whose integers are in units of 1/256 px.
-fn subpixel_effect(stack: &StackTraits) -> Option<&'static str> {
-    let measures = |effect: &&&Effect| effect.hooks.sample.is_some_and(|hook| hook.has_setup) || **effect == &points::EFFECT;
-    stack.effects.iter().find(measures).map(|effect| effect.name)
+fn subpixel_effect(stack: &StackTraits) -> Option<String> {
+    let measures = |effect: &&Arc<Effect>| effect.hooks.sample.as_ref().is_some_and(|hook| hook.has_setup) || **effect == *points::EFFECT;
+    stack.effects.iter().find(measures).map(|effect| effect.name.clone())
 }
 
 /// What changes the shape of a mesh after its positions are packed, if anything.
@@ -261,7 +263,7 @@ fn moving_lines(inputs: &Inputs) -> Option<String> {
 /// What depends on floats or on chance even behind a strict vertex stage, if anything.
 fn inexact_part(options: &AccuracyOptions, inputs: &Inputs) -> Option<String> {
     let Inputs { needs, stack, .. } = *inputs;
-    if let Some(effect) = stack.inexact_effect {
+    if let Some(effect) = &stack.inexact_effect {
         return Some(format!("the effect {} {}", effect.name, effect.why));
     }
     if options.position_format.packed_bits().is_some() {

@@ -1,5 +1,7 @@
 //! Stack traits: what planning reads of a stack. A parameter that is not among them changes uniform bytes alone.
 
+use std::sync::Arc;
+
 use crate::{
     accuracy::Parameters,
     effects::{
@@ -18,7 +20,7 @@ use super::{AccuracyRequest, error::PlanError};
 #[derive(Clone, Debug, PartialEq)]
 pub struct StackTraits {
     /// The enabled effects, in order.
-    pub effects: Vec<&'static Effect>,
+    pub effects: Vec<Arc<Effect>>,
     /// Parameter words of every effect, where the request bakes them into the text.
     pub baked: Vec<Vec<u32>>,
     /// The bit of every effect in the scopes of a draw; empty where no effect has a scope.
@@ -37,9 +39,9 @@ pub struct StackTraits {
 }
 
 /// An effect that a strict picture cannot hold.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct InexactEffect {
-    pub name: &'static str,
+    pub name: String,
     pub why: &'static str,
 }
 
@@ -50,9 +52,9 @@ impl StackTraits {
         stack.check()?;
         let is_baked = request.pins.option() == Some(Parameters::Baked);
         let baked = stack.0.iter().filter(|_| is_baked).map(|enabled| enabled.words.clone()).collect();
-        let xray = stack.get(xray::EFFECT.name).map(|enabled| read::<Xray>(&enabled.words));
+        let xray = stack.get(&xray::EFFECT.name).map(|enabled| read::<Xray>(&enabled.words));
         Ok(Self {
-            effects: stack.0.iter().map(|enabled| enabled.effect).collect(),
+            effects: stack.0.iter().map(|enabled| enabled.effect.clone()).collect(),
             baked,
             scope_bits: if stack.scopes().is_empty() { Vec::new() } else { stack.scope_bits().collect() },
             shape: stack.shape(),
@@ -69,7 +71,7 @@ impl StackTraits {
         let effect = self.effects.iter().find(|effect| effect.hooks.slot == Some(Slot::Visibility))?;
         Some(match self.xray {
             Some(xray) => Layers::Xray { bits: xray.first_bits(triangles) },
-            None if *effect == &overdraw::EFFECT => Layers::Overdraw,
+            None if *effect == *overdraw::EFFECT => Layers::Overdraw,
             None => Layers::Race,
         })
     }
@@ -80,8 +82,8 @@ impl StackTraits {
     }
 
     /// The first effect that moves vertices.
-    pub fn vertex_effect(&self) -> Option<&'static Effect> {
-        self.effects.iter().copied().find(|effect| effect.hooks.vertex.is_some())
+    pub fn vertex_effect(&self) -> Option<&Arc<Effect>> {
+        self.effects.iter().find(|effect| effect.hooks.vertex.is_some())
     }
 
     /// Does an effect finish pixels?
@@ -96,14 +98,14 @@ impl StackTraits {
 
     /// Does an effect read what only the plane of a triangle tells? The taps of a shadow map do.
     pub fn reads_planes(&self) -> bool {
-        let reads_planes = |effect: &&Effect| effect.hooks.surface_inputs.iter().any(|input| input.needs_planes());
+        let reads_planes = |effect: &Arc<Effect>| effect.hooks.surface_inputs.iter().any(|input| input.needs_planes());
         self.reads_light() || self.effects.iter().any(reads_planes)
     }
 }
 
 /// How the samples of an effect depend on floats or on chance, if they do.
 fn inexact(EnabledEffect { effect, words, .. }: &EnabledEffect) -> Option<InexactEffect> {
-    let uses_floats = effect.hooks.sample.is_some_and(|hook| hook.has_setup && (hook.is_from_floats)(words));
+    let uses_floats = effect.hooks.sample.as_ref().is_some_and(|hook| hook.has_setup && (hook.is_from_floats)(words));
     let why = match () {
         () if effect.hooks.vertex.is_some() => "moves vertices in floats",
         () if uses_floats => "moves a front in floats",
@@ -111,7 +113,7 @@ fn inexact(EnabledEffect { effect, words, .. }: &EnabledEffect) -> Option<Inexac
         () if !(effect.is_repeatable)(words) => "leaves its picture to chance",
         () => return None,
     };
-    Some(InexactEffect { name: effect.name, why })
+    Some(InexactEffect { name: effect.name.clone(), why })
 }
 
 #[cfg(test)]
@@ -123,12 +125,13 @@ mod tests {
     #[test]
     fn no_slider_changes_the_traits() {
         let request = AccuracyRequest::default();
-        for effect in EFFECTS {
+        for effect in EFFECTS.iter() {
             let stack = Stack(vec![EnabledEffect::new(effect)]);
             let before = StackTraits::of(&stack, &request).expect("one effect has no rival");
             // A scene with particles has other triangles than one without.
             let is_structural = |field: &crate::params::Field| {
-                matches!(field.value_type, ValueType::Choice(_) | ValueType::Bool) || (effect.name, field.name) == ("particles", "count")
+                matches!(field.value_type, ValueType::Choice(_) | ValueType::Bool)
+                    || (effect.name.as_str(), field.name.as_str()) == ("particles", "count")
             };
             for field in effect.fields.iter().filter(|field| !is_structural(field)) {
                 for value in field.hard {

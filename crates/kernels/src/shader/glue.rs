@@ -1,7 +1,7 @@
 //! Glue: generated WGSL. The parameters of the stack's effects with constants for their choices, one call chain per hook, and
 //! buffers that a kernel key declares in one of several ways.
 
-use std::fmt::Write;
+use std::{fmt::Write, sync::Arc};
 
 use crate::{
     effects::{Effect, EffectSource, EnabledEffect, constant_name},
@@ -23,11 +23,11 @@ pub fn effects(key: &KernelKey) -> String {
             continue;
         }
         files.push(effect.file_stem());
-        for field in effect.fields {
-            if let ValueType::Choice(words) = field.value_type {
+        for field in &effect.fields {
+            if let ValueType::Choice(words) = &field.value_type {
                 for (index, word) in words.iter().enumerate() {
-                    let name = constant_name(effect.file_stem(), field.name, word);
-                    let name = effect.source.map_or(name.clone(), |source| EffectSource::unique(&source.stem, &name));
+                    let name = constant_name(effect.file_stem(), &field.name, word);
+                    let name = effect.source.as_ref().map_or(name.clone(), |source| EffectSource::unique(&source.stem, &name));
                     writeln!(text, "const {name} = {index}u;").expect("writing to a string");
                 }
             }
@@ -61,7 +61,7 @@ fn constructor(effect: &Effect, words: &[u32]) -> String {
             words[field.offset / 4..][..field.wgsl.words()].iter().map(|&word| literal(field.wgsl, word)).collect();
         if components.len() == 1 { components[0].clone() } else { format!("vec4f({})", components.join(", ")) }
     };
-    let mut fields: Vec<&Field> = effect.fields.iter().collect();
+    let mut fields: Vec<&Arc<Field>> = effect.fields.iter().collect();
     fields.sort_by_key(|field| field.offset);
     let members = fields.chunk_by(|a, b| a.group.is_some() && a.group == b.group).map(|fields| {
         let members = fields.iter().map(|field| member(field)).collect::<Vec<_>>().join(", ");
@@ -101,8 +101,8 @@ impl Chain {
     }
 
     /// The effects of a stack that this chain calls, in order.
-    pub fn effects(self, effects: &[&'static Effect]) -> impl Iterator<Item = &'static Effect> {
-        effects.iter().copied().filter(move |effect| self.has(effect))
+    pub fn effects(self, effects: &[Arc<Effect>]) -> impl Iterator<Item = &Arc<Effect>> {
+        effects.iter().filter(move |effect| self.has(effect))
     }
 
     /// Does this chain call the effect?
@@ -111,7 +111,7 @@ impl Chain {
         match self {
             Self::Vertex => hooks.vertex.is_some(),
             Self::Sample => hooks.sample.is_some(),
-            Self::SampleSetup => hooks.sample.is_some_and(|hook| hook.has_setup),
+            Self::SampleSetup => hooks.sample.as_ref().is_some_and(|hook| hook.has_setup),
             Self::Surface => hooks.surface.is_some(),
             Self::Image => hooks.image.is_some(),
         }
@@ -119,7 +119,7 @@ impl Chain {
 
     /// The effect's WGSL function: `<stem>` for an effect of one function, else `<stem>_<hook>`.
     pub fn function(self, effect: &Effect) -> String {
-        if let Some(source) = effect.source {
+        if let Some(source) = &effect.source {
             let functions = &source.functions;
             let name = match self {
                 Self::Vertex => &functions.vertex,
@@ -147,7 +147,7 @@ impl Chain {
             Self::Surface => ("fn glue_surface(surface: Surface, draw: u32) -> Surface {\n    var s = surface;\n", "    return s;\n}\n"),
             Self::Image => ("fn glue_image(pixel: Pixel) -> Pixel {\n    var q = pixel;\n", "    return q;\n}\n"),
         };
-        let with_setup: Vec<&Effect> = Self::SampleSetup.effects(effects).collect();
+        let with_setup: Vec<&Arc<Effect>> = Self::SampleSetup.effects(effects).collect();
         let setup_of = |effect: &Effect| with_setup.iter().position(|other| other.name == effect.name);
         let mut text = head.to_owned();
         let scope = |effect: &Effect| if self.is_scoped() { list.scope(effect) } else { None };
@@ -155,7 +155,7 @@ impl Chain {
             text.push_str("    let scopes = draws[draw].scopes;\n");
         }
         for effect in self.effects(effects) {
-            let (function, name) = (self.function(effect), effect.name);
+            let (function, name) = (self.function(effect), &effect.name);
             let line = match self {
                 Self::Vertex => format!("    v = {function}(v, effects.{name});"),
                 Self::Surface => format!("    s = {function}(s, effects.{name});"),

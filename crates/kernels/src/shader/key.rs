@@ -2,6 +2,8 @@
 //!
 //! What each member means for the shader files, the overrides, the label and the passes is one table: `super::features`.
 
+use std::sync::Arc;
+
 use crate::{
     accuracy::{AccuracyOptions, Culling, RenderScale, Visibility},
     effects::{
@@ -196,7 +198,7 @@ pub struct ViewKind {
 /// The effects of a stack, in order, and the parameters that are constants of the text.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct EffectList {
-    pub list: Vec<&'static Effect>,
+    pub list: Vec<Arc<Effect>>,
     /// Parameter words of each that are constants of the text; empty where a uniform holds them.
     pub baked: Vec<Vec<u32>>,
     /// The bit of every effect in the scopes of a draw, none for an effect on the whole scene; empty where no effect has a scope.
@@ -223,14 +225,14 @@ impl EffectList {
 
     /// Effects whose sample test needs a setup per triangle.
     pub fn setup_count(&self) -> u32 {
-        self.list.iter().filter(|effect| effect.hooks.sample.is_some_and(|hook| hook.has_setup)).count() as u32
+        self.list.iter().filter(|effect| effect.hooks.sample.as_ref().is_some_and(|hook| hook.has_setup)).count() as u32
     }
 }
 
 impl KernelKey {
     /// A key that omits nothing, for a stack on a portable adapter.
-    pub fn complete(fetch: Fetch, visibility: Visibility, effects: Vec<&'static Effect>) -> Self {
-        let layers = Stack(effects.iter().map(|effect| EnabledEffect::new(effect)).collect()).layers(u64::MAX);
+    pub fn complete(fetch: Fetch, visibility: Visibility, effects: Vec<Arc<Effect>>) -> Self {
+        let layers = Stack(effects.iter().map(EnabledEffect::new).collect()).layers(u64::MAX);
         Self {
             options: AccuracyOptions { visibility, ..AccuracyOptions::default() },
             vertices: VertexInputs {
@@ -285,7 +287,7 @@ impl KernelKey {
 
     /// Does an effect move corners by their triangle, so that every triangle has three projected vertices to itself?
     pub fn unshares_vertices(&self) -> bool {
-        self.effects.list.iter().any(|effect| effect.hooks.vertex.is_some_and(|hook| hook.needs_triangle))
+        self.effects.list.iter().any(|effect| effect.hooks.vertex.as_ref().is_some_and(|hook| hook.needs_triangle))
     }
 
     /// Does an effect discard samples?
@@ -320,7 +322,7 @@ impl KernelKey {
 
     /// Does an effect read the previous picture?
     pub fn reads_previous(&self) -> bool {
-        self.effects.list.iter().any(|effect| effect.hooks.image.is_some_and(|hook| hook.reads_previous))
+        self.effects.list.iter().any(|effect| effect.hooks.image.as_ref().is_some_and(|hook| hook.reads_previous))
     }
 
     /// Does the picture that is drawn have another size than the one that is shown?

@@ -138,8 +138,8 @@ pub fn link(library: &Library, root: &str, key: &KernelKey, variants: &[(&str, &
 ///
 /// # Errors
 /// As [`link`].
-pub fn link_effect(library: &Library, effect: &'static Effect) -> Result<Linked, LinkError> {
-    let key = KernelKey::complete(Fetch::Indexed, Visibility::Split32, vec![effect]);
+pub fn link_effect(library: &Library, effect: &Arc<Effect>) -> Result<Linked, LinkError> {
+    let key = KernelKey::complete(Fetch::Indexed, Visibility::Split32, vec![effect.clone()]);
     let variants = key.variants(Pass::Resolve);
     Linker::new(library, &key, &variants, true).link(&format!("effects/{}", effect.file_stem()))
 }
@@ -180,7 +180,7 @@ impl<'a> Linker<'a> {
             return Ok(file.clone());
         }
         let custom = name.strip_prefix("effects/").and_then(|stem| {
-            let sources = self.key.effects.list.iter().filter_map(|effect| effect.source);
+            let sources = self.key.effects.list.iter().filter_map(|effect| effect.source.as_ref());
             sources.into_iter().find(|source| source.stem == stem)
         });
         let file = match custom {
@@ -346,13 +346,13 @@ impl<'a> Linker<'a> {
             if !self.taken.contains_key(&name) && declared.insert(effect.file_stem()) {
                 match effect.source {
                     Some(_) => text.push_str(&glue::struct_of(effect)),
-                    None => text.push_str(glue::struct_text(&self.load_head(&name, "the stack")?.text, effect.wgsl_struct)),
+                    None => text.push_str(glue::struct_text(&self.load_head(&name, "the stack")?.text, &effect.wgsl_struct)),
                 }
             }
         }
         // The structs of parameters that several effects share, where their files are not part of the module.
         let groups: BTreeSet<&str> =
-            self.key.effects.list.iter().flat_map(|effect| effect.fields).filter_map(|field| Some(field.group?.wgsl_struct)).collect();
+            self.key.effects.list.iter().flat_map(|effect| &effect.fields).filter_map(|field| Some(field.group?.wgsl_struct)).collect();
         for group in groups {
             let name = format!("lib/{}", group.to_lowercase());
             if !self.taken.contains_key(&name) {

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use super::{Effect, Surface, SurfaceEffect, SurfaceInput, hooks::Slot};
+use super::{BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput, hooks::Slot};
 use crate::{params, params::Color};
 
 params! {
@@ -15,8 +15,12 @@ params! {
     }
 }
 
-pub const EFFECT: Effect =
-    Effect::new::<Boxes>("boxes", "Boxes", "fills the whole bounding box of every triangle").in_slot(Slot::Coverage).on_surface::<Boxes>();
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::new::<Boxes>("boxes", "Boxes", "fills the whole bounding box of every triangle")
+        .in_slot(Slot::Coverage)
+        .on_surface::<Boxes>()
+        .into()
+});
 
 impl SurfaceEffect for Boxes {
     const INPUTS: &[SurfaceInput] = &[SurfaceInput::Barycentrics, SurfaceInput::Glow, SurfaceInput::Color];

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, DVec4};
 
-use super::{Effect, Surface, SurfaceEffect, SurfaceInput};
+use super::{BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput};
 use crate::{
     params,
     params::{Color, Flag},
@@ -23,7 +23,7 @@ params! {
     }
 }
 
-pub const EFFECT: Effect = Effect::surface::<Depth>("depth", "Depth", "shades by distance from the eye");
+pub static EFFECT: BuiltIn = BuiltIn::new(|| Effect::surface::<Depth>("depth", "Depth", "shades by distance from the eye").into());
 
 impl SurfaceEffect for Depth {
     const INPUTS: &[SurfaceInput] = &[SurfaceInput::Depth, SurfaceInput::DepthRange, SurfaceInput::Color];

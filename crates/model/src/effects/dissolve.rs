@@ -6,7 +6,7 @@
 use glam::{DVec2, DVec3, DVec4};
 
 use super::{
-    Effect, Surface, SurfaceEffect, SurfaceInput,
+    BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
     hooks::{TriangleSetup, Front, Pattern, Sample, SampleEffect},
 };
 use crate::{
@@ -48,8 +48,12 @@ params! {
     }
 }
 
-pub const EFFECT: Effect =
-    Effect::new::<Dissolve>("dissolve", "Dissolve", "fills every triangle to a fraction of its area").on_sample::<Dissolve>().on_surface::<Dissolve>();
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::new::<Dissolve>("dissolve", "Dissolve", "fills every triangle to a fraction of its area")
+        .on_sample::<Dissolve>()
+        .on_surface::<Dissolve>()
+        .into()
+});
 
 /// The whole triangle, in units of the fractions.
 const ONE: u32 = 1 << 24;

@@ -4,7 +4,7 @@
 //! value. With 256 levels it hides the banding of soft gradients.
 
 use super::{
-    Effect,
+    BuiltIn, Effect,
     hooks::{ImageEffect, Picture, Pixel, tone},
 };
 use crate::{choice, params, params::Color};
@@ -48,8 +48,12 @@ params! {
     }
 }
 
-pub const EFFECT: Effect =
-    Effect::new::<Dither>("dither", "Dither", "ordered dithering, so that few levels look like many").on_image::<Dither>().in_steps();
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::new::<Dither>("dither", "Dither", "ordered dithering, so that few levels look like many")
+        .on_image::<Dither>()
+        .in_steps()
+        .into()
+});
 
 impl ImageEffect for Dither {
     fn finish(mut pixel: Pixel, _: &Picture, p: &Self) -> Pixel {

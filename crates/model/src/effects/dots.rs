@@ -6,7 +6,7 @@
 //! float that is snapped once; its level, its fading and the samples that it covers are integers from there on. Of several
 //! dots on a pixel the strongest shows, in any drawing order.
 
-use super::Effect;
+use super::{BuiltIn, Effect};
 use crate::{
     choice, params,
     params::{Color, Flag},
@@ -52,7 +52,8 @@ params! {
     }
 }
 
-pub const EFFECT: Effect = Effect::new::<Dots>("dots", "Dots", "draws dots along edges or a polyline").with_lines();
+pub static EFFECT: BuiltIn =
+    BuiltIn::new(|| Effect::new::<Dots>("dots", "Dots", "draws dots along edges or a polyline").with_lines().into());
 
 /// Most dots of a picture: 8 bytes each fit the binding of every adapter.
 pub const MAX_DOTS: u64 = 1 << 24;

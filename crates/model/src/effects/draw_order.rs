@@ -6,7 +6,7 @@
 
 use glam::DVec4;
 
-use super::{Effect, Surface, SurfaceEffect, SurfaceInput, hooks::Slot, read};
+use super::{BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput, hooks::Slot, read};
 use crate::{choice, params, params::Color};
 
 choice! {
@@ -46,10 +46,13 @@ params! {
     }
 }
 
-pub const EFFECT: Effect = Effect::new::<DrawOrder>("draw_order", "DrawOrder", "stops the picture after a number of samples")
-    .in_slot(Slot::Order)
-    .on_surface::<DrawOrder>()
-    .repeatable_if(|words| Mode::of(read::<DrawOrder>(words).mode) == Mode::Submission);
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::new::<DrawOrder>("draw_order", "DrawOrder", "stops the picture after a number of samples")
+        .in_slot(Slot::Order)
+        .on_surface::<DrawOrder>()
+        .repeatable_if(|words| Mode::of(read::<DrawOrder>(words).mode) == Mode::Submission)
+        .into()
+});
 
 impl DrawOrder {
     /// Samples to draw of `total`.

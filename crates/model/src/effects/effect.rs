@@ -1,41 +1,49 @@
 //! One effect: its names, parameters and hooks, built from its functions.
 
-use super::hooks::{Hooks, ImageEffect, ImageHook, SampleEffect, SampleHook, Slot, SurfaceEffect, SurfaceInput, VertexEffect, VertexHook};
+use std::sync::{Arc, LazyLock};
+
+use super::hooks::{
+    Hooks, ImageEffect, ImageHook, Picture, SampleEffect, SampleHook, Slot, SurfaceEffect, SurfaceInput, VertexEffect, VertexHook,
+};
 use crate::{
     params::{Field, Params},
     scene::particle_discs::ParticleSettings,
 };
 
-/// One entry of the list of effects.
+/// One entry of the list of effects. Everything that names an effect shares it, so that the effect of a file lives as long as it is used.
+#[derive(Clone)]
 pub struct Effect {
     /// File stem, WGSL function, uniform member, preset table, `--set` prefix.
-    pub name: &'static str,
+    pub name: String,
     /// One line for listings and tooltips.
-    pub about: &'static str,
+    pub about: String,
     pub hooks: Hooks,
-    pub fields: &'static [Field],
+    pub fields: Vec<Arc<Field>>,
     /// Parameter words with every default.
-    pub defaults: &'static (dyn Fn() -> Vec<u32> + Sync),
+    pub defaults: Vec<u32>,
     /// Name of the WGSL struct.
-    pub wgsl_struct: &'static str,
+    pub wgsl_struct: String,
     /// The WGSL text of an effect that a file brings; none for a built-in effect, whose text is in `shaders/effects`.
-    pub source: Option<&'static EffectSource>,
+    pub source: Option<Arc<EffectSource>>,
     /// The effect that this is another instance of, under a name of its own.
-    pub base: Option<&'static Effect>,
+    pub base: Option<Arc<Effect>>,
     /// Is every frame the same with these parameter words?
     pub is_repeatable: fn(&[u32]) -> bool,
 }
 
+/// An effect of the list, made when it is first used.
+pub type BuiltIn = LazyLock<Arc<Effect>>;
+
 impl Effect {
     /// An effect with parameters `P` and no hook yet.
-    pub const fn new<P: Params>(name: &'static str, wgsl_struct: &'static str, about: &'static str) -> Self {
+    pub fn new<P: Params>(name: &str, wgsl_struct: &str, about: &str) -> Self {
         Self {
-            name,
-            about,
-            hooks: Hooks::NONE,
-            fields: P::FIELDS,
-            defaults: &defaults::<P>,
-            wgsl_struct,
+            name: name.into(),
+            about: about.into(),
+            hooks: Hooks::default(),
+            fields: P::fields().into_iter().map(Arc::new).collect(),
+            defaults: bytemuck::pod_collect_to_vec(&[P::default()]),
+            wgsl_struct: wgsl_struct.into(),
             source: None,
             base: None,
             is_repeatable: |_| true,
@@ -43,93 +51,93 @@ impl Effect {
     }
 
     /// An effect on the surface hook alone.
-    pub const fn surface<P: SurfaceEffect>(name: &'static str, wgsl_struct: &'static str, about: &'static str) -> Self {
+    pub fn surface<P: SurfaceEffect>(name: &str, wgsl_struct: &str, about: &str) -> Self {
         Self::new::<P>(name, wgsl_struct, about).on_surface::<P>()
     }
 
     /// The same effect, also on the surface hook.
-    pub const fn on_surface<P: SurfaceEffect>(mut self) -> Self {
-        self.hooks.surface = Some(&|surface, words| P::apply(surface, &read(words)));
-        self.hooks.surface_inputs = P::INPUTS;
+    pub fn on_surface<P: SurfaceEffect>(mut self) -> Self {
+        self.hooks.surface = Some(Arc::new(|surface, words| P::apply(surface, &read(words))));
+        self.hooks.surface_inputs = P::INPUTS.to_vec();
         self
     }
 
     /// The same effect, also on the vertex hook.
-    pub const fn on_vertex<P: VertexEffect>(mut self) -> Self {
+    pub fn on_vertex<P: VertexEffect>(mut self) -> Self {
         self.hooks.vertex = Some(VertexHook {
             needs_triangle: P::NEEDS_TRIANGLE,
-            moved: &|vertex, words| P::moved(vertex, &read(words)),
-            error_bound: &|vertex, error_bound, words| P::error_bound(vertex, error_bound, &read(words)),
-            max_displacement_m: &|radius_m, words| P::max_displacement_m(radius_m, &read(words)),
+            moved: Arc::new(|vertex, words| P::moved(vertex, &read(words))),
+            error_bound: Arc::new(|vertex, error_bound, words| P::error_bound(vertex, error_bound, &read(words))),
+            max_displacement_m: Arc::new(|radius_m, words| P::max_displacement_m(radius_m, &read(words))),
         });
         self
     }
 
     /// The same effect, also on the sample hook.
-    pub const fn on_sample<P: SampleEffect>(mut self) -> Self {
+    pub fn on_sample<P: SampleEffect>(mut self) -> Self {
         self.hooks.sample = Some(SampleHook {
             has_setup: P::HAS_SETUP,
-            error_bound: &|setup, words| P::error_bound(setup, &read(words)),
-            is_from_floats: &|words| P::is_from_floats(&read(words)),
-            sample_setup: &|setup, words, first| P::sample_setup(setup, &read(words), first),
-            is_drawn: &|sample, words| P::is_drawn(sample, &read(words)),
+            error_bound: Arc::new(|setup, words| P::error_bound(setup, &read(words))),
+            is_from_floats: Arc::new(|words| P::is_from_floats(&read(words))),
+            sample_setup: Arc::new(|setup, words, first| P::sample_setup(setup, &read(words), first)),
+            is_drawn: Arc::new(|sample, words| P::is_drawn(sample, &read(words))),
         });
         self
     }
 
     /// The same effect, also on the image hook.
-    pub const fn on_image<P: ImageEffect>(mut self) -> Self {
-        self.hooks.image =
-            Some(ImageHook { reads_previous: P::READS_PREVIOUS, finish: &|pixel, picture, words| P::finish(pixel, picture, &read(words)) });
+    pub fn on_image<P: ImageEffect>(mut self) -> Self {
+        let finish = Arc::new(|pixel, picture: &Picture<'_>, words: &[u32]| P::finish(pixel, picture, &read(words)));
+        self.hooks.image = Some(ImageHook { reads_previous: P::READS_PREVIOUS, finish });
         self
     }
 
     /// The same effect, with steps in its color: the judge then accepts either side of a step that is very near.
-    pub const fn in_steps(mut self) -> Self {
+    pub fn in_steps(mut self) -> Self {
         self.hooks.has_steps = true;
         self
     }
 
     /// The same effect, which reads members of the surface in passes of its slot.
-    pub const fn reading(mut self, inputs: &'static [SurfaceInput]) -> Self {
-        self.hooks.surface_inputs = inputs;
+    pub fn reading(mut self, inputs: &[SurfaceInput]) -> Self {
+        self.hooks.surface_inputs = inputs.to_vec();
         self
     }
 
     /// The same effect, also in a slot of the rasterizer.
-    pub const fn in_slot(mut self, slot: Slot) -> Self {
+    pub fn in_slot(mut self, slot: Slot) -> Self {
         self.hooks.slot = Some(slot);
         self
     }
 
     /// The same effect, which draws along lines.
-    pub const fn with_lines(mut self) -> Self {
+    pub fn with_lines(mut self) -> Self {
         self.hooks.has_lines = true;
         self
     }
 
     /// The same effect, which adds particles to the scene.
-    pub const fn with_particles(mut self, particle_settings: fn(&[u32]) -> ParticleSettings) -> Self {
+    pub fn with_particles(mut self, particle_settings: fn(&[u32]) -> ParticleSettings) -> Self {
         self.hooks.particle_settings = Some(particle_settings);
         self
     }
 
     /// The same effect, whose pictures depend on the order of the hardware unless `is_repeatable` holds.
-    pub const fn repeatable_if(mut self, is_repeatable: fn(&[u32]) -> bool) -> Self {
+    pub fn repeatable_if(mut self, is_repeatable: fn(&[u32]) -> bool) -> Self {
         self.is_repeatable = is_repeatable;
         self
     }
 
     /// Another instance of `base`, so that it can stand in a stack more than once.
-    pub const fn instance(name: &'static str, base: &'static Self) -> Self {
-        Self { name, base: Some(base), ..*base }
+    pub fn instance(name: &str, base: &Arc<Self>) -> Self {
+        Self { name: name.into(), base: Some(base.clone()), ..Self::clone(base) }
     }
 
     /// Can it stand in a stack more than once? Effects that the frame has one place for cannot.
     pub fn has_instances(&self) -> bool {
         let hooks = &self.hooks;
         let is_alone = hooks.slot.is_some() || hooks.has_lines || hooks.particle_settings.is_some() || hooks.reads_light();
-        !is_alone && !hooks.image.is_some_and(|hook| hook.reads_previous)
+        !is_alone && !hooks.image.as_ref().is_some_and(|hook| hook.reads_previous)
     }
 
     /// Is it the effect of a file, or an instance of one?
@@ -145,33 +153,29 @@ impl Effect {
     }
 
     /// Name of the WGSL file below `effects`.
-    pub fn file_stem(&self) -> &'static str {
-        match (self.source, self.base) {
+    pub fn file_stem(&self) -> &str {
+        match (&self.source, &self.base) {
             (Some(source), _) => &source.stem,
-            (None, Some(base)) => base.name,
-            (None, None) => self.name,
+            (None, Some(base)) => &base.name,
+            (None, None) => &self.name,
         }
     }
 
     /// The field called `name`.
-    pub fn field(&self, name: &str) -> Option<&'static Field> {
+    pub fn field(&self, name: &str) -> Option<&Arc<Field>> {
         self.fields.iter().find(|field| field.name == name)
     }
 }
 
 impl std::fmt::Debug for Effect {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.name)
+        f.write_str(&self.name)
     }
 }
 
 impl PartialEq for Effect {
     fn eq(&self, other: &Self) -> bool {
-        let has_same_source = match (self.source, other.source) {
-            (Some(own), Some(others)) => std::ptr::eq(own, others) || own == others,
-            (own, others) => own.is_none() && others.is_none(),
-        };
-        self.name == other.name && has_same_source && self.base == other.base
+        self.name == other.name && self.source == other.source && self.base == other.base
     }
 }
 
@@ -181,8 +185,8 @@ impl std::hash::Hash for Effect {
     fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
         self.name.hash(state);
         // Kernel keys are hashed for every pass; equal texts have equal lengths.
-        self.source.map(|source| source.written.len()).hash(state);
-        self.base.map(|base| base.name).hash(state);
+        self.source.as_ref().map(|source| source.written.len()).hash(state);
+        self.base.as_ref().map(|base| &base.name).hash(state);
     }
 }
 
@@ -224,8 +228,4 @@ pub struct HookFunctions {
 /// Parameter words as the struct they were made from.
 pub fn read<P: Params>(words: &[u32]) -> P {
     bytemuck::pod_read_unaligned(bytemuck::cast_slice(words))
-}
-
-fn defaults<P: Params>() -> Vec<u32> {
-    bytemuck::pod_collect_to_vec(&[P::default()])
 }

@@ -5,7 +5,7 @@
 use glam::DVec3;
 
 use super::{
-    Effect,
+    BuiltIn, Effect,
     hooks::{Front, ROUNDING, ErrorBound, Vertex, VertexEffect},
 };
 use crate::{
@@ -30,8 +30,11 @@ params! {
 /// What the seed is multiplied by, so that triangles scatter by other hashes than those of the front.
 const SCATTER_SEED: u32 = 0x85eb_ca6b;
 
-pub const EFFECT: Effect =
-    Effect::new::<Explode>("explode", "Explode", "triangles fly out along their own normals, turn and shrink").on_vertex::<Explode>();
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::new::<Explode>("explode", "Explode", "triangles fly out along their own normals, turn and shrink")
+        .on_vertex::<Explode>()
+        .into()
+});
 
 impl VertexEffect for Explode {
     const NEEDS_TRIANGLE: bool = true;

@@ -3,7 +3,7 @@
 //! The blend is one number per triangle, taken at its center. At 0 and 1 the pure values come through to the bit.
 
 use super::{
-    Effect, Surface, SurfaceEffect, SurfaceInput,
+    BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
     hooks::Front,
 };
 use crate::params;
@@ -16,8 +16,10 @@ params! {
     }
 }
 
-pub const EFFECT: Effect =
-    Effect::surface::<Facet>("facet", "Facet", "blends every triangle between smooth and flat, in normal and in depth");
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::surface::<Facet>("facet", "Facet", "blends every triangle between smooth and flat, in normal and in depth")
+        .into()
+});
 
 impl SurfaceEffect for Facet {
     const INPUTS: &[SurfaceInput] = &[SurfaceInput::Center, SurfaceInput::CenterScreen, SurfaceInput::TriangleId, SurfaceInput::Depth, SurfaceInput::FlatDepth, SurfaceInput::Normal, SurfaceInput::FlatNormal];

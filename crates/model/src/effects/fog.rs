@@ -3,7 +3,7 @@
 //! The surface's light is multiplied by exp(-density · path), where the path is the depth beyond the start, and
 //! thinner above a level.
 
-use super::{Effect, Surface, SurfaceEffect, SurfaceInput, hooks::tone::rgb};
+use super::{BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput, hooks::tone::rgb};
 use crate::{params, params::Color};
 
 params! {
@@ -21,7 +21,7 @@ params! {
     }
 }
 
-pub const EFFECT: Effect = Effect::surface::<Fog>("fog", "Fog", "blends towards a color with distance");
+pub static EFFECT: BuiltIn = BuiltIn::new(|| Effect::surface::<Fog>("fog", "Fog", "blends towards a color with distance").into());
 
 impl SurfaceEffect for Fog {
     const INPUTS: &[SurfaceInput] = &[SurfaceInput::Position, SurfaceInput::Depth, SurfaceInput::Glow, SurfaceInput::Color];

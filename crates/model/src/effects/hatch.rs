@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::{
-    Effect, Surface, SurfaceEffect, SurfaceInput,
+    BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
     hooks::tone::{luminance, rgb, turned},
 };
 use crate::{choice, params, params::Color};
@@ -49,7 +49,9 @@ params! {
     }
 }
 
-pub const EFFECT: Effect = Effect::surface::<Hatch>("hatch", "Hatch", "cross-hatching in ink, whose lines grow as the tone darkens");
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::surface::<Hatch>("hatch", "Hatch", "cross-hatching in ink, whose lines grow as the tone darkens").into()
+});
 
 impl SurfaceEffect for Hatch {
     const INPUTS: &[SurfaceInput] = &[SurfaceInput::Color, SurfaceInput::Pixel, SurfaceInput::Normal, SurfaceInput::View, SurfaceInput::PixelSize, SurfaceInput::Position, SurfaceInput::Depth];

@@ -3,7 +3,7 @@
 //! A surface at a constant distance from another has the same normals, so normals stay as they are.
 
 use super::{
-    Effect,
+    BuiltIn, Effect,
     hooks::{ROUNDING, ErrorBound, Vertex, VertexEffect},
 };
 use crate::params;
@@ -15,9 +15,11 @@ params! {
     }
 }
 
-pub const EFFECT: Effect =
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
     Effect::new::<Inflate>("inflate", "Inflate", "moves every vertex along its own normal: the model swells or shrinks")
-        .on_vertex::<Inflate>();
+        .on_vertex::<Inflate>()
+        .into()
+});
 
 impl VertexEffect for Inflate {
     const NEEDS_TRIANGLE: bool = false;

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, DVec4};
 
-use super::{Effect, Surface, SurfaceEffect, SurfaceInput};
+use super::{BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput};
 use crate::{
     params,
     params::{Color, Point},
@@ -23,7 +23,8 @@ params! {
     }
 }
 
-pub const EFFECT: Effect = Effect::surface::<Lambert>("lambert", "Lambert", "diffuse light from sun, sky, ground and a headlight");
+pub static EFFECT: BuiltIn =
+    BuiltIn::new(|| Effect::surface::<Lambert>("lambert", "Lambert", "diffuse light from sun, sky, ground and a headlight").into());
 
 impl SurfaceEffect for Lambert {
     const INPUTS: &[SurfaceInput] = &[SurfaceInput::Normal, SurfaceInput::View, SurfaceInput::Color, SurfaceInput::Glow];

@@ -48,7 +48,7 @@ mod list;
 mod stack;
 
 pub use self::{
-    effect::{Effect, EffectSource, HookFunctions, constant_name, read},
+    effect::{BuiltIn, Effect, EffectSource, HookFunctions, constant_name, read},
     hooks::{Surface, SurfaceEffect, SurfaceInput},
     list::EFFECTS,
     stack::{Conflict, EnabledEffect, Stack},

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Effect, Surface, SurfaceEffect, SurfaceInput};
+use super::{BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput};
 use crate::params;
 
 params! {
@@ -12,7 +12,8 @@ params! {
     }
 }
 
-pub const EFFECT: Effect = Effect::surface::<Normals>("normals", "Normals", "colors the surface by the direction it faces");
+pub static EFFECT: BuiltIn =
+    BuiltIn::new(|| Effect::surface::<Normals>("normals", "Normals", "colors the surface by the direction it faces").into());
 
 impl SurfaceEffect for Normals {
     const INPUTS: &[SurfaceInput] = &[SurfaceInput::Normal, SurfaceInput::Glow, SurfaceInput::Color];

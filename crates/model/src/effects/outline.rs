@@ -4,7 +4,7 @@
 //! are a piecewise linear logarithm: a relative step of depth is a difference of depth keys.
 
 use super::{
-    Effect,
+    BuiltIn, Effect,
     hooks::{ImageEffect, Picture, Pixel, tone::encoded},
 };
 use crate::{
@@ -43,8 +43,11 @@ params! {
     }
 }
 
-pub const EFFECT: Effect =
-    Effect::new::<Outline>("outline", "Outline", "lines at silhouettes, between objects and at steps of depth").on_image::<Outline>();
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::new::<Outline>("outline", "Outline", "lines at silhouettes, between objects and at steps of depth")
+        .on_image::<Outline>()
+        .into()
+});
 
 /// Triangle id, depth key and draw of a pixel.
 type Seen = (Option<u32>, u32, u32);

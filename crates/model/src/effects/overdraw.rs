@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Effect, hooks::Slot};
+use super::{BuiltIn, Effect, hooks::Slot};
 use crate::{choice, params};
 
 choice! {
@@ -38,8 +38,11 @@ params! {
     }
 }
 
-pub const EFFECT: Effect =
-    Effect::new::<Overdraw>("overdraw", "Overdraw", "paints how many layers each pixel has, as heat").in_slot(Slot::Visibility);
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::new::<Overdraw>("overdraw", "Overdraw", "paints how many layers each pixel has, as heat")
+        .in_slot(Slot::Visibility)
+        .into()
+});
 
 /// Colors of a palette from cold to hot at equal steps of heat, as gamma-encoded bytes: lightness rises evenly.
 const EMBER: [[u8; 3]; 9] = [

@@ -30,7 +30,7 @@
 
 use glam::DVec3;
 
-use super::{Effect, read};
+use super::{BuiltIn, Effect, read};
 use crate::{
     params,
     params::{Color, Field, Point},
@@ -95,8 +95,11 @@ params! {
     }
 }
 
-pub const EFFECT: Effect =
-    Effect::new::<Particles>("particles", "Particles", "adds drifting discs to the scene").with_particles(|words| particle_settings(&read(words)));
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::new::<Particles>("particles", "Particles", "adds drifting discs to the scene")
+        .with_particles(|words| particle_settings(&read(words)))
+        .into()
+});
 
 /// Offset between the lattices of one octave and the next.
 pub const LATTICE_SHIFT: [f64; 3] = [0.3125, 0.4375, 0.71875];
@@ -134,14 +137,14 @@ pub fn life_steps(p: &Particles) -> [u32; 2] {
 
 /// Does a parameter change only how particles look, not how they move?
 pub fn affects_only_appearance(field: &Field) -> bool {
-    matches!(field.name, "slow" | "fast" | "count" | "radius_m" | "radius_variation" | "fade" | "roundness" | "fast_mps")
+    matches!(field.name.as_str(), "slow" | "fast" | "count" | "radius_m" | "radius_variation" | "fade" | "roundness" | "fast_mps")
 }
 
 /// The parameter words of a step; parameters that affect only the appearance have their defaults.
 fn step_words(words: &[u32]) -> Vec<u32> {
     let mut step = words.to_vec();
-    let default = (EFFECT.defaults)();
-    EFFECT.fields.iter().filter(|field| affects_only_appearance(field)).for_each(|field| field.copy(&default, &mut step));
+    let default = &EFFECT.defaults;
+    EFFECT.fields.iter().filter(|field| affects_only_appearance(field)).for_each(|field| field.copy(default, &mut step));
     step
 }
 

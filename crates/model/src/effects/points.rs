@@ -3,7 +3,7 @@
 //! Integers decide: a sample belongs to a disc when its squared distance from the snapped corner is at most the squared
 //! radius. Corners of triangles that would have to be clipped are not drawn.
 
-use super::{Effect, hooks::Slot};
+use super::{BuiltIn, Effect, hooks::Slot};
 use crate::params;
 
 params! {
@@ -13,7 +13,8 @@ params! {
     }
 }
 
-pub const EFFECT: Effect = Effect::new::<Points>("points", "Points", "draws the corners of triangles as discs").in_slot(Slot::Coverage);
+pub static EFFECT: BuiltIn =
+    BuiltIn::new(|| Effect::new::<Points>("points", "Points", "draws the corners of triangles as discs").in_slot(Slot::Coverage).into());
 
 impl Points {
     /// Radius in units of 1/256 px.

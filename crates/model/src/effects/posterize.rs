@@ -1,7 +1,7 @@
 //! Posterize: few levels of color, evenly spaced to the eye.
 
 use super::{
-    Effect,
+    BuiltIn, Effect,
     hooks::{ImageEffect, Picture, Pixel},
 };
 use crate::{choice, params};
@@ -27,8 +27,12 @@ params! {
     }
 }
 
-pub const EFFECT: Effect =
-    Effect::new::<Posterize>("posterize", "Posterize", "few levels of color, evenly spaced to the eye").on_image::<Posterize>().in_steps();
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::new::<Posterize>("posterize", "Posterize", "few levels of color, evenly spaced to the eye")
+        .on_image::<Posterize>()
+        .in_steps()
+        .into()
+});
 
 impl ImageEffect for Posterize {
     fn finish(mut pixel: Pixel, _: &Picture, p: &Self) -> Pixel {

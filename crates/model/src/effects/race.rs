@@ -3,7 +3,7 @@
 //! Two invocations that meet on a pixel both see the old depth, and the last store remains, near or far. The true
 //! picture is the one without the race; the oracle draws that, and the judge counts the pixels that were lost.
 
-use super::{Effect, hooks::Slot};
+use super::{BuiltIn, Effect, hooks::Slot};
 use crate::params;
 
 params! {
@@ -13,7 +13,9 @@ params! {
     }
 }
 
-pub const EFFECT: Effect =
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
     Effect::new::<Race>("race", "Race", "stores depth and triangle id without atomics: wrong, and not twice the same")
         .in_slot(Slot::Visibility)
-        .repeatable_if(|_| false);
+        .repeatable_if(|_| false)
+        .into()
+});

@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::{
-    Effect, Surface, SurfaceEffect, SurfaceInput,
+    BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
     hooks::tone::{rgb, turned},
 };
 use crate::{
@@ -48,8 +48,11 @@ params! {
     }
 }
 
-pub const EFFECT: Effect =
-    Effect::surface::<Shadow>("shadow", "Shadow", "a directional light whose shadows the rasterizer draws itself").in_steps();
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::surface::<Shadow>("shadow", "Shadow", "a directional light whose shadows the rasterizer draws itself")
+        .in_steps()
+        .into()
+});
 
 /// Largest tangent that counts, for the slope and for the plane of a triangle between taps.
 pub const MAX_SHADOW_SLOPE: f64 = 8.0;

@@ -7,7 +7,7 @@
 use glam::DVec4;
 
 use super::{
-    Effect,
+    BuiltIn, Effect,
     hooks::{ImageEffect, Picture, Pixel},
 };
 use crate::params;
@@ -23,8 +23,11 @@ params! {
     }
 }
 
-pub const EFFECT: Effect =
-    Effect::new::<Smear>("smear", "Smear", "where nothing is drawn the picture before stays, and fades").on_image::<Smear>();
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::new::<Smear>("smear", "Smear", "where nothing is drawn the picture before stays, and fades")
+        .on_image::<Smear>()
+        .into()
+});
 
 impl ImageEffect for Smear {
     const READS_PREVIOUS: bool = true;

@@ -1,5 +1,7 @@
 //! Stacks: the enabled effects with their values, in the order in which they apply.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::{
@@ -24,7 +26,7 @@ use crate::{
 /// An effect with its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnabledEffect {
-    pub effect: &'static Effect,
+    pub effect: Arc<Effect>,
     /// Parameter words, laid out by `effect.fields`.
     pub words: Vec<u32>,
     /// The parts of the scene that it changes.
@@ -32,8 +34,8 @@ pub struct EnabledEffect {
 }
 
 impl EnabledEffect {
-    pub fn new(effect: &'static Effect) -> Self {
-        Self { effect, words: (effect.defaults)(), on: Scope::default() }
+    pub fn new(effect: &Arc<Effect>) -> Self {
+        Self { effect: effect.clone(), words: effect.defaults.clone(), on: Scope::default() }
     }
 }
 
@@ -51,8 +53,8 @@ impl Stack {
     }
 
     /// Enables `effect` with its defaults, before the first one that follows it in the canonical order; keeps one already there.
-    pub fn enable(&mut self, effect: &'static Effect) -> &mut EnabledEffect {
-        let at = match self.0.iter().position(|enabled| enabled.effect == effect) {
+    pub fn enable(&mut self, effect: &Arc<Effect>) -> &mut EnabledEffect {
+        let at = match self.0.iter().position(|enabled| enabled.effect == *effect) {
             Some(at) => at,
             None => {
                 let at = self.0.iter().position(|enabled| enabled.effect.rank() > effect.rank()).unwrap_or(self.0.len());
@@ -126,7 +128,7 @@ impl Stack {
 
     /// Applies every surface effect in order, as far as they act on a draw with these `scopes` ([`Draw::scopes`]).
     pub fn shade(&self, surface: Surface, scopes: u32) -> Surface {
-        self.each_on(scopes, |hooks| hooks.surface).fold(surface, |surface, (apply, words)| apply(surface, words))
+        self.each_on(scopes, |hooks| hooks.surface.as_ref()).fold(surface, |surface, (apply, words)| apply(surface, words))
     }
 
     /// Does the color of a material show through the surface effects, or do they paint over it? Tried with a few triangles. Compilers leave out
@@ -138,12 +140,12 @@ impl Stack {
 
     /// Moves a vertex of a draw with these `scopes` by every vertex effect in order.
     pub fn moved(&self, vertex: hooks::Vertex, scopes: u32) -> hooks::Vertex {
-        self.each_on(scopes, |hooks| hooks.vertex).fold(vertex, |vertex, (hook, words)| (hook.moved)(vertex, words))
+        self.each_on(scopes, |hooks| hooks.vertex.as_ref()).fold(vertex, |vertex, (hook, words)| (hook.moved)(vertex, words))
     }
 
     /// How far the f32 side of [`Stack::moved`] may err, given the error bound of what it starts from.
     pub fn error_bound(&self, vertex: hooks::Vertex, error_bound: hooks::ErrorBound, scopes: u32) -> hooks::ErrorBound {
-        let each = self.each_on(scopes, |hooks| hooks.vertex);
+        let each = self.each_on(scopes, |hooks| hooks.vertex.as_ref());
         each.fold((vertex, error_bound), |(vertex, error_bound), (hook, words)| {
             ((hook.moved)(vertex, words), (hook.error_bound)(&vertex, error_bound, words))
         })
@@ -152,22 +154,23 @@ impl Stack {
 
     /// How far a vertex of a model of this radius may move.
     pub fn max_displacement_m(&self, radius_m: f64) -> f64 {
-        self.each(|hooks| hooks.vertex).fold(0.0, |reach, (hook, words)| reach + (hook.max_displacement_m)(radius_m + reach, words))
+        self.each(|hooks| hooks.vertex.as_ref())
+            .fold(0.0, |reach, (hook, words)| reach + (hook.max_displacement_m)(radius_m + reach, words))
     }
 
     /// Finishes a pixel by every image effect in order.
     pub fn finish(&self, pixel: Pixel, picture: &Picture) -> Pixel {
-        self.each(|hooks| hooks.image).fold(pixel, |pixel, (hook, words)| (hook.finish)(pixel, picture, words))
+        self.each(|hooks| hooks.image.as_ref()).fold(pixel, |pixel, (hook, words)| (hook.finish)(pixel, picture, words))
     }
 
     /// Does an effect finish pixels?
     pub fn finishes(&self) -> bool {
-        self.each(|hooks| hooks.image).next().is_some()
+        self.each(|hooks| hooks.image.as_ref()).next().is_some()
     }
 
     /// Does an effect read the previous picture?
     pub fn reads_previous(&self) -> bool {
-        self.each(|hooks| hooks.image).any(|(hook, _)| hook.reads_previous)
+        self.each(|hooks| hooks.image.as_ref()).any(|(hook, _)| hook.reads_previous)
     }
 
     /// Does an effect's color have steps?
@@ -176,12 +179,12 @@ impl Stack {
     }
 
     /// Effects with a certain hook, in order: the hook and the parameter words.
-    pub fn each<H>(&self, hook: impl Fn(&Hooks) -> Option<H>) -> impl Iterator<Item = (H, &[u32])> {
+    pub fn each<'a, H: 'a>(&'a self, hook: impl Fn(&'a Hooks) -> Option<H>) -> impl Iterator<Item = (H, &'a [u32])> {
         self.0.iter().filter_map(move |enabled| Some((hook(&enabled.effect.hooks)?, enabled.words.as_slice())))
     }
 
     /// Effects with a certain hook that act on a draw with these `scopes`, in order: the hook and the parameter words.
-    fn each_on<H>(&self, scopes: u32, hook: impl Fn(&Hooks) -> Option<H>) -> impl Iterator<Item = (H, &[u32])> {
+    fn each_on<'a, H: 'a>(&'a self, scopes: u32, hook: impl Fn(&'a Hooks) -> Option<H>) -> impl Iterator<Item = (H, &'a [u32])> {
         let acts = move |bit: Option<u32>| bit.is_none_or(|bit| scopes >> bit & 1 == 1);
         let active = self.0.iter().zip(self.scope_bits()).filter(move |(_, bit)| acts(*bit));
         active.filter_map(move |(enabled, _)| Some((hook(&enabled.effect.hooks)?, enabled.words.as_slice())))
@@ -189,12 +192,12 @@ impl Stack {
 
     /// Does an effect move vertices?
     pub fn moves(&self) -> bool {
-        self.each(|hooks| hooks.vertex).next().is_some()
+        self.each(|hooks| hooks.vertex.as_ref()).next().is_some()
     }
 
     /// Does an effect move corners by their triangle, so that triangles share none?
     pub fn unshares_vertices(&self) -> bool {
-        self.each(|hooks| hooks.vertex).any(|(hook, _)| hook.needs_triangle)
+        self.each(|hooks| hooks.vertex.as_ref()).any(|(hook, _)| hook.needs_triangle)
     }
 
     /// The particles that an effect adds to the scene.
@@ -213,14 +216,14 @@ impl Stack {
     pub fn shape(&self) -> Shape {
         match self.in_slot(Slot::Coverage) {
             None => Shape::Triangles,
-            Some(enabled) if enabled.effect == &points::EFFECT => Shape::Points,
+            Some(enabled) if enabled.effect == *points::EFFECT => Shape::Points,
             Some(_) => Shape::Boxes,
         }
     }
 
     /// The light that casts shadows.
     pub fn light(&self) -> Option<shadow::Shadow> {
-        self.params(shadow::EFFECT.name)
+        self.params(&shadow::EFFECT.name)
     }
 
     /// The view of that light, for its shadow map of `scene` in `view`.
@@ -241,7 +244,7 @@ impl Stack {
 
     /// Radius of discs about corners, units of 1/256 px; 0 without them.
     pub fn point_radius(&self) -> u32 {
-        self.get(points::EFFECT.name).map_or(0, |enabled| read::<points::Points>(&enabled.words).radius())
+        self.get(&points::EFFECT.name).map_or(0, |enabled| read::<points::Points>(&enabled.words).radius())
     }
 
     /// The draw order of the stack, if it has one.
@@ -261,18 +264,18 @@ impl Stack {
 
     /// The dots that are drawn along lines, if any are.
     pub fn dots(&self) -> Option<dots::Dots> {
-        self.params(dots::EFFECT.name)
+        self.params(&dots::EFFECT.name)
     }
 
     /// The smear of previous pictures, if there is one.
     pub fn smear(&self) -> Option<smear::Smear> {
-        self.params(smear::EFFECT.name)
+        self.params(&smear::EFFECT.name)
     }
 
     /// What becomes of the samples of a pixel in a scene of so many triangles; none: the nearest is shown.
     pub fn layers(&self, triangles: u64) -> Option<Layers> {
         let EnabledEffect { effect, words, .. } = self.in_slot(Slot::Visibility)?;
-        Some(match effect.name {
+        Some(match effect.name.as_str() {
             "xray" => Layers::Xray { bits: read::<xray::Xray>(words).first_bits(triangles) },
             "overdraw" => Layers::Overdraw,
             _ => Layers::Race,
@@ -281,14 +284,14 @@ impl Stack {
 
     /// Is the race on, in which the triangles of a pixel lose samples?
     pub fn is_racing(&self) -> bool {
-        self.get(race::EFFECT.name).is_some()
+        self.get(&race::EFFECT.name).is_some()
     }
 
     /// Limits an effect to parts of the scene; enables it if it is off.
     ///
     /// # Errors
     /// Too many effects have a scope; then nothing is changed.
-    pub fn limit(&mut self, effect: &'static Effect, on: Scope) -> Result<(), Conflict> {
+    pub fn limit(&mut self, effect: &Arc<Effect>, on: Scope) -> Result<(), Conflict> {
         let mut limited = self.clone();
         limited.enable(effect).on = on;
         limited.check()?;
@@ -297,16 +300,16 @@ impl Stack {
     }
 
     /// The effect that enabling `effect` would conflict with: another one in its slot.
-    pub fn rival_of(&self, effect: &Effect) -> Option<&'static Effect> {
+    pub fn rival_of(&self, effect: &Effect) -> Option<&Arc<Effect>> {
         let slot = effect.hooks.slot?;
-        self.in_slot(slot).map(|enabled| enabled.effect).filter(|first| *first != effect)
+        self.in_slot(slot).map(|enabled| &enabled.effect).filter(|first| ***first != *effect)
     }
 
     /// The conflict that enabling `effect` would cause.
     pub fn conflict_with(&self, effect: &Effect) -> Option<Conflict> {
         let slot = effect.hooks.slot?;
         let first = self.rival_of(effect)?;
-        Some(Conflict::Slot { slot: slot.name(), first: first.name, second: effect.name })
+        Some(Conflict::Slot { slot: slot.name(), first: first.name.clone(), second: effect.name.clone() })
     }
 
     /// Checks that no two effects take one slot, and that at most [`MAX_SCOPES`] effects have a scope.
@@ -316,12 +319,12 @@ impl Stack {
     pub fn check(&self) -> Result<(), Conflict> {
         let scoped: Vec<&EnabledEffect> = self.0.iter().filter(|enabled| !enabled.on.is_whole_scene()).collect();
         if let Some(last) = scoped.get(MAX_SCOPES) {
-            return Err(Conflict::Scopes { count: scoped.len(), last: last.effect.name });
+            return Err(Conflict::Scopes { count: scoped.len(), last: last.effect.name.clone() });
         }
         for slot in Slot::ALL {
-            let mut takers = self.0.iter().map(|enabled| enabled.effect).filter(|effect| effect.hooks.slot == Some(slot));
+            let mut takers = self.0.iter().map(|enabled| &enabled.effect).filter(|effect| effect.hooks.slot == Some(slot));
             if let (Some(first), Some(second)) = (takers.next(), takers.next()) {
-                return Err(Conflict::Slot { slot: slot.name(), first: first.name, second: second.name });
+                return Err(Conflict::Slot { slot: slot.name(), first: first.name.clone(), second: second.name.clone() });
             }
         }
         Ok(())
@@ -329,17 +332,17 @@ impl Stack {
 }
 
 /// Effects that a stack cannot have together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Conflict {
     #[error("{first} and {second} both take the {slot} slot of the rasterizer; switch one of them off")]
-    Slot { slot: &'static str, first: &'static str, second: &'static str },
+    Slot { slot: &'static str, first: String, second: String },
     #[error("{count} effects are limited to parts of the scene, but at most {MAX_SCOPES} can be; remove on from {last} or another of them")]
-    Scopes { count: usize, last: &'static str },
+    Scopes { count: usize, last: String },
 }
 
 impl Conflict {
     /// The later of the effects.
-    pub const fn effect(&self) -> &'static str {
+    pub fn effect(&self) -> &str {
         match self {
             Self::Slot { second, .. } => second,
             Self::Scopes { last, .. } => last,

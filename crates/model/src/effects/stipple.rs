@@ -1,7 +1,7 @@
 //! Stipple: screen-door transparency by an ordered integer matrix.
 
 use super::{
-    Effect,
+    BuiltIn, Effect,
     hooks::{TriangleSetup, Sample, SampleEffect},
 };
 use crate::{choice, math::hash, params, params::Flag};
@@ -33,8 +33,11 @@ params! {
     }
 }
 
-pub const EFFECT: Effect =
-    Effect::new::<Stipple>("stipple", "Stipple", "screen-door transparency by an ordered matrix").on_sample::<Stipple>();
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::new::<Stipple>("stipple", "Stipple", "screen-door transparency by an ordered matrix")
+        .on_sample::<Stipple>()
+        .into()
+});
 
 impl SampleEffect for Stipple {
     const HAS_SETUP: bool = false;

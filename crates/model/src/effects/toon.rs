@@ -4,7 +4,7 @@
 //! All channels are scaled alike, so hue and saturation stay.
 
 use super::{
-    Effect, Surface, SurfaceEffect, SurfaceInput,
+    BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
     hooks::tone::{rgb, smooth},
 };
 use crate::{params, params::Color};
@@ -26,7 +26,8 @@ params! {
     }
 }
 
-pub const EFFECT: Effect = Effect::surface::<Toon>("toon", "Toon", "light in a few flat steps with soft edges, and a rim").in_steps();
+pub static EFFECT: BuiltIn =
+    BuiltIn::new(|| Effect::surface::<Toon>("toon", "Toon", "light in a few flat steps with soft edges, and a rim").in_steps().into());
 
 impl SurfaceEffect for Toon {
     const INPUTS: &[SurfaceInput] = &[SurfaceInput::Color, SurfaceInput::Normal, SurfaceInput::View];

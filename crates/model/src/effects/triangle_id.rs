@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Effect, Surface, SurfaceEffect, SurfaceInput};
+use super::{BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput};
 use crate::{
     math::{HASH_GOLDEN, hash},
     params,
@@ -17,7 +17,8 @@ params! {
     }
 }
 
-pub const EFFECT: Effect = Effect::surface::<TriangleId>("triangle_id", "TriangleId", "gives every triangle its own color");
+pub static EFFECT: BuiltIn =
+    BuiltIn::new(|| Effect::surface::<TriangleId>("triangle_id", "TriangleId", "gives every triangle its own color").into());
 
 impl SurfaceEffect for TriangleId {
     const INPUTS: &[SurfaceInput] = &[SurfaceInput::TriangleId, SurfaceInput::Glow, SurfaceInput::Color];

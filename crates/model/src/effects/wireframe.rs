@@ -4,7 +4,7 @@
 //! with another, which is computed once per triangle. Edges that clipping added are not drawn.
 
 use super::{
-    Effect, Surface, SurfaceEffect, SurfaceInput,
+    BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
     hooks::{TriangleSetup, Sample, SampleEffect},
 };
 use crate::{choice, params, params::Color};
@@ -32,9 +32,12 @@ params! {
     }
 }
 
-pub const EFFECT: Effect = Effect::new::<Wireframe>("wireframe", "Wireframe", "draws the edges of triangles at a constant width")
-    .on_sample::<Wireframe>()
-    .on_surface::<Wireframe>();
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::new::<Wireframe>("wireframe", "Wireframe", "draws the edges of triangles at a constant width")
+        .on_sample::<Wireframe>()
+        .on_surface::<Wireframe>()
+        .into()
+});
 
 impl SampleEffect for Wireframe {
     const HAS_SETUP: bool = true;

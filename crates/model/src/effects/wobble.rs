@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::{
-    Effect,
+    BuiltIn, Effect,
     hooks::{ROUNDING, ErrorBound, Vertex, VertexEffect},
 };
 use crate::{
@@ -31,7 +31,8 @@ params! {
     }
 }
 
-pub const EFFECT: Effect = Effect::new::<Wobble>("wobble", "Wobble", "a wave runs through the model and sways it").on_vertex::<Wobble>();
+pub static EFFECT: BuiltIn =
+    BuiltIn::new(|| Effect::new::<Wobble>("wobble", "Wobble", "a wave runs through the model and sways it").on_vertex::<Wobble>().into());
 
 /// Below this squared length a turned normal has no direction and is not changed.
 const DEGENERATE: f64 = 1e-12;

@@ -5,7 +5,7 @@
 
 use glam::{DVec3, DVec4};
 
-use super::{Effect, Surface, SurfaceInput, hooks::Slot};
+use super::{BuiltIn, Effect, Surface, SurfaceInput, hooks::Slot};
 use crate::{choice, params};
 
 choice! {
@@ -59,8 +59,12 @@ params! {
     }
 }
 
-pub const EFFECT: Effect =
-    Effect::new::<Xray>("xray", "Xray", "averages all layers of a pixel in whole numbers, so that no order shows").in_slot(Slot::Visibility).reading(&[SurfaceInput::Normal, SurfaceInput::View, SurfaceInput::Depth, SurfaceInput::DepthRange]);
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::new::<Xray>("xray", "Xray", "averages all layers of a pixel in whole numbers, so that no order shows")
+        .in_slot(Slot::Visibility)
+        .reading(&[SurfaceInput::Normal, SurfaceInput::View, SurfaceInput::Depth, SurfaceInput::DepthRange])
+        .into()
+});
 
 /// Bits per channel that the sums may have, most first.
 pub const CHANNEL_BITS: [u32; 4] = [16, 12, 10, 8];

@@ -9,7 +9,10 @@ mod measure;
 mod suggest;
 mod value;
 
-use std::ops::{Deref, RangeInclusive};
+use std::{
+    ops::{Deref, RangeInclusive},
+    sync::Arc,
+};
 
 pub use legible::{is_hidden, legible, legible_line};
 pub use measure::Measure;
@@ -17,12 +20,12 @@ pub use suggest::{did_you_mean, likeness, suggestion};
 pub use value::{Stored, Value, ValueError, ValueType, format_number};
 
 /// One parameter: what every surface of the program needs to know about it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Param {
     /// Stable name: key in preset files, end of a `--set` path, WGSL member. A new name needs a new schema.
-    pub name: &'static str,
+    pub name: String,
     /// Tooltip and help text.
-    pub doc: &'static str,
+    pub doc: String,
     pub value_type: ValueType,
     /// What the kernel survives; every number outside it is an error.
     pub hard: [f64; 2],
@@ -31,51 +34,52 @@ pub struct Param {
     /// Shown with a slider; otherwise as a number field alone.
     pub has_slider: bool,
     /// Unit shown after the value; empty for a plain number.
-    pub unit: &'static str,
+    pub unit: String,
     /// The slider moves in decades.
     pub log: bool,
     /// A height in world space: a length that counts from the origin, along y.
     pub height: bool,
     /// Shown only while the choice of this name has one of these words.
-    pub when: Option<(&'static str, &'static [&'static str])>,
+    pub when: Option<(String, Vec<String>)>,
 }
 
 impl Param {
-    pub const fn new(name: &'static str, doc: &'static str, value_type: ValueType) -> Self {
+    pub fn new(name: impl Into<String>, doc: impl Into<String>, value_type: ValueType) -> Self {
         let (hard, soft) = value_type.default_ranges();
-        Self { name, doc, value_type, hard, soft, has_slider: false, unit: "", log: false, height: false, when: None }
+        let (name, doc, unit) = (name.into(), doc.into(), String::new());
+        Self { name, doc, value_type, hard, soft, has_slider: false, unit, log: false, height: false, when: None }
     }
 
-    pub const fn hard(mut self, range: RangeInclusive<f64>) -> Self {
+    pub fn hard(mut self, range: RangeInclusive<f64>) -> Self {
         self.hard = [*range.start(), *range.end()];
         self.soft = self.hard;
         self
     }
 
-    pub const fn soft(mut self, range: RangeInclusive<f64>) -> Self {
+    pub fn soft(mut self, range: RangeInclusive<f64>) -> Self {
         self.soft = [*range.start(), *range.end()];
         self.has_slider = true;
         self
     }
 
-    pub const fn unit(mut self, unit: &'static str) -> Self {
-        self.unit = unit;
+    pub fn unit(mut self, unit: &str) -> Self {
+        self.unit = unit.into();
         self
     }
 
-    pub const fn log(mut self, log: bool) -> Self {
+    pub fn log(mut self, log: bool) -> Self {
         self.log = log;
         self
     }
 
-    pub const fn height(mut self, height: bool) -> Self {
+    pub fn height(mut self, height: bool) -> Self {
         self.height = height;
         self
     }
 
     /// Shown only while the choice of this name has one of these words.
-    pub const fn when(mut self, condition: (&'static str, &'static [&'static str])) -> Self {
-        self.when = Some(condition);
+    pub fn when(mut self, (choice, words): (&str, &[&str])) -> Self {
+        self.when = Some((choice.into(), words.iter().map(|&word| word.into()).collect()));
         self
     }
 
@@ -89,13 +93,13 @@ impl Param {
 
     /// What the value measures in space.
     pub fn measure(&self) -> Measure {
-        Measure::of(self.value_type, self.unit, self.hard[0], self.height)
+        Measure::of(&self.value_type, &self.unit, self.hard[0], self.height)
     }
 
     /// What is allowed, for listings: `0..=1`, `smooth | flat`, `4 numbers, each 0..=1`.
     pub fn allowed(&self) -> String {
         let [low, high] = self.hard.map(format_number);
-        match self.value_type {
+        match &self.value_type {
             ValueType::Bool => "true | false".into(),
             ValueType::Choice(words) => words.join(" | "),
             ValueType::Text { max_chars } => format!("text, at most {max_chars} characters"),
@@ -133,7 +137,7 @@ impl WgslType {
 }
 
 /// A parameter of an effect: a [`Param`] and where the effect's words hold its value.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Field {
     pub param: Param,
     pub wgsl: WgslType,
@@ -162,30 +166,18 @@ impl Deref for Field {
 
 impl Field {
     /// The parameter at `offset`. Every parameter of an effect has a slider.
-    pub const fn new(param: Param, wgsl: WgslType, offset: usize) -> Self {
+    pub fn new(param: Param, wgsl: WgslType, offset: usize) -> Self {
         Self { param: Param { has_slider: true, ..param }, wgsl, offset, group: None }
     }
 
     /// An effect's own fields, then those of a group that its struct holds at its beginning. The field `always_shown` of the group
     /// is always shown, although the group's declaration makes it depend on a choice.
-    pub const fn with_group<const N: usize>(own: &[Self], group: Group, shared: &[Self], always_shown: &str) -> [Self; N] {
-        assert!(own.len() + shared.len() == N, "N is the number of all fields");
-        let mut fields = [own[0]; N];
-        let mut index = 0;
-        while index < N {
-            if index < own.len() {
-                fields[index] = own[index];
-            } else {
-                let mut field = shared[index - own.len()];
-                field.group = Some(group);
-                if is_same_text(field.param.name, always_shown) {
-                    field.param.when = None;
-                }
-                fields[index] = field;
-            }
-            index += 1;
-        }
-        fields
+    pub fn with_group(mut own: Vec<Self>, group: Group, shared: Vec<Self>, always_shown: &str) -> Vec<Self> {
+        own.extend(shared.into_iter().map(|field| {
+            let when = field.param.when.filter(|_| field.param.name != always_shown);
+            Self { param: Param { when, ..field.param }, group: Some(group), ..field }
+        }));
+        own
     }
 
     fn words_range(&self) -> std::ops::Range<usize> {
@@ -253,9 +245,9 @@ impl Field {
     }
 
     /// Is the field shown for these values?
-    pub fn is_shown(&self, fields: &[Self], words: &[u32]) -> bool {
-        self.when.is_none_or(|(name, allowed)| {
-            fields.iter().find(|field| field.name == name).is_some_and(|field| match (field.value_type, field.value(words)) {
+    pub fn is_shown(&self, fields: &[Arc<Self>], words: &[u32]) -> bool {
+        self.when.as_ref().is_none_or(|(name, allowed)| {
+            fields.iter().find(|field| field.name == *name).is_some_and(|field| match (&field.value_type, field.value(words)) {
                 (ValueType::Choice(names), Value::Choice(index)) => names.get(index).is_some_and(|name| allowed.contains(name)),
                 _ => true,
             })
@@ -267,26 +259,36 @@ impl Field {
 pub trait ParamType {
     /// What the struct stores.
     type Raw: bytemuck::Pod + PartialEq + std::fmt::Debug;
-    const TYPE: ValueType;
     const WGSL: WgslType;
+
+    fn value_type() -> ValueType;
 }
 
 impl ParamType for f32 {
     type Raw = f32;
-    const TYPE: ValueType = ValueType::F32;
     const WGSL: WgslType = WgslType::F32;
+
+    fn value_type() -> ValueType {
+        ValueType::F32
+    }
 }
 
 impl ParamType for u32 {
     type Raw = u32;
-    const TYPE: ValueType = ValueType::U32;
     const WGSL: WgslType = WgslType::U32;
+
+    fn value_type() -> ValueType {
+        ValueType::U32
+    }
 }
 
 impl ParamType for i32 {
     type Raw = i32;
-    const TYPE: ValueType = ValueType::I32;
     const WGSL: WgslType = WgslType::I32;
+
+    fn value_type() -> ValueType {
+        ValueType::I32
+    }
 }
 
 /// An on/off parameter, stored as 0 or 1.
@@ -294,8 +296,11 @@ pub enum Flag {}
 
 impl ParamType for Flag {
     type Raw = u32;
-    const TYPE: ValueType = ValueType::Bool;
     const WGSL: WgslType = WgslType::U32;
+
+    fn value_type() -> ValueType {
+        ValueType::Bool
+    }
 }
 
 /// A linear RGBA parameter.
@@ -303,8 +308,11 @@ pub enum Color {}
 
 impl ParamType for Color {
     type Raw = [f32; 4];
-    const TYPE: ValueType = ValueType::Color;
     const WGSL: WgslType = WgslType::Vec4F32;
+
+    fn value_type() -> ValueType {
+        ValueType::Color
+    }
 }
 
 /// A world-space point or direction; the fourth component is unused.
@@ -312,13 +320,16 @@ pub enum Point {}
 
 impl ParamType for Point {
     type Raw = [f32; 4];
-    const TYPE: ValueType = ValueType::Point;
     const WGSL: WgslType = WgslType::Vec4F32;
+
+    fn value_type() -> ValueType {
+        ValueType::Point
+    }
 }
 
 /// A struct declared by [`params!`](crate::params!).
 pub trait Params: bytemuck::Pod + Default {
-    const FIELDS: &'static [Field];
+    fn fields() -> Vec<Field>;
 }
 
 /// Declares a choice: an enum whose words stand in presets and, upper-cased, name WGSL constants.
@@ -341,19 +352,13 @@ macro_rules! choice {
 
         impl $crate::params::ParamType for $name {
             type Raw = u32;
-            const TYPE: $crate::params::ValueType = $crate::params::ValueType::Choice(&[$($word),+]);
             const WGSL: $crate::params::WgslType = $crate::params::WgslType::U32;
+
+            fn value_type() -> $crate::params::ValueType {
+                $crate::params::ValueType::choice(&[$($word),+])
+            }
         }
     };
-}
-
-const fn is_same_text(a: &str, b: &str) -> bool {
-    let (a, b) = (a.as_bytes(), b.as_bytes());
-    let mut index = 0;
-    while index < a.len() && index < b.len() && a[index] == b[index] {
-        index += 1;
-    }
-    index == a.len() && index == b.len()
 }
 
 /// Declares a parameter struct: a doc line, a type, a default and options per field. `..name: Type = default, always_shown "field";`
@@ -376,13 +381,11 @@ macro_rules! params {
         }
 
         impl $crate::params::Params for $name {
-            const FIELDS: &'static [$crate::params::Field] = {
-                const OWN: &[$crate::params::Field] = &[$($crate::params!(@field $name $field, $ty, concat!($($doc),+) $(, $key $value)*)),*];
-                const SHARED: &[$crate::params::Field] = <$group_ty as $crate::params::Params>::FIELDS;
-                const NAMES: $crate::params::Group =
-                    $crate::params::Group { member: stringify!($group), wgsl_struct: stringify!($group_ty) };
-                &$crate::params::Field::with_group::<{ OWN.len() + SHARED.len() }>(OWN, NAMES, SHARED, $always)
-            };
+            fn fields() -> Vec<$crate::params::Field> {
+                let own = vec![$($crate::params!(@field $name $field, $ty, concat!($($doc),+) $(, $key $value)*)),*];
+                let group = $crate::params::Group { member: stringify!($group), wgsl_struct: stringify!($group_ty) };
+                $crate::params::Field::with_group(own, group, <$group_ty as $crate::params::Params>::fields(), $always)
+            }
         }
     };
     ($(#[$meta:meta])* pub struct $name:ident {
@@ -400,13 +403,14 @@ macro_rules! params {
         }
 
         impl $crate::params::Params for $name {
-            const FIELDS: &'static [$crate::params::Field] =
-                &[$($crate::params!(@field $name $field, $ty, concat!($($doc),+) $(, $key $value)*)),*];
+            fn fields() -> Vec<$crate::params::Field> {
+                vec![$($crate::params!(@field $name $field, $ty, concat!($($doc),+) $(, $key $value)*)),*]
+            }
         }
     };
     (@field $name:ident $field:ident, $ty:ty, $doc:expr $(, $key:ident $value:expr)*) => {
         $crate::params::Field::new(
-            $crate::params::Param::new(stringify!($field), $doc, <$ty as $crate::params::ParamType>::TYPE)$(.$key($value))*,
+            $crate::params::Param::new(stringify!($field), $doc, <$ty as $crate::params::ParamType>::value_type())$(.$key($value))*,
             <$ty as $crate::params::ParamType>::WGSL,
             std::mem::offset_of!($name, $field),
         )

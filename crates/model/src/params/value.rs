@@ -3,12 +3,12 @@
 use glam::DVec3;
 
 /// The type of a parameter's value. It decides the control, the TOML form and the checks.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ValueType {
     /// On or off.
     Bool,
     /// One of these words.
-    Choice(&'static [&'static str]),
+    Choice(Vec<String>),
     U32,
     I32,
     F32,
@@ -35,8 +35,13 @@ pub enum ValueType {
 }
 
 impl ValueType {
+    /// One of these words.
+    pub fn choice(words: &[&str]) -> Self {
+        Self::Choice(words.iter().map(|&word| word.into()).collect())
+    }
+
     /// How many numbers a value has; a flag and a choice count as one, a text as none.
-    pub const fn components(self) -> usize {
+    pub const fn components(&self) -> usize {
         match self {
             Self::Bool | Self::Choice(_) | Self::U32 | Self::I32 | Self::F32 | Self::F64 => 1,
             Self::Size | Self::Interval => 2,
@@ -47,7 +52,7 @@ impl ValueType {
     }
 
     /// What each component is called where they stand side by side; empty for a single one.
-    pub const fn component_names(self) -> &'static [&'static str] {
+    pub const fn component_names(&self) -> &'static [&'static str] {
         match self {
             Self::Size => &["width", "height"],
             Self::Interval => &["begin", "end"],
@@ -58,17 +63,17 @@ impl ValueType {
     }
 
     /// Are its numbers stored as `f32`?
-    pub const fn is_single(self) -> bool {
+    pub const fn is_single(&self) -> bool {
         matches!(self, Self::F32 | Self::Point | Self::Color)
     }
 
     /// Are its numbers real, so that there is a value between any two?
-    pub const fn is_continuous(self) -> bool {
+    pub const fn is_continuous(&self) -> bool {
         self.is_single() || matches!(self, Self::F64 | Self::Interval | Self::Position)
     }
 
     /// The hard and the soft range of a parameter that states none.
-    pub(super) const fn default_ranges(self) -> ([f64; 2], [f64; 2]) {
+    pub(super) fn default_ranges(&self) -> ([f64; 2], [f64; 2]) {
         let hard = match self {
             Self::Bool | Self::Color => [0.0, 1.0],
             Self::Choice(words) => [0.0, (words.len() - 1) as f64],
@@ -88,7 +93,7 @@ impl ValueType {
     }
 
     /// The value that these components make: as many as [`ValueType::components`] says. None for texts.
-    pub fn value(self, components: &[f64]) -> Option<Value> {
+    pub fn value(&self, components: &[f64]) -> Option<Value> {
         match self {
             Self::Bool => Some(Value::Bool(*components.first()? != 0.0)),
             Self::Choice(_) => Some(Value::Choice(*components.first()? as usize)),
@@ -98,7 +103,7 @@ impl ValueType {
     }
 
     /// What the type asks for, to complete "must be …".
-    fn expectation(self) -> String {
+    fn expectation(&self) -> String {
         match self {
             Self::Bool => "true or false".into(),
             Self::Choice(words) => format!("one of {}", words.join(", ")),
@@ -114,16 +119,16 @@ impl ValueType {
     ///
     /// # Errors
     /// Completes a sentence that begins with the parameter's name.
-    pub fn check(self, value: &Value, range: [f64; 2]) -> Result<(), ValueError> {
+    pub fn check(&self, value: &Value, range: [f64; 2]) -> Result<(), ValueError> {
         match (self, value) {
             (Self::Bool, Value::Bool(_)) => Ok(()),
             (Self::Choice(words), Value::Choice(index)) if *index < words.len() => Ok(()),
-            (Self::Text { max_chars }, Value::Text(text)) => check_text(text, max_chars),
+            (Self::Text { max_chars }, Value::Text(text)) => check_text(text, *max_chars),
             (Self::TextList { max_entries, max_chars }, Value::TextList(texts)) => {
-                if texts.len() > max_entries {
-                    return Err(ValueError::Entries { found: texts.len(), max: max_entries });
+                if texts.len() > *max_entries {
+                    return Err(ValueError::Entries { found: texts.len(), max: *max_entries });
                 }
-                texts.iter().try_for_each(|text| check_text(text, max_chars))
+                texts.iter().try_for_each(|text| check_text(text, *max_chars))
             }
             (Self::Bool | Self::Choice(_) | Self::Text { .. } | Self::TextList { .. }, _) => Err(self.mismatch(value)),
             (_, Value::Numbers(numbers)) if numbers.len() == self.components() => {
@@ -133,7 +138,7 @@ impl ValueType {
         }
     }
 
-    fn check_number(self, number: f64, [low, high]: [f64; 2]) -> Result<(), ValueError> {
+    fn check_number(&self, number: f64, [low, high]: [f64; 2]) -> Result<(), ValueError> {
         if !self.is_continuous() && number.fract() != 0.0 && number.is_finite() {
             return Err(ValueError::Whole(number));
         }
@@ -145,7 +150,7 @@ impl ValueType {
         if is_inside { Ok(()) } else { Err(ValueError::Range { value: number, low, high }) }
     }
 
-    fn mismatch(self, value: &Value) -> ValueError {
+    fn mismatch(&self, value: &Value) -> ValueError {
         ValueError::Type { expected: self.expectation(), found: value.description() }
     }
 }

@@ -4,7 +4,7 @@
 //! field. Before the first and after the last keyframe its value holds. All arithmetic is f64, and the result is clamped before
 //! it is rounded to the parameter's type, so that a track gives only values that a file may have.
 
-use std::fmt;
+use std::{fmt, sync::Arc};
 
 use crate::{
     effects::{
@@ -99,8 +99,8 @@ pub enum KeyframeError {
 /// The keyframes of one parameter of one effect; at least one.
 #[derive(Clone)]
 pub struct Track {
-    effect: &'static Effect,
-    field: &'static Field,
+    effect: Arc<Effect>,
+    field: Arc<Field>,
     keys: Vec<Keyframe>,
 }
 
@@ -122,11 +122,11 @@ impl Track {
     /// # Errors
     /// No keyframe or more than [`MAX_KEYFRAMES`]; a time that occurs twice or lies outside ±[`MAX_TIME_S`]; a value that the field
     /// refuses; an easing other than hold for a field without fractions.
-    pub fn new(effect: &'static Effect, field: &'static Field, keys: Vec<Keyframe>) -> Result<Self, KeyframeError> {
+    pub fn new(effect: &Arc<Effect>, field: &Arc<Field>, keys: Vec<Keyframe>) -> Result<Self, KeyframeError> {
         if keys.is_empty() || keys.len() > MAX_KEYFRAMES {
             return Err(KeyframeError::Count(keys.len()));
         }
-        let mut track = Self { effect, field, keys: Vec::with_capacity(keys.len()) };
+        let mut track = Self { effect: effect.clone(), field: field.clone(), keys: Vec::with_capacity(keys.len()) };
         for key in keys {
             if track.at(key.time_s).is_some() {
                 return Err(KeyframeError::Taken(key.time_s));
@@ -136,12 +136,12 @@ impl Track {
         Ok(track)
     }
 
-    pub fn effect(&self) -> &'static Effect {
-        self.effect
+    pub fn effect(&self) -> &Arc<Effect> {
+        &self.effect
     }
 
-    pub fn field(&self) -> &'static Field {
-        self.field
+    pub fn field(&self) -> &Arc<Field> {
+        &self.field
     }
 
     /// Sorted by time.
@@ -156,7 +156,7 @@ impl Track {
 
     /// Does the track change the steps of the particle simulation, so that their history counts?
     pub(super) fn changes_simulation(&self) -> bool {
-        self.effect == &particles::EFFECT && self.keys.len() > 1 && !affects_only_appearance(self.field)
+        self.effect == *particles::EFFECT && self.keys.len() > 1 && !affects_only_appearance(&self.field)
     }
 
     /// Index of the keyframe at exactly this time.
@@ -169,7 +169,7 @@ impl Track {
     /// # Errors
     /// As [`Track::new`]; then nothing is changed.
     pub fn set(&mut self, key: Keyframe) -> Result<(), KeyframeError> {
-        let key = checked(self.effect, self.field, key)?;
+        let key = checked(&self.effect, &self.field, key)?;
         match self.at(key.time_s) {
             Some(index) => self.keys[index] = key,
             None if self.keys.len() >= MAX_KEYFRAMES => return Err(KeyframeError::Count(self.keys.len() + 1)),
@@ -196,7 +196,7 @@ impl Track {
 
     /// Changes the easing of a keyframe; a field without fractions keeps hold.
     pub fn set_easing(&mut self, index: usize, easing: Easing) {
-        if let Some(key) = self.keys.get_mut(index).filter(|_| !steps(self.field)) {
+        if let Some(key) = self.keys.get_mut(index).filter(|_| !steps(&self.field)) {
             key.easing = easing;
         }
     }
@@ -252,7 +252,7 @@ fn checked(effect: &Effect, field: &Field, key: Keyframe) -> Result<Keyframe, Ke
     if steps(field) && easing != Easing::Hold {
         return Err(KeyframeError::Steps(easing.name()));
     }
-    let mut words = (effect.defaults)();
+    let mut words = effect.defaults.clone();
     field.set(&mut words, &value)?;
     Ok(Keyframe { time_s, value: field.get(&words), easing })
 }
@@ -280,8 +280,10 @@ impl Animation {
 
     /// Adds a track, in place of one of the same parameter.
     pub fn put(&mut self, track: Track) {
-        let rank = |track: &Track| (track.effect.rank(), track.effect.name, track.field.offset);
-        match self.0.binary_search_by_key(&rank(&track), rank) {
+        fn rank(track: &Track) -> (usize, &str, usize) {
+            (track.effect.rank(), &track.effect.name, track.field.offset)
+        }
+        match self.0.binary_search_by(|other| rank(other).cmp(&rank(&track))) {
             Ok(index) => self.0[index] = track,
             Err(index) => self.0.insert(index, track),
         }
@@ -306,7 +308,7 @@ impl Animation {
     pub fn evaluate(&self, stack: &Stack, time_s: f64) -> Stack {
         let mut evaluated = stack.clone();
         for enabled in &mut evaluated.0 {
-            enabled.words = self.evaluate_words(enabled.effect.name, &enabled.words, time_s);
+            enabled.words = self.evaluate_words(&enabled.effect.name, &enabled.words, time_s);
         }
         evaluated
     }
@@ -324,7 +326,7 @@ mod tests {
     use super::*;
     use crate::effects::{facet, lambert};
 
-    fn field(effect: &'static Effect, name: &str) -> &'static Field {
+    fn field<'a>(effect: &'a Effect, name: &str) -> &'a Arc<Field> {
         effect.field(name).expect("a field of the effect")
     }
 

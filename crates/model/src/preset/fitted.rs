@@ -1,6 +1,6 @@
 //! Fitting: the lengths and points of a preset for a scene of another size at another place.
 
-use std::borrow::Cow;
+use std::{borrow::Cow, sync::Arc};
 
 use super::{
     Preset,
@@ -46,8 +46,8 @@ impl Preset {
                 let (components, is_clamped) = fit.components(field, &value);
                 let outcome = field.set(&mut after.words, &components);
                 debug_assert!(outcome.is_ok(), "{}: {outcome:?}", field.name);
-                if is_clamped && self.animation.get(before.effect.name, field.name).is_none() {
-                    warnings.push(clamped(before.effect.name, field));
+                if is_clamped && self.animation.get(&before.effect.name, &field.name).is_none() {
+                    warnings.push(clamped(&before.effect.name, field));
                 }
             }
         }
@@ -77,12 +77,12 @@ impl Preset {
 
 /// The parameters of an effect that measure something and count for the picture. One that depends on a choice counts if the choice
 /// is made, or may be made by a keyframe.
-fn measured<'a>(preset: &'a Preset, enabled: &'a EnabledEffect) -> impl Iterator<Item = &'static Field> + 'a {
-    let effect = enabled.effect;
-    let is_animated = |name: &str| preset.animation.get(effect.name, name).is_some();
-    let counts = move |field: &&Field| {
+fn measured<'a>(preset: &'a Preset, enabled: &'a EnabledEffect) -> impl Iterator<Item = &'a Arc<Field>> {
+    let effect = &enabled.effect;
+    let is_animated = |name: &str| preset.animation.get(&effect.name, name).is_some();
+    let counts = move |field: &&Arc<Field>| {
         field.measure() != Measure::None
-            && (field.is_shown(effect.fields, &enabled.words) || field.when.is_some_and(|(choice, _)| is_animated(choice)))
+            && (field.is_shown(&effect.fields, &enabled.words) || field.when.as_ref().is_some_and(|(choice, _)| is_animated(choice)))
     };
     effect.fields.iter().filter(counts)
 }
@@ -100,7 +100,7 @@ fn fitted_track(fit: &Fit, track: &Track, warnings: &mut Vec<String>) -> Track {
     });
     let keys: Vec<Keyframe> = keys.collect();
     if is_any_clamped {
-        warnings.push(clamped(track.effect().name, field));
+        warnings.push(clamped(&track.effect().name, field));
     }
     // Times, easings and the number of keyframes are those of a track, and the values lie in their range.
     Track::new(track.effect(), field, keys).unwrap_or_else(|_| track.clone())

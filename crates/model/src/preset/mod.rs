@@ -269,7 +269,7 @@ impl Preset {
 
     /// Does the picture depend on the time?
     pub fn is_moving(&self) -> bool {
-        let keyed = self.animation.tracks().iter().any(|t| t.keys().len() > 1 && self.stack.get(t.effect().name).is_some());
+        let keyed = self.animation.tracks().iter().any(|t| t.keys().len() > 1 && self.stack.get(&t.effect().name).is_some());
         let has_particles = self.stack.particle_settings().is_some();
         keyed || has_particles || self.spin_deg_per_s != 0.0 || self.playback.is_moving()
     }

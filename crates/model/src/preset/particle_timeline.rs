@@ -14,8 +14,8 @@ use crate::{
 impl Preset {
     /// The timeline at the time of the clock; none without particles.
     pub fn particle_timeline(&self) -> Option<Arc<ParticleTimeline>> {
-        let words = &self.stack.get(EFFECT.name)?.words;
-        let words_at = |time_s: f64| self.animation.evaluate_words(EFFECT.name, words, time_s);
+        let words = &self.stack.get(&EFFECT.name)?.words;
+        let words_at = |time_s: f64| self.animation.evaluate_words(&EFFECT.name, words, time_s);
         let now = words_at(self.clock.time_s);
         let particles: Particles = read(&now);
         let frame = particles::frame_at(&particles, self.clock.time_s);

@@ -1,6 +1,8 @@
 //! Rebinding: what a preset becomes when the text of an effect has changed while the program runs. Values are kept by the name of
 //! their parameter.
 
+use std::sync::Arc;
+
 use super::{
     Preset,
     animation::{Animation, Easing, Keyframe, Track, steps},
@@ -11,7 +13,7 @@ use crate::{
 };
 
 /// An effect as it was, and as it is now.
-pub type Replaced = (&'static Effect, &'static Effect);
+pub type Replaced = (Arc<Effect>, Arc<Effect>);
 
 impl Preset {
     /// Uses the new effect in place of each old one, on the same parts of the scene. A parameter keeps its value if the new effect has one of the same name and type
@@ -36,24 +38,24 @@ impl Preset {
 /// [`Preset::rebind`] of the stack alone.
 pub fn rebind_stack(stack: &mut Stack, replaced: &[Replaced]) {
     for enabled in &mut stack.0 {
-        if let Some(effect) = find(enabled.effect, replaced) {
+        if let Some(effect) = find(&enabled.effect, replaced) {
             *enabled = rebound_effect(enabled, effect);
         }
     }
 }
 
-fn find(old: &Effect, replaced: &[Replaced]) -> Option<&'static Effect> {
-    replaced.iter().find(|(before, _)| *before == old).map(|(_, after)| *after)
+fn find<'a>(old: &Effect, replaced: &'a [Replaced]) -> Option<&'a Arc<Effect>> {
+    replaced.iter().find(|(before, _)| **before == *old).map(|(_, after)| after)
 }
 
-fn rebound_effect(old: &EnabledEffect, effect: &'static Effect) -> EnabledEffect {
-    let defaults = (old.effect.defaults)();
+fn rebound_effect(old: &EnabledEffect, effect: &Arc<Effect>) -> EnabledEffect {
+    let defaults = &old.effect.defaults;
     let mut new = EnabledEffect::new(effect);
     if effect.has_scope() {
         new.on = old.on.clone();
     }
-    for field in effect.fields {
-        if let Some(before) = old.effect.field(field.name).filter(|before| !before.same(&old.words, &defaults))
+    for field in &effect.fields {
+        if let Some(before) = old.effect.field(&field.name).filter(|before| !before.same(&old.words, defaults))
             && let Some(value) = converted(before, field, before.value(&old.words))
         {
             // A value outside the new range is refused, and the default stays.
@@ -65,7 +67,7 @@ fn rebound_effect(old: &EnabledEffect, effect: &'static Effect) -> EnabledEffect
 
 /// A value of `before` as one of `field`; none if the type is another. Words of a choice keep their meaning in another order.
 fn converted(before: &Field, field: &Field, value: Value) -> Option<Value> {
-    match (before.value_type, field.value_type, &value) {
+    match (&before.value_type, &field.value_type, &value) {
         (ValueType::Choice(old), ValueType::Choice(new), Value::Choice(index)) => {
             let word = old.get(*index)?;
             new.iter().position(|name| name == word).map(Value::Choice)
@@ -75,8 +77,8 @@ fn converted(before: &Field, field: &Field, value: Value) -> Option<Value> {
 }
 
 /// The track with the keyframes that fit the parameter of its name; none if no keyframe does.
-fn rebound_track(track: &Track, effect: &'static Effect) -> Option<Track> {
-    let field = effect.field(track.field().name)?;
+fn rebound_track(track: &Track, effect: &Arc<Effect>) -> Option<Track> {
+    let field = effect.field(&track.field().name)?;
     let rebound_key = |key: &Keyframe| {
         let value = converted(track.field(), field, track.field().value_type.value(&key.value)?)?;
         let easing = if steps(field) { Easing::Hold } else { key.easing };

@@ -1,6 +1,6 @@
 //! Settings and sections of a preset: what they are, and how a preset stores their values.
 
-use std::ops::Deref;
+use std::{ops::Deref, sync::LazyLock};
 
 use super::Preset;
 use crate::{
@@ -47,7 +47,7 @@ impl Deref for Setting {
 impl Setting {
     /// `camera.eye`, `name`.
     pub fn path(&self) -> String {
-        if self.section.is_empty() { self.name.into() } else { format!("{}.{}", self.section, self.name) }
+        if self.section.is_empty() { self.name.clone() } else { format!("{}.{}", self.section, self.name) }
     }
 
     /// The value in `preset`; none where the setting does not apply.
@@ -83,32 +83,32 @@ impl Setting {
         self.rule.map_or(Ok(()), |rule| rule(value).map_err(ValueError::Rule))
     }
 
-    pub(super) const fn new(name: &'static str, value_type: ValueType, doc: &'static str, storage: Storage) -> Self {
+    pub(super) fn new(name: &str, value_type: ValueType, doc: &str, storage: Storage) -> Self {
         Self { param: Param::new(name, doc, value_type), section: "", alternative: None, rule: None, storage }
     }
 
-    pub(super) const fn range(self, low: f64, high: f64) -> Self {
+    pub(super) fn range(self, low: f64, high: f64) -> Self {
         Self { param: self.param.hard(low..=high), ..self }
     }
 
-    pub(super) const fn slider(self, low: f64, high: f64) -> Self {
+    pub(super) fn slider(self, low: f64, high: f64) -> Self {
         Self { param: self.param.soft(low..=high), ..self }
     }
 
-    pub(super) const fn unit(self, unit: &'static str) -> Self {
+    pub(super) fn unit(self, unit: &str) -> Self {
         Self { param: self.param.unit(unit), ..self }
     }
 
-    pub(super) const fn rule(self, rule: Rule) -> Self {
+    pub(super) fn rule(self, rule: Rule) -> Self {
         Self { rule: Some(rule), ..self }
     }
 
-    pub(super) const fn or(self, alternative: &'static str) -> Self {
+    pub(super) fn or(self, alternative: &'static str) -> Self {
         Self { alternative: Some(alternative), ..self }
     }
 
-    pub(super) const fn of_axis(axis: &'static Axis) -> Self {
-        Self::new(axis.name, ValueType::Choice(axis.choices), axis.about, Storage::Axis(axis))
+    pub(super) fn of_axis(axis: &'static Axis) -> Self {
+        Self::new(axis.name, ValueType::choice(axis.choices), axis.about, Storage::Axis(axis))
     }
 }
 
@@ -116,7 +116,7 @@ impl Setting {
 pub struct Section {
     pub name: &'static str,
     pub doc: &'static str,
-    pub settings: &'static [Setting],
+    pub settings: LazyLock<Vec<Setting>>,
     /// None for a table that means nothing by being there.
     pub presence: Option<Presence>,
 }
@@ -130,7 +130,7 @@ pub struct Presence {
 }
 
 impl Section {
-    pub fn setting(&self, name: &str) -> Option<&'static Setting> {
+    pub fn setting(&'static self, name: &str) -> Option<&'static Setting> {
         self.settings.iter().find(|setting| setting.name == name)
     }
 

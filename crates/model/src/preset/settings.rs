@@ -2,7 +2,7 @@
 //!
 //! The reader and writer of preset files, `--set`, the JSON schema, listings and the inspector loop over [`SECTIONS`].
 
-use std::path::PathBuf;
+use std::{path::PathBuf, sync::LazyLock};
 
 pub use super::setting::{Presence, Section, Setting};
 use super::{
@@ -77,7 +77,7 @@ pub fn baseline(preset: &Preset) -> Preset {
 
 /// Every setting, in the order in which files have them.
 pub fn settings() -> impl Iterator<Item = &'static Setting> {
-    SECTIONS.iter().flat_map(|section| section.settings)
+    SECTIONS.iter().flat_map(|section| section.settings.iter())
 }
 
 /// Storage in a field of the preset that is always there.
@@ -115,123 +115,130 @@ macro_rules! section_field {
 
 const LINE: ValueType = ValueType::Text { max_chars: 200 };
 const PARAGRAPH: ValueType = ValueType::Text { max_chars: 2000 };
-const TIERS: &[&str] = &{
-    let mut names = [""; Tier::ALL.len()];
-    let mut index = 0;
-    while index < names.len() {
-        names[index] = Tier::ALL[index].name();
-        index += 1;
-    }
-    names
-};
 
 /// The top of the file, then every table of settings.
 pub static SECTIONS: &[&Section] = &[&TOP, &SCENE, &GROUND, &CAMERA, &CLOCK, &ACCURACY, &OUTPUT, &TEST];
 
-const fn in_section<const N: usize>(section: &'static str, mut settings: [Setting; N]) -> [Setting; N] {
-    let mut index = 0;
-    while index < N {
-        settings[index].section = section;
-        index += 1;
-    }
-    settings
+fn in_section<const N: usize>(section: &'static str, settings: [Setting; N]) -> Vec<Setting> {
+    settings.map(|setting| Setting { section, ..setting }).into()
 }
 
 pub static TOP: Section = Section {
     name: "",
     doc: "The preset as a whole",
-    settings: &[
-        Setting::new("name", LINE, "Shown in lists and titles", field!(name)),
-        Setting::new("about", PARAGRAPH, "One sentence about the preset", field!(about)),
-        Setting::new("tags", ValueType::TextList { max_entries: 32, max_chars: 64 }, "Words to find it by", field!(tags)),
-    ],
+    settings: LazyLock::new(|| {
+        vec![
+            Setting::new("name", LINE, "Shown in lists and titles", field!(name)),
+            Setting::new("about", PARAGRAPH, "One sentence about the preset", field!(about)),
+            Setting::new("tags", ValueType::TextList { max_entries: 32, max_chars: 64 }, "Words to find it by", field!(tags)),
+        ]
+    }),
     presence: None,
 };
 
 pub static SCENE: Section = Section {
     name: "scene",
     doc: "What is shown",
-    settings: &in_section(
-        "scene",
-        [
-            Setting::new("builtin", LINE, "A procedural scene, for instance teapot?tess=16", BUILTIN).or("path"),
-            Setting::new("path", ValueType::Text { max_chars: 4096 }, "A .glb or .gltf file, relative to the folder of the preset", MODEL)
+    settings: LazyLock::new(|| {
+        in_section(
+            "scene",
+            [
+                Setting::new("builtin", LINE, "A procedural scene, for instance teapot?tess=16", BUILTIN).or("path"),
+                Setting::new(
+                    "path",
+                    ValueType::Text { max_chars: 4096 },
+                    "A .glb or .gltf file, relative to the folder of the preset",
+                    MODEL,
+                )
                 .rule(is_file)
                 .or("builtin"),
-            Setting::new(
-                "room",
-                ValueType::F64,
-                "Walls around the scene, seen from inside: their distance as a multiple of the scene's width; 0: none",
-                field!(room),
-            )
-            .range(0.0, 100.0)
-            .slider(0.0, 4.0)
-            .rule(encloses_scene),
-            Setting::new("spin_deg_per_s", ValueType::F64, "Turns the scene about its vertical axis", field!(spin_deg_per_s))
-                .range(-1e6, 1e6)
-                .slider(-180.0, 180.0)
-                .unit("°/s"),
-            Setting::new(
-                "clip",
-                LINE,
-                "The animation clip that moves the scene, by its name or as #0, #1 …; empty: none",
-                field!(playback.clip),
-            ),
-            Setting::new("clip_speed", ValueType::F64, "Seconds of the clip that pass in one second of the clock", field!(playback.speed))
+                Setting::new(
+                    "room",
+                    ValueType::F64,
+                    "Walls around the scene, seen from inside: their distance as a multiple of the scene's width; 0: none",
+                    field!(room),
+                )
+                .range(0.0, 100.0)
+                .slider(0.0, 4.0)
+                .rule(encloses_scene),
+                Setting::new("spin_deg_per_s", ValueType::F64, "Turns the scene about its vertical axis", field!(spin_deg_per_s))
+                    .range(-1e6, 1e6)
+                    .slider(-180.0, 180.0)
+                    .unit("°/s"),
+                Setting::new(
+                    "clip",
+                    LINE,
+                    "The animation clip that moves the scene, by its name or as #0, #1 …; empty: none",
+                    field!(playback.clip),
+                ),
+                Setting::new(
+                    "clip_speed",
+                    ValueType::F64,
+                    "Seconds of the clip that pass in one second of the clock",
+                    field!(playback.speed),
+                )
                 .range(-100.0, 100.0)
                 .slider(-2.0, 2.0),
-            Setting::new("clip_time_s", ValueType::F64, "Freezes the clip at this time", option!(playback.clip_time_s))
-                .range(0.0, 1e9)
-                .unit("s"),
-            Setting::new("second_clip", LINE, "A second clip to blend with; empty: none", field!(playback.second_clip)),
-            Setting::new("clip_blend", ValueType::F64, "Weight of the second clip: 0 none of it, 1 it alone", field!(playback.blend))
-                .range(0.0, 1.0)
-                .slider(0.0, 1.0),
-            Setting::new(
-                "unit",
-                ValueType::Choice(LengthUnit::WORDS),
-                "Unit of lengths and points of effects and of the polyline: meters, or scene, the radius of the scene's box from its center",
-                UNIT,
-            ),
-            Setting::new(
-                "polyline",
-                ValueType::Text { max_chars: 200_000 },
-                "A line for dots to follow: points of three numbers in meters, one per text line or separated by semicolons",
-                POLYLINE,
-            )
-            .rule(is_polyline),
-            Setting::new(
-                "camera",
-                LINE,
-                "The camera of the scene to use where there is no [camera], by its name or as #0, #1 …; empty: the first",
-                field!(scene_camera),
-            ),
-        ],
-    ),
+                Setting::new("clip_time_s", ValueType::F64, "Freezes the clip at this time", option!(playback.clip_time_s))
+                    .range(0.0, 1e9)
+                    .unit("s"),
+                Setting::new("second_clip", LINE, "A second clip to blend with; empty: none", field!(playback.second_clip)),
+                Setting::new("clip_blend", ValueType::F64, "Weight of the second clip: 0 none of it, 1 it alone", field!(playback.blend))
+                    .range(0.0, 1.0)
+                    .slider(0.0, 1.0),
+                Setting::new(
+                    "unit",
+                    ValueType::choice(LengthUnit::WORDS),
+                    "Unit of lengths and points of effects and of the polyline: meters, or scene, the radius of the scene's box from its center",
+                    UNIT,
+                ),
+                Setting::new(
+                    "polyline",
+                    ValueType::Text { max_chars: 200_000 },
+                    "A line for dots to follow: points of three numbers in meters, one per text line or separated by semicolons",
+                    POLYLINE,
+                )
+                .rule(is_polyline),
+                Setting::new(
+                    "camera",
+                    LINE,
+                    "The camera of the scene to use where there is no [camera], by its name or as #0, #1 …; empty: the first",
+                    field!(scene_camera),
+                ),
+            ],
+        )
+    }),
     presence: None,
 };
 
 pub static GROUND: Section = Section {
     name: "ground",
     doc: "A flat mesh under the scene, which receives shadows and casts none; without this table there is none",
-    settings: &in_section(
-        "ground",
-        [
-            Setting::new("shape", ValueType::Choice(GroundShape::WORDS), "Outline of the ground", GROUND_SHAPE),
-            Setting::new("size", ValueType::F64, "From the center to the edge, in radii of the scene's box", section_field!(ground.size))
+    settings: LazyLock::new(|| {
+        in_section(
+            "ground",
+            [
+                Setting::new("shape", ValueType::choice(GroundShape::WORDS), "Outline of the ground", GROUND_SHAPE),
+                Setting::new(
+                    "size",
+                    ValueType::F64,
+                    "From the center to the edge, in radii of the scene's box",
+                    section_field!(ground.size),
+                )
                 .range(0.1, 1000.0)
                 .slider(0.5, 10.0),
-            Setting::new("color", ValueType::Color, "Color of the ground, linear RGBA", section_field!(ground.color)),
-            Setting::new(
-                "cells",
-                ValueType::U32,
-                "Rings of triangles of a disc, or squares of two triangles from the center of a square to its edge",
-                section_field!(ground.cells),
-            )
-            .range(1.0, MAX_CELLS as f64)
-            .slider(1.0, 48.0),
-        ],
-    ),
+                Setting::new("color", ValueType::Color, "Color of the ground, linear RGBA", section_field!(ground.color)),
+                Setting::new(
+                    "cells",
+                    ValueType::U32,
+                    "Rings of triangles of a disc, or squares of two triangles from the center of a square to its edge",
+                    section_field!(ground.cells),
+                )
+                .range(1.0, MAX_CELLS as f64)
+                .slider(1.0, 48.0),
+            ],
+        )
+    }),
     presence: Some(Presence {
         is_present: |preset| preset.ground.is_some(),
         add: |preset| _ = preset.ground.get_or_insert_default(),
@@ -242,26 +249,33 @@ pub static GROUND: Section = Section {
 pub static CAMERA: Section = Section {
     name: "camera",
     doc: "Where the scene is seen from; without this table the whole scene is framed",
-    settings: &in_section(
-        "camera",
-        [
-            Setting::new("eye", ValueType::Position, "Position of the eye", section_field!(camera.eye)).unit("m"),
-            Setting::new("target", ValueType::Position, "The point that the eye looks at", section_field!(camera.target)).unit("m"),
-            Setting::new("up", ValueType::Position, "Direction that is up in the picture, of any length", section_field!(camera.up)),
-            Setting::new("fov_y_deg", ValueType::F64, "Vertical field of view", FOV_Y)
-                .range(1.0, 179.0)
-                .slider(10.0, 120.0)
-                .unit("°")
-                .or("orthographic_height_m"),
-            Setting::new("orthographic_height_m", ValueType::F64, "Height of the visible box, without perspective", ORTHOGRAPHIC_HEIGHT)
+    settings: LazyLock::new(|| {
+        in_section(
+            "camera",
+            [
+                Setting::new("eye", ValueType::Position, "Position of the eye", section_field!(camera.eye)).unit("m"),
+                Setting::new("target", ValueType::Position, "The point that the eye looks at", section_field!(camera.target)).unit("m"),
+                Setting::new("up", ValueType::Position, "Direction that is up in the picture, of any length", section_field!(camera.up)),
+                Setting::new("fov_y_deg", ValueType::F64, "Vertical field of view", FOV_Y)
+                    .range(1.0, 179.0)
+                    .slider(10.0, 120.0)
+                    .unit("°")
+                    .or("orthographic_height_m"),
+                Setting::new(
+                    "orthographic_height_m",
+                    ValueType::F64,
+                    "Height of the visible box, without perspective",
+                    ORTHOGRAPHIC_HEIGHT,
+                )
                 .range(1e-6, 1e9)
                 .unit("m")
                 .or("fov_y_deg"),
-            Setting::new("near_m", ValueType::F64, "Distance of the near plane, with perspective", section_field!(camera.near_m))
-                .range(MIN_NEAR_M, 1e6)
-                .unit("m"),
-        ],
-    ),
+                Setting::new("near_m", ValueType::F64, "Distance of the near plane, with perspective", section_field!(camera.near_m))
+                    .range(MIN_NEAR_M, 1e6)
+                    .unit("m"),
+            ],
+        )
+    }),
     presence: Some(Presence {
         is_present: |preset| preset.camera.is_some(),
         add: |preset| _ = preset.camera.get_or_insert_default(),
@@ -272,97 +286,105 @@ pub static CAMERA: Section = Section {
 pub static CLOCK: Section = Section {
     name: "clock",
     doc: "The time of the picture and the range of the timeline",
-    settings: &in_section(
-        "clock",
-        [
-            Setting::new("time_s", ValueType::F64, "Time of the picture", field!(clock.time_s)).slider(0.0, 12.0).unit("s"),
-            Setting::new(
-                "range_s",
-                ValueType::Interval,
-                "Begin and end of the timeline and of a sequence; the end is not drawn",
-                field!(clock.range_s),
-            )
-            .unit("s")
-            .rule(rises),
-            Setting::new("loop", ValueType::Bool, "Starts again at the begin of the range after its end", field!(clock.is_looping)),
-            Setting::new("speed", ValueType::F64, "Seconds of the clock that pass in one second of playback", field!(clock.speed))
-                .range(0.01, 100.0),
-        ],
-    ),
+    settings: LazyLock::new(|| {
+        in_section(
+            "clock",
+            [
+                Setting::new("time_s", ValueType::F64, "Time of the picture", field!(clock.time_s)).slider(0.0, 12.0).unit("s"),
+                Setting::new(
+                    "range_s",
+                    ValueType::Interval,
+                    "Begin and end of the timeline and of a sequence; the end is not drawn",
+                    field!(clock.range_s),
+                )
+                .unit("s")
+                .rule(rises),
+                Setting::new("loop", ValueType::Bool, "Starts again at the begin of the range after its end", field!(clock.is_looping)),
+                Setting::new("speed", ValueType::F64, "Seconds of the clock that pass in one second of playback", field!(clock.speed))
+                    .range(0.01, 100.0),
+            ],
+        )
+    }),
     presence: None,
 };
 
-pub static ACCURACY: Section = Section {
-    name: "accuracy",
-    doc: "How exact the picture must be",
-    settings: &in_section("accuracy", ACCURACY_SETTINGS),
-    presence: None,
-};
+pub static ACCURACY: Section =
+    Section { name: "accuracy", doc: "How exact the picture must be", settings: LazyLock::new(accuracy_settings), presence: None };
 
-const TOLERANCES: usize = 3;
 /// The tier, the tolerances that replace the tier's, and every axis.
-const ACCURACY_SETTINGS: [Setting; TOLERANCES + AXES.len()] = {
-    let mut settings = [const { Setting::of_axis(&AXES[0]) }; TOLERANCES + AXES.len()];
-    settings[0] = Setting::new("tier", ValueType::Choice(TIERS), "Named tolerance from which the planner chooses the options", TIER);
-    settings[1] = Setting::new(
-        "max_wrong_ppm",
-        ValueType::F64,
-        "Tolerance instead of the tier's: pixels with the wrong triangle, per million",
-        option!(accuracy.wrong_ppm),
-    )
-    .range(0.0, 1e6);
-    settings[2] = Setting::new(
-        "max_channel",
-        ValueType::U32,
-        "Tolerance instead of the tier's: difference of a color channel, of 255",
-        option!(accuracy.channel),
-    )
-    .range(0.0, 255.0);
-    let mut index = 0;
-    while index < AXES.len() {
-        settings[TOLERANCES + index] = Setting::of_axis(&AXES[index]);
-        index += 1;
-    }
-    settings
-};
+fn accuracy_settings() -> Vec<Setting> {
+    let tolerances = [
+        Setting::new(
+            "tier",
+            ValueType::choice(&Tier::ALL.map(Tier::name)),
+            "Named tolerance from which the planner chooses the options",
+            TIER,
+        ),
+        Setting::new(
+            "max_wrong_ppm",
+            ValueType::F64,
+            "Tolerance instead of the tier's: pixels with the wrong triangle, per million",
+            option!(accuracy.wrong_ppm),
+        )
+        .range(0.0, 1e6),
+        Setting::new(
+            "max_channel",
+            ValueType::U32,
+            "Tolerance instead of the tier's: difference of a color channel, of 255",
+            option!(accuracy.channel),
+        )
+        .range(0.0, 255.0),
+    ];
+    let settings = tolerances.into_iter().chain(AXES.iter().map(Setting::of_axis));
+    settings.map(|setting| Setting { section: "accuracy", ..setting }).collect()
+}
 
 pub static OUTPUT: Section = Section {
     name: "output",
     doc: "The picture to draw",
-    settings: &in_section(
-        "output",
-        [
-            Setting::new("size", ValueType::Size, "Width and height in pixels", field!(output.size)).range(0.0, 16_384.0),
-            Setting::new("background", ValueType::Color, "Color where there is no triangle, linear RGBA", field!(output.background)),
-            Setting::new(
-                "background_bottom",
-                ValueType::Color,
-                "Color at the bottom edge: the background is a vertical gradient from background to it, in linear light",
-                option!(output.background_bottom),
-            ),
-        ],
-    ),
+    settings: LazyLock::new(|| {
+        in_section(
+            "output",
+            [
+                Setting::new("size", ValueType::Size, "Width and height in pixels", field!(output.size)).range(0.0, 16_384.0),
+                Setting::new("background", ValueType::Color, "Color where there is no triangle, linear RGBA", field!(output.background)),
+                Setting::new(
+                    "background_bottom",
+                    ValueType::Color,
+                    "Color at the bottom edge: the background is a vertical gradient from background to it, in linear light",
+                    option!(output.background_bottom),
+                ),
+            ],
+        )
+    }),
     presence: None,
 };
 
 pub static TEST: Section = Section {
     name: "test",
     doc: "How far a picture may differ from the golden; a preset without this table has no golden",
-    settings: &in_section(
-        "test",
-        [
-            Setting::new("max_channel", ValueType::U32, "Largest difference of a color channel, of 255", section_field!(test.max_channel))
+    settings: LazyLock::new(|| {
+        in_section(
+            "test",
+            [
+                Setting::new(
+                    "max_channel",
+                    ValueType::U32,
+                    "Largest difference of a color channel, of 255",
+                    section_field!(test.max_channel),
+                )
                 .range(0.0, 255.0),
-            Setting::new("max_pixels", ValueType::U32, "Number of pixels that may differ by more", section_field!(test.max_pixels)),
-            Setting::new(
-                "max_wrong_triangles",
-                ValueType::U32,
-                "Number of pixels that may show another triangle, or none, where the preset pins an option that is not exact",
-                section_field!(test.max_wrong_triangles),
-            ),
-            Setting::new("why", PARAGRAPH, "Why a budget above the default is needed", section_field!(test.why)),
-        ],
-    ),
+                Setting::new("max_pixels", ValueType::U32, "Number of pixels that may differ by more", section_field!(test.max_pixels)),
+                Setting::new(
+                    "max_wrong_triangles",
+                    ValueType::U32,
+                    "Number of pixels that may show another triangle, or none, where the preset pins an option that is not exact",
+                    section_field!(test.max_wrong_triangles),
+                ),
+                Setting::new("why", PARAGRAPH, "Why a budget above the default is needed", section_field!(test.why)),
+            ],
+        )
+    }),
     presence: Some(Presence {
         is_present: |preset| preset.test.is_some(),
         add: |preset| _ = preset.test.get_or_insert_default(),

@@ -94,7 +94,7 @@ impl EndToEnd<'_> {
             return true;
         }
         // Sample effects and alpha masks test the inside of triangles, where a moved corner or another setup may change the result.
-        let has_sample_effects = self.shot.stack.each(|hooks| hooks.sample).next().is_some();
+        let has_sample_effects = self.shot.stack.each(|hooks| hooks.sample.as_ref()).next().is_some();
         let is_tested = |id: u32| has_sample_effects || self.is_masked(id);
         let may_test_differently = |id: u32| self.outline(id).is_some_and(|outline| outline.may_move()) || self.has_other_setup(id);
         if [a, b].into_iter().any(|id| is_tested(id) && may_test_differently(id)) {

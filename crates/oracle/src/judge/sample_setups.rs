@@ -51,7 +51,7 @@ fn clip_errors(shot: &Shot, id: u32) -> [DVec3; 3] {
     evaluator.triangle_corners(id - draw.first_triangle).map(|corner| bounds.clip(corner).homogeneous())
 }
 
-fn is_wrong(setup: &TriangleSetup, (hook, words): &(SampleHook, &[u32]), given: [u32; 4]) -> bool {
+fn is_wrong(setup: &TriangleSetup, (hook, words): &(&SampleHook, &[u32]), given: [u32; 4]) -> bool {
     let reference = (hook.sample_setup)(setup, words, None);
     let is_near = f64::from(reference[0].abs_diff(given[0])) <= (hook.error_bound)(setup, words);
     !is_near || (hook.sample_setup)(setup, words, Some(given[0])) != given

@@ -91,13 +91,13 @@ pub fn scene_with_particles<'a>(scene: &'a Scene, view: &View, stack: &Stack, wo
 
 /// Parameters with which the particles of a stack are drawn.
 pub fn drawn_params(stack: &Stack) -> Particles {
-    stack.params(particles::EFFECT.name).unwrap_or_default()
+    stack.params(&particles::EFFECT.name).unwrap_or_default()
 }
 
 /// The timeline of parameters up to a view.
 pub fn timeline(view: &View, stack: &Stack) -> ParticleTimeline {
-    let default = (particles::EFFECT.defaults)();
-    let words = stack.get(particles::EFFECT.name).map_or(&default, |enabled| &enabled.words);
+    let default = &particles::EFFECT.defaults;
+    let words = stack.get(&particles::EFFECT.name).map_or(default, |enabled| &enabled.words);
     let given = view.scene_state.particles.as_deref().filter(|timeline| timeline.stride == words.len());
     given.cloned().unwrap_or_else(|| particles::constant_timeline(words, 0))
 }

@@ -72,7 +72,7 @@ pub fn render_reference(scene: &Scene, view: &View, stack: &Stack) -> Result<Fra
 
 fn finest(view: &View, stack: &Stack) -> View {
     // Sample effects measure triangles in 1/256 px.
-    let is_measured = stack.each(|hooks| hooks.sample).next().is_some() || stack.point_radius() > 0;
+    let is_measured = stack.each(|hooks| hooks.sample.as_ref()).next().is_some() || stack.point_radius() > 0;
     let subpixel_bits = if is_measured { SUBPIXEL_BITS } else { finest_bits(view) };
     view.with_grid(subpixel_bits, true)
 }

@@ -29,7 +29,7 @@ pub fn sample_setups(shot: &Shot, geometry: &Geometry) -> Vec<[u32; 4]> {
     }
     let records = |entry: Option<SetupEntry>| {
         let of_effect =
-            |(hook, words): &(SampleHook, &[u32])| entry.as_ref().map_or([0; 4], |entry| (hook.sample_setup)(&entry.setup, words, None));
+            |(hook, words): &(&SampleHook, &[u32])| entry.as_ref().map_or([0; 4], |entry| (hook.sample_setup)(&entry.setup, words, None));
         let of_mask = entry
             .as_ref()
             .and_then(|entry| entry.mask.as_ref())
@@ -53,8 +53,8 @@ pub fn mask_records(scene: &Scene, stack: &Stack) -> usize {
 }
 
 /// The sample effects of a stack that have a setup, with their parameter words.
-pub fn effects_with_setup(stack: &Stack) -> Vec<(SampleHook, &[u32])> {
-    stack.each(|hooks| hooks.sample.filter(|hook| hook.has_setup)).collect()
+pub fn effects_with_setup(stack: &Stack) -> Vec<(&SampleHook, &[u32])> {
+    stack.each(|hooks| hooks.sample.as_ref().filter(|hook| hook.has_setup)).collect()
 }
 
 /// Entries of all triangles, then of all clipped triangles; none where nothing is drawn.

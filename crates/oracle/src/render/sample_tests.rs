@@ -43,7 +43,7 @@ pub struct SampleTests<'a> {
 }
 
 struct EffectTest<'a> {
-    hook: SampleHook,
+    hook: &'a SampleHook,
     words: &'a [u32],
     /// Index among the setups of an entry; none for an effect without one.
     setup: Option<usize>,
@@ -100,7 +100,7 @@ impl<'a> SampleTests<'a> {
             .iter()
             .zip(stack.scope_bits())
             .filter_map(|(enabled, scope)| {
-                let hook = enabled.effect.hooks.sample?;
+                let hook = enabled.effect.hooks.sample.as_ref()?;
                 let setup = hook.has_setup.then_some(effect_setups);
                 effect_setups += usize::from(hook.has_setup);
                 Some(EffectTest { hook, words: &enabled.words, setup, scope })

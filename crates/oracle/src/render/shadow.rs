@@ -185,5 +185,5 @@ impl<'a> ShadowLookup<'a> {
 
 /// Returns true if an effect leaves samples out or shows only parts of triangles, of which rays know nothing.
 pub fn leaves_samples_out(stack: &Stack) -> bool {
-    stack.each(|hooks| hooks.sample).next().is_some() || stack.particle_settings().is_some()
+    stack.each(|hooks| hooks.sample.as_ref()).next().is_some() || stack.particle_settings().is_some()
 }

@@ -4,7 +4,10 @@ mod buttons;
 mod path;
 mod questions;
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use eframe::egui::{self, Ui};
 
@@ -93,7 +96,7 @@ impl Dialogs {
     }
 
     /// Asks for the name of a new effect, and for its hook unless it is a duplicate of `duplicated`.
-    pub fn ask_new_effect(&mut self, duplicated: Option<&'static Effect>, catalog: &Catalog) {
+    pub fn ask_new_effect(&mut self, duplicated: Option<Arc<Effect>>, catalog: &Catalog) {
         self.open = Some(Dialog::NewEffect(NewEffect::new(duplicated, catalog)));
     }
 
@@ -208,7 +211,7 @@ impl Panel for Dialogs {
             ui.set_width(460.0f32.min(ui.ctx().content_rect().width() - 64.0));
             chosen = match dialog {
                 Dialog::Path(dialog) => path_ui(ui, dialog, &state.settings.recents, &state.missing_files),
-                Dialog::Muted { .. } => muted_ui(ui, &state.session.muted.iter().copied().collect::<Vec<_>>()),
+                Dialog::Muted { .. } => muted_ui(ui, &state.session.muted.iter().map(String::as_str).collect::<Vec<_>>()),
                 Dialog::Unsaved => unsaved_ui(ui, state.session.title(), state.keeps_session),
                 Dialog::NewEffect(dialog) => new_effect_ui(ui, dialog),
                 Dialog::Changed(theirs, saving) => changed_ui(ui, theirs.title(), saving.is_some()),

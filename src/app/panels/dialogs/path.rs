@@ -14,11 +14,14 @@ use eframe::egui::{
 };
 
 use super::buttons::{Choice, buttons};
-use crate::app::{
-    command::{Command, Commands, FileCommand, Purpose},
-    completion::{self, Entry, Listing},
-    settings::recents::Recents,
-    system_dialog, theme,
+use crate::{
+    app::{
+        command::{Command, Commands, FileCommand, Purpose},
+        completion::{self, Entry, Listing},
+        settings::recents::Recents,
+        system_dialog, theme,
+    },
+    preset_file::ModelFormat,
 };
 
 impl Purpose {
@@ -30,13 +33,14 @@ impl Purpose {
         }
     }
 
-    const fn hint(self) -> &'static str {
+    fn hint(self) -> String {
         match self {
-            Self::Open => {
-                "A preset (.toml), a model (.glb, .gltf), an exported picture (.png), an effect (.wgsl), a preset's id, or builtin:teapot"
-            }
-            Self::SaveAs => "Presets in the suggested folder appear in the list on the left",
-            Self::Export => "The picture contains the preset: open the picture to get it back",
+            Self::Open => format!(
+                "A preset (.toml), a model ({}), an exported picture (.png), an effect (.wgsl), a preset's id, or builtin:teapot",
+                ModelFormat::names(", ")
+            ),
+            Self::SaveAs => "Presets in the suggested folder appear in the list on the left".into(),
+            Self::Export => "The picture contains the preset: open the picture to get it back".into(),
         }
     }
 
@@ -173,7 +177,7 @@ impl PathDialog {
         if let Some(listing) = &self.listing {
             // A name that came with the dialog is a proposal; it does not narrow the list.
             let typed = if self.purpose != Purpose::Open && self.names_a_file() { self.folder_text() } else { self.text.as_str() };
-            rows.extend(listing.matches(typed, system_dialog::extensions(self.purpose)).into_iter().cloned().map(Row::Entry));
+            rows.extend(listing.matches(typed, &system_dialog::extensions(self.purpose)).into_iter().cloned().map(Row::Entry));
         }
         rows
     }
@@ -286,7 +290,7 @@ fn begin_anew(ctx: &egui::Context, id: egui::Id, dialog: &mut PathDialog, before
 fn keys(ui: &Ui, dialog: &mut PathDialog, rows: &[Row]) {
     if ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Tab)) {
         let entries: Vec<&Entry> =
-            dialog.listing.iter().flat_map(|listing| listing.matches(&dialog.text, system_dialog::extensions(dialog.purpose))).collect();
+            dialog.listing.iter().flat_map(|listing| listing.matches(&dialog.text, &system_dialog::extensions(dialog.purpose))).collect();
         match completion::completed(&dialog.text, &entries) {
             Some(completed) => dialog.set_text(completed),
             // Nothing to add: Tab goes on to the buttons.

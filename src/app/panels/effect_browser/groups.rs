@@ -1,5 +1,7 @@
 //! Groups of effects by what they do, derived from their hooks, and the search among them.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3, DVec4};
 
 use crate::{
@@ -79,11 +81,11 @@ impl Group {
 
 /// Does a built-in effect paint the same color whatever the material's is? Then it shows something else than the material.
 fn shows_data(effect: &Effect) -> bool {
-    let Some(apply) = effect.hooks.surface.filter(|_| effect.source.is_none()) else { return false };
-    let words = (effect.defaults)();
+    let Some(apply) = effect.hooks.surface.as_ref().filter(|_| effect.source.is_none()) else { return false };
+    let words = &effect.defaults;
     // Lines and dots are somewhere in the picture, so several pixels are asked.
     (0..32).all(|index| {
-        let [dark, bright] = [0.0, 1.0].map(|tone| apply(surface(f64::from(index), tone), &words).color);
+        let [dark, bright] = [0.0, 1.0].map(|tone| apply(surface(f64::from(index), tone), words).color);
         dark == bright
     })
 }
@@ -115,12 +117,12 @@ fn surface(index: f64, tone: f64) -> Surface {
 }
 
 /// The effects that answer `search` and `is_kept`, in their groups. Within a group the best answers come first.
-pub fn grouped(effects: &[&'static Effect], search: &str, is_kept: impl Fn(&Effect) -> bool) -> Vec<(Group, Vec<&'static Effect>)> {
+pub fn grouped<'a>(effects: &[&'a Arc<Effect>], search: &str, is_kept: impl Fn(&Effect) -> bool) -> Vec<(Group, Vec<&'a Arc<Effect>>)> {
     let about = |effect: &Effect| format!("{} {} {}", effect.about, Group::of(effect).name(), effect.hooks.names());
-    let mut found: Vec<(Group, i32, &'static Effect)> = effects
+    let mut found: Vec<(Group, i32, &Arc<Effect>)> = effects
         .iter()
         .filter(|effect| is_kept(effect))
-        .filter_map(|effect| Some((Group::of(effect), -fuzzy::score(search, effect.name, &about(effect))?, *effect)))
+        .filter_map(|effect| Some((Group::of(effect), -fuzzy::score(search, &effect.name, &about(effect))?, *effect)))
         .collect();
     found.sort_by_key(|(group, score, _)| (*group, *score));
     let of = |group: Group| found.iter().filter(move |(other, ..)| *other == group).map(|(.., effect)| *effect).collect::<Vec<_>>();
@@ -129,14 +131,14 @@ pub fn grouped(effects: &[&'static Effect], search: &str, is_kept: impl Fn(&Effe
 
 /// The other effects of `stack` for which the place of `effect` in the stack matters: both change vertices, surfaces, or the picture. Tests
 /// of samples may stand in any order.
-pub fn depends_on_order(effect: &Effect, stack: &[&'static Effect]) -> Vec<&'static str> {
-    let shares = |other: &&&'static Effect| {
+pub fn depends_on_order<'a>(effect: &Effect, stack: &[&'a Arc<Effect>]) -> Vec<&'a str> {
+    let shares = |other: &&&Arc<Effect>| {
         let (a, b) = (&effect.hooks, &other.hooks);
         (a.vertex.is_some() && b.vertex.is_some())
             || (a.surface.is_some() && b.surface.is_some())
             || (a.image.is_some() && b.image.is_some())
     };
-    stack.iter().filter(|other| other.name != effect.name).filter(shares).map(|other| other.name).collect()
+    stack.iter().filter(|other| other.name != effect.name).filter(shares).map(|other| other.name.as_str()).collect()
 }
 
 #[cfg(test)]
@@ -144,14 +146,15 @@ mod tests {
     use super::*;
     use crate::effects::EFFECTS;
 
-    fn effect(name: &str) -> &'static Effect {
+    fn effect(name: &str) -> &'static Arc<Effect> {
         Effect::find(name).expect("a built-in effect")
     }
 
     #[test]
     fn every_built_in_effect_is_in_the_group_of_what_it_does() {
-        let of =
-            |group: Group| -> Vec<&str> { EFFECTS.iter().filter(|effect| Group::of(effect) == group).map(|effect| effect.name).collect() };
+        let of = |group: Group| -> Vec<&str> {
+            EFFECTS.iter().filter(|effect| Group::of(effect) == group).map(|effect| effect.name.as_str()).collect()
+        };
         assert_eq!(of(Group::Inspect), ["draw_order", "triangle_id", "normals", "depth"]);
         assert_eq!(of(Group::Layers), ["xray", "overdraw", "race"]);
         assert_eq!(of(Group::Lines), ["dots"]);
@@ -165,8 +168,10 @@ mod tests {
 
     #[test]
     fn search_finds_names_descriptions_and_groups() {
-        let names =
-            |search: &str| -> Vec<&str> { grouped(EFFECTS, search, |_| true).into_iter().flat_map(|(_, e)| e).map(|e| e.name).collect() };
+        let all: Vec<&'static Arc<Effect>> = EFFECTS.iter().collect();
+        let names = |search: &str| -> Vec<&str> {
+            grouped(&all, search, |_| true).into_iter().flat_map(|(_, e)| e).map(|e| e.name.as_str()).collect()
+        };
         assert_eq!(names("toon"), ["toon"]);
         assert_eq!(
             names("layers").into_iter().collect::<std::collections::BTreeSet<_>>().into_iter().collect::<Vec<_>>(),
@@ -174,7 +179,7 @@ mod tests {
         );
         assert!(names("vertex").contains(&"wobble") && names("ink").contains(&"hatch"));
         assert_eq!(names("").len(), EFFECTS.len());
-        let only = grouped(EFFECTS, "", |effect| effect.name == "fog");
+        let only = grouped(&all, "", |effect| effect.name == "fog");
         assert_eq!(only, [(Group::Surface, vec![effect("fog")])]);
     }
 

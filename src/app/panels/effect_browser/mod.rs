@@ -75,7 +75,7 @@ impl EffectBrowser {
         };
         self.cancelled = Arc::default();
         let (preset, size, cancelled) = (sample(effect, session), size.pixels(), self.cancelled.clone());
-        Some(EffectPicture { effect: effect.name, preset, scene, size, cancelled })
+        Some(EffectPicture { effect: effect.name.clone(), preset, scene, size, cancelled })
     }
 
     /// Takes a picture that was drawn; none if it was cancelled or the scene is too large.
@@ -102,8 +102,8 @@ impl EffectBrowser {
         });
         ui.add_space(theme::HALF);
         let session = &state.session;
-        let all = session.preset_file.effects.effects_with(session.preset().stack.0.iter().map(|enabled| enabled.effect));
-        let is_kept = |effect: &Effect| !self.only_favorites || state.favorites.has(Starred::Effect, effect.name);
+        let all = session.preset_file.effects.effects_with(session.preset().stack.0.iter().map(|enabled| &enabled.effect));
+        let is_kept = |effect: &Effect| !self.only_favorites || state.favorites.has(Starred::Effect, &effect.name);
         let groups = grouped(&all, &self.search, is_kept);
         self.pictures.begin_frame();
         ScrollArea::vertical().id_salt("effects").auto_shrink(false).show(ui, |ui| {
@@ -134,7 +134,7 @@ impl EffectBrowser {
         }
     }
 
-    fn group_ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands, group: Group, effects: &[&'static Effect]) {
+    fn group_ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands, group: Group, effects: &[&Arc<Effect>]) {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 6.0;
             ui.label(theme::heading(group.name()));
@@ -148,16 +148,16 @@ impl EffectBrowser {
                 let rect = egui::Rect::from_min_size(line.min + vec2(column as f32 * (size.x + theme::HALF), 0.0), size);
                 let tile = Tile {
                     effect,
-                    picture: self.pictures.picture(effect.name, Size::Small, ui.is_rect_visible(rect)),
-                    is_enabled: stack.get(effect.name).is_some(),
-                    rival: stack.rival_of(effect).map(|rival| rival.name),
-                    is_favorite: state.favorites.has(Starred::Effect, effect.name),
+                    picture: self.pictures.picture(&effect.name, Size::Small, ui.is_rect_visible(rect)),
+                    is_enabled: stack.get(&effect.name).is_some(),
+                    rival: stack.rival_of(effect).map(|rival| rival.name.as_str()),
+                    is_favorite: state.favorites.has(Starred::Effect, &effect.name),
                 };
                 let responses = tile_ui(ui, &tile, rect);
-                responses.tile.dnd_set_drag_payload(StackDrag::Enable(effect));
+                responses.tile.dnd_set_drag_payload(StackDrag::Enable((*effect).clone()));
                 responses.tile.context_menu(|ui| effect_menu::menu_ui(ui, state, commands, effect));
                 if responses.star.clicked() {
-                    commands.send(Command::Library(LibraryCommand::Star(Starred::Effect, effect.name.into(), !tile.is_favorite)));
+                    commands.send(Command::Library(LibraryCommand::Star(Starred::Effect, effect.name.clone(), !tile.is_favorite)));
                 }
                 if responses.tile.clicked() {
                     toggle(commands, &tile);
@@ -170,25 +170,25 @@ impl EffectBrowser {
 
 /// Enables the effect of a tile, in place of its rival if there is one, or disables it.
 fn toggle(commands: &Commands, tile: &Tile<'_>) {
-    let name = tile.effect.name;
+    let name = &tile.effect.name;
     match (tile.is_enabled, tile.rival) {
-        (true, _) => return commands.edit(Edit::Disable(tile.effect)),
+        (true, _) => return commands.edit(Edit::Disable(tile.effect.clone())),
         (false, Some(rival)) => {
-            commands.edit(Edit::Replace(rival, tile.effect));
+            commands.edit(Edit::Replace(rival.into(), tile.effect.clone()));
             let text = format!("{name} replaced {rival}: both take the same slot of the rasterizer");
             commands.send(Command::Notify(Level::Info, text));
         }
-        (false, None) => commands.edit(Edit::Enable(tile.effect)),
+        (false, None) => commands.edit(Edit::Enable(tile.effect.clone())),
     }
     commands.send(Command::Reveal(name.into()));
 }
 
 /// The open preset with nothing but `effect`: with the values of the built-in preset that shows it, or else with defaults, in daylight.
-fn sample(effect: &'static Effect, session: &Session) -> Preset {
+fn sample(effect: &Arc<Effect>, session: &Session) -> Preset {
     let own = session.shown_preset();
     let mut preset = Preset { accuracy: AccuracyRequest::default(), test: None, animation: Default::default(), ..own.clone() };
-    let shown = if effect.source.is_none() { open(effect.name, &Folders::default()).ok() } else { None };
-    match shown.filter(|shown| shown.preset.stack.get(effect.name).is_some()) {
+    let shown = if effect.source.is_none() { open(&effect.name, &Folders::default()).ok() } else { None };
+    match shown.filter(|shown| shown.preset.stack.get(&effect.name).is_some()) {
         Some(shown) => {
             preset.stack = shown.preset.evaluated_stack();
             if own.polyline.is_empty() {

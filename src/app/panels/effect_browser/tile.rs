@@ -1,5 +1,7 @@
 //! A tile of the effect browser: a picture of the effect, its name, and its star.
 
+use std::sync::Arc;
+
 use eframe::egui::{self, Align2, FontId, Pos2, Rect, Response, RichText, Sense, Ui, pos2, vec2};
 
 use crate::{
@@ -18,11 +20,11 @@ const STAR: f32 = 18.0;
 
 /// What is shown of an effect.
 pub struct Tile<'a> {
-    pub effect: &'static Effect,
+    pub effect: &'a Arc<Effect>,
     pub picture: Option<&'a egui::TextureHandle>,
     pub is_enabled: bool,
     /// The effect of the stack that it would replace.
-    pub rival: Option<&'static str>,
+    pub rival: Option<&'a str>,
     pub is_favorite: bool,
 }
 
@@ -42,7 +44,7 @@ pub fn tile_size(width: f32) -> (egui::Vec2, usize) {
 
 /// Shows a tile in `rect`.
 pub fn tile_ui(ui: &mut Ui, tile: &Tile<'_>, rect: Rect) -> Responses {
-    let name = tile.effect.name;
+    let name = &tile.effect.name;
     let response = ui.interact(rect, egui::Id::unique(("effect", name)), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, tile.is_enabled, format!("Effect {name}")));
     let is_near = ui.rect_contains_pointer(rect) || response.has_focus();
@@ -65,7 +67,7 @@ pub fn tile_ui(ui: &mut Ui, tile: &Tile<'_>, rect: Rect) -> Responses {
     let star = star_ui(ui, tile, Rect::from_min_size(pos2(picture.right() - STAR, picture.top()), vec2(STAR, STAR)), is_near);
     let response = response.on_hover_ui(|ui| {
         ui.label(RichText::new(name).color(theme::text_strong()));
-        ui.label(tile.effect.about);
+        ui.label(&tile.effect.about);
         ui.label(theme::weak(format!("Hooks: {}", tile.effect.hooks.names())));
         let action = match (tile.is_enabled, tile.rival) {
             (true, _) => "Click to take it out of the stack".to_owned(),
@@ -78,7 +80,7 @@ pub fn tile_ui(ui: &mut Ui, tile: &Tile<'_>, rect: Rect) -> Responses {
 }
 
 fn star_ui(ui: &Ui, tile: &Tile<'_>, rect: Rect, is_near: bool) -> Response {
-    let name = tile.effect.name;
+    let name = &tile.effect.name;
     let response = ui.interact(rect, egui::Id::unique(("star of effect", name)), Sense::click());
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, tile.is_favorite, format!("Favorite effect {name}")));
     if tile.is_favorite || is_near || response.has_focus() {

@@ -1,5 +1,7 @@
 //! The menu of an effect: what can be done with it besides changing its parameters.
 
+use std::sync::Arc;
+
 use eframe::egui::{self, Ui};
 
 use crate::{
@@ -15,7 +17,7 @@ use crate::{
 };
 
 /// Shows the entries of the menu.
-pub fn menu_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static Effect) {
+pub fn menu_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effect>) {
     let mut chosen = values_ui(ui, state, effect);
     ui.separator();
     // Whether an effect can be duplicated does not depend on the name.
@@ -26,9 +28,9 @@ pub fn menu_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static
         Err(reason) => button.on_disabled_hover_text(format!("{} {reason}.", effect.name)),
     };
     if button.clicked() {
-        chosen = Some(Command::File(FileCommand::AskNewEffect(Some(effect))));
+        chosen = Some(Command::File(FileCommand::AskNewEffect(Some(effect.clone()))));
     }
-    let file = effect.source.and_then(|source| {
+    let file = effect.source.as_ref().and_then(|source| {
         let mut custom = state.session.preset_file.effects.custom();
         custom.find(|(name, _)| *name == source.stem).and_then(|(_, found)| found.path.clone())
     });
@@ -37,11 +39,11 @@ pub fn menu_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static
     {
         chosen = Some(Command::File(FileCommand::Edit(path)));
     }
-    if state.session.preset().stack.get(effect.name).is_some() && ui.add(entry("Reset all parameters")).clicked() {
-        chosen = Some(Command::Row(RowCommand::ResetGroup(effect.name.into())));
+    if state.session.preset().stack.get(&effect.name).is_some() && ui.add(entry("Reset all parameters")).clicked() {
+        chosen = Some(Command::Row(RowCommand::ResetGroup(effect.name.clone())));
     }
-    if state.session.preset().stack.get(effect.name).is_some() && ui.add(entry("Remove")).clicked() {
-        chosen = Some(Command::Edit(Edit::Disable(effect)));
+    if state.session.preset().stack.get(&effect.name).is_some() && ui.add(entry("Remove")).clicked() {
+        chosen = Some(Command::Edit(Edit::Disable(effect.clone())));
     }
     if let Some(command) = chosen {
         commands.send(command);
@@ -50,12 +52,12 @@ pub fn menu_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static
 }
 
 /// What can be done with the effect's values as a whole: copied, pasted, saved and recalled.
-fn values_ui(ui: &mut Ui, state: &State, effect: &'static Effect) -> Option<Command> {
+fn values_ui(ui: &mut Ui, state: &State, effect: &Arc<Effect>) -> Option<Command> {
     let mut chosen = None;
-    let is_enabled = state.session.preset().stack.get(effect.name).is_some();
+    let is_enabled = state.session.preset().stack.get(&effect.name).is_some();
     let copy = ui.add_enabled(is_enabled, entry("Copy effect"));
     if copy.on_hover_text("Put the effect with its values and keyframes on the clipboard, for another preset").clicked() {
-        chosen = Some(Command::Library(LibraryCommand::CopyEffect(effect)));
+        chosen = Some(Command::Library(LibraryCommand::CopyEffect(effect.clone())));
     }
     if ui.add(entry("Paste effect")).on_hover_text("Enable the effect that is on the clipboard, with its values").clicked() {
         chosen = Some(Command::Perform(Action::PastePreset));
@@ -75,7 +77,7 @@ fn values_ui(ui: &mut Ui, state: &State, effect: &'static Effect) -> Option<Comm
             }
             let save = ui.add_enabled(is_enabled, entry("Save these values…"));
             if save.on_hover_text("Keep the effect's values under a name, for every preset").clicked() {
-                chosen = Some(Command::Library(LibraryCommand::AskName(Naming::Values(effect))));
+                chosen = Some(Command::Library(LibraryCommand::AskName(Naming::Values(effect.clone()))));
             }
         });
         menu.response.accessible_name("Saved values");

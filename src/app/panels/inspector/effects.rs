@@ -1,5 +1,7 @@
 //! The effects of the inspector: the stack in order, with the parameters of each, then every effect that is not in it.
 
+use std::sync::Arc;
+
 use eframe::egui::{self, Rect, RichText, Sense, Ui, vec2};
 
 use super::{effect_menu, precision::precision_ui, scope::scope_ui};
@@ -30,7 +32,7 @@ pub fn effects_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             }
         });
     });
-    let stack: Vec<&'static Effect> = state.session.preset().stack.0.iter().map(|enabled| enabled.effect).collect();
+    let stack: Vec<&Arc<Effect>> = state.session.preset().stack.0.iter().map(|enabled| &enabled.effect).collect();
     if stack.is_empty() {
         ui.label(theme::weak("No effect is enabled, so the picture shows plain base colors. Enable one below."));
         ui.add_space(theme::HALF);
@@ -38,10 +40,10 @@ pub fn effects_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     let top = ui.cursor().top();
     let rects: Vec<Rect> = (0..stack.len()).map(|index| enabled_ui(ui, state, commands, &stack, index)).collect();
     let area = Rect::from_x_y_ranges(ui.max_rect().x_range(), top..=rects.last().map_or(top, |last| last.bottom()));
-    let names: Vec<&str> = stack.iter().map(|effect| effect.name).collect();
+    let names: Vec<&str> = stack.iter().map(|effect| effect.name.as_str()).collect();
     drop_ui(ui, commands, &names, &rects, area);
     ui.add_space(theme::HALF);
-    for effect in EFFECTS.iter().copied().filter(|effect| !stack.contains(effect)) {
+    for effect in EFFECTS.iter().filter(|effect| !stack.contains(effect)) {
         ui.horizontal(|ui| disabled_ui(ui, state, commands, effect));
     }
     own_effects_ui(ui, state, commands, &stack);
@@ -49,7 +51,7 @@ pub fn effects_ui(ui: &mut Ui, state: &State, commands: &Commands) {
 }
 
 /// The effects of files that are not in the stack, files that are faulty, and a button for a new one.
-fn own_effects_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&'static Effect]) {
+fn own_effects_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&Arc<Effect>]) {
     ui.add_space(theme::HALF);
     ui.horizontal(|ui| {
         ui.label(theme::weak("Your effects"));
@@ -75,16 +77,16 @@ fn own_effects_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&'st
 
 /// Where the window remembers that the parameters of an effect are hidden.
 fn fold_id(effect: &Effect) -> egui::Id {
-    egui::Id::unique(("fold", effect.name))
+    egui::Id::unique(("fold", &effect.name))
 }
 
 /// The effect of `stack` at `index`. Returns where it is.
-fn enabled_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&'static Effect], index: usize) -> Rect {
+fn enabled_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&Arc<Effect>], index: usize) -> Rect {
     let effect = stack[index];
     let frame =
         egui::Frame::new().fill(theme::bar()).corner_radius(6.0).inner_margin(egui::Margin { left: 8, right: 4, top: 3, bottom: 5 });
-    let is_muted = state.session.muted.contains(effect.name);
-    if reveal::is_within(ui.ctx(), effect.name) {
+    let is_muted = state.session.muted.contains(&effect.name);
+    if reveal::is_within(ui.ctx(), &effect.name) {
         ui.data_mut(|data| data.insert_temp(fold_id(effect), false));
     }
     let is_folded = ui.data(|data| data.get_temp(fold_id(effect))).unwrap_or(false);
@@ -100,19 +102,12 @@ fn enabled_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&'static
         });
         precision_ui(ui, state, commands, effect);
     });
-    reveal::row(ui, effect.name, shown.response.rect);
+    reveal::row(ui, &effect.name, shown.response.rect);
     ui.add_space(theme::HALF);
     shown.response.rect
 }
 
-fn header_ui(
-    ui: &mut Ui,
-    state: &State,
-    commands: &Commands,
-    stack: &[&'static Effect],
-    index: usize,
-    (is_muted, is_folded): (bool, bool),
-) {
+fn header_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&Arc<Effect>], index: usize, (is_muted, is_folded): (bool, bool)) {
     let (effect, count) = (stack[index], stack.len());
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
@@ -120,11 +115,11 @@ fn header_ui(
             grip_ui(ui, stack, index);
         }
         let mut on = true;
-        if ui.checkbox(&mut on, "").on_hover_text("Take it out of the stack").accessible_name(effect.name).clicked() {
-            commands.edit(Edit::Disable(effect));
+        if ui.checkbox(&mut on, "").on_hover_text("Take it out of the stack").accessible_name(&effect.name).clicked() {
+            commands.edit(Edit::Disable(effect.clone()));
         }
         let text = RichText::new(title(effect)).strong().color(theme::text_strong());
-        let fold = ui.add(egui::Button::new(text).frame(false)).on_hover_text(effect.about);
+        let fold = ui.add(egui::Button::new(text).frame(false)).on_hover_text(&effect.about);
         let verb = if is_folded { "Unfold" } else { "Fold" };
         if fold.accessible_name(format!("{verb} {}", effect.name)).clicked() {
             ui.data_mut(|data| data.insert_temp(fold_id(effect), !is_folded));
@@ -135,7 +130,7 @@ fn header_ui(
             egui::Popup::menu(&more).show(|ui| effect_menu::menu_ui(ui, state, commands, effect));
             let (icon, verb) = if is_muted { (Icon::EyeShut, "Show") } else { (Icon::Eye, "Mute") };
             if icon_button(ui, icon, &format!("{verb} {}", effect.name)).clicked() {
-                commands.send(Command::Mute(effect, !is_muted));
+                commands.send(Command::Mute(effect.clone(), !is_muted));
             }
             for (icon, verb, to) in [(Icon::Down, "later", index + 1), (Icon::Up, "earlier", index.wrapping_sub(1))] {
                 let button = ui.add_enabled_ui(to < count, |ui| icon_button(ui, icon, &format!("Apply {} {verb}", effect.name)));
@@ -148,7 +143,7 @@ fn header_ui(
 }
 
 /// What an effect is dragged by to another place of the stack.
-fn grip_ui(ui: &mut Ui, stack: &[&'static Effect], index: usize) {
+fn grip_ui(ui: &mut Ui, stack: &[&Arc<Effect>], index: usize) {
     let effect = stack[index];
     let (rect, grip) = ui.allocate_exact_size(vec2(10.0, theme::ROW - 4.0), Sense::drag());
     grip.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Drag {}", effect.name)));
@@ -163,54 +158,55 @@ fn grip_ui(ui: &mut Ui, stack: &[&'static Effect], index: usize) {
     });
 }
 
-fn parameters_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static Effect) {
+fn parameters_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effect>) {
     let Some(words) = state.session.shown_words(effect) else { return };
-    for field in effect.fields.iter().filter(|field| field.is_shown(effect.fields, &words)) {
-        let row = Row::of_parameter((effect, field), &words).keyed(state.session.keying(effect, field));
+    for field in effect.fields.iter().filter(|field| field.is_shown(&effect.fields, &words)) {
+        let row = Row::of_parameter((effect.clone(), field.clone()), &words).keyed(state.session.keying(effect, field));
         let row = if state.session.preset().unit == LengthUnit::Scene { row.in_radii() } else { row };
         row_ui(ui, commands, &row, &field.value(&words));
         if field.measure() == Measure::Point {
-            pick_ui(ui, state.picking, commands, (effect, field));
+            pick_ui(ui, state.picking.as_ref(), commands, (effect.clone(), field.clone()));
         }
     }
 }
 
 /// A button that lets the next click on the model set a point.
-fn pick_ui(ui: &mut Ui, picking: Option<Picking>, commands: &Commands, (effect, field): Parameter) {
-    let pick = Picking::Point((effect, field));
-    let is_picking = picking == Some(pick);
+fn pick_ui(ui: &mut Ui, picking: Option<&Picking>, commands: &Commands, parameter: Parameter) {
+    let path = format!("{}.{}", parameter.0.name, parameter.1.name);
+    let pick = Picking::Point(parameter);
+    let is_picking = picking == Some(&pick);
     ui.horizontal(|ui| {
         ui.add_space(theme::GAP);
         let button = ui.selectable_label(is_picking, if is_picking { "Click on the model" } else { "Pick on the model" });
         let button = button.on_hover_text("The next click in the picture sets this point");
-        if button.accessible_name(format!("Pick {}.{}", effect.name, field.name)).clicked() {
+        if button.accessible_name(format!("Pick {path}")).clicked() {
             commands.send(Command::View(ViewCommand::Pick((!is_picking).then_some(pick))));
         }
     });
 }
 
 /// An effect that is not in the stack, and the one that it would replace.
-fn disabled_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static Effect) {
+fn disabled_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effect>) {
     ui.set_min_height(theme::ROW);
     ui.add_space(theme::GAP);
     let mut on = false;
-    let box_ui = ui.checkbox(&mut on, title(effect)).on_hover_text(effect.about).accessible_name(effect.name);
+    let box_ui = ui.checkbox(&mut on, title(effect)).on_hover_text(&effect.about).accessible_name(&effect.name);
     box_ui.context_menu(|ui| effect_menu::menu_ui(ui, state, commands, effect));
     let clicked = box_ui.clicked();
     let stack = &state.session.preset().stack;
     let Some((rival, conflict)) = stack.rival_of(effect).zip(stack.conflict_with(effect)) else {
         if clicked {
-            commands.edit(Edit::Enable(effect));
+            commands.edit(Edit::Enable(effect.clone()));
         }
         return;
     };
     if clicked {
         commands.send(Command::Notify(Level::Warning, conflict.to_string()));
     }
-    let (name, other) = (effect.name, rival.name);
+    let (name, other) = (&effect.name, &rival.name);
     let instead = ui.small_button(format!("instead of {other}")).accessible_name(format!("{name} instead of {other}"));
     if instead.on_hover_text(format!("Disable {other} and enable {name}")).clicked() {
-        commands.edit(Edit::Replace(other, effect));
+        commands.edit(Edit::Replace(other.clone(), effect.clone()));
     }
 }
 

@@ -1,5 +1,7 @@
 //! The largest f32 error of a user's effect, below its parameters; a click marks where it is.
 
+use std::sync::Arc;
+
 use eframe::egui::{self, Ui};
 
 use crate::{
@@ -14,7 +16,7 @@ use crate::{
 };
 
 /// Shows what is known of the errors of `effect`; nothing for a built-in effect.
-pub fn precision_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static Effect) {
+pub fn precision_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effect>) {
     if !effect.is_of_file() {
         return;
     }
@@ -25,7 +27,7 @@ pub fn precision_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'s
     });
 }
 
-fn errors_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static Effect) {
+fn errors_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effect>) {
     let requested = state.screen.requested();
     let Some(measured) = state.precision.of(requested) else {
         let text = if state.precision.has_failed(requested) {
@@ -38,7 +40,7 @@ fn errors_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static E
         ui.label(theme::weak(text).size(11.0));
         return;
     };
-    let found = measured.effects.iter().find(|(known, _)| *known == effect).map_or(&[][..], |(_, errors)| errors);
+    let found = measured.effects.iter().find(|(known, _)| known == effect).map_or(&[][..], |(_, errors)| errors);
     let [width, height] = measured.size;
     let about = format!("The effect's text in f32 against f64, on the oracle's picture of {width}x{height} pixels.");
     if found.is_empty() {

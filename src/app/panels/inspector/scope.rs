@@ -45,10 +45,10 @@ struct Missing {
 }
 
 /// The row of an effect that can be limited to parts.
-pub fn scope_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static Effect) {
-    let Some(enabled) = state.session.preset().stack.get(effect.name).filter(|enabled| enabled.effect.has_scope()) else { return };
+pub fn scope_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effect>) {
+    let Some(enabled) = state.session.preset().stack.get(&effect.name).filter(|enabled| enabled.effect.has_scope()) else { return };
     let on = enabled.on.clone();
-    let is_picking = matches!(state.picking, Some(Picking::Part(picking, _)) if picking == effect);
+    let is_picking = matches!(&state.picking, Some(Picking::Part(picking, _)) if picking == effect);
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         ui.label(theme::weak("On"));
@@ -78,9 +78,9 @@ fn summary(on: &Scope) -> String {
 }
 
 /// The list with its search, and the buttons below it.
-fn picker_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static Effect, on: &Scope) {
+fn picker_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effect>, on: &Scope) {
     ui.set_width(LIST_WIDTH);
-    let id = egui::Id::unique(("search of parts", effect.name));
+    let id = egui::Id::unique(("search of parts", &effect.name));
     let mut search: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     let field = TextEdit::singleline(&mut search).hint_text("Search parts, or write a pattern: mesh:Lens*").desired_width(f32::INFINITY);
     ui.add(field).accessible_name(format!("Search parts for {}", effect.name));
@@ -116,7 +116,7 @@ fn picker_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static E
         for kind in PartKind::ALL {
             let button = ui.button(kind.name()).on_hover_text(format!("The next click on the model adds its {}", kind.name()));
             if button.accessible_name(format!("Pick a {} for {}", kind.name(), effect.name)).clicked() {
-                commands.send(Command::View(ViewCommand::Pick(Some(Picking::Part(effect, kind)))));
+                commands.send(Command::View(ViewCommand::Pick(Some(Picking::Part(effect.clone(), kind)))));
                 ui.close();
             }
         }
@@ -126,7 +126,7 @@ fn picker_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &'static E
         }
     });
     if let Some(on) = changed {
-        commands.edit(Edit::Scope(effect, on));
+        commands.edit(Edit::Scope(effect.clone(), on));
     }
 }
 
@@ -167,7 +167,7 @@ fn entries(ui: &Ui, scene: &Arc<Scene>) -> Arc<[Entry]> {
 
 /// Warnings about the patterns of an effect that match nothing.
 fn missing(ui: &Ui, state: &State, scene: &Arc<Scene>, effect: &Effect, on: &Scope) -> Arc<[String]> {
-    let id = egui::Id::unique(("missing parts", effect.name));
+    let id = egui::Id::unique(("missing parts", &effect.name));
     let is_known = |known: &Missing| Arc::ptr_eq(&known.scene, scene) && known.on == *on;
     if let Some(known) = ui.data(|data| data.get_temp::<Missing>(id)).filter(is_known) {
         return known.sentences;

@@ -94,7 +94,7 @@ pub fn entry_ui(ui: &mut Ui, shown: &Shown<'_>, layout: Layout, rect: Rect) -> R
         });
         ui.label(&about);
         if let Ok(found) = &shown.entry.preset_file {
-            let effects: Vec<&str> = found.preset.stack.0.iter().map(|enabled| enabled.effect.name).collect();
+            let effects: Vec<&str> = found.preset.stack.0.iter().map(|enabled| enabled.effect.name.as_str()).collect();
             ui.label(theme::weak(format!("Effects: {}", if effects.is_empty() { "none".into() } else { effects.join(", ") })));
             if !found.preset.tags.is_empty() {
                 ui.label(theme::weak(format!("Tags: {}", found.preset.tags.join(", "))));

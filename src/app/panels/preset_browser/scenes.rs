@@ -14,16 +14,18 @@ use crate::{
         theme,
     },
     preset::SceneSource,
+    preset_file::ModelFormat,
     scene::builtin::{BUILTINS, Builtin},
 };
 
 pub fn scenes_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     shown_ui(ui, &state.session);
     ui.add_space(theme::HALF);
-    if ui.button("Open model…").on_hover_text("A .glb or .gltf file").clicked() {
+    if ui.button("Open model…").on_hover_text(format!("A {} file", ModelFormat::names(" or "))).clicked() {
         commands.perform(Action::Open);
     }
-    ui.label(theme::weak("Or drop a model (.glb, .gltf), a preset (.toml) or an exported picture (.png) on the window."));
+    let models = ModelFormat::names(", ");
+    ui.label(theme::weak(format!("Or drop a model ({models}), a preset (.toml) or an exported picture (.png) on the window.")));
     ui.add_space(theme::GAP);
     ui.label(theme::heading("Built in"));
     let query = match &state.session.preset().scene {

@@ -51,7 +51,7 @@ pub struct Timeline {
 /// Tracks of the enabled effects.
 fn animated(session: &Session) -> Vec<&Track> {
     let preset = session.preset();
-    preset.animation.tracks().iter().filter(|track| preset.stack.get(track.effect().name).is_some()).collect()
+    preset.animation.tracks().iter().filter(|track| preset.stack.get(&track.effect().name).is_some()).collect()
 }
 
 impl Timeline {
@@ -65,7 +65,7 @@ impl Timeline {
 
     /// Time and easing of the selected keyframe.
     fn selection_ui(&self, ui: &mut Ui, state: &State, commands: &Commands) {
-        let Some(key) = self.selected else { return };
+        let Some(key) = &self.selected else { return };
         let Some((track, index)) = key.find(state.session.preset()) else { return };
         let (easing, is_stepped) = (track.keys()[index].easing, steps(track.field()));
         ui.spacing_mut().item_spacing.x = 6.0;
@@ -75,7 +75,7 @@ impl Timeline {
         let drag = DragValue::new(&mut time_s).speed(0.01).max_decimals(3).suffix(" s").update_while_editing(false);
         let response = ui.add_sized([72.0, theme::ROW - 2.0], drag).accessible_name("Key time").on_hover_text("Time of this key");
         if response.changed() {
-            commands.send(Command::Keyframe(KeyframeEdit::Move(key, time_s)));
+            commands.send(Command::Keyframe(KeyframeEdit::Move(key.clone(), time_s)));
         }
         let mut chosen = easing;
         ui.add_enabled_ui(!is_stepped, |ui| {
@@ -93,7 +93,7 @@ impl Timeline {
                 .on_disabled_hover_text("A whole number or a choice keeps its value until the next key")
         });
         if chosen != easing {
-            commands.send(Command::Keyframe(KeyframeEdit::Ease(key, chosen)));
+            commands.send(Command::Keyframe(KeyframeEdit::Ease(key.clone(), chosen)));
         }
         if icon_button(ui, Icon::Cross, "Remove the key (Delete)").clicked() {
             commands.perform(Action::RemoveKey);
@@ -105,7 +105,7 @@ impl Panel for Timeline {
     fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
         let session = &state.session;
         ui.spacing_mut().item_spacing.y = theme::HALF;
-        self.selected = self.selected.filter(|key| key.find(session.preset()).is_some());
+        self.selected = self.selected.take().filter(|key| key.find(session.preset()).is_some());
         ui.horizontal(|ui| {
             ui.set_height(TRANSPORT);
             transport_ui(ui, session, commands);
@@ -218,7 +218,7 @@ fn clock_value(
     };
     let [low, high] = setting.hard;
     let drag = styled(DragValue::new(&mut numbers[component]).range(low..=high).update_while_editing(false));
-    let response = ui.add_sized([72.0, theme::ROW - 2.0], drag).accessible_name(name).on_hover_text(setting.doc);
+    let response = ui.add_sized([72.0, theme::ROW - 2.0], drag).accessible_name(name).on_hover_text(&setting.doc);
     if response.changed() {
         commands.edit(Edit::Setting(setting, Value::Numbers(numbers)));
     }

@@ -92,25 +92,25 @@ impl Tracks<'_> {
     /// One keyframe: a click selects it and shows its time, a drag moves it, the menu eases and removes it.
     fn mark_ui(&mut self, ui: &mut Ui, track: &Track, index: usize, at: Pos2) {
         let key = &track.keys()[index];
-        let id = KeyId { effect: track.effect(), field: track.field().name, time_s: key.time_s };
+        let id = KeyId { effect: track.effect().clone(), field: track.field().name.clone(), time_s: key.time_s };
         let hit = Rect::from_center_size(at, vec2(2.0 * MARK + 4.0, 2.0 * MARK + 8.0));
         let response = ui.interact(hit, egui::Id::unique((track.path(), "mark", index)), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Key {} {:.3} s", track.path(), key.time_s)));
-        let is_selected = *self.selected == Some(id);
+        let is_selected = self.selected.as_ref() == Some(&id);
         paint_mark(ui, at, key.easing, is_selected, response.hovered() || response.dragged() || response.has_focus());
         if response.clicked() {
-            *self.selected = Some(id);
+            *self.selected = Some(id.clone());
             self.commands.send(Command::Time(TimeCommand::Pause));
             self.commands.send(Command::Time(TimeCommand::Show(key.time_s)));
         }
         if response.drag_started_by(egui::PointerButton::Primary) {
-            (*self.selected, *self.grabbed_s) = (Some(id), Some(key.time_s));
+            (*self.selected, *self.grabbed_s) = (Some(id.clone()), Some(key.time_s));
         }
         if response.dragged_by(egui::PointerButton::Primary) {
             self.drag_mark(ui, track.keys(), index);
         }
         let mut edit = None;
-        response.context_menu(|ui| edit = menu_ui(ui, track, key, id));
+        response.context_menu(|ui| edit = menu_ui(ui, track, key, &id));
         if let Some(edit) = edit {
             self.commands.send(Command::Keyframe(edit));
         }
@@ -124,7 +124,7 @@ impl Tracks<'_> {
     /// Moves the selected keyframe with the pointer, between its neighbors, on the grid of frames unless Shift is down.
     fn drag_mark(&self, ui: &Ui, keys: &[Keyframe], index: usize) {
         let (origin, now, is_free) = ui.input(|i| (i.pointer.press_origin(), i.pointer.interact_pos(), i.modifiers.shift));
-        let (Some(selected), Some(grabbed_s), Some(origin), Some(now)) = (*self.selected, *self.grabbed_s, origin, now) else { return };
+        let (Some(selected), Some(grabbed_s), Some(origin), Some(now)) = (&*self.selected, *self.grabbed_s, origin, now) else { return };
         let pointed_s = grabbed_s + f64::from(now.x - origin.x) * self.span.seconds_per_point();
         let [from_s, _] = self.session.preset().clock.range_s;
         let snapped_s = if is_free { pointed_s } else { from_s + ((pointed_s - from_s) / STEP_S).round() * STEP_S };
@@ -133,27 +133,27 @@ impl Tracks<'_> {
         let low = limit(index.checked_sub(1).map(|i| &keys[i]), 1e-3, first_s);
         let high = limit(keys.get(index + 1), -1e-3, last_s);
         if low <= high {
-            self.commands.send(Command::Keyframe(KeyframeEdit::Move(selected, snapped_s.clamp(low, high))));
+            self.commands.send(Command::Keyframe(KeyframeEdit::Move(selected.clone(), snapped_s.clamp(low, high))));
         }
     }
 }
 
 /// The menu of a keyframe.
-fn menu_ui(ui: &mut Ui, track: &Track, key: &Keyframe, id: KeyId) -> Option<KeyframeEdit> {
+fn menu_ui(ui: &mut Ui, track: &Track, key: &Keyframe, id: &KeyId) -> Option<KeyframeEdit> {
     let mut edit = None;
     ui.set_min_width(140.0);
     ui.label(theme::weak("To the next key"));
     ui.add_enabled_ui(!steps(track.field()), |ui| {
         for easing in Easing::ALL {
             if ui.radio(easing == key.easing, easing.name()).on_hover_text(easing.about()).clicked() {
-                edit = Some(KeyframeEdit::Ease(id, easing));
+                edit = Some(KeyframeEdit::Ease(id.clone(), easing));
                 ui.close();
             }
         }
     });
     ui.separator();
     if ui.button("Remove the key").clicked() {
-        edit = Some(KeyframeEdit::Remove(id));
+        edit = Some(KeyframeEdit::Remove(id.clone()));
         ui.close();
     }
     edit
@@ -162,14 +162,14 @@ fn menu_ui(ui: &mut Ui, track: &Track, key: &Keyframe, id: KeyId) -> Option<Keyf
 /// The value at a time, as short as it can be read.
 fn value_text(track: &Track, time_s: f64) -> String {
     let value = track.value_at(time_s);
-    match track.field().value_type {
+    match &track.field().value_type {
         ValueType::Color => {
             let [r, g, b, a] = std::array::from_fn(|i| value.get(i).map_or(0.0, |v| *v as f32));
             let [r, g, b, _] = egui::Rgba::from_rgba_unmultiplied(r, g, b, a).to_srgba_unmultiplied();
             format!("#{r:02x}{g:02x}{b:02x}")
         }
         ValueType::Bool => if value[0] == 0.0 { "false" } else { "true" }.into(),
-        ValueType::Choice(words) => words.get(value[0] as usize).copied().unwrap_or_default().into(),
+        ValueType::Choice(words) => words.get(value[0] as usize).cloned().unwrap_or_default(),
         ValueType::U32 | ValueType::I32 => format!("{:.0}", value[0]),
         _ => value.iter().map(|component| format!("{component:.3}")).collect::<Vec<_>>().join(" "),
     }
@@ -229,8 +229,8 @@ impl Curve {
         let count = (rail.width() / CURVE_POINTS).ceil() as usize;
         let xs: Vec<f32> = (0..=count).map(|i| (rail.left() + i as f32 * CURVE_POINTS).min(rail.right())).collect();
         let values: Vec<Vec<f64>> = xs.iter().map(|x| track.value_at(span.time_s(*x))).collect();
-        let value_type = track.field().value_type;
-        let components = if value_type == ValueType::Color { 3 } else { value_type.components() };
+        let value_type = &track.field().value_type;
+        let components = if *value_type == ValueType::Color { 3 } else { value_type.components() };
         for component in 0..components {
             let points = xs.iter().zip(&values).map(|(x, value)| pos2(*x, self.y(value[component]))).collect();
             painter.add(Shape::line(points, Stroke::new(1.5, component_color(component, components))));

@@ -129,7 +129,7 @@ fn states(state: &State) -> Vec<(Color32, String)> {
         states.push((theme::text_weak(), format!("1/{} resolution while moving", screen.divisor())));
     }
     if !session.muted.is_empty() {
-        let names: Vec<_> = session.muted.iter().copied().collect();
+        let names: Vec<_> = session.muted.iter().map(String::as_str).collect();
         states.push((theme::amber(), format!("muted: {}", names.join(", "))));
     }
     let full = screen.report().map_or(0, |report| report.counters.full_pixels);
@@ -144,7 +144,7 @@ fn states(state: &State) -> Vec<(Color32, String)> {
         }
         states.push((theme::text(), format!("drew {} of {} samples ({percent:.1} %), {over} too many", order.drawn, order.covered)));
     }
-    if let Some(picking) = state.picking {
+    if let Some(picking) = &state.picking {
         let what = match picking {
             Picking::Point(_) => "a point".to_owned(),
             Picking::Part(_, kind) => format!("a {}", kind.name()),

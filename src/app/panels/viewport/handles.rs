@@ -29,17 +29,17 @@ pub fn handles_ui(ui: &mut Ui, state: &State, commands: &Commands, rect: Rect, a
     let session = &state.session;
     let Some(scene) = session.scene().filter(|_| at.width().min(at.height()) >= SMALLEST) else { return };
     let view = session.view_at(scene, whole_size(rect));
-    for enabled in session.visible_stack().0 {
-        let effect = enabled.effect;
+    for enabled in &session.visible_stack().0 {
+        let effect = &enabled.effect;
         let points =
-            effect.fields.iter().filter(|field| field.measure() == Measure::Point && field.is_shown(effect.fields, &enabled.words));
+            effect.fields.iter().filter(|field| field.measure() == Measure::Point && field.is_shown(&effect.fields, &enabled.words));
         let space = PointSpace::of(effect, session, &view);
         for field in points {
             let Some([x, y, z]) = session.shown_value(effect, field).and_then(|value| <[f64; 3]>::try_from(value).ok()) else { continue };
             let Some(uv) = seen_at(&view, space.world(DVec3::new(x, y, z))) else { continue };
             let center = at.min + vec2(uv.x as f32, uv.y as f32) * at.size();
             if at.contains(center) {
-                let handle = Handle { parameter: (effect, field), world: space.world(DVec3::new(x, y, z)), center };
+                let handle = Handle { parameter: (effect.clone(), field.clone()), world: space.world(DVec3::new(x, y, z)), center };
                 handle.show(ui, commands, (scene, &view, &space), at);
             }
         }
@@ -56,7 +56,7 @@ struct Handle {
 
 impl Handle {
     fn show(&self, ui: &mut Ui, commands: &Commands, (scene, view, space): (&Scene, &View, &PointSpace), at: Rect) {
-        let (effect, field) = self.parameter;
+        let (effect, field) = &self.parameter;
         let name = format!("{}.{}", effect.name, field.name);
         let area = Rect::from_center_size(self.center, Vec2::splat(2.0 * REACH));
         let response = ui.interact(area, egui::Id::unique(("handle", &name)), Sense::drag()).on_hover_cursor(CursorIcon::Grab);
@@ -75,7 +75,7 @@ impl Handle {
             if let Some(point) = point {
                 let [low, high] = field.hard;
                 let value = space.value(point).clamp(DVec3::splat(low), DVec3::splat(high));
-                commands.edit(Edit::Parameter(self.parameter, value.to_value()));
+                commands.edit(Edit::Parameter(self.parameter.clone(), value.to_value()));
             }
         }
         response.on_hover_text(format!("{name}\nDrag to move it across the view, with Shift to put it on the model"));

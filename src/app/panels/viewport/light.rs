@@ -52,28 +52,28 @@ impl Light {
             return Some(Self { toward: shadow.toward(), color: shadow.light, turns: Turns::Angles });
         }
         stack.0.iter().find_map(|enabled| {
-            let effect = enabled.effect;
+            let effect = &enabled.effect;
             let field = effect.field(DIRECTION).filter(|field| field.value_type == ValueType::Point)?;
             let [x, y, z] = <[f64; 3]>::try_from(field.get(&enabled.words)).ok()?;
             // As the effect does, which takes a light from straight above where the direction has no length.
             let toward = DVec3::new(x, y, z).normalize_or(DVec3::Y);
             let sun = effect.field("sun").map_or_else(Vec::new, |field| field.get(&enabled.words));
             let color = [0, 1, 2, 3].map(|channel| sun.get(channel).map_or(1.0, |&value| value as f32));
-            Some(Self { toward, color, turns: Turns::Direction((effect, field)) })
+            Some(Self { toward, color, turns: Turns::Direction((effect.clone(), field.clone())) })
         })
     }
 
     /// What turns the light towards this direction.
     fn turn(&self, toward: DVec3, commands: &Commands) {
-        match self.turns {
+        match &self.turns {
             Turns::Angles => {
                 for (name, degrees) in ["azimuth_deg", "elevation_deg"].into_iter().zip(angles(toward)) {
                     if let Some(field) = shadow::EFFECT.field(name) {
-                        commands.edit(Edit::Parameter((&shadow::EFFECT, field), Value::number(degrees)));
+                        commands.edit(Edit::Parameter((shadow::EFFECT.clone(), field.clone()), Value::number(degrees)));
                     }
                 }
             }
-            Turns::Direction(parameter) => commands.edit(Edit::Parameter(parameter, toward.to_value())),
+            Turns::Direction(parameter) => commands.edit(Edit::Parameter(parameter.clone(), toward.to_value())),
         }
     }
 }

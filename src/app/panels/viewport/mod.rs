@@ -83,7 +83,7 @@ impl Viewport {
         if camera.is_some() {
             commands.edit(Edit::Camera(camera));
         }
-        if let Some(picking) = state.picking {
+        if let Some(picking) = &state.picking {
             pick_input::pick(&response, self.compare.side_b(rect), picking, state, commands);
         }
         Interaction { response, size, is_moved }
@@ -221,7 +221,7 @@ fn picture_ui(ui: &Ui, state: &State, rect: Rect) -> Rect {
     let (title, detail) = if let Some(compiling) = &compiling {
         (compiling.as_str(), "The first picture takes longest.")
     } else if state.session.scenes.has_failed() {
-        ("This scene cannot be shown", "See the log. Choose another scene on the left, or drop a .glb file here.")
+        ("This scene cannot be shown", "See the log. Choose another scene on the left, or drop a model here.")
     } else if state.screen.is_refused() {
         ("This picture cannot be drawn", "See the log.")
     } else {

@@ -59,8 +59,8 @@ fn lines(overlays: &OverlaySelection, found: &Findings, stack: &Stack) -> Vec<Li
 fn crossing_text(crossing: &Crossing, stack: &Stack) -> String {
     let Crossing { effect, made, parameter, only_f32, .. } = crossing;
     let side = if *only_f32 { " in f32" } else { "" };
-    let value = parameter.zip(stack.get(effect.name)).map(|(field, enabled)| {
-        let value = toml_value::write_text(field.value_type, &field.value(&enabled.words));
+    let value = parameter.as_ref().zip(stack.get(&effect.name)).map(|(field, enabled)| {
+        let value = toml_value::write_text(&field.value_type, &field.value(&enabled.words));
         format!(", {} = {value}", field.name)
     });
     format!("{} made {}{side}{}", effect.name, made.word(), value.unwrap_or_default())

@@ -30,7 +30,7 @@ pub fn attract(response: &Response, session: &Session, commands: &Commands) -> b
     if let Some(point) = facing_point(&view, through, DVec2::new(uv.x.into(), uv.y.into())) {
         let [low, high] = field.hard;
         let point = space.value(point).clamp(DVec3::splat(low), DVec3::splat(high));
-        commands.edit(Edit::Parameter((&EFFECT, field), point.to_value()));
+        commands.edit(Edit::Parameter((EFFECT.clone(), field.clone()), point.to_value()));
     }
     true
 }

@@ -23,7 +23,7 @@ use crate::{
 };
 
 /// Sets what is picked to what lies under a click. The picture of the preset is in `side`.
-pub fn pick(response: &Response, side: Rect, picking: Picking, state: &State, commands: &Commands) {
+pub fn pick(response: &Response, side: Rect, picking: &Picking, state: &State, commands: &Commands) {
     let clicked = response.interact_pointer_pos().filter(|_| response.clicked());
     let Some((at, scene)) = clicked.zip(state.session.scene()) else { return };
     let size = whole_size(response.rect);
@@ -44,18 +44,18 @@ pub fn pick(response: &Response, side: Rect, picking: Picking, state: &State, co
 }
 
 /// The change that a click at `uv` makes; none where there is no triangle.
-fn edit(picking: Picking, state: &State, scene: &Scene, view: &View, uv: DVec2) -> Option<Edit> {
+fn edit(picking: &Picking, state: &State, scene: &Scene, view: &View, uv: DVec2) -> Option<Edit> {
     match picking {
         Picking::Point(parameter) => {
             let point = pick::pick(scene, view, uv)?;
-            let value = PointSpace::of(parameter.0, &state.session, view).value(point);
-            Some(Edit::Parameter(parameter, value.to_value()))
+            let value = PointSpace::of(&parameter.0, &state.session, view).value(point);
+            Some(Edit::Parameter(parameter.clone(), value.to_value()))
         }
         Picking::Part(effect, kind) => {
             let instance = &scene.instances[pick::pick_instance(scene, view, uv)?];
-            let pattern = PartPattern::of_name(kind, names_of(scene, instance, kind).first()?);
-            let on = &state.session.preset().stack.get(effect.name)?.on;
-            Some(Edit::Scope(effect, on.with(&pattern, true)))
+            let pattern = PartPattern::of_name(*kind, names_of(scene, instance, *kind).first()?);
+            let on = &state.session.preset().stack.get(&effect.name)?.on;
+            Some(Edit::Scope(effect.clone(), on.with(&pattern, true)))
         }
     }
 }

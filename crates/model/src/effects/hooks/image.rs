@@ -1,5 +1,7 @@
 //! The image hook: finish the pixel.
 
+use std::sync::Arc;
+
 use glam::DVec4;
 
 use crate::params::Params;
@@ -52,11 +54,14 @@ impl Picture<'_> {
     }
 }
 
+/// How an image effect finishes a pixel, given its parameter words.
+pub type FinishFunction = dyn Fn(Pixel, &Picture<'_>, &[u32]) -> Pixel + Send + Sync;
+
 /// An image effect's function over its parameter words.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct ImageHook {
     pub reads_previous: bool,
-    pub finish: &'static (dyn Fn(Pixel, &Picture<'_>, &[u32]) -> Pixel + Sync),
+    pub finish: Arc<FinishFunction>,
 }
 
 /// The f64 side of an effect on the image hook.

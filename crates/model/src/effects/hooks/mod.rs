@@ -15,20 +15,22 @@ pub use slot::{Layers, Shape, Slot};
 pub use surface::{Surface, SurfaceEffect, SurfaceInput};
 pub use vertex::{ErrorBound, ROUNDING, Vertex, VertexEffect, VertexHook};
 
+use std::sync::Arc;
+
 use crate::scene::particle_discs::ParticleSettings;
 
 /// A surface effect's function over its parameter words.
-pub type SurfaceFunction = dyn Fn(Surface, &[u32]) -> Surface + Sync;
+pub type SurfaceFunction = dyn Fn(Surface, &[u32]) -> Surface + Send + Sync;
 
 /// Every hook of one effect, each with its function over the parameter words.
-#[derive(Clone, Copy)]
+#[derive(Clone, Default)]
 pub struct Hooks {
     /// Where is it?
     pub vertex: Option<VertexHook>,
     /// Is this sample drawn?
     pub sample: Option<SampleHook>,
     /// What color is it?
-    pub surface: Option<&'static SurfaceFunction>,
+    pub surface: Option<Arc<SurfaceFunction>>,
     /// Finish the pixel.
     pub image: Option<ImageHook>,
     /// The part of the rasterizer that the effect replaces.
@@ -40,22 +42,10 @@ pub struct Hooks {
     /// Its color has steps, decided by a value plus [`Surface::step_offset`].
     pub has_steps: bool,
     /// The members of the surface that it reads.
-    pub surface_inputs: &'static [SurfaceInput],
+    pub surface_inputs: Vec<SurfaceInput>,
 }
 
 impl Hooks {
-    pub const NONE: Self = Self {
-        vertex: None,
-        sample: None,
-        surface: None,
-        image: None,
-        slot: None,
-        has_lines: false,
-        particle_settings: None,
-        has_steps: false,
-        surface_inputs: &[],
-    };
-
     /// Does it read [`Surface::lit`], so that the scene is drawn from the light as well?
     pub fn reads_light(&self) -> bool {
         self.surface_inputs.contains(&SurfaceInput::Lit)

@@ -3,7 +3,7 @@
 //! What a decision takes from floats (a front in the world, for instance) is rounded once per triangle, stored, and read by all
 //! passes: [`SampleEffect::sample_setup`].
 
-use std::cmp::Ordering;
+use std::{cmp::Ordering, sync::Arc};
 
 use glam::{DVec2, DVec3};
 
@@ -103,19 +103,26 @@ impl Sample {
 }
 
 /// The setup of a triangle, given its first word where that is known.
-pub type SetupFunction = dyn Fn(&TriangleSetup, &[u32], Option<u32>) -> [u32; 4] + Sync;
+pub type SetupFunction = dyn Fn(&TriangleSetup, &[u32], Option<u32>) -> [u32; 4] + Send + Sync;
+
+/// The bound of the error of the f32 side in the first word of a setup.
+pub type SetupBoundFunction = dyn Fn(&TriangleSetup, &[u32]) -> f64 + Send + Sync;
+/// What is true of a sample effect with these parameter words.
+pub type WordsTest = dyn Fn(&[u32]) -> bool + Send + Sync;
+/// Whether a sample is drawn.
+pub type SampleTest = dyn Fn(&Sample, &[u32]) -> bool + Send + Sync;
 
 /// A sample effect's functions over its parameter words.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct SampleHook {
     /// It needs a setup per triangle.
     pub has_setup: bool,
     /// Bound of the error of the f32 side in the first word of a setup.
-    pub error_bound: &'static (dyn Fn(&TriangleSetup, &[u32]) -> f64 + Sync),
+    pub error_bound: Arc<SetupBoundFunction>,
     /// Its setup is rounded from floats, which differ from adapter to adapter.
-    pub is_from_floats: &'static (dyn Fn(&[u32]) -> bool + Sync),
-    pub sample_setup: &'static SetupFunction,
-    pub is_drawn: &'static (dyn Fn(&Sample, &[u32]) -> bool + Sync),
+    pub is_from_floats: Arc<WordsTest>,
+    pub sample_setup: Arc<SetupFunction>,
+    pub is_drawn: Arc<SampleTest>,
 }
 
 /// The integer side of an effect on the sample hook.

@@ -1,5 +1,7 @@
 //! The vertex hook: where is it?
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 
 use crate::params::Params;
@@ -55,14 +57,21 @@ impl ErrorBound {
 /// Largest relative error of one f32 addition or multiplication, in any rounding mode.
 pub const ROUNDING: f64 = 1.0 / (1 << 23) as f64;
 
+/// Where a vertex effect moves a vertex, given its parameter words.
+pub type VertexFunction = dyn Fn(Vertex, &[u32]) -> Vertex + Send + Sync;
+/// The error bound of what it moves, given that of its input.
+pub type VertexBoundFunction = dyn Fn(&Vertex, ErrorBound, &[u32]) -> ErrorBound + Send + Sync;
+/// The farthest that it moves a vertex of a model of this radius, meters.
+pub type DisplacementFunction = dyn Fn(f64, &[u32]) -> f64 + Send + Sync;
+
 /// A vertex effect's functions over its parameter words.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct VertexHook {
     /// It reads the triangle, so triangles cannot share vertices.
     pub needs_triangle: bool,
-    pub moved: &'static (dyn Fn(Vertex, &[u32]) -> Vertex + Sync),
-    pub error_bound: &'static (dyn Fn(&Vertex, ErrorBound, &[u32]) -> ErrorBound + Sync),
-    pub max_displacement_m: &'static (dyn Fn(f64, &[u32]) -> f64 + Sync),
+    pub moved: Arc<VertexFunction>,
+    pub error_bound: Arc<VertexBoundFunction>,
+    pub max_displacement_m: Arc<DisplacementFunction>,
 }
 
 /// The f64 side of an effect on the vertex hook.
