@@ -8,7 +8,7 @@ use super::{
     log::Level,
     loss::LossFlag,
     recovery::recovery_path,
-    settings::{WindowPlace, keeper::window_place},
+    settings::{WindowSize, keeper::window_size},
     window::{App, Options},
 };
 use crate::gpu::device::AdapterChoice;
@@ -17,7 +17,7 @@ use crate::gpu::device::AdapterChoice;
 const MIN_SIZE: [f32; 2] = [900.0, 600.0];
 
 /// Size and settings of the window.
-fn native_options(adapter: &AdapterChoice, window: WindowPlace) -> eframe::NativeOptions {
+fn native_options(adapter: &AdapterChoice, window: WindowSize) -> eframe::NativeOptions {
     eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("rasterlab")
@@ -43,7 +43,7 @@ const MAX_LOSSES: u32 = 2;
 /// If there is no suitable device or no display, or [`DeviceLost`].
 pub fn run(options: Options) -> anyhow::Result<()> {
     let mut options = options;
-    let window = options.config.as_deref().map_or_else(WindowPlace::default, window_place);
+    let window = options.config.as_deref().map_or_else(WindowSize::default, window_size);
     for losses in 0..=MAX_LOSSES {
         let loss = LossFlag::default();
         let (flag, opened) = (loss.clone(), options.clone());
