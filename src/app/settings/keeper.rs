@@ -187,6 +187,7 @@ const SESSION: &str = "session.toml";
 const LOCK: &str = "session.lock";
 
 /// The size that the window had, by the settings of `folder`. What is wrong with them is said by [`Keeper::new`].
+#[cfg(not(target_arch = "wasm32"))]
 pub fn window_size(folder: &Path) -> WindowSize {
     let text = std::fs::read_to_string(folder.join(SETTINGS)).unwrap_or_default();
     plain_file::parse(&text, SETTINGS, &mut Vec::new())
