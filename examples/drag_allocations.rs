@@ -14,6 +14,7 @@ use std::{
 };
 
 use anyhow::Context;
+use pollster::FutureExt as _;
 use rasterlab::{
     gpu::{Gpu, Renderer, device::AdapterChoice},
     preset_file::{self, Folders},
@@ -80,12 +81,12 @@ fn main() -> anyhow::Result<()> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let shows_sites = args.iter().any(|arg| arg == "--sites");
     let frames: usize = args.iter().find(|arg| !arg.starts_with("--")).map_or(Ok(50), |text| text.parse()).context("FRAMES is a number")?;
-    let gpu = Gpu::open(&AdapterChoice::Any)?;
+    let gpu = Gpu::open(&AdapterChoice::Any).block_on()?;
     println!("{}", gpu.summary.name);
     let mut renderer = Renderer::new(gpu.clone());
     let preset = preset_file::open("facet", &Folders::default())?.preset;
     let scene = preset_file::load_scene(&preset, None)?;
-    renderer.set_scene(&scene)?;
+    renderer.set_scene(&scene).block_on()?;
     let moments = preset.moments(&scene, [640, 360]);
     let (view, stack) = moments.last().context("a preset shows a moment")?;
     let mut stack = stack.clone();
@@ -102,9 +103,9 @@ fn main() -> anyhow::Result<()> {
         let start = ALLOCATIONS.load(Ordering::Relaxed);
         let is_last = frame + 1 == warm_up + frames;
         KEEPS.set(is_last);
-        renderer.draw(view, &stack, &preset.accuracy)?;
+        renderer.draw(view, &stack, &preset.accuracy).block_on()?;
         let drawn = ALLOCATIONS.load(Ordering::Relaxed);
-        renderer.finish()?;
+        renderer.finish().block_on()?;
         let finished = ALLOCATIONS.load(Ordering::Relaxed);
         renderer.explained();
         KEEPS.set(false);

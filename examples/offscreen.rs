@@ -4,6 +4,7 @@
 //! cargo run --release --example offscreen -- walk-dissolve
 //! ```
 
+use pollster::FutureExt as _;
 use rasterlab::{
     gpu::{Gpu, Renderer, device::AdapterChoice},
     oracle, preset_file,
@@ -15,11 +16,11 @@ fn main() -> anyhow::Result<()> {
     let preset = &preset_file.preset;
     let scene = preset_file::load_scene(preset, preset_file.path.as_deref())?;
 
-    let mut renderer = Renderer::new(Gpu::open(&AdapterChoice::Any)?);
-    renderer.set_scene(&scene)?;
+    let mut renderer = Renderer::new(Gpu::open(&AdapterChoice::Any).block_on()?);
+    renderer.set_scene(&scene).block_on()?;
     // Most presets show one moment; where an effect reads earlier pictures, those come first.
     let moments = preset.moments(&scene, preset.output.size);
-    let capture = renderer.capture_last(&moments, &preset.accuracy)?;
+    let capture = renderer.capture_last(&moments, &preset.accuracy).block_on()?;
 
     // Row-major pixels: triangle id, depth key and gamma-encoded color.
     let frame = &capture.frame;

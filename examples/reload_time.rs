@@ -5,6 +5,7 @@
 use std::time::Instant;
 
 use anyhow::Context;
+use pollster::FutureExt as _;
 use rasterlab::{
     effect_files::Catalog,
     gpu::{Gpu, Renderer, device::AdapterChoice},
@@ -32,7 +33,7 @@ fn main() -> anyhow::Result<()> {
     let (width, height) = size.split_once('x').context("the size is WIDTHxHEIGHT")?;
     let size = [width.parse()?, height.parse()?];
 
-    let gpu = Gpu::open(&AdapterChoice::Any)?;
+    let gpu = Gpu::open(&AdapterChoice::Any).block_on()?;
     println!("{}", gpu.summary.name);
     let mut renderer = Renderer::new(gpu);
     // The time decides what the driver's cache cannot know from an earlier run.
@@ -49,12 +50,12 @@ fn main() -> anyhow::Result<()> {
         let scene = preset_file::load_scene(&file.preset, None)?;
         let moments = file.preset.moments(&scene, size);
         let (view, stack) = moments.last().context("a preset shows a moment")?;
-        renderer.set_scene(&scene)?;
+        renderer.set_scene(&scene).block_on()?;
         let compiled = renderer.compiled();
         let mut frame = || -> anyhow::Result<f64> {
             let start = Instant::now();
-            renderer.draw(view, stack, &file.preset.accuracy)?;
-            renderer.finish()?;
+            renderer.draw(view, stack, &file.preset.accuracy).block_on()?;
+            renderer.finish().block_on()?;
             Ok(start.elapsed().as_secs_f64() * 1e3)
         };
         let first = frame()?;

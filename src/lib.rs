@@ -9,18 +9,19 @@
 //! * `rasterlab-evaluator` ([`evaluator`]): evaluates WGSL functions on the CPU
 //! * `rasterlab-oracle` ([`oracle`]): the exact CPU renderer that judges the kernels and makes the goldens
 //! * `rasterlab-gpu` ([`gpu`]): runs the kernels
-//! * `rasterlab-files` ([`preset_file`], [`effect_files`], [`film`]): presets, effects and films on disk
+//! * `rasterlab-files` ([`host`], [`preset_file`], [`effect_files`], [`film`]): models, presets, effects and films on disk
 //! * `rasterlab-bench` ([`stress`], [`baselines`], [`trade`]): extreme cases, and speed beside error
 
 #![deny(unsafe_code)]
 
 #[cfg(feature = "gui")]
 pub mod app;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod cli;
 
 pub use rasterlab_bench::{baselines, stress, trade};
 pub use rasterlab_evaluator as evaluator;
-pub use rasterlab_files::{effect_files, film, preset_file};
+pub use rasterlab_files::{effect_files, film, host, preset_file};
 pub use rasterlab_gpu as gpu;
 pub use rasterlab_kernels::{plan, shader};
 pub use rasterlab_model::{accuracy, effects, frame, math, measure, params, preset, scene, work};

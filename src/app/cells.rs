@@ -6,6 +6,7 @@ use std::sync::{
 };
 
 use eframe::egui::ColorImage;
+use pollster::FutureExt as _;
 
 use super::screen::Inputs;
 use crate::gpu::{Gpu, Renderer};
@@ -41,8 +42,8 @@ pub fn draw(gpu: &Arc<Gpu>, cells: &Cells, mut take: impl FnMut(CellOf, CellResu
 }
 
 fn picture(renderer: &mut Renderer, Inputs { scene, view, stack, accuracy }: &Inputs) -> CellResult {
-    renderer.set_scene(scene).map_err(|error| error.to_string())?;
-    let frame = renderer.capture(view, stack, accuracy).map_err(|error| error.to_string())?.into_shown();
+    renderer.set_scene(scene).block_on().map_err(|error| error.to_string())?;
+    let frame = renderer.capture(view, stack, accuracy).block_on().map_err(|error| error.to_string())?.into_shown();
     Ok(ColorImage::from_rgba_unmultiplied([frame.width as usize, frame.height as usize], &frame.color.concat()))
 }
 

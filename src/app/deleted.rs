@@ -1,9 +1,6 @@
 //! Deleted files: they go to the trash of the system, and their bytes are kept, so that Undo needs nothing from it.
 
-use std::{
-    error::Error as _,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use crate::preset_file::{Existing, PresetError, write_atomically};
 
@@ -23,7 +20,7 @@ impl Deleted {
         let failed = |reason: String| format!("{}: it cannot be deleted: {reason}", path.display());
         let read = || Ok(Self { path: std::path::absolute(path)?, bytes: std::fs::read(path)? });
         let deleted = read().map_err(|error: std::io::Error| failed(error.to_string()))?;
-        trash::delete(path).map_err(|error| failed(error.source().map_or_else(|| error.to_string(), ToString::to_string)))?;
+        move_to_trash(path).map_err(failed)?;
         Ok(deleted)
     }
 
@@ -51,6 +48,18 @@ impl Deleted {
         }
         unreachable!("every number is tried")
     }
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+fn move_to_trash(path: &Path) -> Result<(), String> {
+    use std::error::Error as _;
+
+    trash::delete(path).map_err(|error| error.source().map_or_else(|| error.to_string(), ToString::to_string))
+}
+
+#[cfg(target_arch = "wasm32")]
+fn move_to_trash(_: &Path) -> Result<(), String> {
+    Err("a page has no trash".into())
 }
 
 #[cfg(test)]

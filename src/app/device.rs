@@ -3,36 +3,14 @@
 use std::sync::Arc;
 
 use anyhow::Context as _;
-use eframe::{egui, egui_wgpu, wgpu};
+use eframe::{egui_wgpu, wgpu};
+use pollster::FutureExt as _;
 
-use super::{
-    background::{Urgency, started_as},
-    settings::WindowPlace,
-};
+use super::background::{Urgency, started_as};
 use crate::gpu::{
     Gpu,
     device::{self, AdapterChoice},
 };
-
-/// Smallest size of the window's contents, points.
-const MIN_SIZE: [f32; 2] = [900.0, 600.0];
-
-/// Size and settings of the window.
-pub fn native_options(adapter: &AdapterChoice, window: WindowPlace) -> eframe::NativeOptions {
-    eframe::NativeOptions {
-        viewport: egui::ViewportBuilder::default()
-            .with_title("rasterlab")
-            .with_app_id("rasterlab")
-            .with_inner_size(window.size.map(|side| side.max(1.0)))
-            .with_maximized(window.is_maximized)
-            .with_min_inner_size(MIN_SIZE)
-            .with_drag_and_drop(true),
-        wgpu_options: egui_wgpu::WgpuConfiguration { wgpu_setup: wgpu_setup(adapter), ..Default::default() },
-        // Dithering would change the bytes that the kernels drew.
-        dithering: false,
-        ..Default::default()
-    }
-}
 
 /// How the window and its tests open their device: the chosen adapter, the features and limits that the kernels need, and
 /// back ends that run compute.
@@ -93,7 +71,7 @@ impl Devices {
     /// The devices for a window on `window`. Without a second device the first draws, too.
     pub fn of(window: Arc<Gpu>) -> Self {
         let choice = AdapterChoice::Named(window.summary.name.clone());
-        let opened = || started_as(Urgency::Picture, || Gpu::open(&choice).ok());
+        let opened = || started_as(Urgency::Picture, || Gpu::open(&choice).block_on().ok());
         let second = if window.summary.software { opened() } else { None };
         Self { picture: second.unwrap_or_else(|| window.clone()), window, painter: Painter::Kernels }
     }

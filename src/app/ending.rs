@@ -4,8 +4,10 @@
 use std::{
     sync::{Mutex, PoisonError},
     thread::JoinHandle,
-    time::{Duration, Instant},
+    time::Duration,
 };
+
+use web_time::Instant;
 
 /// How long the window waits for its threads when it closes.
 const PATIENCE: Duration = Duration::from_secs(20);

@@ -6,10 +6,12 @@ use std::{
         Arc, Mutex, MutexGuard,
         atomic::{AtomicBool, Ordering},
     },
-    time::{Duration, Instant},
+    time::Duration,
 };
 
 use eframe::egui;
+use pollster::FutureExt as _;
+use web_time::Instant;
 
 use crate::{
     accuracy::RenderScale,
@@ -216,8 +218,8 @@ impl Painter for Studio {
     }
 
     fn paint(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Frame, Failure> {
-        self.renderer.set_scene(scene)?;
-        Ok(self.renderer.capture_last(&preset.moments(scene, preset.output.size), &preset.accuracy)?.into_shown())
+        self.renderer.set_scene(scene).block_on()?;
+        Ok(self.renderer.capture_last(&preset.moments(scene, preset.output.size), &preset.accuracy).block_on()?.into_shown())
     }
 }
 
@@ -269,7 +271,7 @@ pub fn export(
         Format::Video(_) => outputs.video = Some(VideoTarget::new(&request.path, request.size)?),
     }
     let film = Film::new(preset_file, scene, schedule, request.turntable).map_err(FilmError::from)?;
-    let gpu = Gpu::open(&AdapterChoice::Named(adapter)).map_err(|error| Failure::Other(error.to_string()))?;
+    let gpu = Gpu::open(&AdapterChoice::Named(adapter)).block_on().map_err(|error| Failure::Other(error.to_string()))?;
     let mut studio = Studio { renderer: Renderer::new(gpu.clone()), gpu };
     let mut production = Production::begin(film, outputs, studio.provenance(), request.replaces)?;
     let (all, kept) = (production.jobs.len(), production.kept());

@@ -13,6 +13,7 @@ use std::{
 };
 
 use eframe::egui;
+use pollster::FutureExt as _;
 
 use super::{
     background::{self, Urgency, yield_processor},
@@ -392,15 +393,15 @@ fn caught<T>(what: &str, work: impl FnOnce() -> Result<T, String>) -> Result<T, 
 /// Draws `inputs` with a second renderer; all renderers of a device share their pipelines.
 fn compile(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs) -> Result<(), String> {
     let mut renderer = Renderer::new(gpu);
-    renderer.set_scene(scene).map_err(|e| e.to_string())?;
-    renderer.draw(view, stack, accuracy).map_err(|e| e.to_string())
+    renderer.set_scene(scene).block_on().map_err(|e| e.to_string())?;
+    renderer.draw(view, stack, accuracy).block_on().map_err(|e| e.to_string())
 }
 
 fn verify(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs, work: &Work) -> Result<Box<Findings>, String> {
     work.begin("drawing");
     let mut renderer = Renderer::new(gpu);
-    renderer.set_scene(scene).map_err(|e| e.to_string())?;
-    let capture = renderer.capture(view, stack, accuracy).map_err(|e| e.to_string())?;
+    renderer.set_scene(scene).block_on().map_err(|e| e.to_string())?;
+    let capture = renderer.capture(view, stack, accuracy).block_on().map_err(|e| e.to_string())?;
     let judged = effect_files::crossings(stack, |stack| oracle::judge(scene, view, stack, &capture.picture()));
     let (verdict, crossings) = judged.map_err(|e| e.to_string())?;
     work.begin("the reference picture");
@@ -454,8 +455,8 @@ fn export(
 ) -> Result<(), String> {
     let provenance = Provenance { adapter: gpu.summary.name.clone(), driver: gpu.summary.driver.clone() };
     let mut renderer = Renderer::new(gpu);
-    renderer.set_scene(scene).map_err(|e| e.to_string())?;
-    let capture = renderer.capture(view, stack, accuracy).map_err(|e| e.to_string())?;
+    renderer.set_scene(scene).block_on().map_err(|e| e.to_string())?;
+    let capture = renderer.capture(view, stack, accuracy).block_on().map_err(|e| e.to_string())?;
     let png =
         preset_file::png_with_preset(&capture.into_shown(), &preset_file.for_picture(path), &provenance).map_err(|e| e.to_string())?;
     preset_file::write_atomically(path, &png, Existing::Replace).map_err(|e| e.to_string())

@@ -27,26 +27,26 @@ pub fn library(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comm
         }
         LibraryCommand::AskName(naming) => panels.naming.ask(naming),
         LibraryCommand::Name(naming, name) => match named(state, panels, &naming, &name) {
-            Ok(said) => state.notify(Level::Info, said),
+            Ok(text) => state.notify(Level::Info, text),
             Err(error) => panels.naming.refuse(naming, name, error),
         },
-        LibraryCommand::Duplicate(source) => said(state, |state| duplicate(state, panels, &source)),
-        LibraryCommand::Delete(path) => said(state, |state| delete(state, panels, &path)),
-        LibraryCommand::Restore => said(state, |state| restore(state, panels)),
+        LibraryCommand::Duplicate(source) => notify_outcome(state, |state| duplicate(state, panels, &source)),
+        LibraryCommand::Delete(path) => notify_outcome(state, |state| delete(state, panels, &path)),
+        LibraryCommand::Restore => notify_outcome(state, |state| restore(state, panels)),
         LibraryCommand::ForgetDeleted => state.deleted.clear(),
         LibraryCommand::CopyEffect(effect) => copy_effect(ctx, state, &effect),
         LibraryCommand::UseValues(path) => {
             let loaded = preset_file::load_values(&path, &state.session.preset_file.effects);
-            said(state, |state| put(state, &loaded.map_err(sentence)?, "Took the values of"));
+            notify_outcome(state, |state| put(state, &loaded.map_err(sentence)?, "Took the values of"));
         }
-        LibraryCommand::DeleteValues(path) => said(state, |state| delete_values(state, &path)),
+        LibraryCommand::DeleteValues(path) => notify_outcome(state, |state| delete_values(state, &path)),
     }
 }
 
 /// Says what was done, or why it was not.
-fn said(state: &mut State, change: impl FnOnce(&mut State) -> Result<String, String>) {
+fn notify_outcome(state: &mut State, change: impl FnOnce(&mut State) -> Result<String, String>) {
     match change(state) {
-        Ok(said) => state.notify(Level::Info, said),
+        Ok(text) => state.notify(Level::Info, text),
         Err(error) => state.notify(Level::Error, error),
     }
 }
@@ -146,10 +146,10 @@ fn delete(state: &mut State, panels: &mut Panels, path: &Path) -> Result<String,
         filed.path = None;
         refile(state, &id, filed);
     }
-    let said = format!("Deleted {}", deleted.name());
+    let text = format!("Deleted {}", deleted.name());
     panels.browser.refresh(&state.folders, &deleted.name());
     state.deleted.push(deleted);
-    Ok(said)
+    Ok(text)
 }
 
 fn restore(state: &mut State, panels: &mut Panels) -> Result<String, String> {
@@ -177,7 +177,7 @@ fn copy_effect(ctx: &egui::Context, state: &mut State, effect: &Arc<Effect>) {
 /// Pastes an effect with its values as one step of undo.
 pub fn paste_effect(state: &mut State, text: &str) {
     let parsed = EffectValues::parse(text, "the clipboard", &state.session.preset_file.effects);
-    said(state, |state| put(state, &parsed.map_err(sentence)?, "Pasted"));
+    notify_outcome(state, |state| put(state, &parsed.map_err(sentence)?, "Pasted"));
 }
 
 /// Enables an effect with `values`, as one step of undo.

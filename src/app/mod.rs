@@ -14,6 +14,7 @@ mod command;
 mod completion;
 mod computing;
 mod deleted;
+mod desktop_dialog;
 mod device;
 mod edit;
 mod effect_picture;
@@ -48,6 +49,8 @@ mod open;
 mod opening;
 mod orbit;
 mod overlay;
+#[cfg(target_arch = "wasm32")]
+mod page;
 mod palette;
 mod panel;
 mod panels;
@@ -62,6 +65,7 @@ mod randomize;
 mod recovery;
 mod reload;
 mod reveal;
+#[cfg(not(target_arch = "wasm32"))]
 mod run;
 mod scene_loader;
 mod screen;
@@ -70,6 +74,7 @@ mod settings;
 mod stack_drag;
 mod state;
 mod system_dialog;
+mod system_watch;
 mod text;
 mod theme;
 mod tier_times;
@@ -83,6 +88,9 @@ mod watch;
 mod window;
 
 pub use device::{Devices, Painter, adopt, wgpu_setup};
+#[cfg(target_arch = "wasm32")]
+pub use page::start;
 pub use recovery::{FIRST_PRESET, config_folder};
+#[cfg(not(target_arch = "wasm32"))]
 pub use run::{DeviceLost, run};
 pub use window::{App, Options};

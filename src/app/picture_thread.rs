@@ -14,10 +14,12 @@ use std::{
         mpsc,
     },
     thread::JoinHandle,
-    time::{Duration, Instant},
+    time::Duration,
 };
 
 use eframe::{egui, wgpu};
+use pollster::FutureExt as _;
+use web_time::Instant;
 
 use super::{
     background::{Urgency, yield_processor},
@@ -365,8 +367,8 @@ impl Worker {
             renderer
         });
         let compiled = renderer.compiled();
-        renderer.set_scene(scene)?;
-        renderer.draw(view, stack, accuracy)?;
+        renderer.set_scene(scene).block_on()?;
+        renderer.draw(view, stack, accuracy).block_on()?;
         self.shared.draws.fetch_add(1, Ordering::Relaxed);
         let is_compiled = renderer.compiled() > compiled;
         Ok((wait_for_frame(renderer, || true)?, is_compiled))
@@ -388,7 +390,7 @@ impl Worker {
         let view = if Arc::ptr_eq(&self.gpu, &self.window) {
             renderer.texture_view().cloned()
         } else {
-            let shown = renderer.read_shown()?;
+            let shown = renderer.read_shown().block_on()?;
             shown.map(|pixels| self.upload(&pixels, size))
         };
         Ok(Some(Drawn { view, size, report, options, plan, explanation, is_compiled, is_partial: false }))

@@ -8,7 +8,7 @@ use super::{
     log::{Level, Log},
     session::Session,
     settings::{
-        keeper::{Keeper, Left},
+        keeper::{Keeper, PreviousSession},
         last_session::Restored,
     },
     trust::Trust,
@@ -41,23 +41,23 @@ pub fn start(
     (keeper, trust): (&Keeper, &Trust),
     log: &mut Log,
 ) -> Start {
-    let left = if opened.is_none() && open.is_none() { keeper.left(folders) } else { Left::Nothing };
+    let previous = if opened.is_none() && open.is_none() { keeper.previous_session(folders) } else { PreviousSession::None };
     let (mut filed, mut crashed) = (None, None);
-    let first = match left {
-        Left::Closed(restored) => {
+    let first = match previous {
+        PreviousSession::Closed(restored) => {
             restored.preset_file.remarks().into_iter().for_each(|remark| log.add(Level::Warning, remark));
             filed = Some(restored.filed);
             restored.preset_file
         }
-        Left::Crashed(restored) => {
+        PreviousSession::Crashed(restored) => {
             crashed = Some(restored);
             first_preset(None, None, folders, log)
         }
-        Left::Lost(reason) => {
+        PreviousSession::Lost(reason) => {
             log.notify(Level::Warning, format!("The last session cannot be opened again: {reason}"), 0.0);
             first_preset(None, None, folders, log)
         }
-        Left::Nothing => first_preset(opened, open, folders, log),
+        PreviousSession::None => first_preset(opened, open, folders, log),
     };
     if !trust.allows(&first, &folders.effects) {
         let session = Session::new(first_preset(None, None, folders, log));

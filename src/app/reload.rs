@@ -19,12 +19,12 @@ use super::{
 use crate::{
     effect_files::Catalog,
     effects::Effect,
+    host,
     preset::{
         SceneSource,
         rebind::{Replaced, rebind_stack},
     },
     preset_file::{self, PresetFile},
-    shader::library::Library,
 };
 
 /// Watches what the open preset uses, and takes in what has changed.
@@ -49,10 +49,7 @@ fn targets(state: &State) -> Targets {
         SceneSource::File(model) => Some(open.path.as_deref().and_then(Path::parent).unwrap_or(Path::new("")).join(model)),
         SceneSource::Builtin(_) => None,
     };
-    let shaders = match Library::from_env() {
-        Library::Folder(folder) => Some(folder),
-        Library::Embedded => None,
-    };
+    let shaders = host::shaders::choose(None).map(Path::to_owned);
     Targets { effect_folders: state.folders.effect_folders.clone(), preset, model, shaders }
 }
 

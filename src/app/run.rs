@@ -1,15 +1,37 @@
-//! Opening the window, and opening it again when the graphics device is lost.
+//! The window on a desktop: opening it, and opening it again when the graphics device is lost.
 
 use anyhow::Context as _;
+use eframe::{egui, egui_wgpu};
 
 use super::{
-    device::native_options,
+    device::wgpu_setup,
     log::Level,
     loss::LossFlag,
     recovery::recovery_path,
-    settings::{WindowPlace, keeper::window_place},
+    settings::{WindowSize, keeper::window_size},
     window::{App, Options},
 };
+use crate::gpu::device::AdapterChoice;
+
+/// Smallest size of the window's contents, points.
+const MIN_SIZE: [f32; 2] = [900.0, 600.0];
+
+/// Size and settings of the window.
+fn native_options(adapter: &AdapterChoice, window: WindowSize) -> eframe::NativeOptions {
+    eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("rasterlab")
+            .with_app_id("rasterlab")
+            .with_inner_size(window.size.map(|side| side.max(1.0)))
+            .with_maximized(window.is_maximized)
+            .with_min_inner_size(MIN_SIZE)
+            .with_drag_and_drop(true),
+        wgpu_options: egui_wgpu::WgpuConfiguration { wgpu_setup: wgpu_setup(adapter), ..Default::default() },
+        // Dithering would change the bytes that the kernels drew.
+        dithering: false,
+        ..Default::default()
+    }
+}
 
 /// Lost devices after which the window is not opened again.
 const MAX_LOSSES: u32 = 2;
@@ -21,7 +43,7 @@ const MAX_LOSSES: u32 = 2;
 /// If there is no suitable device or no display, or [`DeviceLost`].
 pub fn run(options: Options) -> anyhow::Result<()> {
     let mut options = options;
-    let window = options.config.as_deref().map_or_else(WindowPlace::default, window_place);
+    let window = options.config.as_deref().map_or_else(WindowSize::default, window_size);
     for losses in 0..=MAX_LOSSES {
         let loss = LossFlag::default();
         let (flag, opened) = (loss.clone(), options.clone());

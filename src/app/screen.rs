@@ -1,9 +1,10 @@
 //! Screen: a picture in the window and the thread that draws it. It draws only when an input has changed, and a few frames more at rest
 //! to measure them; after a failure the last good picture stays.
 
-use std::{sync::Arc, thread::JoinHandle, time::Instant};
+use std::{sync::Arc, thread::JoinHandle};
 
 use eframe::{egui, egui_wgpu, wgpu};
+use web_time::Instant;
 
 pub use super::inputs::Inputs;
 use super::{

@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use eframe::egui;
+use pollster::FutureExt as _;
 
 use super::{
     background::{Urgency, yield_processor},
@@ -245,7 +246,9 @@ pub fn measure(gpu: &Arc<Gpu>, inputs: &Inputs, drawing: &mut TierDrawing, watch
     yield_processor(Urgency::Later); // Before a device is opened, whose threads are then as patient.
     let gpu = match &drawing.gpu {
         Some(known) => known.clone(),
-        None if gpu.summary.software => Gpu::open(&AdapterChoice::Named(gpu.summary.name.clone())).map_err(|error| error.to_string())?,
+        None if gpu.summary.software => {
+            Gpu::open(&AdapterChoice::Named(gpu.summary.name.clone())).block_on().map_err(|error| error.to_string())?
+        }
         None => gpu.clone(),
     };
     drawing.gpu = Some(gpu.clone());
@@ -265,10 +268,10 @@ fn frame_ms(
     // A panic drops it.
     let mut renderer = drawing.renderer.take().unwrap_or_else(|| Renderer::new(gpu));
     renderer.watch_compiling(watch.clone());
-    renderer.set_scene(scene)?;
+    renderer.set_scene(scene).block_on()?;
     let mut samples = Vec::new();
     while !has_settled(&samples) {
-        renderer.draw(view, stack, accuracy)?;
+        renderer.draw(view, stack, accuracy).block_on()?;
         match wait_for_frame(&mut renderer, || !watch.is_stopped())? {
             None => break,
             Some(report) if report.redraw || report.simulation_pending => {}

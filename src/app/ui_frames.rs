@@ -1,11 +1,9 @@
 //! UI frames: how long the UI thread takes for the frames of the window. A long one is a stall: what the user does is not seen meanwhile.
 
-use std::{
-    collections::VecDeque,
-    time::{Duration, Instant},
-};
+use std::{collections::VecDeque, time::Duration};
 
 use eframe::egui::{self, Plugin, RawInput, ViewportId};
+use web_time::Instant;
 
 /// Frames that are remembered.
 const HISTORY: usize = 600;

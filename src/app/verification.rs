@@ -1,6 +1,8 @@
 //! Verification: judging pictures with the oracle, and the newest verdict on the picture that is shown.
 
-use std::{sync::Arc, time::Instant};
+use std::sync::Arc;
+
+use web_time::Instant;
 
 use super::{findings::Findings, screen::Inputs};
 use crate::{oracle::JUDGE_STAGES, work::Work};

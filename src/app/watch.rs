@@ -8,8 +8,8 @@ use std::{
 };
 
 use eframe::egui;
-use notify::{RecommendedWatcher, RecursiveMode, Watcher as _};
 
+use super::system_watch::SystemWatch;
 use crate::{
     effect_files::{Catalog, EffectError},
     preset_file::{self, MODEL_FORMATS, ModelFormat, PresetFile},
@@ -281,7 +281,7 @@ impl Reader {
 /// The system's watches.
 struct Watched {
     /// None where the system has none.
-    watcher: Option<RecommendedWatcher>,
+    system: Option<SystemWatch>,
     /// Folders, whether those inside are watched too, and whether the system watches them.
     folders: Vec<(PathBuf, bool, bool)>,
 }
@@ -292,21 +292,17 @@ impl Watched {
             let extension = path.extension().and_then(|extension| extension.to_str());
             path.is_dir() || extension.is_none_or(is_watched)
         };
-        let watcher = notify::recommended_watcher(move |event: notify::Result<notify::Event>| {
-            // Reading a file is an event, too, and would never end.
-            if event.map_or(true, |event| !event.kind.is_access() && event.paths.iter().any(matters)) {
+        let system = SystemWatch::new(move |paths| {
+            if paths.is_none_or(|paths| paths.iter().any(matters)) {
                 let _ = events.send(Message::Event);
             }
         });
-        Self { watcher: watcher.ok(), folders: Vec::new() }
+        Self { system, folders: Vec::new() }
     }
 
     fn set(&mut self, folders: Vec<(PathBuf, bool)>) {
-        if let Some(watcher) = &mut self.watcher {
-            for (folder, _, _) in self.folders.iter().filter(|(_, _, is_watched)| *is_watched) {
-                // The folder may be gone.
-                let _ = watcher.unwatch(folder);
-            }
+        if let Some(system) = &mut self.system {
+            self.folders.iter().filter(|(_, _, is_watched)| *is_watched).for_each(|(folder, _, _)| system.unwatch(folder));
         }
         self.folders = folders.into_iter().map(|(folder, is_deep)| (folder, is_deep, false)).collect();
         self.retry();
@@ -314,13 +310,12 @@ impl Watched {
 
     /// Watches the folders that are not watched, where that is possible now.
     fn retry(&mut self) {
-        let Some(watcher) = &mut self.watcher else { return };
+        let Some(system) = &mut self.system else { return };
         for (folder, is_deep, is_watched) in &mut self.folders {
             if *is_watched && !folder.is_dir() {
                 *is_watched = false; // The system forgets a folder that is removed.
             } else if !*is_watched && folder.is_dir() {
-                let mode = if *is_deep { RecursiveMode::Recursive } else { RecursiveMode::NonRecursive };
-                *is_watched = watcher.watch(folder, mode).is_ok();
+                *is_watched = system.watch(folder, *is_deep);
             }
         }
     }

@@ -40,6 +40,7 @@ use super::{
 };
 use crate::{
     gpu::device::AdapterChoice,
+    host,
     preset_file::{self, Folders, PresetFile},
 };
 
@@ -99,6 +100,7 @@ impl App {
     /// # Errors
     /// If the window has no wgpu device.
     pub fn with_loss_flag(cc: &eframe::CreationContext<'_>, options: Options, loss: LossFlag) -> anyhow::Result<Self> {
+        host::shaders::choose(None);
         let ctx = &cc.egui_ctx;
         theme::apply(ctx);
         ctx.add_plugin(PointerFrames::default());

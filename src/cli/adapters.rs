@@ -1,5 +1,6 @@
 //! `adapters`: lists the adapters of this machine. The last one is always `cpu`, the oracle.
 
+use pollster::FutureExt as _;
 use serde_json::{Value, json};
 
 use super::{
@@ -10,7 +11,7 @@ use super::{
 use crate::gpu::device;
 
 pub fn run(streams: &mut Streams) -> Result<Exit, CliError> {
-    let adapters = device::list();
+    let adapters = device::list().block_on();
     if streams.json {
         let mut results: Vec<Value> = adapters
             .iter()

@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use crate::{
     effect_files::Hook,
     film::Turntable,
+    oracle,
     preset_file::Folders,
     scene::memory::{MemoryBudget, read_size},
 };
@@ -102,6 +103,11 @@ impl Common {
         let given = self.memory.clone().map(|size| ("--memory", size)).or_else(|| Some(("RASTERLAB_MEMORY", variable()?)));
         let read = |(name, size): (&str, String)| size.parse().map_err(|error| format!("{name} {size}: {error}"));
         given.map(read).transpose()
+    }
+
+    /// `RASTERLAB_ORACLE_GIB`, where it is a number above 0.
+    pub fn oracle_gib(&self) -> Option<f64> {
+        std::env::var(oracle::MEMORY_VARIABLE).ok()?.trim().parse().ok().filter(|gib| *gib > 0.0)
     }
 
     /// `--adapter`, or `RASTERLAB_ADAPTER`.

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use pollster::FutureExt as _;
 use serde_json::{Value, json};
 
 use super::{args::Common, error::CliError, loading, streams::Streams};
@@ -50,7 +51,7 @@ impl Backend {
         let backend = match backend_choice(common) {
             BackendChoice::Oracle => Self::Oracle,
             BackendChoice::Gpu(choice) => {
-                let gpu = Gpu::open(&choice)?;
+                let gpu = Gpu::open(&choice).block_on()?;
                 Self::Gpu(Box::new(Renderer::new(gpu.clone())), gpu)
             }
         };
@@ -160,8 +161,8 @@ impl Backend {
                 Ok(Capture { frame, geometry, layers: None, previous, shown: None })
             }
             Self::Gpu(renderer, _) => {
-                renderer.set_scene(scene)?;
-                Ok(renderer.capture_last(&moments, &preset.accuracy)?)
+                renderer.set_scene(scene).block_on()?;
+                Ok(renderer.capture_last(&moments, &preset.accuracy).block_on()?)
             }
         }
     }

@@ -1,5 +1,6 @@
 //! `explain`: the passes and buffers that a preset needs on this adapter, those that are omitted, and why.
 
+use pollster::FutureExt as _;
 use serde_json::{Value, json};
 
 use super::{
@@ -35,10 +36,10 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
     let (mut check, mut particles, mut times) = (None, None, None);
     let (adapter, plan) = match backend {
         Some(Backend::Gpu(mut renderer, gpu)) => {
-            renderer.set_scene(&scene)?;
+            renderer.set_scene(&scene).block_on()?;
             let preset = &preset_file.preset;
             let (view, stack) = (preset.view(&scene, preset.output.size), preset.stack_on(&scene));
-            let capture = renderer.capture(&view, &stack, &preset.accuracy)?;
+            let capture = renderer.capture(&view, &stack, &preset.accuracy).block_on()?;
             let factor = capture.geometry.scale;
             particles = ParticleErrors::of(&scene, &view, &stack, &capture)?;
             // Where particles have diverged, their pictures do not show the error of the options.
@@ -47,7 +48,7 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
             }
             let plan = renderer.explain();
             if args.measure && view.pixels() > 0 {
-                times = Some(FrameTimes::of(&mut renderer, &view, &stack, &preset.accuracy)?);
+                times = Some(FrameTimes::of(&mut renderer, &view, &stack, &preset.accuracy).block_on()?);
             }
             (Backend::Gpu(Box::new(crate::gpu::Renderer::new(gpu.clone())), gpu).json(), Some(plan))
         }

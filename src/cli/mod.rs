@@ -44,21 +44,20 @@ pub use args::{Cli, Command};
 pub use error::{CliError, Exit};
 use streams::Streams;
 
-use crate::{gpu::device_memory::choose_device_memory, preset_file::PresetError, shader::library::Library};
+use crate::{gpu::device_memory::choose_device_memory, host, oracle, preset_file::PresetError};
 
 /// Runs the command.
 ///
 /// # Errors
 /// What failed; [`report_error`] prints it.
 pub fn run(cli: &Cli) -> Result<Exit, CliError> {
-    if let Some(folder) = &cli.common.shaders {
-        if !folder.is_dir() {
-            return Err(CliError::usage(format!("--shaders {}: there is no such folder", folder.display())));
-        }
-        Library::choose(folder.clone());
+    if let Some(folder) = cli.common.shaders.as_ref().filter(|folder| !folder.is_dir()) {
+        return Err(CliError::usage(format!("--shaders {}: there is no such folder", folder.display())));
     }
-    if let Some(budget) = cli.common.memory_budget().map_err(CliError::usage)? {
-        budget.choose();
+    host::shaders::choose(cli.common.shaders.clone());
+    cli.common.memory_budget().map_err(CliError::usage)?.unwrap_or_else(host::memory::machine_budget).choose();
+    if let Some(gib) = cli.common.oracle_gib() {
+        oracle::choose_memory(gib);
     }
     if let Some(bytes) = cli.common.device_memory {
         choose_device_memory(bytes);

@@ -12,6 +12,8 @@ use std::{
 
 mod shader_parts;
 
+use pollster::FutureExt as _;
+
 pub use rasterlab::stress::{
     adversarial::near_miss_triangle,
     exactness,
@@ -24,6 +26,7 @@ use rasterlab::{
     accuracy::Visibility,
     effects::Stack,
     gpu::{Capture, Gpu, Renderer, device::AdapterChoice},
+    host,
     measure::Verdict,
     oracle,
     plan::AccuracyRequest,
@@ -52,7 +55,7 @@ pub fn own_gpu() -> Option<Arc<Gpu>> {
         return None;
     }
     let choice = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
-    Some(Gpu::open(&choice).unwrap_or_else(|error| panic!("{error}")))
+    Some(Gpu::open(&choice).block_on().unwrap_or_else(|error| panic!("{error}")))
 }
 
 /// Renderers that tests share: one for each of two tests that draw at the same time. Each has its own device, because a software
@@ -209,8 +212,8 @@ pub fn captured(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, stack:
 /// The picture of a preset, after those that lead up to it, with its verdict.
 pub fn judged_preset(renderer: &mut Renderer, scene: &Arc<Scene>, preset: &Preset, accuracy: &AccuracyRequest) -> (Capture, Verdict) {
     let moments = preset.moments(scene, preset.output.size);
-    renderer.set_scene(scene).unwrap_or_else(|error| panic!("{}: {error}", scene.name));
-    let capture = renderer.capture_last(&moments, accuracy).unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+    renderer.set_scene(scene).block_on().unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+    let capture = renderer.capture_last(&moments, accuracy).block_on().unwrap_or_else(|error| panic!("{}: {error}", scene.name));
     let (view, stack) = moments.last().expect("a preset shows a moment");
     let verdict = verdict(scene, view, stack, &capture);
     (capture, verdict)
@@ -238,8 +241,12 @@ pub fn exact(
 pub struct Mutated(tempfile::TempDir);
 
 impl Mutated {
+    pub fn folder(&self) -> &Path {
+        self.0.path()
+    }
+
     pub fn shaders(&self) -> Library {
-        Library::Folder(self.0.path().into())
+        host::shaders::library(self.folder())
     }
 
     /// One more mistake, as in [`mutated`].

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::common::*;
 use glam::{DMat4, DVec3};
+use pollster::FutureExt as _;
 use rasterlab::{
     accuracy::Visibility,
     gpu::{
@@ -115,7 +116,7 @@ fn the_beginners_kernel_leaves_thousands_of_holes_in_dense_grids() {
             captured(&mut renderer, &scene, &view, &stack(&[]), &AccuracyRequest::default());
             let key = renderer.key().expect("something was drawn").clone();
             let gpu = renderer.gpu().clone();
-            let naive = Naive::new(&gpu, &scene, &view, &key, Viewport::Folded).and_then(|naive| naive.picture(&gpu));
+            let naive = Naive::new(&gpu, &scene, &view, &key, Viewport::Folded).block_on().and_then(|naive| naive.picture(&gpu).block_on());
             let picture = naive.unwrap_or_else(|error| panic!("{query}: {error}"));
             let holes = picture.iter().filter(|pixel| pixel[3] == 0).count();
             eprintln!("{query}: the naive kernel leaves {holes} holes in 65,536 samples");

@@ -1,6 +1,8 @@
 //! Promise: every option of the accuracy axes draws, errs as it says, and no more; those that promise exactness keep it.
 //! Needs an adapter.
 
+use pollster::FutureExt as _;
+
 use crate::common::*;
 use rasterlab::{
     accuracy::{
@@ -117,9 +119,9 @@ fn racy_counting_draws_no_fewer_samples_and_prefix_sums_draw_exactly() {
     let scene = scene("sphere?triangles=5000");
     let view = view(&scene, [160, 120]);
     let mut drawn = |option: SampleCounter| {
-        renderer.set_scene(&scene).unwrap();
-        renderer.draw(&view, &stack(&["draw_order"]), &on(PinnedOptions::of(option))).unwrap();
-        let order = renderer.finish().unwrap().order.expect("a draw order is kept");
+        renderer.set_scene(&scene).block_on().unwrap();
+        renderer.draw(&view, &stack(&["draw_order"]), &on(PinnedOptions::of(option))).block_on().unwrap();
+        let order = renderer.finish().block_on().unwrap().order.expect("a draw order is kept");
         (order.drawn, order.limit)
     };
     let (prefix, racy) = (drawn(SampleCounter::Prefix), drawn(SampleCounter::Racy));
@@ -148,7 +150,7 @@ fn narrow_sums_of_layers_err_by_steps_of_8_bits_and_say_when_they_are_full() {
     let deep = scene_of_meshes(&[triangle_soup_in_units(&sheets)]);
     let view = pixel_view(16, 16);
     captured(&mut renderer, &deep, &view, &xray, &on(PinnedOptions::of(XraySums::Three8)));
-    let full = renderer.capture(&view, &xray, &on(PinnedOptions::of(XraySums::Packed16))).expect_err("257 layers fit");
+    let full = renderer.capture(&view, &xray, &on(PinnedOptions::of(XraySums::Packed16))).block_on().expect_err("257 layers fit");
     assert!(matches!(full, RenderError::FullSums(256)), "{full}");
 }
 
@@ -331,7 +333,7 @@ fn strict_vertices_subtract_the_eye_to_the_bit_and_refuse_packed_positions() {
         oracle::strict_frame(&scene, &view.with_grid(view.precision.subpixel_bits, true), &stack(&[])).expect("a scene that fits");
     assert_eq!((capture.frame.triangle_id, capture.frame.depth_key), reference);
     for (option, name) in [(PositionFormat::Packed10, "packed10"), (PositionFormat::Packed16, "packed16")] {
-        let refused = renderer.capture(&view, &stack(&[]), &strict(option)).expect_err("floats unpack");
+        let refused = renderer.capture(&view, &stack(&[]), &strict(option)).block_on().expect_err("floats unpack");
         let sentence = format!(
             "vertex_transform strict needs integers in every decision, but position_format {name} unpacks positions in floats; remove that, or use \
              another option"
@@ -380,9 +382,10 @@ fn packed_positions_refuse_what_stored_ones_refuse_and_deformed_meshes() {
         assert!(capture.frame.covered() > 1000, "{option:?}");
     }
     let soft = self::scene("tentacle?tess=2");
-    renderer.set_scene(&soft).unwrap();
+    renderer.set_scene(&soft).block_on().unwrap();
     let refused = renderer
         .capture(&view(&soft, [64, 48]), &stack(&[]), &on(PinnedOptions::of(PositionFormat::Packed10)))
+        .block_on()
         .expect_err("its skin bends");
     assert!(
         refused.is_unsupported() && refused.to_string().starts_with("position_format packed10 packs meshes that keep their shape"),
@@ -448,9 +451,10 @@ fn a_scale_that_the_adapter_cannot_hold_says_what_it_would_draw() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("teapot?tess=4");
     let side = renderer.gpu().caps.max_texture_side;
-    renderer.set_scene(&scene).unwrap();
+    renderer.set_scene(&scene).block_on().unwrap();
     let wide = pixel_view(side, 8);
-    let refused = renderer.capture(&wide, &stack(&[]), &on(PinnedOptions::of(RenderScale::Double))).expect_err("twice the widest");
+    let refused =
+        renderer.capture(&wide, &stack(&[]), &on(PinnedOptions::of(RenderScale::Double))).block_on().expect_err("twice the widest");
     let sentence = format!(
         "scale double draws {0}x16 pixels for a picture of {side}x8, and the picture is {0} x 16; this adapter's textures end at {side} pixels a \
          side; take a smaller scale",
@@ -490,10 +494,10 @@ fn predicted_sizes_are_those_that_the_queues_count() {
 fn what_no_kernel_can_draw_is_one_sentence() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("teapot?tess=8");
-    renderer.set_scene(&scene).unwrap();
+    renderer.set_scene(&scene).block_on().unwrap();
     let mut refused = |size: [u32; 2], names: &[&str], pins: PinnedOptions| {
         let view = view(&scene, size);
-        renderer.capture(&view, &stack(names), &on(pins)).expect_err("it cannot be drawn")
+        renderer.capture(&view, &stack(names), &on(pins)).block_on().expect_err("it cannot be drawn")
     };
     let coarse = refused([64, 48], &["dissolve"], PinnedOptions::of(Coverage::Fixed4));
     assert!(matches!(&coarse, RenderError::Plan(PlanError::SubpixelGrid { effect, .. }) if effect == "dissolve"), "{coarse}");

@@ -3,6 +3,8 @@
 
 use std::sync::Arc;
 
+use pollster::FutureExt as _;
+
 use crate::common::*;
 use rasterlab::{
     accuracy::Visibility,
@@ -96,9 +98,9 @@ fn a_picture_is_the_same_whatever_the_queues_of_the_one_before_held() {
     let (scene, stack, request) = (scene("sphere?triangles=20000"), stack(&["lambert"]), AccuracyRequest::default());
     let [far, near] = [[4, 4], [480, 360]].map(|size| view(&scene, size));
     renderer.set_tuning(tuning);
-    renderer.set_scene(&scene).expect("it fits");
+    renderer.set_scene(&scene).block_on().expect("it fits");
     let mut queued = |view: &View| {
-        let frame = renderer.capture(view, &stack, &request).expect("it draws").frame;
+        let frame = renderer.capture(view, &stack, &request).block_on().expect("it draws").frame;
         let sizes = renderer.explain().sizes.expect("something was drawn");
         (sizes.counted.expect("the queues are counted")[0], frame)
     };
@@ -122,9 +124,9 @@ fn a_picture_of_large_triangles_is_the_same_after_one_with_more_and_one_with_few
     let fresh = captured(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default()).frame;
     for tuning in [GRAPHICS_CARD, Tuning { queue_groups: 0, ..GRAPHICS_CARD }, Tuning { queue_groups: 8192, ..GRAPHICS_CARD }] {
         renderer.set_tuning(tuning);
-        renderer.set_scene(&scene).expect("it fits");
+        renderer.set_scene(&scene).block_on().expect("it fits");
         for (turn, view) in [&view, &far, &view, &far, &view].into_iter().enumerate() {
-            let frame = renderer.capture(view, &stack, &AccuracyRequest::default()).expect("it draws").frame;
+            let frame = renderer.capture(view, &stack, &AccuracyRequest::default()).block_on().expect("it draws").frame;
             if turn % 2 == 0 {
                 assert_same(&frame, &fresh, &format!("turn {turn}, {tuning:?}"));
             }
@@ -194,7 +196,7 @@ fn a_race_may_lose_the_nearest_and_nothing_else() {
 
 /// Returns true if drawing `stack` is refused.
 fn is_refused(renderer: &mut Renderer, view: &View, stack: &Stack) -> bool {
-    renderer.draw(view, stack, &AccuracyRequest::default()).is_err()
+    renderer.draw(view, stack, &AccuracyRequest::default()).block_on().is_err()
 }
 
 #[test]

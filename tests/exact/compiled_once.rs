@@ -3,6 +3,7 @@
 
 use std::process::Command;
 
+use pollster::FutureExt as _;
 use rasterlab::{
     gpu::{Gpu, Renderer, device::AdapterChoice},
     plan::Tuning,
@@ -47,10 +48,10 @@ fn regions_of_draws(gpu: &std::sync::Arc<Gpu>, name: &str, times: usize, tuning:
     let view = file.preset.view(&scene, [64, 40]);
     let mut renderer = Renderer::new(gpu.clone());
     renderer.set_tuning(tuning);
-    renderer.set_scene(&scene).expect("it fits");
+    renderer.set_scene(&scene).block_on().expect("it fits");
     let mut draw = || {
-        renderer.draw(&view, &file.preset.stack, &file.preset.accuracy).expect("it draws");
-        renderer.finish().expect("it ends");
+        renderer.draw(&view, &file.preset.stack, &file.preset.accuracy).block_on().expect("it draws");
+        renderer.finish().block_on().expect("it ends");
     };
     (0..3).for_each(|_| draw());
     let before = code_regions();
@@ -60,7 +61,7 @@ fn regions_of_draws(gpu: &std::sync::Arc<Gpu>, name: &str, times: usize, tuning:
 
 #[test]
 fn drawing_again_compiles_nothing() {
-    let gpu = Gpu::open(&AdapterChoice::Any).expect("an adapter");
+    let gpu = Gpu::open(&AdapterChoice::Any).block_on().expect("an adapter");
     if !gpu.summary.name.contains("llvmpipe") {
         return;
     }

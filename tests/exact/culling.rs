@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use crate::common::*;
 use glam::{DMat4, DVec3};
+use pollster::FutureExt as _;
 use rasterlab::{
     accuracy::{Culling, PinnedOptions, PositionFormat, Visibility},
     frame::{CullingStats, Frame},
@@ -36,7 +37,8 @@ fn assert_same(a: &Frame, b: &Frame, what: &str) {
 
 /// The next picture, and what was left out of it.
 fn drawn(renderer: &mut Renderer, view: &View, pins: PinnedOptions) -> (Capture, CullingStats) {
-    let capture = renderer.capture_next(view, &stack(&["lambert"]), &on(pins)).unwrap_or_else(|error| panic!("{}: {error}", pins.words()));
+    let capture =
+        renderer.capture_next(view, &stack(&["lambert"]), &on(pins)).block_on().unwrap_or_else(|error| panic!("{}: {error}", pins.words()));
     (capture, renderer.culled().unwrap_or_default())
 }
 
@@ -80,7 +82,7 @@ fn both_tunings(renderer: &Renderer) -> [Tuning; 2] {
 /// Follows a walk with two-pass culling, what each picture leaves for the next included; the first difference, and what was
 /// left out in all.
 fn followed(renderer: &mut Renderer, scene: &Arc<Scene>, views: &[View], pins: PinnedOptions) -> Result<CullingStats, String> {
-    renderer.set_scene(scene).expect("it fits");
+    renderer.set_scene(scene).block_on().expect("it fits");
     let mut total = CullingStats::default();
     for (step, view) in views.iter().enumerate() {
         let (culled, stats) = drawn(renderer, view, pins);
@@ -263,7 +265,7 @@ fn more_meshlets_than_one_row_of_workgroups_are_all_drawn() {
     let scene = scene_of_meshes(&[SimpleMesh { transforms: transforms.collect(), ..triangle_soup(positions) }]);
     let usual = renderer.gpu().caps.tuning();
     renderer.set_tuning(Tuning { group_size: 64, ..usual });
-    renderer.set_scene(&scene).expect("it fits");
+    renderer.set_scene(&scene).block_on().expect("it fits");
     let view = pixel_view(260, 260);
     for option in [Culling::Frustum, Culling::TwoPass] {
         for visibility in options(&renderer) {
@@ -279,8 +281,8 @@ fn more_meshlets_than_one_row_of_workgroups_are_all_drawn() {
 fn explained(query: &str, effects: &[&str], pins: PinnedOptions) -> Option<(Vec<String>, Vec<String>, String)> {
     let mut renderer = Renderer::new(gpu()?);
     let scene = scene(query);
-    renderer.set_scene(&scene).expect("a builtin fits");
-    renderer.draw_complete(&view(&scene, SIZE), &stack(effects), &on(pins)).expect("a builtin is drawn");
+    renderer.set_scene(&scene).block_on().expect("a builtin fits");
+    renderer.draw_complete(&view(&scene, SIZE), &stack(effects), &on(pins)).block_on().expect("a builtin is drawn");
     let explanation = renderer.explain();
     let passes = explanation.passes.into_iter().map(|pass| pass.name).collect();
     let buffers = explanation.buffers.into_iter().map(|buffer| buffer.name).collect();
@@ -339,7 +341,7 @@ fn effects_and_layers_keep_their_picture() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("field?count=27&triangles=400");
     let views = walk(&scene, &mut Rng(9), 4, SIZE);
-    renderer.set_scene(&scene).expect("it fits");
+    renderer.set_scene(&scene).block_on().expect("it fits");
     for effects in
         [&["dissolve", "outline"][..], &["stipple", "lambert"], &["wireframe"], &["xray"], &["overdraw"], &["boxes"], &["facet", "fog"]]
     {
@@ -347,7 +349,10 @@ fn effects_and_layers_keep_their_picture() {
             for visibility in options(&renderer) {
                 let mut draw = |option| {
                     let pins = PinnedOptions::of(visibility).with(option);
-                    renderer.capture_next(view, &stack(effects), &on(pins)).unwrap_or_else(|error| panic!("{effects:?}: {error}"))
+                    renderer
+                        .capture_next(view, &stack(effects), &on(pins))
+                        .block_on()
+                        .unwrap_or_else(|error| panic!("{effects:?}: {error}"))
                 };
                 let culled = draw(Culling::TwoPass);
                 let whole = draw(Culling::None);
@@ -362,7 +367,7 @@ fn effects_and_layers_keep_their_picture() {
 fn the_picture_before_hides_what_has_come_out_since() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("field?count=216&triangles=400");
-    renderer.set_scene(&scene).expect("it fits");
+    renderer.set_scene(&scene).block_on().expect("it fits");
     let pins = PinnedOptions::of(Culling::Hiz).with(Visibility::Split32);
     let view = walk(&scene, &mut Rng(1), 1, SIZE).remove(0);
     let reference = whole(&renderer, &scene, &view, pins);
@@ -390,8 +395,8 @@ fn what_lies_outside_the_picture_is_not_deformed() {
     let view = View::new(&camera, SIZE[0], SIZE[1], &bounds, DMat4::IDENTITY, [0.0; 4]);
     let drawn = [Culling::None, Culling::Frustum].map(|option| {
         let mut renderer = Renderer::new(gpu()?);
-        renderer.set_scene(&scene).expect("it fits");
-        renderer.draw_complete(&view, &stack(&["lambert"]), &on(PinnedOptions::of(option))).expect("it is drawn");
+        renderer.set_scene(&scene).block_on().expect("it fits");
+        renderer.draw_complete(&view, &stack(&["lambert"]), &on(PinnedOptions::of(option))).block_on().expect("it is drawn");
         let buffers = renderer.explain().buffers;
         let capture = captured(&mut renderer, &scene, &view, &stack(&["lambert"]), &on(PinnedOptions::of(option)));
         Some((capture.frame, buffers.into_iter().find(|buffer| buffer.name == "joints").map_or(0, |buffer| buffer.bytes)))

@@ -3,6 +3,7 @@
 
 use std::process::Command;
 
+use pollster::FutureExt as _;
 use rasterlab::{
     effects::Stack,
     gpu::{RenderError, Renderer},
@@ -31,11 +32,11 @@ fn a_picture_without_memory_is_refused_in_a_sentence_and_drawn_once_there_is_roo
         let (scene, stack) = (scene(query), stack(effects));
         let view = view(&scene, [160, 120]);
         let pixels = |renderer: &mut Renderer, view: &View, stack: &Stack| {
-            renderer.capture(view, stack, &request).map(|capture| capture.frame.color)
+            renderer.capture(view, stack, &request).block_on().map(|capture| capture.frame.color)
         };
 
         let mut renderer = Renderer::new(gpu.clone());
-        renderer.set_scene(&scene).expect("it fits");
+        renderer.set_scene(&scene).block_on().expect("it fits");
         let expected = pixels(&mut renderer, &view, &stack).expect("it fits");
         let all = gpu.memory.used();
         drop(renderer);
@@ -46,7 +47,7 @@ fn a_picture_without_memory_is_refused_in_a_sentence_and_drawn_once_there_is_roo
             let what = format!("{query}, {step} of {STEPS} parts of {all} bytes");
             let mut renderer = Renderer::new(gpu.clone());
             gpu.memory.allow(all * step / STEPS);
-            match renderer.set_scene(&scene).and_then(|()| pixels(&mut renderer, &view, &stack)) {
+            match renderer.set_scene(&scene).block_on().and_then(|()| pixels(&mut renderer, &view, &stack)) {
                 Ok(drawn) => assert!(drawn == expected, "{what}: another picture"),
                 Err(error @ RenderError::OutOfMemory { buffer, .. }) => {
                     let text = error.to_string();
@@ -57,7 +58,7 @@ fn a_picture_without_memory_is_refused_in_a_sentence_and_drawn_once_there_is_roo
                 Err(error) => panic!("{what}: {error}"),
             }
             gpu.memory.allow(u64::MAX);
-            renderer.set_scene(&scene).expect("there is room");
+            renderer.set_scene(&scene).block_on().expect("there is room");
             let again = pixels(&mut renderer, &view, &stack).unwrap_or_else(|error| panic!("{what}: then {error}"));
             assert!(again == expected, "{what}: another picture than before");
             assert!(!gpu.is_lost() && gpu.take_error().is_none(), "{what}: the device has an error");
@@ -74,13 +75,13 @@ fn a_picture_too_large_for_the_memory_leaves_the_smaller_one() {
     let (scene, stack) = (scene("teapot?tess=4"), stack(&["xray"]));
     let [small, large] = [[64, 48], [640, 480]].map(|size| view(&scene, size));
     let mut renderer = Renderer::new(gpu.clone());
-    renderer.set_scene(&scene).expect("it fits");
-    let expected = renderer.capture(&small, &stack, &request).expect("it fits").frame;
+    renderer.set_scene(&scene).block_on().expect("it fits");
+    let expected = renderer.capture(&small, &stack, &request).block_on().expect("it fits").frame;
     gpu.memory.allow(gpu.memory.used() + (1 << 18));
     for _ in 0..3 {
-        let refused = renderer.draw(&large, &stack, &request).expect_err("pixels of 7 megabytes in 256 kilobytes");
+        let refused = renderer.draw(&large, &stack, &request).block_on().expect_err("pixels of 7 megabytes in 256 kilobytes");
         assert!(matches!(refused, RenderError::OutOfMemory { .. }), "{refused}");
-        assert!(renderer.capture(&small, &stack, &request).expect("it fits").frame == expected, "another picture than before");
+        assert!(renderer.capture(&small, &stack, &request).block_on().expect("it fits").frame == expected, "another picture than before");
     }
 }
 

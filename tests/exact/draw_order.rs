@@ -3,6 +3,8 @@
 
 use std::sync::Arc;
 
+use pollster::FutureExt as _;
+
 use crate::common::*;
 use rasterlab::{
     effects::{Effect, Stack, draw_order::Unit},
@@ -60,10 +62,10 @@ fn compared(gpu: &Arc<Gpu>, heavy: &Mutated) -> Result<(), String> {
             let what = format!("{sheet} sheets and {rest} samples");
 
             let stack = limited(Unit::Fraction, word as f64 / f64::from(1 << 24));
-            counting.set_scene(&scene).map_err(|error| error.to_string())?;
-            counting.draw_complete(&view, &stack, &accuracy).map_err(|error| error.to_string())?;
-            counting.draw(&view, &stack, &accuracy).map_err(|error| error.to_string())?;
-            let order = counting.finish().map_err(|error| error.to_string())?.order.unwrap_or_default();
+            counting.set_scene(&scene).block_on().map_err(|error| error.to_string())?;
+            counting.draw_complete(&view, &stack, &accuracy).block_on().map_err(|error| error.to_string())?;
+            counting.draw(&view, &stack, &accuracy).block_on().map_err(|error| error.to_string())?;
+            let order = counting.finish().block_on().map_err(|error| error.to_string())?.order.unwrap_or_default();
             let (found, expected) = ([order.covered, order.limit, order.drawn], [TOTAL, limit, limit]);
             if found != expected {
                 return Err(format!("{what}: {found:?} samples are covered, asked for and drawn, not {expected:?}"));

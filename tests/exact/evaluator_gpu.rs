@@ -2,6 +2,8 @@
 //! whole numbers exactly, those of f32 within the accuracy that WGSL asks for (https://www.w3.org/TR/WGSL/#floating-point-accuracy).
 //! Needs an adapter.
 
+use pollster::FutureExt as _;
+
 use crate::common::*;
 use rasterlab::{
     evaluator::{NoHost, Options, Precision, Program, Word},
@@ -43,7 +45,7 @@ fn by_adapter(gpu: &Gpu, text: &str, inputs: &[[u32; 4]], expressions: usize) ->
     pass.dispatch_workgroups(inputs.len().div_ceil(64) as u32, 1, 1);
     drop(pass);
     gpu.queue.submit([encoder.finish()]);
-    let bytes = buffers::read(gpu, &results, size as u64).expect("results are read back");
+    let bytes = buffers::read(gpu, &results, size as u64).block_on().expect("results are read back");
     assert_eq!(gpu.take_error(), None);
     bytemuck::pod_collect_to_vec(&bytes)
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::common::*;
 use glam::{DMat4, DVec3};
+use pollster::FutureExt as _;
 use rasterlab::{
     frame::{Frame, NO_TRIANGLE},
     gpu::hardware::Hardware,
@@ -30,9 +31,9 @@ fn pictures(scene: &Arc<Scene>, view: &View) -> Option<(Vec<[u8; 4]>, Frame, usi
     let option = quick_option(&renderer);
     let (_, verdict) = judged(&mut renderer, scene, view, &stack, &pinned(option));
     let (gpu, key) = (renderer.gpu(), renderer.key().expect("something was drawn"));
-    let hardware = Hardware::new(gpu, scene, view, &stack, key).unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+    let hardware = Hardware::new(gpu, scene, view, &stack, key).block_on().unwrap_or_else(|error| panic!("{}: {error}", scene.name));
     let hardware = hardware.unwrap_or_else(|reason| panic!("{}: {reason}", scene.name));
-    let picture = hardware.picture(gpu).unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+    let picture = hardware.picture(gpu).block_on().unwrap_or_else(|error| panic!("{}: {error}", scene.name));
     Some((picture, verdict.expected, hardware.call_count()))
 }
 

@@ -2,6 +2,8 @@
 
 use std::{collections::BTreeSet, path::Path, sync::Arc};
 
+use pollster::FutureExt as _;
+
 use crate::common::*;
 use rasterlab::{
     accuracy::{DotCulling, PinnedOptions, Visibility},
@@ -102,8 +104,8 @@ fn explained(query: &str, size: [u32; 2], option: Visibility, tuning: Tuning) ->
     renderer.set_tuning(tuning);
     let scene = scene(query);
     let view = view(&scene, size);
-    renderer.set_scene(&scene).expect("a builtin fits");
-    renderer.draw_complete(&view, &stack(&["lambert"]), &pinned(option)).expect("a builtin is drawn");
+    renderer.set_scene(&scene).block_on().expect("a builtin fits");
+    renderer.draw_complete(&view, &stack(&["lambert"]), &pinned(option)).block_on().expect("a builtin is drawn");
     Some((renderer.explain(), scene, view))
 }
 

@@ -1,5 +1,7 @@
 //! Promise: two effects in one slot are refused with one sentence, and a stack is read back in its own order. Needs an adapter.
 
+use pollster::FutureExt as _;
+
 use crate::common::*;
 use rasterlab::{
     effects::{EFFECTS, Stack, hooks::Slot},
@@ -23,8 +25,10 @@ fn two_effects_in_one_slot_are_refused_by_name() {
         let takers: Vec<_> = EFFECTS.iter().filter(|effect| effect.hooks.slot == Some(slot)).collect();
         for (a, b) in takers.iter().zip(takers.iter().skip(1)) {
             let stack = stack(&[&a.name, &b.name]);
-            renderer.set_scene(&scene).expect("it fits");
-            let Err(error) = renderer.draw(&view, &stack, &Default::default()) else { panic!("{} and {} were drawn", a.name, b.name) };
+            renderer.set_scene(&scene).block_on().expect("it fits");
+            let Err(error) = renderer.draw(&view, &stack, &Default::default()).block_on() else {
+                panic!("{} and {} were drawn", a.name, b.name)
+            };
             assert!(matches!(error, RenderError::Plan(_)));
             let text = error.to_string();
             assert!(text.contains(&a.name) && text.contains(&b.name) && text.contains(slot.name()), "{text}");

@@ -5,6 +5,7 @@ use std::{fs, path::Path, sync::Arc};
 
 use crate::common::*;
 use glam::{DMat4, DVec3};
+use pollster::FutureExt as _;
 use rasterlab::{
     accuracy::{DepthFormat, PinnedOptions, VertexTransform, Visibility},
     effects::Stack,
@@ -77,7 +78,7 @@ fn calculated(gpu: &Gpu, library: &Library, pairs: &[[u32; 2]]) -> Vec<[u32; 4]>
     pass.dispatch_workgroups(1024, pairs.len() as u32 / 65_536, 1);
     drop(pass);
     gpu.queue.submit([encoder.finish()]);
-    let bytes = buffers::read(gpu, &results, 16 * pairs.len() as u64).expect("results are read back");
+    let bytes = buffers::read(gpu, &results, 16 * pairs.len() as u64).block_on().expect("results are read back");
     assert_eq!(gpu.take_error(), None);
     bytemuck::pod_collect_to_vec(&bytes)
 }
@@ -377,11 +378,11 @@ fn what_floats_decide_is_refused_by_name() {
     let Some(mut renderer) = renderer() else { return };
     let scene = scene("sphere?triangles=200");
     let view = view(&scene, [64, 64]);
-    renderer.set_scene(&scene).expect("a builtin fits");
+    renderer.set_scene(&scene).block_on().expect("a builtin fits");
     let accuracy = AccuracyRequest { pins: PinnedOptions::of(VertexTransform::Strict), ..AccuracyRequest::default() };
     for name in ["explode", "inflate", "wobble", "race"] {
-        let error = renderer.draw(&view, &stack(&["lambert", name]), &accuracy).expect_err(name).to_string();
+        let error = renderer.draw(&view, &stack(&["lambert", name]), &accuracy).block_on().expect_err(name).to_string();
         assert!(error.starts_with("vertex_transform strict ") && error.contains(&format!("the effect {name} ")), "{error}");
     }
-    renderer.draw(&view, &stack(&["dissolve", "lambert", "xray"]), &accuracy).expect("integers decide here");
+    renderer.draw(&view, &stack(&["dissolve", "lambert", "xray"]), &accuracy).block_on().expect("integers decide here");
 }

@@ -1,5 +1,5 @@
-//! Promise: inside a crate, a module names only modules that stand before it in the crate's list; crates obey `Cargo.toml`. Long
-//! files have a reason, and unsafe code stands in two places.
+//! Promise: inside a crate, a module names only modules that stand before it in the crate's list; crates obey `Cargo.toml`. The core
+//! names nothing that a page lacks. Long files have a reason, and unsafe code stands in two places.
 
 use std::{
     fs,
@@ -11,10 +11,19 @@ const ORDER: &[(&str, &[&str])] = &[
     ("crates/model", &["work", "math", "frame", "accuracy", "measure", "scene", "params", "effects", "preset"]),
     ("crates/kernels", &["shader", "plan"]),
     ("crates/oracle", &["arithmetic", "perturbation", "shot", "budget", "render", "bounds", "judge"]),
-    ("crates/files", &["effect_files", "preset_file", "film"]),
+    ("crates/files", &["host", "effect_files", "preset_file", "film"]),
     ("crates/bench", &["baselines", "trade", "stress"]),
     (".", &["app", "cli"]),
 ];
+
+/// The core: crates that can live in a page.
+const CORE: &[&str] = &["crates/model", "crates/kernels", "crates/evaluator", "crates/oracle", "crates/gpu"];
+
+/// Modules of the standard library that a page lacks. It has no clock of the standard library's, either, and no thread may wait there.
+const NATIVE: &[&str] = &["fs", "env", "net", "process", "thread"];
+
+/// Files of the core that are native all the same, with the reason.
+const NATIVE_FOR_A_REASON: &[(&str, &str)] = &[("crates/model/src/work.rs", "work that is watched tells how long it will take")];
 
 /// Longest source file, lines. A longer one stands here with its reason.
 const LONGEST: usize = 450;
@@ -70,7 +79,11 @@ fn source(file: &Path) -> Source {
 
 /// Does `code` name `crate::MODULE`, alone or as a branch of `crate::{...}`?
 fn names_module(code: &str, module: &str) -> bool {
-    code.match_indices("crate::").any(|(at, path)| match code[at + path.len()..].strip_prefix('{') {
+    names_below("crate::", code, module)
+}
+
+fn names_below(parent: &str, code: &str, module: &str) -> bool {
+    code.match_indices(parent).any(|(at, path)| match code[at + path.len()..].strip_prefix('{') {
         None => is_word(&code[at + path.len()..], module),
         Some(group) => {
             let mut depth = 0;
@@ -122,6 +135,35 @@ fn a_module_names_only_modules_before_it() {
         assert_eq!(found, listed, "the modules of {folder} and the list of this test");
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// Does `code` name something that a page lacks?
+fn is_native(code: &str) -> bool {
+    let is_clock = |line: &str| {
+        line.contains("time::") && !line.contains("web_time") && ["Instant", "SystemTime"].iter().any(|clock| line.contains(clock))
+    };
+    NATIVE.iter().any(|module| names_below("std::", code, module)) || code.contains("pollster") || code.lines().any(is_clock)
+}
+
+#[test]
+fn the_core_names_nothing_that_a_page_lacks() {
+    let native = CORE.iter().flat_map(|folder| sources(folder)).filter(|source| is_native(&source.code));
+    let mut native: Vec<_> = native.map(|source| source.name).collect();
+    native.sort();
+    let reasons: Vec<_> = NATIVE_FOR_A_REASON.iter().map(|(name, _)| *name).collect();
+    assert_eq!(
+        native, reasons,
+        "files of the core that name what a page lacks, and those with a reason: crates/files/src/host gives it from outside"
+    );
+    for (code, expected) in [
+        ("use std::{\n    collections::HashMap,\n    fs,\n};", true),
+        ("let now = std::time::Instant::now();", true),
+        ("    time::{Duration, Instant},", true),
+        ("scope.pop().block_on(); use pollster::FutureExt as _;", true),
+        ("use std::time::Duration;\nuse web_time::Instant;\nlet environment = std::fmt::Debug;", false),
+    ] {
+        assert_eq!(is_native(code), expected, "{code}");
+    }
 }
 
 #[test]

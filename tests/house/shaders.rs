@@ -16,6 +16,7 @@ use rasterlab::{
         draw_order::Mode,
         hooks::{Shape, Slot},
     },
+    host,
     shader::{
         Fetch, KernelKey, Pass,
         library::{self, Library},
@@ -228,7 +229,7 @@ fn an_error_names_the_file_and_line_a_person_wrote() {
         .expect("written");
     std::fs::write(shaders.join("effects/wrong.wgsl"), "// A mistake\nfn wrong() { let x: u32 = 1.5; }\n").expect("written");
     let key = key(Fetch::Direct, Visibility::Split32, false, vec![]);
-    let linked = link::link(&Library::Folder(shaders.into()), "stages/project", &key, &[]).expect("links");
+    let linked = link::link(&host::shaders::library(shaders), "stages/project", &key, &[]).expect("links");
     let Err(error) = reflect::reflect(&linked, false) else { panic!("a wrong type was accepted") };
     assert!(error.to_string().starts_with("shaders/effects/wrong.wgsl:2:"), "{error}");
 }
@@ -271,7 +272,7 @@ fn a_pass_is_read_in_few_files() {
 #[test]
 fn every_use_line_is_needed_and_a_missing_one_is_refused() {
     let folder = shader_parts::copied();
-    let library = Library::Folder(folder.path().into());
+    let library = host::shaders::library(folder.path());
     let effects = ["dissolve", "explode", "shadow", "outline"].map(|name| Effect::find(name).expect("an effect").clone()).to_vec();
     let mut full = key(Fetch::Indexed, Visibility::Split32, true, effects);
     full.samples.has_mask = true;
@@ -334,7 +335,7 @@ fn an_undeclared_name_is_refused_with_file_line_and_name() {
     let wrong = text.replacen("    return coverage.row + ", "    return vec3i(i32(frame.size.x)) + coverage.row + ", 1);
     std::fs::write(&path, wrong).expect("written");
     let (key, pass) = (plain_key(), Pass::RasterMedium(RasterPhase::Depth));
-    let error = link::link(&Library::Folder(folder.path().into()), &pass.path(), &key, &key.variants(pass)).expect_err("refused");
+    let error = link::link(&host::shaders::library(folder.path()), &pass.path(), &key, &key.variants(pass)).expect_err("refused");
     let expected = format!("shaders/variants/coverage.wgsl:{line}: names frame, which lib/frame declares; add //@ use for it");
     assert_eq!(error.to_string(), expected);
 }
@@ -349,7 +350,7 @@ fn no_file_can_use_a_stage() {
     let begin_line = text[..begin].lines().count() as u32 + 1;
     std::fs::write(&path, text.replace(section, &format!("{section}//@ use stages/raster/raster_small\n"))).expect("written");
     let (key, pass) = (plain_key(), Pass::RasterMedium(RasterPhase::Depth));
-    let error = link::link(&Library::Folder(folder.path().into()), &pass.path(), &key, &key.variants(pass)).expect_err("refused");
+    let error = link::link(&host::shaders::library(folder.path()), &pass.path(), &key, &key.variants(pass)).expect_err("refused");
     assert!(matches!(error, LinkError::UsesStage { line, .. } if line == begin_line + 1), "{error}");
 }
 
@@ -368,7 +369,7 @@ fn a_variant_that_lacks_what_its_interface_declares_is_refused() {
     )
     .expect("written");
     let (key, pass) = (plain_key(), Pass::RasterMedium(RasterPhase::Depth));
-    let error = link::link(&Library::Folder(folder.path().into()), &pass.path(), &key, &key.variants(pass)).expect_err("refused");
+    let error = link::link(&host::shaders::library(folder.path()), &pass.path(), &key, &key.variants(pass)).expect_err("refused");
     assert!(matches!(&error, LinkError::Incomplete { signature, .. } if signature.contains("coverage_begin")), "{error}");
 }
 

@@ -6,15 +6,13 @@ use std::{
     time::{Duration, Instant},
 };
 
-use eframe::egui::Role;
-use egui_kittest::kittest::Queryable as _;
-use rasterlab::shader::library::Library;
-
 use crate::{
     common::own_shaders,
     files::{drop_files, tiny_glb},
     harness::*,
 };
+use eframe::egui::Role;
+use egui_kittest::kittest::Queryable as _;
 
 /// Paints everything in the color of a parameter.
 pub const INK: &str = "// Ink: paints the surface.\n//@ use lib/surface\n\nstruct Ink {\n    /// How much.\n    @range(0.0, 1.0, 1.0) amount: f32,\n}\n\n\
@@ -334,10 +332,9 @@ fn shaders_of_a_folder_are_reloaded() {
         return;
     }
     let copied = own_shaders();
-    let Library::Folder(folder) = copied.shaders() else { unreachable!("a folder") };
     let child = std::process::Command::new(std::env::current_exe().expect("this test"))
         .args(["--exact", "live::child_whose_shaders_change", "--ignored"])
-        .env("RASTERLAB_SHADERS", folder)
+        .env("RASTERLAB_SHADERS", copied.folder())
         .output()
         .expect("the child starts");
     let said = String::from_utf8_lossy(&child.stdout).into_owned() + &String::from_utf8_lossy(&child.stderr);

@@ -3,6 +3,8 @@
 
 use std::sync::Arc;
 
+use pollster::FutureExt as _;
+
 use crate::common::*;
 use rasterlab::{
     accuracy::{DotCulling, PinnedOptions, Visibility},
@@ -125,8 +127,8 @@ fn a_tree_of_lines_refuses_lines_that_move() {
     let Some(mut renderer) = renderer() else { return };
     for (query, others, word) in [("tentacle?tess=2", &[][..], "clips"), ("teapot?tess=2", &["wobble"][..], "the effect wobble")] {
         let scene = scene(query);
-        renderer.set_scene(&scene).expect("it fits");
-        let error = renderer.capture(&view(&scene, [32, 24]), &dotted(&[], others), &on(DotCulling::Cpu)).expect_err(query);
+        renderer.set_scene(&scene).block_on().expect("it fits");
+        let error = renderer.capture(&view(&scene, [32, 24]), &dotted(&[], others), &on(DotCulling::Cpu)).block_on().expect_err(query);
         assert!(error.is_unsupported() && error.to_string().contains(word) && error.to_string().contains("use gpu"), "{error}");
     }
 }
@@ -172,10 +174,10 @@ fn dots_beyond_65_535_workgroups_are_all_drawn() {
 fn more_dots_than_fit_are_refused_with_their_number() {
     let Some(mut renderer) = renderer() else { return };
     let (scene, view) = flat(&[[0.0; 3], [1e6, 0.0, 0.0]], [32, 24]);
-    renderer.set_scene(&scene).expect("it fits");
+    renderer.set_scene(&scene).block_on().expect("it fits");
     let stack = dotted(&[("lines", 2.0), ("spacing_m", 0.01)], &[]);
     let refused = [
-        renderer.capture(&view, &stack, &AccuracyRequest::default()).err().map(|error: RenderError| error.to_string()),
+        renderer.capture(&view, &stack, &AccuracyRequest::default()).block_on().err().map(|error: RenderError| error.to_string()),
         oracle::render(&scene, &view, &stack).err().map(|error| error.to_string()),
     ];
     for refused in refused {

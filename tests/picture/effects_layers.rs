@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::common::*;
 use glam::DVec3;
+use pollster::FutureExt as _;
 use rasterlab::{
     accuracy::Visibility,
     effects::{Effect, Stack, hooks::Layers, xray},
@@ -128,8 +129,8 @@ fn more_layers_than_any_sum_holds_are_a_sentence_and_a_mark_never_silent() {
     let count = xray::capacity(8) / xray::FULL_WEIGHT + 2;
     let scene = pile(count);
     let stack = with(&["xray.weight=facing"]);
-    renderer.set_scene(&scene).expect("it fits");
-    match renderer.capture(&view, &stack, &AccuracyRequest::default()) {
+    renderer.set_scene(&scene).block_on().expect("it fits");
+    match renderer.capture(&view, &stack, &AccuracyRequest::default()).block_on() {
         Err(error @ RenderError::FullSums(4)) => {
             let text = error.to_string();
             assert!(text.starts_with("4 pixels have more layers than the x-ray's sums hold even with 8 bits"), "{text}");
@@ -137,8 +138,8 @@ fn more_layers_than_any_sum_holds_are_a_sentence_and_a_mark_never_silent() {
         other => panic!("{:?} of {count} layers", other.map(|capture| capture.frame.color)),
     }
     // Asynchronously, as a window draws: with 8 bits it overflows, and the counters say so.
-    renderer.draw(&view, &stack, &AccuracyRequest::default()).expect("a frame");
-    let report = renderer.finish().expect("stats");
+    renderer.draw(&view, &stack, &AccuracyRequest::default()).block_on().expect("a frame");
+    let report = renderer.finish().block_on().expect("stats");
     assert_eq!((report.counters.full_pixels, report.redraw), (4, false));
     // One layer fewer than too many is right.
     let scene = pile(count - 2);
@@ -245,8 +246,8 @@ fn without_these_effects_there_is_no_pass_no_buffer_and_no_text_of_theirs() {
     let view = view(&scene, [64, 48]);
     let explained = |names: &[&str], option| {
         let mut renderer = Renderer::new(gpu.clone());
-        renderer.set_scene(&scene).expect("a builtin fits");
-        renderer.draw_complete(&view, &stack(names), &pinned(option)).expect("a builtin is drawn");
+        renderer.set_scene(&scene).block_on().expect("a builtin fits");
+        renderer.draw_complete(&view, &stack(names), &pinned(option)).block_on().expect("a builtin is drawn");
         renderer.explain()
     };
     let pixels = view.pixels() as u64;

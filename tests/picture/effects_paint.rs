@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::common::*;
 use glam::{DVec2, DVec3, DVec4};
+use pollster::FutureExt as _;
 use rasterlab::{
     accuracy::Visibility,
     effects::{
@@ -357,8 +358,8 @@ fn another_size_or_scene_begins_without_a_trail_and_drawing_again_adds_none() {
         Preset { spin_deg_per_s: 1.0, clock, ..Preset::default() }.view(scene, SIZE)
     };
     let mut next = |scene: &Arc<Scene>, view: &View| {
-        renderer.set_scene(scene).expect("it fits");
-        renderer.capture_next(view, &smear, &exact).expect("it is drawn").frame.color
+        renderer.set_scene(scene).block_on().expect("it fits");
+        renderer.capture_next(view, &smear, &exact).block_on().expect("it is drawn").frame.color
     };
     let alone = next(&pot, &turned(&pot, 0.0));
     let first = next(&knot, &turned(&knot, 0.0));

@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use crate::common::*;
 use glam::DVec3;
+use pollster::FutureExt as _;
 use rasterlab::{
     accuracy::Visibility,
     effects::{EFFECTS, Effect, Stack},
     gpu::Renderer,
+    host,
     measure::compare,
     oracle,
     plan::{AccuracyRequest, Tier},
@@ -15,7 +17,6 @@ use rasterlab::{
     scene::{
         Accessor, Scene,
         camera::{Camera, Projection},
-        gltf,
         texture::{Filter, Image, MipFilter, Texture, Wrap},
         view::View,
     },
@@ -335,8 +336,8 @@ fn the_tier_strict_takes_masks_unless_something_masked_is_cut() {
     let (capture, _) = exact(&mut renderer, &scene, &outside, &stack(&["lambert"]), &strict, "strict");
     let (triangle_ids, keys) = oracle::strict_frame(&scene, &outside, &stack(&["lambert"])).expect("it fits");
     assert_eq!((capture.frame.triangle_id, capture.frame.depth_key), (triangle_ids, keys));
-    renderer.set_scene(&scene).expect("it fits");
-    let error = renderer.draw(&inside, &stack(&["lambert"]), &strict).expect_err("a cut leaf").to_string();
+    renderer.set_scene(&scene).block_on().expect("it fits");
+    let error = renderer.draw(&inside, &stack(&["lambert"]), &strict).block_on().expect_err("a cut leaf").to_string();
     assert!(error.contains("the mask of a clipped triangle is placed in floats"), "{error}");
 }
 
@@ -421,7 +422,7 @@ fn textured_boxes_of_the_corpus_show_their_image() {
     for file in
         ["BoxTextured-glTF/BoxTextured.gltf", "BoxTextured-glTF-Embedded/BoxTextured.gltf", "BoxTextured-glTF-Binary/BoxTextured.glb"]
     {
-        let mut scene = gltf::load(&corpus.join(file)).unwrap_or_else(|error| panic!("{error}"));
+        let mut scene = host::model::load(&corpus.join(file)).unwrap_or_else(|error| panic!("{error}"));
         // The one with its image beside it is mirrored and clamped, which mixes other texels at the image's edge.
         let texture = scene.materials[0].base_texture.as_mut().expect("a texture");
         let is_beside = file == "BoxTextured-glTF/BoxTextured.gltf";

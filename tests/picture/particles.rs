@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::common::*;
 use glam::DVec3;
+use pollster::FutureExt as _;
 use rasterlab::{
     accuracy::{CurlNoise, ParticleStorage},
     effects::{
@@ -380,8 +381,8 @@ fn too_many_particles_are_refused_with_a_sentence() {
     let scene = scene("chamber");
     let most = renderer.gpu().caps.max_storage_binding_bytes;
     let preset = preset_file(&[("count", &[4e6])]);
-    renderer.set_scene(&scene).expect("a builtin fits");
-    let drawn = renderer.draw_complete(&preset.view(&scene, [8, 8]), &preset.evaluated_stack(), &AccuracyRequest::default());
+    renderer.set_scene(&scene).block_on().expect("a builtin fits");
+    let drawn = renderer.draw_complete(&preset.view(&scene, [8, 8]), &preset.evaluated_stack(), &AccuracyRequest::default()).block_on();
     if most < 4_000_000 * 72 {
         let sentence = drawn.expect_err("it does not fit").to_string();
         assert!(sentence.contains("vertex_bytes"), "{sentence}");
@@ -406,9 +407,9 @@ fn a_mistake_in_the_pass_is_found() {
         let mut renderer = Renderer::with_library(gpu.clone(), mutant.shaders());
         let is_found = [0, 1, 18].into_iter().any(|frame| {
             let preset = at(&preset, frame);
-            renderer.set_scene(&scene).expect("a builtin fits");
+            renderer.set_scene(&scene).block_on().expect("a builtin fits");
             let (view, stack) = (preset.view(&scene, SIZE), preset.evaluated_stack());
-            let Ok(capture) = renderer.capture(&view, &stack, &AccuracyRequest::default()) else { return true };
+            let Ok(capture) = renderer.capture(&view, &stack, &AccuracyRequest::default()).block_on() else { return true };
             let verdict = oracle::judge(&scene, &view, &stack, &AdapterPicture { previous: None, ..capture.picture() });
             verdict.expect("it can be judged").report.within(&Budget::default()).is_err()
         });

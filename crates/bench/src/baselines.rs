@@ -5,13 +5,15 @@ use std::{
     time::{Duration, Instant},
 };
 
+use pollster::FutureExt as _;
+
 use crate::{
     accuracy::{PinnedOptions, Visibility},
     effects::Stack,
     frame::{Frame, NO_TRIANGLE},
     gpu::{
-        Capture, Gpu, RenderError, Renderer, buffers,
-        frame_stats::{Pending, StatSources},
+        Capture, Gpu, RenderError, Renderer,
+        frame_stats::{Staged, StatSources},
         hardware::Hardware,
         naive::{Naive, Viewport},
         particles::Wait,
@@ -148,8 +150,8 @@ pub fn bench_stacks(
     let mut entries = Vec::new();
     for (name, stack) in stacks {
         let mut renderer = Renderer::new(gpu.clone());
-        renderer.set_scene(scene)?;
-        let verdict = judge(stack, &renderer.capture(&lab.view, stack, &AccuracyRequest::default())?);
+        renderer.set_scene(scene).block_on()?;
+        let verdict = judge(stack, &renderer.capture(&lab.view, stack, &AccuracyRequest::default()).block_on()?);
         let contender = Contender::Stacked(name.clone(), Box::new((stack.clone(), renderer)));
         entries.push(Entry::new(contender, (&verdict.report).into()));
     }
@@ -210,9 +212,10 @@ impl Lab<'_> {
     /// Keeps the device busy, then draws all contenders in turn until the time of a round has settled. Returns false if it does not
     /// settle.
     fn warm_up(&mut self, entries: &mut [Entry]) -> Result<bool, RenderError> {
-        warm_up::warm_up(self.gpu, warm_up::FROM_IDLE, entries.len(), |at, frames| {
+        warm_up::warm_up(self.gpu, warm_up::FROM_IDLE, entries.len(), async |at, frames| {
             self.sample(&mut entries[at].contender, Detail::Whole, frames).map(|_| true)
-        })?;
+        })
+        .block_on()?;
         let begin = Instant::now();
         let mut rounds = Vec::new();
         while rounds.len() < MIN_WARM_UP_ROUNDS || rounds.len() < MAX_WARM_UP_ROUNDS && begin.elapsed() < MAX_WARM_UP {
@@ -239,12 +242,12 @@ impl Lab<'_> {
         let mut expected = None;
         for &visibility in Visibility::ALL {
             let mut renderer = Renderer::new(self.gpu.clone());
-            renderer.set_scene(scene)?;
+            renderer.set_scene(scene).block_on()?;
             if !visibility.is_supported(self.gpu.caps.int64_atomics) {
                 missing.push((visibility.name().into(), "packed64 needs 64-bit atomics, which this adapter lacks".into()));
                 continue;
             }
-            let capture = match renderer.capture(&self.view, &self.preset.stack, &pinned(visibility)) {
+            let capture = match renderer.capture(&self.view, &self.preset.stack, &pinned(visibility)).block_on() {
                 Err(error) if error.is_unsupported() => {
                     missing.push((visibility.name().into(), error.to_string()));
                     continue;
@@ -261,18 +264,18 @@ impl Lab<'_> {
             return Ok((entries, missing));
         }
         for viewport in [Viewport::AsWritten, Viewport::Folded] {
-            match Naive::new(self.gpu, scene, &self.view, &key, viewport) {
+            match Naive::new(self.gpu, scene, &self.view, &key, viewport).block_on() {
                 Ok(naive) => {
-                    let picture = naive.picture(self.gpu)?;
+                    let picture = naive.picture(self.gpu).block_on()?;
                     entries.push(Entry::new(Contender::Naive(viewport, Box::new(naive)), picture_error(&picture, &expected)));
                 }
                 Err(error) if error.is_unsupported() => missing.push(("naive".into(), error.to_string())),
                 Err(error) => return Err(error),
             }
         }
-        match Hardware::new(self.gpu, scene, &self.view, &self.preset.stack, &key) {
+        match Hardware::new(self.gpu, scene, &self.view, &self.preset.stack, &key).block_on() {
             Ok(Ok(hardware)) => {
-                let picture = hardware.picture(self.gpu)?;
+                let picture = hardware.picture(self.gpu).block_on()?;
                 entries.push(Entry::new(Contender::Hardware(Box::new(hardware)), picture_error(&picture, &expected)));
             }
             Ok(Err(why)) => missing.push(("hardware".into(), why)),
@@ -298,9 +301,9 @@ impl Lab<'_> {
         };
         if let Some((renderer, stack, accuracy)) = ours {
             for _ in 0..frames {
-                renderer.draw_timed(&self.view, stack, &accuracy, detail, Wait::Simulation)?;
+                renderer.draw_timed(&self.view, stack, &accuracy, detail, Wait::Simulation).block_on()?;
             }
-            let report = renderer.finish()?;
+            let report = renderer.finish().block_on()?;
             return Ok(Times { total_ms: report.gpu_ms, passes: report.passes });
         }
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
@@ -315,10 +318,10 @@ impl Lab<'_> {
                 Contender::Ours(..) | Contender::Stacked(..) => {}
             }
         }
-        let pending = Pending::stage(self.gpu, &mut encoder, StatSources::default(), self.timer.as_ref(), None);
+        let staged = Staged::stage(self.gpu, &mut encoder, StatSources::default(), self.timer.as_ref(), None);
         self.gpu.queue.submit([encoder.finish()]);
-        let pending = pending.begin();
-        buffers::wait(self.gpu)?;
+        let pending = staged.begin();
+        pending.ready(self.gpu).block_on()?;
         pending.read(self.timer.as_ref()).map(|(_, times)| times).ok_or(RenderError::Lost)
     }
 }

@@ -5,7 +5,14 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
-use super::{device::Gpu, device_memory::Reserved, error::RenderError, preparations::Preparation, resource_id::BufferId};
+use super::{
+    completion::{Mapping, idle},
+    device::Gpu,
+    device_memory::Reserved,
+    error::RenderError,
+    preparations::Preparation,
+    resource_id::BufferId,
+};
 
 /// One buffer of the picture, for `explain`.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -46,15 +53,15 @@ impl Buffers {
     ///
     /// # Errors
     /// When the adapter binds no buffer of this size, or has no memory for it.
-    pub fn ensure(&mut self, gpu: &Gpu, id: BufferId, bytes: u64) -> Result<bool, RenderError> {
-        self.ensure_for(gpu, id, bytes, id.purpose())
+    pub async fn ensure(&mut self, gpu: &Gpu, id: BufferId, bytes: u64) -> Result<bool, RenderError> {
+        self.ensure_for(gpu, id, bytes, id.purpose()).await
     }
 
     /// [`Self::ensure`] with another purpose than the usual one.
     ///
     /// # Errors
     /// As [`Self::ensure`].
-    pub fn ensure_for(&mut self, gpu: &Gpu, id: BufferId, bytes: u64, purpose: &'static str) -> Result<bool, RenderError> {
+    pub async fn ensure_for(&mut self, gpu: &Gpu, id: BufferId, bytes: u64, purpose: &'static str) -> Result<bool, RenderError> {
         let bytes = bytes.max(16).next_multiple_of(16);
         if let Some(held) = self.held.get_mut(&id)
             && (bytes..=bytes.saturating_mul(4)).contains(&held.bytes)
@@ -75,7 +82,7 @@ impl Buffers {
         let descriptor = wgpu::BufferDescriptor { label: Some(id.name()), size: bytes, usage, mapped_at_creation: false };
         let buffer = gpu.device.create_buffer(&descriptor);
         gpu.prepared.count(Preparation::Buffer);
-        if pollster::block_on(scope.pop()).is_some() {
+        if scope.pop().await.is_some() {
             return Err(no_memory);
         }
         self.held.insert(id, Held { buffer, bytes, purpose, _memory: memory });
@@ -86,23 +93,23 @@ impl Buffers {
     ///
     /// # Errors
     /// As [`Self::ensure`].
-    pub fn fill(&mut self, gpu: &Gpu, id: BufferId, data: &[u8]) -> Result<(), RenderError> {
-        self.ensure(gpu, id, data.len() as u64)?;
-        self.write_at(gpu, id, 0, data)
+    pub async fn fill(&mut self, gpu: &Gpu, id: BufferId, data: &[u8]) -> Result<(), RenderError> {
+        self.ensure(gpu, id, data.len() as u64).await?;
+        self.write_at(gpu, id, 0, data).await
     }
 
     /// Writes `data` from a byte on.
     ///
     /// # Errors
     /// When there is no such buffer.
-    pub fn write_at(&self, gpu: &Gpu, id: BufferId, offset: u64, data: &[u8]) -> Result<(), RenderError> {
+    pub async fn write_at(&self, gpu: &Gpu, id: BufferId, offset: u64, data: &[u8]) -> Result<(), RenderError> {
         let buffer = self.get(id)?;
         for (at, part) in (offset..).step_by(UPLOAD).zip(data.chunks(UPLOAD)) {
             gpu.queue.write_buffer(buffer, at, part);
             if part.len() == UPLOAD {
                 // What is written waits in memory of its own until it is submitted and done.
                 gpu.queue.submit([]);
-                wait(gpu)?;
+                idle(gpu).await?;
             }
         }
         Ok(())
@@ -146,9 +153,9 @@ pub fn color_stride(width: u32) -> u32 {
     width.next_multiple_of(64)
 }
 
-/// Copies a buffer back and waits for it.
-pub fn read(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, RenderError> {
-    read_through(gpu, buffer, bytes, &mut None)
+/// Copies a buffer back.
+pub async fn read(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, RenderError> {
+    read_through(gpu, buffer, bytes, &mut None).await
 }
 
 /// A buffer that the program can map and read.
@@ -163,7 +170,7 @@ pub fn new_staging(gpu: &Gpu, label: &str, bytes: u64) -> wgpu::Buffer {
 }
 
 /// [`read`] through a buffer that the caller keeps for the next time.
-fn read_through(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: u64, kept: &mut Option<wgpu::Buffer>) -> Result<Vec<u8>, RenderError> {
+async fn read_through(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: u64, kept: &mut Option<wgpu::Buffer>) -> Result<Vec<u8>, RenderError> {
     if bytes == 0 {
         return Ok(Vec::new());
     }
@@ -171,43 +178,33 @@ fn read_through(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: u64, kept: &mut Option<
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, bytes);
     gpu.queue.submit([encoder.finish()]);
-    let read = read_staging(gpu, &staging)?;
+    let read = read_staging(gpu, &staging).await?;
     *kept = Some(staging);
     Ok(read)
 }
 
 /// Copies back a picture whose rows stand `color_stride` apart, row-major.
-pub fn read_picture(gpu: &Gpu, buffer: &wgpu::Buffer, size: [u32; 2]) -> Result<Vec<[u8; 4]>, RenderError> {
-    read_picture_through(gpu, buffer, size, &mut None)
+pub async fn read_picture(gpu: &Gpu, buffer: &wgpu::Buffer, size: [u32; 2]) -> Result<Vec<[u8; 4]>, RenderError> {
+    read_picture_through(gpu, buffer, size, &mut None).await
 }
 
 /// [`read_picture`] through a buffer that the caller keeps for the next picture.
-pub fn read_picture_through(
+pub async fn read_picture_through(
     gpu: &Gpu,
     buffer: &wgpu::Buffer,
     [width, height]: [u32; 2],
     kept: &mut Option<wgpu::Buffer>,
 ) -> Result<Vec<[u8; 4]>, RenderError> {
     let row = 4 * color_stride(width) as usize;
-    let bytes = read_through(gpu, buffer, row as u64 * u64::from(height), kept)?;
+    let bytes = read_through(gpu, buffer, row as u64 * u64::from(height), kept).await?;
     let pixels = |row: &[u8]| bytemuck::pod_collect_to_vec::<u8, [u8; 4]>(&row[..4 * width as usize]);
     Ok(bytes.chunks_exact(row.max(1)).flat_map(pixels).collect())
 }
 
-/// Waits for a mappable buffer and reads all of it.
-pub fn read_staging(gpu: &Gpu, staging: &wgpu::Buffer) -> Result<Vec<u8>, RenderError> {
-    staging.map_async(wgpu::MapMode::Read, .., |_| {});
-    wait(gpu)?;
+/// All of a mappable buffer, once what was submitted has written it.
+async fn read_staging(gpu: &Gpu, staging: &wgpu::Buffer) -> Result<Vec<u8>, RenderError> {
+    Mapping::begin(staging).ready(gpu).await?;
     let bytes = staging.get_mapped_range(..).map_err(|_| RenderError::Lost)?.to_vec();
     staging.unmap();
     Ok(bytes)
-}
-
-/// Waits until the queue is idle. A minute without an answer counts as a lost device: software adapters have no watchdog.
-pub fn wait(gpu: &Gpu) -> Result<(), RenderError> {
-    let patience = Some(std::time::Duration::from_secs(60));
-    match gpu.device.poll(wgpu::PollType::Wait { submission_index: None, timeout: patience }) {
-        Ok(_) if !gpu.is_lost() => Ok(()),
-        _ => Err(RenderError::Lost),
-    }
 }

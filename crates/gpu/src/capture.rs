@@ -59,31 +59,31 @@ impl Renderer {
     ///
     /// # Panics
     /// Without a moment.
-    pub fn capture_last(&mut self, moments: &[(View, Stack)], accuracy: &AccuracyRequest) -> Result<Capture, RenderError> {
+    pub async fn capture_last(&mut self, moments: &[(View, Stack)], accuracy: &AccuracyRequest) -> Result<Capture, RenderError> {
         let ((view, stack), before) = moments.split_last().expect("a picture shows a moment");
         self.clear_history();
         for (view, stack) in before {
-            self.draw_complete(view, stack, accuracy)?;
+            self.draw_complete(view, stack, accuracy).await?;
         }
-        self.capture_next(view, stack, accuracy)
+        self.capture_next(view, stack, accuracy).await
     }
 
-    /// Draws a picture with no history, waits, draws again with larger queues while one overflows, and reads everything back.
+    /// Draws a picture with no history, draws it again with larger queues while one overflows, and reads everything back.
     ///
     /// # Errors
     /// As [`Self::draw_complete`].
-    pub fn capture(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Capture, RenderError> {
+    pub async fn capture(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Capture, RenderError> {
         self.clear_history();
-        self.capture_next(view, stack, accuracy)
+        self.capture_next(view, stack, accuracy).await
     }
 
     /// The same of a picture that comes after the last one.
     ///
     /// # Errors
     /// As [`Self::draw_complete`].
-    pub fn capture_next(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Capture, RenderError> {
+    pub async fn capture_next(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Capture, RenderError> {
         for _ in 0..MOST_REDRAWS {
-            if let Some(capture) = self.capture_once(view, stack, accuracy)? {
+            if let Some(capture) = self.capture_once(view, stack, accuracy).await? {
                 return Ok(capture);
             }
         }
@@ -91,8 +91,8 @@ impl Renderer {
     }
 
     /// The same; none where a queue overflowed only when layers were counted, and has grown.
-    fn capture_once(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Option<Capture>, RenderError> {
-        let mut counters = self.draw_complete(view, stack, accuracy)?;
+    async fn capture_once(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Option<Capture>, RenderError> {
+        let mut counters = self.draw_complete(view, stack, accuracy).await?;
         let shown = [view.width, view.height];
         if view.pixels() == 0 {
             let frame = Frame { width: view.width, height: view.height, ..Frame::default() };
@@ -100,40 +100,41 @@ impl Renderer {
             return Ok(Some(Capture { frame, geometry, layers: Some(Vec::new()), previous: None, shown: None }));
         }
         let key = self.picture.frame()?.plan.key.clone();
-        let mut judge = if key.culls() { Some(self.redraw_unculled(view, stack, accuracy, &mut counters)?) } else { None };
+        let mut judge = if key.culls() { Some(self.redraw_unculled(view, stack, accuracy, &mut counters).await?) } else { None };
         let scene = self.scene.as_ref().ok_or(RenderError::NoScene)?;
         let gpu = &self.device.gpu;
         let picture = Readback { gpu, scene, view: &self.picture };
         // The judge asks for all triangles, culled ones too.
         let all = Readback { view: judge.as_ref().unwrap_or(&self.picture), ..picture };
         let [width, height] = self.picture.frame()?.layout.size;
-        let (triangle_id, stored_keys) = picture.visibility()?;
+        let (triangle_id, stored_keys) = picture.visibility().await?;
         let depth_keys = stored_keys.into_iter().map(|stored| key.depth_bits(stored)).collect();
         let frame = Frame {
             width,
             height,
             triangle_id,
             depth_key: depth_keys,
-            color: picture.picture(BufferId::Color, [width, height])?,
-            layer_sums: picture.layer_sums()?,
-            dots: picture.dot_strengths()?,
+            color: picture.picture(BufferId::Color, [width, height]).await?,
+            layer_sums: picture.layer_sums().await?,
+            dots: picture.dot_strengths().await?,
             counters,
             depth_rounding: key.depth_rounding(),
             depth_keys_are_approximate: key.options.visibility == Visibility::Race,
         };
-        let read = |id, size| self.picture.buffers.get(id).and_then(|buffer| buffers::read_picture(gpu, buffer, size));
-        let previous = key.reads_previous().then(|| read(BufferId::Previous, [width, height])).transpose()?;
-        let scaled = key.is_scaled().then(|| read(BufferId::ScaledColor, shown)).transpose()?;
-        let mut geometry = all.geometry(Some(&self.particles))?;
-        geometry.shadow_map = self.shadow.as_ref().map(|shadow| shadow_map(gpu, scene, shadow)).transpose()?.map(Box::new);
+        let previous = if key.reads_previous() { Some(picture.picture(BufferId::Previous, [width, height]).await?) } else { None };
+        let scaled = if key.is_scaled() { Some(picture.picture(BufferId::ScaledColor, shown).await?) } else { None };
+        let mut geometry = all.geometry(Some(&self.particles)).await?;
+        if let Some(shadow) = &self.shadow {
+            geometry.shadow_map = Some(shadow_map(gpu, scene, shadow).await?.into());
+        }
         let is_counted = key.framebuffer.layers == Some(Layers::Overdraw);
-        let mut layers = if is_counted { Some(all.layer_sums()?) } else { None };
+        let mut layers = if is_counted { Some(all.layer_sums().await?) } else { None };
         let others = shared(scene, &self.particles, self.shadow.as_ref());
         if let Some(dots) = &self.picture.dots {
-            geometry.dots = dots.read(&mut self.device, &key, &mut self.picture.buffers, &others)?;
+            geometry.dots = dots.read(&mut self.device, &key, &mut self.picture.buffers, &others).await?;
         }
         if layers.is_none() {
-            layers = count_layers(&mut self.device, judge.as_mut().unwrap_or(&mut self.picture), &others)?;
+            layers = count_layers(&mut self.device, judge.as_mut().unwrap_or(&mut self.picture), &others).await?;
             if layers.is_none() {
                 if let Some(judge) = judge {
                     self.picture.capacities = judge.capacities;
@@ -147,7 +148,7 @@ impl Renderer {
 
     /// Draws a culled picture once more as another view, for the judge, who asks for the vertices, clipped triangles and layers of all
     /// triangles and for the counts of those that were rejected. Neither the picture nor what the next one starts from changes.
-    fn redraw_unculled(
+    async fn redraw_unculled(
         &mut self,
         view: &View,
         stack: &Stack,
@@ -164,15 +165,15 @@ impl Renderer {
         (judge.capacities, judge.force_all_paths) = (picture.capacities, picture.force_all_paths);
         let mut lost = 0;
         for _ in 0..MOST_REDRAWS {
-            judge.prepare(device, scene, &request)?;
+            judge.prepare(device, scene, &request).await?;
             let key = &judge.frame()?.plan.key;
             let (room, passes) = (recorded_capacities(key, &judge.capacities), key.passes(&key.phases()));
-            judge.prepare_passes(device, passes, &shared(scene, particles, shadow.as_ref()))?;
+            judge.prepare_passes(device, passes, &shared(scene, particles, shadow.as_ref())).await?;
             let mut encoder = device.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("judge") });
             judge.clear(&mut encoder, |occasion| occasion != ClearedBy::History)?;
             judge.record_all(&mut encoder, Timing { timer: None, ends_frame: true })?;
             device.gpu.queue.submit([encoder.finish()]);
-            let bytes = buffers::read(&device.gpu, judge.buffers.get(BufferId::Counters)?, size_of::<CounterRecord>() as u64)?;
+            let bytes = buffers::read(&device.gpu, judge.buffers.get(BufferId::Counters)?, size_of::<CounterRecord>() as u64).await?;
             let record: CounterRecord = bytemuck::pod_read_unaligned(&bytes);
             let all = record.counters(&room);
             if all.overflow == 0 {
@@ -190,14 +191,14 @@ impl Renderer {
     ///
     /// # Errors
     /// When the picture cannot be drawn on this adapter, one overflows for ever, or the device is lost.
-    pub fn draw_complete(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Counters, RenderError> {
+    pub async fn draw_complete(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Counters, RenderError> {
         let mut lost = 0;
         for _ in 0..MOST_REDRAWS {
-            self.draw_timed(view, stack, accuracy, Detail::Passes, Wait::Simulation)?;
+            self.draw_timed(view, stack, accuracy, Detail::Passes, Wait::Simulation).await?;
             if view.pixels() == 0 {
                 return Ok(Counters::default());
             }
-            let report = self.finish()?;
+            let report = self.finish().await?;
             if !report.redraw && report.counters.full_pixels > 0 {
                 return Err(RenderError::FullSums(report.counters.full_pixels));
             }

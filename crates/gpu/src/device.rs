@@ -25,7 +25,7 @@ pub enum AdapterChoice {
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct AdapterSummary {
     pub name: String,
-    /// `vulkan`, `metal`, `dx12`.
+    /// `vulkan`, `metal`, `dx12`, `webgpu`.
     pub backend: String,
     pub driver: String,
     /// Runs on the CPU: pictures are right, times say nothing about a graphics card.
@@ -63,7 +63,8 @@ pub struct Gpu {
 }
 
 /// The back ends that run our compute shaders.
-pub const BACKENDS: wgpu::Backends = wgpu::Backends::VULKAN.union(wgpu::Backends::METAL).union(wgpu::Backends::DX12);
+pub const BACKENDS: wgpu::Backends =
+    wgpu::Backends::VULKAN.union(wgpu::Backends::METAL).union(wgpu::Backends::DX12).union(wgpu::Backends::BROWSER_WEBGPU);
 
 fn instance() -> wgpu::Instance {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
@@ -74,8 +75,8 @@ fn instance() -> wgpu::Instance {
     wgpu::Instance::new(descriptor)
 }
 
-fn adapters() -> Vec<wgpu::Adapter> {
-    let mut adapters = pollster::block_on(instance().enumerate_adapters(BACKENDS));
+async fn adapters() -> Vec<wgpu::Adapter> {
+    let mut adapters = instance().enumerate_adapters(BACKENDS).await;
     adapters.sort_by_key(|adapter| match adapter.get_info().device_type {
         wgpu::DeviceType::DiscreteGpu => 0,
         wgpu::DeviceType::IntegratedGpu => 1,
@@ -87,8 +88,8 @@ fn adapters() -> Vec<wgpu::Adapter> {
 }
 
 /// Every adapter with what it can do, best first.
-pub fn list() -> Vec<(AdapterSummary, Caps)> {
-    adapters().iter().map(|adapter| (summary(adapter), caps(adapter))).collect()
+pub async fn list() -> Vec<(AdapterSummary, Caps)> {
+    adapters().await.iter().map(|adapter| (summary(adapter), caps(adapter))).collect()
 }
 
 /// Index in `names` (best first) of the adapter that `choice` means.
@@ -164,12 +165,17 @@ thread_local! {
 }
 
 impl Gpu {
-    /// Opens an adapter without a window; waits for it.
-    pub fn open(choice: &AdapterChoice) -> Result<Arc<Self>, OpenError> {
-        let adapters = adapters();
+    /// Opens an adapter without a window.
+    ///
+    /// # Errors
+    /// When `choice` names none or several, or the adapter gives no device.
+    pub async fn open(choice: &AdapterChoice) -> Result<Arc<Self>, OpenError> {
+        let adapters = adapters().await;
         let names: Vec<String> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
         let adapter = &adapters[choose(choice, &names)?];
-        let (device, queue) = pollster::block_on(adapter.request_device(&Self::descriptor(adapter)))
+        let (device, queue) = adapter
+            .request_device(&Self::descriptor(adapter))
+            .await
             .map_err(|error| OpenError::Device { adapter: adapter.get_info().name, reason: error.to_string() })?;
         OPENED.with_borrow(|seen| seen.iter().for_each(|seen| seen(&device)));
         Ok(Self::adopt(adapter, device, queue))

@@ -1,6 +1,8 @@
 //! Dots on lines: runs of consecutive dots on line segments, and the list of those that the CPU finds visible where it chooses.
 
-use std::{sync::Arc, time::Instant};
+use std::sync::Arc;
+
+use web_time::Instant;
 
 use super::{
     buffers::{self, Buffers},
@@ -140,18 +142,18 @@ impl DotStore {
     ///
     /// # Errors
     /// When a buffer is missing.
-    pub fn write(&mut self, gpu: &Gpu, buffers: &Buffers, is_new: impl Fn(BufferId) -> bool) -> Result<(), RenderError> {
+    pub async fn write(&mut self, gpu: &Gpu, buffers: &Buffers, is_new: impl Fn(BufferId) -> bool) -> Result<(), RenderError> {
         if self.is_stale || is_new(BufferId::DotSegments) || is_new(BufferId::DotRuns) {
             let segments: Vec<u32> = self.lines.segments.iter().flat_map(|segment| words(segment.ends)).collect();
-            buffers.write_at(gpu, BufferId::DotSegments, 0, bytemuck::cast_slice(&segments))?;
-            buffers.write_at(gpu, BufferId::DotRuns, 0, bytemuck::cast_slice(&self.dot_runs))?;
+            buffers.write_at(gpu, BufferId::DotSegments, 0, bytemuck::cast_slice(&segments)).await?;
+            buffers.write_at(gpu, BufferId::DotRuns, 0, bytemuck::cast_slice(&self.dot_runs)).await?;
             self.is_stale = false;
         }
-        buffers.write_at(gpu, BufferId::DotFrame, 0, bytemuck::bytes_of(&self.frame))?;
+        buffers.write_at(gpu, BufferId::DotFrame, 0, bytemuck::bytes_of(&self.frame)).await?;
         if let Some(chosen) = &self.chosen {
             let began = Instant::now();
-            buffers.write_at(gpu, BufferId::DotList, 0, bytemuck::cast_slice(chosen))?;
-            buffers.write_at(gpu, BufferId::DotCount, 0, bytemuck::bytes_of(&(chosen.len() as u32)))?;
+            buffers.write_at(gpu, BufferId::DotList, 0, bytemuck::cast_slice(chosen)).await?;
+            buffers.write_at(gpu, BufferId::DotCount, 0, bytemuck::bytes_of(&(chosen.len() as u32))).await?;
             self.chosen_ms = self.chosen_ms.map(|ms| ms + began.elapsed().as_secs_f64() * 1e3);
         }
         Ok(())
@@ -161,7 +163,7 @@ impl DotStore {
     ///
     /// # Errors
     /// When the device is lost.
-    pub fn read(
+    pub async fn read(
         &self,
         device: &mut Device,
         key: &KernelKey,
@@ -170,13 +172,13 @@ impl DotStore {
     ) -> Result<Vec<SnappedVertex>, RenderError> {
         let mut records = Vec::with_capacity(self.dots as usize);
         let Device { gpu, pipelines, .. } = device;
-        let pipeline = pipelines.get(gpu, key, Pass::DotsProbe)?;
+        let pipeline = pipelines.get(gpu, key, Pass::DotsProbe).await?;
         for first in (0..self.dots).step_by(PROBED as usize) {
             let probed = PROBED.min(self.dots - first);
             let bytes = u64::from(probed) * size_of::<VertexRecord>() as u64;
-            own.ensure(gpu, BufferId::DotRecords, bytes)?;
+            own.ensure(gpu, BufferId::DotRecords, bytes).await?;
             let frame = DotFrame { first_probed: first, ..self.frame };
-            own.write_at(gpu, BufferId::DotFrame, 0, bytemuck::bytes_of(&frame))?;
+            own.write_at(gpu, BufferId::DotFrame, 0, bytemuck::bytes_of(&frame)).await?;
             let group = others.with(own).bind_group(gpu, &pipeline)?;
             let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("probe dots") });
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("dots_probe"), timestamp_writes: None });
@@ -186,7 +188,7 @@ impl DotStore {
             pass.dispatch_workgroups(x, y, 1);
             drop(pass);
             gpu.queue.submit([encoder.finish()]);
-            let bytes = buffers::read(gpu, own.get(BufferId::DotRecords)?, bytes)?;
+            let bytes = buffers::read(gpu, own.get(BufferId::DotRecords)?, bytes).await?;
             records.extend(bytemuck::pod_collect_to_vec::<u8, VertexRecord>(&bytes).into_iter().map(VertexRecord::snapped));
         }
         own.keep(|id| id != BufferId::DotRecords);

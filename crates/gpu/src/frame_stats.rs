@@ -1,16 +1,12 @@
 //! Statistics of a frame: its counters and timestamps, read back when the device has finished it.
 
-use std::{
-    mem::offset_of,
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering},
-    },
-};
+use std::mem::offset_of;
 
 use super::{
     buffers,
+    completion::Mapping,
     device::Gpu,
+    error::RenderError,
     records::{CounterRecord, OrderRecord},
     timer::{Timer, Times},
 };
@@ -33,17 +29,23 @@ pub struct StatSources<'a> {
     pub order: Option<&'a wgpu::Buffer>,
 }
 
+/// Statistics of a frame that is not submitted yet.
+pub struct Staged {
+    staging: wgpu::Buffer,
+    labels: Vec<String>,
+}
+
 /// Statistics of a frame in flight.
 pub struct Pending {
     staging: wgpu::Buffer,
     labels: Vec<String>,
-    ready: Arc<AtomicBool>,
+    mapping: Mapping,
 }
 
 /// Timestamps lie behind the counters.
 const FIRST_STAMP: u64 = size_of::<FrameStats>() as u64;
 
-impl Pending {
+impl Staged {
     /// Records the copies that end a frame. `spare` is the buffer of an earlier frame, if there is one.
     pub fn stage(
         gpu: &Gpu,
@@ -66,18 +68,27 @@ impl Pending {
         if let Some(timer) = timer {
             timer.end(encoder, &staging, FIRST_STAMP);
         }
-        Self { staging, labels: timer.map(Timer::labels).unwrap_or_default(), ready: Arc::default() }
+        Self { staging, labels: timer.map(Timer::labels).unwrap_or_default() }
     }
 
     /// Asks for the bytes, after the frame was submitted.
-    pub fn begin(self) -> Self {
-        let ready = self.ready.clone();
-        self.staging.map_async(wgpu::MapMode::Read, .., move |result| ready.store(result.is_ok(), Ordering::Release));
-        self
+    pub fn begin(self) -> Pending {
+        let Self { staging, labels } = self;
+        Pending { mapping: Mapping::begin(&staging), staging, labels }
+    }
+}
+
+impl Pending {
+    pub fn is_ready(&self) -> bool {
+        self.mapping.is_ready()
     }
 
-    pub fn is_ready(&self) -> bool {
-        self.ready.load(Ordering::Acquire)
+    /// Returns when the frame is finished.
+    ///
+    /// # Errors
+    /// When the device is lost.
+    pub async fn ready(&self, gpu: &Gpu) -> Result<(), RenderError> {
+        self.mapping.ready(gpu).await
     }
 
     /// What the frame counted, and its times; none when the device was lost.

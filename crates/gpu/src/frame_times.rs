@@ -1,9 +1,8 @@
 //! Times of the frames of one picture: as a whole and pass by pass, once its kernels are compiled.
 
-use std::{
-    collections::HashMap,
-    time::{Duration, Instant},
-};
+use std::{collections::HashMap, time::Duration};
+
+use web_time::Instant;
 
 use super::{
     error::RenderError,
@@ -37,23 +36,22 @@ impl FrameTimes {
     ///
     /// # Errors
     /// When the picture cannot be drawn, the adapter writes no timestamps, or the device is lost.
-    pub fn of(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Self, RenderError> {
-        draw_until_ready(renderer, view, stack, accuracy)?;
+    pub async fn of(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Self, RenderError> {
+        draw_until_ready(renderer, view, stack, accuracy).await?;
         let gpu = renderer.gpu().clone();
-        warm_up::warm_up(&gpu, warm_up::FROM_IDLE, 1, |_, frames| {
-            sample(renderer, view, stack, accuracy, Detail::Whole, frames).map(|_| true)
-        })?;
-        timed(renderer, view, stack, accuracy)
+        let draw = async |_, frames| sample(renderer, view, stack, accuracy, Detail::Whole, frames).await.map(|_| true);
+        warm_up::warm_up(&gpu, warm_up::FROM_IDLE, 1, draw).await?;
+        timed(renderer, view, stack, accuracy).await
     }
 }
 
 /// Draws until kernels are compiled and queues are large enough.
-fn draw_until_ready(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<(), RenderError> {
+async fn draw_until_ready(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<(), RenderError> {
     let mut left = FIRST_FRAMES;
     // Queues grow a few times at most.
     for _ in 0..16 {
-        renderer.draw_timed(view, stack, accuracy, Detail::Whole, Wait::Simulation)?;
-        left -= usize::from(!renderer.finish()?.redraw);
+        renderer.draw_timed(view, stack, accuracy, Detail::Whole, Wait::Simulation).await?;
+        left -= usize::from(!renderer.finish().await?.redraw);
         if left == 0 {
             break;
         }
@@ -62,7 +60,7 @@ fn draw_until_ready(renderer: &mut Renderer, view: &View, stack: &Stack, accurac
 }
 
 /// Draws frames without a pause between them; the report is of the last.
-fn sample(
+async fn sample(
     renderer: &mut Renderer,
     view: &View,
     stack: &Stack,
@@ -71,9 +69,9 @@ fn sample(
     frames: usize,
 ) -> Result<Report, RenderError> {
     for _ in 0..frames {
-        renderer.draw_timed(view, stack, accuracy, detail, Wait::Simulation)?;
+        renderer.draw_timed(view, stack, accuracy, detail, Wait::Simulation).await?;
     }
-    renderer.finish()
+    renderer.finish().await
 }
 
 /// Frames that are drawn for one time. On a software adapter a frame before the one that is timed would only take time.
@@ -82,29 +80,29 @@ fn frames_per_sample(renderer: &Renderer) -> usize {
 }
 
 /// Milliseconds of one whole frame, above 0: by timestamps, or the time that passed on the CPU where the adapter has none.
-fn whole_ms(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Option<f64>, RenderError> {
+async fn whole_ms(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Option<f64>, RenderError> {
     let frames = frames_per_sample(renderer);
     let begin = Instant::now();
-    let report = sample(renderer, view, stack, accuracy, Detail::Whole, frames)?;
+    let report = sample(renderer, view, stack, accuracy, Detail::Whole, frames).await?;
     let passed_ms = begin.elapsed().as_secs_f64() * 1e3 / frames as f64;
     let ms = if renderer.gpu().caps.timestamps { report.gpu_ms } else { Some(passed_ms) };
     Ok(ms.filter(|ms| *ms > 0.0))
 }
 
 /// Times a picture: as a whole and pass by pass in turn.
-fn timed(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<FrameTimes, RenderError> {
+async fn timed(renderer: &mut Renderer, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<FrameTimes, RenderError> {
     let has_timestamps = renderer.gpu().caps.timestamps;
     let frames = frames_per_sample(renderer);
     let (mut whole, mut passes): (Vec<f64>, Vec<(String, Vec<f64>)>) = (Vec::new(), Vec::new());
     let [least, most] = FRAMES;
     let begin = Instant::now();
     while whole.len() < least || whole.len() < most && begin.elapsed() < PICTURE_BUDGET {
-        whole.extend(whole_ms(renderer, view, stack, accuracy)?);
+        whole.extend(whole_ms(renderer, view, stack, accuracy).await?);
         if !has_timestamps {
             continue;
         }
         let mut seen = HashMap::new();
-        for (label, ms) in sample(renderer, view, stack, accuracy, Detail::Passes, frames)?.passes {
+        for (label, ms) in sample(renderer, view, stack, accuracy, Detail::Passes, frames).await?.passes {
             // A label may occur several times in a frame.
             let turn = seen.entry(label.clone()).and_modify(|turn| *turn += 1).or_insert(0usize);
             match passes.iter_mut().filter(|(known, _)| *known == label).nth(*turn) {

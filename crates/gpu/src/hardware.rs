@@ -93,7 +93,7 @@ impl Hardware {
     ///
     /// # Errors
     /// When the scene does not fit the adapter, or a pipeline is refused.
-    pub fn new(gpu: &Gpu, scene: &Scene, view: &View, stack: &Stack, key: &KernelKey) -> Result<Result<Self, String>, RenderError> {
+    pub async fn new(gpu: &Gpu, scene: &Scene, view: &View, stack: &Stack, key: &KernelKey) -> Result<Result<Self, String>, RenderError> {
         if let Some(reason) = obstacle(gpu, scene, stack) {
             return Ok(Err(reason));
         }
@@ -107,13 +107,13 @@ impl Hardware {
         let counts =
             FrameUniform { draw_count: draws.len() as u32, deform_count: deforms.records.len() as u32, ..FrameUniform::of_view(view) };
         let mut buffers = Buffers::default();
-        buffers.fill(gpu, BufferId::Frame, bytemuck::bytes_of(&counts))?;
-        buffers.fill(gpu, BufferId::Draws, bytemuck::cast_slice(&records))?;
-        buffers.fill(gpu, BufferId::Effects, &uniform_bytes(&stack.0))?;
-        upload(gpu, &mut buffers, scene, &geometry)?;
-        let deform = if deformable > 0 { Some(DeformPass::new(gpu, key, &mut buffers, &deforms, deformable)?) } else { None };
+        buffers.fill(gpu, BufferId::Frame, bytemuck::bytes_of(&counts)).await?;
+        buffers.fill(gpu, BufferId::Draws, bytemuck::cast_slice(&records)).await?;
+        buffers.fill(gpu, BufferId::Effects, &uniform_bytes(&stack.0)).await?;
+        upload(gpu, &mut buffers, scene, &geometry).await?;
+        let deform = if deformable > 0 { Some(DeformPass::new(gpu, key, &mut buffers, &deforms, deformable).await?) } else { None };
         let is_painted = recipes.iter().any(|recipe| recipe.paint.is_some());
-        let materials = if is_painted { Some(HardwareMaterials::new(gpu, scene)?) } else { None };
+        let materials = if is_painted { Some(HardwareMaterials::new(gpu, scene).await?) } else { None };
         let (pipelines, group) = pipelines(gpu, key, &buffers, materials.as_ref(), recipes)?;
         let calls = calls(scene, &geometry, &draws, &pipelines);
         let size = [view.width, view.height];
@@ -170,21 +170,21 @@ impl Hardware {
         Ok(())
     }
 
-    /// Draws once and waits for the picture, row-major; alpha is 0 where nothing was drawn.
+    /// Draws once and reads the picture back, row-major; alpha is 0 where nothing was drawn.
     ///
     /// # Errors
     /// When the device is lost.
-    pub fn picture(&self, gpu: &Gpu) -> Result<Vec<[u8; 4]>, RenderError> {
+    pub async fn picture(&self, gpu: &Gpu) -> Result<Vec<[u8; 4]>, RenderError> {
         let [width, height] = self.size;
         let mut held = Buffers::default();
-        held.ensure(gpu, BufferId::Color, 4 * u64::from(color_stride(width)) * u64::from(height))?;
+        held.ensure(gpu, BufferId::Color, 4 * u64::from(color_stride(width)) * u64::from(height)).await?;
         let buffer = held.get(BufferId::Color)?;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.record(&mut encoder, None)?;
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * color_stride(width)), rows_per_image: None };
         encoder.copy_texture_to_buffer(self.color.as_image_copy(), wgpu::TexelCopyBufferInfo { buffer, layout }, self.color.size());
         gpu.queue.submit([encoder.finish()]);
-        buffers::read_picture(gpu, buffer, self.size)
+        buffers::read_picture(gpu, buffer, self.size).await
     }
 }
 
@@ -206,15 +206,15 @@ fn obstacle(gpu: &Gpu, scene: &Scene, stack: &Stack) -> Option<String> {
 }
 
 /// Uploads attributes and index lists, with copies of those that cannot be fetched as they are.
-fn upload(gpu: &Gpu, buffers: &mut Buffers, scene: &Scene, geometry: &HardwareGeometry) -> Result<(), RenderError> {
+async fn upload(gpu: &Gpu, buffers: &mut Buffers, scene: &Scene, geometry: &HardwareGeometry) -> Result<(), RenderError> {
     let copies: &[u8] = bytemuck::cast_slice(&geometry.vertex_copies);
-    buffers.ensure(gpu, BufferId::VertexBytes, geometry.first_copy() + copies.len() as u64)?;
-    buffers.write_at(gpu, BufferId::VertexBytes, 0, &scene.vertex_bytes)?;
-    buffers.write_at(gpu, BufferId::VertexBytes, geometry.first_copy(), copies)?;
+    buffers.ensure(gpu, BufferId::VertexBytes, geometry.first_copy() + copies.len() as u64).await?;
+    buffers.write_at(gpu, BufferId::VertexBytes, 0, &scene.vertex_bytes).await?;
+    buffers.write_at(gpu, BufferId::VertexBytes, geometry.first_copy(), copies).await?;
     let copies: &[u8] = bytemuck::cast_slice(&geometry.index_copies);
-    buffers.ensure(gpu, BufferId::IndexBytes, geometry.first_index_copy + copies.len() as u64)?;
-    buffers.write_at(gpu, BufferId::IndexBytes, 0, &scene.index_bytes)?;
-    buffers.write_at(gpu, BufferId::IndexBytes, geometry.first_index_copy, copies)
+    buffers.ensure(gpu, BufferId::IndexBytes, geometry.first_index_copy + copies.len() as u64).await?;
+    buffers.write_at(gpu, BufferId::IndexBytes, 0, &scene.index_bytes).await?;
+    buffers.write_at(gpu, BufferId::IndexBytes, geometry.first_index_copy, copies).await
 }
 
 impl Recipe {
@@ -289,11 +289,11 @@ fn calls(scene: &Scene, geometry: &HardwareGeometry, draws: &[Draw], pipelines: 
 }
 
 impl DeformPass {
-    fn new(gpu: &Gpu, key: &KernelKey, buffers: &mut Buffers, deforms: &Deforms, deformable: u32) -> Result<Self, RenderError> {
-        buffers.fill(gpu, BufferId::Deforms, bytemuck::cast_slice(&deforms.records))?;
-        buffers.fill(gpu, BufferId::Joints, bytemuck::cast_slice(&deforms.joints))?;
-        buffers.fill(gpu, BufferId::MorphTargets, bytemuck::cast_slice(&deforms.morph_targets))?;
-        let pipeline = Pipelines::new(Library::from_env()).get(gpu, key, Pass::Skin)?;
+    async fn new(gpu: &Gpu, key: &KernelKey, buffers: &mut Buffers, deforms: &Deforms, deformable: u32) -> Result<Self, RenderError> {
+        buffers.fill(gpu, BufferId::Deforms, bytemuck::cast_slice(&deforms.records)).await?;
+        buffers.fill(gpu, BufferId::Joints, bytemuck::cast_slice(&deforms.joints)).await?;
+        buffers.fill(gpu, BufferId::MorphTargets, bytemuck::cast_slice(&deforms.morph_targets)).await?;
+        let pipeline = Pipelines::new(Library::of_process()).get(gpu, key, Pass::Skin).await?;
         let group = Resources { buffers: vec![buffers], textures: Vec::new(), light: None }.bind_group(gpu, &pipeline)?;
         Ok(Self { pipeline, group, groups: folded(deformable.div_ceil(key.work.group_size)) })
     }
@@ -321,7 +321,7 @@ fn pipelines(
     // Every draw is an instance of a storage buffer here.
     let vertices = VertexInputs { is_single_draw: false, ..key.vertices.clone() };
     let key = KernelKey { vertices, ..key.clone() };
-    let linked = link::link(&Library::from_env(), "baselines/hardware", &key, &key.variants(Pass::Resolve))?;
+    let linked = link::link(&Library::of_process(), "baselines/hardware", &key, &key.variants(Pass::Resolve))?;
     let reflected = reflect::reflect(&linked, gpu.caps.int64_atomics)?;
     let mut bindings = reflected.bindings("hardware_vertex");
     bindings.extend(reflected.bindings("hardware_fragment"));

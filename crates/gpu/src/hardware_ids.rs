@@ -20,10 +20,10 @@ const SHADER: &str = "baselines/hardware_ids";
 ///
 /// # Errors
 /// When the corners take more than a buffer holds, or the device is lost.
-pub fn triangle_ids(gpu: &Gpu, library: &Library, size: [u32; 2], corners: &[[f32; 3]]) -> Result<Vec<u32>, RenderError> {
+pub async fn triangle_ids(gpu: &Gpu, library: &Library, size: [u32; 2], corners: &[[f32; 3]]) -> Result<Vec<u32>, RenderError> {
     let format = wgpu::TextureFormat::R32Uint;
     let mut held = Buffers::default();
-    held.fill(gpu, BufferId::Corners, bytemuck::cast_slice(corners))?;
+    held.fill(gpu, BufferId::Corners, bytemuck::cast_slice(corners)).await?;
     let text = library.text(SHADER).ok_or_else(|| LinkError::Missing { user: "the program".into(), name: SHADER.into() })?;
     let attributes = [wgpu::VertexAttribute { format: wgpu::VertexFormat::Float32x3, offset: 0, shader_location: 0 }];
     let corner = wgpu::VertexBufferLayout { array_stride: 12, step_mode: wgpu::VertexStepMode::Vertex, attributes: &attributes };
@@ -55,10 +55,10 @@ pub fn triangle_ids(gpu: &Gpu, library: &Library, size: [u32; 2], corners: &[[f3
         pass.draw(0..corners.len() as u32, 0..1);
     }
     let row = 4 * color_stride(size[0]);
-    held.ensure(gpu, BufferId::TriangleIds, u64::from(row) * u64::from(size[1]))?;
+    held.ensure(gpu, BufferId::TriangleIds, u64::from(row) * u64::from(size[1])).await?;
     let copy = held.get(BufferId::TriangleIds)?;
     let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
     encoder.copy_texture_to_buffer(ids.as_image_copy(), wgpu::TexelCopyBufferInfo { buffer: copy, layout }, ids.size());
     gpu.queue.submit([encoder.finish()]);
-    Ok(buffers::read_picture(gpu, copy, size)?.into_iter().map(u32::from_le_bytes).collect())
+    Ok(buffers::read_picture(gpu, copy, size).await?.into_iter().map(u32::from_le_bytes).collect())
 }

@@ -21,14 +21,14 @@ pub struct HardwareMaterials {
 impl HardwareMaterials {
     /// # Errors
     /// When there is no memory for the images.
-    pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, RenderError> {
+    pub async fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, RenderError> {
         let layout = layout(gpu);
         let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let views: Vec<wgpu::TextureView> = scene.images.iter().map(|image| upload(gpu, &image.levels)).collect();
         // Bound where a material has no image; nothing reads it.
         let none = upload(gpu, &[Level { size: [1, 1], texels: vec![[255; 4]] }]);
         let groups = scene.materials.iter().map(|material| group(gpu, &layout, material, &views, &none)).collect();
-        if pollster::block_on(scope.pop()).is_some() {
+        if scope.pop().await.is_some() {
             let bytes = scene.images.iter().map(Image::bytes).sum();
             return Err(RenderError::OutOfMemory { buffer: "images of the hardware baseline", bytes });
         }

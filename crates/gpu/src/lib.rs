@@ -16,6 +16,8 @@ pub mod preparations;
 pub mod device;
 pub mod device_memory;
 
+mod completion;
+
 pub mod buffers;
 mod textures;
 pub mod timer;

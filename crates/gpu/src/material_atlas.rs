@@ -38,7 +38,7 @@ const MASKED: u32 = 8;
 ///
 /// # Errors
 /// When they take more layers than the adapter's textures have, or more memory than there is.
-pub fn upload(gpu: &Gpu, scene: &Scene) -> Result<WordTexture, RenderError> {
+pub async fn upload(gpu: &Gpu, scene: &Scene) -> Result<WordTexture, RenderError> {
     let id = TextureId::MaterialAtlas;
     let mut words = words(scene);
     let line = WIDTH as usize;
@@ -50,7 +50,7 @@ pub fn upload(gpu: &Gpu, scene: &Scene) -> Result<WordTexture, RenderError> {
         let limit = textures::bytes_of(wgpu::Extent3d { width: WIDTH, height: WIDTH, depth_or_array_layers: most });
         return Err(RenderError::TooLarge { buffer: id.name(), bytes: textures::bytes_of(size), limit });
     }
-    let atlas = WordTexture::new(gpu, id, size, wgpu::TextureViewDimension::D2Array)?;
+    let atlas = WordTexture::new(gpu, id, size, wgpu::TextureViewDimension::D2Array).await?;
     for (layer, words) in words.chunks(line * WIDTH as usize).enumerate() {
         let rows = (words.len() / line) as u32;
         let origin = wgpu::Origin3d { x: 0, y: 0, z: layer as u32 };

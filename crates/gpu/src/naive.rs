@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use glam::DMat4;
-
 use super::{
     buffers::{self, Buffers, color_stride},
     device::Gpu,
@@ -21,6 +19,7 @@ use crate::{
     scene::{Scene, draw::draws, view::View},
     shader::{key::KernelKey, library::Library},
 };
+use glam::DMat4;
 
 /// Whether the picture lies where the others' do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,7 +39,7 @@ pub struct Naive {
 
 impl Naive {
     /// De-indexes the whole scene into world space, as the original does with its one mesh.
-    pub fn new(gpu: &Gpu, scene: &Scene, view: &View, key: &KernelKey, viewport: Viewport) -> Result<Self, RenderError> {
+    pub async fn new(gpu: &Gpu, scene: &Scene, view: &View, key: &KernelKey, viewport: Viewport) -> Result<Self, RenderError> {
         let corners = world_corners(scene, view)?;
         let half = match viewport {
             Viewport::AsWritten => DMat4::IDENTITY,
@@ -55,21 +54,21 @@ impl Naive {
         };
         let pixels = view.pixels() as u64;
         let mut buffers = Buffers::default();
-        buffers.fill(gpu, BufferId::NaiveFrame, bytemuck::bytes_of(&uniform))?;
-        buffers.fill(gpu, BufferId::Corners, bytemuck::cast_slice(&corners))?;
-        buffers.ensure(gpu, BufferId::Channels, 12 * pixels)?;
-        buffers.ensure(gpu, BufferId::Color, 4 * u64::from(uniform.stride) * u64::from(view.height))?;
-        let mut pipelines = Pipelines::new(Library::from_env());
-        let mut build = |entry: &str, groups: [u32; 2]| {
-            let pipeline = pipelines.build(gpu, "baselines/naive", entry, entry, key, &[], &[])?;
+        buffers.fill(gpu, BufferId::NaiveFrame, bytemuck::bytes_of(&uniform)).await?;
+        buffers.fill(gpu, BufferId::Corners, bytemuck::cast_slice(&corners)).await?;
+        buffers.ensure(gpu, BufferId::Channels, 12 * pixels).await?;
+        buffers.ensure(gpu, BufferId::Color, 4 * u64::from(uniform.stride) * u64::from(view.height)).await?;
+        let mut pipelines = Pipelines::new(Library::of_process());
+        let mut build = async |entry: &str, groups: [u32; 2]| {
+            let pipeline = pipelines.build(gpu, "baselines/naive", entry, entry, key, &[], &[]).await?;
             let resources = Resources { buffers: vec![&buffers], textures: Vec::new(), light: None };
             let group = resources.bind_group(gpu, &pipeline)?;
             Ok::<_, RenderError>((pipeline, group, groups))
         };
         let passes = vec![
-            build("naive_clear", folded((3 * view.width * view.height).div_ceil(256)))?,
-            build("naive_raster", folded((uniform.corner_count / 3).div_ceil(256)))?,
-            build("naive_resolve", [view.width.div_ceil(8), view.height.div_ceil(8)])?,
+            build("naive_clear", folded((3 * view.width * view.height).div_ceil(256))).await?,
+            build("naive_raster", folded((uniform.corner_count / 3).div_ceil(256))).await?,
+            build("naive_resolve", [view.width.div_ceil(8), view.height.div_ceil(8)]).await?,
         ];
         Ok(Self { size: uniform.size, buffers, passes })
     }
@@ -86,12 +85,12 @@ impl Naive {
         }
     }
 
-    /// Draws once and waits for the picture, row-major; alpha is 0 where nothing was drawn.
-    pub fn picture(&self, gpu: &Gpu) -> Result<Vec<[u8; 4]>, RenderError> {
+    /// Draws once and reads the picture back, row-major; alpha is 0 where nothing was drawn.
+    pub async fn picture(&self, gpu: &Gpu) -> Result<Vec<[u8; 4]>, RenderError> {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.record(&mut encoder, None);
         gpu.queue.submit([encoder.finish()]);
-        buffers::read_picture(gpu, self.buffers.get(BufferId::Color)?, self.size)
+        buffers::read_picture(gpu, self.buffers.get(BufferId::Color)?, self.size).await
     }
 }
 

@@ -3,6 +3,7 @@
 
 use super::{
     buffers::{self, Buffers},
+    completion::idle,
     device::Gpu,
     error::RenderError,
     frame_layout::folded,
@@ -121,7 +122,7 @@ impl ParticleSimulation {
     ///
     /// # Errors
     /// When the particles do not fit, or the device is lost.
-    pub fn simulate(
+    pub async fn simulate(
         &mut self,
         device: &mut Device,
         scene: &SceneResources,
@@ -136,8 +137,8 @@ impl ParticleSimulation {
         let gpu = device.gpu.clone();
         let options = (key.options.curl_noise, key.options.particle_storage);
         let bytes = 2 * state_bytes(options.1) * u64::from(requested.count);
-        let is_new = self.buffers.ensure(&gpu, BufferId::ParticleStates, bytes)?;
-        self.buffers.fill(&gpu, BufferId::StepParams, bytemuck::cast_slice(&requested.step_params()))?;
+        let is_new = self.buffers.ensure(&gpu, BufferId::ParticleStates, bytes).await?;
+        self.buffers.fill(&gpu, BufferId::StepParams, bytemuck::cast_slice(&requested.step_params())).await?;
 
         // What was computed can be continued only where all its steps were the same.
         let computed = self.computed.take().filter(|computed| {
@@ -158,10 +159,10 @@ impl ParticleSimulation {
             let next = reached.unwrap_or(0).saturating_add(at_once.min(left)).min(goal - 1);
             left -= (next - reached.unwrap_or(0)).min(left);
             let uniform = requested.uniform(scene.scene(), view, reached, next);
-            self.take_steps(device, scene, frame, key, &uniform)?;
+            self.take_steps(device, scene, frame, key, &uniform).await?;
             reached = Some(next);
             if wait == Wait::Simulation {
-                buffers::wait(&gpu)?;
+                idle(&gpu).await?;
             }
         }
         self.is_pending = reached.unwrap_or(0) + 1 < goal;
@@ -172,13 +173,13 @@ impl ParticleSimulation {
         let last = requested.particle_timeline.frame;
         let before = last.checked_sub(1).filter(|_| reached.is_some() || last > 1);
         let uniform = requested.uniform(scene.scene(), view, before, last);
-        self.buffers.fill(&gpu, BufferId::ParticleStep, bytemuck::bytes_of(&uniform))?;
+        self.buffers.fill(&gpu, BufferId::ParticleStep, bytemuck::bytes_of(&uniform)).await?;
         self.computed = Some(Computed { particle_timeline: requested.particle_timeline, count: requested.count, options });
         Ok(())
     }
 
     /// Takes steps in a submission that holds nothing else.
-    fn take_steps(
+    async fn take_steps(
         &mut self,
         device: &mut Device,
         scene: &SceneResources,
@@ -187,8 +188,8 @@ impl ParticleSimulation {
         uniform: &ParticleStepUniform,
     ) -> Result<(), RenderError> {
         let Device { gpu, pipelines, .. } = device;
-        self.buffers.fill(gpu, BufferId::ParticleStep, bytemuck::bytes_of(uniform))?;
-        let pipeline = pipelines.get(gpu, key, Pass::Particles)?;
+        self.buffers.fill(gpu, BufferId::ParticleStep, bytemuck::bytes_of(uniform)).await?;
+        let pipeline = pipelines.get(gpu, key, Pass::Particles).await?;
         let resources = Resources { buffers: vec![frame, &scene.buffers, &self.buffers], textures: Vec::new(), light: None };
         let group = resources.bind_group(gpu, &pipeline)?;
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("particle steps") });
@@ -208,11 +209,11 @@ impl ParticleSimulation {
     ///
     /// # Errors
     /// When the device is lost.
-    pub fn read(&self, gpu: &Gpu, scene: &SceneResources, key: &KernelKey) -> Result<Option<ParticleReadback>, RenderError> {
+    pub async fn read(&self, gpu: &Gpu, scene: &SceneResources, key: &KernelKey) -> Result<Option<ParticleReadback>, RenderError> {
         let Some(computed) = self.computed.as_ref().filter(|_| key.generated.has_particles) else { return Ok(None) };
         let (count, (curl, storage)) = (computed.count as usize, computed.options);
         let frame = computed.particle_timeline.frame;
-        let bytes = buffers::read(gpu, self.buffers.get(BufferId::ParticleStates)?, 2 * state_bytes(storage) * count as u64)?;
+        let bytes = buffers::read(gpu, self.buffers.get(BufferId::ParticleStates)?, 2 * state_bytes(storage) * count as u64).await?;
         // States of even frames come first, then those of odd ones.
         let states = |frame: u32| -> Vec<ParticleState> {
             let half = &bytes[(frame as usize & 1) * bytes.len() / 2..][..bytes.len() / 2];
@@ -227,7 +228,7 @@ impl ParticleSimulation {
             }
         };
         let range = scene.scene().particle_disc_bytes();
-        let all = buffers::read(gpu, scene.buffers.get(BufferId::VertexBytes)?, range.end as u64)?;
+        let all = buffers::read(gpu, scene.buffers.get(BufferId::VertexBytes)?, range.end as u64).await?;
         debug_assert_eq!(range.len(), 4 * PARTICLE_DISC_WORDS * count);
         Ok(Some(ParticleReadback {
             before: frame.checked_sub(1).map(states).unwrap_or_default(),

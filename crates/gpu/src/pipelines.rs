@@ -66,20 +66,20 @@ impl Pipelines {
     }
 
     /// The pipeline of a pass; compiles it at first use.
-    pub fn get(&mut self, gpu: &Gpu, key: &KernelKey, pass: Pass) -> Result<Arc<Pipeline>, RenderError> {
+    pub async fn get(&mut self, gpu: &Gpu, key: &KernelKey, pass: Pass) -> Result<Arc<Pipeline>, RenderError> {
         if let Some(pipeline) = self.known.get(key).and_then(|of_key| of_key.get(&pass)).and_then(Weak::upgrade) {
             gpu.pipelines.mark(&pipeline);
             return Ok(pipeline);
         }
         let desc = self.desc_of(gpu, key, pass)?;
-        let pipeline = self.found_or_compiled(gpu, desc)?;
+        let pipeline = self.found_or_compiled(gpu, desc).await?;
         self.remember(key, pass, &pipeline);
         Ok(pipeline)
     }
 
     /// The pipeline of an entry point of `shaders/<root>.wgsl`.
     #[allow(clippy::too_many_arguments, reason = "the two callers name every argument's value on the spot")]
-    pub fn build(
+    pub async fn build(
         &mut self,
         gpu: &Gpu,
         root: &str,
@@ -90,16 +90,16 @@ impl Pipelines {
         constants: &[(&str, f64)],
     ) -> Result<Arc<Pipeline>, RenderError> {
         let desc = self.desc(gpu, root, label, entry, key, variants, constants)?;
-        self.found_or_compiled(gpu, desc)
+        self.found_or_compiled(gpu, desc).await
     }
 
     /// What was built already, or else is compiled now.
-    fn found_or_compiled(&mut self, gpu: &Gpu, desc: PipelineDesc) -> Result<Arc<Pipeline>, RenderError> {
+    async fn found_or_compiled(&mut self, gpu: &Gpu, desc: PipelineDesc) -> Result<Arc<Pipeline>, RenderError> {
         let pipeline = match gpu.pipelines.find(&desc.identity) {
             Some(pipeline) => pipeline,
             None => {
                 self.watch.iter().for_each(|watch| watch.begin());
-                let pipeline = compile(gpu, &desc)?;
+                let pipeline = compile(gpu, &desc)?.finish().await?;
                 self.keep(gpu, desc.identity, pipeline)
             }
         };
@@ -108,7 +108,7 @@ impl Pipelines {
     }
 
     /// Compiles what `passes` lack, all at once, since a driver compiles each on the thread that asks for it.
-    pub fn prepare(&mut self, gpu: &Gpu, key: &KernelKey, passes: &[Pass]) -> Result<(), RenderError> {
+    pub async fn prepare(&mut self, gpu: &Gpu, key: &KernelKey, passes: &[Pass]) -> Result<(), RenderError> {
         let of_key = self.known.get(key);
         let is_known = |pass: &Pass| of_key.and_then(|of_key| of_key.get(pass)).is_some_and(|pipeline| pipeline.strong_count() > 0);
         let missing: Vec<Pass> = passes.iter().copied().filter(|pass| !is_known(pass)).collect();
@@ -122,7 +122,7 @@ impl Pipelines {
                 fresh.push(desc);
             }
         }
-        self.compile_all(gpu, &fresh)?;
+        self.compile_all(gpu, &fresh).await?;
         for (pass, desc) in missing.into_iter().zip(descs) {
             if let Some(pipeline) = gpu.pipelines.find(&desc.identity) {
                 gpu.pipelines.mark(&pipeline);
@@ -133,16 +133,20 @@ impl Pipelines {
     }
 
     /// Compiles and keeps pipelines. What was compiled is kept even where compiling was stopped or another pipeline was refused.
-    fn compile_all(&mut self, gpu: &Gpu, fresh: &[&PipelineDesc]) -> Result<(), RenderError> {
+    async fn compile_all(&mut self, gpu: &Gpu, fresh: &[&PipelineDesc]) -> Result<(), RenderError> {
         if fresh.is_empty() {
             return Ok(());
         }
         let watch = self.watch.clone();
         watch.iter().for_each(|watch| watch.begin());
         let check = || watch.as_ref().map_or(Ok(()), |watch| watch.check());
-        let outcomes: Vec<Result<Pipeline, RenderError>> = fresh.par_iter().map(|desc| check().and_then(|()| compile(gpu, desc))).collect();
+        let begun: Vec<Result<_, RenderError>> = fresh.par_iter().map(|desc| check().and_then(|()| compile(gpu, desc))).collect();
         let mut all = Ok(());
-        for (desc, outcome) in fresh.iter().zip(outcomes) {
+        for (desc, begun) in fresh.iter().zip(begun) {
+            let outcome = match begun {
+                Ok(compiling) => compiling.finish().await,
+                Err(error) => Err(error),
+            };
             match outcome {
                 Ok(pipeline) => {
                     let pipeline = self.keep(gpu, desc.identity.clone(), pipeline);
@@ -212,7 +216,28 @@ fn trusted(gpu: &Gpu, descriptor: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::Sha
     unsafe { gpu.device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked()) }
 }
 
-fn compile(gpu: &Gpu, desc: &PipelineDesc) -> Result<Pipeline, RenderError> {
+/// A pipeline that was asked for, and what the device will say about it.
+struct Compiling<F> {
+    pipeline: Pipeline,
+    error: F,
+}
+
+impl<F: Future<Output = Option<wgpu::Error>>> Compiling<F> {
+    /// # Errors
+    /// When the device refuses it.
+    async fn finish(self) -> Result<Pipeline, RenderError> {
+        match self.error.await {
+            Some(error) => Err(RenderError::Pipeline { label: self.pipeline.label, reason: error.to_string() }),
+            None => Ok(self.pipeline),
+        }
+    }
+}
+
+/// Begins to compile. A driver that compiles on the calling thread has finished then.
+fn compile(
+    gpu: &Gpu,
+    desc: &PipelineDesc,
+) -> Result<Compiling<impl Future<Output = Option<wgpu::Error>> + wgpu::WasmNotSend + use<>>, RenderError> {
     let PipelineDesc { label, identity, bindings } = desc;
     let resource = |binding: &Binding| match ResourceId::of_binding(&binding.name) {
         Some(id) => Ok((binding.index, id)),
@@ -243,10 +268,8 @@ fn compile(gpu: &Gpu, desc: &PipelineDesc) -> Result<Pipeline, RenderError> {
         compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, zero_initialize_workgroup_memory: false },
         cache: None,
     });
-    match pollster::block_on(scope.pop()) {
-        Some(error) => Err(RenderError::Pipeline { label: label.clone(), reason: error.to_string() }),
-        None => Ok(Pipeline { label: label.clone(), pipeline, layout, bindings: resources, used: AtomicU64::new(0) }),
-    }
+    let pipeline = Pipeline { label: label.clone(), pipeline, layout, bindings: resources, used: AtomicU64::new(0) };
+    Ok(Compiling { pipeline, error: scope.pop() })
 }
 
 /// The layout entry of a reflected binding.

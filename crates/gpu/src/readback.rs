@@ -37,15 +37,15 @@ impl Readback<'_> {
     }
 
     /// Elements of a buffer from the beginning.
-    fn elements<T: bytemuck::Pod>(&self, id: BufferId, count: u64) -> Result<Vec<T>, RenderError> {
-        let bytes = buffers::read(self.gpu, self.view.buffers.get(id)?, count * size_of::<T>() as u64)?;
+    async fn elements<T: bytemuck::Pod>(&self, id: BufferId, count: u64) -> Result<Vec<T>, RenderError> {
+        let bytes = buffers::read(self.gpu, self.view.buffers.get(id)?, count * size_of::<T>() as u64).await?;
         Ok(bytemuck::pod_collect_to_vec(&bytes))
     }
 
     /// Elements of a region; none where the frame has no such region.
-    fn region<T: bytemuck::Pod>(&self, region: Region) -> Result<Vec<T>, RenderError> {
+    async fn region<T: bytemuck::Pod>(&self, region: Region) -> Result<Vec<T>, RenderError> {
         let Some(span) = self.frame()?.layout.region(region) else { return Ok(Vec::new()) };
-        let bytes = buffers::read(self.gpu, self.view.buffers.get(span.buffer)?, span.bytes.end)?;
+        let bytes = buffers::read(self.gpu, self.view.buffers.get(span.buffer)?, span.bytes.end).await?;
         Ok(bytemuck::pod_collect_to_vec(&bytes[span.bytes.start as usize..]))
     }
 
@@ -54,71 +54,75 @@ impl Readback<'_> {
     }
 
     /// Triangle id and depth key of every pixel.
-    pub fn visibility(&self) -> Result<(Vec<u32>, Vec<u32>), RenderError> {
+    pub async fn visibility(&self) -> Result<(Vec<u32>, Vec<u32>), RenderError> {
         let key = &self.frame()?.plan.key;
         Ok(match key.framebuffer_layout() {
             FramebufferLayout::Split32 => {
-                let complemented: Vec<u32> = self.elements(BufferId::TriangleIds, self.pixels()?)?;
-                (complemented.into_iter().map(|id| !id).collect(), self.region(Region::Nearest)?)
+                let complemented: Vec<u32> = self.elements(BufferId::TriangleIds, self.pixels()?).await?;
+                (complemented.into_iter().map(|id| !id).collect(), self.region(Region::Nearest).await?)
             }
-            FramebufferLayout::Packed32 => self.region::<u32>(Region::Nearest)?.into_iter().map(|word| key.unpack(word)).unzip(),
+            FramebufferLayout::Packed32 => self.region::<u32>(Region::Nearest).await?.into_iter().map(|word| key.unpack(word)).unzip(),
             FramebufferLayout::Packed64 => {
-                let pairs: Vec<DepthAndId> = self.region(Region::Nearest)?;
+                let pairs: Vec<DepthAndId> = self.region(Region::Nearest).await?;
                 pairs.into_iter().map(|pair| (!pair.complemented_id, pair.depth_key)).unzip()
             }
         })
     }
 
     /// Weights or number of layers per pixel, as the effect in the visibility slot has them; empty without one.
-    pub fn layer_sums(&self) -> Result<Vec<u32>, RenderError> {
+    pub async fn layer_sums(&self) -> Result<Vec<u32>, RenderError> {
         let key = &self.frame()?.plan.key;
         match key.framebuffer.layers {
             Some(Layers::Xray { .. }) => {
-                let words: Vec<u32> = self.region(Region::XraySums)?;
+                let words: Vec<u32> = self.region(Region::XraySums).await?;
                 Ok(words.chunks_exact(key.sum_words() as usize).map(|words| xray_weight(key, words)).collect())
             }
-            Some(Layers::Overdraw) => self.elements(BufferId::LayerCounts, self.pixels()?),
+            Some(Layers::Overdraw) => self.elements(BufferId::LayerCounts, self.pixels()?).await,
             Some(Layers::Race) | None => Ok(Vec::new()),
         }
     }
 
     /// Strength of the strongest dot per pixel; empty without dots.
-    pub fn dot_strengths(&self) -> Result<Vec<u32>, RenderError> {
-        self.region(Region::DotStrengths)
+    pub async fn dot_strengths(&self) -> Result<Vec<u32>, RenderError> {
+        self.region(Region::DotStrengths).await
     }
 
     /// The picture, or what is shown of it: gamma-encoded, row-major.
-    pub fn picture(&self, id: BufferId, size: [u32; 2]) -> Result<Vec<[u8; 4]>, RenderError> {
-        buffers::read_picture(self.gpu, self.view.buffers.get(id)?, size)
+    pub async fn picture(&self, id: BufferId, size: [u32; 2]) -> Result<Vec<[u8; 4]>, RenderError> {
+        buffers::read_picture(self.gpu, self.view.buffers.get(id)?, size).await
     }
 
     /// The triangles that clipping made, each with its slot in the buffer; by parent and position in its fan, since the order of the
     /// slots is left to the hardware.
-    fn clipped_triangles(&self) -> Result<Vec<(usize, ClippedTriangleRecord)>, RenderError> {
+    async fn clipped_triangles(&self) -> Result<Vec<(usize, ClippedTriangleRecord)>, RenderError> {
         let frame = self.frame()?;
         if !frame.plan.key.paths.has_clipping {
             return Ok(Vec::new());
         }
-        let counters: Vec<CounterRecord> = self.elements(BufferId::Counters, 1)?;
+        let counters: Vec<CounterRecord> = self.elements(BufferId::Counters, 1).await?;
         let demand = counters.first().map_or(0, |counters| counters.clipped_triangles);
         let room = frame.layout.capacities.clipped_triangles;
-        let records: Vec<ClippedTriangleRecord> = self.elements(BufferId::ClippedTriangles, demand.min(room).into())?;
+        let records: Vec<ClippedTriangleRecord> = self.elements(BufferId::ClippedTriangles, demand.min(room).into()).await?;
         let mut records: Vec<_> = records.into_iter().enumerate().collect();
         records.sort_by_key(|(_, record)| record.fan());
         Ok(records)
     }
 
     /// Snapped vertices, clipped triangles and setups of the frame.
-    pub fn geometry(&self, particles: Option<&ParticleSimulation>) -> Result<Geometry, RenderError> {
+    pub async fn geometry(&self, particles: Option<&ParticleSimulation>) -> Result<Geometry, RenderError> {
         let frame = self.frame()?;
         let (key, scene) = (&frame.plan.key, self.scene.scene());
-        let clipped = self.clipped_triangles()?;
+        let clipped = self.clipped_triangles().await?;
         let triangles = frame.layout.scene.triangles as usize;
         // By id, then the clipped triangles in their order.
-        let setups: Vec<[u32; 4]> = self.region(Region::SampleSetups)?;
+        let setups: Vec<[u32; 4]> = self.region(Region::SampleSetups).await?;
         let per_triangle = key.sample_setups() as usize;
         let entries = (0..triangles).chain(clipped.iter().map(|(slot, _)| triangles + slot));
-        let vertices: Vec<VertexRecord> = self.region(Region::VertexRecords)?;
+        let vertices: Vec<VertexRecord> = self.region(Region::VertexRecords).await?;
+        let particle_readback = match particles {
+            Some(particles) => particles.read(self.gpu, self.scene, key).await?,
+            None => None,
+        };
         let options = &key.options;
         Ok(Geometry {
             vertices: vertices.into_iter().map(VertexRecord::snapped).collect(),
@@ -134,38 +138,38 @@ impl Readback<'_> {
                 vertices: options.vertex_transform == VertexTransform::Strict,
                 depth_keys: options.depth == DepthFormat::Integer,
             },
-            particle_readback: particles.map(|particles| particles.read(self.gpu, self.scene, key)).transpose()?.flatten(),
+            particle_readback,
             particle_discs: scene.particle_disc_ids(),
-            deformed: self.deformed()?,
+            deformed: self.deformed().await?,
             shadow_map: None,
         })
     }
 
     /// Position and normal of every vertex that the skin pass deformed.
-    fn deformed(&self) -> Result<Vec<[f32; 6]>, RenderError> {
+    async fn deformed(&self) -> Result<Vec<[f32; 6]>, RenderError> {
         let ranges = self.view.deformed();
         let (Some(end), attributes) = (ranges.last().map(|range| range.end), self.scene.attributes()) else { return Ok(Vec::new()) };
-        let bytes = buffers::read(self.gpu, self.scene.buffers.get(BufferId::VertexBytes)?, attributes.deformed_vertex(end))?;
+        let bytes = buffers::read(self.gpu, self.scene.buffers.get(BufferId::VertexBytes)?, attributes.deformed_vertex(end)).await?;
         let all: Vec<[f32; 6]> = bytemuck::pod_collect_to_vec(&bytes[attributes.deformed_vertex(0) as usize..]);
         Ok(ranges.iter().flat_map(|range| &all[range.start as usize..range.end as usize]).copied().collect())
     }
 }
 
 /// The shadow map, and the scene as the light sees it.
-pub fn shadow_map(gpu: &Gpu, scene: &SceneResources, shadow: &ShadowPass) -> Result<ShadowMap, RenderError> {
+pub async fn shadow_map(gpu: &Gpu, scene: &SceneResources, shadow: &ShadowPass) -> Result<ShadowMap, RenderError> {
     let readback = Readback { gpu, scene, view: &shadow.resources };
-    Ok(ShadowMap { depth_keys: readback.region(Region::Nearest)?, geometry: readback.geometry(None)? })
+    Ok(ShadowMap { depth_keys: readback.region(Region::Nearest).await?, geometry: readback.geometry(None).await? })
 }
 
 /// Runs the raster passes of a view once more into a counter per pixel; returns layers per pixel. None where a queue overflowed, which a
 /// view drawn from lists of tiles does not have until now: it has grown, draw the view again.
-pub fn count_layers(device: &mut Device, view: &mut ViewResources, others: &Resources<'_>) -> Result<Option<Vec<u32>>, RenderError> {
+pub async fn count_layers(device: &mut Device, view: &mut ViewResources, others: &Resources<'_>) -> Result<Option<Vec<u32>>, RenderError> {
     let PreparedFrame { plan, view: of, .. } = view.frame()?;
     let (key, pixels): (KernelKey, _) = (plan.key.clone(), of.pixels() as u64);
     let bytes = pixels * size_of::<u32>() as u64;
-    view.buffers.ensure_for(&device.gpu, BufferId::LayerCounts, bytes, "layers per pixel, only while verifying")?;
+    view.buffers.ensure_for(&device.gpu, BufferId::LayerCounts, bytes, "layers per pixel, only while verifying").await?;
     let passes = key.passes(&[key.order_phases(), &[RasterPhase::Count]].concat());
-    let commands = CommandList::new(device, &key, passes, "", &others.with(&view.buffers))?;
+    let commands = CommandList::new(device, &key, passes, "", &others.with(&view.buffers)).await?;
     let mut encoder = device.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("count layers") });
     view.clear(&mut encoder, |occasion| occasion == ClearedBy::PictureAndCount)?;
     encoder.clear_buffer(view.buffers.get(BufferId::LayerCounts)?, 0, Some(bytes.next_multiple_of(4)));
@@ -173,8 +177,8 @@ pub fn count_layers(device: &mut Device, view: &mut ViewResources, others: &Reso
     let sizes = DispatchSizes { layout, demand: view.demand.as_ref(), buffers: &view.buffers };
     commands.record(0..commands.len(), &mut encoder, &sizes, Timing { timer: None, ends_frame: true })?;
     device.gpu.queue.submit([encoder.finish()]);
-    let layers = buffers::read(&device.gpu, view.buffers.get(BufferId::LayerCounts)?, bytes)?;
-    let counters = buffers::read(&device.gpu, view.buffers.get(BufferId::Counters)?, size_of::<CounterRecord>() as u64)?;
+    let layers = buffers::read(&device.gpu, view.buffers.get(BufferId::LayerCounts)?, bytes).await?;
+    let counters = buffers::read(&device.gpu, view.buffers.get(BufferId::Counters)?, size_of::<CounterRecord>() as u64).await?;
     view.buffers.keep(|id| id != BufferId::LayerCounts);
     let demand: CounterRecord = bytemuck::pod_read_unaligned(&counters);
     let is_complete = demand.counters(&recorded_capacities(&key, &view.capacities)).overflow == 0 || !view.grow_queues(&demand);

@@ -157,7 +157,7 @@ impl CommandList {
     ///
     /// # Errors
     /// When a kernel cannot be compiled, or binds what is not there.
-    pub fn new(
+    pub async fn new(
         device: &mut Device,
         key: &KernelKey,
         passes: Vec<Pass>,
@@ -165,13 +165,13 @@ impl CommandList {
         resources: &Resources<'_>,
     ) -> Result<Self, RenderError> {
         let Device { gpu, pipelines, .. } = device;
-        pipelines.prepare(gpu, key, &passes)?;
-        let command = |&pass: &Pass| {
-            let pipeline = pipelines.get(gpu, key, pass)?;
+        pipelines.prepare(gpu, key, &passes).await?;
+        let mut commands = Vec::with_capacity(passes.len());
+        for &pass in &passes {
+            let pipeline = pipelines.get(gpu, key, pass).await?;
             let group = resources.bind_group(gpu, &pipeline)?;
-            Ok(Command { pass, label: format!("{prefix}{}", pass.label()), pipeline, group })
-        };
-        let commands = passes.iter().map(command).collect::<Result<_, RenderError>>()?;
+            commands.push(Command { pass, label: format!("{prefix}{}", pass.label()), pipeline, group });
+        }
         Ok(Self { key: key.clone(), passes, revisions: resources.revisions(), commands, revision: next_revision() })
     }
 

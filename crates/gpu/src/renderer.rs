@@ -9,7 +9,7 @@ use super::{
     error::RenderError,
     explain::{Explained, Explanation},
     frame_layout::Target,
-    frame_stats::{Pending, StatSources},
+    frame_stats::{Pending, Staged, StatSources},
     hardware_ids,
     history::{History, fill_background},
     particles::{ParticleSimulation, Wait},
@@ -78,9 +78,9 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// A renderer whose shaders come from where the environment says, as a rule from inside this program.
+    /// A renderer whose shaders come from the library of the process, as a rule from inside this program.
     pub fn new(gpu: Arc<Gpu>) -> Self {
-        Self::with_library(gpu, Library::from_env())
+        Self::with_library(gpu, Library::of_process())
     }
 
     /// A renderer whose shaders come from `library`.
@@ -151,7 +151,7 @@ impl Renderer {
     ///
     /// # Errors
     /// When the scene does not fit.
-    pub fn set_scene(&mut self, scene: &Arc<Scene>) -> Result<(), RenderError> {
+    pub async fn set_scene(&mut self, scene: &Arc<Scene>) -> Result<(), RenderError> {
         if self.scene.as_ref().is_some_and(|current| current.is_of(scene)) {
             return Ok(());
         }
@@ -159,7 +159,7 @@ impl Renderer {
         self.change_scene(scene);
         // The memory of the old scene is free before the new one takes it.
         self.scene = None;
-        self.scene = Some(SceneResources::new(&self.device.gpu, scene)?);
+        self.scene = Some(SceneResources::new(&self.device.gpu, scene).await?);
         Ok(())
     }
 
@@ -170,16 +170,16 @@ impl Renderer {
         self.shadow = None;
     }
 
-    /// Records and submits one frame; never waits. A picture of 0 pixels dispatches nothing.
+    /// Records and submits one frame; never waits for it. A picture of 0 pixels dispatches nothing.
     ///
     /// # Errors
     /// When the picture cannot be drawn on this adapter, or the device is lost.
-    pub fn draw(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<(), RenderError> {
-        self.draw_timed(view, stack, accuracy, Detail::Passes, Wait::None)
+    pub async fn draw(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<(), RenderError> {
+        self.draw_timed(view, stack, accuracy, Detail::Passes, Wait::None).await
     }
 
     /// [`Self::draw`] with a choice of what is timed and what is waited for.
-    pub fn draw_timed(
+    pub async fn draw_timed(
         &mut self,
         view: &View,
         stack: &Stack,
@@ -190,14 +190,14 @@ impl Renderer {
         let shown = [view.width, view.height];
         let scale = accuracy.scale();
         if scale == RenderScale::Full {
-            return self.draw_pixels(view, stack, accuracy, shown, detail, wait);
+            return self.draw_pixels(view, stack, accuracy, shown, detail, wait).await;
         }
         let (drawn, stack) = (view.scaled(scale.factor()), stack.scaled(scale.factor()));
-        self.draw_pixels(&drawn, &stack, accuracy, shown, detail, wait).map_err(|error| error.at_scale(scale, view, &drawn))
+        self.draw_pixels(&drawn, &stack, accuracy, shown, detail, wait).await.map_err(|error| error.at_scale(scale, view, &drawn))
     }
 
     /// Draws as many pixels as `view` has, independent of the size at which they are shown.
-    fn draw_pixels(
+    async fn draw_pixels(
         &mut self,
         view: &View,
         stack: &Stack,
@@ -209,9 +209,9 @@ impl Renderer {
         if self.device.gpu.is_lost() {
             return Err(RenderError::Lost);
         }
-        self.attach_particles(stack)?;
+        self.attach_particles(stack).await?;
         let room = self.history.room_for_layers(view, stack);
-        self.prepare(&Request { view, stack, accuracy, shown, room }, wait)?;
+        self.prepare(&Request { view, stack, accuracy, shown, room }, wait).await?;
         if view.pixels() == 0 {
             self.presentation = None;
             return Ok(());
@@ -226,23 +226,23 @@ impl Renderer {
         let shadow = self.shadow.as_ref().map(|shadow| shadow.resources.buffers.get(BufferId::Counters)).transpose()?;
         let buffers = &self.picture.buffers;
         let sources = StatSources { picture: Some(buffers.get(BufferId::Counters)?), shadow, order: buffers.get(BufferId::DrawOrder).ok() };
-        let pending = Pending::stage(&gpu, &mut encoder, sources, self.device.timer.as_ref(), self.spare_stats.pop());
+        let staged = Staged::stage(&gpu, &mut encoder, sources, self.device.timer.as_ref(), self.spare_stats.pop());
         gpu.queue.submit([encoder.finish()]);
         self.picture.shows_background = self.picture.frame()?.plan.key.keeps_background();
-        self.pending.push_back(pending.begin());
+        self.pending.push_back(staged.begin());
         self.history.finish(view, stack);
         Ok(())
     }
 
     /// Puts the particles of the stack into the scene.
-    fn attach_particles(&mut self, stack: &Stack) -> Result<(), RenderError> {
+    async fn attach_particles(&mut self, stack: &Stack) -> Result<(), RenderError> {
         let scene = self.scene.as_mut().ok_or(RenderError::NoScene)?;
         if scene.has_particles_of(stack) {
             return Ok(());
         }
         self.picture.release_commands();
         self.shadow.iter_mut().for_each(|shadow| shadow.resources.release_commands());
-        if scene.attach_particles(&self.device.gpu, stack)? {
+        if scene.attach_particles(&self.device.gpu, stack).await? {
             let scene = scene.scene().clone();
             self.change_scene(&scene);
         }
@@ -250,19 +250,19 @@ impl Renderer {
     }
 
     /// Makes everything ready for the passes of a picture: plan and buffers, the particles before their last step, the shadow pass.
-    fn prepare(&mut self, request: &Request<'_>, wait: Wait) -> Result<(), RenderError> {
+    async fn prepare(&mut self, request: &Request<'_>, wait: Wait) -> Result<(), RenderError> {
         let Self { device, scene, picture, shadow, particles, .. } = self;
         let scene = scene.as_mut().ok_or(RenderError::NoScene)?;
         let Request { view, stack, .. } = *request;
-        picture.prepare(device, scene, request)?;
+        picture.prepare(device, scene, request).await?;
         if view.pixels() == 0 {
             return Ok(());
         }
         let key = &picture.frame()?.plan.key;
-        particles.simulate(device, scene, &picture.buffers, (key, view, stack), wait)?;
+        particles.simulate(device, scene, &picture.buffers, (key, view, stack), wait).await?;
         let passes = key.frame();
-        *shadow = ShadowPass::prepare(shadow.take(), device, scene, view, stack)?;
-        picture.prepare_passes(device, passes, &shared(scene, particles, shadow.as_ref()))
+        *shadow = ShadowPass::prepare(shadow.take(), device, scene, view, stack).await?;
+        picture.prepare_passes(device, passes, &shared(scene, particles, shadow.as_ref())).await
     }
 
     /// Records the clears and passes of a picture and its shadow map.
@@ -324,15 +324,15 @@ impl Renderer {
         self.presentation.as_ref().map(|presentation| &presentation.view)
     }
 
-    /// The pixels of the finished picture, row by row, as many as the view had; waits for them. None before the first draw and for 0 pixels.
+    /// The pixels of the finished picture, row by row, as many as the view had. None before the first draw and for 0 pixels.
     ///
     /// # Errors
     /// When the device is lost.
-    pub fn read_shown(&mut self) -> Result<Option<Vec<[u8; 4]>>, RenderError> {
+    pub async fn read_shown(&mut self) -> Result<Option<Vec<[u8; 4]>>, RenderError> {
         let Some(presentation) = &self.presentation else { return Ok(None) };
         let size = [presentation.texture.width(), presentation.texture.height()];
         let shown = self.picture.buffers.get(self.shown_buffer())?;
-        buffers::read_picture_through(&self.device.gpu, shown, size, &mut self.shown_staging).map(Some)
+        buffers::read_picture_through(&self.device.gpu, shown, size, &mut self.shown_staging).await.map(Some)
     }
 
     /// Statistics of the newest finished frame, or none yet; does not wait.
@@ -354,9 +354,9 @@ impl Renderer {
     ///
     /// # Errors
     /// When nothing was drawn, or the device is lost.
-    pub fn finish(&mut self) -> Result<Report, RenderError> {
-        buffers::wait(&self.device.gpu)?;
+    pub async fn finish(&mut self) -> Result<Report, RenderError> {
         let finished = self.pending.pop_back().ok_or(RenderError::NoScene)?;
+        finished.ready(&self.device.gpu).await?;
         self.spare_stats.extend(self.pending.drain(..).map(Pending::into_spare));
         self.collect_stats(finished).ok_or(RenderError::Lost)
     }
@@ -411,8 +411,8 @@ impl Renderer {
     ///
     /// # Errors
     /// When the corners take more than a buffer holds, or the device is lost.
-    pub fn hardware_ids(&self, size: [u32; 2], corners: &[[f32; 3]]) -> Result<Vec<u32>, RenderError> {
-        hardware_ids::triangle_ids(&self.device.gpu, self.device.pipelines.library(), size, corners)
+    pub async fn hardware_ids(&self, size: [u32; 2], corners: &[[f32; 3]]) -> Result<Vec<u32>, RenderError> {
+        hardware_ids::triangle_ids(&self.device.gpu, self.device.pipelines.library(), size, corners).await
     }
 }
 

@@ -41,7 +41,7 @@ impl SceneResources {
     ///
     /// # Errors
     /// When the adapter has no memory for it.
-    pub fn new(gpu: &Gpu, scene: &Arc<Scene>) -> Result<Self, RenderError> {
+    pub async fn new(gpu: &Gpu, scene: &Arc<Scene>) -> Result<Self, RenderError> {
         let mut resources = Self {
             base: scene.clone(),
             scene: scene.clone(),
@@ -52,7 +52,7 @@ impl SceneResources {
             material_atlas: None,
             meshlets: None,
         };
-        resources.upload(gpu)?;
+        resources.upload(gpu).await?;
         Ok(resources)
     }
 
@@ -111,7 +111,7 @@ impl SceneResources {
     ///
     /// # Errors
     /// When the scene with its particles does not fit.
-    pub fn attach_particles(&mut self, gpu: &Gpu, stack: &Stack) -> Result<bool, RenderError> {
+    pub async fn attach_particles(&mut self, gpu: &Gpu, stack: &Stack) -> Result<bool, RenderError> {
         let settings = stack.particle_settings();
         if settings == self.particle_settings {
             return Ok(false);
@@ -127,7 +127,7 @@ impl SceneResources {
         }
         (self.scene, self.particle_settings) = (scene, settings);
         if is_other {
-            self.upload(gpu)?;
+            self.upload(gpu).await?;
         }
         Ok(is_other)
     }
@@ -136,11 +136,11 @@ impl SceneResources {
     ///
     /// # Errors
     /// When they do not fit.
-    pub fn pack_positions(&mut self, gpu: &Gpu, bits: Option<u32>) -> Result<(), RenderError> {
+    pub async fn pack_positions(&mut self, gpu: &Gpu, bits: Option<u32>) -> Result<(), RenderError> {
         if self.attributes.packed_bits == bits && self.buffers.has(BufferId::VertexBytes) {
             Ok(())
         } else {
-            self.upload_attributes(gpu, bits)
+            self.upload_attributes(gpu, bits).await
         }
     }
 
@@ -148,35 +148,35 @@ impl SceneResources {
     ///
     /// # Errors
     /// When they do not fit.
-    pub fn keep_materials(&mut self, gpu: &Gpu, are_needed: bool) -> Result<(), RenderError> {
+    pub async fn keep_materials(&mut self, gpu: &Gpu, are_needed: bool) -> Result<(), RenderError> {
         match (are_needed, &self.material_atlas) {
-            (true, None) => self.material_atlas = Some(material_atlas::upload(gpu, &self.scene)?),
+            (true, None) => self.material_atlas = Some(material_atlas::upload(gpu, &self.scene).await?),
             (false, Some(_)) => self.material_atlas = None,
             _ => {}
         }
         Ok(())
     }
 
-    fn upload(&mut self, gpu: &Gpu) -> Result<(), RenderError> {
+    async fn upload(&mut self, gpu: &Gpu) -> Result<(), RenderError> {
         self.buffers.keep(|id| !matches!(id, BufferId::VertexBytes | BufferId::IndexBytes));
         (self.material_atlas, self.meshlets) = (None, None);
-        self.upload_attributes(gpu, None)?;
+        self.upload_attributes(gpu, None).await?;
         if !self.scene.index_bytes.is_empty() {
-            self.buffers.fill(gpu, BufferId::IndexBytes, &self.scene.index_bytes)?;
+            self.buffers.fill(gpu, BufferId::IndexBytes, &self.scene.index_bytes).await?;
         }
         Ok(())
     }
 
     /// Uploads the bytes of all attributes, with space for deformed vertices, and positions in `packed_bits` per axis if any.
-    fn upload_attributes(&mut self, gpu: &Gpu, packed_bits: Option<u32>) -> Result<(), RenderError> {
+    async fn upload_attributes(&mut self, gpu: &Gpu, packed_bits: Option<u32>) -> Result<(), RenderError> {
         let packing = packed_bits.map(|bits| Packing::new(&self.scene, bits)).unwrap_or_default();
         // Until all is there, nothing is.
         self.attributes = AttributeLayout::default();
         self.buffers.keep(|id| id != BufferId::VertexBytes);
         let attributes = AttributeLayout::new(&self.scene, packed_bits);
-        self.buffers.ensure_for(gpu, BufferId::VertexBytes, attributes.bytes(), attributes.purpose())?;
-        self.buffers.write_at(gpu, BufferId::VertexBytes, 0, &self.scene.vertex_bytes)?;
-        self.buffers.write_at(gpu, BufferId::VertexBytes, attributes.first_packed(), bytemuck::cast_slice(&packing.words))?;
+        self.buffers.ensure_for(gpu, BufferId::VertexBytes, attributes.bytes(), attributes.purpose()).await?;
+        self.buffers.write_at(gpu, BufferId::VertexBytes, 0, &self.scene.vertex_bytes).await?;
+        self.buffers.write_at(gpu, BufferId::VertexBytes, attributes.first_packed(), bytemuck::cast_slice(&packing.words)).await?;
         (self.attributes, self.packed_boxes) = (attributes, packing.boxes);
         Ok(())
     }

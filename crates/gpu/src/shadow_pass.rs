@@ -42,7 +42,7 @@ impl ShadowPass {
     ///
     /// # Errors
     /// When the map or the scene does not fit.
-    pub fn prepare(
+    pub async fn prepare(
         previous: Option<Self>,
         device: &mut Device,
         scene: &mut SceneResources,
@@ -57,15 +57,15 @@ impl ShadowPass {
         let accuracy = AccuracyRequest { pins: pins(), ..AccuracyRequest::default() };
         let shown = [view.width, view.height];
         let request = Request { view: &view, stack: &stack.shadow_casters(), accuracy: &accuracy, shown, room: RoomForLayers::default() };
-        resources.prepare(device, scene, &request)?;
-        uniform.fill(&device.gpu, BufferId::ShadowMapView, bytemuck::bytes_of(&ShadowMapUniform::new(&view)))?;
+        resources.prepare(device, scene, &request).await?;
+        uniform.fill(&device.gpu, BufferId::ShadowMapView, bytemuck::bytes_of(&ShadowMapUniform::new(&view))).await?;
         let map = match map.filter(|map| map.texture.width() == view.width) {
             _ if device.tuning.buffered_shadow_map => None,
             Some(map) => Some(map),
-            None => Some(new_map(&device.gpu, view.width)?),
+            None => Some(new_map(&device.gpu, view.width).await?),
         };
         let passes = resources.frame()?.plan.key.light_frame();
-        resources.prepare_passes(device, passes, &Resources::of_scene(scene))?;
+        resources.prepare_passes(device, passes, &Resources::of_scene(scene)).await?;
         Ok(Some(Self { resources, view, uniform, map }))
     }
 
@@ -119,9 +119,9 @@ fn pins() -> PinnedOptions {
         .with(DepthFormat::Reversed)
 }
 
-fn new_map(gpu: &Gpu, side: u32) -> Result<WordTexture, RenderError> {
+async fn new_map(gpu: &Gpu, side: u32) -> Result<WordTexture, RenderError> {
     let size = wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 };
-    WordTexture::new(gpu, TextureId::ShadowMap, size, wgpu::TextureViewDimension::D2)
+    WordTexture::new(gpu, TextureId::ShadowMap, size, wgpu::TextureViewDimension::D2).await
 }
 
 impl ShadowMapUniform {

@@ -19,7 +19,7 @@ impl WordTexture {
     ///
     /// # Errors
     /// When there is no memory for it.
-    pub fn new(gpu: &Gpu, id: TextureId, size: wgpu::Extent3d, dimension: wgpu::TextureViewDimension) -> Result<Self, RenderError> {
+    pub async fn new(gpu: &Gpu, id: TextureId, size: wgpu::Extent3d, dimension: wgpu::TextureViewDimension) -> Result<Self, RenderError> {
         let no_memory = RenderError::OutOfMemory { buffer: id.name(), bytes: bytes_of(size) };
         let Some(memory) = gpu.memory.reserve(bytes_of(size)) else { return Err(no_memory) };
         let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
@@ -35,7 +35,7 @@ impl WordTexture {
         });
         gpu.prepared.count(Preparation::Texture);
         let view = texture.create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() });
-        if pollster::block_on(scope.pop()).is_some() {
+        if scope.pop().await.is_some() {
             return Err(no_memory);
         }
         Ok(Self { texture, view, revision: next_revision(), _memory: memory })

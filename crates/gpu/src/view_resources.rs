@@ -146,7 +146,7 @@ impl ViewResources {
     ///
     /// # Errors
     /// When the adapter cannot draw what is asked for, or has no memory for it.
-    pub fn prepare(&mut self, device: &Device, scene: &mut SceneResources, request: &Request<'_>) -> Result<(), RenderError> {
+    pub async fn prepare(&mut self, device: &Device, scene: &mut SceneResources, request: &Request<'_>) -> Result<(), RenderError> {
         let gpu = &*device.gpu;
         let (View { width, height, .. }, limit) = (request.view, gpu.caps.max_texture_side);
         if *width.max(height) > limit {
@@ -164,8 +164,8 @@ impl ViewResources {
             if scene.attributes().packed_bits != packed_bits {
                 self.release_commands();
             }
-            scene.pack_positions(gpu, packed_bits)?;
-            scene.keep_materials(gpu, key.surface.has_material_atlas)?;
+            scene.pack_positions(gpu, packed_bits).await?;
+            scene.keep_materials(gpu, key.surface.has_material_atlas).await?;
         }
         let is_changed = self.update_draw_data(scene, key, &view, &draws, request.stack);
         if self.target == Target::Picture {
@@ -184,12 +184,12 @@ impl ViewResources {
             effect_bytes: if has_parameters { parameters.len() as u64 } else { 0 },
             capacities: recorded_capacities(key, &self.capacities),
         });
-        let new = self.allocate(gpu, &layout)?;
-        self.write_draw_data(gpu, scene, &layout, &new, is_changed)?;
-        self.write_uniforms(gpu, &layout, &view, request.stack.point_radius(), &parameters)?;
-        self.write_background(gpu, &layout, &view, |id| new.contains(&id))?;
+        let new = self.allocate(gpu, &layout).await?;
+        self.write_draw_data(gpu, scene, &layout, &new, is_changed).await?;
+        self.write_uniforms(gpu, &layout, &view, request.stack.point_radius(), &parameters).await?;
+        self.write_background(gpu, &layout, &view, |id| new.contains(&id)).await?;
         if let Some(dots) = &mut self.dots {
-            dots.write(gpu, &self.buffers, |id| new.contains(&id))?;
+            dots.write(gpu, &self.buffers, |id| new.contains(&id)).await?;
         }
         self.frame = Some(PreparedFrame { plan, view, layout });
         self.is_prepared = true;
@@ -267,14 +267,14 @@ impl ViewResources {
     }
 
     /// Makes and drops buffers so that those of the layout are there; returns the new ones.
-    fn allocate(&mut self, gpu: &Gpu, layout: &FrameLayout) -> Result<Vec<BufferId>, RenderError> {
+    async fn allocate(&mut self, gpu: &Gpu, layout: &FrameLayout) -> Result<Vec<BufferId>, RenderError> {
         if self.frame.as_ref().is_none_or(|frame| frame.layout != *layout) {
             self.release_commands();
         }
         self.buffers.keep(|id| layout.has(id));
         let mut new = Vec::new();
         for (id, spec) in layout.buffers() {
-            if self.buffers.ensure_for(gpu, id, spec.bytes, spec.purpose)? {
+            if self.buffers.ensure_for(gpu, id, spec.bytes, spec.purpose).await? {
                 new.push(id);
             }
         }
@@ -282,7 +282,7 @@ impl ViewResources {
     }
 
     /// Writes draw data that changed, or whose buffers are new.
-    fn write_draw_data(
+    async fn write_draw_data(
         &self,
         gpu: &Gpu,
         scene: &mut SceneResources,
@@ -299,17 +299,17 @@ impl ViewResources {
             (BufferId::Instances, bytemuck::cast_slice(&data.instances)),
         ];
         for (id, bytes) in contents.into_iter().filter(|(id, _)| layout.has(*id) && (is_changed || new.contains(id))) {
-            self.buffers.write_at(gpu, id, 0, bytes)?;
+            self.buffers.write_at(gpu, id, 0, bytes).await?;
         }
         if new.contains(&BufferId::Meshlets) || new.contains(&BufferId::MeshletLists) {
             let meshlets = scene.meshlets();
-            self.buffers.write_at(gpu, BufferId::Meshlets, 0, bytemuck::cast_slice(&meshlets.records))?;
-            self.buffers.write_at(gpu, BufferId::MeshletLists, 0, bytemuck::cast_slice(&meshlets.lists))?;
+            self.buffers.write_at(gpu, BufferId::Meshlets, 0, bytemuck::cast_slice(&meshlets.records)).await?;
+            self.buffers.write_at(gpu, BufferId::MeshletLists, 0, bytemuck::cast_slice(&meshlets.lists)).await?;
         }
         Ok(())
     }
 
-    fn write_uniforms(
+    async fn write_uniforms(
         &self,
         gpu: &Gpu,
         layout: &FrameLayout,
@@ -325,12 +325,15 @@ impl ViewResources {
             (BufferId::Culling, bytemuck::bytes_of(&culling)),
             (BufferId::Scaling, bytemuck::bytes_of(&scaling)),
         ];
-        uniforms.into_iter().filter(|(id, _)| layout.has(*id)).try_for_each(|(id, bytes)| self.buffers.write_at(gpu, id, 0, bytes))
+        for (id, bytes) in uniforms.into_iter().filter(|(id, _)| layout.has(*id)) {
+            self.buffers.write_at(gpu, id, 0, bytes).await?;
+        }
+        Ok(())
     }
 
     /// Writes the rows of background that are copied over the picture, and those that the resolve reads, where they changed. The picture does
     /// not show them then.
-    fn write_background(
+    async fn write_background(
         &mut self,
         gpu: &Gpu,
         layout: &FrameLayout,
@@ -342,13 +345,13 @@ impl ViewResources {
         if layout.has(BufferId::Background) && (is_changed || is_new(BufferId::Background)) {
             let stride = color_stride(view.width) as usize;
             let words: Vec<u8> = view.background.rows(layout.background_rows()).iter().flat_map(|row| row.repeat(stride)).collect();
-            self.buffers.write_at(gpu, BufferId::Background, 0, &words)?;
+            self.buffers.write_at(gpu, BufferId::Background, 0, &words).await?;
         }
         if let Some(span) = layout.region(Region::BackgroundRows)
             && (is_changed || is_new(span.buffer))
         {
             let rows = view.background.rows(view.height);
-            self.buffers.write_at(gpu, span.buffer, span.bytes.start, bytemuck::cast_slice(&rows))?;
+            self.buffers.write_at(gpu, span.buffer, span.bytes.start, bytemuck::cast_slice(&rows)).await?;
         }
         self.background = background;
         self.shows_background &= !is_changed && !is_new(BufferId::Color) && !is_new(BufferId::TileMask);
@@ -370,14 +373,14 @@ impl ViewResources {
     ///
     /// # Errors
     /// When a kernel cannot be compiled, or binds what is not there.
-    pub fn prepare_passes(&mut self, device: &mut Device, passes: Vec<Pass>, others: &Resources<'_>) -> Result<(), RenderError> {
+    pub async fn prepare_passes(&mut self, device: &mut Device, passes: Vec<Pass>, others: &Resources<'_>) -> Result<(), RenderError> {
         let key = &self.frame.as_ref().ok_or(RenderError::NoScene)?.plan.key;
         let resources = others.with(&self.buffers);
         match &self.commands {
             Some(commands) if commands.is_for(key, &passes, &resources) => commands.mark(&device.gpu.pipelines),
             _ => {
                 let prefix = if self.target == Target::ShadowMap { "light " } else { "" };
-                let commands = CommandList::new(device, key, passes, prefix, &resources)?;
+                let commands = CommandList::new(device, key, passes, prefix, &resources).await?;
                 self.commands = Some(commands);
             }
         }

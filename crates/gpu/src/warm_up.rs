@@ -1,7 +1,9 @@
 //! Keeping a graphics card busy, so that frames are timed at the clock of a card at work: an idle card lowers its clock, and one short
 //! frame after another with a wait between them does not raise it.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use web_time::Instant;
 
 use super::{device::Gpu, error::RenderError};
 
@@ -17,15 +19,15 @@ pub const FROM_IDLE: Duration = Duration::from_millis(800);
 ///
 /// # Errors
 /// Those of `draw`.
-pub fn warm_up(
+pub async fn warm_up(
     gpu: &Gpu,
     duration: Duration,
     contenders: usize,
-    mut draw: impl FnMut(usize, usize) -> Result<bool, RenderError>,
+    mut draw: impl AsyncFnMut(usize, usize) -> Result<bool, RenderError>,
 ) -> Result<(), RenderError> {
     let begin = Instant::now();
     let mut turn = 0;
-    while contenders > 0 && !gpu.caps.software && begin.elapsed() < duration && draw(turn % contenders, FRAMES_IN_TURN)? {
+    while contenders > 0 && !gpu.caps.software && begin.elapsed() < duration && draw(turn % contenders, FRAMES_IN_TURN).await? {
         turn += 1;
     }
     Ok(())

@@ -5,11 +5,11 @@ use std::sync::OnceLock;
 use super::shot::Shot;
 use crate::scene::draw::{Draw, DrawError, totals};
 
-/// Memory of a picture, GiB, unless the environment says otherwise.
+/// Memory of a picture, GiB, unless [another](choose_memory) was chosen.
 const MEMORY_GIB: f64 = 4.0;
 
-/// The variable of the environment that changes it.
-const VARIABLE: &str = "RASTERLAB_ORACLE_GIB";
+/// The variable of the environment from which the program chooses it.
+pub const VARIABLE: &str = "RASTERLAB_ORACLE_GIB";
 
 /// Most positions that are computed: each vertex of each instance once, and once more for each of its morph targets.
 const MAX_POSITIONS: u64 = 1 << 32;
@@ -40,7 +40,7 @@ pub enum Purpose {
 /// [`DrawError::OracleMemory`] or [`DrawError::OracleWork`].
 pub fn check(shot: &Shot, purpose: Purpose) -> Result<(), DrawError> {
     let needed_gib = bytes(shot) as f64 * if purpose == Purpose::Judge { 2.0 } else { 1.0 } / f64::from(1 << 30);
-    let limit_gib = memory_gib();
+    let limit_gib = CHOSEN.get().copied().unwrap_or(MEMORY_GIB);
     if needed_gib > limit_gib {
         return Err(DrawError::OracleMemory { needed_gib, limit_gib, variable: VARIABLE });
     }
@@ -74,9 +74,9 @@ fn positions(shot: &Shot) -> u64 {
     shot.draws.iter().map(of_draw).sum()
 }
 
-/// The memory that a picture may take, GiB.
-fn memory_gib() -> f64 {
-    static LIMIT: OnceLock<f64> = OnceLock::new();
-    let given = || std::env::var(VARIABLE).ok()?.trim().parse::<f64>().ok().filter(|gib| *gib > 0.0);
-    *LIMIT.get_or_init(|| given().unwrap_or(MEMORY_GIB))
+static CHOSEN: OnceLock<f64> = OnceLock::new();
+
+/// Gives the pictures of this process so much memory, GiB, each. Only the first call counts.
+pub fn choose_memory(gib: f64) {
+    CHOSEN.get_or_init(|| gib);
 }

@@ -31,6 +31,7 @@ pub use bounds::{
     coverage::{BoundedCoverage, BoundedSample, cover_claims},
     vertex::snap_bounds,
 };
+pub use budget::{VARIABLE as MEMORY_VARIABLE, choose_memory};
 pub use judge::{
     picture::{JUDGE_STAGES, judge},
     shadow::shadow_errors,

@@ -81,6 +81,6 @@ fn check(bytes: &[u8]) -> Outcome {
         message
     })?;
     // A file that needs what the evaluator lacks is refused when it is read.
-    evaluated(&Library::from_env(), &effect).unwrap_or_else(|error| panic!("it was read and cannot be evaluated: {error}"));
+    evaluated(&Library::of_process(), &effect).unwrap_or_else(|error| panic!("it was read and cannot be evaluated: {error}"));
     Ok(())
 }

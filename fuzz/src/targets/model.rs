@@ -101,7 +101,7 @@ fn check(bytes: &[u8]) -> Outcome {
 
 /// The model; the files that it refers to are not there.
 pub fn read(bytes: &[u8]) -> Result<Scene, LoadError> {
-    gltf::parse(bytes, &mut |_, _| Err(LoadError("no files here".into())))
+    gltf::load(bytes, &mut |_, _| Err(LoadError("no files here".into())))
 }
 
 /// Everything that a model goes through until it is drawn.

@@ -3,10 +3,12 @@
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
     sync::{Arc, Mutex, MutexGuard},
-    time::{Duration, Instant},
+    time::Duration,
 };
 
 use eframe::egui::{self, Color32, RichText, Ui};
+use pollster::FutureExt as _;
+use web_time::Instant;
 
 use crate::{
     app::{
@@ -67,7 +69,7 @@ impl Run {
 
     /// Draws the cases one after another on a device of their own.
     fn draw(&self, cases: &[&Case], adapter: String, seed: u32, ctx: &egui::Context) -> Result<(), String> {
-        let gpu = Gpu::open(&AdapterChoice::Named(adapter)).map_err(|error| error.to_string())?;
+        let gpu = Gpu::open(&AdapterChoice::Named(adapter)).block_on().map_err(|error| error.to_string())?;
         let mut renderer = Renderer::new(gpu.clone());
         for case in cases {
             let run = || {

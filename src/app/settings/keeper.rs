@@ -9,7 +9,7 @@ use std::{
 use toml_edit::DocumentMut;
 
 use super::{
-    Settings, WindowPlace,
+    Settings, WindowSize,
     last_session::{LastSession, Restored},
 };
 use crate::{
@@ -34,8 +34,8 @@ pub struct Keeper {
     /// The last session was read and decided about: it may be replaced.
     replaces_session: bool,
     /// What is written or about to be, and since when it waits.
-    settings: Kept<Settings>,
-    open: Kept<Option<(FileId, Preset)>>,
+    settings: Resting<Settings>,
+    open: Resting<Option<(FileId, Preset)>>,
     /// A thread that writes files, and ends with the errors.
     writing: Option<JoinHandle<Vec<String>>>,
 }
@@ -44,12 +44,12 @@ pub struct Keeper {
 type Write = Box<dyn FnOnce() -> Result<(), String> + Send>;
 
 /// A value that is written when it has come to rest.
-struct Kept<T> {
+struct Resting<T> {
     latest: T,
     changed_at_s: Option<f64>,
 }
 
-impl<T: PartialEq + Clone> Kept<T> {
+impl<T: PartialEq + Clone> Resting<T> {
     fn new(latest: T) -> Self {
         Self { latest, changed_at_s: None }
     }
@@ -68,9 +68,9 @@ impl<T: PartialEq + Clone> Kept<T> {
 }
 
 /// What the last session left.
-pub enum Left {
+pub enum PreviousSession {
     /// No session, or it is not this window's to restore.
-    Nothing,
+    None,
     /// The window closed in order.
     Closed(Box<Restored>),
     /// The program crashed, or the machine.
@@ -86,22 +86,22 @@ impl Keeper {
         let read = folder.as_deref().map(|folder| plain_file::read(&folder.join(SETTINGS), &mut remarks));
         let (settings, document): (Settings, _) = read.unwrap_or_default();
         let lock = folder.as_deref().and_then(|folder| lock(folder, &mut remarks));
-        let kept = Kept::new(settings.clone());
-        let keeper = Self { folder, document, lock, replaces_session: false, settings: kept, open: Kept::new(None), writing: None };
+        let kept = Resting::new(settings.clone());
+        let keeper = Self { folder, document, lock, replaces_session: false, settings: kept, open: Resting::new(None), writing: None };
         (keeper, settings, remarks)
     }
 
     /// What the last session left.
-    pub fn left(&self, folders: &Folders) -> Left {
-        let Some(folder) = self.folder.as_ref().filter(|_| self.lock.is_some()) else { return Left::Nothing };
+    pub fn previous_session(&self, folders: &Folders) -> PreviousSession {
+        let Some(folder) = self.folder.as_ref().filter(|_| self.lock.is_some()) else { return PreviousSession::None };
         let path = folder.join(SESSION);
-        let Ok(text) = std::fs::read_to_string(&path) else { return Left::Nothing };
+        let Ok(text) = std::fs::read_to_string(&path) else { return PreviousSession::None };
         let session = LastSession::parse(&text, &path.display().to_string());
         let is_running = session.as_ref().is_ok_and(|session| session.is_running);
         match session.and_then(|session| session.restore(folders)) {
-            Ok(restored) if is_running => Left::Crashed(restored.into()),
-            Ok(restored) => Left::Closed(restored.into()),
-            Err(error) => Left::Lost(error),
+            Ok(restored) if is_running => PreviousSession::Crashed(restored.into()),
+            Ok(restored) => PreviousSession::Closed(restored.into()),
+            Err(error) => PreviousSession::Lost(error),
         }
     }
 
@@ -186,11 +186,11 @@ const SETTINGS: &str = "settings.toml";
 const SESSION: &str = "session.toml";
 const LOCK: &str = "session.lock";
 
-/// The place that the window had, by the settings of `folder`. What is wrong with them is said by [`Keeper::new`].
-pub fn window_place(folder: &Path) -> WindowPlace {
+/// The size that the window had, by the settings of `folder`. What is wrong with them is said by [`Keeper::new`].
+pub fn window_size(folder: &Path) -> WindowSize {
     let text = std::fs::read_to_string(folder.join(SETTINGS)).unwrap_or_default();
     plain_file::parse(&text, SETTINGS, &mut Vec::new())
-        .map_or_else(|_| WindowPlace::default(), |(settings, _): (Settings, _)| settings.window)
+        .map_or_else(|_| WindowSize::default(), |(settings, _): (Settings, _)| settings.window)
 }
 
 /// The lock of the session; none if another window has it.
@@ -251,24 +251,26 @@ mod tests {
         edit(&mut session);
         let folders = Folders::default();
         let (mut first, settings, _) = keeper(folder.path());
-        assert!(matches!(first.left(&folders), Left::Nothing));
+        assert!(matches!(first.previous_session(&folders), PreviousSession::None));
         first.begin_session();
         first.follow(&settings, &session, 0.0);
         first.follow(&settings, &session, REST_S);
         drop(first); // As if killed: the file says that the window runs.
         let (mut second, ..) = keeper(folder.path());
-        let Left::Crashed(restored) = second.left(&folders) else { panic!("the crash was not noticed") };
+        let PreviousSession::Crashed(restored) = second.previous_session(&folders) else { panic!("the crash was not noticed") };
         assert_eq!(restored.preset_file.preset, session.preset_file.preset);
         second.begin_session();
         second.close(&settings, &session, true);
         drop(second);
         let (mut third, ..) = keeper(folder.path());
-        let Left::Closed(restored) = third.left(&folders) else { panic!("the session was not closed") };
+        let PreviousSession::Closed(restored) = third.previous_session(&folders) else { panic!("the session was not closed") };
         assert!(restored.has_edits());
         third.begin_session();
         third.close(&settings, &session, false);
         drop(third);
-        let Left::Closed(restored) = keeper(folder.path()).0.left(&folders) else { panic!("the session was not closed") };
+        let PreviousSession::Closed(restored) = keeper(folder.path()).0.previous_session(&folders) else {
+            panic!("the session was not closed")
+        };
         assert!(!restored.has_edits());
     }
 
@@ -279,13 +281,13 @@ mod tests {
         first.begin_session();
         let (mut second, _, remarks) = keeper(folder.path());
         assert!(remarks.iter().any(|remark| remark.contains("another window")), "{remarks:?}");
-        assert!(matches!(second.left(&Folders::default()), Left::Nothing));
+        assert!(matches!(second.previous_session(&Folders::default()), PreviousSession::None));
         second.begin_session();
         second.close(&settings, &session_of("lambert"), true);
         drop(second);
         first.close(&settings, &session_of("facet-sweep"), true);
         drop(first);
-        let Left::Closed(restored) = keeper(folder.path()).0.left(&Folders::default()) else { panic!("no session") };
+        let PreviousSession::Closed(restored) = keeper(folder.path()).0.previous_session(&Folders::default()) else { panic!("no session") };
         assert_eq!(restored.preset_file.id, "facet-sweep");
     }
 
@@ -307,6 +309,6 @@ mod tests {
         keeper.begin_session();
         assert_eq!(keeper.follow(&settings, &session, 5.0), (None, None));
         keeper.close(&settings, &session, true);
-        assert!(matches!(keeper.left(&Folders::default()), Left::Nothing));
+        assert!(matches!(keeper.previous_session(&Folders::default()), PreviousSession::None));
     }
 }

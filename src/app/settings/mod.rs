@@ -40,7 +40,7 @@ pub struct Settings {
     pub scale: f32,
     #[serde(rename = "recent")]
     pub recents: Recents,
-    pub window: WindowPlace,
+    pub window: WindowSize,
     #[serde(rename = "panels")]
     pub open: OpenPanels,
     pub widths: PanelWidths,
@@ -57,7 +57,7 @@ impl Default for Settings {
             theme: ThemeChoice::default(),
             scale: 1.0,
             recents: Recents::default(),
-            window: WindowPlace::default(),
+            window: WindowSize::default(),
             open: OpenPanels::default(),
             widths: PanelWidths::default(),
             browsing: Browsing::default(),
@@ -148,7 +148,7 @@ impl Default for OpenPanels {
 /// Size of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct WindowPlace {
+pub struct WindowSize {
     /// Width and height of its contents at a scale of 1, points.
     #[serde(deserialize_with = "window_size")]
     pub size: [f32; 2],
@@ -156,13 +156,13 @@ pub struct WindowPlace {
     pub is_maximized: bool,
 }
 
-impl Default for WindowPlace {
+impl Default for WindowSize {
     fn default() -> Self {
         Self { size: [1280.0, 800.0], is_maximized: false }
     }
 }
 
-impl WindowPlace {
+impl WindowSize {
     /// Takes the size of the window while it is neither maximized nor minimized.
     pub fn follow(&mut self, viewport: &egui::ViewportInfo, scale: f32) {
         self.is_maximized = viewport.maximized.unwrap_or(self.is_maximized);
@@ -214,7 +214,7 @@ mod tests {
             theme: ThemeChoice::Light,
             scale: 1.3,
             recents: ["/models/a b.glb", "/presets/\"x\".toml"].iter().collect(),
-            window: WindowPlace { size: [900.0, 600.0], is_maximized: true },
+            window: WindowSize { size: [900.0, 600.0], is_maximized: true },
             open: OpenPanels { left: false, log: true, ..OpenPanels::default() },
             widths: PanelWidths { left: Some(212.0), right: None },
             browsing: Browsing { tab: Tab::Effects, layout: Layout::Grid, sort: Sort::FavoritesFirst },

@@ -1,9 +1,9 @@
 //! The job of a trade: the bench over combinations of options, judged by the oracle.
 
-use std::{
-    sync::Arc,
-    time::{Duration, Instant},
-};
+use std::{sync::Arc, time::Duration};
+
+use pollster::FutureExt as _;
+use web_time::Instant;
 
 use super::{
     pace::Kind,
@@ -28,7 +28,7 @@ const LOOK: Duration = Duration::from_millis(20);
 /// In a sentence for people.
 pub fn measure(adapter: String, scene: &Arc<Scene>, request: &Request, progress: &Progress) -> Result<Vec<Point>, String> {
     let Request { preset, size, axes, title } = request;
-    let gpu = Gpu::open(&AdapterChoice::Named(adapter)).map_err(|e| e.to_string())?;
+    let gpu = Gpu::open(&AdapterChoice::Named(adapter)).block_on().map_err(|e| e.to_string())?;
     let view = preset.view(scene, *size);
     let began = Instant::now();
     let factors = factors(preset, axes);

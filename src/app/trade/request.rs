@@ -35,7 +35,7 @@ pub struct Progress {
     state: Mutex<State>,
     /// When the measurement may go on, milliseconds on the clock of `began`.
     paused_until_ms: AtomicU64,
-    began: std::time::Instant,
+    began: web_time::Instant,
 }
 
 struct State {
@@ -54,7 +54,7 @@ impl Progress {
             work: Arc::default(),
             state: Mutex::new(State { pace, now: "the reference picture".into() }),
             paused_until_ms: AtomicU64::new(0),
-            began: std::time::Instant::now(),
+            began: web_time::Instant::now(),
         }
     }
 

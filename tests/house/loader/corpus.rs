@@ -7,7 +7,7 @@ use std::{
     process::Command,
 };
 
-use rasterlab::scene::gltf;
+use rasterlab::host;
 use serde_json::{Value, json};
 
 use super::{materials::BASE, model::*};
@@ -40,7 +40,7 @@ fn corpus_loads_what_is_well_formed_and_refuses_the_rest() {
     for path in models {
         let name = path.strip_prefix(corpus).unwrap().display().to_string();
         let expected = EXPECTED.iter().find(|(start, _)| name.starts_with(start)).map(|(_, expected)| *expected);
-        match (gltf::load(&path), expected) {
+        match (host::model::load(&path), expected) {
             (Ok(scene), None) => {
                 assert_sound(&scene);
                 let may_be_empty = ["PrimitiveMode", "cameras", "SceneWithoutNodes"].iter().any(|part| name.contains(part));
@@ -132,13 +132,13 @@ fn what_we_accept_the_validator_accepts_and_the_malformed_are_refused_by_both() 
         let codes: Vec<&String> = codes.iter().filter(|code| !UNREAD.contains(&code.as_str())).collect();
         // Beyond the standard, or a schema of its own: extensions that we lack.
         let is_ours = ["techniqueWebGL"].iter().any(|name| file.to_string_lossy().contains(name));
-        match gltf::load(file) {
+        match host::model::load(file) {
             Ok(_) if !codes.is_empty() => disagreements.push(format!("{} is accepted, and the validator says {codes:?}", file.display())),
             Err(error) if codes.is_empty() && !is_ours => disagreements.push(format!("the validator has nothing against it: {error}")),
             _ => {}
         }
         if place >= from_corpus {
-            assert_eq!(gltf::load(file).is_err(), place < from_corpus + malformed.len(), "{}", file.display());
+            assert_eq!(host::model::load(file).is_err(), place < from_corpus + malformed.len(), "{}", file.display());
         }
     }
     assert_eq!(disagreements, Vec::<String>::new());

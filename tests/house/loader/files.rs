@@ -6,10 +6,13 @@ use std::{
 };
 
 use base64::{Engine, prelude::BASE64_STANDARD};
-use rasterlab::scene::{
-    Scene,
-    gltf::{self, LoadError},
-    memory::MemoryBudget,
+use rasterlab::{
+    host,
+    scene::{
+        Scene,
+        gltf::{self, LoadError},
+        memory::MemoryBudget,
+    },
 };
 use serde_json::json;
 
@@ -28,7 +31,7 @@ impl Folder {
 
     fn load(&self, model: &Model) -> Result<Scene, LoadError> {
         fs::write(self.path("model.gltf"), model.json.to_string()).unwrap();
-        gltf::load(&self.path("model.gltf"))
+        host::model::load(&self.path("model.gltf"))
     }
 }
 
@@ -37,7 +40,7 @@ fn buffers_come_from_data_uris_and_from_files_beside_the_model() {
     let model = Model::square();
     let data = format!("data:application/octet-stream;base64,{}", BASE64_STANDARD.encode(&model.bytes));
     let embedded = model.clone().with("/buffers/0/uri", json!(data)).json.to_string();
-    let scene = gltf::parse(embedded.as_bytes(), &mut |_, _| unreachable!()).unwrap();
+    let scene = gltf::load(embedded.as_bytes(), &mut |_, _| unreachable!()).unwrap();
     assert_eq!(triangles(&scene), square());
 
     let folder = Folder::new();
@@ -79,11 +82,11 @@ fn uris_that_lead_out_of_the_folder_are_refused_unread() {
     ];
     for uri in uris {
         let text = model.clone().with("/buffers/0/uri", json!(uri)).json.to_string();
-        let error = gltf::parse(text.as_bytes(), &mut |path, _| panic!("{uri}: {} was asked for", path.display())).expect_err(&uri);
+        let error = gltf::load(text.as_bytes(), &mut |path, _| panic!("{uri}: {} was asked for", path.display())).expect_err(&uri);
         assert!(error.to_string().starts_with("buffer 0: URI "), "{error}");
         let file = outer.path("inner/model.gltf");
         fs::write(&file, text).unwrap();
-        assert!(gltf::load(&file).is_err(), "{uri}");
+        assert!(host::model::load(&file).is_err(), "{uri}");
     }
 }
 
@@ -115,8 +118,8 @@ fn pipes_and_folders_are_refused_without_being_opened() {
     assert!(std::process::Command::new("mkfifo").arg(folder.path("data.bin")).status().unwrap().success());
     assert!(folder.load(&model).unwrap_err().to_string().ends_with("it is not a regular file"));
     assert!(std::process::Command::new("mkfifo").arg(folder.path("pipe.glb")).status().unwrap().success());
-    assert_eq!(gltf::load(&folder.path("pipe.glb")).unwrap_err().to_string(), "pipe.glb: it is not a regular file");
-    assert!(gltf::load(Path::new("/dev/zero")).is_err());
+    assert_eq!(host::model::load(&folder.path("pipe.glb")).unwrap_err().to_string(), "pipe.glb: it is not a regular file");
+    assert!(host::model::load(Path::new("/dev/zero")).is_err());
 }
 
 #[test]
@@ -126,10 +129,10 @@ fn huge_and_absent_files_are_refused() {
     assert!(folder.load(&model).unwrap_err().to_string().starts_with("model.gltf: buffer 0: \"data.bin\": cannot read the file: "));
     // Sparse on disk: no test writes 600 MiB.
     fs::File::create(folder.path("data.bin")).unwrap().set_len(600 << 20).unwrap();
-    let error = gltf::load_within(&folder.path("model.gltf"), MemoryBudget::LEAST).unwrap_err().to_string();
+    let error = host::model::load_within(&folder.path("model.gltf"), MemoryBudget::LEAST).unwrap_err().to_string();
     let wanted = "it has 629145600 bytes; allowed: at most 536870912 within the memory budget of 1280 MiB; raise it with --memory";
     assert_eq!(error, format!("model.gltf: buffer 0: \"data.bin\": {wanted}"));
-    assert!(gltf::load(&folder.path("absent.glb")).unwrap_err().to_string().starts_with("absent.glb: cannot read the file: "));
+    assert!(host::model::load(&folder.path("absent.glb")).unwrap_err().to_string().starts_with("absent.glb: cannot read the file: "));
 }
 
 #[test]
@@ -137,7 +140,7 @@ fn buffers_together_have_a_budget() {
     let mut model = Model::square();
     model.json["buffers"] = json!([{ "byteLength": 1, "uri": "a" }, { "byteLength": 1, "uri": "b" }, { "byteLength": 1, "uri": "c" }]);
     let mut asked = Vec::new();
-    let error = gltf::parse(model.json.to_string().as_bytes(), &mut |path, most| {
+    let error = gltf::load(model.json.to_string().as_bytes(), &mut |path, most| {
         asked.push((path.display().to_string(), most));
         Ok(vec![0; most.min(200 << 20) as usize])
     })
@@ -150,7 +153,7 @@ fn buffers_together_have_a_budget() {
 fn glb_lengths_are_checked_before_use() {
     let good = Model::square().glb();
     let refused = |bytes: &[u8], sentence: &str| {
-        let error = gltf::parse(bytes, &mut |_, _| unreachable!()).expect_err(sentence).to_string();
+        let error = gltf::load(bytes, &mut |_, _| unreachable!()).expect_err(sentence).to_string();
         assert!(error.contains(sentence) && !error.contains("is a bug"), "said: {error}\nnot:  {sentence}");
     };
     let patched = |at: usize, value: u32| {

@@ -4,10 +4,11 @@ use base64::{Engine, prelude::BASE64_STANDARD};
 use glam::DVec3;
 use image::ImageFormat;
 use rasterlab::{
+    host,
     preset::{ClipPlayback, Clock, Preset},
     scene::{
         camera::Camera,
-        gltf::{self, limits},
+        gltf::limits,
         texture::{Filter, MipFilter, Texture, Wrap},
     },
 };
@@ -47,7 +48,7 @@ fn images_come_as_png_or_jpeg_from_bytes_uris_and_files() {
     let load = |uri: &str| {
         let model = Model::textured().with("/images/0", json!({ "uri": uri }));
         std::fs::write(folder.path().join("inside/model.glb"), model.glb()).expect("written");
-        gltf::load(&folder.path().join("inside/model.glb"))
+        host::model::load(&folder.path().join("inside/model.glb"))
     };
     assert_eq!(load("flag%20one.png").expect("it lies beside the model").images[0].levels[0].texels, texels);
     for (uri, sentence) in [

@@ -103,7 +103,7 @@ impl Model {
     }
 
     pub fn load(&self) -> Result<Scene, LoadError> {
-        gltf::parse(&self.glb(), &mut |path, _| panic!("{} was asked for", path.display()))
+        gltf::load(&self.glb(), &mut |path, _| panic!("{} was asked for", path.display()))
     }
 
     pub fn scene(&self) -> Scene {

@@ -196,7 +196,7 @@ fn a_small_file_cannot_ask_for_much() {
     jointed.json["skins"] = vec![json!({ "joints": vec![1; 256] }); 3_907].into();
     jointed.refused("the skins have 1000192 joints; allowed: at most 1000000");
     let objects = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"nodes\":[{}{{}}]}}", "{},".repeat(limits::JSON_OBJECTS));
-    let error = gltf::parse(objects.as_bytes(), &mut |_, _| unreachable!()).unwrap_err();
+    let error = gltf::load(objects.as_bytes(), &mut |_, _| unreachable!()).unwrap_err();
     assert_eq!(error.to_string(), "the JSON has 1000003 objects; allowed: at most 1000000");
 }
 

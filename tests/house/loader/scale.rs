@@ -10,6 +10,7 @@ use std::{
 };
 
 use rasterlab::{
+    host,
     scene::{
         Scene,
         gltf::{self, LoadError},
@@ -64,7 +65,7 @@ fn a_large_file_may_have_more_than_a_small_one() {
     let overlay = json!({ "count": 1, "indices": { "bufferView": 0, "componentType": U8 }, "values": { "bufferView": 0 } });
     claim.json["accessors"][positions] =
         json!({ "sparse": overlay, "componentType": F32, "count": count, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0] });
-    let error = gltf::parse_within(&claim.glb(), MemoryBudget::of(1 << 50), &mut |_, _| unreachable!()).unwrap_err();
+    let error = gltf::load_within(&claim.glb().as_slice(), MemoryBudget::of(1 << 50), &mut |_, _| unreachable!()).unwrap_err();
     let wanted = "POSITION: the model has 4000001 vertices or more; allowed: at most 4000000, because its files have only ";
     assert!(error.0.contains(wanted) && error.0.ends_with(" bytes"), "{error}");
 }
@@ -78,10 +79,10 @@ fn a_file_beyond_the_budget_is_refused_unread_and_the_remedy_named() {
     fs::File::create(&path).unwrap().set_len(budget.decoded() + 1).unwrap();
     let wanted =
         "huge.glb: it has 536870913 bytes; allowed: at most 536870912 within the memory budget of 1280 MiB; raise it with --memory";
-    assert_eq!(gltf::load_within(&path, budget), Err(LoadError(wanted.into())));
+    assert_eq!(host::model::load_within(&path, budget), Err(LoadError(wanted.into())));
     // A budget of ten gigabytes has room for files of four, so a file of 600 MB would be read there; one of five would not.
     fs::File::create(&path).unwrap().set_len(5 << 30).unwrap();
-    let error = gltf::load_within(&path, MemoryBudget::of(10 << 30)).unwrap_err();
+    let error = host::model::load_within(&path, MemoryBudget::of(10 << 30)).unwrap_err();
     assert_eq!(
         error.0,
         "huge.glb: it has 5368709120 bytes; allowed: at most 4294967296 within the memory budget of 10 GiB; raise it with --memory"
@@ -95,7 +96,7 @@ fn a_file_that_is_cut_short_while_it_is_open_is_a_sentence() {
     let path = folder.path().join("cut.glb");
     let glb = cloth(300).glb();
     fs::write(&path, &glb[..glb.len() / 2]).unwrap();
-    let error = gltf::load(&path).unwrap_err();
+    let error = host::model::load(&path).unwrap_err();
     assert!(error.0.starts_with(&format!("cut.glb: the GLB header states {} bytes, but the file has ", glb.len())), "{error}");
 }
 
@@ -111,7 +112,7 @@ fn a_model_is_the_same_from_its_file_as_from_memory() {
         [("cloth", cloth(40)), ("textured", Model::textured()), ("sparse", sparse), ("morphed", morphed()), ("skinned", skinned(0.3))]
     {
         fs::write(&path, model.glb()).unwrap();
-        let from_file = gltf::load(&path).unwrap_or_else(|error| panic!("{what}: {error}"));
+        let from_file = host::model::load(&path).unwrap_or_else(|error| panic!("{what}: {error}"));
         assert!(Scene { name: String::new(), ..from_file } == model.scene(), "{what}");
     }
 }
@@ -123,7 +124,7 @@ fn progress_counts_every_byte_that_is_read_and_decoded() {
     let glb = cloth(200).glb();
     fs::write(&path, &glb).unwrap();
     let work = Arc::new(Work::default());
-    work.run(|| gltf::load(&path)).expect("nobody cancels it").expect("it is a good model");
+    work.run(|| host::model::load(&path)).expect("nobody cancels it").expect("it is a good model");
     let progress = work.progress().expect("bytes were expected");
     assert_eq!(progress.done, progress.expected);
     let decoded = 12 * 200 * 200 + 24 * 199 * 199;
@@ -133,7 +134,7 @@ fn progress_counts_every_byte_that_is_read_and_decoded() {
 #[test]
 fn canceled_loading_ends_within_a_moment_wherever_it_is() {
     let glb = cloth(700).glb();
-    let load = || gltf::parse(&glb, &mut |_, _| unreachable!());
+    let load = || gltf::load(&glb, &mut |_, _| unreachable!());
     let began = Instant::now();
     load().expect("it is a good model");
     let whole = began.elapsed();
@@ -184,7 +185,7 @@ fn loading_takes_at_most_two_and_a_half_times_what_is_loaded() {
         path
     });
     let (before, peak) = (peak(&small), peak(&large));
-    let decoded = gltf::load(&large).expect("a good model").byte_count();
+    let decoded = host::model::load(&large).expect("a good model").byte_count();
     assert!(decoded > 68_000_000, "{decoded}");
     assert!(peak - before <= decoded * 5 / 2, "{} bytes for {decoded}, beside the {before} of the program", peak - before);
 }
@@ -200,7 +201,7 @@ fn the_script_that_writes_large_models_writes_good_ones() {
             return;
         };
         assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
-        let scene = gltf::load(&path).expect("a good model");
+        let scene = host::model::load(&path).expect("a good model");
         assert_sound(&scene);
         assert_eq!((scene.triangle_count(), scene.vertex_count()), (2000, 1000));
         assert!(fs::metadata(&path).unwrap().len() > 1000 * bytes_of_vertex + 2000 * 12);

@@ -1,9 +1,8 @@
 //! A stress case: what it expects, how it runs, and what it reports.
 
-use std::{
-    panic::{AssertUnwindSafe, catch_unwind},
-    time::Instant,
-};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use web_time::Instant;
 
 use super::checks::EarlyEnd;
 use super::context::{CaseContext, Counts};

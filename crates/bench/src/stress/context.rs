@@ -3,6 +3,8 @@
 
 use std::sync::Arc;
 
+use pollster::FutureExt as _;
+
 use super::{
     checks::{EarlyEnd, same},
     drawing::{self, WorkDistribution, exactness, pinned},
@@ -144,8 +146,8 @@ impl<'a> CaseContext<'a> {
     ) -> Result<AccuracyRequest, EarlyEnd> {
         let Some(strict) = &mut self.strict else { return Ok(*accuracy) };
         let expected = AccuracyRequest { tier: Tier::Strict, ..*accuracy };
-        self.renderer.set_scene(scene)?;
-        match self.renderer.draw(view, stack, &expected) {
+        self.renderer.set_scene(scene).block_on()?;
+        match self.renderer.draw(view, stack, &expected).block_on() {
             Err(RenderError::Plan(_)) => {
                 strict.floats += 1;
                 Ok(*accuracy)
@@ -269,8 +271,8 @@ impl<'a> CaseContext<'a> {
         }
         self.step(scene, view, what)?;
         let failed = |error: String| EarlyEnd::Failed(format!("{what}: {error}"));
-        self.renderer.set_scene(scene)?;
-        let capture = self.renderer.capture_next(view, stack, accuracy).map_err(|error| failed(error.to_string()))?;
+        self.renderer.set_scene(scene).block_on()?;
+        let capture = self.renderer.capture_next(view, stack, accuracy).block_on().map_err(|error| failed(error.to_string()))?;
         let verdict = oracle::judge(scene, view, stack, &capture.picture())?;
         exactness(&verdict.report).map_err(failed)?;
         Ok(self.renderer.culled().unwrap_or_default())

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use pollster::FutureExt as _;
+
 use crate::{
     accuracy::{PinnedOptions, Visibility},
     effects::{Effect, Stack},
@@ -113,8 +115,8 @@ pub fn captured(
     accuracy: &AccuracyRequest,
 ) -> Result<Capture, String> {
     let name = &scene.name;
-    renderer.set_scene(scene).map_err(|error| format!("{name}: {error}"))?;
-    let capture = renderer.capture(view, stack, accuracy).map_err(|error| format!("{name}: {error}"))?;
+    renderer.set_scene(scene).block_on().map_err(|error| format!("{name}: {error}"))?;
+    let capture = renderer.capture(view, stack, accuracy).block_on().map_err(|error| format!("{name}: {error}"))?;
     match renderer.gpu().take_error() {
         Some(error) => Err(format!("{name}: the device reports {error}")),
         None => Ok(capture),

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use pollster::FutureExt as _;
+
 use super::{
     case::{Case, Expectation},
     checks::{EarlyEnd, check, equal, layers},
@@ -205,8 +207,8 @@ fn draw_limit(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                     let (capture, _) = context.exact(&scene, &view, &stack, &pinned(option), &what)?;
                     equal(&sum(layers(&capture)), &limit.min(total), &format!("{what}: samples drawn"))?;
                     if mode == draw_order::Mode::Submission {
-                        context.renderer.draw(&view, &stack, &pinned(option))?;
-                        let order = context.renderer.finish()?.order.unwrap_or_default();
+                        context.renderer.draw(&view, &stack, &pinned(option)).block_on()?;
+                        let order = context.renderer.finish().block_on()?.order.unwrap_or_default();
                         let drawn = limit.min(total);
                         equal(&[order.covered, order.limit, order.drawn], &[total, drawn, drawn], &format!("{what}: samples counted"))?;
                         let now = layers(&capture).to_vec();
@@ -243,8 +245,8 @@ fn scheduler_order_over_32_bits(context: &mut CaseContext) -> Result<(), EarlyEn
         let kind = if unit == "limit" { draw_order::Unit::Count } else { draw_order::Unit::Fraction };
         let stack = only("draw_order", &[("mode", by_chance), ("unit", f64::from(kind as u32)), (unit, amount)])?;
         context.step(&scene, &view, what)?;
-        context.renderer.set_scene(&scene)?;
-        match context.renderer.draw_complete(&view, &stack, &AccuracyRequest::default()) {
+        context.renderer.set_scene(&scene).block_on()?;
+        match context.renderer.draw_complete(&view, &stack, &AccuracyRequest::default()).block_on() {
             Err(error @ RenderError::Tickets(_)) => {
                 let text = error.to_string();
                 check!(error.is_unsupported() && text.contains(&total.to_string()), "{what}: {text}");
@@ -268,10 +270,10 @@ fn draw_order_over_32_bits(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     ] {
         let stack = only("draw_order", &fields)?;
         context.step(&scene, &view, what)?;
-        context.renderer.set_scene(&scene)?;
-        context.renderer.draw_complete(&view, &stack, &AccuracyRequest::default())?;
-        context.renderer.draw(&view, &stack, &AccuracyRequest::default())?;
-        let order = context.renderer.finish()?.order.unwrap_or_default();
+        context.renderer.set_scene(&scene).block_on()?;
+        context.renderer.draw_complete(&view, &stack, &AccuracyRequest::default()).block_on()?;
+        context.renderer.draw(&view, &stack, &AccuracyRequest::default()).block_on()?;
+        let order = context.renderer.finish().block_on()?.order.unwrap_or_default();
         equal(&[order.covered, order.limit, order.drawn], &[total, limit, limit], &format!("{what}: samples covered, asked for, drawn"))?;
     }
     Ok(())

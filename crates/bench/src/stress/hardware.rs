@@ -1,5 +1,7 @@
 //! Comparison with the adapter's fixed-function rasterizer: the same snapped positions through its render pipeline.
 
+use pollster::FutureExt as _;
+
 use super::{
     adversarial::near_miss_triangle,
     case::{Case, Expectation},
@@ -27,7 +29,7 @@ fn witness(context: &CaseContext, triangles: &[Flat]) -> Result<Vec<u32>, EarlyE
     let half = 128.0 * SIDE as f32;
     let to_ndc = |[x, y]: [i32; 2], depth: f32| [x as f32 / half - 1.0, 1.0 - y as f32 / half, depth];
     let corners: Vec<_> = triangles.iter().flat_map(|(corners, depth)| corners.map(|corner| to_ndc(corner, *depth))).collect();
-    Ok(context.renderer.hardware_ids([SIDE, SIDE], &corners)?)
+    Ok(context.renderer.hardware_ids([SIDE, SIDE], &corners).block_on()?)
 }
 
 /// The snap grid of the pipeline in units of 1/256 px: 1 if it distinguishes edges one unit from a sample, else 16, since

@@ -2,6 +2,8 @@
 
 use std::{collections::BTreeSet, sync::Arc};
 
+use pollster::FutureExt as _;
+
 use super::{
     case::{Case, Expectation},
     checks::{EarlyEnd, check, same},
@@ -352,8 +354,8 @@ fn scenes_by_axes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             for ((query, scene, view), triangle_ids) in scenes.iter().zip(&exact) {
                 let what = format!("{query} on {}", pins.words());
                 context.step(scene, view, &what)?;
-                context.renderer.set_scene(scene)?;
-                match context.renderer.capture(view, &stack, &accuracy) {
+                context.renderer.set_scene(scene).block_on()?;
+                match context.renderer.capture(view, &stack, &accuracy).block_on() {
                     Ok(capture) => {
                         let shown = capture.shown.as_ref().unwrap_or(&capture.frame);
                         let different = compare::triangle_ids(&shown.triangle_id, triangle_ids).different;

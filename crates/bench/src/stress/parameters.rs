@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use pollster::FutureExt as _;
+
 use super::{
     case::{Case, Expectation},
     checks::{EarlyEnd, check},
@@ -102,8 +104,8 @@ fn drawable(
 ) -> Result<Stack, EarlyEnd> {
     let mut stack = stack.clone();
     if stack.dots().is_some() {
-        context.renderer.set_scene(scene)?;
-        match context.renderer.draw(view, &stack, accuracy) {
+        context.renderer.set_scene(scene).block_on()?;
+        match context.renderer.draw(view, &stack, accuracy).block_on() {
             Err(RenderError::Draw(error @ DrawError::TooMany { what: "dots", .. })) => {
                 context.note(format!("{what}: without dots, since {error}"));
                 stack.disable("dots");

@@ -1,6 +1,9 @@
 //! Picture sizes: empty pictures, one pixel, odd sides and the largest ones, resizing, and a lost device.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use pollster::FutureExt as _;
+use web_time::Instant;
 
 use super::{
     case::{Case, Expectation},
@@ -123,9 +126,9 @@ fn picture_too_large(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let teapot = context.scene("teapot?tess=4")?;
     for size in [[most + 1, 6], [6, most + 1], [u32::MAX, u32::MAX]] {
         let view = pixel_view(size[0], size[1]);
-        context.renderer.set_scene(&teapot)?;
+        context.renderer.set_scene(&teapot).block_on()?;
         let what = format!("{} x {} pixels", size[0], size[1]);
-        match context.renderer.draw(&view, &stack(&[]), &AccuracyRequest::default()) {
+        match context.renderer.draw(&view, &stack(&[]), &AccuracyRequest::default()).block_on() {
             Err(error @ RenderError::TooWide { .. }) => {
                 let text = error.to_string();
                 let says = text.contains(&format!("{} x {}", size[0], size[1])) && text.contains(&most.to_string());
@@ -177,14 +180,14 @@ fn binding_too_large(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     if room >= 24 * u64::from(most) * u64::from(most) {
         return Err(EarlyEnd::Skipped(format!("this adapter binds {room} bytes, enough for any picture up to {most} x {most} pixels")));
     }
-    context.renderer.set_scene(&scene)?;
-    match context.renderer.draw(&pixel_view(most, most), &stack, &AccuracyRequest::default()) {
+    context.renderer.set_scene(&scene).block_on()?;
+    match context.renderer.draw(&pixel_view(most, most), &stack, &AccuracyRequest::default()).block_on() {
         Err(error @ RenderError::TooLarge { .. }) => {
             let text = error.to_string();
             check!(error.is_unsupported() && text.contains(&room.to_string()), "{text}");
             context.refused(text);
             // The renderer still works.
-            context.renderer.set_scene(&scene)?;
+            context.renderer.set_scene(&scene).block_on()?;
             context.exact(&scene, &pixel_view(64, 36), &stack, &AccuracyRequest::default(), "the next picture")?;
             check!(
                 matches!(context.renderer.key().and_then(|key| key.framebuffer.layers), Some(Layers::Xray { .. })),
@@ -217,7 +220,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 
 fn device_lost(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let name = context.renderer.gpu().summary.name.clone();
-    let gpu = Gpu::open(&AdapterChoice::Named(name)).map_err(|error| EarlyEnd::Failed(format!("a second device: {error}")))?;
+    let gpu = Gpu::open(&AdapterChoice::Named(name)).block_on().map_err(|error| EarlyEnd::Failed(format!("a second device: {error}")))?;
     let hall = context.scene("near")?;
     let (view, stack, accuracy) = (context.view(&hall, [96, 64]), stack(&["lambert"]), AccuracyRequest::default());
     let mut renderer = Renderer::new(gpu.clone());
@@ -226,14 +229,14 @@ fn device_lost(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let began = Instant::now();
     let error = loop {
         context.step(&hall, &view, "a lost device")?;
-        match renderer.draw(&view, &stack, &accuracy).and_then(|()| renderer.finish().map(|_| ())) {
+        match renderer.draw(&view, &stack, &accuracy).block_on().and_then(|()| renderer.finish().block_on().map(|_| ())) {
             Err(error) if error.is_lost() => break error,
             _ if began.elapsed() > PATIENCE => return Err(EarlyEnd::Failed("the renderer never reports that its device is lost".into())),
             _ => std::thread::sleep(Duration::from_millis(5)),
         }
     };
     check!(gpu.is_lost(), "the device does not know that it is lost");
-    let again = renderer.capture(&view, &stack, &accuracy);
+    let again = renderer.capture(&view, &stack, &accuracy).block_on();
     check!(again.is_err_and(|error| error.is_lost()), "a lost device draws");
     drop(renderer);
     // Scene, view and stack do not belong to the device: another one draws the same picture, bit by bit.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
+use pollster::FutureExt as _;
 
 use super::{
     case::{Case, Expectation},
@@ -174,7 +175,7 @@ fn workgroups_indirect(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let triangles: Vec<_> = (0..65_600).map(|i| (needle(i), 0.25 + 1e-6 * i as f32)).collect();
     let scene = scene_of_meshes(&[triangle_soup_in_units(&triangles)]);
     context.renderer.set_tuning(card);
-    context.renderer.set_scene(&scene)?;
+    context.renderer.set_scene(&scene).block_on()?;
     context.renderer.set_capacities(Capacities { large: 65_600, tiles: 65_600, ..Capacities::default() });
     context.exact(&scene, &pixel_view(64, 64), &stack(&[]), &option, "65,600 large triangles")?;
     let foreseen = Capacities { clip: 1, clipped_triangles: 1, medium: 1, large: 65_600, tiles: 65_600 };
@@ -252,10 +253,10 @@ fn queues(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                 let what = format!("{queue} on {}: demand {demand}, capacity {capacity}", option.name());
                 let mut capacities = capacities;
                 *field(&mut capacities) = capacity;
-                context.renderer.set_scene(&scene)?;
+                context.renderer.set_scene(&scene).block_on()?;
                 context.renderer.set_capacities(capacities);
-                context.renderer.draw(&view, &stack(&[]), &pinned(option))?;
-                let report = context.renderer.finish()?;
+                context.renderer.draw(&view, &stack(&[]), &pinned(option)).block_on()?;
+                let report = context.renderer.finish().block_on()?;
                 equal(&report.counters.overflow, &(demand - capacity), &format!("{what}: entries lost"))?;
                 equal(&report.redraw, &(capacity < demand), &format!("{what}: drawn again"))?;
                 context.exact(&scene, &view, &stack(&[]), &pinned(option), &what)?;

@@ -105,7 +105,7 @@ fn model(skin: &Skin) -> Result<crate::scene::Scene, gltf::LoadError> {
         ],
         "buffers": [{ "uri": "skin.bin", "byteLength": 184 }]
     });
-    gltf::parse(document.to_string().as_bytes(), &mut |_, _| Ok(bytes.clone()))
+    gltf::load(document.to_string().as_bytes(), &mut |_, _| Ok(bytes.clone()))
 }
 
 fn unusual_skins(context: &mut CaseContext) -> Result<(), EarlyEnd> {

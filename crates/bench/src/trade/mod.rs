@@ -5,6 +5,8 @@ mod watch;
 
 use std::{collections::HashSet, sync::Arc};
 
+use pollster::FutureExt as _;
+
 pub use self::{
     error::{Judged, Reference, TradeError},
     watch::{Phase, Step, Watch},
@@ -152,11 +154,12 @@ pub fn trade(
         }
     }
     if is_wanted {
-        warm_up::warm_up(gpu, warm_up::FROM_IDLE, entries.len(), |at, frames| {
+        warm_up::warm_up(gpu, warm_up::FROM_IDLE, entries.len(), async |at, frames| {
             entries[at].sample(preset, Kept::Alone, frames)?;
             is_wanted = watch.is_wanted();
             Ok(is_wanted)
-        })?;
+        })
+        .block_on()?;
     }
     let steps = entries.len() * options.samples;
     for round in 0..options.samples {
@@ -247,10 +250,10 @@ impl Entry {
         reference: &Reference,
     ) -> Result<Option<Self>, RenderError> {
         let mut renderer = Renderer::new(gpu.clone());
-        renderer.set_scene(scene)?;
+        renderer.set_scene(scene).block_on()?;
         let accuracy = AccuracyRequest { pins, ..preset.accuracy };
-        let first = renderer.capture(&view, &preset.stack, &accuracy)?;
-        let second = renderer.capture(&view, &preset.stack, &accuracy)?;
+        let first = renderer.capture(&view, &preset.stack, &accuracy).block_on()?;
+        let second = renderer.capture(&view, &preset.stack, &accuracy).block_on()?;
         let bytes = renderer.explain().buffers.iter().map(|buffer| buffer.bytes).sum();
         let Some(judged) = (reference.judge)(&view, &preset.stack, &first) else { return Ok(None) };
         let error = TradeError::of(&first, &second.frame, &judged, reference);
@@ -263,9 +266,9 @@ impl Entry {
     fn sample(&mut self, preset: &Preset, kept: Kept, frames: usize) -> Result<(), RenderError> {
         let accuracy = AccuracyRequest { pins: self.pins, ..preset.accuracy };
         for _ in 0..frames {
-            self.renderer.draw_timed(&self.view, &preset.stack, &accuracy, Detail::Whole, Wait::Simulation)?;
+            self.renderer.draw_timed(&self.view, &preset.stack, &accuracy, Detail::Whole, Wait::Simulation).block_on()?;
         }
-        let report = self.renderer.finish()?;
+        let report = self.renderer.finish().block_on()?;
         match report.gpu_ms {
             Some(ms) if kept == Kept::Alone => self.alone.push(ms + report.cpu_ms.unwrap_or(0.0)),
             None if kept == Kept::Alone => {}

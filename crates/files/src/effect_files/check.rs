@@ -48,7 +48,7 @@ pub struct Parts<'a> {
 /// # Errors
 /// What the linker or naga refuses, at its line of the file.
 pub fn check(parts: Parts<'_>, effect: &Arc<Effect>) -> Result<Checked, EffectError> {
-    let linked = link::link_effect(&Library::from_env(), effect).map_err(|error| of_link(parts, &error))?;
+    let linked = link::link_effect(&Library::of_process(), effect).map_err(|error| of_link(parts, &error))?;
     let module = naga::front::wgsl::parse_str(&linked.text).map_err(|error| {
         let spans: Vec<naga::Span> = error.labels().map(|(span, _)| span).collect();
         let label = error.labels().next().map_or("", |(_, label)| label);

@@ -158,7 +158,7 @@ impl PrecisionProbe {
     fn of(effect: &Arc<Effect>) -> Result<Arc<Self>, EvaluatedError> {
         static KNOWN: Probes<PrecisionProbe> = Mutex::new(Vec::new());
         kept(&KNOWN, effect, || {
-            let single = evaluated_in(&Library::from_env(), effect, Precision::Single)?;
+            let single = evaluated_in(&Library::of_process(), effect, Precision::Single)?;
             let errors = Arc::new(Mutex::new(Errors::default()));
             let mut hooks = effect.hooks.clone();
             if let (Some(exact), Some(single)) = (hooks.surface.clone(), single.surface) {

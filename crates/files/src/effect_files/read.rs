@@ -92,7 +92,7 @@ pub fn read(file: &str, stem: &str, written: &str) -> Result<Arc<Effect>, Effect
     static READ: Mutex<BTreeMap<(String, String), Arc<Effect>>> = Mutex::new(BTreeMap::new());
     let known = || READ.lock().unwrap_or_else(PoisonError::into_inner);
     // Files that use a folder of shaders are checked against that folder as it is now.
-    let is_kept = matches!(Library::from_env(), Library::Embedded);
+    let is_kept = matches!(Library::of_process(), Library::Embedded);
     let key = (stem.to_owned(), written.to_owned());
     if let Some(effect) = known().get(&key).filter(|_| is_kept) {
         return Ok(effect.clone());

@@ -124,7 +124,7 @@ impl SoundnessProbe {
         static KNOWN: Probes<SoundnessProbe> = Mutex::new(Vec::new());
         kept(&KNOWN, effect, || {
             // The kernels are f32, and the text says what they do. Built-in effects have an f64 function that is not their text.
-            let single = if effect.is_of_file() { Some(evaluated_in(&Library::from_env(), effect, Precision::Single)?) } else { None };
+            let single = if effect.is_of_file() { Some(evaluated_in(&Library::of_process(), effect, Precision::Single)?) } else { None };
             let (single_surface, single_image) = single.map_or((None, None), |hooks| (hooks.surface, hooks.image));
             let recorder = Arc::new(Recorder::default());
             let mut hooks = effect.hooks.clone();

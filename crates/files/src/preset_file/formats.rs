@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use crate::scene::{
-    Scene,
-    gltf::{self, LoadError},
+use crate::{
+    host::model,
+    scene::{Scene, gltf::LoadError},
 };
 
 /// A format of model files.
@@ -18,8 +18,8 @@ pub struct ModelFormat {
 
 /// Every format that is read. `tests/house/registry.rs` compares the help texts that name them.
 pub const MODEL_FORMATS: &[ModelFormat] = &[
-    ModelFormat { extension: "glb", beside: &[], load: gltf::load },
-    ModelFormat { extension: "gltf", beside: &["bin", "png", "jpg", "jpeg", "ktx2"], load: gltf::load },
+    ModelFormat { extension: "glb", beside: &[], load: model::load },
+    ModelFormat { extension: "gltf", beside: &["bin", "png", "jpg", "jpeg", "ktx2"], load: model::load },
 ];
 
 impl ModelFormat {

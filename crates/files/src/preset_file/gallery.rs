@@ -102,7 +102,7 @@ pub fn user_effects_folder() -> Option<PathBuf> {
 /// Every preset, sorted by id.
 pub fn gallery(folders: &Folders) -> Vec<GalleryEntry> {
     let mut entries: Vec<GalleryEntry> = Vec::new();
-    let on_disk = places(folders).into_iter().flat_map(|(origin, folder)| folder_entries(origin, &folder, &folders.effects));
+    let on_disk = preset_folders(folders).into_iter().flat_map(|(origin, folder)| folder_entries(origin, &folder, &folders.effects));
     let built_in = BUILTIN_DIR.files().filter(|file| has_extension(file.path(), "toml")).map(builtin_entry);
     for entry in on_disk.chain(built_in) {
         match entries.iter_mut().find(|winner| winner.id == entry.id) {
@@ -130,10 +130,10 @@ fn builtin_entry(file: &File<'_>) -> GalleryEntry {
 }
 
 /// The folders of presets on disk, in order of precedence.
-fn places(folders: &Folders) -> Vec<(Origin, PathBuf)> {
+fn preset_folders(folders: &Folders) -> Vec<(Origin, PathBuf)> {
     let beside = std::env::current_exe().ok().and_then(|exe| Some(exe.parent()?.join("presets")));
-    let places = [(Origin::Chosen, folders.presets.clone()), (Origin::Beside, beside), (Origin::User, folders.user_presets())];
-    places.into_iter().filter_map(|(origin, folder)| Some((origin, folder?))).collect()
+    let folders = [(Origin::Chosen, folders.presets.clone()), (Origin::Beside, beside), (Origin::User, folders.user_presets())];
+    folders.into_iter().filter_map(|(origin, folder)| Some((origin, folder?))).collect()
 }
 
 /// The folder of the user's presets: `rasterlab/presets` in the configuration folder of the system.
@@ -211,7 +211,7 @@ fn by_id(id: &str, folders: &Folders) -> Option<Result<PresetFile, PresetError>>
         return None;
     }
     let file = format!("{id}.toml");
-    let on_disk = places(folders).into_iter().map(|(_, folder)| folder.join(&file)).find(|path| path.is_file());
+    let on_disk = preset_folders(folders).into_iter().map(|(_, folder)| folder.join(&file)).find(|path| path.is_file());
     if let Some(path) = on_disk {
         return Some(load_with(&path, &folders.effects));
     }

@@ -1,10 +1,24 @@
-//! The WGSL files: embedded in the program, or read from a folder while one edits them.
+//! The WGSL files: embedded in the program, or given from outside while one edits them.
 
-use std::{borrow::Cow, collections::BTreeSet, fs::OpenOptions, io::Write, ops::Range, path::PathBuf, sync::OnceLock};
+use std::{
+    borrow::Cow,
+    collections::BTreeSet,
+    ops::Range,
+    sync::{Arc, OnceLock},
+};
 
 use include_dir::{Dir, include_dir};
 
 static EMBEDDED: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../shaders");
+
+/// WGSL files outside of the program.
+pub trait ShaderFiles: Send + Sync {
+    /// Text of `name` (a path below `shaders`, without `.wgsl`), if there is such a file.
+    fn text(&self, name: &str) -> Option<String>;
+
+    /// Is told the names of the parts of every module that was linked.
+    fn linked(&self, parts: &mut dyn Iterator<Item = &str>);
+}
 
 /// Name and range of every section of a file's text. The first is the head, whose name is empty; a line `//@ variant NAME` or `//@ step NAME`
 /// ends it and begins the section of that name, which reaches to the next such line or to the end.
@@ -22,28 +36,26 @@ pub fn sections(text: &str) -> Vec<(&str, Range<usize>)> {
 }
 
 /// Where shader text comes from.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Default)]
 pub enum Library {
     /// The files as they were when the program was built.
     #[default]
     Embedded,
-    /// A `shaders` folder on disk.
-    Folder(PathBuf),
+    /// Files elsewhere, which may change while the program runs.
+    Outside(Arc<dyn ShaderFiles>),
 }
 
-/// The folder of `--shaders`.
-static CHOSEN: OnceLock<PathBuf> = OnceLock::new();
+static CHOSEN: OnceLock<Library> = OnceLock::new();
 
 impl Library {
-    /// The folder of `--shaders`, or else of `RASTERLAB_SHADERS`, for people who edit shaders; without either the embedded files.
-    pub fn from_env() -> Self {
-        let folder = CHOSEN.get().cloned().or_else(|| std::env::var_os("RASTERLAB_SHADERS").map(PathBuf::from));
-        folder.map_or(Self::Embedded, Self::Folder)
+    /// The library that was [chosen](Self::choose) for this process, else the embedded files.
+    pub fn of_process() -> Self {
+        CHOSEN.get().cloned().unwrap_or_default()
     }
 
-    /// Makes [`Library::from_env`] return this folder from now on. Only the first call counts.
-    pub fn choose(folder: PathBuf) {
-        CHOSEN.get_or_init(|| folder);
+    /// Makes it the library of this process. Only the first call counts.
+    pub fn choose(self) {
+        CHOSEN.get_or_init(|| self);
     }
 
     /// Name and text of every embedded file.
@@ -67,13 +79,10 @@ impl Library {
         names.into_iter().filter_map(|name| self.text(&name))
     }
 
-    /// Adds the names of parts that were linked to the file that `RASTERLAB_PARTS` names: `scripts/mutants.py` asks which parts a command uses.
-    pub(super) fn record<'a>(&self, parts: impl Iterator<Item = &'a str>) {
-        if let (Self::Folder(_), Some(path)) = (self, std::env::var_os("RASTERLAB_PARTS")) {
-            let names: String = parts.map(|name| format!("{name}\n")).collect();
-            let file = OpenOptions::new().create(true).append(true).open(path);
-            // The script takes a missing file for a command that uses every part.
-            let _ = file.and_then(|mut file| file.write_all(names.as_bytes()));
+    /// Tells files outside the names of parts that were linked.
+    pub(super) fn record<'a>(&self, mut parts: impl Iterator<Item = &'a str>) {
+        if let Self::Outside(files) = self {
+            files.linked(&mut parts);
         }
     }
 
@@ -81,7 +90,7 @@ impl Library {
     pub fn text(&self, name: &str) -> Option<Cow<'static, str>> {
         match self {
             Self::Embedded => EMBEDDED.get_file(format!("{name}.wgsl"))?.contents_utf8().map(Cow::Borrowed),
-            Self::Folder(folder) => std::fs::read_to_string(folder.join(format!("{name}.wgsl"))).ok().map(Cow::Owned),
+            Self::Outside(files) => files.text(name).map(Cow::Owned),
         }
     }
 }

@@ -121,7 +121,7 @@ static EMBEDDED: LazyLock<HashMap<String, Arc<File>>> =
 fn file(library: &Library, name: &str) -> Option<Arc<File>> {
     match library {
         Library::Embedded => EMBEDDED.get(name).cloned(),
-        Library::Folder(_) => library.text(name).map(|text| file_of(&text)),
+        Library::Outside(_) => library.text(name).map(|text| file_of(&text)),
     }
 }
 

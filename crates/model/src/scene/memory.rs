@@ -3,17 +3,11 @@
 use std::{
     fmt,
     str::FromStr,
-    sync::{
-        OnceLock,
-        atomic::{AtomicU64, Ordering},
-    },
+    sync::atomic::{AtomicU64, Ordering},
 };
 
 const MIB: u64 = 1 << 20;
 const GIB: u64 = 1 << 30;
-
-/// Memory of a machine that does not tell how much it has.
-const UNKNOWN_MACHINE: u64 = 8 * GIB;
 
 /// The budget that was chosen for the process; 0 until one is.
 static CHOSEN: AtomicU64 = AtomicU64::new(0);
@@ -31,13 +25,9 @@ impl MemoryBudget {
         Self(bytes).max(Self::LEAST)
     }
 
-    /// The budget of this process: the one that was [chosen](Self::choose), else half of the machine's memory.
+    /// The budget of this process: the one that was [chosen](Self::choose), else [`Self::LEAST`].
     pub fn of_process() -> Self {
-        static DEFAULT: OnceLock<MemoryBudget> = OnceLock::new();
-        match CHOSEN.load(Ordering::Relaxed) {
-            0 => *DEFAULT.get_or_init(|| Self::of(machine_bytes().unwrap_or(UNKNOWN_MACHINE) / 2)),
-            bytes => Self(bytes),
-        }
+        Self::of(CHOSEN.load(Ordering::Relaxed))
     }
 
     /// Makes it the budget of this process.
@@ -92,21 +82,6 @@ pub fn read_size(text: &str) -> Result<u64, String> {
     }
 }
 
-/// The memory of the machine, or of the group of processes that this one is confined to, bytes. None where the system does not tell.
-fn machine_bytes() -> Option<u64> {
-    let read = |path: &str| std::fs::read_to_string(path).ok();
-    let installed = installed_bytes(&read("/proc/meminfo")?)?;
-    let confined = ["/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"];
-    let confined = confined.iter().find_map(|path| read(path)?.trim().parse::<u64>().ok());
-    Some(confined.map_or(installed, |bytes| bytes.min(installed)))
-}
-
-/// The total of Linux's `/proc/meminfo`.
-fn installed_bytes(meminfo: &str) -> Option<u64> {
-    let total = meminfo.lines().find_map(|line| line.strip_prefix("MemTotal:"))?;
-    total.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -125,9 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn a_machine_with_little_memory_still_has_the_least_budget() {
-        assert_eq!(installed_bytes("MemFree: 1 kB\nMemTotal:       24684084 kB\n"), Some(24_684_084 * 1024));
-        assert_eq!(installed_bytes("MemFree: 1 kB"), None);
+    fn no_budget_is_below_the_least() {
         assert_eq!(MemoryBudget::of(0), MemoryBudget::LEAST);
         assert_eq!(MemoryBudget::LEAST.decoded(), 512 * MIB);
         assert!(MemoryBudget::of_process() >= MemoryBudget::LEAST);

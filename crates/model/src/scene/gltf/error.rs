@@ -10,17 +10,18 @@ use crate::scene::parts::MAX_NAME_CHARS;
 pub struct LoadError(pub String);
 
 impl LoadError {
-    pub(super) fn new(reason: impl Display) -> Self {
+    pub fn new(reason: impl Display) -> Self {
         Self(reason.to_string())
     }
 
     /// Prepends the place of the error.
-    pub(super) fn within(self, context: impl Display) -> Self {
+    pub fn within(self, context: impl Display) -> Self {
         Self(format!("{context}: {}", self.0))
     }
 }
 
-/// Reads a file next to the model, given its relative path and the largest size in bytes.
+/// Reads a file beside the model, given its path and the largest size in bytes. The path is relative and has no `..`, so that it stays in the
+/// model's folder unless a link there leads out.
 pub type ReadFile<'a> = dyn FnMut(&Path, u64) -> Result<Vec<u8>, LoadError> + 'a;
 
 /// A name from a file, made safe for messages: quoted, escaped and at most 60 characters.

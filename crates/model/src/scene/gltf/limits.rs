@@ -95,7 +95,7 @@ impl Limits {
     }
 
     /// `what` exceeds `most`, a limit of these.
-    pub(super) fn exceeded(&self, what: impl std::fmt::Display, most: u64) -> LoadError {
+    pub fn exceeded(&self, what: impl std::fmt::Display, most: u64) -> LoadError {
         LoadError::new(match self.remedy {
             Remedy::Budget(budget) => format!("{what}; allowed: at most {most} {}", budget.remedy()),
             Remedy::Growth(files) => format!("{what}; allowed: at most {most}, because its files have only {files} bytes"),

@@ -1,9 +1,6 @@
-//! Loads a model: reads its files, follows its parts in order, and assembles the scene.
+//! Loads a model: follows its parts in order and assembles the scene.
 
-use std::{
-    panic::{AssertUnwindSafe, catch_unwind, resume_unwind},
-    path::Path,
-};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
 use gltf::json;
 
@@ -19,64 +16,35 @@ use super::{
     nodes::Tree,
     notes::Notes,
     skin,
-    source::{Bytes, ModelFile, read_regular},
+    source::{Bytes, Source, reserve},
 };
 use crate::{
     scene::{memory::MemoryBudget, model::Scene, pose, rig::Rig},
-    work::{checkpoint, is_cancellation},
+    work::is_cancellation,
 };
 
-/// Loads a `.gltf` or `.glb` file within the memory budget of the process. Only files in its folder and below are read.
+/// Loads a model from memory, within the least memory budget. `read` supplies the files that it refers to.
 ///
-/// Within [`Work`](crate::work::Work) it counts its bytes, and unwinds where that was canceled.
-///
-/// # Errors
-/// If a file cannot be read, is malformed, or exceeds [`limits`](super::limits); the sentence begins with the file name.
-pub fn load(path: &Path) -> Result<Scene, LoadError> {
-    load_within(path, MemoryBudget::of_process())
-}
-
-/// [`load`] within another memory budget.
-///
-/// # Errors
-/// As [`load`].
-pub fn load_within(path: &Path, budget: MemoryBudget) -> Result<Scene, LoadError> {
-    let file = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
-    let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    let open = || {
-        let limits = Limits::of_files(budget);
-        let read = &mut |beside: &Path, most| read_beside(path, beside, most, &limits);
-        match ModelFile::open(path, limits.file_bytes, &limits)? {
-            ModelFile::Whole(bytes) => parse_within(&bytes, budget, read),
-            ModelFile::Glb { json, binary, size } => {
-                let scene = caught(|| read_model(&json, Some(Bytes::File(&binary)), (size, budget), read))?;
-                checkpoint().advance(binary.unread());
-                Ok(scene)
-            }
-        }
-    };
-    match open() {
-        Ok(scene) => Ok(Scene { name, ..scene }),
-        Err(error) => Err(error.within(file)),
-    }
-}
-
-/// Loads a model from memory, within the least memory budget. `read` supplies the files that it refers to, by relative paths without `..`.
+/// Within [`Work`](crate::work::Work) it unwinds where that was canceled.
 ///
 /// # Errors
 /// If the model is malformed, exceeds [`limits`](super::limits), or `read` fails.
-pub fn parse(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
-    parse_within(bytes, MemoryBudget::LEAST, read)
+pub fn load(bytes: &[u8], read: &mut ReadFile) -> Result<Scene, LoadError> {
+    load_within(&bytes, MemoryBudget::LEAST, read)
 }
 
-/// [`parse`] within another memory budget.
+/// Loads a model from any source, within a memory budget. `read` supplies the files that it refers to.
 ///
 /// # Errors
-/// As [`parse`].
-pub fn parse_within(bytes: &[u8], budget: MemoryBudget, read: &mut ReadFile) -> Result<Scene, LoadError> {
+/// As [`load`], or if the source cannot be read.
+pub fn load_within(model: &dyn Source, budget: MemoryBudget, read: &mut ReadFile) -> Result<Scene, LoadError> {
+    let limits = Limits::of_files(budget);
+    if model.size() > limits.file_bytes {
+        return Err(limits.exceeded(format_args!("it has {} bytes", model.size()), limits.file_bytes));
+    }
     caught(|| {
-        let (json, binary) = split(bytes)?;
-        read_model(json, binary.map(|binary| Bytes::Memory(binary.into())), (bytes.len() as u64, budget), read)
+        let (json, binary) = split(model)?;
+        read_model(json.all()?, binary, (model.size(), budget), read)
     })
 }
 
@@ -88,45 +56,47 @@ fn caught(work: impl FnOnce() -> Result<Scene, LoadError>) -> Result<Scene, Load
     })
 }
 
-/// Reads `beside`, a relative path without `..`, from the folder of `model`. Symbolic links must not lead out of the folder.
-fn read_beside(model: &Path, beside: &Path, most: u64, limits: &Limits) -> Result<Vec<u8>, LoadError> {
-    let folder = model.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let failed = |error: std::io::Error| LoadError::new(format!("cannot read the file: {error}"));
-    let folder = folder.canonicalize().map_err(failed)?;
-    let file = folder.join(beside).canonicalize().map_err(failed)?;
-    if !file.starts_with(&folder) {
-        return Err(LoadError::new("it lies outside the model's folder; copy it there"));
-    }
-    read_regular(&file, most, limits)
-}
-
 /// The JSON and, of a GLB, the binary chunk.
-fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), LoadError> {
-    if !bytes.starts_with(b"glTF") {
-        return Ok((bytes, None));
+fn split<'a>(model: &'a dyn Source) -> Result<(Bytes<'a>, Option<Bytes<'a>>), LoadError> {
+    let size = model.size();
+    let mut head = Vec::new();
+    model.append_to(&mut head, 0..size.min(12))?;
+    if !head.starts_with(b"glTF") {
+        if model.in_memory().is_some() {
+            return Ok((Bytes::of(model, 0..size), None));
+        }
+        let read = head.len() as u64;
+        reserve(&mut head, size - read)?;
+        model.append_to(&mut head, read..size)?;
+        return Ok((Bytes::Memory(head.into()), None));
     }
-    let word = |at: usize| bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
-    let (Some(version), Some(length)) = (word(4), word(8)) else {
-        return Err(LoadError::new(format!("the GLB header has {} of 12 bytes; the file is truncated", bytes.len())));
-    };
+    let word = |bytes: &[u8]| u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+    if size < 12 {
+        return Err(LoadError::new(format!("the GLB header has {size} of 12 bytes; the file is truncated")));
+    }
+    let (version, length) = (word(&head[4..]), u64::from(word(&head[8..])));
     if version != 2 {
         return Err(LoadError::new(format!("GLB version {version} is not supported; export as version 2")));
     }
-    if (length as usize) < 12 || length as usize > bytes.len() {
-        return Err(LoadError::new(format!("the GLB header states {length} bytes, but the file has {}", bytes.len())));
+    if length < 12 || length > size {
+        return Err(LoadError::new(format!("the GLB header states {length} bytes, but the file has {size}")));
     }
-    let mut rest = &bytes[12..length as usize];
-    let mut chunk = |kind: &[u8; 4]| -> Result<Option<&[u8]>, LoadError> {
-        let Some((head, body)) = rest.split_at_checked(8) else { return Ok(None) };
-        let length = u32::from_le_bytes([head[0], head[1], head[2], head[3]]) as usize;
-        if &head[4..8] != kind {
+    let mut at = 12;
+    let mut chunk = |kind: &[u8; 4]| -> Result<Option<Bytes<'a>>, LoadError> {
+        if length - at < 8 {
             return Ok(None);
         }
-        let (body, after) = body
-            .split_at_checked(length)
-            .ok_or_else(|| LoadError::new(format!("a GLB chunk states {length} bytes, but only {} follow", body.len())))?;
-        rest = after;
-        Ok(Some(body))
+        let mut head = Vec::new();
+        model.append_to(&mut head, at..at + 8)?;
+        if &head[4..] != kind {
+            return Ok(None);
+        }
+        let (start, bytes) = (at + 8, u64::from(word(&head)));
+        if bytes > length - start {
+            return Err(LoadError::new(format!("a GLB chunk states {bytes} bytes, but only {} follow", length - start)));
+        }
+        at = start + bytes;
+        Ok(Some(Bytes::of(model, start..at)))
     };
     let json = chunk(b"JSON")?.ok_or_else(|| LoadError::new("the first GLB chunk is not JSON"))?;
     let binary = chunk(b"BIN\0")?;

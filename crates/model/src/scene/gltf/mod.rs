@@ -30,4 +30,5 @@ mod source;
 mod uri;
 
 pub use error::{LoadError, ReadFile};
-pub use load::{load, load_within, parse, parse_within};
+pub use load::{load, load_within};
+pub use source::{PART_BYTES, Source, reserve};
