@@ -178,5 +178,5 @@ fn nothing_is_unsafe_but_trusting_our_own_shaders_and_giving_memory_back() {
     assert!(manifest.contains("unsafe_code = \"deny\""), "Cargo.toml does not deny unsafe code");
     let all = all_sources();
     let places: Vec<&str> = all.iter().filter(|source| source.code.contains("unsafe {")).map(|source| source.name.as_str()).collect();
-    assert_eq!(places, ["crates/gpu/src/pipelines.rs", "src/app/memory.rs"]);
+    assert_eq!(places, ["crates/gpu/src/pipelines.rs", "src/app/jobs/memory.rs"]);
 }
