@@ -1,51 +1,16 @@
-//! Background work: threads that yield the processor to the window, and pools of their own for the oracle's pictures.
+//! Background work: pools of their own for the oracle's pictures, and threads that leave the processor to all others.
 //!
 //! The window's thread uses the common pool for moments (a pick, the image of an overlay). A picture of the oracle there would keep it
 //! waiting, for seconds with a large one.
 
 use rayon::ThreadPoolBuilder;
 
-/// Who goes first when the processor is short, most urgent first. The window itself comes before all of them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Urgency {
-    /// The picture of the window, where the processor draws it.
-    Picture,
-    /// What nobody looks at yet: thumbnails, verdicts, films.
-    Later,
-}
-
-impl Urgency {
-    /// The nice value of Unix.
-    const fn nice(self) -> i32 {
-        match self {
-            Self::Picture => 4,
-            Self::Later => 12,
-        }
-    }
-}
-
-/// From now on this thread, and every thread that it starts, leaves the processor to more urgent ones. Drivers start threads, too: a
-/// device that is opened afterwards is as urgent. On Linux alone; other systems with a CPU adapter are rare.
-pub fn yield_processor(urgency: Urgency) {
+/// From now on this thread, and every thread that it starts, leaves the processor to all others: for work that may take any time. Drivers
+/// start threads, too: a device that is opened afterwards is as patient. On Linux alone; other systems with a CPU adapter are rare.
+pub fn yield_processor() {
+    // Refused only by a sandbox; then it is as urgent as before.
     #[cfg(target_os = "linux")]
-    {
-        let nice = rustix::process::getpriority_process(None).unwrap_or_default();
-        // Refused only by a sandbox; then everything is as urgent as before.
-        let _ = rustix::process::setpriority_process(None, nice.max(urgency.nice()));
-    }
-    #[cfg(not(target_os = "linux"))]
-    let _ = urgency.nice();
-}
-
-/// The result of `work`, from a thread that is as urgent as `urgency` says; so are the threads that it starts.
-pub fn started_as<T: Send>(urgency: Urgency, work: impl FnOnce() -> T + Send) -> T {
-    std::thread::scope(|scope| {
-        let started = scope.spawn(|| {
-            yield_processor(urgency);
-            work()
-        });
-        started.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-    })
+    let _ = rustix::process::nice(19);
 }
 
 /// Runs `work` in a pool of its own and waits for it; never on the thread of the window.
@@ -53,17 +18,7 @@ pub fn started_as<T: Send>(urgency: Urgency, work: impl FnOnce() -> T + Send) ->
 /// In a pool that all work shares, a thread that waits for the parts of one picture takes up other work meanwhile; that work may wait for a
 /// lock which the same thread holds.
 pub fn compute<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    in_pool(Some(Urgency::Later), work)
-}
-
-/// As [`compute`], for what the user waits for: it does not yield to the window.
-pub fn compute_urgently<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    in_pool(None, work)
-}
-
-fn in_pool<T: Send>(urgency: Option<Urgency>, work: impl FnOnce() -> T + Send) -> T {
-    let builder = ThreadPoolBuilder::new().thread_name(|i| format!("background {i}"));
-    match builder.start_handler(move |_| urgency.into_iter().for_each(yield_processor)).build() {
+    match ThreadPoolBuilder::new().thread_name(|i| format!("background {i}")).build() {
         Ok(pool) => pool.install(work),
         Err(_) => work(),
     }
@@ -125,16 +80,5 @@ mod tests {
             ended.recv_timeout(Duration::from_secs(60)).expect("the work ends");
         }
         assert_eq!(*lock.lock().expect("a lock"), 8 * 20 * 500);
-    }
-
-    #[cfg(target_os = "linux")]
-    #[test]
-    fn background_threads_and_those_that_they_start_yield() {
-        let nice = || rustix::process::getpriority_process(None).expect("a nice value");
-        let own = nice();
-        let [picture, later] =
-            [Urgency::Picture, Urgency::Later].map(|urgency| started_as(urgency, || std::thread::scope(|scope| scope.spawn(nice).join())));
-        assert_eq!([picture.expect("it ends"), later.expect("it ends")], [own.max(4), own.max(12)]);
-        assert_eq!((compute(nice), nice()), (own.max(12), own), "the thread that asks stays as it is");
     }
 }

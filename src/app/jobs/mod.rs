@@ -21,10 +21,7 @@ use std::{
 use eframe::egui;
 use pollster::FutureExt as _;
 
-use self::{
-    background::{Urgency, yield_processor},
-    computing::{Computing, Count},
-};
+use self::computing::{Computing, Count};
 use crate::{
     app::{
         files::{
@@ -126,14 +123,6 @@ impl Jobs {
         self.computing.is_any()
     }
 
-    /// Starts work that keeps the processor busy, and leaves it to the window.
-    fn spawn(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
-        self.spawn_urgent(name, move || {
-            yield_processor(Urgency::Later);
-            work()
-        });
-    }
-
     /// Draws or judges pictures with the oracle.
     fn spawn_oracle(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
         self.spawn(name, || background::compute(work));
@@ -144,8 +133,8 @@ impl Jobs {
         self.spawn(name, || giving_back(|| background::compute(work)));
     }
 
-    /// Starts work that keeps the processor busy, as urgent as the window.
-    fn spawn_urgent(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
+    /// Starts work that keeps the processor busy.
+    fn spawn(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
         let computing = self.busy();
         self.spawn_idle(name, move || {
             let _computing = computing;
@@ -167,10 +156,10 @@ impl Jobs {
 
     /// Loads a scene as `work`.
     pub fn load_scene(&self, key: SceneKey, work: Arc<Work>) {
-        self.spawn_urgent("scene", move || {
+        self.spawn("scene", move || {
             let preset = Preset { scene: key.source.clone(), room: key.room, ground: key.ground, ..Preset::default() };
             let load = || preset_file::load_scene(&preset, None).map_err(|e| e.to_string());
-            let scene = giving_back(|| caught("loading the scene", || background::compute_urgently(|| work.run(load)).transpose()));
+            let scene = giving_back(|| caught("loading the scene", || background::compute(|| work.run(load)).transpose()));
             match scene.transpose() {
                 Some(scene) => Done::Scene(key, scene),
                 None => Done::Canceled,
@@ -279,7 +268,7 @@ impl Jobs {
     pub fn measure(&self, adapter: String, scene: Arc<Scene>, request: Request, progress: Arc<Progress>) {
         let work = move || measure::measure(adapter, &scene, &request, &progress);
         // What it measures is time, so it yields to nothing.
-        self.spawn_urgent("trade", || giving_back(|| Done::Trade(caught("measuring the trade", work))));
+        self.spawn("trade", || giving_back(|| Done::Trade(caught("measuring the trade", work))));
     }
 
     /// Writes the favorites with this function.
@@ -300,7 +289,6 @@ impl Jobs {
         let (sender, ctx, computing) = (self.sender.clone(), self.ctx.clone(), self.busy());
         let work = move || {
             let _computing = computing;
-            yield_processor(Urgency::Later);
             let take = |of, picture| {
                 // The window may be closed by now; then the picture is dropped.
                 if sender.send(Done::Cell(of, picture)).is_ok() {

@@ -12,11 +12,7 @@ use web_time::Instant;
 
 use crate::{
     app::{
-        jobs::{
-            background::{Urgency, yield_processor},
-            computing::Computing,
-            memory,
-        },
+        jobs::{computing::Computing, memory},
         shell::{
             command::{Command, Commands},
             log::Level,
@@ -114,7 +110,6 @@ impl Extremes {
         let (seed, ctx, shared) = (self.seed, ctx.clone(), run.clone());
         let work = move || {
             let _computing = computing;
-            yield_processor(Urgency::Later);
             let result = catch_unwind(AssertUnwindSafe(|| shared.draw(&cases, adapter, seed, &ctx)))
                 .unwrap_or_else(|_| Err("the run failed because of a bug; see the terminal for details".into()));
             memory::give_back();

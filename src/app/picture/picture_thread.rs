@@ -27,12 +27,9 @@ use super::{
 };
 use crate::{
     accuracy::AccuracyOptions,
-    app::{
-        jobs::background::{Urgency, yield_processor},
-        shell::{
-            device::{Devices, Painter},
-            ending::EndingThreads,
-        },
+    app::shell::{
+        device::{Devices, Painter},
+        ending::EndingThreads,
     },
     gpu::{CompileWatch, Explanation, Gpu, RenderError, Renderer, Report, preparations::Preparation},
     plan::Plan,
@@ -263,9 +260,6 @@ pub fn wait_for_frame(renderer: &mut Renderer, is_wanted: impl Fn() -> bool) -> 
 
 impl Worker {
     fn run(mut self) {
-        if self.gpu.summary.software {
-            yield_processor(Urgency::Picture);
-        }
         while let Some(order) = self.wait_for_order() {
             let inputs = match &order {
                 Order::Draw(inputs, _) | Order::Measure(inputs) => inputs.clone(),

@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     app::{
-        jobs::background::{Urgency, yield_processor},
+        jobs::background::yield_processor,
         shell::{log::Level, state::State},
     },
     gpu::{CompileWatch, Gpu, RenderError, Renderer, device::AdapterChoice},
@@ -244,7 +244,7 @@ pub fn judge(state: &mut State, Verdict { of, findings }: &Verdict) {
 /// # Errors
 /// In a sentence for people.
 pub fn measure(gpu: &Arc<Gpu>, inputs: &Inputs, drawing: &mut TierDrawing, watch: &Arc<CompileWatch>) -> Result<Option<f64>, String> {
-    yield_processor(Urgency::Later); // Before a device is opened, whose threads are then as patient.
+    yield_processor(); // Before a device is opened, whose threads are then as patient.
     let gpu = match &drawing.gpu {
         Some(known) => known.clone(),
         None if gpu.summary.software => {

@@ -6,12 +6,9 @@ use anyhow::Context as _;
 use eframe::{egui_wgpu, wgpu};
 use pollster::FutureExt as _;
 
-use crate::{
-    app::jobs::background::{Urgency, started_as},
-    gpu::{
-        Gpu,
-        device::{self, AdapterChoice},
-    },
+use crate::gpu::{
+    Gpu,
+    device::{self, AdapterChoice},
 };
 
 /// How the window and its tests open their device: the chosen adapter, the features and limits that the kernels need, and
@@ -73,7 +70,7 @@ impl Devices {
     /// The devices for a window on `window`. Without a second device the first draws, too.
     pub fn of(window: Arc<Gpu>) -> Self {
         let choice = AdapterChoice::Named(window.summary.name.clone());
-        let opened = || started_as(Urgency::Picture, || Gpu::open(&choice).block_on().ok());
+        let opened = || Gpu::open(&choice).block_on().ok();
         let second = if window.summary.software { opened() } else { None };
         Self { picture: second.unwrap_or_else(|| window.clone()), window, painter: Painter::Kernels }
     }
