@@ -26,7 +26,7 @@ pub struct Pipeline {
 }
 
 /// Interfaces that are kept, with a text of some 30 KB each.
-const MOST_INTERFACES: usize = 1024;
+const MOST_INTERFACES: usize = 512;
 
 /// What tells one pipeline from another: its text and its constants.
 #[derive(Clone, PartialEq, Eq, Hash)]
