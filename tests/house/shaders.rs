@@ -332,7 +332,7 @@ fn an_undeclared_name_is_refused_with_file_line_and_name() {
     let folder = shader_parts::copied();
     let path = folder.path().join("variants/coverage.wgsl");
     let text = std::fs::read_to_string(&path).expect("a shader");
-    let line = text.lines().position(|line| line.contains("fn coverage_at")).expect("the function") + 2;
+    let line = text.lines().position(|line| line.contains("    return coverage.row + ")).expect("the line") + 1;
     let wrong = text.replacen("    return coverage.row + ", "    return vec3i(i32(frame.size.x)) + coverage.row + ", 1);
     std::fs::write(&path, wrong).expect("written");
     let (key, pass) = (plain_key(), Pass::RasterMedium(RasterPhase::Depth));

@@ -175,18 +175,16 @@ fn a_file_full_of_unknown_keys_is_read_in_a_moment() {
     let long = format!("{} = 1\n", "a".repeat(1_000_000));
     let fields = format!("[effects.facet]\n{}", (0..60_000).map(|i| format!("amuont{i} = 1\n")).collect::<String>());
     let list: String = (0..100_000).map(|i| format!("\"x{i}\",")).collect();
-    for schema in [1, 2] {
-        for text in [&short, &effects, &long, &fields] {
-            let preset_file = parse(&format!("schema = {schema}\n{text}"));
-            assert!(preset_file.warnings.len() <= 33 && preset_file.warnings.iter().all(|warning| warning.len() < 200));
-            if text != &long {
-                let last = preset_file.warnings.last().unwrap();
-                assert!(last.starts_with("preset.toml: ") && last.ends_with("more warnings of this kind"), "{last}");
-            }
-            assert!(preset_file.strict().is_err());
+    for text in [&short, &effects, &long, &fields] {
+        let preset_file = parse(&format!("schema = 2\n{text}"));
+        assert!(preset_file.warnings.len() <= 33 && preset_file.warnings.iter().all(|warning| warning.len() < 200));
+        if text != &long {
+            let last = preset_file.warnings.last().unwrap();
+            assert!(last.starts_with("preset.toml: ") && last.ends_with("more warnings of this kind"), "{last}");
         }
-        let _ = preset_file::parse(&format!("schema = {schema}\nstack = [{list}]\n"), "preset");
+        assert!(preset_file.strict().is_err());
     }
+    let _ = preset_file::parse(&format!("schema = 2\nstack = [{list}]\n"), "preset");
     assert!(began.elapsed().as_secs() < 30, "{:?}", began.elapsed());
 }
 
