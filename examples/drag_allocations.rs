@@ -1,9 +1,13 @@
-//! Heap allocations of a frame while a slider is dragged: those of the renderer and those of wgpu below it.
+//! Heap allocations of a frame while a slider is dragged: those of the renderer and those of wgpu
+//! below it.
 //!
-//! `cargo run --release --no-default-features --example drag_allocations [FRAMES]`; with `--sites` also the functions of rasterlab in which one
-//! frame allocates.
+//! `cargo run --release --no-default-features --example drag_allocations [FRAMES]`; with `--sites`
+//! also the functions of rasterlab in which one frame allocates.
 
-#![allow(unsafe_code, reason = "a global allocator is unsafe to implement; this one adds a count to the system's")]
+#![allow(
+    unsafe_code,
+    reason = "a global allocator is unsafe to implement; this one adds a count to the system's"
+)]
 
 use std::{
     alloc::{GlobalAlloc, Layout, System},
@@ -32,7 +36,10 @@ thread_local! {
 
 fn count() {
     ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
-    if KEEPS.try_with(|keeps| keeps.replace(false)).unwrap_or(false) {
+    if KEEPS
+        .try_with(|keeps| keeps.replace(false))
+        .unwrap_or(false)
+    {
         let stack = Backtrace::force_capture().to_string();
         STACKS.with_borrow_mut(|stacks| stacks.push(stack));
         KEEPS.set(true);
@@ -80,7 +87,11 @@ fn site(stack: &str) -> (String, bool) {
 fn main() -> anyhow::Result<()> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let shows_sites = args.iter().any(|arg| arg == "--sites");
-    let frames: usize = args.iter().find(|arg| !arg.starts_with("--")).map_or(Ok(50), |text| text.parse()).context("FRAMES is a number")?;
+    let frames: usize = args
+        .iter()
+        .find(|arg| !arg.starts_with("--"))
+        .map_or(Ok(50), |text| text.parse())
+        .context("FRAMES is a number")?;
     let gpu = Gpu::open(&AdapterChoice::Any).block_on()?;
     println!("{}", gpu.summary.name);
     let mut renderer = Renderer::new(gpu.clone());
@@ -90,8 +101,17 @@ fn main() -> anyhow::Result<()> {
     let moments = preset.moments(&scene, [640, 360]);
     let (view, stack) = moments.last().context("a preset shows a moment")?;
     let mut stack = stack.clone();
-    let facet = stack.0.iter().position(|enabled| enabled.effect.name == "facet").context("the preset has facets")?;
-    let field = stack.0[facet].effect.fields.iter().find(|field| field.name == "amount").context("facets have an amount")?;
+    let facet = stack
+        .0
+        .iter()
+        .position(|enabled| enabled.effect.name == "facet")
+        .context("the preset has facets")?;
+    let field = stack.0[facet]
+        .effect
+        .fields
+        .iter()
+        .find(|field| field.name == "amount")
+        .context("facets have an amount")?;
     let word = field.offset / 4;
 
     let mut before = gpu.prepared.so_far();
@@ -99,7 +119,8 @@ fn main() -> anyhow::Result<()> {
     let mut sites: BTreeMap<(bool, String), u64> = BTreeMap::new();
     let warm_up = 10;
     for frame in 0..warm_up + frames {
-        stack.0[facet].words[word] = (0.2 + 0.6 * frame as f32 / (warm_up + frames) as f32).to_bits();
+        stack.0[facet].words[word] =
+            (0.2 + 0.6 * frame as f32 / (warm_up + frames) as f32).to_bits();
         let start = ALLOCATIONS.load(Ordering::Relaxed);
         let is_last = frame + 1 == warm_up + frames;
         KEEPS.set(is_last);
@@ -126,13 +147,33 @@ fn main() -> anyhow::Result<()> {
         }
     }
     let mean = |count: u64| count as f64 / (frames - 1).max(1) as f64;
-    println!("allocations a frame: draw {:.1}, finish {:.1}, explain {:.1}", mean(draws), mean(finishes), mean(explains));
-    println!("of one frame on this thread: {ours} of rasterlab, {} of wgpu", sites.values().sum::<u64>() - ours);
-    println!("prepared in {frames} frames: {}", if gpu.prepared.so_far() == before { "nothing" } else { "something" });
+    println!(
+        "allocations a frame: draw {:.1}, finish {:.1}, explain {:.1}",
+        mean(draws),
+        mean(finishes),
+        mean(explains)
+    );
+    println!(
+        "of one frame on this thread: {ours} of rasterlab, {} of wgpu",
+        sites.values().sum::<u64>() - ours
+    );
+    println!(
+        "prepared in {frames} frames: {}",
+        if gpu.prepared.so_far() == before {
+            "nothing"
+        } else {
+            "something"
+        }
+    );
     if shows_sites {
         let mut sites: Vec<_> = sites.into_iter().collect();
         sites.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-        sites.iter().for_each(|((of_wgpu, name), count)| println!("{count:5} {} {name}", if *of_wgpu { "wgpu" } else { "ours" }));
+        sites.iter().for_each(|((of_wgpu, name), count)| {
+            println!(
+                "{count:5} {} {name}",
+                if *of_wgpu { "wgpu" } else { "ours" }
+            )
+        });
     }
     Ok(())
 }

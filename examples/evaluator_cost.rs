@@ -1,4 +1,5 @@
-//! What the evaluator of WGSL costs: time per call of every surface effect, as a function in Rust and as its own text in f64, on one thread.
+//! What the evaluator of WGSL costs: time per call of every surface effect, as a function in Rust
+//! and as its own text in f64, on one thread.
 //!
 //! `cargo run --release --no-default-features --example evaluator_cost`
 
@@ -21,8 +22,10 @@ const TURNS: usize = 40;
 const MEASUREMENTS: usize = 15;
 
 fn surface(rng: &mut Rng) -> Surface {
-    let mut vector = |low: f64, high: f64| DVec3::from_array(std::array::from_fn(|_| rng.real(low, high)));
-    let [normal, flat_normal, view] = std::array::from_fn(|_| vector(-1.0, 1.0).normalize_or(DVec3::Y));
+    let mut vector =
+        |low: f64, high: f64| DVec3::from_array(std::array::from_fn(|_| rng.real(low, high)));
+    let [normal, flat_normal, view] =
+        std::array::from_fn(|_| vector(-1.0, 1.0).normalize_or(DVec3::Y));
     let screen = vector(0.0, 1.0).truncate();
     Surface {
         color: vector(0.0, 1.0).extend(1.0),
@@ -65,19 +68,34 @@ fn cost(function: &SurfaceFunction, surfaces: &[Surface], words: &[u32]) -> f64 
 fn main() {
     let mut rng = Rng(7);
     let surfaces: Vec<Surface> = (0..SURFACES).map(|_| surface(&mut rng)).collect();
-    println!("{:12} {:>8} {:>10} {:>6}", "effect", "Rust ns", "WGSL ns", "ratio");
+    println!(
+        "{:12} {:>8} {:>10} {:>6}",
+        "effect", "Rust ns", "WGSL ns", "ratio"
+    );
     let mut product = (0.0, 0);
     for effect in EFFECTS.iter() {
-        let Some(native) = &effect.hooks.surface else { continue };
+        let Some(native) = &effect.hooks.surface else {
+            continue;
+        };
         let of_text = evaluated(&Library::Embedded, effect).map(|hooks| hooks.surface);
         let Ok(Some(text)) = of_text else {
             println!("{:12} cannot be evaluated", effect.name);
             continue;
         };
         let words = &effect.defaults;
-        let [native, text] = [cost(&**native, &surfaces, words), cost(&*text, &surfaces, words)];
-        println!("{:12} {native:8.1} {text:10.1} {:6.1}", effect.name, text / native);
+        let [native, text] = [
+            cost(&**native, &surfaces, words),
+            cost(&*text, &surfaces, words),
+        ];
+        println!(
+            "{:12} {native:8.1} {text:10.1} {:6.1}",
+            effect.name,
+            text / native
+        );
         product = (product.0 + (text / native).ln(), product.1 + 1);
     }
-    println!("geometric mean of the ratios: {:.1}", (product.0 / f64::from(product.1)).exp());
+    println!(
+        "geometric mean of the ratios: {:.1}",
+        (product.0 / f64::from(product.1)).exp()
+    );
 }

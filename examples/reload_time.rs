@@ -1,4 +1,5 @@
-//! What the first frame after an edit of an effect file costs: reading and checking its text, compiling its pipelines, drawing.
+//! What the first frame after an edit of an effect file costs: reading and checking its text,
+//! compiling its pipelines, drawing.
 //!
 //! `cargo run --release --no-default-features --example reload_time [SAVES] [WIDTHxHEIGHT]`
 
@@ -28,7 +29,10 @@ fn effect(salt: u32) -> String {
 
 fn main() -> anyhow::Result<()> {
     let mut args = std::env::args().skip(1);
-    let saves: u32 = args.next().map_or(Ok(9), |text| text.parse()).context("SAVES is a number")?;
+    let saves: u32 = args
+        .next()
+        .map_or(Ok(9), |text| text.parse())
+        .context("SAVES is a number")?;
     let size = args.next().unwrap_or_else(|| "1280x720".into());
     let (width, height) = size.split_once('x').context("the size is WIDTHxHEIGHT")?;
     let size = [width.parse()?, height.parse()?];
@@ -37,7 +41,11 @@ fn main() -> anyhow::Result<()> {
     println!("{}", gpu.summary.name);
     let mut renderer = Renderer::new(gpu);
     // The time decides what the driver's cache cannot know from an earlier run.
-    let salt = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH)?.subsec_nanos() / 2 + 500_000_000;
+    let salt = std::time::SystemTime::now()
+        .duration_since(std::time::UNIX_EPOCH)?
+        .subsec_nanos()
+        / 2
+        + 500_000_000;
     let mut times = [Vec::new(), Vec::new(), Vec::new()];
     for save in 0..=saves {
         let text = effect(salt - save);
@@ -54,7 +62,9 @@ fn main() -> anyhow::Result<()> {
         let compiled = renderer.compiled();
         let mut frame = || -> anyhow::Result<f64> {
             let start = Instant::now();
-            renderer.draw(view, stack, &file.preset.accuracy).block_on()?;
+            renderer
+                .draw(view, stack, &file.preset.accuracy)
+                .block_on()?;
             renderer.finish().block_on()?;
             Ok(start.elapsed().as_secs_f64() * 1e3)
         };
@@ -70,13 +80,24 @@ fn main() -> anyhow::Result<()> {
             "save {save}: {passes} pipelines, read {:.1} ms, first frame {first:.1} ms, second {second:.1} ms",
             read.as_secs_f64() * 1e3
         );
-        for (times, ms) in times.iter_mut().zip([read.as_secs_f64() * 1e3, first - second, read.as_secs_f64() * 1e3 + first]) {
+        for (times, ms) in times.iter_mut().zip([
+            read.as_secs_f64() * 1e3,
+            first - second,
+            read.as_secs_f64() * 1e3 + first,
+        ]) {
             times.push(ms);
         }
     }
-    for (name, times) in ["read and check", "compile", "save to picture"].iter().zip(&mut times) {
+    for (name, times) in ["read and check", "compile", "save to picture"]
+        .iter()
+        .zip(&mut times)
+    {
         times.sort_by(f64::total_cmp);
-        println!("{name:16} median {:.1} ms, most {:.1} ms", times[times.len() / 2], times[times.len() - 1]);
+        println!(
+            "{name:16} median {:.1} ms, most {:.1} ms",
+            times[times.len() / 2],
+            times[times.len() - 1]
+        );
     }
     Ok(())
 }

@@ -11,7 +11,9 @@ use crate::Target;
 pub const MAX_INPUT: usize = 1 << 16;
 
 pub fn folder(target: &Target) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus").join(target.name)
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("corpus")
+        .join(target.name)
 }
 
 /// Where input goes that a target failed on; libFuzzer is told the same folder.
@@ -24,8 +26,18 @@ pub fn found() -> PathBuf {
 /// # Errors
 /// The folder or a file of it cannot be read.
 pub fn read(target: &Target) -> io::Result<Vec<(String, Vec<u8>)>> {
-    let mut paths: Vec<PathBuf> = fs::read_dir(folder(target))?.map(|entry| entry.map(|entry| entry.path())).collect::<io::Result<_>>()?;
+    let mut paths: Vec<PathBuf> = fs::read_dir(folder(target))?
+        .map(|entry| entry.map(|entry| entry.path()))
+        .collect::<io::Result<_>>()?;
     paths.sort();
-    let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    paths.iter().map(|path| Ok((name(path), fs::read(path)?))).collect()
+    let name = |path: &Path| {
+        path.file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned()
+    };
+    paths
+        .iter()
+        .map(|path| Ok((name(path), fs::read(path)?)))
+        .collect()
 }

@@ -1,4 +1,5 @@
-//! libFuzzer on one target, which the environment variable RASTERLAB_FUZZ names; `scripts/fuzz.sh` builds and calls it.
+//! libFuzzer on one target, which the environment variable RASTERLAB_FUZZ names; `scripts/fuzz.sh`
+//! builds and calls it.
 #![no_main]
 
 use std::sync::OnceLock;
@@ -18,11 +19,17 @@ fn target() -> &'static Target {
     static TARGET: OnceLock<&'static Target> = OnceLock::new();
     TARGET.get_or_init(|| {
         let name = std::env::var("RASTERLAB_FUZZ").unwrap_or_default();
-        TARGETS.iter().find(|target| target.name == name).unwrap_or_else(|| {
-            let names: Vec<&str> = TARGETS.iter().map(|target| target.name).collect();
-            eprintln!("RASTERLAB_FUZZ is {name:?}; it names one of {}", names.join(", "));
-            std::process::exit(2)
-        })
+        TARGETS
+            .iter()
+            .find(|target| target.name == name)
+            .unwrap_or_else(|| {
+                let names: Vec<&str> = TARGETS.iter().map(|target| target.name).collect();
+                eprintln!(
+                    "RASTERLAB_FUZZ is {name:?}; it names one of {}",
+                    names.join(", ")
+                );
+                std::process::exit(2)
+            })
     })
 }
 

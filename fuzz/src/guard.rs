@@ -16,7 +16,10 @@ pub struct Limit {
 
 impl Limit {
     pub const fn new(seconds: u64, mib: usize) -> Self {
-        Self { time: Duration::from_secs(seconds), bytes: mib << 20 }
+        Self {
+            time: Duration::from_secs(seconds),
+            bytes: mib << 20,
+        }
     }
 }
 

@@ -1,4 +1,5 @@
-//! New input from old: bytes, words and numbers changed, doubled, moved and left out, also inside of what is packed.
+//! New input from old: bytes, words and numbers changed, doubled, moved and left out, also inside
+//! of what is packed.
 
 use crate::{Target, corpus::MAX_INPUT};
 
@@ -54,12 +55,14 @@ const NUMBERS: [&str; 22] = [
 ];
 
 /// Words of every text.
-const MARKS: [&str; 16] = ["\"", "'", "[", "]", "{", "}", ",", "=", ":", ".", "#", "\n", "\\u0000", "é", "\u{202e}", "\t"];
+const MARKS: [&str; 16] = [
+    "\"", "'", "[", "]", "{", "}", ",", "=", ":", ".", "#", "\n", "\\u0000", "é", "\u{202e}", "\t",
+];
 
 const BYTES: [u8; 10] = [0, 1, 2, 3, 4, 0x7f, 0x80, 0xfe, 0xff, b' '];
 
-/// `input` with one to three changes, most often one; `other` is another input of the same target, for pieces. Three times of four, one of
-/// the target's views is changed where the input has it.
+/// `input` with one to three changes, most often one; `other` is another input of the same target,
+/// for pieces. Three times of four, one of the target's views is changed where the input has it.
 pub fn mutated(target: &Target, input: &[u8], other: &[u8], random: &mut Random) -> Vec<u8> {
     if !target.views.is_empty() && random.below(4) != 0 {
         let view = &target.views[random.below(target.views.len())];
@@ -103,9 +106,19 @@ fn bytes_changed(mut bytes: Vec<u8>, other: &[u8], random: &mut Random) -> Vec<u
         6 => {
             // A number of two, four or eight bytes.
             let wide = 2 << random.below(3);
-            let value = NUMBERS[random.below(NUMBERS.len())].parse::<u64>().unwrap_or_else(|_| random.bits());
-            let value = if random.below(2) == 0 { value.to_le_bytes() } else { value.to_be_bytes() };
-            let value = if value[0] == 0 { &value[8 - wide..] } else { &value[..wide] };
+            let value = NUMBERS[random.below(NUMBERS.len())]
+                .parse::<u64>()
+                .unwrap_or_else(|_| random.bits());
+            let value = if random.below(2) == 0 {
+                value.to_le_bytes()
+            } else {
+                value.to_be_bytes()
+            };
+            let value = if value[0] == 0 {
+                &value[8 - wide..]
+            } else {
+                &value[..wide]
+            };
             let end = (at + wide).min(bytes.len());
             bytes[at..end].copy_from_slice(&value[..end - at]);
         }
@@ -131,11 +144,25 @@ fn words_changed(target: &Target, bytes: &[u8], other: &[u8], random: &mut Rando
     let join = |middle: &[u8]| [&before, middle, &after].concat();
     match random.below(9) {
         0 => join(b""),
-        1 => join(&piece.concat().repeat(2 + random.below(12) * random.below(12))),
+        1 => join(
+            &piece
+                .concat()
+                .repeat(2 + random.below(12) * random.below(12)),
+        ),
         2 | 3 => {
-            let number = words.iter().enumerate().skip(at).find(|(_, word)| word[0].is_ascii_digit()).map_or(at, |(number, _)| number);
+            let number = words
+                .iter()
+                .enumerate()
+                .skip(at)
+                .find(|(_, word)| word[0].is_ascii_digit())
+                .map_or(at, |(number, _)| number);
             let value = NUMBERS[random.below(NUMBERS.len())];
-            [words[..number].concat(), value.into(), words[number + 1..].concat()].concat()
+            [
+                words[..number].concat(),
+                value.into(),
+                words[number + 1..].concat(),
+            ]
+            .concat()
         }
         4 => join(MARKS[random.below(MARKS.len())].as_bytes()),
         5 | 6 => join(random.pick(target.words).unwrap_or(" ").as_bytes()),

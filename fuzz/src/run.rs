@@ -35,15 +35,30 @@ pub fn check(target: &Target, input: &[u8]) -> Result<Cost, String> {
     }));
     let (time, bytes) = (start.elapsed(), guard::most_since(before));
     let outcome = outcome.map_err(|panic| {
-        let said = panic.downcast_ref::<String>().cloned().or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()));
+        let said = panic
+            .downcast_ref::<String>()
+            .cloned()
+            .or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()));
         format!("panic: {}", said.unwrap_or_default())
     })?;
-    let cost = Cost { time, bytes, outcome };
+    let cost = Cost {
+        time,
+        bytes,
+        outcome,
+    };
     if cost.time > target.limit.time {
-        return Err(format!("it took {:.1} s; allowed: {:.0} s", cost.time.as_secs_f64(), target.limit.time.as_secs_f64()));
+        return Err(format!(
+            "it took {:.1} s; allowed: {:.0} s",
+            cost.time.as_secs_f64(),
+            target.limit.time.as_secs_f64()
+        ));
     }
     if cost.bytes > target.limit.bytes {
-        return Err(format!("it took {} MiB of memory; allowed: {} MiB", cost.bytes >> 20, target.limit.bytes >> 20));
+        return Err(format!(
+            "it took {} MiB of memory; allowed: {} MiB",
+            cost.bytes >> 20,
+            target.limit.bytes >> 20
+        ));
     }
     Ok(cost)
 }

@@ -1,4 +1,5 @@
-//! What is packed inside of input: mutations there keep the lengths and checksums around it right, so that they reach the code behind.
+//! What is packed inside of input: mutations there keep the lengths and checksums around it right,
+//! so that they reach the code behind.
 
 use std::io::{Read as _, Write as _};
 
@@ -14,10 +15,16 @@ pub struct View {
 }
 
 /// The chunks of a PNG, with right checksums.
-pub const PNG_CHUNKS: View = View { open: |png| png.starts_with(PNG).then(|| png.to_vec()), close: |_, png| with_right_checksums(png) };
+pub const PNG_CHUNKS: View = View {
+    open: |png| png.starts_with(PNG).then(|| png.to_vec()),
+    close: |_, png| with_right_checksums(png),
+};
 
 /// The preset in a picture that rasterlab saved.
-pub const PNG_TEXT: View = View { open: |png| text_of(png).map(|(_, text)| text.to_vec()), close: with_text };
+pub const PNG_TEXT: View = View {
+    open: |png| text_of(png).map(|(_, text)| text.to_vec()),
+    close: with_text,
+};
 
 /// The JSON of a GLB.
 pub const GLB_JSON: View = View {
@@ -32,7 +39,10 @@ pub const GLB_BINARY: View = View {
 };
 
 /// The TOML in a shared line.
-pub const SHARED_TOML: View = View { open: unpacked, close: |_, toml| packed(toml) };
+pub const SHARED_TOML: View = View {
+    open: unpacked,
+    close: |_, toml| packed(toml),
+};
 
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 const SHARED: &str = "rasterlab1:";
@@ -42,7 +52,11 @@ fn chunk(bytes: &[u8]) -> Option<([u8; 4], &[u8], &[u8])> {
     let (head, rest) = bytes.split_first_chunk::<8>()?;
     let length = u32::from_be_bytes([head[0], head[1], head[2], head[3]]) as usize;
     let (data, rest) = rest.split_at_checked(length)?;
-    Some(([head[4], head[5], head[6], head[7]], data, rest.split_at_checked(4)?.1))
+    Some((
+        [head[4], head[5], head[6], head[7]],
+        data,
+        rest.split_at_checked(4)?.1,
+    ))
 }
 
 fn push_chunk(png: &mut Vec<u8>, name: [u8; 4], data: &[u8]) {
@@ -55,9 +69,12 @@ fn push_chunk(png: &mut Vec<u8>, name: [u8; 4], data: &[u8]) {
     png.extend(crc.sum().to_be_bytes());
 }
 
-/// The PNG with the checksum of each chunk that is whole; what follows the last of those is left as it is.
+/// The PNG with the checksum of each chunk that is whole; what follows the last of those is left as
+/// it is.
 fn with_right_checksums(bytes: &[u8]) -> Vec<u8> {
-    let Some(mut rest) = bytes.strip_prefix(PNG) else { return bytes.to_vec() };
+    let Some(mut rest) = bytes.strip_prefix(PNG) else {
+        return bytes.to_vec();
+    };
     let mut png = PNG.to_vec();
     while let Some((name, data, behind)) = chunk(rest) {
         push_chunk(&mut png, name, data);
@@ -84,7 +101,9 @@ fn text_of(png: &[u8]) -> Option<(&[u8], &[u8])> {
 
 /// The PNG with another last text.
 fn with_text(bytes: &[u8], text: &[u8]) -> Vec<u8> {
-    let (Some((head, before)), Some(mut rest)) = (text_of(bytes), bytes.strip_prefix(PNG)) else { return bytes.to_vec() };
+    let (Some((head, before)), Some(mut rest)) = (text_of(bytes), bytes.strip_prefix(PNG)) else {
+        return bytes.to_vec();
+    };
     let mut png = PNG.to_vec();
     while let Some((name, data, behind)) = chunk(rest) {
         let is_it = &name == b"iTXt" && data.strip_prefix(head) == Some(before);
@@ -104,10 +123,15 @@ fn split(glb: &[u8]) -> Option<[&[u8]; 2]> {
     if glb.first() == Some(&b'{') {
         return Some([glb, &[]]);
     }
-    let word = |at: usize| glb.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
+    let word = |at: usize| {
+        glb.get(at..at + 4)
+            .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize)
+    };
     let json = glb.get(20..20 + word(12)?)?;
     let at = 20 + json.len();
-    let binary = word(at).and_then(|length| glb.get(at + 8..at + 8 + length)).unwrap_or_default();
+    let binary = word(at)
+        .and_then(|length| glb.get(at + 8..at + 8 + length))
+        .unwrap_or_default();
     Some([json, binary])
 }
 
@@ -126,14 +150,24 @@ pub fn joined(json: &[u8], binary: &[u8]) -> Vec<u8> {
 }
 
 fn unpacked(line: &[u8]) -> Option<Vec<u8>> {
-    let packed = std::str::from_utf8(line).ok()?.trim().strip_prefix(SHARED)?;
+    let packed = std::str::from_utf8(line)
+        .ok()?
+        .trim()
+        .strip_prefix(SHARED)?;
     let mut toml = Vec::new();
-    DeflateDecoder::new(STANDARD.decode(packed).ok()?.as_slice()).take(1 << 16).read_to_end(&mut toml).ok()?;
+    DeflateDecoder::new(STANDARD.decode(packed).ok()?.as_slice())
+        .take(1 << 16)
+        .read_to_end(&mut toml)
+        .ok()?;
     Some(toml)
 }
 
 fn packed(toml: &[u8]) -> Vec<u8> {
     let mut deflate = DeflateEncoder::new(Vec::new(), Compression::fast());
     deflate.write_all(toml).expect("memory takes all bytes");
-    format!("{SHARED}{}", STANDARD.encode(deflate.finish().expect("memory takes all bytes"))).into_bytes()
+    format!(
+        "{SHARED}{}",
+        STANDARD.encode(deflate.finish().expect("memory takes all bytes"))
+    )
+    .into_bytes()
 }

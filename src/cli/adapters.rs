@@ -17,7 +17,10 @@ pub fn run(streams: &mut Streams) -> Result<Exit, CliError> {
             .iter()
             .map(|(summary, caps)| {
                 let mut object = adapter_json(summary, caps);
-                object["options"] = usable_options(caps).iter().map(|option| option.name()).collect();
+                object["options"] = usable_options(caps)
+                    .iter()
+                    .map(|option| option.name())
+                    .collect();
                 object["limits"] = json!(caps);
                 object
             })
@@ -26,10 +29,22 @@ pub fn run(streams: &mut Streams) -> Result<Exit, CliError> {
         streams.object("adapters", Value::Null, results)?;
         return Ok(Exit::Done);
     }
-    let head = ["ADAPTER", "BACKEND", "DRIVER", "CLASS", "OPTIONS", "BINDING", "TIMESTAMPS", "KIND"];
+    let head = [
+        "ADAPTER",
+        "BACKEND",
+        "DRIVER",
+        "CLASS",
+        "OPTIONS",
+        "BINDING",
+        "TIMESTAMPS",
+        "KIND",
+    ];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
     rows.extend(adapters.iter().map(|(summary, caps)| {
-        let options: Vec<_> = usable_options(caps).iter().map(|option| option.name()).collect();
+        let options: Vec<_> = usable_options(caps)
+            .iter()
+            .map(|option| option.name())
+            .collect();
         vec![
             summary.name.clone(),
             summary.backend.clone(),
@@ -38,10 +53,17 @@ pub fn run(streams: &mut Streams) -> Result<Exit, CliError> {
             options.join(" "),
             format!("{} MiB", caps.max_storage_binding_bytes >> 20),
             if caps.timestamps { "yes" } else { "no" }.into(),
-            if summary.software { "software" } else { "hardware" }.into(),
+            if summary.software {
+                "software"
+            } else {
+                "hardware"
+            }
+            .into(),
         ]
     }));
-    let cpu = ["cpu", "cpu", "built in", "oracle", "exact", "-", "no", "software"];
+    let cpu = [
+        "cpu", "cpu", "built in", "oracle", "exact", "-", "no", "software",
+    ];
     rows.push(cpu.map(str::to_owned).to_vec());
     streams.text(&table(&rows))?;
     if adapters.is_empty() {

@@ -43,25 +43,31 @@ pub struct Common {
     /// Folder of presets that is searched first [env: RASTERLAB_PRESETS]
     #[arg(long, global = true, value_name = "DIR")]
     pub presets: Option<PathBuf>,
-    /// Folder of effect files [default: effects], beside that of the user and `effects` beside a preset
+    /// Folder of effect files [default: effects], beside that of the user and `effects` beside a
+    /// preset
     #[arg(long, global = true, value_name = "DIR")]
     pub effects: Option<PathBuf>,
-    /// Folder of shaders that replaces the built-in ones; the window watches it [env: RASTERLAB_SHADERS]
+    /// Folder of shaders that replaces the built-in ones; the window watches it [env:
+    /// RASTERLAB_SHADERS]
     #[arg(long, global = true, value_name = "DIR")]
     pub shaders: Option<PathBuf>,
-    /// The look of this preset on the scene of the PRESET or model that a command names: its effects, lights, background and animation
+    /// The look of this preset on the scene of the PRESET or model that a command names: its
+    /// effects, lights, background and animation
     #[arg(long, global = true, value_name = "ID|FILE")]
     pub preset: Option<String>,
-    /// Change one value of the preset, e.g. facet.amount=.5; the name of an effect alone enables it
+    /// Change one value of the preset, e.g. facet.amount=.5; the name of an effect alone enables
+    /// it
     #[arg(long, global = true, value_name = "PATH[=VALUE]")]
     pub set: Vec<String>,
     /// Reset one value to its default; the name of an effect disables it
     #[arg(long, global = true, value_name = "PATH")]
     pub unset: Vec<String>,
-    /// Most memory that opening a scene may take, e.g. 8GiB [default: half of the machine's] [env: RASTERLAB_MEMORY]
+    /// Most memory that opening a scene may take, e.g. 8GiB [default: half of the machine's] [env:
+    /// RASTERLAB_MEMORY]
     #[arg(long, global = true, value_name = "SIZE")]
     pub memory: Option<String>,
-    /// Most memory that pictures and their scenes may take on the adapter, e.g. 2GiB [default: all there is]
+    /// Most memory that pictures and their scenes may take on the adapter, e.g. 2GiB [default: all
+    /// there is]
     #[arg(long, global = true, value_name = "SIZE", value_parser = read_size)]
     pub device_memory: Option<u64>,
     /// Print one JSON object to stdout
@@ -81,7 +87,11 @@ pub struct Common {
 impl Common {
     /// `--presets`, or `RASTERLAB_PRESETS`.
     pub fn presets_dir(&self) -> Option<PathBuf> {
-        self.presets.clone().or_else(|| std::env::var_os("RASTERLAB_PRESETS").filter(|dir| !dir.is_empty()).map(PathBuf::from))
+        self.presets.clone().or_else(|| {
+            std::env::var_os("RASTERLAB_PRESETS")
+                .filter(|dir| !dir.is_empty())
+                .map(PathBuf::from)
+        })
     }
 
     /// `--effects`, or `effects` in the current folder.
@@ -99,20 +109,40 @@ impl Common {
     /// # Errors
     /// It is no size, or too small.
     pub fn memory_budget(&self) -> Result<Option<MemoryBudget>, String> {
-        let variable = || std::env::var("RASTERLAB_MEMORY").ok().filter(|size| !size.is_empty());
-        let given = self.memory.clone().map(|size| ("--memory", size)).or_else(|| Some(("RASTERLAB_MEMORY", variable()?)));
-        let read = |(name, size): (&str, String)| size.parse().map_err(|error| format!("{name} {size}: {error}"));
+        let variable = || {
+            std::env::var("RASTERLAB_MEMORY")
+                .ok()
+                .filter(|size| !size.is_empty())
+        };
+        let given = self
+            .memory
+            .clone()
+            .map(|size| ("--memory", size))
+            .or_else(|| Some(("RASTERLAB_MEMORY", variable()?)));
+        let read = |(name, size): (&str, String)| {
+            size.parse()
+                .map_err(|error| format!("{name} {size}: {error}"))
+        };
         given.map(read).transpose()
     }
 
     /// `RASTERLAB_ORACLE_GIB`, where it is a number above 0.
     pub fn oracle_gib(&self) -> Option<f64> {
-        std::env::var(oracle::MEMORY_VARIABLE).ok()?.trim().parse().ok().filter(|gib| *gib > 0.0)
+        std::env::var(oracle::MEMORY_VARIABLE)
+            .ok()?
+            .trim()
+            .parse()
+            .ok()
+            .filter(|gib| *gib > 0.0)
     }
 
     /// `--adapter`, or `RASTERLAB_ADAPTER`.
     pub fn adapter_name(&self) -> Option<String> {
-        self.adapter.clone().or_else(|| std::env::var("RASTERLAB_ADAPTER").ok().filter(|name| !name.is_empty()))
+        self.adapter.clone().or_else(|| {
+            std::env::var("RASTERLAB_ADAPTER")
+                .ok()
+                .filter(|name| !name.is_empty())
+        })
     }
 }
 
@@ -162,7 +192,13 @@ impl Command {
     pub fn takes_look(&self) -> bool {
         matches!(
             self,
-            Self::Render(_) | Self::Sequence(_) | Self::Verify(_) | Self::Compare(_) | Self::Explain(_) | Self::Parts(_) | Self::Bench(_)
+            Self::Render(_)
+                | Self::Sequence(_)
+                | Self::Verify(_)
+                | Self::Compare(_)
+                | Self::Explain(_)
+                | Self::Parts(_)
+                | Self::Bench(_)
         )
     }
 
@@ -194,7 +230,8 @@ impl Command {
 pub struct NewEffect {
     /// Name of the effect, in small letters
     pub name: String,
-    /// What the effect does: surface (what color is it), vertex (where is it), sample (is it drawn), pixel (finish the picture)
+    /// What the effect does: surface (what color is it), vertex (where is it), sample (is it
+    /// drawn), pixel (finish the picture)
     #[arg(long, default_value = "surface", value_parser = Hook::parse)]
     pub hook: Hook,
     /// Begin with the text of this effect instead
@@ -255,10 +292,12 @@ pub struct Render {
     /// Leave preset, version, adapter and driver out of the PNG
     #[arg(long)]
     pub bare: bool,
-    /// Also write the id of the visible triangle of every pixel, 4294967295 for none, as a NumPy array of u32; placeholders as in --output
+    /// Also write the id of the visible triangle of every pixel, 4294967295 for none, as a NumPy
+    /// array of u32; placeholders as in --output
     #[arg(long, value_name = "FILE")]
     pub triangle_ids: Option<String>,
-    /// Also write the depth of the visible sample of every pixel, in meters along the view, NaN for none, as a NumPy array of f32
+    /// Also write the depth of the visible sample of every pixel, in meters along the view, NaN
+    /// for none, as a NumPy array of f32
     #[arg(long, value_name = "FILE")]
     pub depths: Option<String>,
 }
@@ -267,7 +306,8 @@ pub struct Render {
 pub struct Sequence {
     #[arg(value_name = "PRESET")]
     pub input: String,
-    /// A file per frame, e.g. 'frame_{frame:4}.png'; may contain {preset} {effect} {frame} {frame:4} {adapter} {tier}
+    /// A file per frame, e.g. 'frame_{frame:4}.png'; may contain {preset} {effect} {frame}
+    /// {frame:4} {adapter} {tier}
     #[arg(short, long, value_name = "FILE", required_unless_present_any = ["apng", "video", "count"])]
     pub output: Option<String>,
     /// Write all frames into one animated PNG
@@ -276,7 +316,8 @@ pub struct Sequence {
     /// Write all frames into a video, .mp4, .webm or .gif, with ffmpeg
     #[arg(long, value_name = "FILE")]
     pub video: Option<PathBuf>,
-    /// Turn once over the range: the camera goes around the scene, or with =scene the scene turns before it
+    /// Turn once over the range: the camera goes around the scene, or with =scene the scene turns
+    /// before it
     #[arg(long, value_name = "WHAT", num_args = 0..=1, require_equals = true, default_missing_value = "camera", value_parser = turntable)]
     pub turntable: Option<Turntable>,
     /// Print the number of frames and draw nothing
@@ -306,8 +347,8 @@ pub struct Sequence {
 pub struct Sweep {
     #[arg(value_name = "PRESET")]
     pub input: String,
-    /// A value and its steps, e.g. facet.amount=0..1:5 (from, to, number of steps) or facet.pattern=uniform,sweep; the first runs along
-    /// the rows, a second from row to row
+    /// A value and its steps, e.g. facet.amount=0..1:5 (from, to, number of steps) or
+    /// facet.pattern=uniform,sweep; the first runs along the rows, a second from row to row
     #[arg(long, required = true, value_name = "PATH=STEPS")]
     pub vary: Vec<String>,
     /// File to write, - for stdout; may contain {preset} {effect} {n} {n:3} {adapter} {tier}
@@ -384,7 +425,8 @@ pub struct Parts {
 
 #[derive(Args, Debug)]
 pub struct Bless {
-    /// Preset files, names of presets in the preset folder, or effects that have no preset yet and get one
+    /// Preset files, names of presets in the preset folder, or effects that have no preset yet and
+    /// get one
     #[arg(value_name = "PRESET|EFFECT")]
     pub names: Vec<String>,
     /// Every preset that has a [test] table
@@ -393,7 +435,8 @@ pub struct Bless {
     /// Change nothing; exit 1 if any golden would change
     #[arg(long)]
     pub dry_run: bool,
-    /// Folder of the goldens [default: snapshots beside the preset, if it is there, or else tests/snapshots]
+    /// Folder of the goldens [default: snapshots beside the preset, if it is there, or else
+    /// tests/snapshots]
     #[arg(long, value_name = "DIR")]
     pub snapshots: Option<PathBuf>,
 }
@@ -410,9 +453,15 @@ pub struct Bench {
     #[arg(long)]
     pub every_effect: bool,
     /// Accuracy axes, separated by commas: measure every combination of their options
-    #[arg(long, value_name = "AXES", value_delimiter = ',', conflicts_with = "every_effect")]
+    #[arg(
+        long,
+        value_name = "AXES",
+        value_delimiter = ',',
+        conflicts_with = "every_effect"
+    )]
     pub axes: Vec<String>,
-    /// With --axes: measure one changed option at a time instead of every combination; a row per option, columns per scene
+    /// With --axes: measure one changed option at a time instead of every combination; a row per
+    /// option, columns per scene
     #[arg(long, requires = "axes")]
     pub each: bool,
     /// Size of the pictures in pixels
@@ -428,7 +477,8 @@ pub struct Bench {
 
 #[derive(Args, Debug)]
 pub struct Stress {
-    /// Run only the case of this number, or the cases whose names contain this text; several are separated by commas
+    /// Run only the case of this number, or the cases whose names contain this text; several are
+    /// separated by commas
     #[arg(long, value_name = "F")]
     pub filter: Option<String>,
     /// Changes the random cases
@@ -447,7 +497,8 @@ pub struct Fuzz {
     /// Number of presets
     #[arg(long, value_name = "M", default_value_t = 100)]
     pub count: u32,
-    /// Folder for the presets that failed, shrunk, and as they are for those that took long or lost the device
+    /// Folder for the presets that failed, shrunk, and as they are for those that took long or
+    /// lost the device
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 }
@@ -471,18 +522,31 @@ pub struct Check {
     /// Write one self-contained HTML file with all pictures
     #[arg(long, value_name = "FILE", requires = "render")]
     pub report: Option<String>,
-    /// Folder of the goldens [default: snapshots beside the preset, if it is there, or else tests/snapshots]
+    /// Folder of the goldens [default: snapshots beside the preset, if it is there, or else
+    /// tests/snapshots]
     #[arg(long, value_name = "DIR")]
     pub snapshots: Option<PathBuf>,
 }
 
 /// `30..60`, `..60`, `30..`.
 fn frames(text: &str) -> Result<[Option<u32>; 2], String> {
-    let wrong = || format!("{text:?} is no range of frames; write A..B, A.. or ..B with whole numbers, B excluded, for instance 0..60");
+    let wrong = || {
+        format!(
+            "{text:?} is no range of frames; write A..B, A.. or ..B with whole numbers, B excluded, for instance 0..60"
+        )
+    };
     let (from, to) = text.split_once("..").ok_or_else(wrong)?;
-    let end = |end: &str| if end.is_empty() { Ok(None) } else { end.parse().map(Some).map_err(|_| wrong()) };
+    let end = |end: &str| {
+        if end.is_empty() {
+            Ok(None)
+        } else {
+            end.parse().map(Some).map_err(|_| wrong())
+        }
+    };
     match [end(from)?, end(to)?] {
-        [Some(from), Some(to)] if from >= to => Err(format!("{text} has no frame: {from} is not before {to}")),
+        [Some(from), Some(to)] if from >= to => {
+            Err(format!("{text} has no frame: {from} is not before {to}"))
+        }
         ends => Ok(ends),
     }
 }
@@ -498,8 +562,15 @@ fn turntable(text: &str) -> Result<Turntable, String> {
 
 /// `1920x1080`.
 fn size(text: &str) -> Result<[u32; 2], String> {
-    let wrong = || format!("{text:?} is no size; write WIDTHxHEIGHT, each 0 to 16384, for instance 1920x1080");
+    let wrong = || {
+        format!("{text:?} is no size; write WIDTHxHEIGHT, each 0 to 16384, for instance 1920x1080")
+    };
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
-    let side = |side: &str| side.parse().ok().filter(|side| *side <= 16_384).ok_or_else(wrong);
+    let side = |side: &str| {
+        side.parse()
+            .ok()
+            .filter(|side| *side <= 16_384)
+            .ok_or_else(wrong)
+    };
     Ok([side(width)?, side(height)?])
 }

@@ -80,7 +80,10 @@ impl Backend {
             Self::Oracle => format!("oracle {}", env!("CARGO_PKG_VERSION")),
             Self::Gpu(_, gpu) => format!("{} ({})", gpu.summary.driver, gpu.summary.backend),
         };
-        Provenance { adapter: self.name().into(), driver }
+        Provenance {
+            adapter: self.name().into(),
+            driver,
+        }
     }
 
     /// The `adapter` of a JSON object.
@@ -101,7 +104,8 @@ impl Backend {
         }
     }
 
-    /// Visibility options this backend can draw `session` with: the pinned one, or all that the adapter has.
+    /// Visibility options this backend can draw `session` with: the pinned one, or all that the
+    /// adapter has.
     pub fn options(&self, preset: &Preset) -> Vec<Option<Visibility>> {
         match (self, preset.accuracy.pins.option::<Visibility>()) {
             (Self::Oracle, _) => vec![None],
@@ -113,7 +117,11 @@ impl Backend {
     /// The picture of `session`.
     pub fn frame(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Frame, CliError> {
         match self {
-            Self::Oracle => Ok(oracle::render_scaled(scene, &self.moments(preset, scene)?, preset.accuracy.scale().factor())?),
+            Self::Oracle => Ok(oracle::render_scaled(
+                scene,
+                &self.moments(preset, scene)?,
+                preset.accuracy.scale().factor(),
+            )?),
             Self::Gpu(..) => Ok(self.capture(preset, scene)?.into_shown()),
         }
     }
@@ -138,12 +146,25 @@ impl Backend {
     ///
     /// # Errors
     /// As [`oracle::judge`].
-    pub fn judged(&self, scene: &Scene, view: &View, stack: &Stack, capture: &Capture) -> Result<Verdict, DrawError> {
+    pub fn judged(
+        &self,
+        scene: &Scene,
+        view: &View,
+        stack: &Stack,
+        capture: &Capture,
+    ) -> Result<Verdict, DrawError> {
         match self {
             Self::Gpu(..) => oracle::judge(scene, view, stack, &capture.picture()),
             Self::Oracle => {
-                let report = ErrorReport { pixels: view.pixels() as u64, ..ErrorReport::default() };
-                Ok(Verdict { report, expected: capture.frame.clone(), ..Verdict::default() })
+                let report = ErrorReport {
+                    pixels: view.pixels() as u64,
+                    ..ErrorReport::default()
+                };
+                Ok(Verdict {
+                    report,
+                    expected: capture.frame.clone(),
+                    ..Verdict::default()
+                })
             }
         }
     }
@@ -153,16 +174,32 @@ impl Backend {
         let moments = self.moments(preset, scene)?;
         match self {
             Self::Oracle => {
-                let ((view, stack), before) = moments.split_last().expect("a preset has at least one frame");
-                let previous = if before.is_empty() { None } else { Some(oracle::render_sequence(scene, before)?.color) };
+                let ((view, stack), before) = moments
+                    .split_last()
+                    .expect("a preset has at least one frame");
+                let previous = if before.is_empty() {
+                    None
+                } else {
+                    Some(oracle::render_sequence(scene, before)?.color)
+                };
                 let frame = oracle::render_next(scene, view, stack, previous.as_deref())?;
-                let mut geometry = oracle::project(&Shot::new(scene, &stack.draws(scene, view)?, view, stack)).map_err(DrawError::from)?;
+                let mut geometry =
+                    oracle::project(&Shot::new(scene, &stack.draws(scene, view)?, view, stack))
+                        .map_err(DrawError::from)?;
                 geometry.shadow_map = oracle::shadow_map(scene, view, stack)?;
-                Ok(Capture { frame, geometry, layers: None, previous, shown: None })
+                Ok(Capture {
+                    frame,
+                    geometry,
+                    layers: None,
+                    previous,
+                    shown: None,
+                })
             }
             Self::Gpu(renderer, _) => {
                 renderer.set_scene(scene).block_on()?;
-                Ok(renderer.capture_last(&moments, &preset.accuracy).block_on()?)
+                Ok(renderer
+                    .capture_last(&moments, &preset.accuracy)
+                    .block_on()?)
             }
         }
     }
@@ -170,12 +207,25 @@ impl Backend {
 
 /// AccuracyOptions that an adapter of these capabilities has.
 pub fn usable_options(caps: &Caps) -> Vec<Visibility> {
-    Visibility::EXACT.into_iter().filter(|option| option.is_supported(caps.int64_atomics)).collect()
+    Visibility::EXACT
+        .into_iter()
+        .filter(|option| option.is_supported(caps.int64_atomics))
+        .collect()
 }
 
 pub fn describe(summary: &AdapterSummary, caps: &Caps) -> String {
-    let software = if summary.software { ", software; compare its timings only with those of software adapters" } else { "" };
-    format!("{} ({}, {}, {}{software})", summary.name, summary.backend, summary.driver, caps.class())
+    let software = if summary.software {
+        ", software; compare its timings only with those of software adapters"
+    } else {
+        ""
+    };
+    format!(
+        "{} ({}, {}, {}{software})",
+        summary.name,
+        summary.backend,
+        summary.driver,
+        caps.class()
+    )
 }
 
 pub fn adapter_json(summary: &AdapterSummary, caps: &Caps) -> Value {
@@ -188,10 +238,17 @@ pub fn adapter_json(summary: &AdapterSummary, caps: &Caps) -> Value {
 /// The scene of a preset. Warns of scopes that match no part of it.
 ///
 /// # Errors
-/// The scene is not available, or `--strict` makes a warning, or a model that breaks its standard, an error.
-pub fn scene_of(common: &Common, preset_file: &PresetFile, streams: &Streams) -> Result<Arc<Scene>, CliError> {
+/// The scene is not available, or `--strict` makes a warning, or a model that breaks its standard,
+/// an error.
+pub fn scene_of(
+    common: &Common,
+    preset_file: &PresetFile,
+    streams: &Streams,
+) -> Result<Arc<Scene>, CliError> {
     let (scene, warnings) = loading::watched(streams, || scene_with_warnings(common, preset_file))?;
-    warnings.iter().for_each(|warning| streams.note(&format!("warning: {warning}")));
+    warnings
+        .iter()
+        .for_each(|warning| streams.note(&format!("warning: {warning}")));
     Ok(scene)
 }
 
@@ -199,14 +256,26 @@ pub fn scene_of(common: &Common, preset_file: &PresetFile, streams: &Streams) ->
 ///
 /// # Errors
 /// As [`scene_of`].
-pub fn scene_with_warnings(common: &Common, preset_file: &PresetFile) -> Result<(Arc<Scene>, Vec<String>), CliError> {
+pub fn scene_with_warnings(
+    common: &Common,
+    preset_file: &PresetFile,
+) -> Result<(Arc<Scene>, Vec<String>), CliError> {
     let scene = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref())
         .map_err(|e| CliError::from(e).during(format!("preset {}", preset_file.id)))?;
     if let (Some(fault), true) = (scene.faults.first(), common.strict) {
-        return Err(CliError::usage(format!("{}: {fault}", scene.name)).during(format!("preset {}", preset_file.id)));
+        return Err(CliError::usage(format!("{}: {fault}", scene.name))
+            .during(format!("preset {}", preset_file.id)));
     }
-    let file = preset_file.path.as_ref().map_or_else(|| format!("{}.toml", preset_file.id), |path| path.display().to_string());
-    let warnings: Vec<String> = preset_file.preset.missing_parts(&scene).iter().map(|missing| format!("{file}: {missing}")).collect();
+    let file = preset_file.path.as_ref().map_or_else(
+        || format!("{}.toml", preset_file.id),
+        |path| path.display().to_string(),
+    );
+    let warnings: Vec<String> = preset_file
+        .preset
+        .missing_parts(&scene)
+        .iter()
+        .map(|missing| format!("{file}: {missing}"))
+        .collect();
     match common.strict && !warnings.is_empty() {
         true => Err(PresetError::Strict(warnings).into()),
         false => Ok((scene, warnings)),

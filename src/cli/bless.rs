@@ -1,4 +1,5 @@
-//! `bless`: redraws goldens with the oracle and prints what changes. Only this command writes goldens.
+//! `bless`: redraws goldens with the oracle and prints what changes. Only this command writes
+//! goldens.
 
 use std::{
     path::{Path, PathBuf},
@@ -24,58 +25,110 @@ use crate::{
 
 pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit, CliError> {
     if common.adapter.is_some() {
-        return Err(CliError::usage("bless takes no --adapter: only the oracle draws goldens"));
+        return Err(CliError::usage(
+            "bless takes no --adapter: only the oracle draws goldens",
+        ));
     }
     if !(common.set.is_empty() && common.unset.is_empty()) {
-        return Err(CliError::usage("bless takes no --set and no --unset: a golden is drawn from the preset file"));
+        return Err(CliError::usage(
+            "bless takes no --set and no --unset: a golden is drawn from the preset file",
+        ));
     }
-    let folder = common.presets_dir().unwrap_or_else(|| PathBuf::from("presets"));
+    let folder = common
+        .presets_dir()
+        .unwrap_or_else(|| PathBuf::from("presets"));
     let preset_files = preset_files(args, &folder, streams)?;
     let bar = streams.progress(preset_files.len() as u64);
     let (mut results, mut changed) = (Vec::new(), false);
     for (preset_file, is_new) in preset_files {
         bar.set_message(preset_file.id.clone());
         let golden = golden::draw(&preset_file, &*scene_of(common, &preset_file, streams)?)?;
-        let snapshots = args.snapshots.clone().unwrap_or_else(|| golden_folder(&preset_file));
+        let snapshots = args
+            .snapshots
+            .clone()
+            .unwrap_or_else(|| golden_folder(&preset_file));
         let change = change(&golden, &snapshots, &preset_file.id);
         changed |= is_new || change["changes"] == json!(true);
         if !streams.json {
-            streams.text(&format!("{}{}\n", line(&preset_file.id, &change), if is_new { " (its preset is created, too)" } else { "" }))?;
+            streams.text(&format!(
+                "{}{}\n",
+                line(&preset_file.id, &change),
+                if is_new {
+                    " (its preset is created, too)"
+                } else {
+                    ""
+                }
+            ))?;
         }
         if !args.dry_run {
-            store(preset_file, is_new, &golden, &snapshots, &folder, change["changes"] == json!(true))?;
+            store(
+                preset_file,
+                is_new,
+                &golden,
+                &snapshots,
+                &folder,
+                change["changes"] == json!(true),
+            )?;
         }
         results.push(change);
         bar.inc(1);
     }
     bar.finish_and_clear();
     if streams.json {
-        streams.object("bless", json!({ "name": "cpu", "class": "oracle" }), results)?;
+        streams.object(
+            "bless",
+            json!({ "name": "cpu", "class": "oracle" }),
+            results,
+        )?;
     }
     Ok(Exit::failed_if(args.dry_run && changed))
 }
 
 /// The presets to bless, each with whether it is new.
-fn preset_files(args: &Bless, folder: &Path, streams: &Streams) -> Result<Vec<(PresetFile, bool)>, CliError> {
+fn preset_files(
+    args: &Bless,
+    folder: &Path,
+    streams: &Streams,
+) -> Result<Vec<(PresetFile, bool)>, CliError> {
     if !args.all && args.names.is_empty() {
         return Err(CliError::usage("name presets or effects, or use --all"));
     }
     if !args.all {
         return args.names.iter().map(|name| named(name, folder)).collect();
     }
-    let entries = std::fs::read_dir(folder).map_err(|e| CliError::from(e).during(format!("{} cannot be read", folder.display())))?;
-    let mut files: Vec<PathBuf> =
-        entries.flatten().map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "toml")).collect();
+    let entries = std::fs::read_dir(folder)
+        .map_err(|e| CliError::from(e).during(format!("{} cannot be read", folder.display())))?;
+    let mut files: Vec<PathBuf> = entries
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
+        .collect();
     files.sort();
-    let preset_files = files.iter().map(|file| Ok(preset_file::load(file)?.strict()?)).collect::<Result<Vec<_>, CliError>>()?;
-    let (tested, bare): (Vec<_>, Vec<_>) = preset_files.into_iter().partition(|preset_file| preset_file.preset.test.is_some());
-    bare.iter().for_each(|preset_file| streams.note(&format!("{}: has no [test] table and so no golden", preset_file.id)));
-    Ok(tested.into_iter().map(|preset_file| (preset_file, false)).collect())
+    let preset_files = files
+        .iter()
+        .map(|file| Ok(preset_file::load(file)?.strict()?))
+        .collect::<Result<Vec<_>, CliError>>()?;
+    let (tested, bare): (Vec<_>, Vec<_>) = preset_files
+        .into_iter()
+        .partition(|preset_file| preset_file.preset.test.is_some());
+    bare.iter().for_each(|preset_file| {
+        streams.note(&format!(
+            "{}: has no [test] table and so no golden",
+            preset_file.id
+        ))
+    });
+    Ok(tested
+        .into_iter()
+        .map(|preset_file| (preset_file, false))
+        .collect())
 }
 
 /// The preset of a path, or of a name in `folder`; or the first one of an effect.
 fn named(name: &str, folder: &Path) -> Result<(PresetFile, bool), CliError> {
-    if Path::new(name).extension().is_some_and(|extension| extension == "toml") {
+    if Path::new(name)
+        .extension()
+        .is_some_and(|extension| extension == "toml")
+    {
         return Ok((preset_file::load(Path::new(name))?.strict()?, false));
     }
     let file = folder.join(format!("{name}.toml"));
@@ -85,7 +138,10 @@ fn named(name: &str, folder: &Path) -> Result<(PresetFile, bool), CliError> {
     if let Some(effect) = Effect::find(name) {
         return Ok((first_preset(effect), true));
     }
-    Err(CliError::usage(format!("{} does not exist, and {name} is no effect", file.display())))
+    Err(CliError::usage(format!(
+        "{} does not exist, and {name} is no effect",
+        file.display()
+    )))
 }
 
 /// The first preset of a new effect: on the teapot, with default parameters.
@@ -94,7 +150,10 @@ fn first_preset(effect: &Arc<Effect>) -> PresetFile {
         name: effect.name.replace('_', " "),
         about: effect.about.clone(),
         tags: vec!["canonical".into()],
-        output: Output { size: golden::MAX_SIZE, ..Output::default() },
+        output: Output {
+            size: golden::MAX_SIZE,
+            ..Output::default()
+        },
         test: Some(GoldenTest::default()),
         ..Preset::default()
     };
@@ -131,8 +190,14 @@ fn change(golden: &Golden, snapshots: &Path, id: &str) -> Value {
     let size = [golden.frame.width, golden.frame.height];
     // A golden that cannot be read counts as missing.
     let old_picture = preset_file::png_pixels(&png).ok();
-    let delta = old_picture.as_ref().filter(|(_, old_size)| *old_size == size).map(|(color, _)| pictures(color, &golden.frame.color, 0));
-    let same = delta.as_ref().is_some_and(|delta| delta.pixels_over_tolerance == 0) && old_sidecar == golden.sidecar;
+    let delta = old_picture
+        .as_ref()
+        .filter(|(_, old_size)| *old_size == size)
+        .map(|(color, _)| pictures(color, &golden.frame.color, 0));
+    let same = delta
+        .as_ref()
+        .is_some_and(|delta| delta.pixels_over_tolerance == 0)
+        && old_sidecar == golden.sidecar;
     json!({
         "preset": id, "changes": !same, "is_new": old_picture.is_none(),
         "pixels": golden.frame.color.len(),
@@ -145,16 +210,25 @@ fn change(golden: &Golden, snapshots: &Path, id: &str) -> Value {
 
 fn line(id: &str, change: &Value) -> String {
     if change["changes"] == json!(false) {
-        return format!("{id}: unchanged, {} of {} pixels covered", change["covered_new"], change["pixels"]);
+        return format!(
+            "{id}: unchanged, {} of {} pixels covered",
+            change["covered_new"], change["pixels"]
+        );
     }
     if change["is_new"] == json!(true) {
-        return format!("{id}: new, {} of {} pixels covered, {} bytes", change["covered_new"], change["pixels"], change["bytes"]);
+        return format!(
+            "{id}: new, {} of {} pixels covered, {} bytes",
+            change["covered_new"], change["pixels"], change["bytes"]
+        );
     }
     let [old, new] = [&change["covered_old"], &change["covered_new"]];
     match (&change["pixels_changed"], &change["max_color_delta"]) {
         (Value::Null, _) => format!("{id}: another size; covered {old} -> {new}"),
         (pixels, delta) => {
-            format!("{id}: {pixels} of {} pixels change, at most by {delta} of 255; covered {old} -> {new}", change["pixels"])
+            format!(
+                "{id}: {pixels} of {} pixels change, at most by {delta} of 255; covered {old} -> {new}",
+                change["pixels"]
+            )
         }
     }
 }

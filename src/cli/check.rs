@@ -1,4 +1,5 @@
-//! `check`: validates presets, and with `--render` compares the adapter's pictures with the goldens.
+//! `check`: validates presets, and with `--render` compares the adapter's pictures with the
+//! goldens.
 
 use std::{path::Path, sync::Arc};
 
@@ -24,9 +25,19 @@ use crate::{
 };
 
 pub fn run(common: &Common, args: &Check, streams: &mut Streams) -> Result<Exit, CliError> {
-    let files =
-        if args.files.is_empty() { preset_file::gallery(&common.folders()).iter().map(gallery_name).collect() } else { args.files.clone() };
-    let mut backend = if args.render { Some(Backend::open(common, streams)?) } else { None };
+    let files = if args.files.is_empty() {
+        preset_file::gallery(&common.folders())
+            .iter()
+            .map(gallery_name)
+            .collect()
+    } else {
+        args.files.clone()
+    };
+    let mut backend = if args.render {
+        Some(Backend::open(common, streams)?)
+    } else {
+        None
+    };
     let bar = streams.progress(files.len() as u64);
     let mut findings = Vec::new();
     for file in &files {
@@ -37,28 +48,57 @@ pub fn run(common: &Common, args: &Check, streams: &mut Streams) -> Result<Exit,
     bar.finish_and_clear();
     if let Some(report) = &args.report {
         let adapter = backend.as_ref().map_or("none", Backend::name);
-        let names = Names { preset: "report".into(), ..Names::default() };
-        files::create(report, &names, common.force, report::html(&findings, adapter)?.as_bytes())?;
+        let names = Names {
+            preset: "report".into(),
+            ..Names::default()
+        };
+        files::create(
+            report,
+            &names,
+            common.force,
+            report::html(&findings, adapter)?.as_bytes(),
+        )?;
     }
     let adapter = backend.as_ref().map_or(Value::Null, Backend::json);
     if streams.json {
-        streams.object("check", adapter, findings.iter().map(json_finding).collect())?;
+        streams.object(
+            "check",
+            adapter,
+            findings.iter().map(json_finding).collect(),
+        )?;
     } else {
         streams.text(&findings.iter().map(text).collect::<String>())?;
     }
-    findings.iter().flat_map(|finding| &finding.warnings).for_each(|warning| streams.note(&format!("warning: {warning}")));
-    Ok(findings.iter().fold(Exit::Done, |exit, finding| exit.and(finding.exit)))
+    findings
+        .iter()
+        .flat_map(|finding| &finding.warnings)
+        .for_each(|warning| streams.note(&format!("warning: {warning}")));
+    Ok(findings
+        .iter()
+        .fold(Exit::Done, |exit, finding| exit.and(finding.exit)))
 }
 
 fn check(common: &Common, args: &Check, file: &str, backend: Option<&mut Backend>) -> Finding {
-    let id = Path::new(file).file_stem().map_or_else(|| file.to_owned(), |stem| stem.to_string_lossy().into_owned());
-    let mut finding = Finding { preset: id, exit: Exit::Done, problems: Vec::new(), warnings: Vec::new(), position: None, drawn: None };
+    let id = Path::new(file).file_stem().map_or_else(
+        || file.to_owned(),
+        |stem| stem.to_string_lossy().into_owned(),
+    );
+    let mut finding = Finding {
+        preset: id,
+        exit: Exit::Done,
+        problems: Vec::new(),
+        warnings: Vec::new(),
+        position: None,
+        drawn: None,
+    };
     let outcome = open(common, file).and_then(|preset_file| {
         finding.warnings.clone_from(&preset_file.warnings);
         let (scene, missing) = scene_with_warnings(common, &preset_file)?;
         finding.warnings.extend(missing);
         planned(&preset_file.preset, &scene)?;
-        backend.map(|backend| drawn(args, &preset_file, &scene, backend)).transpose()
+        backend
+            .map(|backend| drawn(args, &preset_file, &scene, backend))
+            .transpose()
     });
     match outcome {
         Ok(Some((drawn, problems))) => {
@@ -67,7 +107,10 @@ fn check(common: &Common, args: &Check, file: &str, backend: Option<&mut Backend
         }
         Ok(None) => {}
         Err(error) => {
-            finding.position = error.error.downcast_ref::<PresetError>().and_then(PresetError::position);
+            finding.position = error
+                .error
+                .downcast_ref::<PresetError>()
+                .and_then(PresetError::position);
             (finding.exit, finding.problems) = (error.exit, vec![error.sentence()]);
         }
     }
@@ -79,24 +122,55 @@ fn planned(preset: &Preset, scene: &Scene) -> Result<(), CliError> {
     let view = preset.view(scene, preset.output.size);
     let needs = Arc::new(Needs::of(scene, &draws(scene, &view)?, &view));
     let caps = Caps::ALL;
-    let planned = Planner::default().plan(&needs, &preset.stack_on(scene), &caps, &caps.tuning(), &preset.accuracy);
-    planned.map(drop).map_err(|error| RenderError::from(error).into())
+    let planned = Planner::default().plan(
+        &needs,
+        &preset.stack_on(scene),
+        &caps,
+        &caps.tuning(),
+        &preset.accuracy,
+    );
+    planned
+        .map(drop)
+        .map_err(|error| RenderError::from(error).into())
 }
 
 type Comparison = (Option<Drawn>, Vec<String>);
 
-fn drawn(args: &Check, preset_file: &PresetFile, scene: &Arc<Scene>, backend: &mut Backend) -> Result<Comparison, CliError> {
-    let Some(test) = &preset_file.preset.test else { return Ok((None, Vec::new())) };
+fn drawn(
+    args: &Check,
+    preset_file: &PresetFile,
+    scene: &Arc<Scene>,
+    backend: &mut Backend,
+) -> Result<Comparison, CliError> {
+    let Some(test) = &preset_file.preset.test else {
+        return Ok((None, Vec::new()));
+    };
     let frame = backend.frame(&preset_file.preset, scene)?;
     let size = [frame.width, frame.height];
-    let folder = args.snapshots.clone().unwrap_or_else(|| golden_folder(preset_file));
+    let folder = args
+        .snapshots
+        .clone()
+        .unwrap_or_else(|| golden_folder(preset_file));
     let [png, _] = golden_paths(&folder, &preset_file.id);
     if !png.exists() {
-        return Ok((None, vec![format!("{} is missing; draw it with rasterlab bless {}", png.display(), preset_file.id)]));
+        return Ok((
+            None,
+            vec![format!(
+                "{} is missing; draw it with rasterlab bless {}",
+                png.display(),
+                preset_file.id
+            )],
+        ));
     }
     let (expected, golden_size) = preset_file::png_pixels(&png)?;
     if golden_size != size {
-        return Ok((None, vec![format!("{} and the preset have different sizes", png.display())]));
+        return Ok((
+            None,
+            vec![format!(
+                "{} and the preset have different sizes",
+                png.display()
+            )],
+        ));
     }
     let delta = pictures(&expected, &frame.color, test.max_channel);
     let mut problems = Vec::new();
@@ -108,21 +182,39 @@ fn drawn(args: &Check, preset_file: &PresetFile, scene: &Arc<Scene>, backend: &m
             delta.pixels_over_tolerance, test.max_channel, delta.max_delta
         ));
     }
-    Ok((Some(Drawn { size, expected, actual: frame.color, delta }), problems))
+    Ok((
+        Some(Drawn {
+            size,
+            expected,
+            actual: frame.color,
+            delta,
+        }),
+        problems,
+    ))
 }
 
 fn text(finding: &Finding) -> String {
     match (&finding.problems[..], &finding.drawn) {
-        ([], Some(drawn)) => format!("ok    {}: largest difference {} of 255\n", finding.preset, drawn.delta.max_delta),
+        ([], Some(drawn)) => format!(
+            "ok    {}: largest difference {} of 255\n",
+            finding.preset, drawn.delta.max_delta
+        ),
         ([], None) => format!("ok    {}\n", finding.preset),
-        (problems, _) => problems.iter().map(|error| format!("FAIL  {}: {error}\n", finding.preset)).collect(),
+        (problems, _) => problems
+            .iter()
+            .map(|error| format!("FAIL  {}: {error}\n", finding.preset))
+            .collect(),
     }
 }
 
 fn json_finding(finding: &Finding) -> Value {
     let position = finding.position.clone().unwrap_or_default();
     let error = |message: &String| {
-        let file = if position.file.is_empty() { Value::Null } else { json!(position.file) };
+        let file = if position.file.is_empty() {
+            Value::Null
+        } else {
+            json!(position.file)
+        };
         json!({ "code": finding.exit as u8, "message": message, "file": file, "line": position.line })
     };
     json!({

@@ -37,7 +37,10 @@ pub struct ContactSheet {
 pub fn size_of(columns: usize, count: usize, cell: [u32; 2]) -> [u64; 2] {
     let (gap, line, columns) = (GAP as u64, LINE as u64, columns.max(1) as u64);
     let [width, height] = cell.map(u64::from);
-    [gap + columns * (width + gap), line + (count as u64).div_ceil(columns) * (height + line + gap) + gap]
+    [
+        gap + columns * (width + gap),
+        line + (count as u64).div_ceil(columns) * (height + line + gap) + gap,
+    ]
 }
 
 impl ContactSheet {
@@ -45,7 +48,12 @@ impl ContactSheet {
     pub fn new(title: &str, columns: usize, count: usize, cell: [u32; 2]) -> Self {
         let [width, height] = size_of(columns, count, cell).map(|side| side as usize);
         let (columns, cell) = (columns.max(1), cell.map(|side| side as usize));
-        let mut sheet = Self { columns, cell, size: [width, height], color: vec![GROUND; width * height] };
+        let mut sheet = Self {
+            columns,
+            cell,
+            size: [width, height],
+            color: vec![GROUND; width * height],
+        };
         sheet.write(title, [GAP, 3], width - 2 * GAP);
         sheet
     }
@@ -62,7 +70,10 @@ impl ContactSheet {
     /// Upper left corner of the picture with this index, pixels.
     pub fn corner(&self, index: usize) -> [usize; 2] {
         let [column, row] = [index % self.columns, index / self.columns];
-        [GAP + column * (self.cell[0] + GAP), LINE + GAP + row * (self.cell[1] + LINE + GAP)]
+        [
+            GAP + column * (self.cell[0] + GAP),
+            LINE + GAP + row * (self.cell[1] + LINE + GAP),
+        ]
     }
 
     /// Puts a picture in its place.
@@ -88,7 +99,11 @@ impl ContactSheet {
             letters.extend(std::iter::repeat_n('.', 2.min(most)));
         }
         for (at, letter) in letters.into_iter().enumerate() {
-            let Some(glyph) = get_raster(letter, WEIGHT, TEXT).or_else(|| get_raster(UNKNOWN, WEIGHT, TEXT)) else { continue };
+            let Some(glyph) =
+                get_raster(letter, WEIGHT, TEXT).or_else(|| get_raster(UNKNOWN, WEIGHT, TEXT))
+            else {
+                continue;
+            };
             for (y, row) in glyph.rows().enumerate() {
                 for (x, strength) in row.iter().enumerate() {
                     let to = (top + y) * self.size[0] + left + at * advance + x;
@@ -119,7 +134,10 @@ mod tests {
     /// Pixels of the sheet that are neither ground nor red, in a box of rows.
     fn ink(sheet: &ContactSheet, rows: std::ops::Range<usize>) -> usize {
         let width = sheet.size[0];
-        sheet.color[rows.start * width..rows.end * width].iter().filter(|color| **color != GROUND && **color != RED).count()
+        sheet.color[rows.start * width..rows.end * width]
+            .iter()
+            .filter(|color| **color != GROUND && **color != RED)
+            .count()
     }
 
     #[test]
@@ -127,28 +145,59 @@ mod tests {
         let mut sheet = ContactSheet::new("facet", 3, 5, [40, 30]);
         assert_eq!(sheet.size(), [8 + 3 * 48, 22 + 2 * 60 + 8]);
         for index in 0..5 {
-            sheet.put(index, &Picture { caption: format!("{index}"), color: vec![RED; 40 * 30] });
+            sheet.put(
+                index,
+                &Picture {
+                    caption: format!("{index}"),
+                    color: vec![RED; 40 * 30],
+                },
+            );
         }
         let width = sheet.size[0];
         for index in 0..5 {
             let [x, y] = sheet.corner(index);
             let is_red = |x: usize, y: usize| sheet.color[y * width + x] == RED;
-            assert!(is_red(x, y) && is_red(x + 39, y + 29) && !is_red(x + 40, y) && !is_red(x, y + 30), "{index}");
-            assert!(ink(&sheet, y + 30..y + 30 + LINE) > 10, "{index} has no caption");
+            assert!(
+                is_red(x, y) && is_red(x + 39, y + 29) && !is_red(x + 40, y) && !is_red(x, y + 30),
+                "{index}"
+            );
+            assert!(
+                ink(&sheet, y + 30..y + 30 + LINE) > 10,
+                "{index} has no caption"
+            );
         }
-        assert_eq!(sheet.color.iter().filter(|color| **color == RED).count(), 5 * 40 * 30);
+        assert_eq!(
+            sheet.color.iter().filter(|color| **color == RED).count(),
+            5 * 40 * 30
+        );
         assert!(ink(&sheet, 0..LINE) > 20, "the title is missing");
     }
 
     #[test]
     fn a_long_caption_is_cut_off_and_what_the_font_lacks_is_a_question_mark() {
         let mut long = ContactSheet::new("", 1, 1, [40, 8]);
-        long.put(0, &Picture { caption: "a much too long caption".into(), color: vec![RED; 40 * 8] });
+        long.put(
+            0,
+            &Picture {
+                caption: "a much too long caption".into(),
+                color: vec![RED; 40 * 8],
+            },
+        );
         let right = long.size[0] - GAP;
-        assert!((0..long.size[1]).all(|y| long.color[y * long.size[0] + right..(y + 1) * long.size[0]].iter().all(|c| *c == GROUND)));
+        assert!((0..long.size[1]).all(|y| {
+            long.color[y * long.size[0] + right..(y + 1) * long.size[0]]
+                .iter()
+                .all(|c| *c == GROUND)
+        }));
         let written = |caption: &str| {
             let mut sheet = ContactSheet::new("", 1, 1, [40, 8]);
-            sheet.put(0, &Picture { caption: caption.into(), color: vec![RED; 40 * 8] });
+            sheet.put(
+                0,
+                &Picture {
+                    caption: caption.into(),
+                    color: vec![RED; 40 * 8],
+                },
+            );
             sheet.color
         };
         assert!(written("\u{1F600}") == written("?") && written("a") != written("?"));
@@ -156,7 +205,10 @@ mod tests {
 
     #[test]
     fn the_size_of_a_sheet_is_known_before_it_is_made() {
-        assert_eq!(ContactSheet::new("", 3, 5, [40, 30]).size().map(u64::from), size_of(3, 5, [40, 30]));
+        assert_eq!(
+            ContactSheet::new("", 3, 5, [40, 30]).size().map(u64::from),
+            size_of(3, 5, [40, 30])
+        );
         let largest = size_of(32, 1024, [16_384; 2]);
         assert!(largest.iter().all(|side| *side > 500_000), "{largest:?}");
     }

@@ -14,7 +14,8 @@ use crate::{
 #[repr(u8)]
 pub enum Exit {
     Done = 0,
-    /// A comparison, check or stress case failed, an error exceeds its limit, or a dry run found changes.
+    /// A comparison, check or stress case failed, an error exceeds its limit, or a dry run found
+    /// changes.
     Failed = 1,
     /// Wrong usage, or a file that cannot be read, parsed or written.
     Usage = 2,
@@ -49,16 +50,25 @@ pub struct CliError {
 
 impl CliError {
     pub fn usage(sentence: impl std::fmt::Display) -> Self {
-        Self { exit: Exit::Usage, error: anyhow::anyhow!("{sentence}") }
+        Self {
+            exit: Exit::Usage,
+            error: anyhow::anyhow!("{sentence}"),
+        }
     }
 
     /// The window did not open: no adapter, a lost device, or no display.
     pub fn window(error: anyhow::Error) -> Self {
         #[cfg(feature = "gui")]
         if error.downcast_ref::<crate::app::DeviceLost>().is_some() {
-            return Self { exit: Exit::DeviceLost, error };
+            return Self {
+                exit: Exit::DeviceLost,
+                error,
+            };
         }
-        let exit = match (error.downcast_ref::<OpenError>(), error.downcast_ref::<RenderError>()) {
+        let exit = match (
+            error.downcast_ref::<OpenError>(),
+            error.downcast_ref::<RenderError>(),
+        ) {
             (Some(open), _) => exit_of_open(open),
             (_, Some(render)) => exit_of_render(render),
             _ => Exit::Usage,
@@ -68,7 +78,10 @@ impl CliError {
 
     /// Adds what was being done.
     pub fn during(self, what: impl std::fmt::Display + Send + Sync + 'static) -> Self {
-        Self { exit: self.exit, error: self.error.context(what) }
+        Self {
+            exit: self.exit,
+            error: self.error.context(what),
+        }
     }
 
     /// The whole chain in one line.
@@ -77,12 +90,18 @@ impl CliError {
     }
 
     pub fn is_closed_pipe(&self) -> bool {
-        self.error.downcast_ref::<std::io::Error>().is_some_and(|e| e.kind() == std::io::ErrorKind::BrokenPipe)
+        self.error
+            .downcast_ref::<std::io::Error>()
+            .is_some_and(|e| e.kind() == std::io::ErrorKind::BrokenPipe)
     }
 }
 
 fn exit_of_open(error: &OpenError) -> Exit {
-    if matches!(error, OpenError::Ambiguous { .. }) { Exit::Usage } else { Exit::NoAdapter }
+    if matches!(error, OpenError::Ambiguous { .. }) {
+        Exit::Usage
+    } else {
+        Exit::NoAdapter
+    }
 }
 
 /// Only what another adapter may draw is the adapter's fault.
@@ -96,13 +115,19 @@ fn exit_of_render(error: &RenderError) -> Exit {
 
 impl From<OpenError> for CliError {
     fn from(error: OpenError) -> Self {
-        Self { exit: exit_of_open(&error), error: error.into() }
+        Self {
+            exit: exit_of_open(&error),
+            error: error.into(),
+        }
     }
 }
 
 impl From<RenderError> for CliError {
     fn from(error: RenderError) -> Self {
-        Self { exit: exit_of_render(&error), error: error.into() }
+        Self {
+            exit: exit_of_render(&error),
+            error: error.into(),
+        }
     }
 }
 

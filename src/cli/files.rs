@@ -28,7 +28,10 @@ pub struct Names {
 /// All of stdin as text.
 pub fn stdin_text() -> Result<String, CliError> {
     let mut bytes = Vec::new();
-    std::io::stdin().lock().take(MAX_STDIN + 1).read_to_end(&mut bytes)?;
+    std::io::stdin()
+        .lock()
+        .take(MAX_STDIN + 1)
+        .read_to_end(&mut bytes)?;
     if bytes.len() as u64 > MAX_STDIN {
         return Err(CliError::usage("stdin: the preset is longer than 1 MiB"));
     }
@@ -41,14 +44,15 @@ pub fn stdin_text() -> Result<String, CliError> {
 /// An extension other than `png`.
 pub fn check_picture_name(template: &str) -> Result<(), CliError> {
     match Path::new(template).extension() {
-        Some(extension) if !extension.eq_ignore_ascii_case("png") => {
-            Err(CliError::usage(format!("{template}: pictures are written as PNG; give the file a name that ends with .png")))
-        }
+        Some(extension) if !extension.eq_ignore_ascii_case("png") => Err(CliError::usage(format!(
+            "{template}: pictures are written as PNG; give the file a name that ends with .png"
+        ))),
         _ => Ok(()),
     }
 }
 
-/// The file that `template` names: with `{n}` the first free number, otherwise a file that is free or may be overwritten.
+/// The file that `template` names: with `{n}` the first free number, otherwise a file that is free
+/// or may be overwritten.
 ///
 /// # Errors
 /// A malformed template, or an existing file without `force`.
@@ -63,15 +67,28 @@ pub fn target(template: &str, names: &Names, force: bool) -> Result<PathBuf, Cli
     Ok(path)
 }
 
-/// Writes the whole file or nothing under the name that `template` gives, and returns it. A file that another process wrote in the
-/// meantime stays: with `{n}` the next free number is taken.
+/// Writes the whole file or nothing under the name that `template` gives, and returns it. A file
+/// that another process wrote in the meantime stays: with `{n}` the next free number is taken.
 ///
 /// # Errors
 /// As [`target`], or the file cannot be written.
-pub fn create(template: &str, names: &Names, force: bool, bytes: &[u8]) -> Result<PathBuf, CliError> {
+pub fn create(
+    template: &str,
+    names: &Names,
+    force: bool,
+    bytes: &[u8],
+) -> Result<PathBuf, CliError> {
     if !has_number(template)? {
         let path = PathBuf::from(expand(template, names, 0)?);
-        write(&path, bytes, if force { Existing::Replace } else { Existing::Keep })?;
+        write(
+            &path,
+            bytes,
+            if force {
+                Existing::Replace
+            } else {
+                Existing::Keep
+            },
+        )?;
         return Ok(path);
     }
     let mut from = 1;
@@ -92,11 +109,16 @@ fn free_number(template: &str, names: &Names, from: usize) -> Result<(usize, Pat
             return Ok((n, path));
         }
     }
-    Err(CliError::usage(format!("{template}: every number up to {MAX_NUMBER} is taken")))
+    Err(CliError::usage(format!(
+        "{template}: every number up to {MAX_NUMBER} is taken"
+    )))
 }
 
 fn exists(path: &Path) -> CliError {
-    CliError::usage(format!("{} exists; use --force to overwrite it, or {{n}} in the name to number files", path.display()))
+    CliError::usage(format!(
+        "{} exists; use --force to overwrite it, or {{n}} in the name to number files",
+        path.display()
+    ))
 }
 
 /// The file of a frame of a sequence; it may exist.
@@ -106,7 +128,9 @@ pub fn frame_path(template: &str, names: &Names) -> Result<PathBuf, CliError> {
 
 /// Does the template name the frame?
 pub fn has_frame(template: &str) -> Result<bool, CliError> {
-    Ok(parts(template)?.iter().any(|part| matches!(part, TemplatePart::Placeholder { name: "frame", .. })))
+    Ok(parts(template)?
+        .iter()
+        .any(|part| matches!(part, TemplatePart::Placeholder { name: "frame", .. })))
 }
 
 /// Writes the whole file or nothing.
@@ -119,12 +143,16 @@ pub fn write(path: &Path, bytes: &[u8], existing: Existing) -> Result<(), CliErr
 
 /// Does the template number files?
 pub fn has_number(template: &str) -> Result<bool, CliError> {
-    Ok(parts(template)?.iter().any(|part| matches!(part, TemplatePart::Placeholder { name: "n", .. })))
+    Ok(parts(template)?
+        .iter()
+        .any(|part| matches!(part, TemplatePart::Placeholder { name: "n", .. })))
 }
 
 /// Does the template name the preset?
 pub fn has_preset(template: &str) -> Result<bool, CliError> {
-    Ok(parts(template)?.iter().any(|part| matches!(part, TemplatePart::Placeholder { name: "preset", .. })))
+    Ok(parts(template)?
+        .iter()
+        .any(|part| matches!(part, TemplatePart::Placeholder { name: "preset", .. })))
 }
 
 enum TemplatePart<'a> {
@@ -135,14 +163,21 @@ enum TemplatePart<'a> {
 fn expand(template: &str, names: &Names, n: usize) -> Result<String, CliError> {
     let parts = parts(template)?;
     if names.frame.is_none() && has_frame(template)? {
-        return Err(CliError::usage(format!("{template}: {{frame}} is for the command sequence only")));
+        return Err(CliError::usage(format!(
+            "{template}: {{frame}} is for the command sequence only"
+        )));
     }
     let text = |part: TemplatePart<'_>| match part {
         TemplatePart::Text(text) => text,
-        TemplatePart::Placeholder { name: "frame", width } => format!("{:0width$}", names.frame.unwrap_or_default()),
+        TemplatePart::Placeholder {
+            name: "frame",
+            width,
+        } => format!("{:0width$}", names.frame.unwrap_or_default()),
         TemplatePart::Placeholder { name: "preset", .. } => safe(&names.preset),
         TemplatePart::Placeholder { name: "effect", .. } => safe(&names.effect),
-        TemplatePart::Placeholder { name: "adapter", .. } => safe(&names.adapter),
+        TemplatePart::Placeholder {
+            name: "adapter", ..
+        } => safe(&names.adapter),
         TemplatePart::Placeholder { name: "tier", .. } => safe(&names.tier),
         TemplatePart::Placeholder { width, .. } => format!("{n:0width$}"),
     };
@@ -151,7 +186,16 @@ fn expand(template: &str, names: &Names, n: usize) -> Result<String, CliError> {
 
 /// A name without path separators and other special characters.
 fn safe(name: &str) -> String {
-    let kept: String = name.chars().map(|c| if c.is_alphanumeric() || "-_.+".contains(c) { c } else { '-' }).collect();
+    let kept: String = name
+        .chars()
+        .map(|c| {
+            if c.is_alphanumeric() || "-_.+".contains(c) {
+                c
+            } else {
+                '-'
+            }
+        })
+        .collect();
     kept.trim_matches(['-', '.']).to_owned()
 }
 
@@ -170,10 +214,19 @@ fn parts(template: &str) -> Result<Vec<TemplatePart<'_>>, CliError> {
                 "{template}: unknown placeholder; use {{preset}}, {{effect}}, {{n}}, {{n:3}}, {{frame:4}}, {{adapter}} or {{tier}}, and double a brace to write it"
             ))
         };
-        let (placeholder, after) = from.strip_prefix('{').and_then(|from| from.split_once('}')).ok_or_else(wrong)?;
+        let (placeholder, after) = from
+            .strip_prefix('{')
+            .and_then(|from| from.split_once('}'))
+            .ok_or_else(wrong)?;
         let (name, width) = placeholder.split_once(':').unwrap_or((placeholder, "0"));
-        let width = width.parse().ok().filter(|width| *width <= 9).ok_or_else(wrong)?;
-        if !["preset", "effect", "adapter", "tier", "n", "frame"].contains(&name) || (width > 0 && !["n", "frame"].contains(&name)) {
+        let width = width
+            .parse()
+            .ok()
+            .filter(|width| *width <= 9)
+            .ok_or_else(wrong)?;
+        if !["preset", "effect", "adapter", "tier", "n", "frame"].contains(&name)
+            || (width > 0 && !["n", "frame"].contains(&name))
+        {
             return Err(wrong());
         }
         parts.push(TemplatePart::Placeholder { name, width });
@@ -203,8 +256,14 @@ mod tests {
         assert_eq!(filled("{preset}_{n:3}.png"), "facet_007.png");
         assert_eq!(filled("{{{tier}}}-{n}-{effect}"), "{fast}-7-facet+lambert");
         assert_eq!(filled("{adapter}.png"), "llvmpipe--LLVM-15-256.png");
-        let seventh = Names { frame: Some(7), ..names() };
-        assert_eq!(expand("{preset}/{frame:4}-{frame}.png", &seventh, 0).unwrap(), "facet/0007-7.png");
+        let seventh = Names {
+            frame: Some(7),
+            ..names()
+        };
+        assert_eq!(
+            expand("{preset}/{frame:4}-{frame}.png", &seventh, 0).unwrap(),
+            "facet/0007-7.png"
+        );
         for wrong in ["{frame}", "{preset", "a}b", "{tier:3}", "{n:x}"] {
             assert!(expand(wrong, &names(), 0).is_err(), "{wrong}");
         }
@@ -217,7 +276,13 @@ mod tests {
         std::fs::write(at("a.png"), "x").unwrap();
         std::fs::write(at("b_1.png"), "x").unwrap();
         assert!(target(&at("a.png"), &names(), false).is_err());
-        assert_eq!(target(&at("a.png"), &names(), true).unwrap(), PathBuf::from(at("a.png")));
-        assert_eq!(target(&at("b_{n}.png"), &names(), false).unwrap(), PathBuf::from(at("b_2.png")));
+        assert_eq!(
+            target(&at("a.png"), &names(), true).unwrap(),
+            PathBuf::from(at("a.png"))
+        );
+        assert_eq!(
+            target(&at("b_{n}.png"), &names(), false).unwrap(),
+            PathBuf::from(at("b_2.png"))
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! `fuzz`: verifies random presets, and shrinks each that fails to the smallest one that still does.
+//! `fuzz`: verifies random presets, and shrinks each that fails to the smallest one that still
+//! does.
 
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
@@ -59,11 +60,15 @@ impl Outcome {
 
 pub fn run(common: &Common, args: &Fuzz, streams: &mut Streams) -> Result<Exit, CliError> {
     if !(common.set.is_empty() && common.unset.is_empty()) {
-        return Err(CliError::usage("fuzz takes no --set and no --unset: its presets are random"));
+        return Err(CliError::usage(
+            "fuzz takes no --set and no --unset: its presets are random",
+        ));
     }
     let mut backend = Backend::open(common, streams)?;
     if let Some(folder) = &args.output {
-        std::fs::create_dir_all(folder).map_err(|e| CliError::from(e).during(format!("{} cannot be created", folder.display())))?;
+        std::fs::create_dir_all(folder).map_err(|e| {
+            CliError::from(e).during(format!("{} cannot be created", folder.display()))
+        })?;
     }
     let bar = streams.progress(args.count.into());
     let (mut results, mut counts) = (Vec::new(), [0u32; 4]);
@@ -73,7 +78,16 @@ pub fn run(common: &Common, args: &Fuzz, streams: &mut Streams) -> Result<Exit, 
         let outcome = match outcome(common, &random::preset(seed), &mut backend) {
             Ok(outcome) => outcome,
             Err(error) => {
-                note_kept(&bar, streams, keep(args, &format!("lost-{seed}"), random::preset(seed), common.force));
+                note_kept(
+                    &bar,
+                    streams,
+                    keep(
+                        args,
+                        &format!("lost-{seed}"),
+                        random::preset(seed),
+                        common.force,
+                    ),
+                );
                 return Err(error.during(format!("seed {seed}")));
             }
         };
@@ -87,11 +101,22 @@ pub fn run(common: &Common, args: &Fuzz, streams: &mut Streams) -> Result<Exit, 
         }] += 1;
         if seconds > SLOW_S {
             bar.suspend(|| streams.note(&format!("seed {seed} took {seconds:.0} s")));
-            note_kept(&bar, streams, keep(args, &format!("slow-{seed}"), random::preset(seed), common.force));
+            note_kept(
+                &bar,
+                streams,
+                keep(
+                    args,
+                    &format!("slow-{seed}"),
+                    random::preset(seed),
+                    common.force,
+                ),
+            );
         }
         let smallest = match &outcome {
             Outcome::Failed(reasons) => {
-                bar.suspend(|| streams.note(&format!("seed {seed} failed: {}", reasons.join("; "))));
+                bar.suspend(|| {
+                    streams.note(&format!("seed {seed} failed: {}", reasons.join("; ")))
+                });
                 Some(shrunk(common, args, seed, &mut backend, streams)?)
             }
             _ => None,
@@ -112,15 +137,25 @@ pub fn run(common: &Common, args: &Fuzz, streams: &mut Streams) -> Result<Exit, 
 }
 
 /// Shrinks the preset of a seed that failed, shows it and keeps it in the output folder.
-fn shrunk(common: &Common, args: &Fuzz, seed: u32, backend: &mut Backend, streams: &mut Streams) -> Result<String, CliError> {
+fn shrunk(
+    common: &Common,
+    args: &Fuzz,
+    seed: u32,
+    backend: &mut Backend,
+    streams: &mut Streams,
+) -> Result<String, CliError> {
     let mut lost = None;
-    let smallest = shrink::shrink(random::preset(seed), MAX_SHRINK_CALLS, |preset| match outcome(common, preset, backend) {
-        Ok(outcome) => matches!(outcome, Outcome::Failed(_)),
-        Err(error) => {
-            lost.get_or_insert(error);
-            false
-        }
-    });
+    let smallest = shrink::shrink(
+        random::preset(seed),
+        MAX_SHRINK_CALLS,
+        |preset| match outcome(common, preset, backend) {
+            Ok(outcome) => matches!(outcome, Outcome::Failed(_)),
+            Err(error) => {
+                lost.get_or_insert(error);
+                false
+            }
+        },
+    );
     if let Some(error) = lost {
         return Err(error);
     }
@@ -136,13 +171,25 @@ fn shrunk(common: &Common, args: &Fuzz, seed: u32, backend: &mut Backend, stream
 fn keep(args: &Fuzz, id: &str, preset: Preset, is_forced: bool) -> Result<String, CliError> {
     let toml = preset_file::to_toml(&PresetFile::new(id, preset));
     if let Some(folder) = &args.output {
-        let (template, names) = (folder.join("{preset}.toml"), Names { preset: id.into(), ..Names::default() });
-        files::create(&template.to_string_lossy(), &names, is_forced, toml.as_bytes())?;
+        let (template, names) = (
+            folder.join("{preset}.toml"),
+            Names {
+                preset: id.into(),
+                ..Names::default()
+            },
+        );
+        files::create(
+            &template.to_string_lossy(),
+            &names,
+            is_forced,
+            toml.as_bytes(),
+        )?;
     }
     Ok(toml)
 }
 
-/// Says why a preset was not stored. What is wrong with the preset counts for more than where it is stored, so the run goes on.
+/// Says why a preset was not stored. What is wrong with the preset counts for more than where it is
+/// stored, so the run goes on.
 fn note_kept(bar: &ProgressBar, streams: &mut Streams, kept: Result<String, CliError>) {
     if let Err(error) = kept {
         bar.suspend(|| streams.note(&format!("the preset is not stored: {}", error.sentence())));
@@ -157,18 +204,32 @@ fn outcome(common: &Common, preset: &Preset, backend: &mut Backend) -> Result<Ou
     let verified = catch_unwind(AssertUnwindSafe(|| {
         let preset_file = PresetFile::new("random", preset.clone());
         let scene = preset_file::load_scene(preset, None)?;
-        verify::check(common, &verify::Options { allows_any_band: true, ..Default::default() }, &preset_file, &scene, backend)
+        verify::check(
+            common,
+            &verify::Options {
+                allows_any_band: true,
+                ..Default::default()
+            },
+            &preset_file,
+            &scene,
+            backend,
+        )
     }));
     let Ok(verified) = verified else {
         // The renderer may be in any state.
         if let Backend::Gpu(renderer, gpu) = backend {
             **renderer = Renderer::new(gpu.clone());
         }
-        return Ok(Outcome::Failed(vec!["it panicked; the message stands above".into()]));
+        return Ok(Outcome::Failed(vec![
+            "it panicked; the message stands above".into(),
+        ]));
     };
     match verified {
         Ok(rows) => {
-            let failures: Vec<String> = rows.iter().flat_map(|row| row.failures.iter().map(|f| format!("{}: {f}", row.option))).collect();
+            let failures: Vec<String> = rows
+                .iter()
+                .flat_map(|row| row.failures.iter().map(|f| format!("{}: {f}", row.option)))
+                .collect();
             Ok(match rows.iter().all(|row| row.without_budget.is_empty()) {
                 _ if failures.is_empty() => Outcome::Clean,
                 true => Outcome::Failed(failures),
@@ -176,7 +237,12 @@ fn outcome(common: &Common, preset: &Preset, backend: &mut Backend) -> Result<Ou
             })
         }
         Err(error) if error.exit == Exit::DeviceLost => Err(error),
-        Err(error) if error.error.downcast_ref::<RenderError>().is_some_and(RenderError::is_fault) => {
+        Err(error)
+            if error
+                .error
+                .downcast_ref::<RenderError>()
+                .is_some_and(RenderError::is_fault) =>
+        {
             Ok(Outcome::Failed(vec![error.sentence()]))
         }
         Err(error) => Ok(Outcome::Refused(error.sentence())),

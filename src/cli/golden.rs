@@ -1,4 +1,5 @@
-//! Goldens: the oracle's stored picture of a preset, and a JSON sidecar with the hashes of its inputs and buffers.
+//! Goldens: the oracle's stored picture of a preset, and a JSON sidecar with the hashes of its
+//! inputs and buffers.
 //!
 //! Only the oracle draws them; the picture of any adapter may be compared with them.
 
@@ -32,19 +33,33 @@ pub fn draw(preset_file: &PresetFile, scene: &Scene) -> Result<Golden, CliError>
     let preset = &preset_file.preset;
     let [width, height] = preset.output.size;
     if preset.test.is_none() {
-        return Err(CliError::usage(format!("{}: the preset has no [test] table, so it has no golden; add [test]", preset_file.id)));
+        return Err(CliError::usage(format!(
+            "{}: the preset has no [test] table, so it has no golden; add [test]",
+            preset_file.id
+        )));
     }
     if width > MAX_SIZE[0] || height > MAX_SIZE[1] {
-        return Err(CliError::usage(format!("{}: output.size is {width}x{height}; a golden has at most 320x240 pixels", preset_file.id)));
+        return Err(CliError::usage(format!(
+            "{}: output.size is {width}x{height}; a golden has at most 320x240 pixels",
+            preset_file.id
+        )));
     }
     let moments = preset.moments(scene, preset.output.size);
     let frame = oracle::render_scaled(scene, &moments, preset.accuracy.scale().factor())?;
     let png = preset_file::png_bytes(&frame.color, preset.output.size)?;
     if png.len() > MAX_BYTES {
-        return Err(CliError::usage(format!("{}: the golden has {} bytes; at most {MAX_BYTES} are allowed", preset_file.id, png.len())));
+        return Err(CliError::usage(format!(
+            "{}: the golden has {} bytes; at most {MAX_BYTES} are allowed",
+            preset_file.id,
+            png.len()
+        )));
     }
     let sidecar = format!("{:#}\n", sidecar(preset_file, scene, &frame));
-    Ok(Golden { frame, png, sidecar })
+    Ok(Golden {
+        frame,
+        png,
+        sidecar,
+    })
 }
 
 fn sidecar(preset_file: &PresetFile, scene: &Scene, frame: &Frame) -> Value {

@@ -1,4 +1,5 @@
-//! `list`: presets, built-in scenes, effects with every parameter and its range, and the accuracy axes.
+//! `list`: presets, built-in scenes, effects with every parameter and its range, and the accuracy
+//! axes.
 
 use std::sync::Arc;
 
@@ -18,10 +19,22 @@ use crate::{
 };
 
 pub fn run(common: &Common, args: &List, streams: &mut Streams) -> Result<Exit, CliError> {
-    let entries = if args.has(ListKind::Presets) { gallery(&common.folders()) } else { Vec::new() };
+    let entries = if args.has(ListKind::Presets) {
+        gallery(&common.folders())
+    } else {
+        Vec::new()
+    };
     let folders = common.folders();
-    let effects: Vec<&Arc<Effect>> = if args.has(ListKind::Effects) { folders.effects.effects().collect() } else { Vec::new() };
-    let scenes = if args.has(ListKind::Scenes) { BUILTINS } else { &[] };
+    let effects: Vec<&Arc<Effect>> = if args.has(ListKind::Effects) {
+        folders.effects.effects().collect()
+    } else {
+        Vec::new()
+    };
+    let scenes = if args.has(ListKind::Scenes) {
+        BUILTINS
+    } else {
+        &[]
+    };
     let axes = if args.has(ListKind::Axes) { AXES } else { &[] };
     if streams.json {
         let preset_files = entries.iter().map(preset_json);
@@ -29,13 +42,39 @@ pub fn run(common: &Common, args: &List, streams: &mut Streams) -> Result<Exit, 
         let scenes = scenes
             .iter()
             .map(|scene| json!({ "kind": "scene", "id": scene.name, "about": scene.about, "parameters": scene_parameters(scene.params) }));
-        streams.object("list", Value::Null, preset_files.chain(effects).chain(scenes).chain(axes.iter().map(axis_json)).collect())?;
+        streams.object(
+            "list",
+            Value::Null,
+            preset_files
+                .chain(effects)
+                .chain(scenes)
+                .chain(axes.iter().map(axis_json))
+                .collect(),
+        )?;
     } else {
-        let parts = [presets_text(&entries), effects_text(&effects), scenes_text(scenes), axes_text(axes)];
-        streams.text(&parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("\n"))?;
+        let parts = [
+            presets_text(&entries),
+            effects_text(&effects),
+            scenes_text(scenes),
+            axes_text(axes),
+        ];
+        streams.text(
+            &parts
+                .into_iter()
+                .filter(|part| !part.is_empty())
+                .collect::<Vec<_>>()
+                .join("\n"),
+        )?;
     }
-    entries.iter().filter_map(|entry| entry.preset_file.as_ref().err()).for_each(|error| streams.note(&format!("warning: {error}")));
-    let faulty = folders.effects.custom().filter(|_| args.has(ListKind::Effects)).filter_map(|(_, custom)| custom.read.as_ref().err());
+    entries
+        .iter()
+        .filter_map(|entry| entry.preset_file.as_ref().err())
+        .for_each(|error| streams.note(&format!("warning: {error}")));
+    let faulty = folders
+        .effects
+        .custom()
+        .filter(|_| args.has(ListKind::Effects))
+        .filter_map(|(_, custom)| custom.read.as_ref().err());
     faulty.for_each(|error| streams.note(&format!("warning: {error}")));
     Ok(Exit::Done)
 }
@@ -48,21 +87,45 @@ fn origin(entry: &GalleryEntry) -> String {
         preset_file::Origin::Builtin => "built in",
     };
     let shadows: Vec<&str> = entry.shadows.iter().map(|origin| word(*origin)).collect();
-    if shadows.is_empty() { word(entry.origin).into() } else { format!("{}, shadows {}", word(entry.origin), shadows.join(" and ")) }
+    if shadows.is_empty() {
+        word(entry.origin).into()
+    } else {
+        format!("{}, shadows {}", word(entry.origin), shadows.join(" and "))
+    }
 }
 
 fn effect_names(preset_file: &preset_file::PresetFile) -> Vec<&str> {
-    preset_file.preset.stack.0.iter().map(|enabled| enabled.effect.name.as_str()).collect()
+    preset_file
+        .preset
+        .stack
+        .0
+        .iter()
+        .map(|enabled| enabled.effect.name.as_str())
+        .collect()
 }
 
 fn presets_text(entries: &[GalleryEntry]) -> String {
     if entries.is_empty() {
         return String::new();
     }
-    let mut rows = vec![["PRESET", "NAME", "EFFECTS", "FROM"].map(str::to_owned).to_vec()];
+    let mut rows = vec![
+        ["PRESET", "NAME", "EFFECTS", "FROM"]
+            .map(str::to_owned)
+            .to_vec(),
+    ];
     rows.extend(entries.iter().map(|entry| match &entry.preset_file {
-        Ok(preset_file) => vec![entry.id.clone(), preset_file.title().to_owned(), effect_names(preset_file).join(" + "), origin(entry)],
-        Err(_) => vec![entry.id.clone(), "(cannot be read)".into(), String::new(), origin(entry)],
+        Ok(preset_file) => vec![
+            entry.id.clone(),
+            preset_file.title().to_owned(),
+            effect_names(preset_file).join(" + "),
+            origin(entry),
+        ],
+        Err(_) => vec![
+            entry.id.clone(),
+            "(cannot be read)".into(),
+            String::new(),
+            origin(entry),
+        ],
     }));
     table(&rows)
 }
@@ -75,7 +138,11 @@ fn effects_text(effects: &[&Arc<Effect>]) -> String {
     if effects.is_empty() {
         return String::new();
     }
-    let mut rows = vec![["EFFECT", "DEFAULT", "ALLOWED", "UNIT", "WHAT"].map(str::to_owned).to_vec()];
+    let mut rows = vec![
+        ["EFFECT", "DEFAULT", "ALLOWED", "UNIT", "WHAT"]
+            .map(str::to_owned)
+            .to_vec(),
+    ];
     for effect in effects {
         rows.push(vec![
             effect.name.clone(),
@@ -87,7 +154,13 @@ fn effects_text(effects: &[&Arc<Effect>]) -> String {
         let defaults = &effect.defaults;
         rows.extend(effect.fields.iter().map(|field| {
             let name = format!("  {}.{}", effect.name, field.name);
-            vec![name, default_text(field, defaults), field.allowed(), field.unit.clone(), field.doc.trim().into()]
+            vec![
+                name,
+                default_text(field, defaults),
+                field.allowed(),
+                field.unit.clone(),
+                field.doc.trim().into(),
+            ]
         }));
     }
     table(&rows)
@@ -102,12 +175,30 @@ fn scenes_text(scenes: &[crate::scene::builtin::Builtin]) -> String {
     if scenes.is_empty() {
         return String::new();
     }
-    let mut rows = vec![["SCENE", "DEFAULT", "ALLOWED", "WHAT"].map(str::to_owned).to_vec()];
+    let mut rows = vec![
+        ["SCENE", "DEFAULT", "ALLOWED", "WHAT"]
+            .map(str::to_owned)
+            .to_vec(),
+    ];
     for scene in scenes {
-        rows.push(vec![scene.name.into(), String::new(), String::new(), scene.about.into()]);
+        rows.push(vec![
+            scene.name.into(),
+            String::new(),
+            String::new(),
+            scene.about.into(),
+        ]);
         rows.extend(scene.params.iter().map(|p| {
-            let allowed = format!("{}..={}", format_number(*p.range.start()), format_number(*p.range.end()));
-            vec![format!("  ?{}", p.name), format_number(p.default), allowed, p.doc.into()]
+            let allowed = format!(
+                "{}..={}",
+                format_number(*p.range.start()),
+                format_number(*p.range.end())
+            );
+            vec![
+                format!("  ?{}", p.name),
+                format_number(p.default),
+                allowed,
+                p.doc.into(),
+            ]
         }));
     }
     table(&rows)
@@ -119,17 +210,28 @@ fn axes_text(axes: &[Axis]) -> String {
     }
     let mut rows = vec![["AXIS", "DEFAULT", "WHAT"].map(str::to_owned).to_vec()];
     for axis in axes {
-        rows.push(vec![format!("accuracy.{}", axis.name), axis.words[axis.default].into(), axis.about.trim().into()]);
+        rows.push(vec![
+            format!("accuracy.{}", axis.name),
+            axis.words[axis.default].into(),
+            axis.about.trim().into(),
+        ]);
         rows.extend(
-            axis.words.iter().zip(axis.option_abouts).map(|(word, about)| vec![format!("  {word}"), String::new(), about.trim().into()]),
+            axis.words
+                .iter()
+                .zip(axis.option_abouts)
+                .map(|(word, about)| vec![format!("  {word}"), String::new(), about.trim().into()]),
         );
     }
     table(&rows)
 }
 
 fn axis_json(axis: &Axis) -> Value {
-    let options: Vec<Value> =
-        axis.words.iter().zip(axis.option_abouts).map(|(word, about)| json!({ "name": word, "about": about.trim() })).collect();
+    let options: Vec<Value> = axis
+        .words
+        .iter()
+        .zip(axis.option_abouts)
+        .map(|(word, about)| json!({ "name": word, "about": about.trim() }))
+        .collect();
     json!({ "kind": "axis", "id": axis.name, "about": axis.about.trim(), "default": axis.words[axis.default], "options": options })
 }
 

@@ -22,11 +22,26 @@ use crate::{
 };
 
 /// Presets with their scenes: each preset with its own scene, or with each `--scene`.
-pub fn subjects(common: &Common, args: &Bench, streams: &Streams) -> Result<Vec<(PresetFile, Arc<Scene>)>, CliError> {
-    let named = args.inputs.iter().map(|what| open(common, what)).collect::<Result<Vec<_>, _>>()?;
+pub fn subjects(
+    common: &Common,
+    args: &Bench,
+    streams: &Streams,
+) -> Result<Vec<(PresetFile, Arc<Scene>)>, CliError> {
+    let named = args
+        .inputs
+        .iter()
+        .map(|what| open(common, what))
+        .collect::<Result<Vec<_>, _>>()?;
     let mut preset_files = Vec::new();
     for scene in &args.scene {
-        let mut base = open(common, &if ModelFormat::of(Path::new(scene)).is_some() { scene.clone() } else { format!("builtin:{scene}") })?;
+        let mut base = open(
+            common,
+            &if ModelFormat::of(Path::new(scene)).is_some() {
+                scene.clone()
+            } else {
+                format!("builtin:{scene}")
+            },
+        )?;
         if named.is_empty() {
             base.id.clone_from(scene);
             preset_files.push(base);
@@ -40,14 +55,35 @@ pub fn subjects(common: &Common, args: &Bench, streams: &Streams) -> Result<Vec<
         }
     }
     if args.scene.is_empty() {
-        preset_files = if named.is_empty() { vec![PresetFile::of_scene("teapot", SceneSource::Builtin("teapot".into()))] } else { named };
+        preset_files = if named.is_empty() {
+            vec![PresetFile::of_scene(
+                "teapot",
+                SceneSource::Builtin("teapot".into()),
+            )]
+        } else {
+            named
+        };
     }
-    preset_files.into_iter().map(|preset_file| Ok((preset_file.clone(), scene_of(common, &preset_file, streams)?))).collect()
+    preset_files
+        .into_iter()
+        .map(|preset_file| {
+            Ok((
+                preset_file.clone(),
+                scene_of(common, &preset_file, streams)?,
+            ))
+        })
+        .collect()
 }
 
 /// Compares what an adapter drew of `scene` through `view` with the oracle.
-pub fn judge<'a>(scene: &'a Scene, view: &'a View) -> impl Fn(&Stack, &Capture) -> Verdict + use<'a> {
-    move |stack, capture| oracle::judge(scene, view, stack, &capture.picture()).expect("a scene that was drawn can be judged")
+pub fn judge<'a>(
+    scene: &'a Scene,
+    view: &'a View,
+) -> impl Fn(&Stack, &Capture) -> Verdict + use<'a> {
+    move |stack, capture| {
+        oracle::judge(scene, view, stack, &capture.picture())
+            .expect("a scene that was drawn can be judged")
+    }
 }
 
 /// Prints rows in the chosen format, and a note on how they were measured.
@@ -58,7 +94,11 @@ pub fn print_rows(
     lines: &[Vec<String>],
     results: impl FnOnce() -> Result<Vec<Value>, CliError>,
 ) -> Result<(), CliError> {
-    let format = if streams.json { Format::Json } else { args.format };
+    let format = if streams.json {
+        Format::Json
+    } else {
+        args.format
+    };
     match format {
         Format::Json => streams.object("bench", backend.json(), results()?)?,
         Format::Table => streams.text(&table(lines))?,
@@ -71,12 +111,25 @@ pub fn print_rows(
 }
 
 fn csv(lines: &[Vec<String>]) -> String {
-    let cell = |text: &String| if text.contains([',', '"', '\n']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.clone() };
-    lines.iter().map(|line| format!("{}\n", line.iter().map(cell).collect::<Vec<_>>().join(","))).collect()
+    let cell = |text: &String| {
+        if text.contains([',', '"', '\n']) {
+            format!("\"{}\"", text.replace('"', "\"\""))
+        } else {
+            text.clone()
+        }
+    };
+    lines
+        .iter()
+        .map(|line| format!("{}\n", line.iter().map(cell).collect::<Vec<_>>().join(",")))
+        .collect()
 }
 
 fn markdown(lines: &[Vec<String>]) -> String {
     let row = |line: &Vec<String>| format!("| {} |\n", line.join(" | "));
     let rule = format!("|{}\n", "---|".repeat(lines[0].len()));
-    lines.iter().enumerate().map(|(i, line)| if i == 0 { row(line) + &rule } else { row(line) }).collect()
+    lines
+        .iter()
+        .enumerate()
+        .map(|(i, line)| if i == 0 { row(line) + &rule } else { row(line) })
+        .collect()
 }

@@ -1,4 +1,5 @@
-//! The command line: subcommands over the same core as the window. None of them opens a window or a surface.
+//! The command line: subcommands over the same core as the window. None of them opens a window or a
+//! surface.
 //!
 //! stdout carries only data, stderr everything else; the exit code tells the outcome ([`Exit`]).
 
@@ -51,11 +52,23 @@ use crate::{gpu::device_memory::choose_device_memory, host, oracle, preset_file:
 /// # Errors
 /// What failed; [`report_error`] prints it.
 pub fn run(cli: &Cli) -> Result<Exit, CliError> {
-    if let Some(folder) = cli.common.shaders.as_ref().filter(|folder| !folder.is_dir()) {
-        return Err(CliError::usage(format!("--shaders {}: there is no such folder", folder.display())));
+    if let Some(folder) = cli
+        .common
+        .shaders
+        .as_ref()
+        .filter(|folder| !folder.is_dir())
+    {
+        return Err(CliError::usage(format!(
+            "--shaders {}: there is no such folder",
+            folder.display()
+        )));
     }
     host::shaders::choose(cli.common.shaders.clone());
-    cli.common.memory_budget().map_err(CliError::usage)?.unwrap_or_else(host::memory::machine_budget).choose();
+    cli.common
+        .memory_budget()
+        .map_err(CliError::usage)?
+        .unwrap_or_else(host::memory::machine_budget)
+        .choose();
     if let Some(gib) = cli.common.oracle_gib() {
         oracle::choose_memory(gib);
     }
@@ -63,9 +76,14 @@ pub fn run(cli: &Cli) -> Result<Exit, CliError> {
         choose_device_memory(bytes);
     }
     if let Some(folder) = cli.common.presets_dir().filter(|folder| !folder.is_dir()) {
-        return Err(CliError::usage(format!("--presets or RASTERLAB_PRESETS: there is no folder {}", folder.display())));
+        return Err(CliError::usage(format!(
+            "--presets or RASTERLAB_PRESETS: there is no folder {}",
+            folder.display()
+        )));
     }
-    let Some(command) = &cli.command else { return window(cli) };
+    let Some(command) = &cli.command else {
+        return window(cli);
+    };
     if cli.common.preset.is_some() && !command.takes_look() {
         return Err(CliError::usage(format!(
             "--preset has no meaning for {}; it puts a look on the scene that render, sequence, verify, compare, explain, parts, bench or the \
@@ -79,10 +97,14 @@ pub fn run(cli: &Cli) -> Result<Exit, CliError> {
         )));
     }
     if cli.log.is_some() {
-        return Err(CliError::usage(format!("--log has no meaning for {}; it keeps the log of the window", command.name())));
+        return Err(CliError::usage(format!(
+            "--log has no meaning for {}; it keeps the log of the window",
+            command.name()
+        )));
     }
     let mut streams = Streams::new(cli.common.quiet, cli.common.json);
-    let result = dispatch(&cli.common, command, &mut streams).and_then(|exit| streams.finish().map(|()| exit).map_err(CliError::from));
+    let result = dispatch(&cli.common, command, &mut streams)
+        .and_then(|exit| streams.finish().map(|()| exit).map_err(CliError::from));
     match result {
         // A reader that closes the pipe early is no error.
         Err(error) if error.is_closed_pipe() => Ok(Exit::Done),
@@ -122,7 +144,9 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
 fn window(cli: &Cli) -> Result<Exit, CliError> {
     // Errors are reported on the terminal instead of in an empty window.
     // Without anything to open or to change, the window goes on with its last session.
-    let is_asked = cli.open.is_some() || cli.common.preset.is_some() || !(cli.common.set.is_empty() && cli.common.unset.is_empty());
+    let is_asked = cli.open.is_some()
+        || cli.common.preset.is_some()
+        || !(cli.common.set.is_empty() && cli.common.unset.is_empty());
     let opened = match (&cli.open, &cli.common.preset) {
         (None, Some(look)) => Some((look.as_str(), open::open_alone(&cli.common, look))),
         (what, _) if is_asked => {
@@ -131,16 +155,28 @@ fn window(cli: &Cli) -> Result<Exit, CliError> {
         }
         _ => None,
     };
-    let opened = opened.map(|(what, opened)| opened.map_err(|error| suggest_command(error, what))).transpose()?;
+    let opened = opened
+        .map(|(what, opened)| opened.map_err(|error| suggest_command(error, what)))
+        .transpose()?;
     let adapter = match backend::backend_choice(&cli.common) {
         backend::BackendChoice::Oracle => {
-            return Err(CliError::usage("the window needs a GPU adapter; --adapter cpu serves render, verify, compare and check"));
+            return Err(CliError::usage(
+                "the window needs a GPU adapter; --adapter cpu serves render, verify, compare and check",
+            ));
         }
         backend::BackendChoice::Gpu(choice) => choice,
     };
     let log = cli.log.as_ref().map(|path| {
-        let file = std::fs::File::options().create(true).append(true).open(path);
-        file.map_err(|error| CliError::usage(format!("--log {}: the file cannot be written: {error}", path.display())))
+        let file = std::fs::File::options()
+            .create(true)
+            .append(true)
+            .open(path);
+        file.map_err(|error| {
+            CliError::usage(format!(
+                "--log {}: the file cannot be written: {error}",
+                path.display()
+            ))
+        })
     });
     let options = crate::app::Options {
         open: cli.open.clone(),
@@ -159,26 +195,50 @@ fn window(cli: &Cli) -> Result<Exit, CliError> {
 /// The name of a preset that does not exist may be a mistyped command.
 #[cfg(feature = "gui")]
 fn suggest_command(error: CliError, what: &str) -> CliError {
-    let names: Vec<String> = Cli::command().get_subcommands().map(|command| command.get_name().to_owned()).collect();
+    let names: Vec<String> = Cli::command()
+        .get_subcommands()
+        .map(|command| command.get_name().to_owned())
+        .collect();
     let hint = crate::params::did_you_mean(what, names.iter().map(String::as_str));
-    let is_unknown = matches!(error.error.downcast_ref(), Some(PresetError::NoPreset { .. }));
-    if hint.is_empty() || !is_unknown { error } else { CliError::usage(format!("there is no preset and no command {what:?}{hint}")) }
+    let is_unknown = matches!(
+        error.error.downcast_ref(),
+        Some(PresetError::NoPreset { .. })
+    );
+    if hint.is_empty() || !is_unknown {
+        error
+    } else {
+        CliError::usage(format!("there is no preset and no command {what:?}{hint}"))
+    }
 }
 
 #[cfg(not(feature = "gui"))]
 fn window(_: &Cli) -> Result<Exit, CliError> {
-    Err(CliError::usage("this build has no window; rasterlab --help lists the commands"))
+    Err(CliError::usage(
+        "this build has no window; rasterlab --help lists the commands",
+    ))
 }
 
 /// Prints the error chain to stderr, one sentence per level, and with `--json` an object to stdout.
 pub fn report_error(cli: &Cli, error: &CliError) {
     // A closed stderr leaves no place for an error.
     for (depth, cause) in error.error.chain().enumerate() {
-        let _ = writeln!(io::stderr(), "{}{cause}", if depth == 0 { "error: " } else { "  because " });
+        let _ = writeln!(
+            io::stderr(),
+            "{}{cause}",
+            if depth == 0 { "error: " } else { "  because " }
+        );
     }
     if cli.common.json {
-        let position = error.error.downcast_ref::<PresetError>().and_then(PresetError::position).unwrap_or_default();
-        let file = if position.file.is_empty() { Value::Null } else { json!(position.file) };
+        let position = error
+            .error
+            .downcast_ref::<PresetError>()
+            .and_then(PresetError::position)
+            .unwrap_or_default();
+        let file = if position.file.is_empty() {
+            Value::Null
+        } else {
+            json!(position.file)
+        };
         let error = json!({ "code": error.exit as u8, "message": error.sentence(), "file": file, "line": position.line });
         let command = cli.command.as_ref().map(Command::name);
         let object = json!({ "schema": streams::JSON_SCHEMA, "command": command, "adapter": null, "results": [], "errors": [error] });

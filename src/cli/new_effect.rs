@@ -21,7 +21,10 @@ pub fn run(common: &Common, args: &NewEffect, streams: &mut Streams) -> Result<E
         None => template(name, args.hook),
         Some(from) => {
             let folders = common.folders();
-            let found = folders.effects.find(from).map_err(|error| CliError::usage(error.to_string()))?;
+            let found = folders
+                .effects
+                .find(from)
+                .map_err(|error| CliError::usage(error.to_string()))?;
             let effect = found.ok_or_else(|| {
                 let hint = did_you_mean(from, folders.effects.names());
                 CliError::usage(format!("--from {from}: there is no such effect{hint}"))
@@ -31,16 +34,37 @@ pub fn run(common: &Common, args: &NewEffect, streams: &mut Streams) -> Result<E
     };
     let path = common.effects_dir().join(format!("{name}.wgsl"));
     if path.exists() && !common.force {
-        return Err(CliError::usage(format!("{} exists; --force overwrites it", path.display())));
+        return Err(CliError::usage(format!(
+            "{} exists; --force overwrites it",
+            path.display()
+        )));
     }
-    std::fs::create_dir_all(common.effects_dir())
-        .map_err(|error| CliError::usage(format!("{} cannot be made: {error}", common.effects_dir().display())))?;
-    files::write(&path, text.as_bytes(), if common.force { Existing::Replace } else { Existing::Keep })?;
+    std::fs::create_dir_all(common.effects_dir()).map_err(|error| {
+        CliError::usage(format!(
+            "{} cannot be made: {error}",
+            common.effects_dir().display()
+        ))
+    })?;
+    files::write(
+        &path,
+        text.as_bytes(),
+        if common.force {
+            Existing::Replace
+        } else {
+            Existing::Keep
+        },
+    )?;
     if streams.json {
-        streams.object("new-effect", Value::Null, vec![json!({ "file": path.to_string_lossy(), "hook": args.hook.name() })])?;
+        streams.object(
+            "new-effect",
+            Value::Null,
+            vec![json!({ "file": path.to_string_lossy(), "hook": args.hook.name() })],
+        )?;
     } else {
         streams.text(&format!("{}\n", path.display()))?;
     }
-    streams.note(&format!("edit it while the lab shows it: rasterlab teapot --set {name}"));
+    streams.note(&format!(
+        "edit it while the lab shows it: rasterlab teapot --set {name}"
+    ));
     Ok(Exit::Done)
 }

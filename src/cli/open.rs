@@ -1,4 +1,5 @@
-//! Presets that commands name, with the look of `--preset` and the changes of `--set` and `--unset`.
+//! Presets that commands name, with the look of `--preset` and the changes of `--set` and
+//! `--unset`.
 
 use super::{args::Common, error::CliError, files, streams::Streams};
 use crate::{
@@ -16,7 +17,8 @@ pub fn open(common: &Common, what: &str) -> Result<PresetFile, CliError> {
     changed(common, preset_file)
 }
 
-/// Opens the preset of `--preset` with its own scene, for a command without another, and applies `--unset`, then `--set`.
+/// Opens the preset of `--preset` with its own scene, for a command without another, and applies
+/// `--unset`, then `--set`.
 pub fn open_alone(common: &Common, look: &str) -> Result<PresetFile, CliError> {
     changed(common, read(common, look)?)
 }
@@ -24,28 +26,45 @@ pub fn open_alone(common: &Common, look: &str) -> Result<PresetFile, CliError> {
 /// Reads what a person names, as its file has it.
 fn read(common: &Common, what: &str) -> Result<PresetFile, CliError> {
     let preset_file = if what == "-" {
-        preset_file::parse_with(&files::stdin_text()?, "stdin", "stdin", &common.folders().effects)?
+        preset_file::parse_with(
+            &files::stdin_text()?,
+            "stdin",
+            "stdin",
+            &common.folders().effects,
+        )?
     } else {
         preset_file::open(what, &common.folders())?
     };
-    Ok(if common.strict { preset_file.strict()? } else { preset_file })
+    Ok(if common.strict {
+        preset_file.strict()?
+    } else {
+        preset_file
+    })
 }
 
-/// Puts a look on the scene of `own`. The boxes of both scenes are found only if the look has lengths.
+/// Puts a look on the scene of `own`. The boxes of both scenes are found only if the look has
+/// lengths.
 ///
 /// # Errors
 /// One of the scenes cannot be read; with `--strict` also what the look had to leave out.
 pub fn land(common: &Common, look: &PresetFile, own: &PresetFile) -> Result<PresetFile, CliError> {
     let bounds = |preset_file: &PresetFile| {
-        let bounds = preset_file::scene_bounds(&preset_file.preset.scene, preset_file.path.as_deref());
+        let bounds =
+            preset_file::scene_bounds(&preset_file.preset.scene, preset_file.path.as_deref());
         bounds.map_err(|error| CliError::from(error).during(format!("preset {}", preset_file.id)))
     };
-    let fit = if look.needs_fit() { Fit::between(&bounds(look)?, &bounds(own)?) } else { None };
+    let fit = if look.needs_fit() {
+        Fit::between(&bounds(look)?, &bounds(own)?)
+    } else {
+        None
+    };
     let mut landed = look.landed_on(own, fit.as_ref());
     if common.strict && !landed.warnings.is_empty() {
         return Err(PresetError::Strict(landed.warnings).into());
     }
-    landed.warnings.splice(0..0, look.warnings.iter().chain(&own.warnings).cloned());
+    landed
+        .warnings
+        .splice(0..0, look.warnings.iter().chain(&own.warnings).cloned());
     Ok(landed)
 }
 
@@ -64,22 +83,40 @@ fn changed(common: &Common, mut preset_file: PresetFile) -> Result<PresetFile, C
     Ok(preset_file)
 }
 
-/// The named presets, or every preset of the gallery that has a golden; without names, `--preset` is the one.
-pub fn presets(common: &Common, names: &[String], streams: &Streams) -> Result<Vec<PresetFile>, CliError> {
+/// The named presets, or every preset of the gallery that has a golden; without names, `--preset`
+/// is the one.
+pub fn presets(
+    common: &Common,
+    names: &[String],
+    streams: &Streams,
+) -> Result<Vec<PresetFile>, CliError> {
     let preset_files: Vec<PresetFile> = match (names, &common.preset) {
         ([], Some(look)) => vec![open_alone(common, look)?],
         ([], None) => {
             let entries = preset_file::gallery(&common.folders());
-            let preset_files = entries.iter().map(|entry| open(common, &gallery_name(entry))).collect::<Result<Vec<_>, _>>()?;
-            preset_files.into_iter().filter(|preset_file| preset_file.preset.test.is_some()).collect()
+            let preset_files = entries
+                .iter()
+                .map(|entry| open(common, &gallery_name(entry)))
+                .collect::<Result<Vec<_>, _>>()?;
+            preset_files
+                .into_iter()
+                .filter(|preset_file| preset_file.preset.test.is_some())
+                .collect()
         }
-        (names, _) => names.iter().map(|name| open(common, name)).collect::<Result<_, _>>()?,
+        (names, _) => names
+            .iter()
+            .map(|name| open(common, name))
+            .collect::<Result<_, _>>()?,
     };
-    preset_files.iter().flat_map(PresetFile::remarks).for_each(|remark| streams.note(&remark));
+    preset_files
+        .iter()
+        .flat_map(PresetFile::remarks)
+        .for_each(|remark| streams.note(&remark));
     Ok(preset_files)
 }
 
-/// What a JSON object says of a preset: its id, and where a look has landed, the look and the scene.
+/// What a JSON object says of a preset: its id, and where a look has landed, the look and the
+/// scene.
 pub fn named(preset_file: &PresetFile, mut object: serde_json::Value) -> serde_json::Value {
     object["preset"] = preset_file.id.clone().into();
     if let Some(look) = &preset_file.look {
@@ -91,5 +128,8 @@ pub fn named(preset_file: &PresetFile, mut object: serde_json::Value) -> serde_j
 
 /// The path of a preset on disk, or the id of a built-in one.
 pub fn gallery_name(entry: &GalleryEntry) -> String {
-    entry.path.as_ref().map_or_else(|| entry.id.clone(), |path| path.to_string_lossy().into_owned())
+    entry.path.as_ref().map_or_else(
+        || entry.id.clone(),
+        |path| path.to_string_lossy().into_owned(),
+    )
 }

@@ -1,4 +1,5 @@
-//! `parts`: the materials, nodes and meshes of a scene, each as the pattern that limits an effect to it.
+//! `parts`: the materials, nodes and meshes of a scene, each as the pattern that limits an effect
+//! to it.
 
 use serde_json::{Value, json};
 
@@ -33,13 +34,29 @@ fn part_json(part: &Part) -> Value {
 /// A table per kind; nodes are indented below their parents.
 fn text(parts: &[Part]) -> String {
     let of_kind = |kind: PartKind| {
-        let mut rows = vec![[kind.name().to_uppercase().as_str(), "DRAWS", "TRIANGLES"].map(str::to_owned).to_vec()];
+        let mut rows = vec![
+            [kind.name().to_uppercase().as_str(), "DRAWS", "TRIANGLES"]
+                .map(str::to_owned)
+                .to_vec(),
+        ];
         let of_kind = parts.iter().filter(|part| part.kind == kind);
         rows.extend(of_kind.map(|part| {
-            vec![format!("{}{}", "  ".repeat(part.depth), part.pattern()), part.instances.to_string(), part.triangles.to_string()]
+            vec![
+                format!("{}{}", "  ".repeat(part.depth), part.pattern()),
+                part.instances.to_string(),
+                part.triangles.to_string(),
+            ]
         }));
-        if rows.len() > 1 { Some(table(&rows)) } else { None }
+        if rows.len() > 1 {
+            Some(table(&rows))
+        } else {
+            None
+        }
     };
     let tables: Vec<String> = PartKind::ALL.into_iter().filter_map(of_kind).collect();
-    if tables.is_empty() { "the scene draws nothing\n".into() } else { tables.join("\n") }
+    if tables.is_empty() {
+        "the scene draws nothing\n".into()
+    } else {
+        tables.join("\n")
+    }
 }

@@ -17,14 +17,28 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
     let to_stdout = args.output == "-";
     files::check_picture_name(&args.output)?;
     if to_stdout && (streams.json || args.inputs.len() > 1) {
-        return Err(CliError::usage("-o - writes one PNG to stdout; leave out --json and name one preset"));
+        return Err(CliError::usage(
+            "-o - writes one PNG to stdout; leave out --json and name one preset",
+        ));
     }
-    if args.inputs.len() > 1 && !(files::has_preset(&args.output)? || files::has_number(&args.output)?) {
-        return Err(CliError::usage(format!("{}: put {{preset}} or {{n}} into the name, since there are several presets", args.output)));
+    if args.inputs.len() > 1
+        && !(files::has_preset(&args.output)? || files::has_number(&args.output)?)
+    {
+        return Err(CliError::usage(format!(
+            "{}: put {{preset}} or {{n}} into the name, since there are several presets",
+            args.output
+        )));
     }
     check_arrays(args)?;
-    let preset_files = args.inputs.iter().map(|what| open_with_flags(common, args, what)).collect::<Result<Vec<_>, _>>()?;
-    preset_files.iter().flat_map(PresetFile::remarks).for_each(|remark| streams.note(&remark));
+    let preset_files = args
+        .inputs
+        .iter()
+        .map(|what| open_with_flags(common, args, what))
+        .collect::<Result<Vec<_>, _>>()?;
+    preset_files
+        .iter()
+        .flat_map(PresetFile::remarks)
+        .for_each(|remark| streams.note(&remark));
     let mut backend = Backend::open(common, streams)?;
     // Existing files are reported before anything is drawn.
     let picture = (!to_stdout).then_some(&args.output);
@@ -43,8 +57,11 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
         scene.notes.iter().for_each(|note| streams.note(note));
         let frame = backend.frame(&preset_file.preset, &scene)?;
         let names = names(preset_file, &backend);
-        let saved =
-            if to_stdout { preset_file.clone() } else { preset_file.for_picture(&files::target(&args.output, &names, common.force)?) };
+        let saved = if to_stdout {
+            preset_file.clone()
+        } else {
+            preset_file.for_picture(&files::target(&args.output, &names, common.force)?)
+        };
         let png = if args.bare {
             preset_file::png_bytes(&frame.color, [frame.width, frame.height])?
         } else {
@@ -53,14 +70,35 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
         bar.inc(1);
         let mut written = Vec::new();
         if !to_stdout {
-            written.push(("file", files::create(&args.output, &names, common.force, &png)?));
+            written.push((
+                "file",
+                files::create(&args.output, &names, common.force, &png)?,
+            ));
         }
         if let Some(template) = &args.triangle_ids {
-            written.push(("triangle_ids", files::create(template, &names, common.force, &arrays::triangle_ids(&frame))?));
+            written.push((
+                "triangle_ids",
+                files::create(
+                    template,
+                    &names,
+                    common.force,
+                    &arrays::triangle_ids(&frame),
+                )?,
+            ));
         }
         if let Some(template) = &args.depths {
-            let view = preset_file.preset.view(&scene, preset_file.preset.output.size);
-            written.push(("depths", files::create(template, &names, common.force, &arrays::depths(&frame, &view))?));
+            let view = preset_file
+                .preset
+                .view(&scene, preset_file.preset.output.size);
+            written.push((
+                "depths",
+                files::create(
+                    template,
+                    &names,
+                    common.force,
+                    &arrays::depths(&frame, &view),
+                )?,
+            ));
         }
         if to_stdout {
             streams.bytes(&png)?;
@@ -84,19 +122,30 @@ pub fn run(common: &Common, args: &Render, streams: &mut Streams) -> Result<Exit
 
 /// Refuses names of arrays that cannot hold one array for each preset.
 fn check_arrays(args: &Render) -> Result<(), CliError> {
-    let arrays = [("--triangle-ids", &args.triangle_ids), ("--depths", &args.depths)];
+    let arrays = [
+        ("--triangle-ids", &args.triangle_ids),
+        ("--depths", &args.depths),
+    ];
     let mut taken = vec![("-o", &args.output)];
-    for (flag, template) in arrays.iter().filter_map(|(flag, template)| Some((*flag, template.as_ref()?))) {
+    for (flag, template) in arrays
+        .iter()
+        .filter_map(|(flag, template)| Some((*flag, template.as_ref()?)))
+    {
         if template == "-" {
-            return Err(CliError::usage(format!("{flag} -: arrays are written to files; name one, such as {{preset}}.npy")));
+            return Err(CliError::usage(format!(
+                "{flag} -: arrays are written to files; name one, such as {{preset}}.npy"
+            )));
         }
-        if args.inputs.len() > 1 && !(files::has_preset(template)? || files::has_number(template)?) {
+        if args.inputs.len() > 1 && !(files::has_preset(template)? || files::has_number(template)?)
+        {
             return Err(CliError::usage(format!(
                 "{flag} {template}: put {{preset}} or {{n}} into the name, since there are several presets"
             )));
         }
         if let Some((other, _)) = taken.iter().find(|(_, name)| *name == template) {
-            return Err(CliError::usage(format!("{flag} {template}: {other} names the same file; give each its own")));
+            return Err(CliError::usage(format!(
+                "{flag} {template}: {other} names the same file; give each its own"
+            )));
         }
         taken.push((flag, template));
     }
@@ -122,10 +171,20 @@ fn open_with_flags(common: &Common, args: &Render, what: &str) -> Result<PresetF
 }
 
 pub fn names(preset_file: &PresetFile, backend: &Backend) -> Names {
-    let effects: Vec<_> = preset_file.preset.stack.0.iter().map(|enabled| enabled.effect.name.as_str()).collect();
+    let effects: Vec<_> = preset_file
+        .preset
+        .stack
+        .0
+        .iter()
+        .map(|enabled| enabled.effect.name.as_str())
+        .collect();
     Names {
         preset: preset_file.id.clone(),
-        effect: if effects.is_empty() { "plain".into() } else { effects.join("+") },
+        effect: if effects.is_empty() {
+            "plain".into()
+        } else {
+            effects.join("+")
+        },
         adapter: backend.name().into(),
         tier: preset_file.preset.accuracy.tier.name().into(),
         frame: None,

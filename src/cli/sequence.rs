@@ -15,7 +15,10 @@ use super::{
     streams::Streams,
 };
 use crate::{
-    film::{Film, FilmError, FrameJob, Observer, Outputs, Painter, Production, Schedule, Times, VideoTarget},
+    film::{
+        Film, FilmError, FrameJob, Observer, Outputs, Painter, Production, Schedule, Times,
+        VideoTarget,
+    },
     frame::Frame,
     preset::Preset,
     preset_file::{self, PresetFile, Provenance},
@@ -39,7 +42,10 @@ struct FilmBar(ProgressBar);
 
 impl Observer for FilmBar {
     fn begins(&self, job: &FrameJob) {
-        self.0.set_message(job.path.as_ref().map_or_else(|| format!("frame {}", job.frame), |path| path.display().to_string()));
+        self.0.set_message(job.path.as_ref().map_or_else(
+            || format!("frame {}", job.frame),
+            |path| path.display().to_string(),
+        ));
     }
 
     fn ended(&self, _: &FrameJob) {
@@ -51,33 +57,56 @@ impl From<FilmError> for CliError {
     fn from(error: FilmError) -> Self {
         match error {
             FilmError::Preset(error) => error.into(),
-            FilmError::Exists { .. } => Self::usage(format!("{error}; use --force to overwrite it")),
+            FilmError::Exists { .. } => {
+                Self::usage(format!("{error}; use --force to overwrite it"))
+            }
             FilmError::NotOurs { .. } => Self::usage(format!("{error}; use --force to overwrite")),
-            error => Self { exit: Exit::Usage, error: error.into() },
+            error => Self {
+                exit: Exit::Usage,
+                error: error.into(),
+            },
         }
     }
 }
 
 pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Exit, CliError> {
     let preset_file = open_with_flags(common, args)?;
-    preset_file.remarks().iter().for_each(|remark| streams.note(remark));
-    let times = Times { from_s: args.from, to_s: args.to, fps: args.fps, frames: args.frames.unwrap_or_default() };
+    preset_file
+        .remarks()
+        .iter()
+        .for_each(|remark| streams.note(remark));
+    let times = Times {
+        from_s: args.from,
+        to_s: args.to,
+        fps: args.fps,
+        frames: args.frames.unwrap_or_default(),
+    };
     let schedule = Schedule::new(&times, &preset_file.preset.clock, "--")?;
     if args.count {
         return print_count(&schedule, streams);
     }
     check_template(args, &schedule)?;
     // What is missing for a video is said before anything is drawn.
-    let video = args.video.as_deref().map(|path| VideoTarget::new(path, preset_file.preset.output.size)).transpose()?;
+    let video = args
+        .video
+        .as_deref()
+        .map(|path| VideoTarget::new(path, preset_file.preset.output.size))
+        .transpose()?;
     let scene = scene_of(common, &preset_file, streams)?;
     scene.notes.iter().for_each(|note| streams.note(note));
     let film = Film::new(preset_file, scene, schedule, args.turntable)?;
     let mut backend = Backend::open(common, streams)?;
-    let outputs = Outputs { frames: frame_paths(args, &film, &backend)?, apng: args.apng.clone(), video };
+    let outputs = Outputs {
+        frames: frame_paths(args, &film, &backend)?,
+        apng: args.apng.clone(),
+        video,
+    };
     let mut production = Production::begin(film, outputs, backend.provenance(), common.force)?;
     if !production.other_adapters.is_empty() {
         let adapters = production.other_adapters.join(", ");
-        streams.note(&format!("some of the kept frames were drawn by {adapters}; use --force to draw them again"));
+        streams.note(&format!(
+            "some of the kept frames were drawn by {adapters}; use --force to draw them again"
+        ));
     }
     let bar = FilmBar(streams.progress(production.jobs.len() as u64));
     production.draw(&mut backend, &bar)?;
@@ -85,11 +114,17 @@ pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Ex
     let (kept, schedule) = (production.kept(), &production.film().schedule);
     let drawn = production.jobs.len() - kept;
     let range = if production.jobs.len() < schedule.total as usize {
-        format!(" of {}..{} of {}", schedule.frames.start, schedule.frames.end, schedule.total)
+        format!(
+            " of {}..{} of {}",
+            schedule.frames.start, schedule.frames.end, schedule.total
+        )
     } else {
         String::new()
     };
-    streams.note(&format!("{drawn} {} drawn, {kept} kept{range}", if drawn == 1 { "frame" } else { "frames" }));
+    streams.note(&format!(
+        "{drawn} {} drawn, {kept} kept{range}",
+        if drawn == 1 { "frame" } else { "frames" }
+    ));
     print_results(args, &production, &backend, streams)?;
     Ok(Exit::Done)
 }
@@ -98,7 +133,11 @@ pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Ex
 fn print_count(schedule: &Schedule, streams: &mut Streams) -> Result<Exit, CliError> {
     let count = schedule.frames.len();
     if streams.json {
-        streams.object("sequence", Value::Null, vec![json!({ "frames": count, "total": schedule.total, "fps": schedule.fps })])?;
+        streams.object(
+            "sequence",
+            Value::Null,
+            vec![json!({ "frames": count, "total": schedule.total, "fps": schedule.fps })],
+        )?;
     } else {
         streams.text(&format!("{count}\n"))?;
     }
@@ -124,31 +163,64 @@ fn open_with_flags(common: &Common, args: &Sequence) -> Result<PresetFile, CliEr
 }
 
 fn check_template(args: &Sequence, schedule: &Schedule) -> Result<(), CliError> {
-    let Some(template) = &args.output else { return Ok(()) };
+    let Some(template) = &args.output else {
+        return Ok(());
+    };
     if template == "-" {
-        return Err(CliError::usage("-o -: a sequence has many files; use --apng FILE or --video FILE for a single file"));
+        return Err(CliError::usage(
+            "-o -: a sequence has many files; use --apng FILE or --video FILE for a single file",
+        ));
     }
     if files::has_number(template)? {
-        return Err(CliError::usage(format!("{template}: use {{frame}} instead of {{n}}, so that finished frames are found again")));
+        return Err(CliError::usage(format!(
+            "{template}: use {{frame}} instead of {{n}}, so that finished frames are found again"
+        )));
     }
     if !files::has_frame(template)? && schedule.total > 1 {
-        return Err(CliError::usage(format!("{template}: put {{frame}} into the name, since there are {} frames", schedule.total)));
+        return Err(CliError::usage(format!(
+            "{template}: put {{frame}} into the name, since there are {} frames",
+            schedule.total
+        )));
     }
     Ok(())
 }
 
 /// The files of the frames; empty without `-o`.
-fn frame_paths(args: &Sequence, film: &Film, backend: &Backend) -> Result<Vec<std::path::PathBuf>, CliError> {
-    let Some(template) = &args.output else { return Ok(Vec::new()) };
+fn frame_paths(
+    args: &Sequence,
+    film: &Film,
+    backend: &Backend,
+) -> Result<Vec<std::path::PathBuf>, CliError> {
+    let Some(template) = &args.output else {
+        return Ok(Vec::new());
+    };
     let names = render::names(film.preset_file(), backend);
-    film.schedule.frames.clone().map(|frame| files::frame_path(template, &Names { frame: Some(frame), ..names.clone() })).collect()
+    film.schedule
+        .frames
+        .clone()
+        .map(|frame| {
+            files::frame_path(
+                template,
+                &Names {
+                    frame: Some(frame),
+                    ..names.clone()
+                },
+            )
+        })
+        .collect()
 }
 
-fn print_results(args: &Sequence, production: &Production, backend: &Backend, streams: &mut Streams) -> Result<(), CliError> {
+fn print_results(
+    args: &Sequence,
+    production: &Production,
+    backend: &Backend,
+    streams: &mut Streams,
+) -> Result<(), CliError> {
     let (jobs, film) = (&production.jobs, production.film());
     let (schedule, preset_file) = (&film.schedule, film.preset_file());
     if streams.json {
-        let file = |path: Option<&Path>| path.map_or(Value::Null, |path| json!(path.to_string_lossy()));
+        let file =
+            |path: Option<&Path>| path.map_or(Value::Null, |path| json!(path.to_string_lossy()));
         let row = |job: &FrameJob| {
             let row = json!({
                 "frame": job.frame, "time_s": schedule.time_s(job.frame), "file": file(job.path.as_deref()),
@@ -156,16 +228,26 @@ fn print_results(args: &Sequence, production: &Production, backend: &Backend, st
             });
             named(preset_file, row)
         };
-        let whole =
-            |kind: &str, path: &Path| named(preset_file, json!({ kind: file(Some(path)), "frames": jobs.len(), "fps": schedule.fps }));
+        let whole = |kind: &str, path: &Path| {
+            named(
+                preset_file,
+                json!({ kind: file(Some(path)), "frames": jobs.len(), "fps": schedule.fps }),
+            )
+        };
         let apng = args.apng.iter().map(|path| whole("apng", path));
         let video = args.video.iter().map(|path| whole("video", path));
         let results = jobs.iter().map(row).chain(apng).chain(video).collect();
         streams.object("sequence", backend.json(), results)?;
         return Ok(());
     }
-    let drawn = jobs.iter().filter(|job| !job.is_kept).filter_map(|job| job.path.as_deref());
-    for path in drawn.chain(args.apng.as_deref()).chain(args.video.as_deref()) {
+    let drawn = jobs
+        .iter()
+        .filter(|job| !job.is_kept)
+        .filter_map(|job| job.path.as_deref());
+    for path in drawn
+        .chain(args.apng.as_deref())
+        .chain(args.video.as_deref())
+    {
         streams.text(&format!("{}\n", path.display()))?;
     }
     Ok(())

@@ -8,7 +8,8 @@ use serde_json::{Value, json};
 /// Version of the JSON output.
 pub const JSON_SCHEMA: u32 = 2;
 
-/// Where output goes. stdout is locked and buffered; a closed pipe comes back as an error and never as a panic.
+/// Where output goes. stdout is locked and buffered; a closed pipe comes back as an error and never
+/// as a panic.
 pub struct Streams {
     out: BufWriter<StdoutLock<'static>>,
     quiet: bool,
@@ -20,7 +21,12 @@ pub struct Streams {
 
 impl Streams {
     pub fn new(quiet: bool, json: bool) -> Self {
-        Self { out: BufWriter::new(io::stdout().lock()), quiet, bars: MultiProgress::new(), json }
+        Self {
+            out: BufWriter::new(io::stdout().lock()),
+            quiet,
+            bars: MultiProgress::new(),
+            json,
+        }
     }
 
     /// Data, to stdout.
@@ -46,20 +52,23 @@ impl Streams {
         }
     }
 
-    /// A progress bar of `steps` on stderr that is removed at the end; hidden without a terminal and with `--quiet`.
+    /// A progress bar of `steps` on stderr that is removed at the end; hidden without a terminal
+    /// and with `--quiet`.
     pub fn progress(&self, steps: u64) -> ProgressBar {
         let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
         if self.quiet || dumb || !io::stderr().is_terminal() {
             return ProgressBar::hidden();
         }
-        let style =
-            ProgressStyle::with_template("{bar:32} {pos}/{len}  {eta} left  {msg}").unwrap_or_else(|_| ProgressStyle::default_bar());
+        let style = ProgressStyle::with_template("{bar:32} {pos}/{len}  {eta} left  {msg}")
+            .unwrap_or_else(|_| ProgressStyle::default_bar());
         self.bars.add(ProgressBar::new(steps).with_style(style))
     }
 
-    /// A progress bar of bytes on stderr, as [`Self::progress`]. It appears where the work takes longer than a moment.
+    /// A progress bar of bytes on stderr, as [`Self::progress`]. It appears where the work takes
+    /// longer than a moment.
     pub fn byte_progress(&self) -> ProgressBar {
-        let style = ProgressStyle::with_template("{bar:32} {msg}").unwrap_or_else(|_| ProgressStyle::default_bar());
+        let style = ProgressStyle::with_template("{bar:32} {msg}")
+            .unwrap_or_else(|_| ProgressStyle::default_bar());
         self.progress(0).with_style(style)
     }
 
@@ -84,21 +93,42 @@ pub fn table(rows: &[Vec<String>]) -> String {
 pub struct Columns(Vec<(usize, bool)>);
 
 impl Columns {
-    /// As wide as the widest of these rows, the first of which is the head; a column of numbers is aligned right.
+    /// As wide as the widest of these rows, the first of which is the head; a column of numbers is
+    /// aligned right.
     pub fn of(rows: &[Vec<String>]) -> Self {
         let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
         let cell = |row: &[String], column: usize| row.get(column).cloned().unwrap_or_default();
-        let width = |column| rows.iter().map(|row| cell(row, column).chars().count()).max().unwrap_or(0);
-        let is_number = |text: &str| text.is_empty() || text == "-" || text.starts_with(|c: char| c.is_ascii_digit());
-        let is_right = |column| rows.len() > 1 && rows[1..].iter().all(|row| is_number(&cell(row, column)));
-        Self((0..columns).map(|column| (width(column), is_right(column))).collect())
+        let width = |column| {
+            rows.iter()
+                .map(|row| cell(row, column).chars().count())
+                .max()
+                .unwrap_or(0)
+        };
+        let is_number = |text: &str| {
+            text.is_empty() || text == "-" || text.starts_with(|c: char| c.is_ascii_digit())
+        };
+        let is_right =
+            |column| rows.len() > 1 && rows[1..].iter().all(|row| is_number(&cell(row, column)));
+        Self(
+            (0..columns)
+                .map(|column| (width(column), is_right(column)))
+                .collect(),
+        )
     }
 
     pub fn line(&self, row: &[String]) -> String {
-        let cells = self.0.iter().enumerate().map(|(column, &(width, is_right))| {
-            let text = row.get(column).map_or("", String::as_str);
-            if is_right { format!("{text:>width$}") } else { format!("{text:<width$}") }
-        });
+        let cells = self
+            .0
+            .iter()
+            .enumerate()
+            .map(|(column, &(width, is_right))| {
+                let text = row.get(column).map_or("", String::as_str);
+                if is_right {
+                    format!("{text:>width$}")
+                } else {
+                    format!("{text:<width$}")
+                }
+            });
         format!("{}\n", cells.collect::<Vec<_>>().join("  ").trim_end())
     }
 }
@@ -120,11 +150,17 @@ mod tests {
     #[test]
     fn numbers_stand_right_and_words_left() {
         let row = |cells: [&str; 2]| cells.map(str::to_owned).to_vec();
-        assert_eq!(table(&[row(["preset", "px"]), row(["a", "10"]), row(["facet", "9"])]), "preset  px\na       10\nfacet    9\n");
+        assert_eq!(
+            table(&[row(["preset", "px"]), row(["a", "10"]), row(["facet", "9"])]),
+            "preset  px\na       10\nfacet    9\n"
+        );
     }
 
     #[test]
     fn json_never_says_null_for_a_number() {
-        assert_eq!([number(f64::NAN), number(f64::NEG_INFINITY), number(0.5)], [json!("NaN"), json!("-inf"), json!(0.5)]);
+        assert_eq!(
+            [number(f64::NAN), number(f64::NEG_INFINITY), number(0.5)],
+            [json!("NaN"), json!("-inf"), json!(0.5)]
+        );
     }
 }

@@ -33,15 +33,33 @@ pub fn run(common: &Common, args: &Sweep, streams: &mut Streams) -> Result<Exit,
     let to_stdout = args.output == "-";
     files::check_picture_name(&args.output)?;
     if to_stdout && streams.json {
-        return Err(CliError::usage("-o - writes one PNG to stdout; leave out --json"));
+        return Err(CliError::usage(
+            "-o - writes one PNG to stdout; leave out --json",
+        ));
     }
     let vary = |error: String| CliError::usage(format!("--vary {error}"));
-    let variations = args.vary.iter().map(|text| Variation::parse(text)).collect::<Result<Vec<_>, _>>().map_err(vary)?;
+    let variations = args
+        .vary
+        .iter()
+        .map(|text| Variation::parse(text))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(vary)?;
     let base = open_with_flags(common, args)?;
-    base.remarks().iter().for_each(|remark| streams.note(remark));
+    base.remarks()
+        .iter()
+        .for_each(|remark| streams.note(remark));
     // The reader of values names --set in its errors; here the values come from --vary.
-    let sheet = Sheet::new(&base, &variations).map_err(|error| CliError::usage(error.replacen("--set", "--vary", 1)))?;
-    let title = format!("{}: {}", base.id, variations.iter().map(|variation| variation.path.as_str()).collect::<Vec<_>>().join(", "));
+    let sheet = Sheet::new(&base, &variations)
+        .map_err(|error| CliError::usage(error.replacen("--set", "--vary", 1)))?;
+    let title = format!(
+        "{}: {}",
+        base.id,
+        variations
+            .iter()
+            .map(|variation| variation.path.as_str())
+            .collect::<Vec<_>>()
+            .join(", ")
+    );
     let cell = base.preset.output.size;
     let [width, height] = size_of(sheet.columns, sheet.cells.len(), cell);
     if width.max(height) > MAX_SIDE || width * height > MAX_PIXELS {
@@ -66,8 +84,16 @@ pub fn run(common: &Common, args: &Sweep, streams: &mut Streams) -> Result<Exit,
             Some(shown) => shown,
             None => Shown::new(preset, scene_of(common, &cell.preset_file, streams)?),
         };
-        let frame = backend.frame(preset, &shown.scene).map_err(|error| error.during(cell.caption()))?;
-        drawn.put(index, &Picture { caption: cell.caption(), color: frame.color });
+        let frame = backend
+            .frame(preset, &shown.scene)
+            .map_err(|error| error.during(cell.caption()))?;
+        drawn.put(
+            index,
+            &Picture {
+                caption: cell.caption(),
+                color: frame.color,
+            },
+        );
         scene = Some(shown);
         bar.inc(1);
     }
@@ -107,7 +133,9 @@ fn open_with_flags(common: &Common, args: &Sweep) -> Result<PresetFile, CliError
         preset_file::set(&mut preset_file, "accuracy.tier", tier)?;
     }
     if preset_file.preset.output.size.contains(&0) {
-        return Err(CliError::usage("--size: a sheet needs pictures of at least 1x1 pixels"));
+        return Err(CliError::usage(
+            "--size: a sheet needs pictures of at least 1x1 pixels",
+        ));
     }
     Ok(preset_file)
 }
@@ -122,7 +150,12 @@ struct Shown {
 
 impl Shown {
     fn new(preset: &Preset, scene: Arc<Scene>) -> Self {
-        Self { source: preset.scene.clone(), room: preset.room, ground: preset.ground, scene }
+        Self {
+            source: preset.scene.clone(),
+            room: preset.room,
+            ground: preset.ground,
+            scene,
+        }
     }
 
     fn is_of(&self, preset: &Preset) -> bool {

@@ -1,4 +1,5 @@
-//! `verify`: compares every buffer of each preset with the oracle, with every visibility option of the adapter.
+//! `verify`: compares every buffer of each preset with the oracle, with every visibility option of
+//! the adapter.
 
 use std::{path::Path, sync::Arc};
 
@@ -55,7 +56,8 @@ pub struct Row {
     pub failures: Vec<String>,
     /// What the preset allows to err without saying by how much: pinned options and the tier.
     pub without_budget: Vec<String>,
-    /// Volume with linear skinning, as a fraction of that with dual quaternions; none without skins.
+    /// Volume with linear skinning, as a fraction of that with dual quaternions; none without
+    /// skins.
     volume: Option<f64>,
 }
 
@@ -63,9 +65,16 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
     let preset_files = presets(common, &args.inputs, streams)?;
     let mut backend = Backend::open(common, streams)?;
     if let Some(folder) = &args.output {
-        std::fs::create_dir_all(folder).map_err(|e| CliError::from(e).during(format!("{} cannot be created", folder.display())))?;
+        std::fs::create_dir_all(folder).map_err(|e| {
+            CliError::from(e).during(format!("{} cannot be created", folder.display()))
+        })?;
     }
-    let options = Options { repeats: args.frames - 1, size: args.size, output: args.output.as_deref(), allows_any_band: false };
+    let options = Options {
+        repeats: args.frames - 1,
+        size: args.size,
+        output: args.output.as_deref(),
+        allows_any_band: false,
+    };
     let bar = streams.progress(preset_files.len() as u64);
     let mut rows = Vec::new();
     for preset_file in &preset_files {
@@ -88,7 +97,10 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
     for preset_file in &preset_files {
         let names = judged_by_own_text(&preset_file.preset).join(", ");
         if !names.is_empty() {
-            streams.note(&format!("{}: {names} judged by its own text in f64, everything else by an independent twin", preset_file.id));
+            streams.note(&format!(
+                "{}: {names} judged by its own text in f64, everything else by an independent twin",
+                preset_file.id
+            ));
         }
     }
     rows.iter().filter(|row| row.accuracy.race_pixels > 0).for_each(|row| {
@@ -97,9 +109,11 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
             row.preset, row.option, row.accuracy.race_pixels
         ));
     });
-    rows.iter().filter(|row| row.accuracy.deformed_vertices > 0).for_each(|row| {
-        let a = &row.accuracy;
-        streams.note(&format!(
+    rows.iter()
+        .filter(|row| row.accuracy.deformed_vertices > 0)
+        .for_each(|row| {
+            let a = &row.accuracy;
+            streams.note(&format!(
             "{} with {}: {} deformed vertices, at most {:.5} px and {:.1} ulp from the oracle's{}",
             row.preset,
             row.option,
@@ -111,7 +125,7 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
                 100.0 * fraction
             ))
         ));
-    });
+        });
     rows.iter().filter(|row| row.accuracy.particles > 0).for_each(|row| {
         let a = &row.accuracy;
         streams.note(&format!(
@@ -128,14 +142,27 @@ pub fn run(common: &Common, args: &Verify, streams: &mut Streams) -> Result<Exit
             row.without_budget.join(" and ")
         ));
     }
-    rows.iter()
-        .for_each(|row| row.failures.iter().for_each(|failure| streams.note(&format!("{} with {}: {failure}", row.preset, row.option))));
-    Ok(Exit::failed_if(rows.iter().any(|row| !row.failures.is_empty())))
+    rows.iter().for_each(|row| {
+        row.failures.iter().for_each(|failure| {
+            streams.note(&format!("{} with {}: {failure}", row.preset, row.option))
+        })
+    });
+    Ok(Exit::failed_if(
+        rows.iter().any(|row| !row.failures.is_empty()),
+    ))
 }
 
-/// The effects of a preset that have no independent twin: the oracle evaluates their own text in f64.
+/// The effects of a preset that have no independent twin: the oracle evaluates their own text in
+/// f64.
 fn judged_by_own_text(preset: &Preset) -> Vec<String> {
-    preset.stack.0.iter().map(|enabled| &enabled.effect).filter(|effect| effect.is_of_file()).map(|effect| effect.name.clone()).collect()
+    preset
+        .stack
+        .0
+        .iter()
+        .map(|enabled| &enabled.effect)
+        .filter(|effect| effect.is_of_file())
+        .map(|effect| effect.name.clone())
+        .collect()
 }
 
 /// Compares a preset with the oracle, with every visibility option that it allows.
@@ -151,7 +178,10 @@ pub fn check(
 ) -> Result<Vec<Row>, CliError> {
     let mut preset = preset_file.preset.clone();
     preset.output.size = options.size.unwrap_or(preset.output.size);
-    let (view, stack) = (preset.view(scene, preset.output.size), preset.stack_on(scene));
+    let (view, stack) = (
+        preset.view(scene, preset.output.size),
+        preset.stack_on(scene),
+    );
     let budget = preset.test.clone().unwrap_or_default();
     if let Backend::Gpu(..) = backend {
         // Before anything is drawn.
@@ -161,44 +191,76 @@ pub fn check(
     let (mut rows, mut first): (Vec<Row>, Option<(&str, Frame)>) = (Vec::new(), None);
     for option in backend.options(&preset) {
         let mut pinned = preset.clone();
-        pinned.accuracy.pins = option.map_or(preset.accuracy.pins, |option| preset.accuracy.pins.with(option));
+        pinned.accuracy.pins = option.map_or(preset.accuracy.pins, |option| {
+            preset.accuracy.pins.with(option)
+        });
         let name = option.map_or("exact", Visibility::name);
         let capture = backend.capture(&pinned, scene)?;
         let verdict = backend.judged(scene, &view, &stack, &capture)?;
         // Where wrong triangles are allowed, colors are compared only where the triangle is right.
         let mut expected = verdict.expected.color.clone();
         if budget.max_wrong_triangles > 0 {
-            let wrong = capture.frame.triangle_id.iter().zip(&verdict.expected.triangle_id).enumerate().filter(|(_, (a, b))| a != b);
+            let wrong = capture
+                .frame
+                .triangle_id
+                .iter()
+                .zip(&verdict.expected.triangle_id)
+                .enumerate()
+                .filter(|(_, (a, b))| a != b);
             wrong.for_each(|(i, _)| expected[i] = capture.frame.color[i]);
         }
-        let pixels_over_tolerance = pictures(&capture.frame.color, &expected, budget.max_channel).pixels_over_tolerance;
-        let mut failures = failures(&verdict.report, &budget, pixels_over_tolerance, options.allows_any_band);
+        let pixels_over_tolerance =
+            pictures(&capture.frame.color, &expected, budget.max_channel).pixels_over_tolerance;
+        let mut failures = failures(
+            &verdict.report,
+            &budget,
+            pixels_over_tolerance,
+            options.allows_any_band,
+        );
         failures.extend(scaling_failure(&capture));
         let is_repeatable = preset.stack.is_repeatable() && !preset.accuracy.is_left_to_chance();
         for repeat in 1..=options.repeats {
             if is_repeatable && backend.capture(&pinned, scene)?.frame != capture.frame {
-                failures.push(format!("frame {} is not bit-identical to the first", repeat + 1));
+                failures.push(format!(
+                    "frame {} is not bit-identical to the first",
+                    repeat + 1
+                ));
                 break;
             }
         }
         if let Some((other, frame)) = first.as_ref().filter(|_| is_repeatable) {
             let different = triangle_ids(&capture.frame.triangle_id, &frame.triangle_id).different;
             if different > u64::from(budget.max_wrong_triangles) {
-                failures.push(format!("{different} pixels have another triangle than with {other}"));
+                failures.push(format!(
+                    "{different} pixels have another triangle than with {other}"
+                ));
             }
         }
         if let Some(folder) = options.output {
-            triptych(folder, &format!("{}-{name}", preset_file.id), &verdict.expected, &capture.frame, common.force)?;
+            triptych(
+                folder,
+                &format!("{}-{name}", preset_file.id),
+                &verdict.expected,
+                &capture.frame,
+                common.force,
+            )?;
         }
         rows.push(Row {
             preset: preset_file.id.clone(),
-            landed: preset_file.look.as_ref().map(|look| [look.id.clone(), preset_file.scene_name()]),
+            landed: preset_file
+                .look
+                .as_ref()
+                .map(|look| [look.id.clone(), preset_file.scene_name()]),
             judged_by_own_text: judged_by_own_text(&preset),
             option: name,
             accuracy: verdict.report,
             pixels_over_tolerance,
             frames: 1 + options.repeats,
-            without_budget: if failures.is_empty() { Vec::new() } else { without_budget(&preset, pixels_over_tolerance) },
+            without_budget: if failures.is_empty() {
+                Vec::new()
+            } else {
+                without_budget(&preset, pixels_over_tolerance)
+            },
             failures,
             volume,
         });
@@ -207,16 +269,20 @@ pub fn check(
     Ok(rows)
 }
 
-/// What a preset allows to err although its budget allows no wrong triangle and no wider difference of color. A number of pixels alone is
-/// a budget where these are so few.
+/// What a preset allows to err although its budget allows no wrong triangle and no wider difference
+/// of color. A number of pixels alone is a budget where these are so few.
 fn without_budget(preset: &Preset, pixels_over_tolerance: u64) -> Vec<String> {
-    let (budget, default) = (preset.test.clone().unwrap_or_default(), GoldenTest::default());
+    let (budget, default) = (
+        preset.test.clone().unwrap_or_default(),
+        GoldenTest::default(),
+    );
     let has_pixels = budget.max_pixels > 0 && pixels_over_tolerance > u64::from(budget.max_pixels);
     if has_pixels || budget.max_wrong_triangles > 0 || budget.max_channel > default.max_channel {
         return Vec::new();
     }
     let accuracy = &preset.accuracy;
-    let tier = (accuracy.tolerance().wrong_ppm > 0.0).then(|| format!("tier={}", accuracy.tier.name()));
+    let tier =
+        (accuracy.tolerance().wrong_ppm > 0.0).then(|| format!("tier={}", accuracy.tier.name()));
     accuracy.inexact_pins().chain(tier).collect()
 }
 
@@ -224,10 +290,18 @@ fn without_budget(preset: &Preset, pixels_over_tolerance: u64) -> Vec<String> {
 fn scaling_failure(capture: &Capture) -> Option<String> {
     let shown = capture.shown.as_ref()?;
     let drawn = &capture.frame;
-    let right = oracle::resampled(&drawn.color, [drawn.width, drawn.height], [shown.width, shown.height]);
+    let right = oracle::resampled(
+        &drawn.color,
+        [drawn.width, drawn.height],
+        [shown.width, shown.height],
+    );
     let delta = pictures(&shown.color, &right, 1);
-    (delta.pixels_over_tolerance > 0)
-        .then(|| format!("{} scaled pixels differ from the oracle's by up to {} of 255", delta.pixels_over_tolerance, delta.max_delta))
+    (delta.pixels_over_tolerance > 0).then(|| {
+        format!(
+            "{} scaled pixels differ from the oracle's by up to {} of 255",
+            delta.pixels_over_tolerance, delta.max_delta
+        )
+    })
 }
 
 /// Volume with linear skinning, as a fraction of that with dual quaternions; none without skins.
@@ -236,47 +310,92 @@ fn volume_fraction(preset: &Preset, scene: &Scene) -> Result<Option<f64>, CliErr
         return Ok(None);
     }
     let volume = |skinning: Skinning| -> Result<f64, CliError> {
-        let accuracy = crate::preset::AccuracyRequest { pins: preset.accuracy.pins.with(skinning), ..preset.accuracy };
-        let view = Preset { accuracy, ..preset.clone() }.view(scene, [64, 64]);
+        let accuracy = crate::preset::AccuracyRequest {
+            pins: preset.accuracy.pins.with(skinning),
+            ..preset.accuracy
+        };
+        let view = Preset {
+            accuracy,
+            ..preset.clone()
+        }
+        .view(scene, [64, 64]);
         Ok(oracle::volume(scene, &draws(scene, &view)?))
     };
     let (linear, dual) = (volume(Skinning::Linear)?, volume(Skinning::Dual)?);
     Ok((dual != 0.0).then_some(linear / dual))
 }
 
-/// Integers must be exact unless the preset has a budget for wrong triangles; colors have the preset's budget.
-fn failures(accuracy: &ErrorReport, test: &GoldenTest, pixels_over_tolerance: u64, allows_any_band: bool) -> Vec<String> {
+/// Integers must be exact unless the preset has a budget for wrong triangles; colors have the
+/// preset's budget.
+fn failures(
+    accuracy: &ErrorReport,
+    test: &GoldenTest,
+    pixels_over_tolerance: u64,
+    allows_any_band: bool,
+) -> Vec<String> {
     let forgiven = pixels_over_tolerance <= u64::from(test.max_pixels);
     let max_color_delta = if forgiven { u8::MAX } else { test.max_channel };
-    let mut budget = Budget { max_color_delta, max_wrong_triangles: test.max_wrong_triangles.into(), ..Budget::default() };
+    let mut budget = Budget {
+        max_color_delta,
+        max_wrong_triangles: test.max_wrong_triangles.into(),
+        ..Budget::default()
+    };
     if test.max_channel > 1 {
         budget.max_rounding_fraction = 1.0;
     }
     if allows_any_band {
-        budget = Budget { max_depth_band_pixels: u64::MAX, max_step_band_fraction: f64::INFINITY, ..budget };
+        budget = Budget {
+            max_depth_band_pixels: u64::MAX,
+            max_step_band_fraction: f64::INFINITY,
+            ..budget
+        };
     }
-    accuracy.within(&budget).err().map_or_else(Vec::new, |reasons| reasons.split("; ").map(str::to_owned).collect())
+    accuracy
+        .within(&budget)
+        .err()
+        .map_or_else(Vec::new, |reasons| {
+            reasons.split("; ").map(str::to_owned).collect()
+        })
 }
 
 /// Writes expected, actual and difference side by side; pixels with another triangle are magenta.
-fn triptych(folder: &Path, name: &str, expected: &Frame, actual: &Frame, force: bool) -> Result<(), CliError> {
+fn triptych(
+    folder: &Path,
+    name: &str,
+    expected: &Frame,
+    actual: &Frame,
+    force: bool,
+) -> Result<(), CliError> {
     let mut difference = difference_picture(&expected.color, &actual.color, 16);
-    for (pixel, (a, b)) in difference.iter_mut().zip(expected.triangle_id.iter().zip(&actual.triangle_id)) {
+    for (pixel, (a, b)) in difference
+        .iter_mut()
+        .zip(expected.triangle_id.iter().zip(&actual.triangle_id))
+    {
         if a != b {
             *pixel = [255, 0, 255, 255];
         }
     }
     let width = expected.width.max(1) as usize;
     let sides = [&expected.color, &actual.color, &difference];
-    let rows = (0..expected.height as usize).flat_map(|y| sides.map(|side| side[y * width..][..width].to_vec()));
+    let rows = (0..expected.height as usize)
+        .flat_map(|y| sides.map(|side| side[y * width..][..width].to_vec()));
     let picture: Vec<[u8; 4]> = rows.flatten().collect();
-    let (template, names) = (folder.join("{preset}.png"), Names { preset: name.into(), ..Names::default() });
+    let (template, names) = (
+        folder.join("{preset}.png"),
+        Names {
+            preset: name.into(),
+            ..Names::default()
+        },
+    );
     let png = preset_file::png_bytes(&picture, [expected.width * 3, expected.height])?;
     files::create(&template.to_string_lossy(), &names, force, &png).map(drop)
 }
 
 fn text(rows: &[Row], class: &str) -> String {
-    let head = ["PRESET", "OPTION", "CLASS", "WRONG", "SNAP", "HOLES", "DOUBLE", "NO ID", "OVERFLOW", "STEPS", "MAX", "RMS", "VERDICT"];
+    let head = [
+        "PRESET", "OPTION", "CLASS", "WRONG", "SNAP", "HOLES", "DOUBLE", "NO ID", "OVERFLOW",
+        "STEPS", "MAX", "RMS", "VERDICT",
+    ];
     let mut lines = vec![head.map(str::to_owned).to_vec()];
     lines.extend(rows.iter().map(|row| {
         let a = &row.accuracy;
@@ -310,7 +429,9 @@ fn json_row(row: &Row, backend: &Backend) -> Value {
         "frames": row.frames, "pixels_over_tolerance": row.pixels_over_tolerance, "ok": row.failures.is_empty(), "failures": row.failures,
         "judged_by_own_text": row.judged_by_own_text, "without_budget": row.without_budget,
     });
-    if let (Value::Object(object), Ok(Value::Object(stats))) = (&mut object, serde_json::to_value(&row.accuracy)) {
+    if let (Value::Object(object), Ok(Value::Object(stats))) =
+        (&mut object, serde_json::to_value(&row.accuracy))
+    {
         object.extend(stats);
     }
     if let Some([look, model]) = &row.landed {

@@ -1,4 +1,5 @@
-//! What GPU tests share: devices and renderers, scenes by query, pictures with their verdict, shaders with mistakes.
+//! What GPU tests share: devices and renderers, scenes by query, pictures with their verdict,
+//! shaders with mistakes.
 #![allow(dead_code, unused_imports, reason = "each test file uses its own part")]
 
 use std::{
@@ -18,7 +19,10 @@ pub use rasterlab::stress::{
     exactness,
     matrix::{DEFORMED_SCENES, GALLERY_SCENES, SCENES},
     pinned,
-    scenes::{Rng, SimpleMesh, camera_view, pixel_view, scene_of_meshes, triangle_soup, triangle_soup_in_units},
+    scenes::{
+        Rng, SimpleMesh, camera_view, pixel_view, scene_of_meshes, triangle_soup,
+        triangle_soup_in_units,
+    },
     stack, tunings,
 };
 use rasterlab::{
@@ -35,13 +39,18 @@ use rasterlab::{
     stress,
 };
 
-/// The adapter under test: `RASTERLAB_ADAPTER` (a part of its name) or the best there is. A missing one fails the test;
-/// only `RASTERLAB_GPU=skip` leaves GPU tests out, and says so.
+/// The adapter under test: `RASTERLAB_ADAPTER` (a part of its name) or the best there is. A missing
+/// one fails the test; only `RASTERLAB_GPU=skip` leaves GPU tests out, and says so.
 pub fn gpu() -> Option<Arc<Gpu>> {
     static GPU: OnceLock<Option<Arc<Gpu>>> = OnceLock::new();
     GPU.get_or_init(|| {
         let gpu = own_gpu()?;
-        eprintln!("adapter: {} ({}), caps {}", gpu.summary.name, gpu.summary.driver, gpu.caps.class());
+        eprintln!(
+            "adapter: {} ({}), caps {}",
+            gpu.summary.name,
+            gpu.summary.driver,
+            gpu.caps.class()
+        );
         Some(gpu)
     })
     .clone()
@@ -53,12 +62,18 @@ pub fn own_gpu() -> Option<Arc<Gpu>> {
         eprintln!("RASTERLAB_GPU=skip: GPU tests are left out");
         return None;
     }
-    let choice = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
-    Some(Gpu::open(&choice).block_on().unwrap_or_else(|error| panic!("{error}")))
+    let choice =
+        std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
+    Some(
+        Gpu::open(&choice)
+            .block_on()
+            .unwrap_or_else(|error| panic!("{error}")),
+    )
 }
 
-/// Renderers that tests share: one for each of two tests that draw at the same time. Each has its own device, because a software
-/// adapter runs and compiles the kernels of one device one after the other.
+/// Renderers that tests share: one for each of two tests that draw at the same time. Each has its
+/// own device, because a software adapter runs and compiles the kernels of one device one after the
+/// other.
 struct Pool {
     state: Mutex<PoolState>,
     returned: Condvar,
@@ -70,13 +85,18 @@ struct PoolState {
     lent: usize,
 }
 
-static POOL: LazyLock<Pool> = LazyLock::new(|| Pool { state: Mutex::default(), returned: Condvar::new() });
+static POOL: LazyLock<Pool> = LazyLock::new(|| Pool {
+    state: Mutex::default(),
+    returned: Condvar::new(),
+});
 
 const RENDERERS: usize = 2;
 
 impl Pool {
     fn state(&self) -> MutexGuard<'_, PoolState> {
-        self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+        self.state
+            .lock()
+            .unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 }
 
@@ -102,16 +122,21 @@ impl Drop for Loan {
         let mut state = POOL.state();
         state.lent -= 1;
         // A failed test may leave a renderer half-way: the next test gets a new one.
-        state.idle.extend(self.0.take().filter(|_| !thread::panicking()));
+        state
+            .idle
+            .extend(self.0.take().filter(|_| !thread::panicking()));
         POOL.returned.notify_one();
     }
 }
 
-/// A renderer with the tuning that suits the adapter. Earlier tests may have drawn with it, so it knows their pipelines.
+/// A renderer with the tuning that suits the adapter. Earlier tests may have drawn with it, so it
+/// knows their pipelines.
 pub fn renderer() -> Option<Loan> {
     let first = gpu()?;
-    let mut state =
-        POOL.returned.wait_while(POOL.state(), |state| state.lent == RENDERERS).unwrap_or_else(|poisoned| poisoned.into_inner());
+    let mut state = POOL
+        .returned
+        .wait_while(POOL.state(), |state| state.lent == RENDERERS)
+        .unwrap_or_else(|poisoned| poisoned.into_inner());
     state.lent += 1;
     let idle = state.idle.pop();
     let is_first_free = state.lent == 1;
@@ -119,7 +144,11 @@ pub fn renderer() -> Option<Loan> {
     let mut loan = Loan(None);
     loan.0 = match idle {
         Some(renderer) => Some(renderer),
-        None => Some(Renderer::new(if is_first_free { first } else { own_gpu()? })),
+        None => Some(Renderer::new(if is_first_free {
+            first
+        } else {
+            own_gpu()?
+        })),
     };
     let tuning = loan.gpu().caps.tuning();
     loan.set_tuning(tuning);
@@ -140,7 +169,11 @@ pub fn quick_option(renderer: &Renderer) -> Visibility {
 pub fn scene(query: &str) -> Arc<Scene> {
     const LARGE: u64 = 100_000;
     static BUILT: Mutex<BTreeMap<String, Arc<Scene>>> = Mutex::new(BTreeMap::new());
-    let built = || BUILT.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    let built = || {
+        BUILT
+            .lock()
+            .unwrap_or_else(|poisoned| poisoned.into_inner())
+    };
     if let Some(scene) = built().get(query) {
         return scene.clone();
     }
@@ -153,11 +186,21 @@ pub fn scene(query: &str) -> Arc<Scene> {
 
 /// A scene as a preset without a camera shows it.
 pub fn view(scene: &Scene, size: [u32; 2]) -> View {
-    Preset { scene: SceneSource::Builtin(scene.name.clone()), ..Preset::default() }.view(scene, size)
+    Preset {
+        scene: SceneSource::Builtin(scene.name.clone()),
+        ..Preset::default()
+    }
+    .view(scene, size)
 }
 
 /// Draws and judges.
-pub fn judged(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> (Capture, Verdict) {
+pub fn judged(
+    renderer: &mut Renderer,
+    scene: &Arc<Scene>,
+    view: &View,
+    stack: &Stack,
+    accuracy: &AccuracyRequest,
+) -> (Capture, Verdict) {
     let capture = captured(renderer, scene, view, stack, accuracy);
     let verdict = verdict(scene, view, stack, &capture);
     (capture, verdict)
@@ -172,47 +215,77 @@ struct Judged {
     verdict: Verdict,
 }
 
-/// What the judge says about a picture. Options and tunings that draw the same picture to the last bit, geometry included, are judged
-/// once: the verdict follows from nothing else.
+/// What the judge says about a picture. Options and tunings that draw the same picture to the last
+/// bit, geometry included, are judged once: the verdict follows from nothing else.
 pub fn verdict(scene: &Arc<Scene>, view: &View, stack: &Stack, capture: &Capture) -> Verdict {
     /// Pixels of all stored verdicts together.
     const MOST_PIXELS: usize = 1 << 20;
     static LATEST: Mutex<VecDeque<Judged>> = Mutex::new(VecDeque::new());
-    let latest = || LATEST.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    let latest = || {
+        LATEST
+            .lock()
+            .unwrap_or_else(|poisoned| poisoned.into_inner())
+    };
     let is_same = |judged: &&Judged| {
         let (a, b) = (&judged.capture, capture);
         Arc::ptr_eq(&judged.scene, scene)
             && (&judged.view, &judged.stack) == (view, stack)
-            && (&a.frame, &a.geometry, &a.layers, &a.previous) == (&b.frame, &b.geometry, &b.layers, &b.previous)
+            && (&a.frame, &a.geometry, &a.layers, &a.previous)
+                == (&b.frame, &b.geometry, &b.layers, &b.previous)
     };
     // The judge compares strict vertices bit by bit, but `==` does not tell 0.0 from -0.0.
     let is_by_bits = capture.geometry.bit_exact.vertices;
     if !is_by_bits && let Some(same) = latest().iter().find(is_same) {
         return same.verdict.clone();
     }
-    let verdict = oracle::judge(scene, view, stack, &capture.picture()).unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+    let verdict = oracle::judge(scene, view, stack, &capture.picture())
+        .unwrap_or_else(|error| panic!("{}: {error}", scene.name));
     let mut latest = latest();
     let mut pixels = view.pixels();
     latest.retain(|judged| {
         pixels += judged.view.pixels();
         pixels <= MOST_PIXELS
     });
-    let judged = Judged { scene: scene.clone(), view: view.clone(), stack: stack.clone(), capture: capture.clone(), verdict };
+    let judged = Judged {
+        scene: scene.clone(),
+        view: view.clone(),
+        stack: stack.clone(),
+        capture: capture.clone(),
+        verdict,
+    };
     let verdict = judged.verdict.clone();
     latest.push_front(judged);
     verdict
 }
 
 /// Draws without judging.
-pub fn captured(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Capture {
-    stress::captured(renderer, scene, view, stack, accuracy).unwrap_or_else(|error| panic!("{error}"))
+pub fn captured(
+    renderer: &mut Renderer,
+    scene: &Arc<Scene>,
+    view: &View,
+    stack: &Stack,
+    accuracy: &AccuracyRequest,
+) -> Capture {
+    stress::captured(renderer, scene, view, stack, accuracy)
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The picture of a preset, after those that lead up to it, with its verdict.
-pub fn judged_preset(renderer: &mut Renderer, scene: &Arc<Scene>, preset: &Preset, accuracy: &AccuracyRequest) -> (Capture, Verdict) {
+pub fn judged_preset(
+    renderer: &mut Renderer,
+    scene: &Arc<Scene>,
+    preset: &Preset,
+    accuracy: &AccuracyRequest,
+) -> (Capture, Verdict) {
     let moments = preset.moments(scene, preset.output.size);
-    renderer.set_scene(scene).block_on().unwrap_or_else(|error| panic!("{}: {error}", scene.name));
-    let capture = renderer.capture_last(&moments, accuracy).block_on().unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+    renderer
+        .set_scene(scene)
+        .block_on()
+        .unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+    let capture = renderer
+        .capture_last(&moments, accuracy)
+        .block_on()
+        .unwrap_or_else(|error| panic!("{}: {error}", scene.name));
     let (view, stack) = moments.last().expect("a preset shows a moment");
     let verdict = verdict(scene, view, stack, &capture);
     (capture, verdict)
@@ -229,12 +302,15 @@ pub fn exact(
 ) -> (Capture, Verdict) {
     let (capture, verdict) = judged(renderer, scene, view, stack, accuracy);
     if let Err(faults) = exactness(&verdict.report) {
-        panic!("{what}: {faults}\n{:?}\n{:?}", verdict.report, capture.frame.counters);
+        panic!(
+            "{what}: {faults}\n{:?}\n{:?}",
+            verdict.report, capture.frame.counters
+        );
     }
     (capture, verdict)
 }
 
-// ---------------------------------------------------------------- mutants
+// -------- mutants
 
 /// Shaders with one mistake, in a folder that lasts as long as this.
 pub struct Mutated(tempfile::TempDir);
@@ -253,10 +329,19 @@ impl Mutated {
     pub fn and(self, from: &str, to: &str) -> Self {
         let mut files = Vec::new();
         files_below(self.0.path(), &mut files);
-        let texts = files.into_iter().map(|path| (fs::read_to_string(&path).expect("a shader is read"), path));
+        let texts = files
+            .into_iter()
+            .map(|path| (fs::read_to_string(&path).expect("a shader is read"), path));
         let found: Vec<_> = texts.filter(|(text, _)| text.contains(from)).collect();
-        let [(text, path)] = &found[..] else { panic!("{from:?} stands in {} shader files", found.len()) };
-        assert_eq!(text.matches(from).count(), 1, "{from:?} in {}", path.display());
+        let [(text, path)] = &found[..] else {
+            panic!("{from:?} stands in {} shader files", found.len())
+        };
+        assert_eq!(
+            text.matches(from).count(),
+            1,
+            "{from:?} in {}",
+            path.display()
+        );
         fs::write(path, text.replace(from, to)).expect("a shader is written");
         self
     }
@@ -275,7 +360,11 @@ pub fn own_shaders() -> Mutated {
 fn files_below(folder: &Path, files: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).expect("a folder of shaders can be read") {
         let path = entry.expect("a folder of shaders can be read").path();
-        if path.is_dir() { files_below(&path, files) } else { files.push(path) }
+        if path.is_dir() {
+            files_below(&path, files)
+        } else {
+            files.push(path)
+        }
     }
 }
 

@@ -5,7 +5,10 @@ use std::{fs, path::Path};
 /// A copy of the project's shaders.
 pub fn copied() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    copy_folder(&Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders"), folder.path());
+    copy_folder(
+        &Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders"),
+        folder.path(),
+    );
     folder
 }
 

@@ -1,5 +1,5 @@
-//! Promise: the GPU is within each stated tolerance of the oracle, and a kernel with any of the classic mistakes is not.
-//! Needs an adapter.
+//! Promise: the GPU is within each stated tolerance of the oracle, and a kernel with any of the
+//! classic mistakes is not. Needs an adapter.
 
 use std::sync::Arc;
 
@@ -26,47 +26,124 @@ use crate::common::*;
 fn viewpoints() -> Vec<(String, Arc<Scene>, View)> {
     const SIZE: [u32; 2] = [200, 150];
     let mut cases: Vec<(String, Arc<Scene>, View)> = Vec::new();
-    let mut add =
-        |what: &str, scene: &Arc<Scene>, camera: &Camera| cases.push((what.into(), scene.clone(), camera_view(scene, camera, SIZE)));
+    let mut add = |what: &str, scene: &Arc<Scene>, camera: &Camera| {
+        cases.push((what.into(), scene.clone(), camera_view(scene, camera, SIZE)))
+    };
     let double_sided = |query: &str| {
         let mut scene = Scene::clone(&scene(query));
-        scene.materials.iter_mut().for_each(|material| material.double_sided = true);
+        scene
+            .materials
+            .iter_mut()
+            .for_each(|material| material.double_sided = true);
         Arc::new(scene)
     };
 
     let shell = double_sided("sphere?triangles=3000");
-    add("inside the mesh", &shell, &Camera { eye: DVec3::new(0.2, -0.1, 0.3), target: DVec3::X, ..Camera::default() });
-    let close = Camera { eye: DVec3::new(0.0, 0.0, 0.97), target: DVec3::new(0.3, 0.2, 0.9), near_m: 1e-4, ..Camera::default() };
+    add(
+        "inside the mesh",
+        &shell,
+        &Camera {
+            eye: DVec3::new(0.2, -0.1, 0.3),
+            target: DVec3::X,
+            ..Camera::default()
+        },
+    );
+    let close = Camera {
+        eye: DVec3::new(0.0, 0.0, 0.97),
+        target: DVec3::new(0.3, 0.2, 0.9),
+        near_m: 1e-4,
+        ..Camera::default()
+    };
     add("in the mesh's skin", &shell, &close);
 
     let (teapot, knot) = (scene("teapot?tess=5"), scene("knot?tess=6"));
-    let flat = Camera { projection: Projection::Orthographic { height_m: 2.4 }, ..Camera::default() };
+    let flat = Camera {
+        projection: Projection::Orthographic { height_m: 2.4 },
+        ..Camera::default()
+    };
     add("orthographic", &teapot, &flat);
-    add("orthographic from above", &knot, &Camera { eye: DVec3::Y * 5.0, up: DVec3::NEG_Z, ..flat });
-    add("orthographic, eye inside", &knot, &Camera { eye: DVec3::Z * 0.1, ..flat });
-    let wide = Camera { projection: Projection::Perspective { fov_y_deg: 150.0 }, ..Camera::default() };
-    add("fisheye", &teapot, &Camera { eye: DVec3::new(0.3, 0.6, 1.2), ..wide });
-    add("telescope", &knot, &Camera { eye: DVec3::Z * 400.0, projection: Projection::Perspective { fov_y_deg: 0.3 }, ..wide });
-    add("looking away", &knot, &Camera { eye: DVec3::Z * 4.0, target: DVec3::Z * 8.0, ..Camera::default() });
+    add(
+        "orthographic from above",
+        &knot,
+        &Camera {
+            eye: DVec3::Y * 5.0,
+            up: DVec3::NEG_Z,
+            ..flat
+        },
+    );
+    add(
+        "orthographic, eye inside",
+        &knot,
+        &Camera {
+            eye: DVec3::Z * 0.1,
+            ..flat
+        },
+    );
+    let wide = Camera {
+        projection: Projection::Perspective { fov_y_deg: 150.0 },
+        ..Camera::default()
+    };
+    add(
+        "fisheye",
+        &teapot,
+        &Camera {
+            eye: DVec3::new(0.3, 0.6, 1.2),
+            ..wide
+        },
+    );
+    add(
+        "telescope",
+        &knot,
+        &Camera {
+            eye: DVec3::Z * 400.0,
+            projection: Projection::Perspective { fov_y_deg: 0.3 },
+            ..wide
+        },
+    );
+    add(
+        "looking away",
+        &knot,
+        &Camera {
+            eye: DVec3::Z * 4.0,
+            target: DVec3::Z * 8.0,
+            ..Camera::default()
+        },
+    );
 
     for query in ["grid?cell=3&width=200&height=150", "near", "stack", "fan"] {
         let scene = scene(query);
         for camera in &scene.cameras {
-            add(&format!("{query}, its camera {:?}", camera.name), &scene, &camera.pose);
+            add(
+                &format!("{query}, its camera {:?}", camera.name),
+                &scene,
+                &camera.pose,
+            );
         }
     }
 
-    // Far from the origin: as a placement, which the matrices take care of, and in the vertices themselves.
+    // Far from the origin: as a placement, which the matrices take care of, and in the vertices
+    // themselves.
     let offset = DVec3::new(1e4, -2e4, 1e4);
-    let far = Camera { eye: offset + DVec3::new(1.0, 1.0, 4.0), target: offset, ..Camera::default() };
+    let far = Camera {
+        eye: offset + DVec3::new(1.0, 1.0, 4.0),
+        target: offset,
+        ..Camera::default()
+    };
     let mut placed = Scene::clone(&knot);
     placed.instances[0].world_from_object = DMat4::from_translation(offset);
     add("placed far away", &Arc::new(placed.clone()), &far);
     placed.instances[0].world_from_object *= DMat4::from_scale(DVec3::new(-1.0, 1.5, 0.5));
     add("mirrored far away", &Arc::new(placed), &far);
     add("modelled far away", &Arc::new(moved(&knot, offset)), &far);
-    let tall = Camera { projection: Projection::Orthographic { height_m: 3.0 }, ..far };
-    add("modelled far away, orthographic", &Arc::new(moved(&knot, offset)), &tall);
+    let tall = Camera {
+        projection: Projection::Orthographic { height_m: 3.0 },
+        ..far
+    };
+    add(
+        "modelled far away, orthographic",
+        &Arc::new(moved(&knot, offset)),
+        &tall,
+    );
     cases
 }
 
@@ -78,7 +155,8 @@ fn moved(scene: &Scene, offset: DVec3) -> Scene {
         let p = scene.primitives[0].position(&scene, vertex);
         for (lane, (p, offset)) in p.into_iter().zip(offset.to_array()).enumerate() {
             let at = (positions.offset + vertex * positions.stride) as usize + 4 * lane;
-            scene.vertex_bytes[at..at + 4].copy_from_slice(&((f64::from(p) + offset) as f32).to_le_bytes());
+            scene.vertex_bytes[at..at + 4]
+                .copy_from_slice(&((f64::from(p) + offset) as f32).to_le_bytes());
         }
     }
     let bounds = &mut scene.primitives[0].bounds;
@@ -89,44 +167,78 @@ fn moved(scene: &Scene, offset: DVec3) -> Scene {
 
 #[test]
 fn every_viewpoint_is_within_tolerance() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let (options, stack) = (options(&renderer), stack(&["facet", "depth", "lambert"]));
     for (turn, (what, scene, view)) in viewpoints().into_iter().enumerate() {
         let option = options[turn % options.len()];
-        let (capture, verdict) = exact(&mut renderer, &scene, &view, &stack, &pinned(option), &format!("{what}, {}", option.name()));
+        let (capture, verdict) = exact(
+            &mut renderer,
+            &scene,
+            &view,
+            &stack,
+            &pinned(option),
+            &format!("{what}, {}", option.name()),
+        );
         match what.as_str() {
-            "inside the mesh" | "in the mesh's skin" => assert_eq!(capture.frame.covered(), view.pixels(), "{what}"),
+            "inside the mesh" | "in the mesh's skin" => {
+                assert_eq!(capture.frame.covered(), view.pixels(), "{what}")
+            }
             "looking away" => assert_eq!(capture.frame.covered(), 0, "{what}"),
-            _ => assert!(capture.frame.covered() > 500, "{what}: {} pixels", capture.frame.covered()),
+            _ => assert!(
+                capture.frame.covered() > 500,
+                "{what}: {} pixels",
+                capture.frame.covered()
+            ),
         }
         if what == "placed far away" {
-            assert!(verdict.report.max_snap_delta <= 1, "{what}: camera and placement meet in f64");
+            assert!(
+                verdict.report.max_snap_delta <= 1,
+                "{what}: camera and placement meet in f64"
+            );
         }
     }
 }
 
-// ---------------------------------------------------------------- dense grids
+// -------- dense grids
 
 #[test]
 fn the_beginners_kernel_leaves_thousands_of_holes_in_dense_grids() {
-    let Some(mut renderer) = renderer() else { return };
-    for (query, naive_holes) in [("grid?cell=1", 5_000..40_000), ("grid?cell=0.4", 65_000..65_537)] {
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
+    for (query, naive_holes) in [
+        ("grid?cell=1", 5_000..40_000),
+        ("grid?cell=0.4", 65_000..65_537),
+    ] {
         let scene = scene(query);
         for camera in scene.cameras.iter().map(|camera| camera.pose) {
             let view = camera_view(&scene, &camera, [256, 256]);
-            captured(&mut renderer, &scene, &view, &stack(&[]), &AccuracyRequest::default());
+            captured(
+                &mut renderer,
+                &scene,
+                &view,
+                &stack(&[]),
+                &AccuracyRequest::default(),
+            );
             let key = renderer.key().expect("something was drawn").clone();
             let gpu = renderer.gpu().clone();
-            let naive = Naive::new(&gpu, &scene, &view, &key, Viewport::Folded).block_on().and_then(|naive| naive.picture(&gpu).block_on());
+            let naive = Naive::new(&gpu, &scene, &view, &key, Viewport::Folded)
+                .block_on()
+                .and_then(|naive| naive.picture(&gpu).block_on());
             let picture = naive.unwrap_or_else(|error| panic!("{query}: {error}"));
             let holes = picture.iter().filter(|pixel| pixel[3] == 0).count();
             eprintln!("{query}: the naive kernel leaves {holes} holes in 65,536 samples");
-            assert!(naive_holes.contains(&holes), "{query}: {holes} holes of the naive kernel");
+            assert!(
+                naive_holes.contains(&holes),
+                "{query}: {holes} holes of the naive kernel"
+            );
         }
     }
 }
 
-// ---------------------------------------------------------------- mutants of the kernels
+// -------- mutants of the kernels
 
 /// A kernel with one mistake, and a picture that must give it away.
 struct Mutant {
@@ -161,7 +273,12 @@ fn mutants() -> Vec<Mutant> {
     // A ground from 1 m to 41 m, dark at one end.
     let receding = || {
         let (near, far) = (-1.0f32, -41.0);
-        let [a, b, c, d] = [[-3.0, -0.6, near], [3.0, -0.6, near], [3.0, -0.6, far], [-3.0, -0.6, far]];
+        let [a, b, c, d] = [
+            [-3.0, -0.6, near],
+            [3.0, -0.6, near],
+            [3.0, -0.6, far],
+            [-3.0, -0.6, far],
+        ];
         let (dark, light) = ([0.0, 0.0, 0.0, 1.0], [1.0, 1.0, 1.0, 1.0]);
         let part = SimpleMesh {
             positions: vec![a, b, c, a, c, d],
@@ -170,14 +287,24 @@ fn mutants() -> Vec<Mutant> {
             ..SimpleMesh::default()
         };
         let scene = scene_of_meshes(&[part]);
-        let camera =
-            Camera { eye: DVec3::ZERO, target: DVec3::NEG_Z, projection: Projection::Perspective { fov_y_deg: 90.0 }, ..Camera::default() };
+        let camera = Camera {
+            eye: DVec3::ZERO,
+            target: DVec3::NEG_Z,
+            projection: Projection::Perspective { fov_y_deg: 90.0 },
+            ..Camera::default()
+        };
         let view = camera_view(&scene, &camera, [128, 96]);
         (scene, view)
     };
     // Its upper edge spans the guard band, so edge functions in the picture pass 2^39.
     let vast = || {
-        (scene_of_meshes(&[triangle_soup_in_units(&[([[-8_388_607, 10], [8_388_607, 10], [0, 8_388_607]], 0.5)])]), pixel_view(256, 256))
+        (
+            scene_of_meshes(&[triangle_soup_in_units(&[(
+                [[-8_388_607, 10], [8_388_607, 10], [0, 8_388_607]],
+                0.5,
+            )])]),
+            pixel_view(256, 256),
+        )
     };
     let mutant = |what, from, to, (scene, view): (Arc<Scene>, View), shown_by| Mutant {
         what,
@@ -191,11 +318,27 @@ fn mutants() -> Vec<Mutant> {
     // Edges that pass samples at a doubled area of 1.
     let close = || {
         let mut rng = Rng(1);
-        let triangles: Vec<_> = (0..400).map(|i| (near_miss_triangle(&mut rng, 128 * 256, [64, 64]), 0.1 + 0.002 * i as f32)).collect();
-        (scene_of_meshes(&[triangle_soup_in_units(&triangles)]), pixel_view(64, 64))
+        let triangles: Vec<_> = (0..400)
+            .map(|i| {
+                (
+                    near_miss_triangle(&mut rng, 128 * 256, [64, 64]),
+                    0.1 + 0.002 * i as f32,
+                )
+            })
+            .collect();
+        (
+            scene_of_meshes(&[triangle_soup_in_units(&triangles)]),
+            pixel_view(64, 64),
+        )
     };
     vec![
-        mutant("bias 0 everywhere", "return select(1, 0, d.y < 0 || (d.y == 0 && d.x > 0));", "return 0;", ties(), DOUBLES),
+        mutant(
+            "bias 0 everywhere",
+            "return select(1, 0, d.y < 0 || (d.y == 0 && d.x > 0));",
+            "return 0;",
+            ties(),
+            DOUBLES,
+        ),
         mutant(
             "float edges",
             "coverage.row = dx * from_y - dy * from_x - bias;",
@@ -210,7 +353,13 @@ fn mutants() -> Vec<Mutant> {
             sizes(),
             TRIANGLE_IDS,
         ),
-        mutant("affine weights", "let terms = select(e * inv_w, e, IS_AFFINE);", "let terms = e;", receding(), COLORS),
+        mutant(
+            "affine weights",
+            "let terms = select(e * inv_w, e, IS_AFFINE);",
+            "let terms = e;",
+            receding(),
+            COLORS,
+        ),
         mutant(
             "the larger id wins ties",
             "atomicMax(&triangle_ids[pixel], ~id);",
@@ -222,9 +371,27 @@ fn mutants() -> Vec<Mutant> {
             builtin("stack?layers=5", [128, 128]),
             TRIANGLE_IDS,
         ),
-        mutant("half of a tile is skipped", "for (var half = 0u;", "for (var half = 1u;", sizes(), HOLES),
-        mutant("saturation at 2^31", "const BLOCK_SATURATED = 1073741824;", "const BLOCK_SATURATED = 2147483647;", vast(), HOLES),
-        mutant("one pixel to the right", "return vec2i(center) +", "return vec2i(256, 0) + vec2i(center) +", ties(), SNAPS),
+        mutant(
+            "half of a tile is skipped",
+            "for (var half = 0u;",
+            "for (var half = 1u;",
+            sizes(),
+            HOLES,
+        ),
+        mutant(
+            "saturation at 2^31",
+            "const BLOCK_SATURATED = 1073741824;",
+            "const BLOCK_SATURATED = 2147483647;",
+            vast(),
+            HOLES,
+        ),
+        mutant(
+            "one pixel to the right",
+            "return vec2i(center) +",
+            "return vec2i(256, 0) + vec2i(center) +",
+            ties(),
+            SNAPS,
+        ),
         mutant(
             "depth of another corner",
             "weights.z * plane.depth.z;",
@@ -289,35 +456,62 @@ const GRAPHICS_CARD: Tuning = Tuning {
     specialized: true,
 };
 
-/// The map of faults shows what the counts count: as many wrong triangle ids, holes and doubles just where there are any, and the
-/// largest difference of color.
+/// The map of faults shows what the counts count: as many wrong triangle ids, holes and doubles
+/// just where there are any, and the largest difference of color.
 fn map_agrees(verdict: &Verdict) -> Result<(), String> {
     let (a, map) = (&verdict.report, &verdict.error_map);
-    let triangle_ids =
-        map.count(PixelError::WrongTriangle) == a.wrong_triangles && map.count(PixelError::WrongDepthOrder) == a.wrong_nearest;
-    let coverage = (map.count(PixelError::Hole) > 0) == (a.holes > 0) && (map.count(PixelError::DoubleHit) > 0) == (a.double_hits > 0);
+    let triangle_ids = map.count(PixelError::WrongTriangle) == a.wrong_triangles
+        && map.count(PixelError::WrongDepthOrder) == a.wrong_nearest;
+    let coverage = (map.count(PixelError::Hole) > 0) == (a.holes > 0)
+        && (map.count(PixelError::DoubleHit) > 0) == (a.double_hits > 0);
     let ties = map.count(PixelError::DepthBand) == a.depth_band_pixels;
     let colors = map.color_delta.iter().max().copied().unwrap_or(0) >= a.max_color_delta;
     let marks = PixelError::ALL.map(|fault| map.count(fault));
-    if triangle_ids && coverage && ties && colors { Ok(()) } else { Err(format!("the map has {marks:?} and the counts say {a:?}")) }
+    if triangle_ids && coverage && ties && colors {
+        Ok(())
+    } else {
+        Err(format!("the map has {marks:?} and the counts say {a:?}"))
+    }
 }
 
 #[test]
 fn kernels_with_a_mistake_are_caught() {
-    let Some(mut healthy) = renderer() else { return };
+    let Some(mut healthy) = renderer() else {
+        return;
+    };
     healthy.set_tuning(GRAPHICS_CARD);
     let mut failures = Vec::new();
     for mutant in mutants() {
-        let Mutant { what, scene, view, option, shown_by: (figure, shown_by), .. } = &mutant;
-        exact(&mut healthy, scene, view, &stack(&[]), &pinned(*option), &format!("without the mistake: {what}"));
+        let Mutant {
+            what,
+            scene,
+            view,
+            option,
+            shown_by: (figure, shown_by),
+            ..
+        } = &mutant;
+        exact(
+            &mut healthy,
+            scene,
+            view,
+            &stack(&[]),
+            &pinned(*option),
+            &format!("without the mistake: {what}"),
+        );
 
         let library = mutated(mutant.from, mutant.to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         wrong.set_tuning(GRAPHICS_CARD);
         let (_, verdict) = judged(&mut wrong, scene, view, &stack(&[]), &pinned(*option));
-        eprintln!("{what}: {}", exactness(&verdict.report).err().unwrap_or_default());
+        eprintln!(
+            "{what}: {}",
+            exactness(&verdict.report).err().unwrap_or_default()
+        );
         if exactness(&verdict.report).is_ok() || shown_by(&verdict.report) == 0 {
-            failures.push(format!("{what} does not show in {figure}: {:?}", verdict.report));
+            failures.push(format!(
+                "{what} does not show in {figure}: {:?}",
+                verdict.report
+            ));
         }
         if let Err(sentence) = map_agrees(&verdict) {
             failures.push(format!("{what}: {sentence}"));

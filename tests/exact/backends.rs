@@ -1,5 +1,5 @@
-//! Promise: every visibility backend, every size class and every order of the triangles gives the same picture, every
-//! time. Needs an adapter.
+//! Promise: every visibility backend, every size class and every order of the triangles gives the
+//! same picture, every time. Needs an adapter.
 
 use std::sync::Arc;
 
@@ -32,11 +32,26 @@ fn scenes_with_views(queries: &[&str]) -> Vec<(Arc<Scene>, View)> {
 /// Every image of `a` is that of `b`, bit for bit.
 fn assert_same(a: &Frame, b: &Frame, what: &str) {
     let triangle_ids = compare::triangle_ids(&a.triangle_id, &b.triangle_id);
-    assert_eq!(triangle_ids.different, 0, "{what}: triangle ids differ, first {:?}", triangle_ids.mismatches.first());
+    assert_eq!(
+        triangle_ids.different,
+        0,
+        "{what}: triangle ids differ, first {:?}",
+        triangle_ids.mismatches.first()
+    );
     let keys = compare::triangle_ids(&a.depth_key, &b.depth_key);
-    assert_eq!(keys.different, 0, "{what}: keys differ, first {:?}", keys.mismatches.first());
+    assert_eq!(
+        keys.different,
+        0,
+        "{what}: keys differ, first {:?}",
+        keys.mismatches.first()
+    );
     let colors = compare::pictures(&a.color, &b.color, 0);
-    assert_eq!(colors.pixels_over_tolerance, 0, "{what}: colors differ, first {:?}", colors.mismatches.first());
+    assert_eq!(
+        colors.pixels_over_tolerance,
+        0,
+        "{what}: colors differ, first {:?}",
+        colors.mismatches.first()
+    );
 }
 
 /// The hall from inside: clipping, and triangles of every class.
@@ -67,17 +82,33 @@ const GRAPHICS_CARD: Tuning = Tuning {
 
 #[test]
 fn every_exact_backend_gives_the_same_triangle_ids_and_depth_keys() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let options = options(&renderer);
     if !options.contains(&Visibility::Packed64) {
-        eprintln!("NOT RUN: this adapter has no 64-bit atomics, so there is no packed64 to compare with");
+        eprintln!(
+            "NOT RUN: this adapter has no 64-bit atomics, so there is no packed64 to compare with"
+        );
     }
-    let scenes = scenes_with_views(&["knot?tess=24", "globe?tess=6", "leaves?n=40", "sizes", "near", "tentacle?tess=3"]);
+    let scenes = scenes_with_views(&[
+        "knot?tess=24",
+        "globe?tess=6",
+        "leaves?n=40",
+        "sizes",
+        "near",
+        "tentacle?tess=3",
+    ]);
     let stack = stack(&["facet", "lambert"]);
     renderer.set_tuning(GRAPHICS_CARD);
     // All scenes share the kernels of an option.
-    let mut draw = |(scene, view): &(Arc<Scene>, View), option| captured(&mut renderer, scene, view, &stack, &pinned(option));
-    let split: Vec<Capture> = scenes.iter().map(|scene| draw(scene, Visibility::Split32)).collect();
+    let mut draw = |(scene, view): &(Arc<Scene>, View), option| {
+        captured(&mut renderer, scene, view, &stack, &pinned(option))
+    };
+    let split: Vec<Capture> = scenes
+        .iter()
+        .map(|scene| draw(scene, Visibility::Split32))
+        .collect();
     for &option in &options[1..] {
         for (scene, split) in scenes.iter().zip(&split) {
             assert!(split.frame.covered() > 0, "{} shows nothing", scene.0.name);
@@ -92,15 +123,30 @@ fn every_exact_backend_gives_the_same_triangle_ids_and_depth_keys() {
 
 #[test]
 fn a_picture_is_the_same_whatever_the_queues_of_the_one_before_held() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     // Every triangle whose box has more than one pixel waits in a queue.
-    let tuning = Tuning { max_small_samples: 1, max_small_side: 1, queue_groups: 8192, ..GRAPHICS_CARD };
-    let (scene, stack, request) = (scene("sphere?triangles=20000"), stack(&["lambert"]), AccuracyRequest::default());
+    let tuning = Tuning {
+        max_small_samples: 1,
+        max_small_side: 1,
+        queue_groups: 8192,
+        ..GRAPHICS_CARD
+    };
+    let (scene, stack, request) = (
+        scene("sphere?triangles=20000"),
+        stack(&["lambert"]),
+        AccuracyRequest::default(),
+    );
     let [far, near] = [[4, 4], [480, 360]].map(|size| view(&scene, size));
     renderer.set_tuning(tuning);
     renderer.set_scene(&scene).block_on().expect("it fits");
     let mut queued = |view: &View| {
-        let frame = renderer.capture(view, &stack, &request).block_on().expect("it draws").frame;
+        let frame = renderer
+            .capture(view, &stack, &request)
+            .block_on()
+            .expect("it draws")
+            .frame;
         let sizes = renderer.explain().sizes.expect("something was drawn");
         (sizes.counted.expect("the queues are counted")[0], frame)
     };
@@ -109,7 +155,10 @@ fn a_picture_is_the_same_whatever_the_queues_of_the_one_before_held() {
     let (few, _) = queued(&far);
     let (after_few, second) = queued(&near);
     let (after_all, third) = queued(&near);
-    assert!(few < 500 && all > 4000, "{few} and {all} triangles are queued");
+    assert!(
+        few < 500 && all > 4000,
+        "{few} and {all} triangles are queued"
+    );
     assert_eq!([after_few, after_all], [all; 2]);
     assert_same(&second, &first, "after a picture with empty queues");
     assert_same(&third, &first, "after the same picture");
@@ -117,16 +166,39 @@ fn a_picture_is_the_same_whatever_the_queues_of_the_one_before_held() {
 
 #[test]
 fn a_picture_of_large_triangles_is_the_same_after_one_with_more_and_one_with_fewer_of_them() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let ((scene, view), stack) = (hall(), stack(&["lambert"]));
     // The same hall from afar has few large triangles or none.
     let far = crate::common::view(&scene, [16, 12]);
-    let fresh = captured(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default()).frame;
-    for tuning in [GRAPHICS_CARD, Tuning { queue_groups: 0, ..GRAPHICS_CARD }, Tuning { queue_groups: 8192, ..GRAPHICS_CARD }] {
+    let fresh = captured(
+        &mut renderer,
+        &scene,
+        &view,
+        &stack,
+        &AccuracyRequest::default(),
+    )
+    .frame;
+    for tuning in [
+        GRAPHICS_CARD,
+        Tuning {
+            queue_groups: 0,
+            ..GRAPHICS_CARD
+        },
+        Tuning {
+            queue_groups: 8192,
+            ..GRAPHICS_CARD
+        },
+    ] {
         renderer.set_tuning(tuning);
         renderer.set_scene(&scene).block_on().expect("it fits");
         for (turn, view) in [&view, &far, &view, &far, &view].into_iter().enumerate() {
-            let frame = renderer.capture(view, &stack, &AccuracyRequest::default()).block_on().expect("it draws").frame;
+            let frame = renderer
+                .capture(view, &stack, &AccuracyRequest::default())
+                .block_on()
+                .expect("it draws")
+                .frame;
             if turn % 2 == 0 {
                 assert_same(&frame, &fresh, &format!("turn {turn}, {tuning:?}"));
             }
@@ -134,41 +206,102 @@ fn a_picture_of_large_triangles_is_the_same_after_one_with_more_and_one_with_few
     }
 }
 
-/// A float key as packed32 keeps it among so many triangles: all depths below 2^-31 are one, and the bits that the id needs
-/// are cut off below.
+/// A float key as packed32 keeps it among so many triangles: all depths below 2^-31 are one, and
+/// the bits that the id needs are cut off below.
 fn cut_key(key: u32, triangles: u64) -> u32 {
     const LEAST: u32 = 0x3000_0000;
     let id_bits = 64 - triangles.leading_zeros();
     let lost = (28 + id_bits).saturating_sub(32);
-    if key == 0 { 0 } else { LEAST + ((key.max(LEAST) - LEAST) >> lost << lost) }
+    if key == 0 {
+        0
+    } else {
+        LEAST + ((key.max(LEAST) - LEAST) >> lost << lost)
+    }
 }
 
 #[test]
 fn packed32_loses_depth_and_nothing_else() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let mut lost = 0;
-    for query in ["knot?tess=24", "field?count=27&triangles=200", "grid?cell=0.4", "sizes", "stack", "near"] {
+    for query in [
+        "knot?tess=24",
+        "field?count=27&triangles=200",
+        "grid?cell=0.4",
+        "sizes",
+        "stack",
+        "near",
+    ] {
         let scene = scene(query);
         let view = view(&scene, SIZE);
-        let reference = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32)).frame;
-        let (capture, verdict) = judged(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Packed32));
+        let reference = captured(
+            &mut renderer,
+            &scene,
+            &view,
+            &stack(&[]),
+            &pinned(Visibility::Split32),
+        )
+        .frame;
+        let (capture, verdict) = judged(
+            &mut renderer,
+            &scene,
+            &view,
+            &stack(&[]),
+            &pinned(Visibility::Packed32),
+        );
         let (frame, errors) = (&capture.frame, &verdict.report);
-        assert_eq!([errors.holes, errors.double_hits, errors.depth_without_id], [0; 3], "{query}");
-        assert_eq!(errors.wrong_triangles, errors.wrong_nearest, "{query}: a triangle id does not cover its pixel");
-        let cut: Vec<u32> = reference.depth_key.iter().map(|&key| cut_key(key, scene.triangle_count())).collect();
+        assert_eq!(
+            [errors.holes, errors.double_hits, errors.depth_without_id],
+            [0; 3],
+            "{query}"
+        );
+        assert_eq!(
+            errors.wrong_triangles, errors.wrong_nearest,
+            "{query}: a triangle id does not cover its pixel"
+        );
+        let cut: Vec<u32> = reference
+            .depth_key
+            .iter()
+            .map(|&key| cut_key(key, scene.triangle_count()))
+            .collect();
         let keys = compare::triangle_ids(&frame.depth_key, &cut);
-        assert_eq!(keys.different, 0, "{query}: keys, first {:?}", keys.mismatches.first());
-        // Another triangle id than the nearest is one that a step of the key cannot tell from it: as deep when cut, and smaller.
-        let (draws, geometry) = (draws(&scene, &view).expect("a builtin fits"), &capture.geometry);
+        assert_eq!(
+            keys.different,
+            0,
+            "{query}: keys, first {:?}",
+            keys.mismatches.first()
+        );
+        // Another triangle id than the nearest is one that a step of the key cannot tell from it:
+        // as deep when cut, and smaller.
+        let (draws, geometry) = (
+            draws(&scene, &view).expect("a builtin fits"),
+            &capture.geometry,
+        );
         let plain = stack(&[]);
-        let (triangles, _) = oracle::triangles(&oracle::Shot::new(&scene, &draws, &view, &plain), geometry).expect("nobody cancels it");
-        let claimed =
-            oracle::cover_claims(&oracle::SampleTests::default(), &triangles, &view, &frame.triangle_id).expect("nobody cancels it");
+        let (triangles, _) =
+            oracle::triangles(&oracle::Shot::new(&scene, &draws, &view, &plain), geometry)
+                .expect("nobody cancels it");
+        let claimed = oracle::cover_claims(
+            &oracle::SampleTests::default(),
+            &triangles,
+            &view,
+            &frame.triangle_id,
+        )
+        .expect("nobody cancels it");
         for (pixel, sample) in claimed.samples.iter().enumerate() {
             if frame.triangle_id[pixel] != reference.triangle_id[pixel] {
-                let [_, high] = sample.claimed.unwrap_or_else(|| panic!("{query}: pixel {pixel}"));
-                assert!(high >= f64::from(f32::from_bits(cut[pixel])), "{query}: pixel {pixel} shows what is farther by a step");
-                assert!(frame.triangle_id[pixel] < reference.triangle_id[pixel], "{query}: pixel {pixel} shows the larger id");
+                let [_, high] = sample
+                    .claimed
+                    .unwrap_or_else(|| panic!("{query}: pixel {pixel}"));
+                assert!(
+                    high >= f64::from(f32::from_bits(cut[pixel])),
+                    "{query}: pixel {pixel} shows what is farther by a step"
+                );
+                assert!(
+                    frame.triangle_id[pixel] < reference.triangle_id[pixel],
+                    "{query}: pixel {pixel} shows the larger id"
+                );
                 lost += 1;
             }
         }
@@ -178,18 +311,40 @@ fn packed32_loses_depth_and_nothing_else() {
 
 #[test]
 fn a_race_may_lose_the_nearest_and_nothing_else() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     for query in ["sphere?triangles=5000", "stack?layers=40", "near", "sizes"] {
         let scene = scene(query);
         let view = view(&scene, SIZE);
-        let reference = captured(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Split32));
-        let (capture, verdict) = judged(&mut renderer, &scene, &view, &stack(&[]), &pinned(Visibility::Race));
+        let reference = captured(
+            &mut renderer,
+            &scene,
+            &view,
+            &stack(&[]),
+            &pinned(Visibility::Split32),
+        );
+        let (capture, verdict) = judged(
+            &mut renderer,
+            &scene,
+            &view,
+            &stack(&[]),
+            &pinned(Visibility::Race),
+        );
         let errors = &verdict.report;
-        assert_eq!([errors.holes, errors.double_hits, errors.depth_without_id], [0; 3], "{query}");
-        assert_eq!(errors.wrong_triangles, errors.wrong_nearest, "{query}: a triangle id does not cover its pixel");
+        assert_eq!(
+            [errors.holes, errors.double_hits, errors.depth_without_id],
+            [0; 3],
+            "{query}"
+        );
+        assert_eq!(
+            errors.wrong_triangles, errors.wrong_nearest,
+            "{query}: a triangle id does not cover its pixel"
+        );
         let layers = capture.layers.as_deref().expect("layers are counted");
         for pixel in (0..layers.len()).filter(|&pixel| layers[pixel] < 2) {
-            let [here, there] = [&capture.frame, &reference.frame].map(|frame| (frame.triangle_id[pixel], frame.depth_key[pixel]));
+            let [here, there] = [&capture.frame, &reference.frame]
+                .map(|frame| (frame.triangle_id[pixel], frame.depth_key[pixel]));
             assert_eq!(here, there, "{query}: pixel {pixel} has no rival");
         }
     }
@@ -197,33 +352,68 @@ fn a_race_may_lose_the_nearest_and_nothing_else() {
 
 /// Returns true if drawing `stack` is refused.
 fn is_refused(renderer: &mut Renderer, view: &View, stack: &Stack) -> bool {
-    renderer.draw(view, stack, &AccuracyRequest::default()).block_on().is_err()
+    renderer
+        .draw(view, stack, &AccuracyRequest::default())
+        .block_on()
+        .is_err()
 }
 
 #[test]
 fn a_refused_frame_leaves_the_next_one_whole() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let (scene, first) = hall();
     let other = view(&scene, [160, 90]);
     let accuracy = AccuracyRequest::default();
-    exact(&mut renderer, &scene, &first, &Stack::default(), &accuracy, "before");
+    exact(
+        &mut renderer,
+        &scene,
+        &first,
+        &Stack::default(),
+        &accuracy,
+        "before",
+    );
     let mut dense = Stack::default();
     let dots = dense.enable(&dots::EFFECT);
     let spacing = dots.effect.field("spacing_m").expect("dots have a spacing");
-    spacing.set(&mut dots.words, &[1e-5]).expect("inside the range");
-    assert!(is_refused(&mut renderer, &other, &dense), "so many dots are drawn");
-    exact(&mut renderer, &scene, &other, &Stack::default(), &accuracy, "after a refused frame of the same view");
+    spacing
+        .set(&mut dots.words, &[1e-5])
+        .expect("inside the range");
+    assert!(
+        is_refused(&mut renderer, &other, &dense),
+        "so many dots are drawn"
+    );
+    exact(
+        &mut renderer,
+        &scene,
+        &other,
+        &Stack::default(),
+        &accuracy,
+        "after a refused frame of the same view",
+    );
 }
 
 #[test]
 fn the_early_load_does_not_show() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     for query in ["near", "stack?layers=60&gap=0.5", "sizes"] {
         let scene = scene(query);
         let view = view(&scene, SIZE);
         let [with, without] = [true, false].map(|early_load| {
-            renderer.set_tuning(Tuning { early_load, ..GRAPHICS_CARD });
-            captured(&mut renderer, &scene, &view, &stack(&["lambert"]), &pinned(Visibility::Split32))
+            renderer.set_tuning(Tuning {
+                early_load,
+                ..GRAPHICS_CARD
+            });
+            captured(
+                &mut renderer,
+                &scene,
+                &view,
+                &stack(&["lambert"]),
+                &pinned(Visibility::Split32),
+            )
         });
         assert_same(&with.frame, &without.frame, query);
     }
@@ -231,14 +421,30 @@ fn the_early_load_does_not_show() {
 
 #[test]
 fn blocks_that_hide_what_lies_behind_do_not_show() {
-    let Some(mut renderer) = renderer() else { return };
-    for query in ["near", "stack?layers=60&gap=0.5", "sizes", "sphere?triangles=200"] {
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
+    for query in [
+        "near",
+        "stack?layers=60&gap=0.5",
+        "sizes",
+        "sphere?triangles=200",
+    ] {
         let scene = scene(query);
         let view = view(&scene, SIZE);
         for option in options(&renderer) {
             let [with, without] = [true, false].map(|hides_blocks| {
-                renderer.set_tuning(Tuning { hides_blocks, ..GRAPHICS_CARD });
-                captured(&mut renderer, &scene, &view, &stack(&["lambert"]), &pinned(option))
+                renderer.set_tuning(Tuning {
+                    hides_blocks,
+                    ..GRAPHICS_CARD
+                });
+                captured(
+                    &mut renderer,
+                    &scene,
+                    &view,
+                    &stack(&["lambert"]),
+                    &pinned(option),
+                )
             });
             let what = format!("{query} {}", option.name());
             assert_same(&with.frame, &without.frame, &what);
@@ -247,21 +453,44 @@ fn blocks_that_hide_what_lies_behind_do_not_show() {
     }
 }
 
-/// A picture that fills every pixel, then one that leaves most empty; buffers that a pass clears are as empty as those that are cleared
-/// before it.
+/// A picture that fills every pixel, then one that leaves most empty; buffers that a pass clears
+/// are as empty as those that are cleared before it.
 #[test]
 fn a_picture_begins_with_nothing_of_the_one_before() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let (full, empty) = (hall(), scene("sphere?triangles=200"));
     let aside = view(&empty, SIZE);
     for option in options(&renderer) {
         let [cleared_by_passes, cleared_before] = [true, false].map(|clears_in_passes| {
-            renderer.set_tuning(Tuning { clears_in_passes, ..GRAPHICS_CARD });
-            captured(&mut renderer, &full.0, &full.1, &stack(&[]), &pinned(option));
+            renderer.set_tuning(Tuning {
+                clears_in_passes,
+                ..GRAPHICS_CARD
+            });
+            captured(
+                &mut renderer,
+                &full.0,
+                &full.1,
+                &stack(&[]),
+                &pinned(option),
+            );
             captured(&mut renderer, &empty, &aside, &stack(&[]), &pinned(option))
         });
-        assert!(cleared_before.frame.triangle_id.contains(&NO_TRIANGLE), "no pixel is empty");
-        assert_same(&cleared_by_passes.frame, &cleared_before.frame, option.name());
-        assert_eq!(cleared_by_passes.frame.counters, cleared_before.frame.counters, "{}: counters", option.name());
+        assert!(
+            cleared_before.frame.triangle_id.contains(&NO_TRIANGLE),
+            "no pixel is empty"
+        );
+        assert_same(
+            &cleared_by_passes.frame,
+            &cleared_before.frame,
+            option.name(),
+        );
+        assert_eq!(
+            cleared_by_passes.frame.counters,
+            cleared_before.frame.counters,
+            "{}: counters",
+            option.name()
+        );
     }
 }

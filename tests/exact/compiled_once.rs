@@ -1,5 +1,6 @@
-//! Promise: drawing again compiles nothing, so memory does not grow with the number of pictures. lavapipe compiles a kernel anew in every
-//! draw where one of its conditions reads uniforms alone, and frees none of what it compiled; elsewhere there is nothing to see.
+//! Promise: drawing again compiles nothing, so memory does not grow with the number of pictures.
+//! lavapipe compiles a kernel anew in every draw where one of its conditions reads uniforms alone,
+//! and frees none of what it compiled; elsewhere there is nothing to see.
 
 use std::process::Command;
 
@@ -10,7 +11,8 @@ use rasterlab::{
     preset_file::{self, Folders},
 };
 
-/// Presets that together have nearly every effect, particles, shadows, layers, textures, skins and a background of two colors.
+/// Presets that together have nearly every effect, particles, shadows, layers, textures, skins and
+/// a background of two colors.
 const PRESETS: [&str; 14] = [
     "boxes",
     "dither",
@@ -41,7 +43,8 @@ fn code_regions() -> usize {
     maps.lines().filter(is_compiled).count()
 }
 
-/// Regions that come while `name` is drawn `times` times, after it was drawn often enough to have compiled everything.
+/// Regions that come while `name` is drawn `times` times, after it was drawn often enough to have
+/// compiled everything.
 fn regions_of_draws(gpu: &std::sync::Arc<Gpu>, name: &str, times: usize, tuning: Tuning) -> usize {
     let file = preset_file::open(name, &Folders::default()).expect("a preset of the gallery");
     let scene = preset_file::load_scene(&file.preset, None).expect("a built-in scene");
@@ -50,7 +53,10 @@ fn regions_of_draws(gpu: &std::sync::Arc<Gpu>, name: &str, times: usize, tuning:
     renderer.set_tuning(tuning);
     renderer.set_scene(&scene).block_on().expect("it fits");
     let mut draw = || {
-        renderer.draw(&view, &file.preset.stack, &file.preset.accuracy).block_on().expect("it draws");
+        renderer
+            .draw(&view, &file.preset.stack, &file.preset.accuracy)
+            .block_on()
+            .expect("it draws");
         renderer.finish().block_on().expect("it ends");
     };
     (0..3).for_each(|_| draw());
@@ -61,29 +67,53 @@ fn regions_of_draws(gpu: &std::sync::Arc<Gpu>, name: &str, times: usize, tuning:
 
 #[test]
 fn drawing_again_compiles_nothing() {
-    let gpu = Gpu::open(&AdapterChoice::Any).block_on().expect("an adapter");
+    let gpu = Gpu::open(&AdapterChoice::Any)
+        .block_on()
+        .expect("an adapter");
     if !gpu.summary.name.contains("llvmpipe") {
         return;
     }
     if std::env::var_os(CHILD).is_none() {
         // Other tests of this process compile meanwhile.
         let child = Command::new(std::env::current_exe().expect("its path"))
-            .args(["--exact", "compiled_once::drawing_again_compiles_nothing", "--nocapture"])
+            .args([
+                "--exact",
+                "compiled_once::drawing_again_compiles_nothing",
+                "--nocapture",
+            ])
             .env(CHILD, "1")
             .output()
             .expect("the test starts");
-        assert!(child.status.success(), "{}{}", String::from_utf8_lossy(&child.stdout), String::from_utf8_lossy(&child.stderr));
+        assert!(
+            child.status.success(),
+            "{}{}",
+            String::from_utf8_lossy(&child.stdout),
+            String::from_utf8_lossy(&child.stderr)
+        );
         return;
     }
     let tuning = gpu.caps.tuning();
-    assert!(tuning.stored_uniforms, "lavapipe binds enough storage buffers");
+    assert!(
+        tuning.stored_uniforms,
+        "lavapipe binds enough storage buffers"
+    );
     for name in PRESETS {
-        assert_eq!(regions_of_draws(&gpu, name, 4, tuning), 0, "{name}: regions of code that came with four draws");
+        assert_eq!(
+            regions_of_draws(&gpu, name, 4, tuning),
+            0,
+            "{name}: regions of code that came with four draws"
+        );
     }
     if gpu.summary.driver.contains("Mesa 22.") {
         // What this test sees without the tuning.
-        let untuned = Tuning { stored_uniforms: false, ..tuning };
+        let untuned = Tuning {
+            stored_uniforms: false,
+            ..tuning
+        };
         let compiles = |name: &&str| regions_of_draws(&gpu, name, 4, untuned) > 0;
-        assert!(PRESETS.iter().any(compiles), "uniforms in conditions compile nothing: the test sees nothing");
+        assert!(
+            PRESETS.iter().any(compiles),
+            "uniforms in conditions compile nothing: the test sees nothing"
+        );
     }
 }

@@ -1,5 +1,6 @@
-//! Promise: what culling leaves out is never seen: triangle ids and keys are those of a picture that leaves nothing out, from
-//! everywhere, on every option, picture after picture. Needs an adapter.
+//! Promise: what culling leaves out is never seen: triangle ids and keys are those of a picture
+//! that leaves nothing out, from everywhere, on every option, picture after picture. Needs an
+//! adapter.
 
 use std::sync::{Arc, Mutex, OnceLock};
 
@@ -24,33 +25,66 @@ use crate::common::*;
 const SIZE: [u32; 2] = [128, 96];
 
 fn on(pins: PinnedOptions) -> AccuracyRequest {
-    AccuracyRequest { pins, ..AccuracyRequest::default() }
+    AccuracyRequest {
+        pins,
+        ..AccuracyRequest::default()
+    }
 }
 
 /// Every image of `a` is that of `b`, bit for bit.
 fn assert_same(a: &Frame, b: &Frame, what: &str) {
     let triangle_ids = compare::triangle_ids(&a.triangle_id, &b.triangle_id);
-    assert_eq!(triangle_ids.different, 0, "{what}: triangle ids differ, first {:?}", triangle_ids.mismatches.first());
+    assert_eq!(
+        triangle_ids.different,
+        0,
+        "{what}: triangle ids differ, first {:?}",
+        triangle_ids.mismatches.first()
+    );
     let keys = compare::triangle_ids(&a.depth_key, &b.depth_key);
-    assert_eq!(keys.different, 0, "{what}: keys differ, first {:?}", keys.mismatches.first());
-    assert_eq!(compare::pictures(&a.color, &b.color, 0).pixels_over_tolerance, 0, "{what}: colors differ");
+    assert_eq!(
+        keys.different,
+        0,
+        "{what}: keys differ, first {:?}",
+        keys.mismatches.first()
+    );
+    assert_eq!(
+        compare::pictures(&a.color, &b.color, 0).pixels_over_tolerance,
+        0,
+        "{what}: colors differ"
+    );
 }
 
 /// The next picture, and what was left out of it.
 fn drawn(renderer: &mut Renderer, view: &View, pins: PinnedOptions) -> (Capture, CullingStats) {
-    let capture =
-        renderer.capture_next(view, &stack(&["lambert"]), &on(pins)).block_on().unwrap_or_else(|error| panic!("{}: {error}", pins.words()));
+    let capture = renderer
+        .capture_next(view, &stack(&["lambert"]), &on(pins))
+        .block_on()
+        .unwrap_or_else(|error| panic!("{}: {error}", pins.words()));
     (capture, renderer.culled().unwrap_or_default())
 }
 
 /// Scenes of every kind: closed and open, one and many, clipped, mirrored, double-sided, deformed.
 fn scenes() -> Vec<(String, Arc<Scene>)> {
-    let queries =
-        ["field?count=64&triangles=600", "near", "cube-wall", "teapot?tess=6", "tentacle?tess=3&instances=12", "sizes", "slivers"];
-    let mut scenes: Vec<(String, Arc<Scene>)> = queries.iter().map(|query| ((*query).to_owned(), scene(query))).collect();
+    let queries = [
+        "field?count=64&triangles=600",
+        "near",
+        "cube-wall",
+        "teapot?tess=6",
+        "tentacle?tess=3&instances=12",
+        "sizes",
+        "slivers",
+    ];
+    let mut scenes: Vec<(String, Arc<Scene>)> = queries
+        .iter()
+        .map(|query| ((*query).to_owned(), scene(query)))
+        .collect();
     let mut mirrored = (*scene("field?count=27&triangles=400")).clone();
     for (i, instance) in mirrored.instances.iter_mut().enumerate() {
-        instance.world_from_object *= DMat4::from_scale(DVec3::new(if i % 2 == 0 { -1.0 } else { 1.0 }, 1.0, [1.0, 0.1, 2.0][i % 3]));
+        instance.world_from_object *= DMat4::from_scale(DVec3::new(
+            if i % 2 == 0 { -1.0 } else { 1.0 },
+            1.0,
+            [1.0, 0.1, 2.0][i % 3],
+        ));
     }
     mirrored.materials[1].double_sided = true;
     scenes.push(("mirrored".into(), Arc::new(mirrored)));
@@ -80,9 +114,14 @@ fn both_tunings(renderer: &Renderer) -> [Tuning; 2] {
     [renderer.gpu().caps.tuning(), card]
 }
 
-/// Follows a walk with two-pass culling, what each picture leaves for the next included; the first difference, and what was
-/// left out in all.
-fn followed(renderer: &mut Renderer, scene: &Arc<Scene>, views: &[View], pins: PinnedOptions) -> Result<CullingStats, String> {
+/// Follows a walk with two-pass culling, what each picture leaves for the next included; the first
+/// difference, and what was left out in all.
+fn followed(
+    renderer: &mut Renderer,
+    scene: &Arc<Scene>,
+    views: &[View],
+    pins: PinnedOptions,
+) -> Result<CullingStats, String> {
     renderer.set_scene(scene).block_on().expect("it fits");
     let mut total = CullingStats::default();
     for (step, view) in views.iter().enumerate() {
@@ -109,65 +148,101 @@ fn followed(renderer: &mut Renderer, scene: &Arc<Scene>, views: &[View], pins: P
     Ok(total)
 }
 
-/// The same picture with nothing left out, by a renderer that shares nothing with the one under test.
+/// The same picture with nothing left out, by a renderer that shares nothing with the one under
+/// test.
 fn whole(renderer: &Renderer, scene: &Arc<Scene>, view: &View, pins: PinnedOptions) -> Frame {
     static WHOLE: OnceLock<Mutex<Renderer>> = OnceLock::new();
     let whole = WHOLE.get_or_init(|| Mutex::new(Renderer::new(renderer.gpu().clone())));
-    let mut whole = whole.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-    captured(&mut whole, scene, view, &stack(&["lambert"]), &on(pins.with(Culling::None))).frame
+    let mut whole = whole
+        .lock()
+        .unwrap_or_else(|poisoned| poisoned.into_inner());
+    captured(
+        &mut whole,
+        scene,
+        view,
+        &stack(&["lambert"]),
+        &on(pins.with(Culling::None)),
+    )
+    .frame
 }
 
 /// AccuracyOptions that two passes can hide behind.
 fn hiding(renderer: &Renderer) -> Vec<PinnedOptions> {
-    options(renderer).into_iter().map(|option| PinnedOptions::of(option).with(Culling::TwoPass)).collect()
+    options(renderer)
+        .into_iter()
+        .map(|option| PinnedOptions::of(option).with(Culling::TwoPass))
+        .collect()
 }
 
 #[test]
 fn two_passes_lose_nothing_on_any_walk() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let mut rng = Rng(11);
-    for (what, scene) in
-        scenes().into_iter().filter(|(what, _)| ["field?count=64&triangles=600", "near", "mirrored", "grown"].contains(&&**what))
-    {
+    for (what, scene) in scenes().into_iter().filter(|(what, _)| {
+        ["field?count=64&triangles=600", "near", "mirrored", "grown"].contains(&&**what)
+    }) {
         for (i, pins) in hiding(&renderer).into_iter().enumerate() {
             let tuning = both_tunings(&renderer)[i % 2];
             renderer.set_tuning(tuning);
             let views = walk(&scene, &mut rng, 8, SIZE);
-            let total = followed(&mut renderer, &scene, &views, pins).unwrap_or_else(|why| panic!("{what}: {why}"));
-            assert!(!what.starts_with("field") || total.hidden > 0, "{what}: nothing is hidden: {total:?}");
+            let total = followed(&mut renderer, &scene, &views, pins)
+                .unwrap_or_else(|why| panic!("{what}: {why}"));
+            assert!(
+                !what.starts_with("field") || total.hidden > 0,
+                "{what}: nothing is hidden: {total:?}"
+            );
         }
     }
 }
 
 #[test]
 fn another_scene_another_size_and_a_pause_leave_nothing_stale() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let mut rng = Rng(5);
-    let scenes = [scene("field?count=64&triangles=400"), scene("cube-wall"), scene("field?count=27&triangles=200&seed=3")];
+    let scenes = [
+        scene("field?count=64&triangles=400"),
+        scene("cube-wall"),
+        scene("field?count=27&triangles=200&seed=3"),
+    ];
     for turn in 0..9 {
         let scene = &scenes[turn % 3];
         let size = [[160, 120], [65, 63], [1, 1], [200, 8]][turn % 4];
         let views = walk(scene, &mut rng, 2, size);
         for pins in hiding(&renderer) {
-            followed(&mut renderer, scene, &views, pins).unwrap_or_else(|why| panic!("turn {turn}: {why}"));
+            followed(&mut renderer, scene, &views, pins)
+                .unwrap_or_else(|why| panic!("turn {turn}: {why}"));
             drawn(&mut renderer, &views[0], pins.with(Culling::Frustum));
-            followed(&mut renderer, scene, &views, pins).unwrap_or_else(|why| panic!("turn {turn}, after a pause: {why}"));
+            followed(&mut renderer, scene, &views, pins)
+                .unwrap_or_else(|why| panic!("turn {turn}, after a pause: {why}"));
         }
     }
 }
 
-/// A sheet of triangles that all face away, so far edge-on that they are about a unit of the grid high: the snap turns some
-/// of them over, and those show.
+/// A sheet of triangles that all face away, so far edge-on that they are about a unit of the grid
+/// high: the snap turns some of them over, and those show.
 fn dust() -> (Arc<Scene>, Vec<View>) {
     const SIDES: [u32; 2] = [400, 200];
     let place = |x: u32, z: u32| [x as f32 * 0.01 - 2.0, 0.0, z as f32 * 0.01 - 1.0];
     let at = |x: u32, z: u32| z * (SIDES[0] + 1) + x;
     let quad = |i: u32| {
         let (x, z) = (i % SIDES[0], i / SIDES[0]);
-        [at(x, z), at(x + 1, z), at(x, z + 1), at(x, z + 1), at(x + 1, z), at(x + 1, z + 1)]
+        [
+            at(x, z),
+            at(x + 1, z),
+            at(x, z + 1),
+            at(x, z + 1),
+            at(x + 1, z),
+            at(x + 1, z + 1),
+        ]
     };
     let scene = scene_of_meshes(&[SimpleMesh {
-        positions: (0..=SIDES[1]).flat_map(|z| (0..=SIDES[0]).map(move |x| place(x, z))).collect(),
+        positions: (0..=SIDES[1])
+            .flat_map(|z| (0..=SIDES[0]).map(move |x| place(x, z)))
+            .collect(),
         indices: (0..SIDES[0] * SIDES[1]).flat_map(quad).collect(),
         double_sided: false,
         ..SimpleMesh::default()
@@ -176,8 +251,21 @@ fn dust() -> (Arc<Scene>, Vec<View>) {
     let view = |i: u32| {
         let eye = DVec3::new(0.1 * f64::from(i), 0.12 + 0.02 * f64::from(i), 8.0);
         let projection = Projection::Perspective { fov_y_deg: 60.0 };
-        let camera = Camera { eye, target: DVec3::ZERO, up: DVec3::new(0.3, 1.0, 0.0), projection, near_m: 0.01 };
-        View::new(&camera, SIZE[0], SIZE[1], &bounds, DMat4::IDENTITY, [0.0; 4])
+        let camera = Camera {
+            eye,
+            target: DVec3::ZERO,
+            up: DVec3::new(0.3, 1.0, 0.0),
+            projection,
+            near_m: 0.01,
+        };
+        View::new(
+            &camera,
+            SIZE[0],
+            SIZE[1],
+            &bounds,
+            DMat4::IDENTITY,
+            [0.0; 4],
+        )
     };
     (scene.clone(), (0..6).map(view).collect())
 }
@@ -185,17 +273,35 @@ fn dust() -> (Arc<Scene>, Vec<View>) {
 /// Spheres that reach into each other.
 fn grown() -> Arc<Scene> {
     let mut scene = (*scene("field?count=64&triangles=600")).clone();
-    scene.instances.iter_mut().for_each(|instance| instance.world_from_object *= DMat4::from_scale(DVec3::splat(1.9)));
+    scene
+        .instances
+        .iter_mut()
+        .for_each(|instance| instance.world_from_object *= DMat4::from_scale(DVec3::splat(1.9)));
     Arc::new(scene)
 }
 
 #[test]
 fn backs_that_the_snap_turns_over_are_not_left_out() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let (scene, views) = dust();
-    let shown: usize = views.iter().map(|view| whole(&renderer, &scene, view, PinnedOptions::of(Visibility::Split32)).covered()).sum();
+    let shown: usize = views
+        .iter()
+        .map(|view| {
+            whole(
+                &renderer,
+                &scene,
+                view,
+                PinnedOptions::of(Visibility::Split32),
+            )
+            .covered()
+        })
+        .sum();
     assert!(shown > 0, "the snap turns nothing over");
-    for pins in [Culling::Frustum, Culling::TwoPass].map(|option| PinnedOptions::of(option).with(Visibility::Split32)) {
+    for pins in [Culling::Frustum, Culling::TwoPass]
+        .map(|option| PinnedOptions::of(option).with(Visibility::Split32))
+    {
         followed(&mut renderer, &scene, &views, pins).unwrap_or_else(|why| panic!("{why}"));
     }
 }
@@ -210,7 +316,14 @@ fn mistakes_of_culling_are_seen() {
     let through = walk(&field, &mut Rng(11), 8, SIZE);
     let mut failures = Vec::new();
     for (what, from, to, option, scene, views) in [
-        ("cones are too narrow", "let across = sqrt(", "let across = 0.3 * sqrt(", Culling::Frustum, &field, &through),
+        (
+            "cones are too narrow",
+            "let across = sqrt(",
+            "let across = 0.3 * sqrt(",
+            Culling::Frustum,
+            &field,
+            &through,
+        ),
         (
             "nearest and farthest are exchanged",
             "key = min(key,",
@@ -219,7 +332,14 @@ fn mistakes_of_culling_are_seen() {
             &field,
             &through,
         ),
-        ("the rectangle is upside down", "vec2f(low.x, -high.y)", "vec2f(low.x, low.y)", Culling::TwoPass, &field, &through),
+        (
+            "the rectangle is upside down",
+            "vec2f(low.x, -high.y)",
+            "vec2f(low.x, low.y)",
+            Culling::TwoPass,
+            &field,
+            &through,
+        ),
         (
             "the second round draws nothing",
             "select(CULL_VISIBLE, CULL_HIDDEN, is_hidden), CULL_OTHER_PHASE",
@@ -257,61 +377,166 @@ fn mistakes_of_culling_are_seen() {
 
 #[test]
 fn more_meshlets_than_one_row_of_workgroups_are_all_drawn() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     const SIDE: u32 = 257;
-    // One triangle over one sample, 66,049 times: as many meshlets, and more than 65,535 workgroups.
+    // One triangle over one sample, 66,049 times: as many meshlets, and more than 65,535
+    // workgroups.
     let corner = |x: f32, y: f32| [x / 4.0, y / 4.0, 0.5];
-    let transforms = (0..SIDE * SIDE).map(|i| DMat4::from_translation(DVec3::new((i % SIDE).into(), (i / SIDE).into(), 0.0)));
+    let transforms = (0..SIDE * SIDE)
+        .map(|i| DMat4::from_translation(DVec3::new((i % SIDE).into(), (i / SIDE).into(), 0.0)));
     let positions = vec![corner(1.0, 1.0), corner(1.0, 3.0), corner(3.0, 2.0)];
-    let scene = scene_of_meshes(&[SimpleMesh { transforms: transforms.collect(), ..triangle_soup(positions) }]);
+    let scene = scene_of_meshes(&[SimpleMesh {
+        transforms: transforms.collect(),
+        ..triangle_soup(positions)
+    }]);
     let usual = renderer.gpu().caps.tuning();
-    renderer.set_tuning(Tuning { group_size: 64, ..usual });
+    renderer.set_tuning(Tuning {
+        group_size: 64,
+        ..usual
+    });
     renderer.set_scene(&scene).block_on().expect("it fits");
     let view = pixel_view(260, 260);
     for option in [Culling::Frustum, Culling::TwoPass] {
         for visibility in options(&renderer) {
-            let (culled, stats) = drawn(&mut renderer, &view, PinnedOptions::of(option).with(visibility));
-            assert_eq!((culled.frame.covered() as u32, stats.drawn), (SIDE * SIDE, SIDE * SIDE), "{}", visibility.name());
-            let triangle_ids = culled.frame.triangle_id.iter().filter(|triangle_id| **triangle_id != rasterlab::frame::NO_TRIANGLE);
-            assert!(triangle_ids.zip(0..).all(|(&triangle_id, id)| triangle_id == id), "{}: a triangle id is another's", visibility.name());
+            let (culled, stats) = drawn(
+                &mut renderer,
+                &view,
+                PinnedOptions::of(option).with(visibility),
+            );
+            assert_eq!(
+                (culled.frame.covered() as u32, stats.drawn),
+                (SIDE * SIDE, SIDE * SIDE),
+                "{}",
+                visibility.name()
+            );
+            let triangle_ids = culled
+                .frame
+                .triangle_id
+                .iter()
+                .filter(|triangle_id| **triangle_id != rasterlab::frame::NO_TRIANGLE);
+            assert!(
+                triangle_ids
+                    .zip(0..)
+                    .all(|(&triangle_id, id)| triangle_id == id),
+                "{}: a triangle id is another's",
+                visibility.name()
+            );
         }
     }
 }
 
 /// Passes, buffers and the reason for culling, as a new renderer explains one picture.
-fn explained(query: &str, effects: &[&str], pins: PinnedOptions) -> Option<(Vec<String>, Vec<String>, String)> {
+fn explained(
+    query: &str,
+    effects: &[&str],
+    pins: PinnedOptions,
+) -> Option<(Vec<String>, Vec<String>, String)> {
     let mut renderer = Renderer::new(gpu()?);
     let scene = scene(query);
-    renderer.set_scene(&scene).block_on().expect("a builtin fits");
-    renderer.draw_complete(&view(&scene, SIZE), &stack(effects), &on(pins)).block_on().expect("a builtin is drawn");
+    renderer
+        .set_scene(&scene)
+        .block_on()
+        .expect("a builtin fits");
+    renderer
+        .draw_complete(&view(&scene, SIZE), &stack(effects), &on(pins))
+        .block_on()
+        .expect("a builtin is drawn");
     let explanation = renderer.explain();
-    let passes = explanation.passes.into_iter().map(|pass| pass.name).collect();
-    let buffers = explanation.buffers.into_iter().map(|buffer| buffer.name).collect();
-    let why = explanation.reasons.into_iter().find(|note| note.name == "culling").map(|note| note.why).unwrap_or_default();
+    let passes = explanation
+        .passes
+        .into_iter()
+        .map(|pass| pass.name)
+        .collect();
+    let buffers = explanation
+        .buffers
+        .into_iter()
+        .map(|buffer| buffer.name)
+        .collect();
+    let why = explanation
+        .reasons
+        .into_iter()
+        .find(|note| note.name == "culling")
+        .map(|note| note.why)
+        .unwrap_or_default();
     Some((passes, buffers, why))
 }
 
 #[test]
 fn only_an_option_that_culls_has_passes_and_buffers_for_it() {
-    const PASSES: [&str; 6] = ["cull", "cull early", "cull late", "project_meshlets", "depth_reduce", "advance_queues"];
-    const BUFFERS: [&str; 6] = ["culling", "instances", "meshlets", "meshlet_lists", "meshlet_visibility", "hiz"];
+    const PASSES: [&str; 6] = [
+        "cull",
+        "cull early",
+        "cull late",
+        "project_meshlets",
+        "depth_reduce",
+        "advance_queues",
+    ];
+    const BUFFERS: [&str; 6] = [
+        "culling",
+        "instances",
+        "meshlets",
+        "meshlet_lists",
+        "meshlet_visibility",
+        "hiz",
+    ];
     let split = PinnedOptions::of(Visibility::Split32);
-    let of =
-        |names: &[String], known: &[&str]| -> Vec<String> { names.iter().filter(|name| known.contains(&name.as_str())).cloned().collect() };
+    let of = |names: &[String], known: &[&str]| -> Vec<String> {
+        names
+            .iter()
+            .filter(|name| known.contains(&name.as_str()))
+            .cloned()
+            .collect()
+    };
     for (option, passes, buffers) in [
         (Culling::None, &[][..], &[][..]),
-        (Culling::Frustum, &["cull", "project_meshlets"], &["culling", "instances", "meshlet_lists", "meshlets"]),
-        (Culling::Hiz, &["cull", "project_meshlets", "depth_reduce"], &["culling", "hiz", "instances", "meshlet_lists", "meshlets"]),
+        (
+            Culling::Frustum,
+            &["cull", "project_meshlets"],
+            &["culling", "instances", "meshlet_lists", "meshlets"],
+        ),
+        (
+            Culling::Hiz,
+            &["cull", "project_meshlets", "depth_reduce"],
+            &["culling", "hiz", "instances", "meshlet_lists", "meshlets"],
+        ),
         (
             Culling::TwoPass,
-            &["cull early", "project_meshlets", "depth_reduce", "advance_queues", "cull late", "project_meshlets", "advance_queues"],
-            &["culling", "hiz", "instances", "meshlet_lists", "meshlet_visibility", "meshlets"],
+            &[
+                "cull early",
+                "project_meshlets",
+                "depth_reduce",
+                "advance_queues",
+                "cull late",
+                "project_meshlets",
+                "advance_queues",
+            ],
+            &[
+                "culling",
+                "hiz",
+                "instances",
+                "meshlet_lists",
+                "meshlet_visibility",
+                "meshlets",
+            ],
         ),
     ] {
-        let Some((all_passes, all_buffers, _)) = explained("field?count=8&triangles=200", &["lambert"], split.with(option)) else { return };
+        let Some((all_passes, all_buffers, _)) = explained(
+            "field?count=8&triangles=200",
+            &["lambert"],
+            split.with(option),
+        ) else {
+            return;
+        };
         assert_eq!(of(&all_passes, &PASSES), passes, "{}", option.name());
         assert_eq!(of(&all_buffers, &BUFFERS), buffers, "{}", option.name());
-        assert_eq!(all_passes.contains(&"project".to_owned()), option == Culling::None, "{}: {all_passes:?}", option.name());
+        assert_eq!(
+            all_passes.contains(&"project".to_owned()),
+            option == Culling::None,
+            "{}: {all_passes:?}",
+            option.name()
+        );
     }
 }
 
@@ -319,33 +544,89 @@ fn only_an_option_that_culls_has_passes_and_buffers_for_it() {
 fn a_picture_that_cannot_be_culled_says_why_and_is_drawn() {
     let query = "field?count=8&triangles=200";
     for (effects, visibility, got) in [
-        (&["explode"][..], Visibility::Split32, "none instead of two-pass: effects move meshes"),
-        (&["points"], Visibility::Split32, "none instead of two-pass: discs reach"),
-        (&["draw_order"], Visibility::Split32, "none instead of two-pass: a draw order counts"),
-        (&["race"], Visibility::Split32, "none instead of two-pass: a race"),
-        (&["xray"], Visibility::Split32, "frustum instead of two-pass: layers"),
-        (&["overdraw"], Visibility::Split32, "frustum instead of two-pass: layers"),
-        (&[], Visibility::Packed32, "frustum instead of two-pass: packed32"),
+        (
+            &["explode"][..],
+            Visibility::Split32,
+            "none instead of two-pass: effects move meshes",
+        ),
+        (
+            &["points"],
+            Visibility::Split32,
+            "none instead of two-pass: discs reach",
+        ),
+        (
+            &["draw_order"],
+            Visibility::Split32,
+            "none instead of two-pass: a draw order counts",
+        ),
+        (
+            &["race"],
+            Visibility::Split32,
+            "none instead of two-pass: a race",
+        ),
+        (
+            &["xray"],
+            Visibility::Split32,
+            "frustum instead of two-pass: layers",
+        ),
+        (
+            &["overdraw"],
+            Visibility::Split32,
+            "frustum instead of two-pass: layers",
+        ),
+        (
+            &[],
+            Visibility::Packed32,
+            "frustum instead of two-pass: packed32",
+        ),
         (&["dissolve"], Visibility::Split32, "two-pass: pinned"),
     ] {
-        let Some((.., why)) = explained(query, effects, PinnedOptions::of(visibility).with(Culling::TwoPass)) else { return };
+        let Some((.., why)) = explained(
+            query,
+            effects,
+            PinnedOptions::of(visibility).with(Culling::TwoPass),
+        ) else {
+            return;
+        };
         assert!(why.starts_with(got), "{effects:?}: {why}");
     }
-    let Some((.., why)) = explained(query, &[], PinnedOptions::of(PositionFormat::Packed16).with(Culling::TwoPass)) else { return };
-    assert!(why.starts_with("none instead of two-pass: packed positions"), "{why}");
-    let Some((.., why)) = explained(query, &[], PinnedOptions::default()) else { return };
-    assert!(why.starts_with("none: "), "culling gains nothing as a rule: {why}");
+    let Some((.., why)) = explained(
+        query,
+        &[],
+        PinnedOptions::of(PositionFormat::Packed16).with(Culling::TwoPass),
+    ) else {
+        return;
+    };
+    assert!(
+        why.starts_with("none instead of two-pass: packed positions"),
+        "{why}"
+    );
+    let Some((.., why)) = explained(query, &[], PinnedOptions::default()) else {
+        return;
+    };
+    assert!(
+        why.starts_with("none: "),
+        "culling gains nothing as a rule: {why}"
+    );
 }
 
 #[test]
 fn effects_and_layers_keep_their_picture() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scene = scene("field?count=27&triangles=400");
     let views = walk(&scene, &mut Rng(9), 4, SIZE);
     renderer.set_scene(&scene).block_on().expect("it fits");
-    for effects in
-        [&["dissolve", "outline"][..], &["stipple", "lambert"], &["wireframe"], &["xray"], &["overdraw"], &["boxes"], &["facet", "fog"]]
-    {
+    for effects in [
+        &["dissolve", "outline"][..],
+        &["stipple", "lambert"],
+        &["wireframe"],
+        &["xray"],
+        &["overdraw"],
+        &["boxes"],
+        &["facet", "fog"],
+    ] {
         for view in &views {
             for visibility in options(&renderer) {
                 let mut draw = |option| {
@@ -357,8 +638,17 @@ fn effects_and_layers_keep_their_picture() {
                 };
                 let culled = draw(Culling::TwoPass);
                 let whole = draw(Culling::None);
-                assert_same(&culled.frame, &whole.frame, &format!("{effects:?} on {}", visibility.name()));
-                assert_eq!(culled.frame.layer_sums, whole.frame.layer_sums, "{effects:?} on {}: layers", visibility.name());
+                assert_same(
+                    &culled.frame,
+                    &whole.frame,
+                    &format!("{effects:?} on {}", visibility.name()),
+                );
+                assert_eq!(
+                    culled.frame.layer_sums,
+                    whole.frame.layer_sums,
+                    "{effects:?} on {}: layers",
+                    visibility.name()
+                );
             }
         }
     }
@@ -366,7 +656,9 @@ fn effects_and_layers_keep_their_picture() {
 
 #[test]
 fn the_picture_before_hides_what_has_come_out_since() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scene = scene("field?count=216&triangles=400");
     renderer.set_scene(&scene).block_on().expect("it fits");
     let pins = PinnedOptions::of(Culling::Hiz).with(Visibility::Split32);
@@ -376,13 +668,23 @@ fn the_picture_before_hides_what_has_come_out_since() {
     renderer.clear_history();
     let (first, all) = drawn(&mut renderer, &view, pins);
     let (second, fewer) = drawn(&mut renderer, &view, pins);
-    assert_eq!((&first.frame.triangle_id, &second.frame.triangle_id), (&reference.triangle_id, &reference.triangle_id));
-    assert!(all.hidden == 0 && fewer.hidden > 0 && fewer.drawn < all.drawn, "{all:?} {fewer:?}");
+    assert_eq!(
+        (&first.frame.triangle_id, &second.frame.triangle_id),
+        (&reference.triangle_id, &reference.triangle_id)
+    );
+    assert!(
+        all.hidden == 0 && fewer.hidden > 0 && fewer.drawn < all.drawn,
+        "{all:?} {fewer:?}"
+    );
     // Going sideways, something is.
     let mut lost = 0;
     for view in walk(&scene, &mut Rng(1), 12, SIZE) {
         let (cheap, _) = drawn(&mut renderer, &view, pins);
-        lost += compare::triangle_ids(&cheap.frame.triangle_id, &whole(&renderer, &scene, &view, pins).triangle_id).different;
+        lost += compare::triangle_ids(
+            &cheap.frame.triangle_id,
+            &whole(&renderer, &scene, &view, pins).triangle_id,
+        )
+        .different;
     }
     assert!(lost > 0, "the cheap option is as good as two passes");
 }
@@ -392,30 +694,69 @@ fn what_lies_outside_the_picture_is_not_deformed() {
     let scene = scene("tentacle?tess=1&instances=60");
     let bounds = scene.bounds();
     let middle = bounds.center();
-    let camera = Camera { eye: middle, target: middle + DVec3::new(1.0, 0.1, 0.3), near_m: 0.02, ..Camera::default() };
-    let view = View::new(&camera, SIZE[0], SIZE[1], &bounds, DMat4::IDENTITY, [0.0; 4]);
+    let camera = Camera {
+        eye: middle,
+        target: middle + DVec3::new(1.0, 0.1, 0.3),
+        near_m: 0.02,
+        ..Camera::default()
+    };
+    let view = View::new(
+        &camera,
+        SIZE[0],
+        SIZE[1],
+        &bounds,
+        DMat4::IDENTITY,
+        [0.0; 4],
+    );
     let drawn = [Culling::None, Culling::Frustum].map(|option| {
         let mut renderer = Renderer::new(gpu()?);
         renderer.set_scene(&scene).block_on().expect("it fits");
-        renderer.draw_complete(&view, &stack(&["lambert"]), &on(PinnedOptions::of(option))).block_on().expect("it is drawn");
+        renderer
+            .draw_complete(&view, &stack(&["lambert"]), &on(PinnedOptions::of(option)))
+            .block_on()
+            .expect("it is drawn");
         let buffers = renderer.explain().buffers;
-        let capture = captured(&mut renderer, &scene, &view, &stack(&["lambert"]), &on(PinnedOptions::of(option)));
-        Some((capture.frame, buffers.into_iter().find(|buffer| buffer.name == "joints").map_or(0, |buffer| buffer.bytes)))
+        let capture = captured(
+            &mut renderer,
+            &scene,
+            &view,
+            &stack(&["lambert"]),
+            &on(PinnedOptions::of(option)),
+        );
+        Some((
+            capture.frame,
+            buffers
+                .into_iter()
+                .find(|buffer| buffer.name == "joints")
+                .map_or(0, |buffer| buffer.bytes),
+        ))
     });
-    let [Some((whole, all)), Some((culled, some))] = drawn else { return };
+    let [Some((whole, all)), Some((culled, some))] = drawn else {
+        return;
+    };
     assert_same(&culled, &whole, "from the middle");
-    assert!(0 < some && 2 * some < all && whole.covered() > 0, "{some} of {all} bytes of joints");
+    assert!(
+        0 < some && 2 * some < all && whole.covered() > 0,
+        "{some} of {all} bytes of joints"
+    );
 }
 
 #[test]
 fn what_lies_far_from_its_origin_is_culled_about_the_eye() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     const FAR: DVec3 = DVec3::new(3e5, -2e5, 1e5);
     let mut scene = (*scene("sphere?triangles=3000")).clone();
     // The mesh itself lies there, in whole sixteenths.
     let count = 3 * scene.primitives[0].vertex_count() as usize;
     let at = scene.primitives[0].positions.offset as usize;
-    for (lane, bytes) in scene.vertex_bytes[at..at + 4 * count].as_chunks_mut::<4>().0.iter_mut().enumerate() {
+    for (lane, bytes) in scene.vertex_bytes[at..at + 4 * count]
+        .as_chunks_mut::<4>()
+        .0
+        .iter_mut()
+        .enumerate()
+    {
         *bytes = (f32::from_le_bytes(*bytes) * 8.0 + FAR[lane % 3] as f32).to_le_bytes();
     }
     let bounds = &mut scene.primitives[0].bounds;
@@ -424,13 +765,32 @@ fn what_lies_far_from_its_origin_is_culled_about_the_eye() {
     let scene = Arc::new(scene);
     let views = (0..5).map(|i| {
         let eye = FAR + DVec3::new(2.0 + f64::from(i), 0.5, 11.0 - f64::from(i));
-        let camera = Camera { eye, target: FAR + DVec3::new(2.0, 1.0, 0.0), near_m: 0.1, ..Camera::default() };
-        View::new(&camera, SIZE[0], SIZE[1], &scene.bounds(), DMat4::IDENTITY, [0.0; 4])
+        let camera = Camera {
+            eye,
+            target: FAR + DVec3::new(2.0, 1.0, 0.0),
+            near_m: 0.1,
+            ..Camera::default()
+        };
+        View::new(
+            &camera,
+            SIZE[0],
+            SIZE[1],
+            &scene.bounds(),
+            DMat4::IDENTITY,
+            [0.0; 4],
+        )
     });
     let views: Vec<View> = views.collect();
     for places in [PositionFormat::Stored, PositionFormat::Relative] {
-        let pins = PinnedOptions::of(places).with(Culling::TwoPass).with(Visibility::Split32);
-        let total = followed(&mut renderer, &scene, &views, pins).unwrap_or_else(|why| panic!("{}: {why}", places.name()));
-        assert!(total.outside + total.backfacing > 0 || places == PositionFormat::Stored, "{}: {total:?}", places.name());
+        let pins = PinnedOptions::of(places)
+            .with(Culling::TwoPass)
+            .with(Visibility::Split32);
+        let total = followed(&mut renderer, &scene, &views, pins)
+            .unwrap_or_else(|why| panic!("{}: {why}", places.name()));
+        assert!(
+            total.outside + total.backfacing > 0 || places == PositionFormat::Stored,
+            "{}: {total:?}",
+            places.name()
+        );
     }
 }

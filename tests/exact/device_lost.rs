@@ -1,5 +1,6 @@
-//! Promise: a device that is lost at any moment ends a command with exit code 4 and one sentence. Finished files are whole, and the
-//! command drawn again finishes what is missing, with the same bytes. Needs an adapter.
+//! Promise: a device that is lost at any moment ends a command with exit code 4 and one sentence.
+//! Finished files are whole, and the command drawn again finishes what is missing, with the same
+//! bytes. Needs an adapter.
 
 use std::{
     fs,
@@ -62,48 +63,93 @@ fn pictures(folder: &Path) -> Vec<(String, Vec<u8>)> {
 
 #[test]
 fn a_device_lost_at_any_moment_ends_a_command_with_4_and_loses_nothing() {
-    let Some(gpu) = crate::common::gpu() else { return };
+    let Some(gpu) = crate::common::gpu() else {
+        return;
+    };
     let adapter = gpu.summary.name.clone();
-    let commands: [(&str, &[&str]); 3] =
-        [("render", &["-o", "OUT/a.png"]), ("sequence", &["--fps", "6", "-o", "OUT/f_{frame}.png"]), ("verify", &["--frames", "3"])];
+    let commands: [(&str, &[&str]); 3] = [
+        ("render", &["-o", "OUT/a.png"]),
+        ("sequence", &["--fps", "6", "-o", "OUT/f_{frame}.png"]),
+        ("verify", &["--frames", "3"]),
+    ];
     let (mut lost, mut finished) = (0, 0);
     for (number, (command, more)) in commands.into_iter().enumerate() {
         let attempt = |folder: &Path, after: Option<Duration>| {
             let preset = folder.join("move.toml");
             fs::write(&preset, MOVING).unwrap();
-            let given = ["rasterlab", command, &preset.to_string_lossy(), "--adapter", &adapter, "--quiet"].map(str::to_owned);
-            let more = more.iter().map(|arg| arg.replace("OUT", &folder.to_string_lossy()));
+            let given = [
+                "rasterlab",
+                command,
+                &preset.to_string_lossy(),
+                "--adapter",
+                &adapter,
+                "--quiet",
+            ]
+            .map(str::to_owned);
+            let more = more
+                .iter()
+                .map(|arg| arg.replace("OUT", &folder.to_string_lossy()));
             run(&given.into_iter().chain(more).collect::<Vec<_>>(), after)
         };
         let whole = tempfile::tempdir().unwrap();
         let began = Instant::now();
-        assert_eq!(attempt(whole.path(), None).unwrap_or_else(|error| panic!("{command}: {}", error.sentence())), Exit::Done);
+        assert_eq!(
+            attempt(whole.path(), None)
+                .unwrap_or_else(|error| panic!("{command}: {}", error.sentence())),
+            Exit::Done
+        );
         let took = began.elapsed();
         for round in 0..rounds(3) {
             let folder = tempfile::tempdir().unwrap();
             // The first is lost before anything was done with it.
-            let share = if round == 0 { 0.0 } else { f64::from(hash(100 * number as u32 + round) % 1000) / 1000.0 };
+            let share = if round == 0 {
+                0.0
+            } else {
+                f64::from(hash(100 * number as u32 + round) % 1000) / 1000.0
+            };
             match attempt(folder.path(), Some(took.mul_f64(share))) {
                 Ok(exit) => {
-                    assert_eq!(exit, Exit::Done, "{command}: a lost device is no difference");
+                    assert_eq!(
+                        exit,
+                        Exit::Done,
+                        "{command}: a lost device is no difference"
+                    );
                     finished += 1;
                 }
                 Err(error) => {
                     let sentence = error.sentence();
-                    assert_eq!(error.exit, Exit::DeviceLost, "{command} after {:.0} %: {sentence}", 100.0 * share);
-                    assert!(!sentence.contains('\n') && sentence.contains("lost"), "{sentence}");
+                    assert_eq!(
+                        error.exit,
+                        Exit::DeviceLost,
+                        "{command} after {:.0} %: {sentence}",
+                        100.0 * share
+                    );
+                    assert!(
+                        !sentence.contains('\n') && sentence.contains("lost"),
+                        "{sentence}"
+                    );
                     lost += 1;
                 }
             }
             let before = pictures(folder.path());
             if command == "sequence" {
-                assert_eq!(attempt(folder.path(), None).unwrap_or_else(|error| panic!("{}", error.sentence())), Exit::Done);
+                assert_eq!(
+                    attempt(folder.path(), None)
+                        .unwrap_or_else(|error| panic!("{}", error.sentence())),
+                    Exit::Done
+                );
                 let after = pictures(folder.path());
                 assert_eq!(after, pictures(whole.path()));
-                assert!(before.iter().all(|picture| after.contains(picture)), "a finished frame was drawn otherwise");
+                assert!(
+                    before.iter().all(|picture| after.contains(picture)),
+                    "a finished frame was drawn otherwise"
+                );
             }
         }
     }
     eprintln!("{lost} commands lost their device, {finished} were done before");
-    assert!(lost >= 3, "{lost} commands lost their device, {finished} were done before");
+    assert!(
+        lost >= 3,
+        "{lost} commands lost their device, {finished} were done before"
+    );
 }

@@ -1,5 +1,6 @@
-//! Promise: every extreme case of the table meets its expectation, and the judge of every kind of case can fail. Needs an
-//! adapter. `RASTERLAB_SEED=n` changes the random cases; a failure names the case and the seed that draw it again.
+//! Promise: every extreme case of the table meets its expectation, and the judge of every kind of
+//! case can fail. Needs an adapter. `RASTERLAB_SEED=n` changes the random cases; a failure names
+//! the case and the seed that draw it again.
 
 use std::{cell::Cell, collections::BTreeSet, fs, path::Path};
 
@@ -11,23 +12,41 @@ use rasterlab::{
 use crate::common::*;
 
 fn seed() -> u32 {
-    std::env::var("RASTERLAB_SEED").map_or(0, |seed| seed.parse().expect("RASTERLAB_SEED is a whole number"))
+    std::env::var("RASTERLAB_SEED").map_or(0, |seed| {
+        seed.parse().expect("RASTERLAB_SEED is a whole number")
+    })
 }
 
 fn case(name: &str) -> &'static stress::Case {
-    stress::cases().into_iter().find(|case| case.name == name).unwrap_or_else(|| panic!("no case {name}"))
+    stress::cases()
+        .into_iter()
+        .find(|case| case.name == name)
+        .unwrap_or_else(|| panic!("no case {name}"))
 }
 
 /// Runs one case. A skipped case is no failure, but is reported.
 fn check(name: &str) {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let report = case(name).run(&mut renderer, seed(), &|_| true);
-    let Report { number, outcome, notes, .. } = &report;
+    let Report {
+        number,
+        outcome,
+        notes,
+        ..
+    } = &report;
     for note in notes.iter().map(String::as_str).chain(outcome.why()) {
         eprintln!("case {number}, {name}: {}: {note}", outcome.word());
     }
-    let again = report.seed.map(|seed| format!(" (RASTERLAB_SEED={seed})")).unwrap_or_default();
-    assert!(!outcome.is_failure() && *outcome != Outcome::Stopped, "case {number}, {name}: {outcome:?}{again}");
+    let again = report
+        .seed
+        .map(|seed| format!(" (RASTERLAB_SEED={seed})"))
+        .unwrap_or_default();
+    assert!(
+        !outcome.is_failure() && *outcome != Outcome::Stopped,
+        "case {number}, {name}: {outcome:?}{again}"
+    );
 }
 
 macro_rules! cases {
@@ -89,8 +108,8 @@ cases! {
     case_36_every_pair = "every-pair",
 }
 
-/// Sweeps over many or very large pictures, which take most of the time of all cases together: `rasterlab stress` draws them, as a
-/// step of the continuous integration.
+/// Sweeps over many or very large pictures, which take most of the time of all cases together:
+/// `rasterlab stress` draws them, as a step of the continuous integration.
 const SWEEPS: &[&str] = &[
     "near-plane-sweep",
     "largest-pictures",
@@ -125,54 +144,117 @@ fn every_case_of_the_table_is_tested_here_or_is_a_sweep_of_the_continuous_integr
     let tested: BTreeSet<&str> = TESTED.iter().chain(SWEEPS).copied().collect();
     let listed: BTreeSet<&str> = stress::cases().iter().map(|case| case.name).collect();
     assert_eq!(tested, listed);
-    assert_eq!(TESTED.len() + SWEEPS.len(), listed.len(), "a case is tested twice");
-    let steps = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(".ci/run")).expect(".ci/run can be read");
-    let names: String = steps.lines().filter_map(|line| line.strip_prefix("sweeps=").or(line.strip_prefix("sweeps+="))).collect();
-    assert_eq!(names.split(',').collect::<Vec<_>>(), SWEEPS, "the cases that .ci/run draws");
-    assert!(steps.lines().any(|line| line == "\"$lab\" stress --filter \"$sweeps\""), "no step of .ci/run draws them");
+    assert_eq!(
+        TESTED.len() + SWEEPS.len(),
+        listed.len(),
+        "a case is tested twice"
+    );
+    let steps = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(".ci/run"))
+        .expect(".ci/run can be read");
+    let names: String = steps
+        .lines()
+        .filter_map(|line| {
+            line.strip_prefix("sweeps=")
+                .or(line.strip_prefix("sweeps+="))
+        })
+        .collect();
+    assert_eq!(
+        names.split(',').collect::<Vec<_>>(),
+        SWEEPS,
+        "the cases that .ci/run draws"
+    );
+    assert!(
+        steps
+            .lines()
+            .any(|line| line == "\"$lab\" stress --filter \"$sweeps\""),
+        "no step of .ci/run draws them"
+    );
 }
 
 #[test]
 fn a_case_can_be_stopped_between_pictures() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let heard = Cell::new(0);
     let report = case("sizes").run(&mut renderer, 0, &|what| {
         assert!(what.contains("px"), "{what}");
         heard.set(heard.get() + 1);
         heard.get() < 3
     });
-    assert_eq!((report.outcome, heard.get(), report.counts.pictures), (Outcome::Stopped, 3, 3));
-    assert_eq!(case("d3d-rectangle").run(&mut renderer, 0, &|_| true).outcome, Outcome::Passed, "the next case is not affected");
+    assert_eq!(
+        (report.outcome, heard.get(), report.counts.pictures),
+        (Outcome::Stopped, 3, 3)
+    );
+    assert_eq!(
+        case("d3d-rectangle")
+            .run(&mut renderer, 0, &|_| true)
+            .outcome,
+        Outcome::Passed,
+        "the next case is not affected"
+    );
 }
 
 #[test]
 fn a_panic_in_a_case_is_a_failure_of_that_case_alone() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let report = case("sizes").run(&mut renderer, 0, &|_| panic!("the listener fails"));
-    assert_eq!(report.outcome, Outcome::Failed("the program panicked: the listener fails".into()));
-    assert_eq!(case("d3d-rectangle").run(&mut renderer, 0, &|_| true).outcome, Outcome::Passed);
+    assert_eq!(
+        report.outcome,
+        Outcome::Failed("the program panicked: the listener fails".into())
+    );
+    assert_eq!(
+        case("d3d-rectangle")
+            .run(&mut renderer, 0, &|_| true)
+            .outcome,
+        Outcome::Passed
+    );
 }
 
 #[test]
 fn another_seed_gives_other_cases_and_is_named() {
-    let Some(mut renderer) = renderer() else { return };
-    let [first, second] = [1, 0xffff_0000].map(|seed| case("near-ties").run(&mut renderer, seed, &|_| true));
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
+    let [first, second] =
+        [1, 0xffff_0000].map(|seed| case("near-ties").run(&mut renderer, seed, &|_| true));
     assert_eq!([first.seed, second.seed], [Some(1), Some(0xffff_0000)]);
     assert_eq!([&first.outcome, &second.outcome], [&Outcome::Passed; 2]);
-    assert_eq!(case("d3d-rectangle").run(&mut renderer, 1, &|_| true).seed, None, "a case without random numbers reports no seed");
+    assert_eq!(
+        case("d3d-rectangle").run(&mut renderer, 1, &|_| true).seed,
+        None,
+        "a case without random numbers reports no seed"
+    );
 }
 
 /// The mistake, the text that it replaces, the replacement, and the case that must find it.
 const MUTANTS: &[(&str, &str, &str, &str)] = &[
-    ("half of a tile is skipped", "block < 16", "block < 8", "slivers"),
+    (
+        "half of a tile is skipped",
+        "block < 16",
+        "block < 8",
+        "slivers",
+    ),
     (
         "65,535 groups at most",
         "return Dispatch(min(groups, 65535u), (groups + 65534u) / 65535u, 1u);",
         "return Dispatch(min(groups, 65535u), 1u, 1u);",
         "workgroups-indirect",
     ),
-    ("a box that is too small", "abs(s0) * h.x + abs(s1) * h.y", "abs(s0) * h.x - abs(s1) * h.y", "slivers-at-the-border"),
-    ("another triangle's name", "corner / 3u", "corner / 3u + 1u", "hardware-cross-check"),
+    (
+        "a box that is too small",
+        "abs(s0) * h.x + abs(s1) * h.y",
+        "abs(s0) * h.x - abs(s1) * h.y",
+        "slivers-at-the-border",
+    ),
+    (
+        "another triangle's name",
+        "corner / 3u",
+        "corner / 3u + 1u",
+        "hardware-cross-check",
+    ),
 ];
 
 #[test]
@@ -184,7 +266,10 @@ fn the_judge_of_every_kind_of_case_can_fail() {
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         let report = case(name).run(&mut wrong, 0, &|_| true);
         eprintln!("{what}: {}", report.outcome.why().unwrap_or("not seen"));
-        let has_panicked = report.outcome.why().is_some_and(|why| why.contains("the program panicked"));
+        let has_panicked = report
+            .outcome
+            .why()
+            .is_some_and(|why| why.contains("the program panicked"));
         if !report.outcome.is_failure() || has_panicked {
             blind.push(format!("{name} does not see: {what}"));
         }

@@ -1,4 +1,5 @@
-//! Promises about exactness: the oracle keeps the rules of rasterization, and every kernel draws what the oracle draws.
+//! Promises about exactness: the oracle keeps the rules of rasterization, and every kernel draws
+//! what the oracle draws.
 
 #[path = "../common/mod.rs"]
 mod common;

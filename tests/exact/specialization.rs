@@ -1,4 +1,5 @@
-//! Promise: what the planner leaves out does not show, is not allocated and is not compiled again. Needs an adapter.
+//! Promise: what the planner leaves out does not show, is not allocated and is not compiled again.
+//! Needs an adapter.
 
 use std::{collections::BTreeSet, path::Path, sync::Arc};
 
@@ -18,20 +19,34 @@ use rasterlab::{
 
 use crate::common::*;
 
-/// Every built-in scene on two options, each time the next in turn, and on one option a preset for every effect: the resolve of its effects
-/// hardly knows the option.
+/// Every built-in scene on two options, each time the next in turn, and on one option a preset for
+/// every effect: the resolve of its effects hardly knows the option.
 fn pictures(options: &[Visibility]) -> Vec<(String, Arc<Scene>, View, Stack, Visibility)> {
     let mut pictures = Vec::new();
     for (turn, query) in SCENES.iter().enumerate() {
         let scene = scene(query);
         let view = view(&scene, [200, 150]);
         let stack = stack(&["depth", "lambert"]);
-        let in_turn = options.iter().cycle().skip(2 * turn).take(options.len().min(2));
-        pictures.extend(in_turn.map(|&option| ((*query).to_owned(), scene.clone(), view.clone(), stack.clone(), option)));
+        let in_turn = options
+            .iter()
+            .cycle()
+            .skip(2 * turn)
+            .take(options.len().min(2));
+        pictures.extend(in_turn.map(|&option| {
+            (
+                (*query).to_owned(),
+                scene.clone(),
+                view.clone(),
+                stack.clone(),
+                option,
+            )
+        }));
     }
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets");
     let entries = std::fs::read_dir(folder).expect("presets/ can be read");
-    let mut preset_files: Vec<_> = entries.map(|entry| entry.expect("presets/ can be read").path()).collect();
+    let mut preset_files: Vec<_> = entries
+        .map(|entry| entry.expect("presets/ can be read").path())
+        .collect();
     preset_files.sort();
     let mut met = BTreeSet::new();
     for path in preset_files {
@@ -39,10 +54,25 @@ fn pictures(options: &[Visibility]) -> Vec<(String, Arc<Scene>, View, Stack, Vis
             let preset_file = preset_file::load(&path).unwrap_or_else(|error| panic!("{error}"));
             let scene = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref())
                 .unwrap_or_else(|error| panic!("{}: {error}", preset_file.id));
-            let view = preset_file.preset.view(&scene, preset_file.preset.output.size);
-            let brings_new = preset_file.preset.stack.0.iter().filter(|enabled| met.insert(enabled.effect.name.clone())).count() > 0;
+            let view = preset_file
+                .preset
+                .view(&scene, preset_file.preset.output.size);
+            let brings_new = preset_file
+                .preset
+                .stack
+                .0
+                .iter()
+                .filter(|enabled| met.insert(enabled.effect.name.clone()))
+                .count()
+                > 0;
             if brings_new && preset_file.preset.stack.is_repeatable() {
-                pictures.push((preset_file.id.clone(), scene, view, preset_file.preset.evaluated_stack(), options[0]));
+                pictures.push((
+                    preset_file.id.clone(),
+                    scene,
+                    view,
+                    preset_file.preset.evaluated_stack(),
+                    options[0],
+                ));
             }
         }
     }
@@ -50,68 +80,154 @@ fn pictures(options: &[Visibility]) -> Vec<(String, Arc<Scene>, View, Stack, Vis
 }
 
 fn assert_same(a: &Frame, b: &Frame, band: &[bool], what: &str) {
-    for (image, a, b) in [("triangle_ids", &a.triangle_id, &b.triangle_id), ("keys", &a.depth_key, &b.depth_key)] {
+    for (image, a, b) in [
+        ("triangle_ids", &a.triangle_id, &b.triangle_id),
+        ("keys", &a.depth_key, &b.depth_key),
+    ] {
         let delta = compare::triangle_ids(a, b);
-        assert_eq!(delta.different, 0, "{what}: {image} differ, first {:?}", delta.mismatches.first());
+        assert_eq!(
+            delta.different,
+            0,
+            "{what}: {image} differ, first {:?}",
+            delta.mismatches.first()
+        );
     }
-    // What decides is equal to the bit. Shading may round otherwise where a guard or a wide product is left out.
-    // At a step of color that may show; there the judge says which pixels have two right answers.
-    let held: Vec<[u8; 4]> =
-        b.color.iter().enumerate().map(|(i, &color)| if band.get(i) == Some(&true) { a.color[i] } else { color }).collect();
+    // What decides is equal to the bit. Shading may round otherwise where a guard or a wide product
+    // is left out. At a step of color that may show; there the judge says which pixels have two
+    // right answers.
+    let held: Vec<[u8; 4]> = b
+        .color
+        .iter()
+        .enumerate()
+        .map(|(i, &color)| {
+            if band.get(i) == Some(&true) {
+                a.color[i]
+            } else {
+                color
+            }
+        })
+        .collect();
     let colors = compare::pictures(&a.color, &held, 1);
-    assert_eq!(colors.pixels_over_tolerance, 0, "{what}: colors differ by more than a step, first {:?}", colors.mismatches.first());
+    assert_eq!(
+        colors.pixels_over_tolerance,
+        0,
+        "{what}: colors differ by more than a step, first {:?}",
+        colors.mismatches.first()
+    );
 }
 
 #[test]
 fn the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let usual = renderer.gpu().caps.tuning();
     // Thresholds of a GPU, so that medium triangles occur.
-    let planned_tuning = Tuning { max_small_samples: 64, max_small_side: 32, ..usual };
+    let planned_tuning = Tuning {
+        max_small_samples: 64,
+        max_small_side: 32,
+        ..usual
+    };
     let mut spared = 0;
     for (what, scene, view, stack, option) in pictures(&options(&renderer)) {
         let [(planned, key), (maximal, everything)] = [true, false].map(|specialized| {
-            renderer.set_tuning(Tuning { specialized, ..planned_tuning });
+            renderer.set_tuning(Tuning {
+                specialized,
+                ..planned_tuning
+            });
             let capture = captured(&mut renderer, &scene, &view, &stack, &pinned(option));
-            (capture, renderer.key().expect("something was drawn").clone())
+            (
+                capture,
+                renderer.key().expect("something was drawn").clone(),
+            )
         });
         let k = &everything;
         // Discs about corners need no path for large triangles, in any scene.
-        let has_paths = k.paths.has_clipping && k.paths.has_medium && k.paths.has_large || k.samples.shape == Shape::Points;
-        assert!(has_paths && k.surface.has_planes && k.vertices.has_colors, "{k}");
+        let has_paths = k.paths.has_clipping && k.paths.has_medium && k.paths.has_large
+            || k.samples.shape == Shape::Points;
+        assert!(
+            has_paths && k.surface.has_planes && k.vertices.has_colors,
+            "{k}"
+        );
         let vertices = &k.vertices;
-        assert!(!vertices.is_single_draw && !vertices.only_triangle_lists && vertices.fetch != Fetch::IndexedU32, "{k:?}");
-        assert_eq!([vertices.positions, vertices.normals], [AttributeFormat::Any; 2], "{k:?}");
+        assert!(
+            !vertices.is_single_draw
+                && !vertices.only_triangle_lists
+                && vertices.fetch != Fetch::IndexedU32,
+            "{k:?}"
+        );
+        assert_eq!(
+            [vertices.positions, vertices.normals],
+            [AttributeFormat::Any; 2],
+            "{k:?}"
+        );
         assert_ne!(key, everything, "{what}: the planner spares nothing");
         spared += u32::from(!key.has_queues());
         let band = if stack.has_steps() || !scene.images.is_empty() {
-            let verdict = oracle::judge(&scene, &view, &stack, &AdapterPicture { previous: None, ..planned.picture() });
-            verdict.unwrap_or_else(|error| panic!("{what}: {error}")).step_band
+            let verdict = oracle::judge(
+                &scene,
+                &view,
+                &stack,
+                &AdapterPicture {
+                    previous: None,
+                    ..planned.picture()
+                },
+            );
+            verdict
+                .unwrap_or_else(|error| panic!("{what}: {error}"))
+                .step_band
         } else {
             Vec::new()
         };
-        assert_same(&planned.frame, &maximal.frame, &band, &format!("{what} {}", option.name()));
+        assert_same(
+            &planned.frame,
+            &maximal.frame,
+            &band,
+            &format!("{what} {}", option.name()),
+        );
         assert_eq!(planned.layers, maximal.layers, "{what}: layers");
         assert_eq!(planned.geometry, maximal.geometry, "{what}: geometry");
-        assert_eq!(planned.frame.counters, maximal.frame.counters, "{what}: counters");
+        assert_eq!(
+            planned.frame.counters, maximal.frame.counters,
+            "{what}: counters"
+        );
     }
     assert!(spared > 0, "no picture does without queues");
 }
 
 /// How a new renderer explains one picture.
-fn explained(query: &str, size: [u32; 2], option: Visibility, tuning: Tuning) -> Option<(Explanation, Arc<Scene>, View)> {
+fn explained(
+    query: &str,
+    size: [u32; 2],
+    option: Visibility,
+    tuning: Tuning,
+) -> Option<(Explanation, Arc<Scene>, View)> {
     let mut renderer = Renderer::new(gpu()?);
     renderer.set_tuning(tuning);
     let scene = scene(query);
     let view = view(&scene, size);
-    renderer.set_scene(&scene).block_on().expect("a builtin fits");
-    renderer.draw_complete(&view, &stack(&["lambert"]), &pinned(option)).block_on().expect("a builtin is drawn");
+    renderer
+        .set_scene(&scene)
+        .block_on()
+        .expect("a builtin fits");
+    renderer
+        .draw_complete(&view, &stack(&["lambert"]), &pinned(option))
+        .block_on()
+        .expect("a builtin is drawn");
     Some((renderer.explain(), scene, view))
 }
 
 fn names(explanation: &Explanation) -> (Vec<&str>, Vec<&str>) {
-    let passes = explanation.passes.iter().map(|pass| pass.name.as_str()).collect();
-    let buffers = explanation.buffers.iter().map(|buffer| buffer.name.as_str()).collect();
+    let passes = explanation
+        .passes
+        .iter()
+        .map(|pass| pass.name.as_str())
+        .collect();
+    let buffers = explanation
+        .buffers
+        .iter()
+        .map(|buffer| buffer.name.as_str())
+        .collect();
     (passes, buffers)
 }
 
@@ -121,7 +237,13 @@ fn an_effect_that_is_switched_off_again_leaves_no_pass_and_no_buffer() {
     let (mut renderer, scene) = (Renderer::new(gpu), scene("teapot?tess=4"));
     let view = view(&scene, [64, 48]);
     let mut explained = |names: &[&str]| {
-        captured(&mut renderer, &scene, &view, &stack(names), &pinned(Visibility::Split32));
+        captured(
+            &mut renderer,
+            &scene,
+            &view,
+            &stack(names),
+            &pinned(Visibility::Split32),
+        );
         renderer.explain()
     };
     let bare = explained(&[]);
@@ -132,8 +254,14 @@ fn an_effect_that_is_switched_off_again_leaves_no_pass_and_no_buffer() {
         assert_eq!(names(&off), names(&bare), "{}", effect.name);
         has_own += usize::from(names(&on) != names(&bare));
     }
-    assert!(has_own > 5, "{has_own} effects have passes or buffers of their own");
-    assert!(!names(&bare).1.contains(&"particle_states") && bare.omitted.iter().any(|note| note.name == "particles"));
+    assert!(
+        has_own > 5,
+        "{has_own} effects have passes or buffers of their own"
+    );
+    assert!(
+        !names(&bare).1.contains(&"particle_states")
+            && bare.omitted.iter().any(|note| note.name == "particles")
+    );
 }
 
 #[test]
@@ -156,9 +284,19 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles() {
         specialized: true,
     };
     let explained = |query, tuning| explained(query, [320, 240], Visibility::Split32, tuning);
-    let Some((small, ..)) = explained("sphere?triangles=20000", tuning) else { return };
+    let Some((small, ..)) = explained("sphere?triangles=20000", tuning) else {
+        return;
+    };
     let (passes, buffers) = names(&small);
-    assert_eq!(passes, ["project", "raster_small depth", "raster_small triangle id", "resolve"]);
+    assert_eq!(
+        passes,
+        [
+            "project",
+            "raster_small depth",
+            "raster_small triangle id",
+            "resolve"
+        ]
+    );
     for spared in [
         "queues",
         "args",
@@ -173,53 +311,127 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles() {
         "meshlets",
         "instances",
     ] {
-        assert!(ResourceId::of_binding(spared).is_some(), "no buffer is ever called {spared}");
+        assert!(
+            ResourceId::of_binding(spared).is_some(),
+            "no buffer is ever called {spared}"
+        );
         assert!(!buffers.contains(&spared), "{spared} exists: {buffers:?}");
     }
-    for (part, why) in [("clip", "near plane"), ("raster_medium", "px"), ("tile_large, raster_large", "px")] {
-        let note = small.omitted.iter().find(|note| note.name == part).unwrap_or_else(|| panic!("{part} is not listed as left out"));
+    for (part, why) in [
+        ("clip", "near plane"),
+        ("raster_medium", "px"),
+        ("tile_large, raster_large", "px"),
+    ] {
+        let note = small
+            .omitted
+            .iter()
+            .find(|note| note.name == part)
+            .unwrap_or_else(|| panic!("{part} is not listed as left out"));
         assert!(note.why.contains(why), "{part}: {}", note.why);
     }
 
     // The same scene with nothing spared, and the hall, which needs everything.
-    for (query, tuning) in [("sphere?triangles=20000", Tuning { specialized: false, ..tuning }), ("near", tuning)] {
+    for (query, tuning) in [
+        (
+            "sphere?triangles=20000",
+            Tuning {
+                specialized: false,
+                ..tuning
+            },
+        ),
+        ("near", tuning),
+    ] {
         let (all, ..) = explained(query, tuning).expect("there was an adapter");
         let (passes, buffers) = names(&all);
-        for pass in ["clip", "dispatch_args", "tile_large", "raster_medium depth", "raster_large triangle id"] {
+        for pass in [
+            "clip",
+            "dispatch_args",
+            "tile_large",
+            "raster_medium depth",
+            "raster_large triangle id",
+        ] {
             assert!(passes.contains(&pass), "{query}: no {pass} in {passes:?}");
         }
         for buffer in ["queues", "args", "clipped_triangles"] {
-            assert!(buffers.contains(&buffer), "{query}: no {buffer} in {buffers:?}");
+            assert!(
+                buffers.contains(&buffer),
+                "{query}: no {buffer} in {buffers:?}"
+            );
         }
     }
 
-    let (listed, ..) = explained("sphere?triangles=20000", Tuning { listed_tiles: true, ..tuning }).expect("there was an adapter");
+    let (listed, ..) = explained(
+        "sphere?triangles=20000",
+        Tuning {
+            listed_tiles: true,
+            ..tuning
+        },
+    )
+    .expect("there was an adapter");
     let (passes, buffers) = names(&listed);
-    assert!(passes.contains(&"list_tiles") && buffers.contains(&"tile_mask") && buffers.contains(&"args") && !buffers.contains(&"queues"));
+    assert!(
+        passes.contains(&"list_tiles")
+            && buffers.contains(&"tile_mask")
+            && buffers.contains(&"args")
+            && !buffers.contains(&"queues")
+    );
 }
 
 #[test]
 fn only_a_deformed_scene_has_the_skin_pass_and_only_the_buffers_that_it_needs() {
     let Some(gpu) = gpu() else { return };
     let tuning = gpu.caps.tuning();
-    let explained = |query| explained(query, [160, 120], Visibility::Split32, tuning).expect("there is an adapter").0;
+    let explained = |query| {
+        explained(query, [160, 120], Visibility::Split32, tuning)
+            .expect("there is an adapter")
+            .0
+    };
     let still = explained("teapot?tess=4");
     let (passes, buffers) = names(&still);
-    assert!(["deforms", "joints", "morph_targets"].iter().all(|name| ResourceId::of_binding(name).is_some()));
     assert!(
-        !passes.contains(&"deform") && !["deforms", "joints", "morph_targets"].iter().any(|name| buffers.contains(name)),
+        ["deforms", "joints", "morph_targets"]
+            .iter()
+            .all(|name| ResourceId::of_binding(name).is_some())
+    );
+    assert!(
+        !passes.contains(&"deform")
+            && !["deforms", "joints", "morph_targets"]
+                .iter()
+                .any(|name| buffers.contains(name)),
         "{passes:?} {buffers:?}"
     );
-    assert!(still.omitted.iter().any(|note| note.name == "deform" && note.why.contains("no mesh has joints or morph targets")));
-    let bytes = |explanation: &Explanation| explanation.buffers.iter().find(|buffer| buffer.name == "vertex_bytes").map_or(0, |b| b.bytes);
-    assert!(bytes(&still) < scene("teapot?tess=4").vertex_bytes.len() as u64 + 16, "a rigid mesh has no room for bent vertices");
+    assert!(
+        still.omitted.iter().any(|note| note.name == "deform"
+            && note.why.contains("no mesh has joints or morph targets"))
+    );
+    let bytes = |explanation: &Explanation| {
+        explanation
+            .buffers
+            .iter()
+            .find(|buffer| buffer.name == "vertex_bytes")
+            .map_or(0, |b| b.bytes)
+    };
+    assert!(
+        bytes(&still) < scene("teapot?tess=4").vertex_bytes.len() as u64 + 16,
+        "a rigid mesh has no room for bent vertices"
+    );
 
     // At rest its shape has no weight, so nothing is mixed.
     let deformed = explained("tentacle?tess=2");
     let (passes, buffers) = names(&deformed);
     assert_eq!(passes[..2], ["deform", "project"]);
-    assert!(buffers.contains(&"deforms") && buffers.contains(&"joints") && !buffers.contains(&"morph_targets"), "{buffers:?}");
-    assert!(deformed.reasons.iter().any(|note| note.name == "skinning" && note.why.starts_with("linear: ")));
+    assert!(
+        buffers.contains(&"deforms")
+            && buffers.contains(&"joints")
+            && !buffers.contains(&"morph_targets"),
+        "{buffers:?}"
+    );
+    assert!(
+        deformed
+            .reasons
+            .iter()
+            .any(|note| note.name == "skinning" && note.why.starts_with("linear: "))
+    );
 }
 
 #[test]
@@ -229,46 +441,144 @@ fn only_a_stack_with_dots_has_their_passes_and_only_their_way_s_buffers() {
     let view = view(&scene, [160, 120]);
     let explained = |stack: &Stack, way: DotCulling| {
         let mut renderer = Renderer::new(gpu.clone());
-        captured(&mut renderer, &scene, &view, stack, &AccuracyRequest { pins: PinnedOptions::of(way), ..AccuracyRequest::default() });
+        captured(
+            &mut renderer,
+            &scene,
+            &view,
+            stack,
+            &AccuracyRequest {
+                pins: PinnedOptions::of(way),
+                ..AccuracyRequest::default()
+            },
+        );
         renderer.explain()
     };
     let bare = explained(&stack(&["lambert"]), DotCulling::Gpu);
     let (passes, buffers) = names(&bare);
-    assert!(passes.iter().chain(&buffers).all(|name| !name.contains("dot")), "{passes:?} {buffers:?}");
-    assert!(bare.omitted.iter().any(|note| note.name == "dots" && note.why.contains("no effect draws dots")));
-    assert!(bare.reasons.iter().all(|note| !["dots", "dot_culling"].contains(&note.name.as_str())));
+    assert!(
+        passes
+            .iter()
+            .chain(&buffers)
+            .all(|name| !name.contains("dot")),
+        "{passes:?} {buffers:?}"
+    );
+    assert!(
+        bare.omitted
+            .iter()
+            .any(|note| note.name == "dots" && note.why.contains("no effect draws dots"))
+    );
+    assert!(
+        bare.reasons
+            .iter()
+            .all(|note| !["dots", "dot_culling"].contains(&note.name.as_str()))
+    );
     let ways: [(DotCulling, &[&str], &[&str]); 3] = [
-        (DotCulling::Brute, &["dots_ends", "dots_draw"], &["dot_ends", "dot_frame", "dot_runs", "dot_segments"]),
-        (DotCulling::Cpu, &["dots_ends", "dots_draw"], &["dot_count", "dot_ends", "dot_frame", "dot_list", "dot_runs", "dot_segments"]),
+        (
+            DotCulling::Brute,
+            &["dots_ends", "dots_draw"],
+            &["dot_ends", "dot_frame", "dot_runs", "dot_segments"],
+        ),
+        (
+            DotCulling::Cpu,
+            &["dots_ends", "dots_draw"],
+            &[
+                "dot_count",
+                "dot_ends",
+                "dot_frame",
+                "dot_list",
+                "dot_runs",
+                "dot_segments",
+            ],
+        ),
         (
             DotCulling::Gpu,
             &["dots_ends", "dots_cull", "dots_args", "dots_draw"],
-            &["dot_args", "dot_count", "dot_ends", "dot_frame", "dot_list", "dot_runs", "dot_segments"],
+            &[
+                "dot_args",
+                "dot_count",
+                "dot_ends",
+                "dot_frame",
+                "dot_list",
+                "dot_runs",
+                "dot_segments",
+            ],
         ),
     ];
     for (way, its_passes, its_buffers) in ways {
         let all = explained(&dots, way);
         let (passes, buffers) = names(&all);
-        assert_eq!(passes.iter().filter(|name| name.contains("dot")).copied().collect::<Vec<_>>(), its_passes, "{}", way.name());
-        assert_eq!(buffers.iter().filter(|name| name.contains("dot")).copied().collect::<Vec<_>>(), its_buffers, "{}", way.name());
-        assert!(all.reasons.iter().any(|note| note.name == "dot_culling" && note.why.contains(way.name())), "{}", way.name());
+        assert_eq!(
+            passes
+                .iter()
+                .filter(|name| name.contains("dot"))
+                .copied()
+                .collect::<Vec<_>>(),
+            its_passes,
+            "{}",
+            way.name()
+        );
+        assert_eq!(
+            buffers
+                .iter()
+                .filter(|name| name.contains("dot"))
+                .copied()
+                .collect::<Vec<_>>(),
+            its_buffers,
+            "{}",
+            way.name()
+        );
+        assert!(
+            all.reasons
+                .iter()
+                .any(|note| note.name == "dot_culling" && note.why.contains(way.name())),
+            "{}",
+            way.name()
+        );
     }
 }
 
 #[test]
 fn vertices_and_pixels_take_sixteen_bytes_at_most() {
     let Some(gpu) = gpu() else { return };
-    for option in Visibility::EXACT.into_iter().filter(|option| option.is_supported(gpu.caps.int64_atomics)) {
-        let (explanation, scene, view) =
-            explained("sphere?triangles=20000", [1280, 720], option, gpu.caps.tuning()).expect("there is an adapter");
-        let bytes = |name: &str| explanation.buffers.iter().find(|buffer| buffer.name == name).map_or(0, |buffer| buffer.bytes);
+    for option in Visibility::EXACT
+        .into_iter()
+        .filter(|option| option.is_supported(gpu.caps.int64_atomics))
+    {
+        let (explanation, scene, view) = explained(
+            "sphere?triangles=20000",
+            [1280, 720],
+            option,
+            gpu.caps.tuning(),
+        )
+        .expect("there is an adapter");
+        let bytes = |name: &str| {
+            explanation
+                .buffers
+                .iter()
+                .find(|buffer| buffer.name == name)
+                .map_or(0, |buffer| buffer.bytes)
+        };
         let per_vertex = bytes("vertices") as f64 / scene.vertex_count() as f64;
-        assert!((12.0..=16.01).contains(&per_vertex), "{per_vertex} bytes per projected vertex");
-        let picture: u64 = ["depth_keys", "triangle_ids", "depth_and_id", "color"].map(bytes).iter().sum();
-        let per_pixel = picture as f64 / view.pixels() as f64;
-        assert!((12.0..=16.0).contains(&per_pixel), "{per_pixel} bytes per pixel on {}", option.name());
         assert!(
-            explanation.buffers.iter().all(|buffer| !buffer.why.is_empty()) && explanation.passes.iter().all(|pass| !pass.why.is_empty())
+            (12.0..=16.01).contains(&per_vertex),
+            "{per_vertex} bytes per projected vertex"
+        );
+        let picture: u64 = ["depth_keys", "triangle_ids", "depth_and_id", "color"]
+            .map(bytes)
+            .iter()
+            .sum();
+        let per_pixel = picture as f64 / view.pixels() as f64;
+        assert!(
+            (12.0..=16.0).contains(&per_pixel),
+            "{per_pixel} bytes per pixel on {}",
+            option.name()
+        );
+        assert!(
+            explanation
+                .buffers
+                .iter()
+                .all(|buffer| !buffer.why.is_empty())
+                && explanation.passes.iter().all(|pass| !pass.why.is_empty())
         );
     }
 }
@@ -279,12 +589,22 @@ fn a_known_key_compiles_nothing() {
     let Some(gpu) = own_gpu() else { return };
     let mut renderer = Renderer::new(gpu);
     let scenes = [scene("teapot?tess=4"), scene("near"), scene("cube-wall")];
-    let stacks = [stack(&[]), stack(&["lambert"]), stack(&["facet", "normals"])];
+    let stacks = [
+        stack(&[]),
+        stack(&["lambert"]),
+        stack(&["facet", "normals"]),
+    ];
     let round = |renderer: &mut Renderer| {
         for scene in &scenes {
             for stack in &stacks {
                 for option in options(renderer) {
-                    captured(renderer, scene, &view(scene, [64, 48]), stack, &pinned(option));
+                    captured(
+                        renderer,
+                        scene,
+                        &view(scene, [64, 48]),
+                        stack,
+                        &pinned(option),
+                    );
                 }
             }
         }
@@ -297,9 +617,30 @@ fn a_known_key_compiles_nothing() {
     // A slider touches bytes alone; another size, too.
     let mut turned = stack(&["lambert"]);
     let effect = turned.get_mut("lambert").expect("just enabled");
-    let field = effect.effect.field("headlight").expect("lambert has a headlight");
-    field.set(&mut effect.words, &[0.5]).expect("within its range");
-    captured(&mut renderer, &scenes[0], &view(&scenes[0], [64, 48]), &turned, &pinned(Visibility::Split32));
-    captured(&mut renderer, &scenes[0], &view(&scenes[0], [80, 61]), &turned, &pinned(Visibility::Split32));
-    assert_eq!(renderer.compiled(), first, "a slider or a size compiled something");
+    let field = effect
+        .effect
+        .field("headlight")
+        .expect("lambert has a headlight");
+    field
+        .set(&mut effect.words, &[0.5])
+        .expect("within its range");
+    captured(
+        &mut renderer,
+        &scenes[0],
+        &view(&scenes[0], [64, 48]),
+        &turned,
+        &pinned(Visibility::Split32),
+    );
+    captured(
+        &mut renderer,
+        &scenes[0],
+        &view(&scenes[0], [80, 61]),
+        &turned,
+        &pinned(Visibility::Split32),
+    );
+    assert_eq!(
+        renderer.compiled(),
+        first,
+        "a slider or a size compiled something"
+    );
 }

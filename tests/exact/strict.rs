@@ -1,5 +1,6 @@
-//! Promise: strict arithmetic gives the same bits on every adapter and on the CPU: soft floats, and whole pictures by a
-//! committed list of hashes. `UPDATE_SNAPSHOTS=1` writes the list anew, always by the oracle. Needs an adapter.
+//! Promise: strict arithmetic gives the same bits on every adapter and on the CPU: soft floats, and
+//! whole pictures by a committed list of hashes. `UPDATE_SNAPSHOTS=1` writes the list anew, always
+//! by the oracle. Needs an adapter.
 
 use std::{fs, path::Path, sync::Arc};
 
@@ -24,7 +25,7 @@ use rasterlab::{
 
 use crate::common::*;
 
-// ---------------------------------------------------------------- soft floats
+// -------- soft floats
 
 const KERNEL: &str = "
 @group(0) @binding(0) var<storage, read> pairs: array<vec2u>;
@@ -39,20 +40,29 @@ fn calculate(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) group
 }
 ";
 
-/// Sum, product, quotient and the first rounded, of each pair, by the shaders of `library` on the adapter.
+/// Sum, product, quotient and the first rounded, of each pair, by the shaders of `library` on the
+/// adapter.
 fn calculated(gpu: &Gpu, library: &Library, pairs: &[[u32; 2]]) -> Vec<[u32; 4]> {
-    let text = format!("{}{KERNEL}", library.text("lib/softfloat").expect("the file is there"));
+    let text = format!(
+        "{}{KERNEL}",
+        library.text("lib/softfloat").expect("the file is there")
+    );
     let module = gpu
         .device
-        .create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("soft"), source: wgpu::ShaderSource::Wgsl(text.into()) });
-    let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("soft"),
-        layout: None,
-        module: &module,
-        entry_point: Some("calculate"),
-        compilation_options: Default::default(),
-        cache: None,
-    });
+        .create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("soft"),
+            source: wgpu::ShaderSource::Wgsl(text.into()),
+        });
+    let pipeline = gpu
+        .device
+        .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("soft"),
+            layout: None,
+            module: &module,
+            entry_point: Some("calculate"),
+            compilation_options: Default::default(),
+            cache: None,
+        });
     let buffer = |size, usage| {
         gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
@@ -63,13 +73,20 @@ fn calculated(gpu: &Gpu, library: &Library, pairs: &[[u32; 2]]) -> Vec<[u32; 4]>
     };
     let given = buffer(8 * pairs.len() as u64, wgpu::BufferUsages::COPY_DST);
     let results = buffer(16 * pairs.len() as u64, wgpu::BufferUsages::COPY_SRC);
-    gpu.queue.write_buffer(&given, 0, bytemuck::cast_slice(pairs));
+    gpu.queue
+        .write_buffer(&given, 0, bytemuck::cast_slice(pairs));
     let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
         layout: &pipeline.get_bind_group_layout(0),
         entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: given.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 1, resource: results.as_entire_binding() },
+            wgpu::BindGroupEntry {
+                binding: 0,
+                resource: given.as_entire_binding(),
+            },
+            wgpu::BindGroupEntry {
+                binding: 1,
+                resource: results.as_entire_binding(),
+            },
         ],
     });
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -79,19 +96,30 @@ fn calculated(gpu: &Gpu, library: &Library, pairs: &[[u32; 2]]) -> Vec<[u32; 4]>
     pass.dispatch_workgroups(1024, pairs.len() as u32 / 65_536, 1);
     drop(pass);
     gpu.queue.submit([encoder.finish()]);
-    let bytes = buffers::read(gpu, &results, 16 * pairs.len() as u64).block_on().expect("results are read back");
+    let bytes = buffers::read(gpu, &results, 16 * pairs.len() as u64)
+        .block_on()
+        .expect("results are read back");
     assert_eq!(gpu.take_error(), None);
     bytemuck::pod_collect_to_vec(&bytes)
 }
 
 /// Pairs that are hard in one way or another; none is NaN or infinite.
 fn hard_pairs(seed: u32, count: u32) -> Vec<[u32; 2]> {
-    let number = |word: u32| if word >> 23 & 255 == 255 { word ^ 0x4000_0000 } else { word };
-    let near = |value: f32, steps: u32| number(value.to_bits().wrapping_add(steps % 7).wrapping_sub(3));
+    let number = |word: u32| {
+        if word >> 23 & 255 == 255 {
+            word ^ 0x4000_0000
+        } else {
+            word
+        }
+    };
+    let near =
+        |value: f32, steps: u32| number(value.to_bits().wrapping_add(steps % 7).wrapping_sub(3));
     let pair = |i: u32| {
-        let rng = |k: u32| hash(hash(seed ^ i.wrapping_mul(0x9e37_79b9)) ^ k.wrapping_mul(0x85eb_ca6b));
+        let rng =
+            |k: u32| hash(hash(seed ^ i.wrapping_mul(0x9e37_79b9)) ^ k.wrapping_mul(0x85eb_ca6b));
         let (x, y) = (number(rng(1)), number(rng(2)));
-        let of_few_bits = |word: u32| number(word & 0xff80_0000 | rng(3) & rng(4) & rng(5) & 0x7f_ffff);
+        let of_few_bits =
+            |word: u32| number(word & 0xff80_0000 | rng(3) & rng(4) & rng(5) & 0x7f_ffff);
         // An exponent that differs by at most 27.
         let beside = |word: u32| {
             let exponent = (x >> 23 & 255) as i32 + (word >> 23 & 63) as i32 % 55 - 27;
@@ -105,12 +133,30 @@ fn hard_pairs(seed: u32, count: u32) -> Vec<[u32; 2]> {
             // Cancellation, to nothing or next to it.
             3 => [x, near(-value, rng(6))],
             // Products and quotients about 2^-126.
-            4 => [x, near((f64::from(f32::MIN_POSITIVE) / f64::from(value)) as f32, rng(6))],
-            5 => [x, near((f64::from(value) / f64::from(f32::MIN_POSITIVE)) as f32, rng(6))],
+            4 => [
+                x,
+                near(
+                    (f64::from(f32::MIN_POSITIVE) / f64::from(value)) as f32,
+                    rng(6),
+                ),
+            ],
+            5 => [
+                x,
+                near(
+                    (f64::from(value) / f64::from(f32::MIN_POSITIVE)) as f32,
+                    rng(6),
+                ),
+            ],
             // Subnormals and zeros.
-            6 => [x & 0x807f_ffff, if rng(6) % 2 == 0 { y } else { y & 0x807f_ffff }],
+            6 => [
+                x & 0x807f_ffff,
+                if rng(6) % 2 == 0 { y } else { y & 0x807f_ffff },
+            ],
             // About integers and halves.
-            7 => [near((rng(6) >> (7 + rng(7) % 25)) as f32 / 2.0, rng(8)) | x & 0x8000_0000, x],
+            7 => [
+                near((rng(6) >> (7 + rng(7) % 25)) as f32 / 2.0, rng(8)) | x & 0x8000_0000,
+                x,
+            ],
             // Quotients about powers of two, products about squares.
             _ => [x, near(value, rng(6)) ^ rng(7) & 0x8000_0000],
         }
@@ -118,7 +164,8 @@ fn hard_pairs(seed: u32, count: u32) -> Vec<[u32; 2]> {
     (0..count).map(pair).collect()
 }
 
-/// Results that differ from Rust's f32 with explicit flushing; those that leave the range of f32 are no promise.
+/// Results that differ from Rust's f32 with explicit flushing; those that leave the range of f32
+/// are no promise.
 fn differences(gpu: &Gpu, library: &Library, seed: u32, count: u32) -> Vec<String> {
     let pairs = hard_pairs(seed, count);
     let mut different = Vec::new();
@@ -126,19 +173,34 @@ fn differences(gpu: &Gpu, library: &Library, seed: u32, count: u32) -> Vec<Strin
     for (&[x, y], found) in pairs.iter().zip(calculated(gpu, library, &pairs)) {
         let (a, b) = (f32::from_bits(x), f32::from_bits(y));
         let expected = [
-            Some(ftz::sum(a, b)).filter(|v| v.is_finite()).map(f32::to_bits),
-            Some(ftz::product(a, b)).filter(|v| v.is_finite()).map(f32::to_bits),
-            Some(ftz::quotient(a, b)).filter(|v| v.is_finite()).map(f32::to_bits),
+            Some(ftz::sum(a, b))
+                .filter(|v| v.is_finite())
+                .map(f32::to_bits),
+            Some(ftz::product(a, b))
+                .filter(|v| v.is_finite())
+                .map(f32::to_bits),
+            Some(ftz::quotient(a, b))
+                .filter(|v| v.is_finite())
+                .map(f32::to_bits),
             Some(ftz::round(a) as u32),
         ];
-        for (name, (expected, found)) in ["+", "*", "/", "round"].into_iter().zip(expected.into_iter().zip(found)) {
+        for (name, (expected, found)) in ["+", "*", "/", "round"]
+            .into_iter()
+            .zip(expected.into_iter().zip(found))
+        {
             compared += u64::from(expected.is_some());
             if expected.is_some_and(|expected| expected != found) {
-                different.push(format!("{x:08x} {name} {y:08x} is {:08x}, not {found:08x}", expected.unwrap_or_default()));
+                different.push(format!(
+                    "{x:08x} {name} {y:08x} is {:08x}, not {found:08x}",
+                    expected.unwrap_or_default()
+                ));
             }
         }
     }
-    assert!(compared > 3 * u64::from(count), "hardly anything was compared: {compared} of {count} pairs");
+    assert!(
+        compared > 3 * u64::from(count),
+        "hardly anything was compared: {compared} of {count} pairs"
+    );
     different
 }
 
@@ -147,7 +209,12 @@ fn soft_floats_are_those_of_the_cpu_with_subnormals_flushed() {
     let Some(gpu) = gpu() else { return };
     for seed in 0..4 {
         let different = differences(&gpu, &Library::Embedded, seed, 1 << 20);
-        assert!(different.is_empty(), "seed {seed}: {} of 2^20 pairs, such as {:?}", different.len(), &different[..different.len().min(5)]);
+        assert!(
+            different.is_empty(),
+            "seed {seed}: {} of 2^20 pairs, such as {:?}",
+            different.len(),
+            &different[..different.len().min(5)]
+        );
     }
 }
 
@@ -155,10 +222,13 @@ fn soft_floats_are_those_of_the_cpu_with_subnormals_flushed() {
 fn a_soft_float_with_one_mistake_is_told_from_the_cpu() {
     let Some(gpu) = gpu() else { return };
     let mutant = mutated("+ 127u + (kept & 1u)", "+ 127u");
-    assert!(!differences(&gpu, &mutant.shaders(), 1, 1 << 17).is_empty(), "halves that are not rounded to even make no difference");
+    assert!(
+        !differences(&gpu, &mutant.shaders(), 1, 1 << 17).is_empty(),
+        "halves that are not rounded to even make no difference"
+    );
 }
 
-// ---------------------------------------------------------------- pictures
+// -------- pictures
 
 /// One picture of the list.
 struct Picture {
@@ -170,21 +240,35 @@ struct Picture {
 
 impl Picture {
     fn new(name: &str, scene: Arc<Scene>, view: View, effects: &[&str]) -> Self {
-        Self { name: name.into(), scene, view, stack: stack(effects) }
+        Self {
+            name: name.into(),
+            scene,
+            view,
+            stack: stack(effects),
+        }
     }
 
     /// Triangle ids and keys by the oracle alone.
     fn reference(&self) -> (Vec<u32>, Vec<u32>) {
-        oracle::strict_frame(&self.scene, &self.view, &self.stack).unwrap_or_else(|error| panic!("{}: {error}", self.name))
+        oracle::strict_frame(&self.scene, &self.view, &self.stack)
+            .unwrap_or_else(|error| panic!("{}: {error}", self.name))
     }
 
     /// Its line in the list.
     fn line(&self, triangle_ids: &[u32], keys: &[u32]) -> String {
-        format!("{} {}x{} {:016x} {:016x}", self.name, self.view.width, self.view.height, fnv1a(triangle_ids), fnv1a(keys))
+        format!(
+            "{} {}x{} {:016x} {:016x}",
+            self.name,
+            self.view.width,
+            self.view.height,
+            fnv1a(triangle_ids),
+            fnv1a(keys)
+        )
     }
 }
 
-/// Random triangles about the eye, of all sizes: in front of the near plane, behind the eye, and past the guard band.
+/// Random triangles about the eye, of all sizes: in front of the near plane, behind the eye, and
+/// past the guard band.
 fn about_the_eye(seed: u32, is_indexed: bool) -> Vec<SimpleMesh> {
     let mut rng = Rng(seed);
     let mut corner = |reach: f64| [0, 1, 2].map(|_| rng.real(-1.0, 1.0) * reach);
@@ -198,22 +282,42 @@ fn about_the_eye(seed: u32, is_indexed: bool) -> Vec<SimpleMesh> {
         };
         positions.extend([place(), place(), place()]);
     }
-    let indices = if is_indexed { (0..1500).map(|i| (i * 7 + i / 3) % 1500).collect() } else { Vec::new() };
-    let placed = |scale: DVec3, turn: f64| {
-        DMat4::from_scale(scale) * DMat4::from_cols_array_2d(&rasterlab::math::rotation_y(turn).to_cols_array_2d())
+    let indices = if is_indexed {
+        (0..1500).map(|i| (i * 7 + i / 3) % 1500).collect()
+    } else {
+        Vec::new()
     };
-    let transforms = vec![DMat4::IDENTITY, placed(DVec3::new(-0.3, 0.7, 1.1), 0.4), placed(DVec3::splat(1e-3), 2.0)];
-    let loose = SimpleMesh { positions: positions.clone(), transforms, ..SimpleMesh::default() };
+    let placed = |scale: DVec3, turn: f64| {
+        DMat4::from_scale(scale)
+            * DMat4::from_cols_array_2d(&rasterlab::math::rotation_y(turn).to_cols_array_2d())
+    };
+    let transforms = vec![
+        DMat4::IDENTITY,
+        placed(DVec3::new(-0.3, 0.7, 1.1), 0.4),
+        placed(DVec3::splat(1e-3), 2.0),
+    ];
+    let loose = SimpleMesh {
+        positions: positions.clone(),
+        transforms,
+        ..SimpleMesh::default()
+    };
     // A second draw with backs that do not show, and corners that are no numbers.
     let mut broken = positions.split_off(1200);
     broken[5][1] = f32::NAN;
     broken[50][2] = f32::MAX;
     broken[77] = [f32::MIN_POSITIVE / 2.0, -0.0, 1e-39];
-    vec![SimpleMesh { indices, ..loose }, SimpleMesh { positions: broken, double_sided: false, ..SimpleMesh::default() }]
+    vec![
+        SimpleMesh { indices, ..loose },
+        SimpleMesh {
+            positions: broken,
+            double_sided: false,
+            ..SimpleMesh::default()
+        },
+    ]
 }
 
-/// Every picture of the list: all classes of triangles, clipped ones, several draws, with and without indices, both
-/// projections, and effects on every hook that decides in integers.
+/// Every picture of the list: all classes of triangles, clipped ones, several draws, with and
+/// without indices, both projections, and effects on every hook that decides in integers.
 fn pictures() -> Vec<Picture> {
     let mut pictures = Vec::new();
     for query in SCENES {
@@ -231,7 +335,12 @@ fn pictures() -> Vec<Picture> {
     ] {
         let scene = scene(query);
         let view = view(&scene, size);
-        pictures.push(Picture::new(&format!("{}+{query}", effects.join("+")), scene, view, effects));
+        pictures.push(Picture::new(
+            &format!("{}+{query}", effects.join("+")),
+            scene,
+            view,
+            effects,
+        ));
     }
     let inside = |fov_y_deg: f64, near_m: f64| Camera {
         eye: DVec3::new(0.01, 0.02, 0.03),
@@ -240,7 +349,10 @@ fn pictures() -> Vec<Picture> {
         near_m,
         ..Camera::default()
     };
-    let parallel = Camera { projection: Projection::Orthographic { height_m: 0.7 }, ..inside(90.0, 0.01) };
+    let parallel = Camera {
+        projection: Projection::Orthographic { height_m: 0.7 },
+        ..inside(90.0, 0.01)
+    };
     for (name, seed, is_indexed, camera, size) in [
         ("direct", 1, false, inside(90.0, 0.01), [320, 240]),
         ("indexed", 2, true, inside(100.0, 1e-4), [333, 250]),
@@ -257,7 +369,9 @@ fn pictures() -> Vec<Picture> {
 
 fn strict(visibility: Visibility) -> AccuracyRequest {
     AccuracyRequest {
-        pins: PinnedOptions::of(visibility).with(VertexTransform::Strict).with(DepthFormat::Integer),
+        pins: PinnedOptions::of(visibility)
+            .with(VertexTransform::Strict)
+            .with(DepthFormat::Integer),
         ..AccuracyRequest::default()
     }
 }
@@ -270,8 +384,15 @@ fn the_oracle_finds_the_hashes_of_the_list() {
         .iter()
         .map(|picture| {
             let (triangle_ids, keys) = picture.reference();
-            let covered = triangle_ids.iter().filter(|&&triangle_id| triangle_id != NO_TRIANGLE).count();
-            assert!(covered > 50, "{} shows next to nothing: {covered} pixels", picture.name);
+            let covered = triangle_ids
+                .iter()
+                .filter(|&&triangle_id| triangle_id != NO_TRIANGLE)
+                .count();
+            assert!(
+                covered > 50,
+                "{} shows next to nothing: {covered} pixels",
+                picture.name
+            );
             picture.line(&triangle_ids, &keys)
         })
         .collect();
@@ -281,68 +402,151 @@ fn the_oracle_finds_the_hashes_of_the_list() {
         fs::write(path, &text).expect("the list is written");
         return;
     }
-    assert_eq!(text, HASHES, "the oracle on the left, the list on the right; UPDATE_SNAPSHOTS=1 writes it");
+    assert_eq!(
+        text, HASHES,
+        "the oracle on the left, the list on the right; UPDATE_SNAPSHOTS=1 writes it"
+    );
 }
 
-/// One option draws nearly every triangle with its own workgroup, the other uses the adapter's tuning.
+/// One option draws nearly every triangle with its own workgroup, the other uses the adapter's
+/// tuning.
 fn ways(renderer: &Renderer) -> [(Tuning, Visibility); 2] {
     let options = options(renderer);
-    [(tunings()[0], options[0]), (renderer.gpu().caps.tuning(), options[options.len() - 1])]
+    [
+        (tunings()[0], options[0]),
+        (renderer.gpu().caps.tuning(), options[options.len() - 1]),
+    ]
 }
 
 /// How a picture that `renderer` draws differs from its line in the list, if it does.
-fn stray(renderer: &mut Renderer, picture: &Picture, line: &str, (tuning, option): (Tuning, Visibility)) -> Option<String> {
+fn stray(
+    renderer: &mut Renderer,
+    picture: &Picture,
+    line: &str,
+    (tuning, option): (Tuning, Visibility),
+) -> Option<String> {
     renderer.set_tuning(tuning);
-    let frame = captured(renderer, &picture.scene, &picture.view, &picture.stack, &strict(option)).frame;
+    let frame = captured(
+        renderer,
+        &picture.scene,
+        &picture.view,
+        &picture.stack,
+        &strict(option),
+    )
+    .frame;
     (picture.line(&frame.triangle_id, &frame.depth_key) != line).then(|| {
         let (triangle_ids, keys) = picture.reference();
-        let [triangle_ids, keys] =
-            [compare::triangle_ids(&frame.triangle_id, &triangle_ids), compare::triangle_ids(&frame.depth_key, &keys)]
-                .map(|images| format!("{} differ, first {:?}", images.different, images.mismatches.first()));
-        format!("{} {} {tuning:?}: triangle ids: {triangle_ids}; keys: {keys}", picture.name, option.name())
+        let [triangle_ids, keys] = [
+            compare::triangle_ids(&frame.triangle_id, &triangle_ids),
+            compare::triangle_ids(&frame.depth_key, &keys),
+        ]
+        .map(|images| {
+            format!(
+                "{} differ, first {:?}",
+                images.different,
+                images.mismatches.first()
+            )
+        });
+        format!(
+            "{} {} {tuning:?}: triangle ids: {triangle_ids}; keys: {keys}",
+            picture.name,
+            option.name()
+        )
     })
 }
 
 #[test]
 fn the_adapter_finds_the_hashes_of_the_list() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let pictures = pictures();
-    assert_eq!(pictures.len(), HASHES.lines().count(), "the list is of other pictures");
+    assert_eq!(
+        pictures.len(),
+        HASHES.lines().count(),
+        "the list is of other pictures"
+    );
     let ways = ways(&renderer);
     let strays: Vec<String> = pictures
         .iter()
         .zip(HASHES.lines())
-        .flat_map(|(picture, line)| ways.iter().filter_map(|&way| stray(&mut renderer, picture, line, way)).collect::<Vec<_>>())
+        .flat_map(|(picture, line)| {
+            ways.iter()
+                .filter_map(|&way| stray(&mut renderer, picture, line, way))
+                .collect::<Vec<_>>()
+        })
         .collect();
-    assert!(strays.is_empty(), "{} pictures differ from the list:\n{}", strays.len(), strays.join("\n"));
+    assert!(
+        strays.is_empty(),
+        "{} pictures differ from the list:\n{}",
+        strays.len(),
+        strays.join("\n")
+    );
 }
 
 #[test]
 fn the_judge_finds_nothing_to_excuse_in_strict_pictures() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     for picture in pictures().into_iter().step_by(5) {
         let option = Visibility::Split32;
-        let Picture { name, scene, view, stack } = &picture;
+        let Picture {
+            name,
+            scene,
+            view,
+            stack,
+        } = &picture;
         let (capture, verdict) = exact(&mut renderer, scene, view, stack, &strict(option), name);
         let a = &verdict.report;
-        assert_eq!([a.depth_band_pixels, a.ill_conditioned, a.explained_by_snap, a.max_snap_delta.into()], [0; 4], "{name}");
-        assert_eq!(verdict.expected.depth_key, capture.frame.depth_key, "{name}");
+        assert_eq!(
+            [
+                a.depth_band_pixels,
+                a.ill_conditioned,
+                a.explained_by_snap,
+                a.max_snap_delta.into()
+            ],
+            [0; 4],
+            "{name}"
+        );
+        assert_eq!(
+            verdict.expected.depth_key, capture.frame.depth_key,
+            "{name}"
+        );
     }
 }
 
 #[test]
 fn integer_keys_alone_leave_no_depth_band() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     for query in ["knot?tess=24", "sizes", "near"] {
         let scene = scene(query);
         let view = view(&scene, [256, 192]);
         for (tuning, option) in ways(&renderer) {
             renderer.set_tuning(tuning);
-            let accuracy = AccuracyRequest { pins: PinnedOptions::of(option).with(DepthFormat::Integer), ..AccuracyRequest::default() };
-            let (capture, verdict) = exact(&mut renderer, &scene, &view, &stack(&["depth"]), &accuracy, query);
+            let accuracy = AccuracyRequest {
+                pins: PinnedOptions::of(option).with(DepthFormat::Integer),
+                ..AccuracyRequest::default()
+            };
+            let (capture, verdict) = exact(
+                &mut renderer,
+                &scene,
+                &view,
+                &stack(&["depth"]),
+                &accuracy,
+                query,
+            );
             assert_eq!(verdict.report.depth_band_pixels, 0, "{query}");
-            assert_eq!(verdict.expected.triangle_id, capture.frame.triangle_id, "{query}");
-            assert_eq!(verdict.expected.depth_key, capture.frame.depth_key, "{query}");
+            assert_eq!(
+                verdict.expected.triangle_id, capture.frame.triangle_id,
+                "{query}"
+            );
+            assert_eq!(
+                verdict.expected.depth_key, capture.frame.depth_key,
+                "{query}"
+            );
         }
     }
 }
@@ -351,7 +555,14 @@ fn integer_keys_alone_leave_no_depth_band() {
 fn a_strict_picture_with_one_mistake_differs_from_the_list() {
     let Some(healthy) = renderer() else { return };
     let pictures = pictures();
-    let way = (Tuning { max_small_samples: 64, max_small_side: 32, ..healthy.gpu().caps.tuning() }, Visibility::Split32);
+    let way = (
+        Tuning {
+            max_small_samples: 64,
+            max_small_side: 32,
+            ..healthy.gpu().caps.tuning()
+        },
+        Visibility::Split32,
+    );
     for (what, name, from, to) in [
         (
             "another order of the sum",
@@ -365,25 +576,56 @@ fn a_strict_picture_with_one_mistake_differs_from_the_list() {
             "large_depth_exact[index] = fixed_edge(begin, end, p);",
             "large_depth_exact[index] = fixed_sub(fixed_edge(begin, end, p), Wide(0u, u32(fixed_bias(end - begin))));",
         ),
-        ("the float's guess is taken", "teapot?tess=8", "select(0u, 1u, left < 0)", "0u"),
+        (
+            "the float's guess is taken",
+            "teapot?tess=8",
+            "select(0u, 1u, left < 0)",
+            "0u",
+        ),
     ] {
         let mutant = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), mutant.shaders());
-        let (picture, line) = pictures.iter().zip(HASHES.lines()).find(|(picture, _)| picture.name == name).expect("a listed picture");
-        assert!(stray(&mut wrong, picture, line, way).is_some(), "{what}: {name} does not differ");
+        let (picture, line) = pictures
+            .iter()
+            .zip(HASHES.lines())
+            .find(|(picture, _)| picture.name == name)
+            .expect("a listed picture");
+        assert!(
+            stray(&mut wrong, picture, line, way).is_some(),
+            "{what}: {name} does not differ"
+        );
     }
 }
 
 #[test]
 fn what_floats_decide_is_refused_by_name() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scene = scene("sphere?triangles=200");
     let view = view(&scene, [64, 64]);
-    renderer.set_scene(&scene).block_on().expect("a builtin fits");
-    let accuracy = AccuracyRequest { pins: PinnedOptions::of(VertexTransform::Strict), ..AccuracyRequest::default() };
+    renderer
+        .set_scene(&scene)
+        .block_on()
+        .expect("a builtin fits");
+    let accuracy = AccuracyRequest {
+        pins: PinnedOptions::of(VertexTransform::Strict),
+        ..AccuracyRequest::default()
+    };
     for name in ["explode", "inflate", "wobble", "race"] {
-        let error = renderer.draw(&view, &stack(&["lambert", name]), &accuracy).block_on().expect_err(name).to_string();
-        assert!(error.starts_with("vertex_transform strict ") && error.contains(&format!("the effect {name} ")), "{error}");
+        let error = renderer
+            .draw(&view, &stack(&["lambert", name]), &accuracy)
+            .block_on()
+            .expect_err(name)
+            .to_string();
+        assert!(
+            error.starts_with("vertex_transform strict ")
+                && error.contains(&format!("the effect {name} ")),
+            "{error}"
+        );
     }
-    renderer.draw(&view, &stack(&["dissolve", "lambert", "xray"]), &accuracy).block_on().expect("integers decide here");
+    renderer
+        .draw(&view, &stack(&["dissolve", "lambert", "xray"]), &accuracy)
+        .block_on()
+        .expect("integers decide here");
 }

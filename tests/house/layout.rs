@@ -1,5 +1,5 @@
-//! Promise: every struct shared by Rust and WGSL agrees by name, order, kind, offset and size, and every binding has a resource. Needs
-//! no adapter.
+//! Promise: every struct shared by Rust and WGSL agrees by name, order, kind, offset and size, and
+//! every binding has a resource. Needs no adapter.
 
 use std::{collections::BTreeSet, sync::Arc};
 
@@ -17,12 +17,17 @@ use rasterlab::{
 };
 
 fn reflected(key: &KernelKey, pass: Pass) -> Reflected {
-    let linked = link::link(&Library::Embedded, &pass.path(), key, &key.variants(pass)).expect("links");
+    let linked =
+        link::link(&Library::Embedded, &pass.path(), key, &key.variants(pass)).expect("links");
     reflect::reflect(&linked, true).expect("validates")
 }
 
 fn whole(visibility: Visibility, effects: &[&Arc<Effect>]) -> KernelKey {
-    KernelKey::complete(Fetch::Indexed, visibility, effects.iter().map(|&effect| effect.clone()).collect())
+    KernelKey::complete(
+        Fetch::Indexed,
+        visibility,
+        effects.iter().map(|&effect| effect.clone()).collect(),
+    )
 }
 
 /// Keys that together bind every resource and declare every shared struct.
@@ -30,7 +35,10 @@ fn keys() -> Vec<KernelKey> {
     let plain = whole(Visibility::Split32, &[]);
     let mut culling = plain.clone();
     culling.options.culling = Culling::TwoPass;
-    let mut ordered = whole(Visibility::Packed64, &[&rasterlab::effects::draw_order::EFFECT]);
+    let mut ordered = whole(
+        Visibility::Packed64,
+        &[&rasterlab::effects::draw_order::EFFECT],
+    );
     ordered.samples.draw_order = Some(Mode::Submission);
     let dots = |line_source, dot_culling| {
         let mut key = whole(Visibility::Split32, &[&rasterlab::effects::dots::EFFECT]);
@@ -72,28 +80,56 @@ fn modules() -> Vec<(String, Reflected, Vec<reflect::Binding>)> {
     let key = whole(Visibility::Split32, &[]);
     let naive = link::link(&Library::Embedded, "baselines/naive", &key, &[]).expect("links");
     let naive = reflect::reflect(&naive, false).expect("validates");
-    let bindings = ["naive_clear", "naive_raster", "naive_resolve"].iter().flat_map(|entry| naive.bindings(entry)).collect();
+    let bindings = ["naive_clear", "naive_raster", "naive_resolve"]
+        .iter()
+        .flat_map(|entry| naive.bindings(entry))
+        .collect();
     modules.push(("naive".into(), naive, bindings));
     let mut key = key;
     key.vertices.is_single_draw = false;
-    let hardware = link::link(&Library::Embedded, "baselines/hardware", &key, &key.variants(Pass::Resolve)).expect("links");
+    let hardware = link::link(
+        &Library::Embedded,
+        "baselines/hardware",
+        &key,
+        &key.variants(Pass::Resolve),
+    )
+    .expect("links");
     let hardware = reflect::reflect(&hardware, false).expect("validates");
-    let entries = ["hardware_vertex", "hardware_painted_vertex", "hardware_fragment", "hardware_painted", "hardware_masked"];
-    let bindings = entries.iter().flat_map(|entry| hardware.bindings(entry)).collect();
+    let entries = [
+        "hardware_vertex",
+        "hardware_painted_vertex",
+        "hardware_fragment",
+        "hardware_painted",
+        "hardware_masked",
+    ];
+    let bindings = entries
+        .iter()
+        .flat_map(|entry| hardware.bindings(entry))
+        .collect();
     modules.push(("hardware".into(), hardware, bindings));
     modules
 }
 
-/// Bytes from one element to the next, where a binding is an array, and the name of its struct, where it has one.
+/// Bytes from one element to the next, where a binding is an array, and the name of its struct,
+/// where it has one.
 fn element(module: &Module, binding: u32) -> (Option<usize>, Option<String>) {
     let is_it = |v: &naga::GlobalVariable| v.binding.as_ref().is_some_and(|b| b.binding == binding);
-    let (_, variable) = module.global_variables.iter().find(|(_, v)| is_it(v)).expect("a binding is a variable");
+    let (_, variable) = module
+        .global_variables
+        .iter()
+        .find(|(_, v)| is_it(v))
+        .expect("a binding is a variable");
     let (stride, ty) = match module.types[variable.ty].inner {
         TypeInner::Array { base, stride, .. } => (Some(stride as usize), base),
         _ => (None, variable.ty),
     };
     let ty = &module.types[ty];
-    (stride, matches!(ty.inner, TypeInner::Struct { .. }).then(|| ty.name.clone()).flatten())
+    (
+        stride,
+        matches!(ty.inner, TypeInner::Struct { .. })
+            .then(|| ty.name.clone())
+            .flatten(),
+    )
 }
 
 #[test]
@@ -101,16 +137,38 @@ fn every_shared_struct_agrees_by_name_order_kind_offset_and_size() {
     let mut seen = BTreeSet::new();
     for (what, module, _) in modules() {
         for record in RECORDS {
-            let Some((span, members)) = module.layout(record.wgsl) else { continue };
-            let wgsl: Vec<_> = members.iter().map(|m| (m.name.as_str(), m.offset, m.kind.as_str())).collect();
-            let rust: Vec<_> = record.members.iter().map(|m| (m.name, m.offset, m.kind)).collect();
-            assert_eq!(wgsl, rust, "{what}, {}: WGSL on the left, Rust on the right", record.wgsl);
+            let Some((span, members)) = module.layout(record.wgsl) else {
+                continue;
+            };
+            let wgsl: Vec<_> = members
+                .iter()
+                .map(|m| (m.name.as_str(), m.offset, m.kind.as_str()))
+                .collect();
+            let rust: Vec<_> = record
+                .members
+                .iter()
+                .map(|m| (m.name, m.offset, m.kind))
+                .collect();
+            assert_eq!(
+                wgsl, rust,
+                "{what}, {}: WGSL on the left, Rust on the right",
+                record.wgsl
+            );
             // A struct of vectors spans more than its members in WGSL.
-            assert!(span.abs_diff(record.size) < 16, "{what}, {}: WGSL spans {span} bytes, Rust {}", record.wgsl, record.size);
+            assert!(
+                span.abs_diff(record.size) < 16,
+                "{what}, {}: WGSL spans {span} bytes, Rust {}",
+                record.wgsl,
+                record.size
+            );
             seen.insert(record.wgsl);
         }
     }
-    let missing: Vec<_> = RECORDS.iter().map(|record| record.wgsl).filter(|name| !seen.contains(name)).collect();
+    let missing: Vec<_> = RECORDS
+        .iter()
+        .map(|record| record.wgsl)
+        .filter(|name| !seen.contains(name))
+        .collect();
     assert!(missing.is_empty(), "no pass declares {missing:?}");
 }
 
@@ -121,12 +179,20 @@ fn every_binding_has_a_resource_and_every_bound_struct_is_shared() {
         for binding in bindings {
             let resource = ResourceId::of_binding(&binding.name);
             bound.extend(resource);
-            assert!(resource.is_some(), "{what} binds {}, which crates/gpu/src/resource_id.rs does not list", binding.name);
+            assert!(
+                resource.is_some(),
+                "{what} binds {}, which crates/gpu/src/resource_id.rs does not list",
+                binding.name
+            );
             let (stride, name) = element(&module.module, binding.index);
             // The parameters of effects are compared with the effects below.
-            let Some(name) = name.filter(|name| name != "Effects") else { continue };
+            let Some(name) = name.filter(|name| name != "Effects") else {
+                continue;
+            };
             let record = RECORDS.iter().find(|record| record.wgsl == name);
-            let record = record.unwrap_or_else(|| panic!("{what} binds {name}, which crates/gpu/src/records.rs does not list"));
+            let record = record.unwrap_or_else(|| {
+                panic!("{what} binds {name}, which crates/gpu/src/records.rs does not list")
+            });
             assert!(
                 stride.is_none_or(|stride| stride == record.size),
                 "{what}: {name} lies {stride:?} bytes apart, Rust has {}",
@@ -137,7 +203,10 @@ fn every_binding_has_a_resource_and_every_bound_struct_is_shared() {
     // Kernels bind neither what is only copied nor what only a draw of the hardware reads.
     let copied = ["background", "previous"];
     let all = ResourceId::all().filter(|id| !copied.contains(&id.name()));
-    let idle: Vec<_> = all.filter(|id| !bound.contains(id)).map(ResourceId::name).collect();
+    let idle: Vec<_> = all
+        .filter(|id| !bound.contains(id))
+        .map(ResourceId::name)
+        .collect();
     assert!(idle.is_empty(), "no pass binds {idle:?}");
 }
 
@@ -145,24 +214,58 @@ fn every_binding_has_a_resource_and_every_bound_struct_is_shared() {
 fn every_effect_has_the_same_fields_on_both_sides() {
     for effect in EFFECTS.iter() {
         let reflected = reflected(&whole(Visibility::Split32, &[effect]), Pass::Resolve);
-        let (_, members) = reflected.layout(&effect.wgsl_struct).unwrap_or_else(|| panic!("no WGSL struct {}", effect.wgsl_struct));
-        // A group of parameters that several effects share is a struct of its own, at the beginning.
-        let is_group = |kind: &str| effect.fields.iter().any(|field| field.group.is_some_and(|group| group.wgsl_struct == kind));
-        let (groups, own): (Vec<_>, Vec<_>) = members.into_iter().partition(|member| is_group(&member.kind));
+        let (_, members) = reflected
+            .layout(&effect.wgsl_struct)
+            .unwrap_or_else(|| panic!("no WGSL struct {}", effect.wgsl_struct));
+        // A group of parameters that several effects share is a struct of its own, at the
+        // beginning.
+        let is_group = |kind: &str| {
+            effect
+                .fields
+                .iter()
+                .any(|field| field.group.is_some_and(|group| group.wgsl_struct == kind))
+        };
+        let (groups, own): (Vec<_>, Vec<_>) = members
+            .into_iter()
+            .partition(|member| is_group(&member.kind));
         let of_groups = groups.iter().flat_map(|group| {
             let (_, members) = reflected.layout(&group.kind).expect("a group is a struct");
-            members.into_iter().map(|m| (group.name.clone(), m.name, group.offset + m.offset, m.kind)).collect::<Vec<_>>()
+            members
+                .into_iter()
+                .map(|m| (group.name.clone(), m.name, group.offset + m.offset, m.kind))
+                .collect::<Vec<_>>()
         });
-        let wgsl: Vec<_> = of_groups.chain(own.into_iter().map(|m| (String::new(), m.name, m.offset, m.kind))).collect();
+        let wgsl: Vec<_> = of_groups
+            .chain(
+                own.into_iter()
+                    .map(|m| (String::new(), m.name, m.offset, m.kind)),
+            )
+            .collect();
         let mut fields: Vec<_> = effect.fields.iter().collect();
         fields.sort_by_key(|field| field.offset);
         let rust = fields.iter().map(|f| {
-            (f.group.map_or(String::new(), |group| group.member.to_owned()), f.name.to_owned(), f.offset, f.wgsl.name().to_owned())
+            (
+                f.group
+                    .map_or(String::new(), |group| group.member.to_owned()),
+                f.name.to_owned(),
+                f.offset,
+                f.wgsl.name().to_owned(),
+            )
         });
-        assert_eq!(wgsl, rust.collect::<Vec<_>>(), "{}: WGSL on the left, Rust on the right", effect.name);
+        assert_eq!(
+            wgsl,
+            rust.collect::<Vec<_>>(),
+            "{}: WGSL on the left, Rust on the right",
+            effect.name
+        );
         let words = &effect.defaults;
         let last = fields.last().expect("an effect has fields");
-        assert_eq!(words.len() * 4, last.offset + last.wgsl.words() * 4, "{}: padding at the end", effect.name);
+        assert_eq!(
+            words.len() * 4,
+            last.offset + last.wgsl.words() * 4,
+            "{}: padding at the end",
+            effect.name
+        );
     }
 }
 
@@ -172,7 +275,9 @@ fn defaults_lie_inside_their_hard_ranges() {
         let mut words = effect.defaults.clone();
         for field in &effect.fields {
             let values = field.get(&words);
-            field.set(&mut words, &values).unwrap_or_else(|error| panic!("{}: {error}", effect.name));
+            field
+                .set(&mut words, &values)
+                .unwrap_or_else(|error| panic!("{}: {error}", effect.name));
             assert!(
                 field.soft[0] >= field.hard[0] && field.soft[1] <= field.hard[1],
                 "{}.{}: soft range beyond hard",

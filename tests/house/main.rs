@@ -1,4 +1,5 @@
-//! Promises that need no adapter: the rules of the code base, files and their formats, the command line.
+//! Promises that need no adapter: the rules of the code base, files and their formats, the command
+//! line.
 
 mod architecture;
 mod cli;

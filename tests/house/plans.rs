@@ -1,11 +1,13 @@
-//! Promise: a plan gives a reason for every axis that decides about something in the picture, and for no other; an option is taken for its
-//! speed by what it costs on the adapter, measured there or else on others of its kind.
+//! Promise: a plan gives a reason for every axis that decides about something in the picture, and
+//! for no other; an option is taken for its speed by what it costs on the adapter, measured there
+//! or else on others of its kind.
 
 use std::sync::Arc;
 
 use rasterlab::{
     accuracy::{
-        AXES, AccuracyOptions, AxisOption, Coverage, CurlNoise, DotCulling, Perspective, Skinning, VertexTransform, Visibility, XraySums,
+        AXES, AccuracyOptions, AxisOption, Coverage, CurlNoise, DotCulling, Perspective, Skinning,
+        VertexTransform, Visibility, XraySums,
     },
     effects::{Effect, EnabledEffect, Stack},
     plan::{AccuracyRequest, Caps, MeasuredCosts, Plan, StackTraits, Tier, plan},
@@ -15,48 +17,135 @@ use rasterlab::{
 };
 
 fn planned(scene: &str, clip: &str, effects: &[&str], tier: Tier) -> (Plan, Stack) {
-    planned_for(&Caps::ALL, scene, clip, effects, AccuracyRequest { tier, ..AccuracyRequest::default() })
+    planned_for(
+        &Caps::ALL,
+        scene,
+        clip,
+        effects,
+        AccuracyRequest {
+            tier,
+            ..AccuracyRequest::default()
+        },
+    )
 }
 
-fn planned_for(caps: &Caps, scene: &str, clip: &str, effects: &[&str], request: AccuracyRequest) -> (Plan, Stack) {
-    let stack = Stack(effects.iter().map(|name| EnabledEffect::new(Effect::find(name).expect("an effect"))).collect());
-    let playback = ClipPlayback { clip: clip.into(), ..ClipPlayback::default() };
-    let preset = Preset { scene: SceneSource::Builtin(scene.into()), stack: stack.clone(), playback, ..Preset::default() };
+fn planned_for(
+    caps: &Caps,
+    scene: &str,
+    clip: &str,
+    effects: &[&str],
+    request: AccuracyRequest,
+) -> (Plan, Stack) {
+    let stack = Stack(
+        effects
+            .iter()
+            .map(|name| EnabledEffect::new(Effect::find(name).expect("an effect")))
+            .collect(),
+    );
+    let playback = ClipPlayback {
+        clip: clip.into(),
+        ..ClipPlayback::default()
+    };
+    let preset = Preset {
+        scene: SceneSource::Builtin(scene.into()),
+        stack: stack.clone(),
+        playback,
+        ..Preset::default()
+    };
     let scene = preset_file::load_scene(&preset, None).expect("a built-in scene");
     let view = preset.view(&scene, [320, 240]);
     let draws = stack.draws(&scene, &view).expect("a small scene");
     let traits = StackTraits::of(&stack, &request).expect("no two of a slot");
     let needs = Arc::new(Needs::of(&scene, &draws, &view));
-    (plan(&needs, &traits, caps, &caps.tuning(), &request).expect("a plan"), stack)
+    (
+        plan(&needs, &traits, caps, &caps.tuning(), &request).expect("a plan"),
+        stack,
+    )
 }
 
 /// A tier where packed32 was measured to take so much of the time without.
 fn measured(tier: Tier, packed32: f64) -> AccuracyRequest {
     let default = AccuracyOptions::default();
     let mut measured = MeasuredCosts::default();
-    measured.learn(&[(default, 10.0), (AccuracyOptions { visibility: Visibility::Packed32, ..default }, 10.0 * packed32)]);
-    AccuracyRequest { tier, measured, ..AccuracyRequest::default() }
+    measured.learn(&[
+        (default, 10.0),
+        (
+            AccuracyOptions {
+                visibility: Visibility::Packed32,
+                ..default
+            },
+            10.0 * packed32,
+        ),
+    ]);
+    AccuracyRequest {
+        tier,
+        measured,
+        ..AccuracyRequest::default()
+    }
 }
 
 #[test]
 fn what_was_measured_decides_which_option_is_cheaper_and_the_tolerance_whether_it_may_be_taken() {
-    let visibility = |caps: &Caps, request| planned_for(caps, "teapot?tess=4", "", &["lambert"], request).0.key.options.visibility;
-    let unmeasured = AccuracyRequest { tier: Tier::Draft, ..AccuracyRequest::default() };
-    assert_eq!(visibility(&Caps::ALL, unmeasured), Visibility::Packed64, "a card gains nothing as a rule");
-    assert_eq!(visibility(&Caps::ALL, measured(Tier::Draft, 0.8)), Visibility::Packed32);
-    assert_eq!(visibility(&Caps::ALL, measured(Tier::Draft, 0.98)), Visibility::Packed64, "that may be noise");
-    assert_eq!(visibility(&Caps::ALL, measured(Tier::Draft, 1.3)), Visibility::Packed64);
+    let visibility = |caps: &Caps, request| {
+        planned_for(caps, "teapot?tess=4", "", &["lambert"], request)
+            .0
+            .key
+            .options
+            .visibility
+    };
+    let unmeasured = AccuracyRequest {
+        tier: Tier::Draft,
+        ..AccuracyRequest::default()
+    };
+    assert_eq!(
+        visibility(&Caps::ALL, unmeasured),
+        Visibility::Packed64,
+        "a card gains nothing as a rule"
+    );
+    assert_eq!(
+        visibility(&Caps::ALL, measured(Tier::Draft, 0.8)),
+        Visibility::Packed32
+    );
+    assert_eq!(
+        visibility(&Caps::ALL, measured(Tier::Draft, 0.98)),
+        Visibility::Packed64,
+        "that may be noise"
+    );
+    assert_eq!(
+        visibility(&Caps::ALL, measured(Tier::Draft, 1.3)),
+        Visibility::Packed64
+    );
     for tier in [Tier::Precise, Tier::Reference, Tier::Strict] {
-        assert_eq!(visibility(&Caps::ALL, measured(tier, 0.1)), Visibility::Packed64, "{}", tier.name());
+        assert_eq!(
+            visibility(&Caps::ALL, measured(tier, 0.1)),
+            Visibility::Packed64,
+            "{}",
+            tier.name()
+        );
     }
     // What was measured elsewhere no longer counts.
-    let software = Caps { software: true, ..Caps::ALL };
+    let software = Caps {
+        software: true,
+        ..Caps::ALL
+    };
     assert_eq!(visibility(&software, unmeasured), Visibility::Packed32);
-    assert_eq!(visibility(&software, measured(Tier::Draft, 1.0)), Visibility::Packed64);
+    assert_eq!(
+        visibility(&software, measured(Tier::Draft, 1.0)),
+        Visibility::Packed64
+    );
 
-    let (plan, _) = planned_for(&Caps::ALL, "teapot?tess=4", "", &["lambert"], measured(Tier::Draft, 0.8));
+    let (plan, _) = planned_for(
+        &Caps::ALL,
+        "teapot?tess=4",
+        "",
+        &["lambert"],
+        measured(Tier::Draft, 0.8),
+    );
     let why = plan.reason(&AXES[Visibility::AXIS]).expect("a reason");
-    assert!(why.starts_with("packed32: 0.80 of the default's time as measured here"), "{why}");
+    assert!(
+        why.starts_with("packed32: 0.80 of the default's time as measured here"),
+        "{why}"
+    );
 }
 
 #[test]
@@ -66,8 +155,17 @@ fn an_axis_has_a_reason_where_it_decides_about_something() {
     for axis in [Coverage::AXIS, VertexTransform::AXIS, Perspective::AXIS] {
         assert!(has(&plain, axis), "{}", AXES[axis].name);
     }
-    for axis in [DotCulling::AXIS, Skinning::AXIS, CurlNoise::AXIS, XraySums::AXIS] {
-        assert!(!has(&plain, axis), "{} decides about nothing", AXES[axis].name);
+    for axis in [
+        DotCulling::AXIS,
+        Skinning::AXIS,
+        CurlNoise::AXIS,
+        XraySums::AXIS,
+    ] {
+        assert!(
+            !has(&plain, axis),
+            "{} decides about nothing",
+            AXES[axis].name
+        );
     }
     let (walker, _) = planned("walker?tess=1", "Walk", &["lambert"], Tier::Precise);
     assert!(has(&walker, Skinning::AXIS));
@@ -83,10 +181,21 @@ fn an_axis_has_a_reason_where_it_decides_about_something() {
 fn the_same_request_gives_the_same_plan_whichever_plan_it_starts_from() {
     let (precise, stack) = planned("teapot?tess=4", "", &["lambert"], Tier::Precise);
     let under = |tier: Tier| {
-        let request = AccuracyRequest { tier, ..AccuracyRequest::default() };
-        precise.under(&stack, &Caps::ALL.tuning(), &request).expect("a plan")
+        let request = AccuracyRequest {
+            tier,
+            ..AccuracyRequest::default()
+        };
+        precise
+            .under(&stack, &Caps::ALL.tuning(), &request)
+            .expect("a plan")
     };
-    assert_eq!(under(Tier::Strict), planned("teapot?tess=4", "", &["lambert"], Tier::Strict).0);
+    assert_eq!(
+        under(Tier::Strict),
+        planned("teapot?tess=4", "", &["lambert"], Tier::Strict).0
+    );
     let draft = under(Tier::Draft).prediction;
-    assert!(draft.wrong_ppm <= Tier::Draft.tolerance().wrong_ppm, "{draft:?}");
+    assert!(
+        draft.wrong_ppm <= Tier::Draft.tolerance().wrong_ppm,
+        "{draft:?}"
+    );
 }

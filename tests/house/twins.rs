@@ -1,5 +1,6 @@
-//! Promise: the WGSL of every built-in effect, evaluated in f64, says what its function in Rust says: integers and booleans exactly,
-//! floats within 1e-9, over random inputs and parameters. Needs no adapter.
+//! Promise: the WGSL of every built-in effect, evaluated in f64, says what its function in Rust
+//! says: integers and booleans exactly, floats within 1e-9, over random inputs and parameters.
+//! Needs no adapter.
 
 use std::sync::Arc;
 
@@ -20,16 +21,31 @@ const TOLERANCE: f64 = 1e-9;
 
 /// Effects whose text and function are meant to differ by more, and why.
 const LOOSER: &[(&str, f64, &str)] = &[
-    ("explode", 1e-7, "lib/angle has a polynomial for the sine, within 3.4e-9 of it, which is multiplied by the arm"),
-    ("wobble", 1e-6, "lib/angle has a polynomial for the sine, within 3.4e-9 of it, which is multiplied by the slope"),
-    ("hatch", 5e-6, "lib/angle has a series for the direction, within 2^-24 of it, which is multiplied by the position in spacings"),
+    (
+        "explode",
+        1e-7,
+        "lib/angle has a polynomial for the sine, within 3.4e-9 of it, which is multiplied by the arm",
+    ),
+    (
+        "wobble",
+        1e-6,
+        "lib/angle has a polynomial for the sine, within 3.4e-9 of it, which is multiplied by the slope",
+    ),
+    (
+        "hatch",
+        5e-6,
+        "lib/angle has a series for the direction, within 2^-24 of it, which is multiplied by the position in spacings",
+    ),
 ];
 
 /// Random inputs of each effect.
 const TRIES: usize = 3000;
 
 fn tolerance(effect: &Effect) -> f64 {
-    LOOSER.iter().find(|(name, ..)| *name == effect.name).map_or(TOLERANCE, |(_, bound, _)| *bound)
+    LOOSER
+        .iter()
+        .find(|(name, ..)| *name == effect.name)
+        .map_or(TOLERANCE, |(_, bound, _)| *bound)
 }
 
 fn between(rng: &mut Rng, low: f64, high: f64) -> f64 {
@@ -61,14 +77,20 @@ fn parameters(rng: &mut Rng, effect: &Effect, turn: usize) -> Vec<u32> {
             1 => high,
             _ => between(rng, low, high),
         };
-        let mut components: Vec<f64> = (0..field.value_type.components()).map(|_| number()).collect();
+        let mut components: Vec<f64> = (0..field.value_type.components())
+            .map(|_| number())
+            .collect();
         if !field.value_type.is_continuous() {
-            components.iter_mut().for_each(|number| *number = number.round());
+            components
+                .iter_mut()
+                .for_each(|number| *number = number.round());
         }
         if let ValueType::Choice(choices) = &field.value_type {
             components = vec![f64::from(whole(rng, choices.len() as u32))];
         }
-        field.set(&mut words, &components).unwrap_or_else(|error| panic!("{}.{}: {error}", effect.name, field.name));
+        field
+            .set(&mut words, &components)
+            .unwrap_or_else(|error| panic!("{}.{}: {error}", effect.name, field.name));
     }
     words
 }
@@ -107,19 +129,32 @@ fn surface(rng: &mut Rng) -> Surface {
 
 /// Both sides' floats, all of them within the effect's tolerance.
 fn same(effect: &Effect, what: &str, given: &[f64], expected: &[f64], case: &dyn std::fmt::Debug) {
-    let scale = expected.iter().fold(1.0, |scale: f64, value| scale.max(value.abs()));
+    let scale = expected
+        .iter()
+        .fold(1.0, |scale: f64, value| scale.max(value.abs()));
     for (given, expected) in given.iter().zip(expected) {
-        let is_same = (given - expected).abs() <= tolerance(effect) * scale || given.is_nan() && expected.is_nan() || given == expected;
-        assert!(is_same, "{}: {what}: WGSL {given}, Rust {expected}, {:e} apart\n{case:?}", effect.name, (given - expected).abs());
+        let is_same = (given - expected).abs() <= tolerance(effect) * scale
+            || given.is_nan() && expected.is_nan()
+            || given == expected;
+        assert!(
+            is_same,
+            "{}: {what}: WGSL {given}, Rust {expected}, {:e} apart\n{case:?}",
+            effect.name,
+            (given - expected).abs()
+        );
     }
 }
 
 /// Runs every effect that has the hook, and gathers what fails.
-fn each_effect(has: impl Fn(&Hooks) -> bool, compare: impl Fn(&Arc<Effect>, &Hooks) + std::panic::RefUnwindSafe) {
+fn each_effect(
+    has: impl Fn(&Hooks) -> bool,
+    compare: impl Fn(&Arc<Effect>, &Hooks) + std::panic::RefUnwindSafe,
+) {
     let mut faults = Vec::new();
     let mut compared = 0;
     for effect in EFFECTS.iter().filter(|&effect| has(&effect.hooks)).cloned() {
-        let hooks = evaluated(&Library::Embedded, &effect).unwrap_or_else(|error| panic!("{}: {error}", effect.name));
+        let hooks = evaluated(&Library::Embedded, &effect)
+            .unwrap_or_else(|error| panic!("{}: {error}", effect.name));
         let run = std::panic::AssertUnwindSafe(|| compare(&effect, &hooks));
         if let Err(panic) = std::panic::catch_unwind(run) {
             faults.push(panic.downcast_ref::<String>().cloned().unwrap_or_default());
@@ -138,17 +173,37 @@ fn surface_functions_agree() {
             let mut rng = Rng(11);
             for turn in 0..TRIES {
                 let (words, s) = (parameters(&mut rng, effect, turn), surface(&mut rng));
-                let of = |hooks: &Hooks| hooks.surface.as_ref().expect("it is on the hook")(s, &words);
+                let of =
+                    |hooks: &Hooks| hooks.surface.as_ref().expect("it is on the hook")(s, &words);
                 let (given, expected) = (of(hooks), of(&effect.hooks));
                 let floats = |s: &Surface| {
-                    let vectors = [s.glow, s.position, s.normal, s.flat_normal, s.view, s.center, s.barycentrics, s.edge_distance_px];
+                    let vectors = [
+                        s.glow,
+                        s.position,
+                        s.normal,
+                        s.flat_normal,
+                        s.view,
+                        s.center,
+                        s.barycentrics,
+                        s.edge_distance_px,
+                    ];
                     let mut all = s.color.to_array().to_vec();
                     all.extend(vectors.iter().flat_map(|v| v.to_array()));
-                    all.extend([s.center_screen, s.screen, s.depth_range_m].iter().flat_map(|v| v.to_array()));
+                    all.extend(
+                        [s.center_screen, s.screen, s.depth_range_m]
+                            .iter()
+                            .flat_map(|v| v.to_array()),
+                    );
                     all.extend([s.depth_m, s.pixel_size_m, s.flat_depth_m, s.rank, s.lit]);
                     all
                 };
-                same(effect, "surface", &floats(&given), &floats(&expected), &(words, s));
+                same(
+                    effect,
+                    "surface",
+                    &floats(&given),
+                    &floats(&expected),
+                    &(words, s),
+                );
                 assert_eq!(given.triangle_id, expected.triangle_id, "{}", effect.name);
             }
         },
@@ -167,18 +222,40 @@ fn vertex_functions_agree() {
                 let arm = vector(&mut rng, -1.0, 1.0);
                 let v = Vertex {
                     position: center + arm,
-                    offset: if turn % 2 == 0 { DVec3::ZERO } else { vector(&mut rng, -1.0, 1.0) },
-                    normal: if turn % 7 == 0 { DVec3::ZERO } else { direction(&mut rng) },
+                    offset: if turn % 2 == 0 {
+                        DVec3::ZERO
+                    } else {
+                        vector(&mut rng, -1.0, 1.0)
+                    },
+                    normal: if turn % 7 == 0 {
+                        DVec3::ZERO
+                    } else {
+                        direction(&mut rng)
+                    },
                     flat_normal: direction(&mut rng),
                     center,
                     arm,
                     center_screen: vector(&mut rng, 0.0, 1.0).truncate(),
                     triangle: whole(&mut rng, 1 << 20),
                 };
-                let of = |hooks: &Hooks| (hooks.vertex.as_ref().expect("it is on the hook").moved)(v, &words);
+                let of = |hooks: &Hooks| {
+                    (hooks.vertex.as_ref().expect("it is on the hook").moved)(v, &words)
+                };
                 let (given, expected) = (of(hooks), of(&effect.hooks));
-                same(effect, "offset", &given.offset.to_array(), &expected.offset.to_array(), &(&words, v));
-                same(effect, "normal", &given.normal.to_array(), &expected.normal.to_array(), &(&words, v));
+                same(
+                    effect,
+                    "offset",
+                    &given.offset.to_array(),
+                    &expected.offset.to_array(),
+                    &(&words, v),
+                );
+                same(
+                    effect,
+                    "normal",
+                    &given.normal.to_array(),
+                    &expected.normal.to_array(),
+                    &(&words, v),
+                );
             }
         },
     );
@@ -194,7 +271,12 @@ fn sample_functions_agree() {
             for turn in 0..TRIES {
                 let words = parameters(&mut rng, effect, turn);
                 let reach = if turn % 5 == 0 { 40_000.0 } else { 6_000.0 };
-                let corner = |rng: &mut Rng| [between(rng, -500.0, reach) as i32, between(rng, -500.0, reach) as i32];
+                let corner = |rng: &mut Rng| {
+                    [
+                        between(rng, -500.0, reach) as i32,
+                        between(rng, -500.0, reach) as i32,
+                    ]
+                };
                 let setup = TriangleSetup {
                     triangle: whole(&mut rng, 1 << 20),
                     corners: std::array::from_fn(|_| corner(&mut rng)),
@@ -206,21 +288,47 @@ fn sample_functions_agree() {
                 };
                 let of = |hooks: &Hooks| {
                     let hook = hooks.sample.as_ref().expect("it is on the hook");
-                    if hook.has_setup { (hook.sample_setup)(&setup, &words, None) } else { [0; 4] }
+                    if hook.has_setup {
+                        (hook.sample_setup)(&setup, &words, None)
+                    } else {
+                        [0; 4]
+                    }
                 };
                 let (given, expected) = (of(hooks), of(&effect.hooks));
-                assert_eq!(given, expected, "{}: setup of {setup:?} with {words:?}", effect.name);
+                assert_eq!(
+                    given, expected,
+                    "{}: setup of {setup:?} with {words:?}",
+                    effect.name
+                );
                 for _ in 0..4 {
                     let areas = std::array::from_fn(|_| whole(&mut rng, 1 << 29));
                     let (x, y) = (whole(&mut rng, 200), whole(&mut rng, 200));
-                    let sample = Sample { x, y, triangle: setup.triangle, areas, setup: expected };
-                    let of = |hooks: &Hooks| (hooks.sample.as_ref().expect("it is on the hook").is_drawn)(&sample, &words);
+                    let sample = Sample {
+                        x,
+                        y,
+                        triangle: setup.triangle,
+                        areas,
+                        setup: expected,
+                    };
+                    let of = |hooks: &Hooks| {
+                        (hooks.sample.as_ref().expect("it is on the hook").is_drawn)(
+                            &sample, &words,
+                        )
+                    };
                     let (given, expected) = (of(hooks), of(&effect.hooks));
-                    assert_eq!(given, expected, "{}: {sample:?} with {words:?}", effect.name);
+                    assert_eq!(
+                        given, expected,
+                        "{}: {sample:?} with {words:?}",
+                        effect.name
+                    );
                     drawn[usize::from(expected)] += 1;
                 }
             }
-            assert!(drawn[0] > 100 && drawn[1] > 100, "{}: {drawn:?}", effect.name);
+            assert!(
+                drawn[0] > 100 && drawn[1] > 100,
+                "{}: {drawn:?}",
+                effect.name
+            );
         },
     );
 }
@@ -235,12 +343,29 @@ fn image_functions_agree() {
             let pixels = (width * height) as usize;
             for turn in 0..TRIES / 20 {
                 let words = parameters(&mut rng, effect, turn);
-                let triangle_ids: Vec<u32> =
-                    (0..pixels).map(|_| if rng.real(0.0, 1.0) < 0.4 { u32::MAX } else { whole(&mut rng, 60) }).collect();
-                let key = |id: &u32, rng: &mut Rng| if *id == u32::MAX { 0 } else { 1 + whole(rng, 0x3f80_0000) };
+                let triangle_ids: Vec<u32> = (0..pixels)
+                    .map(|_| {
+                        if rng.real(0.0, 1.0) < 0.4 {
+                            u32::MAX
+                        } else {
+                            whole(&mut rng, 60)
+                        }
+                    })
+                    .collect();
+                let key = |id: &u32, rng: &mut Rng| {
+                    if *id == u32::MAX {
+                        0
+                    } else {
+                        1 + whole(rng, 0x3f80_0000)
+                    }
+                };
                 let keys: Vec<u32> = triangle_ids.iter().map(|id| key(id, &mut rng)).collect();
-                let previous: Vec<[u8; 4]> = (0..pixels).map(|_| std::array::from_fn(|_| whole(&mut rng, 256) as u8)).collect();
-                let background: Vec<[u8; 4]> = (0..height).map(|y| [3 + 9 * y as u8, 77, 200 - 7 * y as u8, 255]).collect();
+                let previous: Vec<[u8; 4]> = (0..pixels)
+                    .map(|_| std::array::from_fn(|_| whole(&mut rng, 256) as u8))
+                    .collect();
+                let background: Vec<[u8; 4]> = (0..height)
+                    .map(|y| [3 + 9 * y as u8, 77, 200 - 7 * y as u8, 255])
+                    .collect();
                 let picture = Picture {
                     width,
                     height,
@@ -251,13 +376,36 @@ fn image_functions_agree() {
                     background: &background,
                 };
                 for index in 0..width * height {
-                    let color =
-                        if rng.real(0.0, 1.0) < 0.2 { picture.background(index / width) } else { vector(&mut rng, 0.0, 1.0).extend(1.0) };
-                    let q = Pixel { color, x: index % width, y: index / width, step_offset: 0.0 };
-                    let of = |hooks: &Hooks| (hooks.image.as_ref().expect("it is on the hook").finish)(q, &picture, &words);
+                    let color = if rng.real(0.0, 1.0) < 0.2 {
+                        picture.background(index / width)
+                    } else {
+                        vector(&mut rng, 0.0, 1.0).extend(1.0)
+                    };
+                    let q = Pixel {
+                        color,
+                        x: index % width,
+                        y: index / width,
+                        step_offset: 0.0,
+                    };
+                    let of = |hooks: &Hooks| {
+                        (hooks.image.as_ref().expect("it is on the hook").finish)(
+                            q, &picture, &words,
+                        )
+                    };
                     let (given, expected) = (of(hooks), of(&effect.hooks));
-                    same(effect, "color", &given.color.to_array(), &expected.color.to_array(), &(&words, q));
-                    assert_eq!((given.x, given.y), (expected.x, expected.y), "{}", effect.name);
+                    same(
+                        effect,
+                        "color",
+                        &given.color.to_array(),
+                        &expected.color.to_array(),
+                        &(&words, q),
+                    );
+                    assert_eq!(
+                        (given.x, given.y),
+                        (expected.x, expected.y),
+                        "{}",
+                        effect.name
+                    );
                 }
             }
         },
@@ -275,25 +423,44 @@ fn a_duplicate_of_an_effect_is_read_and_says_the_same() {
                 continue;
             }
         };
-        let mine = read("my_own.wgsl", "my_own", &text).unwrap_or_else(|error| panic!("{}: {error}\n{text}", effect.name));
+        let mine = read("my_own.wgsl", "my_own", &text)
+            .unwrap_or_else(|error| panic!("{}: {error}\n{text}", effect.name));
         duplicates += 1;
         assert_eq!(mine.fields.len(), effect.fields.len(), "{}", effect.name);
-        let (Some(expected), Some(given)) = (&effect.hooks.surface, &mine.hooks.surface) else { continue };
+        let (Some(expected), Some(given)) = (&effect.hooks.surface, &mine.hooks.surface) else {
+            continue;
+        };
         let mut rng = Rng(7);
         for turn in 0..300 {
             let words = parameters(&mut rng, &effect, turn);
             let mut own_words = mine.defaults.clone();
             for field in &mine.fields {
-                let same = effect.field(&field.name).unwrap_or_else(|| panic!("{}.{}", effect.name, field.name));
-                field.set(&mut own_words, &same.get(&words)).unwrap_or_else(|error| panic!("{}.{}: {error}", effect.name, field.name));
+                let same = effect
+                    .field(&field.name)
+                    .unwrap_or_else(|| panic!("{}.{}", effect.name, field.name));
+                field
+                    .set(&mut own_words, &same.get(&words))
+                    .unwrap_or_else(|error| panic!("{}.{}: {error}", effect.name, field.name));
             }
             if turn == 0 {
                 assert_eq!(own_words, mine.defaults, "{}: the defaults", effect.name);
             }
             let input = surface(&mut rng);
             let [given, expected] = [given(input, &own_words), expected(input, &words)];
-            same(&effect, "color", &given.color.to_array(), &expected.color.to_array(), &input);
-            same(&effect, "normal", &given.normal.to_array(), &expected.normal.to_array(), &input);
+            same(
+                &effect,
+                "color",
+                &given.color.to_array(),
+                &expected.color.to_array(),
+                &input,
+            );
+            same(
+                &effect,
+                "normal",
+                &given.normal.to_array(),
+                &expected.normal.to_array(),
+                &input,
+            );
         }
     }
     assert!(duplicates >= 12, "{duplicates} duplicates; {refusals:#?}");

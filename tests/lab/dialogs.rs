@@ -1,5 +1,5 @@
-//! Promise: files are found and saved without a service of the desktop: paths are completed, recent files are listed, and a save that fails
-//! keeps its dialog with the path and the reason.
+//! Promise: files are found and saved without a service of the desktop: paths are completed, recent
+//! files are listed, and a save that fails keeps its dialog with the path and the reason.
 
 use std::time::{Duration, Instant};
 
@@ -17,14 +17,21 @@ fn type_text(lab: &mut Lab, text: &str) {
 fn wait_for(lab: &mut Lab, what: &str, reached: impl Fn(&Lab) -> bool) {
     let patience = Instant::now() + Duration::from_secs(60);
     while !reached(lab) {
-        assert!(Instant::now() < patience, "{what}\n{}", lab.state().log_text());
+        assert!(
+            Instant::now() < patience,
+            "{what}\n{}",
+            lab.state().log_text()
+        );
         lab.step();
         std::thread::sleep(Duration::from_millis(5));
     }
 }
 
 fn path_of(lab: &Lab) -> String {
-    lab.get_by_role_and_label(Role::TextInput, "Path").accesskit_node().value().unwrap_or_default()
+    lab.get_by_role_and_label(Role::TextInput, "Path")
+        .accesskit_node()
+        .value()
+        .unwrap_or_default()
 }
 
 #[test]
@@ -34,31 +41,51 @@ fn tab_completes_a_path_and_enter_goes_into_folders_and_opens_files() {
     std::fs::create_dir(&models).expect("a folder");
     std::fs::write(models.join("triangle.glb"), tiny_glb()).expect("a file");
     std::fs::write(models.join("notes.txt"), "").expect("a file");
-    let Some(mut lab) = lab("lambert") else { return };
+    let Some(mut lab) = lab("lambert") else {
+        return;
+    };
     press(&mut lab, Modifiers::COMMAND, Key::O);
     type_text(&mut lab, &format!("{}/mod", folder.path().display()));
-    wait_for(&mut lab, "the folder is listed", |lab| lab.query_by_label("models/").is_some());
+    wait_for(&mut lab, "the folder is listed", |lab| {
+        lab.query_by_label("models/").is_some()
+    });
     press(&mut lab, Modifiers::NONE, Key::Tab);
     assert_eq!(path_of(&lab), format!("{}/", models.display()));
-    wait_for(&mut lab, "the folder is listed", |lab| lab.query_by_label("triangle.glb").is_some());
-    assert!(lab.query_by_label("notes.txt").is_none(), "a file that cannot be opened is listed");
+    wait_for(&mut lab, "the folder is listed", |lab| {
+        lab.query_by_label("triangle.glb").is_some()
+    });
+    assert!(
+        lab.query_by_label("notes.txt").is_none(),
+        "a file that cannot be opened is listed"
+    );
     type_text(&mut lab, "tr");
     press(&mut lab, Modifiers::NONE, Key::Tab);
-    assert_eq!(path_of(&lab), models.join("triangle.glb").display().to_string());
+    assert_eq!(
+        path_of(&lab),
+        models.join("triangle.glb").display().to_string()
+    );
     press(&mut lab, Modifiers::NONE, Key::Enter);
     settle(&mut lab);
     assert_eq!(lab.state().preset_file().title(), "Daylight on triangle");
-    assert!(lab.query_by_role_and_label(Role::TextInput, "Path").is_none());
+    assert!(
+        lab.query_by_role_and_label(Role::TextInput, "Path")
+            .is_none()
+    );
 
     // The file is recent now. The arrow keys choose it.
     press(&mut lab, Modifiers::NONE, Key::CloseBracket);
     press(&mut lab, Modifiers::COMMAND, Key::O);
-    wait_for(&mut lab, "the recent file is listed", |lab| lab.query_by_label("triangle.glb").is_some());
+    wait_for(&mut lab, "the recent file is listed", |lab| {
+        lab.query_by_label("triangle.glb").is_some()
+    });
     press(&mut lab, Modifiers::NONE, Key::ArrowDown);
     press(&mut lab, Modifiers::NONE, Key::Enter);
     settle(&mut lab);
     let title = lab.state().preset_file().title();
-    assert!(title.ends_with(" on triangle") && title != "Daylight on triangle", "{title}");
+    assert!(
+        title.ends_with(" on triangle") && title != "Daylight on triangle",
+        "{title}"
+    );
 }
 
 #[test]
@@ -66,20 +93,32 @@ fn a_save_that_fails_keeps_the_dialog_its_path_and_the_reason() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("file");
     std::fs::write(&file, "in the way").expect("a file");
-    let Some(mut lab) = lab("lambert") else { return };
+    let Some(mut lab) = lab("lambert") else {
+        return;
+    };
     press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::S);
     press(&mut lab, Modifiers::COMMAND, Key::A);
     let path = file.join("mine.toml");
     type_text(&mut lab, &path.display().to_string());
     press(&mut lab, Modifiers::NONE, Key::Enter);
     assert_eq!(path_of(&lab), path.display().to_string());
-    assert!(lab.query_by_label_contains("the folder cannot be created").is_some(), "{}", lab.state().log_text());
+    assert!(
+        lab.query_by_label_contains("the folder cannot be created")
+            .is_some(),
+        "{}",
+        lab.state().log_text()
+    );
     // Another name, and it is saved.
     press(&mut lab, Modifiers::COMMAND, Key::A);
     let path = folder.path().join("mine.toml");
     type_text(&mut lab, &path.display().to_string());
     press(&mut lab, Modifiers::NONE, Key::Enter);
-    assert!(path.exists() && lab.query_by_role_and_label(Role::TextInput, "Path").is_none());
+    assert!(
+        path.exists()
+            && lab
+                .query_by_role_and_label(Role::TextInput, "Path")
+                .is_none()
+    );
 }
 
 #[test]
@@ -87,7 +126,9 @@ fn an_export_that_fails_keeps_its_size() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("file");
     std::fs::write(&file, "in the way").expect("a file");
-    let Some(mut lab) = lab("lambert") else { return };
+    let Some(mut lab) = lab("lambert") else {
+        return;
+    };
     press(&mut lab, Modifiers::COMMAND, Key::E);
     press(&mut lab, Modifiers::COMMAND, Key::A);
     type_text(&mut lab, &file.join("mine.png").display().to_string());
@@ -96,51 +137,90 @@ fn an_export_that_fails_keeps_its_size() {
         lab.step();
         std::thread::sleep(Duration::from_millis(10));
     }
-    let width = |lab: &Lab| lab.get_by_label("Width").accesskit_node().value().unwrap_or_default();
+    let width = |lab: &Lab| {
+        lab.get_by_label("Width")
+            .accesskit_node()
+            .value()
+            .unwrap_or_default()
+    };
     lab.get_by_label("Width").click();
     lab.run_steps(3);
     press(&mut lab, Modifiers::COMMAND, Key::A);
     type_text(&mut lab, "123");
-    assert_eq!(path_of(&lab), file.join("mine.png").display().to_string(), "the number was typed into the path");
+    assert_eq!(
+        path_of(&lab),
+        file.join("mine.png").display().to_string(),
+        "the number was typed into the path"
+    );
     press(&mut lab, Modifiers::NONE, Key::Enter);
     let typed = width(&lab);
     assert!(typed.contains("123"), "{typed}");
     lab.get_by_role_and_label(Role::Button, "Save").click();
-    wait_for(&mut lab, "the export fails", |lab| !error_lines(lab).is_empty());
+    wait_for(&mut lab, "the export fails", |lab| {
+        !error_lines(lab).is_empty()
+    });
     lab.run_steps(3);
-    assert_eq!((path_of(&lab), width(&lab)), (file.join("mine.png").display().to_string(), typed));
+    assert_eq!(
+        (path_of(&lab), width(&lab)),
+        (file.join("mine.png").display().to_string(), typed)
+    );
 }
 
 #[test]
 fn the_first_save_of_a_built_in_preset_asks_for_a_name_and_writes_nothing_before() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let files = || std::fs::read_dir(folder.path()).expect("a folder").count();
-    let Some(mut lab) = lab_in("lambert", Some(folder.path())) else { return };
-    for (modifiers, name) in [(Modifiers::COMMAND, "mine"), (Modifiers::COMMAND | Modifiers::SHIFT, "other")] {
+    let Some(mut lab) = lab_in("lambert", Some(folder.path())) else {
+        return;
+    };
+    for (modifiers, name) in [
+        (Modifiers::COMMAND, "mine"),
+        (Modifiers::COMMAND | Modifiers::SHIFT, "other"),
+    ] {
         let before = files();
         press(&mut lab, modifiers, Key::S);
         assert_eq!(files(), before, "it is saved before a name is given");
-        let proposed = if name == "mine" { "my-lambert.toml" } else { "mine.toml" };
-        assert_eq!(path_of(&lab), folder.path().join(proposed).display().to_string());
+        let proposed = if name == "mine" {
+            "my-lambert.toml"
+        } else {
+            "mine.toml"
+        };
+        assert_eq!(
+            path_of(&lab),
+            folder.path().join(proposed).display().to_string()
+        );
         press(&mut lab, Modifiers::NONE, Key::Escape);
         assert_eq!(files(), before, "Escape saves");
         press(&mut lab, modifiers, Key::S);
         type_text(&mut lab, name);
         press(&mut lab, Modifiers::NONE, Key::Enter);
-        assert!(folder.path().join(format!("{name}.toml")).exists() && lab.state().preset_file().id == name, "{}", lab.state().log_text());
+        assert!(
+            folder.path().join(format!("{name}.toml")).exists()
+                && lab.state().preset_file().id == name,
+            "{}",
+            lab.state().log_text()
+        );
     }
     // It has a name now, so that it is saved there.
     press(&mut lab, Modifiers::COMMAND, Key::S);
-    assert!(lab.query_by_role_and_label(Role::TextInput, "Path").is_none());
+    assert!(
+        lab.query_by_role_and_label(Role::TextInput, "Path")
+            .is_none()
+    );
 }
 
 #[test]
 fn typing_replaces_the_proposed_name_and_keeps_folder_and_extension() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let Some(mut lab) = lab_in("lambert", Some(folder.path())) else { return };
+    let Some(mut lab) = lab_in("lambert", Some(folder.path())) else {
+        return;
+    };
     press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::S);
     type_text(&mut lab, "evening");
-    assert_eq!(path_of(&lab), folder.path().join("evening.toml").display().to_string());
+    assert_eq!(
+        path_of(&lab),
+        folder.path().join("evening.toml").display().to_string()
+    );
     press(&mut lab, Modifiers::COMMAND, Key::A);
     type_text(&mut lab, &folder.path().display().to_string());
     press(&mut lab, Modifiers::NONE, Key::Escape);
@@ -151,16 +231,26 @@ fn typing_replaces_the_proposed_name_and_keeps_folder_and_extension() {
 fn a_whole_path_in_place_of_the_proposed_name_replaces_the_folder_too() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let presets = folder.path().join("presets");
-    let Some(mut lab) = lab_in("lambert", Some(&presets)) else { return };
+    let Some(mut lab) = lab_in("lambert", Some(&presets)) else {
+        return;
+    };
     press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::S);
     let path = folder.path().join("mine.toml");
     // Letter by letter, as it is typed.
     for letter in path.display().to_string().chars() {
         type_text(&mut lab, &letter.to_string());
     }
-    assert!(path_of(&lab).starts_with(&path.display().to_string()), "{}", path_of(&lab));
+    assert!(
+        path_of(&lab).starts_with(&path.display().to_string()),
+        "{}",
+        path_of(&lab)
+    );
     press(&mut lab, Modifiers::NONE, Key::Enter);
-    assert!(path.exists() && !presets.exists(), "{}", lab.state().log_text());
+    assert!(
+        path.exists() && !presets.exists(),
+        "{}",
+        lab.state().log_text()
+    );
 
     // Pasted at once.
     press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::S);
@@ -168,7 +258,11 @@ fn a_whole_path_in_place_of_the_proposed_name_replaces_the_folder_too() {
     type_text(&mut lab, &other.display().to_string());
     assert_eq!(path_of(&lab), format!("{}.toml", other.display()));
     press(&mut lab, Modifiers::NONE, Key::Enter);
-    assert!(other.with_extension("toml").exists(), "{}", lab.state().log_text());
+    assert!(
+        other.with_extension("toml").exists(),
+        "{}",
+        lab.state().log_text()
+    );
 }
 
 /// Run by the next test in a separate process, which has no desktop.
@@ -181,9 +275,13 @@ fn child_without_a_desktop() {
         browse.click();
     }
     wait_for(&mut lab, "the dialog says that there is no other", |lab| {
-        lab.query_by_label_contains("The system's file dialog is not available").is_some()
+        lab.query_by_label_contains("The system's file dialog is not available")
+            .is_some()
     });
-    assert!(lab.query_by_role_and_label(Role::Button, "Browse…").is_none());
+    assert!(
+        lab.query_by_role_and_label(Role::Button, "Browse…")
+            .is_none()
+    );
     press(&mut lab, Modifiers::NONE, Key::Escape);
 }
 
@@ -204,7 +302,8 @@ fn without_a_desktop_the_dialog_says_so_and_works() {
             .env("PATH", "/nowhere")
             .output()
             .expect("the child starts");
-        let said = String::from_utf8_lossy(&child.stdout).into_owned() + &String::from_utf8_lossy(&child.stderr);
+        let said = String::from_utf8_lossy(&child.stdout).into_owned()
+            + &String::from_utf8_lossy(&child.stderr);
         assert!(child.status.success(), "{said}");
     }
 }

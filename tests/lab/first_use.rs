@@ -1,5 +1,6 @@
-//! Promise: what a picture needs is compiled beside the window. The tick of an effect shows at once, the last picture stays, words name what is
-//! compiled, a newer request takes its place, and the window does not wait.
+//! Promise: what a picture needs is compiled beside the window. The tick of an effect shows at
+//! once, the last picture stays, words name what is compiled, a newer request takes its place, and
+//! the window does not wait.
 
 use std::{
     sync::Arc,
@@ -20,7 +21,8 @@ fn drawn(lab: &mut Lab) -> image::RgbaImage {
 
 /// Clicks the box of an effect, and shows the window once.
 pub fn tick(lab: &mut Lab, effect: &str) {
-    lab.get_by_role_and_label(Role::CheckBox, effect).scroll_to_me();
+    lab.get_by_role_and_label(Role::CheckBox, effect)
+        .scroll_to_me();
     lab.run_steps(3);
     lab.get_by_role_and_label(Role::CheckBox, effect).click();
     lab.step();
@@ -41,7 +43,11 @@ pub fn until_compiling(lab: &mut Lab) -> String {
         if let Some(text) = text.filter(|text| lab.query_by_label(text).is_some()) {
             return text;
         }
-        assert!(Instant::now() < patience, "nothing is compiled\n{}", lab.state().log_text());
+        assert!(
+            Instant::now() < patience,
+            "nothing is compiled\n{}",
+            lab.state().log_text()
+        );
         std::thread::sleep(Duration::from_millis(5));
     }
 }
@@ -49,19 +55,24 @@ pub fn until_compiling(lab: &mut Lab) -> String {
 /// Where the dot of the spinner left of this label is.
 fn spinner(lab: &Lab, label: &str) -> Option<Pos2> {
     let words = lab.get_by_label(label).rect();
-    lab.output().shapes.iter().find_map(|clipped| match &clipped.shape {
-        Shape::Circle(circle) if (circle.center.y - words.center().y).abs() < 12.0 => {
-            let left = words.left() - circle.center.x;
-            ((0.0..40.0).contains(&left) && circle.radius < 4.0).then_some(circle.center)
-        }
-        _ => None,
-    })
+    lab.output()
+        .shapes
+        .iter()
+        .find_map(|clipped| match &clipped.shape {
+            Shape::Circle(circle) if (circle.center.y - words.center().y).abs() < 12.0 => {
+                let left = words.left() - circle.center.x;
+                ((0.0..40.0).contains(&left) && circle.radius < 4.0).then_some(circle.center)
+            }
+            _ => None,
+        })
 }
 
 #[test]
 fn the_window_goes_on_while_the_kernels_of_an_effect_are_compiled() {
     draw_pictures();
-    let Some(mut lab) = lab_on_new_devices("lambert") else { return };
+    let Some(mut lab) = lab_on_new_devices("lambert") else {
+        return;
+    };
     let (before, draws) = (drawn(&mut lab), lab.state().draws());
     // Compiling takes as long as the test wants; a window that waits for it would never come back.
     lab.state_mut().hold_compiling(true);
@@ -70,8 +81,15 @@ fn the_window_goes_on_while_the_kernels_of_an_effect_are_compiled() {
     lab.step();
     assert!(is_ticked(&lab, "hatch"), "the tick waits for the kernels");
     assert_eq!(until_compiling(&mut lab), "Compiling hatch…");
-    assert!(begun.elapsed() < Duration::from_secs(15), "a few frames took {:?}", begun.elapsed());
-    assert!(lab.query_by_label("Compiling hatch…").is_some(), "the window does not say it");
+    assert!(
+        begun.elapsed() < Duration::from_secs(15),
+        "a few frames took {:?}",
+        begun.elapsed()
+    );
+    assert!(
+        lab.query_by_label("Compiling hatch…").is_some(),
+        "the window does not say it"
+    );
     let mut dots = Vec::new();
     for _ in 0..8 {
         lab.step();
@@ -101,19 +119,31 @@ fn the_window_goes_on_while_the_kernels_of_an_effect_are_compiled() {
 #[test]
 fn an_effect_that_is_taken_back_while_it_is_compiled_is_never_drawn() {
     draw_pictures();
-    let Some(mut lab) = lab_on_new_devices("lambert") else { return };
+    let Some(mut lab) = lab_on_new_devices("lambert") else {
+        return;
+    };
     let before = drawn(&mut lab);
     lab.state_mut().hold_compiling(true);
     tick(&mut lab, "toon");
     assert_eq!(until_compiling(&mut lab), "Compiling toon…");
     tick(&mut lab, "toon");
     lab.run_steps(2);
-    assert!(lab.query_by_label_contains("Compiling toon").is_none(), "it is not wanted any more");
+    assert!(
+        lab.query_by_label_contains("Compiling toon").is_none(),
+        "it is not wanted any more"
+    );
     lab.state_mut().hold_compiling(false);
     let patience = Instant::now() + Duration::from_secs(60);
     while !lab.state().is_idle() {
-        assert_eq!(drawn(&mut lab), before, "an effect that was taken back is shown");
-        assert!(Instant::now() < patience, "the window does not come to rest");
+        assert_eq!(
+            drawn(&mut lab),
+            before,
+            "an effect that was taken back is shown"
+        );
+        assert!(
+            Instant::now() < patience,
+            "the window does not come to rest"
+        );
     }
     settle(&mut lab);
     assert_eq!(drawn(&mut lab), before);
@@ -123,10 +153,15 @@ fn an_effect_that_is_taken_back_while_it_is_compiled_is_never_drawn() {
 #[test]
 fn a_picture_that_is_refused_is_reported_in_words_and_replaced_by_the_next() {
     draw_pictures();
-    let Some(mut lab) = lab("lambert") else { return };
+    let Some(mut lab) = lab("lambert") else {
+        return;
+    };
     let before = drawn(&mut lab);
     let camera = lab.state().preset_file().preset.camera;
-    lab.state_mut().preset_mut().camera = Some(rasterlab::scene::camera::Camera { eye: glam::DVec3::splat(1e13), ..Default::default() });
+    lab.state_mut().preset_mut().camera = Some(rasterlab::scene::camera::Camera {
+        eye: glam::DVec3::splat(1e13),
+        ..Default::default()
+    });
     lab.run_steps(2);
     settle(&mut lab);
     assert!(lab.query_by_label_contains("last good picture").is_some());
@@ -141,8 +176,17 @@ fn a_picture_that_is_refused_is_reported_in_words_and_replaced_by_the_next() {
 
 #[test]
 fn a_cpu_adapter_compiles_and_draws_on_another_device_than_the_one_that_shows_the_window() {
-    let Some(window) = crate::common::gpu() else { return };
-    let Devices { window, picture, .. } = Devices::of(window);
-    assert_eq!(Arc::ptr_eq(&window, &picture), !window.summary.software, "{}", window.summary.name);
+    let Some(window) = crate::common::gpu() else {
+        return;
+    };
+    let Devices {
+        window, picture, ..
+    } = Devices::of(window);
+    assert_eq!(
+        Arc::ptr_eq(&window, &picture),
+        !window.summary.software,
+        "{}",
+        window.summary.name
+    );
     assert_eq!(picture.summary.name, window.summary.name);
 }

@@ -1,4 +1,5 @@
-//! The window without a display: the whole app in a harness that sends pointer and key events, on the adapter under test.
+//! The window without a display: the whole app in a harness that sends pointer and key events, on
+//! the adapter under test.
 
 use std::{
     cell::Cell,
@@ -10,7 +11,10 @@ use std::{
 };
 
 use eframe::{
-    egui::{Key, Modifiers, Pos2, Rect, Role, TexturesDelta, ThemePreference, accesskit::Toggled, mutex::RwLock},
+    egui::{
+        Key, Modifiers, Pos2, Rect, Role, TexturesDelta, ThemePreference, accesskit::Toggled,
+        mutex::RwLock,
+    },
     egui_wgpu::{self, RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration},
     wgpu,
 };
@@ -56,7 +60,9 @@ impl TestRenderer for Window {
     fn handle_delta(&mut self, delta: &mut TexturesDelta) {
         let mut renderer = self.0.renderer.write();
         for (id, images) in delta.set.drain() {
-            images.iter().for_each(|image| renderer.update_texture(&self.0.device, &self.0.queue, id, image));
+            images.iter().for_each(|image| {
+                renderer.update_texture(&self.0.device, &self.0.queue, id, image)
+            });
         }
         delta.free.drain().for_each(|id| renderer.free_texture(&id));
     }
@@ -66,13 +72,14 @@ thread_local! {
     static PAINTER: Cell<Painter> = const { Cell::new(Painter::Plain) };
 }
 
-/// From here on the windows of this test show what the rasterizer draws. Those of other tests are gray, at once.
+/// From here on the windows of this test show what the rasterizer draws. Those of other tests are
+/// gray, at once.
 pub fn draw_pictures() {
     PAINTER.set(Painter::Kernels);
 }
 
-/// The devices that all windows of this program share, with the pipelines that were compiled for it: compiling them for each window
-/// would take most of the time of its test.
+/// The devices that all windows of this program share, with the pipelines that were compiled for
+/// it: compiling them for each window would take most of the time of its test.
 fn shared_devices(adapter: &AdapterChoice) -> (RenderState, Devices) {
     static SHARED: OnceLock<(RenderState, Devices)> = OnceLock::new();
     let (first, devices) = SHARED.get_or_init(|| {
@@ -81,31 +88,66 @@ fn shared_devices(adapter: &AdapterChoice) -> (RenderState, Devices) {
         (window, Devices::of(gpu))
     });
     // Textures belong to one window.
-    let renderer = egui_wgpu::Renderer::new(&first.device, first.target_format, RendererOptions::PREDICTABLE);
-    (RenderState { renderer: Arc::new(RwLock::new(renderer)), ..first.clone() }, Devices { painter: PAINTER.get(), ..devices.clone() })
+    let renderer = egui_wgpu::Renderer::new(
+        &first.device,
+        first.target_format,
+        RendererOptions::PREDICTABLE,
+    );
+    (
+        RenderState {
+            renderer: Arc::new(RwLock::new(renderer)),
+            ..first.clone()
+        },
+        Devices {
+            painter: PAINTER.get(),
+            ..devices.clone()
+        },
+    )
 }
 
 /// A device without a surface, opened with the program's settings.
 fn device(adapter: &AdapterChoice) -> RenderState {
     let setup = wgpu_setup(adapter);
     let instance = pollster::block_on(setup.new_instance());
-    let configuration = WgpuConfiguration { wgpu_setup: setup, ..Default::default() };
-    let state = RenderState::create(&configuration, &instance, None, RendererOptions::PREDICTABLE);
+    let configuration = WgpuConfiguration {
+        wgpu_setup: setup,
+        ..Default::default()
+    };
+    let state = RenderState::create(
+        &configuration,
+        &instance,
+        None,
+        RendererOptions::PREDICTABLE,
+    );
     pollster::block_on(state).unwrap_or_else(|error| panic!("{error}"))
 }
 
 impl Lab {
     /// What the window shows.
     pub fn screenshot(&mut self) -> image::RgbaImage {
-        let RenderState { device, queue, target_format, renderer, .. } = &self.window;
+        let RenderState {
+            device,
+            queue,
+            target_format,
+            renderer,
+            ..
+        } = &self.window;
         let (context, output) = (&self.harness.ctx, self.harness.output());
         let scale = context.pixels_per_point();
-        let [width, height] = <[f32; 2]>::from(context.content_rect().size() * scale).map(|side| side.round() as u32);
-        let screen = ScreenDescriptor { size_in_pixels: [width, height], pixels_per_point: scale };
+        let [width, height] =
+            <[f32; 2]>::from(context.content_rect().size() * scale).map(|side| side.round() as u32);
+        let screen = ScreenDescriptor {
+            size_in_pixels: [width, height],
+            pixels_per_point: scale,
+        };
         let meshes = context.tessellate(output.shapes.clone(), scale);
         let target = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("screenshot"),
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            size: wgpu::Extent3d {
+                width,
+                height,
+                depth_or_array_layers: 1,
+            },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
@@ -114,7 +156,11 @@ impl Lab {
             view_formats: &[],
         });
         let row = 4 * width;
-        assert_eq!(row % wgpu::COPY_BYTES_PER_ROW_ALIGNMENT, 0, "rows of {width} pixels would need padding");
+        assert_eq!(
+            row % wgpu::COPY_BYTES_PER_ROW_ALIGNMENT,
+            0,
+            "rows of {width} pixels would need padding"
+        );
         let staging = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("screenshot"),
             size: u64::from(row * height),
@@ -129,27 +175,62 @@ impl Lab {
         let attachment = wgpu::RenderPassColorAttachment {
             view: &view,
             resolve_target: None,
-            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                store: wgpu::StoreOp::Store,
+            },
             depth_slice: None,
         };
-        let pass = wgpu::RenderPassDescriptor { label: Some("screenshot"), color_attachments: &[Some(attachment)], ..Default::default() };
-        renderer.render(&mut encoder.begin_render_pass(&pass).forget_lifetime(), &meshes, &screen);
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
-        let to = wgpu::TexelCopyBufferInfo { buffer: &staging, layout };
+        let pass = wgpu::RenderPassDescriptor {
+            label: Some("screenshot"),
+            color_attachments: &[Some(attachment)],
+            ..Default::default()
+        };
+        renderer.render(
+            &mut encoder.begin_render_pass(&pass).forget_lifetime(),
+            &meshes,
+            &screen,
+        );
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(row),
+            rows_per_image: None,
+        };
+        let to = wgpu::TexelCopyBufferInfo {
+            buffer: &staging,
+            layout,
+        };
         encoder.copy_texture_to_buffer(target.as_image_copy(), to, target.size());
         queue.submit(before.into_iter().chain(iter::once(encoder.finish())));
 
-        staging.map_async(wgpu::MapMode::Read, .., |result| result.expect("a screenshot is read"));
-        let patience = wgpu::PollType::Wait { submission_index: None, timeout: Some(Duration::from_secs(60)) };
-        device.poll(patience).expect("a screenshot is drawn within a minute");
-        let bytes = staging.get_mapped_range(..).expect("a screenshot is read").to_vec();
+        staging.map_async(wgpu::MapMode::Read, .., |result| {
+            result.expect("a screenshot is read")
+        });
+        let patience = wgpu::PollType::Wait {
+            submission_index: None,
+            timeout: Some(Duration::from_secs(60)),
+        };
+        device
+            .poll(patience)
+            .expect("a screenshot is drawn within a minute");
+        let bytes = staging
+            .get_mapped_range(..)
+            .expect("a screenshot is read")
+            .to_vec();
         image::RgbaImage::from_raw(width, height, bytes).expect("four bytes for each pixel")
     }
 }
 
-/// A window of 1280 x 800 that shows the preset `open`, with its first picture drawn; presets lie in `presets_dir`. It keeps no settings.
+/// A window of 1280 x 800 that shows the preset `open`, with its first picture drawn; presets lie
+/// in `presets_dir`. It keeps no settings.
 pub fn lab_in(open: &str, presets_dir: Option<&Path>) -> Option<Lab> {
-    lab_with(open, Folders { presets: presets_dir.map(Path::to_owned), ..Folders::default() })
+    lab_with(
+        open,
+        Folders {
+            presets: presets_dir.map(Path::to_owned),
+            ..Folders::default()
+        },
+    )
 }
 
 /// A window that shows the preset `open` and has these folders.
@@ -159,29 +240,60 @@ pub fn lab_with(open: &str, folders: Folders) -> Option<Lab> {
     Some(lab)
 }
 
-/// A window of 1280 x 800 as it is created, before its first frame; without `open` as the program starts. It keeps no settings.
+/// A window of 1280 x 800 as it is created, before its first frame; without `open` as the program
+/// starts. It keeps no settings.
 pub fn opened(open: Option<&str>, presets_dir: Option<&Path>) -> Option<Lab> {
-    created(open, Folders { presets: presets_dir.map(Path::to_owned), ..Folders::default() }, None, SIZE)
+    created(
+        open,
+        Folders {
+            presets: presets_dir.map(Path::to_owned),
+            ..Folders::default()
+        },
+        None,
+        SIZE,
+    )
 }
 
 /// Size of a window in points, unless a test says otherwise.
 pub const SIZE: [f32; 2] = [1280.0, 800.0];
 
-/// A window of `size` with these folders that keeps its settings and session in the folder `config`, before its first frame.
-pub fn created(open: Option<&str>, folders: Folders, config: Option<PathBuf>, size: [f32; 2]) -> Option<Lab> {
+/// A window of `size` with these folders that keeps its settings and session in the folder
+/// `config`, before its first frame.
+pub fn created(
+    open: Option<&str>,
+    folders: Folders,
+    config: Option<PathBuf>,
+    size: [f32; 2],
+) -> Option<Lab> {
     crate::common::gpu()?; // Fails with one sentence when there is none.
-    let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
+    let adapter =
+        std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
     let (window, devices) = shared_devices(&adapter);
-    Some(built(open, folders, (config, size), None, adapter, (window, Some(devices))))
+    Some(built(
+        open,
+        folders,
+        (config, size),
+        None,
+        adapter,
+        (window, Some(devices)),
+    ))
 }
 
 /// A window that shows the preset `open` and appends its log to `file`.
 pub fn lab_with_log(open: &str, file: std::fs::File) -> Option<Lab> {
     crate::common::gpu()?;
-    let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
+    let adapter =
+        std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
     let (window, devices) = shared_devices(&adapter);
     let log = Some(Arc::new(file));
-    let mut lab = built(Some(open), Folders::default(), (None, SIZE), log, adapter, (window, Some(devices)));
+    let mut lab = built(
+        Some(open),
+        Folders::default(),
+        (None, SIZE),
+        log,
+        adapter,
+        (window, Some(devices)),
+    );
     settle(&mut lab);
     Some(lab)
 }
@@ -189,9 +301,17 @@ pub fn lab_with_log(open: &str, file: std::fs::File) -> Option<Lab> {
 /// A window on devices for which nothing has been compiled yet, with its first picture drawn.
 pub fn lab_on_new_devices(open: &str) -> Option<Lab> {
     crate::common::gpu()?;
-    let adapter = std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
+    let adapter =
+        std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
     let window = device(&adapter);
-    let mut lab = built(Some(open), Folders::default(), (None, SIZE), None, adapter, (window, None));
+    let mut lab = built(
+        Some(open),
+        Folders::default(),
+        (None, SIZE),
+        None,
+        adapter,
+        (window, None),
+    );
     settle(&mut lab);
     Some(lab)
 }
@@ -204,13 +324,25 @@ fn built(
     adapter: AdapterChoice,
     (window, devices): (RenderState, Option<Devices>),
 ) -> Lab {
-    let options = Options { open: open.map(str::to_owned), opened: None, adapter, devices, folders, opens_editor: false, config, log };
+    let options = Options {
+        open: open.map(str::to_owned),
+        opened: None,
+        adapter,
+        devices,
+        folders,
+        opens_editor: false,
+        config,
+        log,
+    };
     let mut theme = ThemePreference::default();
-    let harness = Harness::builder().with_size(size).renderer(Window(window.clone())).build_eframe(|cc| {
-        let app = App::new(cc, options).unwrap_or_else(|error| panic!("{error:#}"));
-        theme = cc.egui_ctx.options(|options| options.theme_preference);
-        app
-    });
+    let harness = Harness::builder()
+        .with_size(size)
+        .renderer(Window(window.clone()))
+        .build_eframe(|cc| {
+            let app = App::new(cc, options).unwrap_or_else(|error| panic!("{error:#}"));
+            theme = cc.egui_ctx.options(|options| options.theme_preference);
+            app
+        });
     harness.ctx.set_theme(theme); // The harness has put its own in place of the window's.
     Lab { harness, window }
 }
@@ -220,7 +352,8 @@ pub fn lab(open: &str) -> Option<Lab> {
     lab_in(open, None)
 }
 
-/// Steps until pictures, reports and thumbnails have arrived, and then until every undo step is closed.
+/// Steps until pictures, reports and thumbnails have arrived, and then until every undo step is
+/// closed.
 pub fn settle(lab: &mut Lab) {
     // A window that is compiling shares two processors with the other tests.
     let patience = Instant::now() + Duration::from_secs(300);
@@ -230,9 +363,17 @@ pub fn settle(lab: &mut Lab) {
         if lab.state().is_idle() {
             break;
         }
-        assert!(Instant::now() < patience, "the window does not come to rest\n{}", lab.state().log_text());
+        assert!(
+            Instant::now() < patience,
+            "the window does not come to rest\n{}",
+            lab.state().log_text()
+        );
         // What the window waits for needs the processors more than the window does.
-        std::thread::sleep(start.elapsed().clamp(Duration::from_millis(5), Duration::from_millis(50)));
+        std::thread::sleep(
+            start
+                .elapsed()
+                .clamp(Duration::from_millis(5), Duration::from_millis(50)),
+        );
     }
     lab.run_steps(3);
     lab.check_accessibility();
@@ -287,8 +428,18 @@ pub fn click(lab: &mut Lab, role: Role, label: &str) {
 
 /// A parameter of an enabled effect.
 pub fn value(lab: &Lab, effect: &str, field: &str) -> Vec<f64> {
-    let enabled = lab.state().preset_file().preset.stack.get(effect).unwrap_or_else(|| panic!("{effect} is not enabled"));
-    enabled.effect.field(field).expect("a field of the effect").get(&enabled.words)
+    let enabled = lab
+        .state()
+        .preset_file()
+        .preset
+        .stack
+        .get(effect)
+        .unwrap_or_else(|| panic!("{effect} is not enabled"));
+    enabled
+        .effect
+        .field(field)
+        .expect("a field of the effect")
+        .get(&enabled.words)
 }
 
 /// The lab with `text` as its preset.
@@ -306,14 +457,31 @@ pub const MOVING: &str = "schema = 2\n[scene]\nbuiltin = \"knot?tess=4\"\n[effec
 
 /// A parameter of an enabled effect, at the time that is shown.
 pub fn shown(lab: &Lab, effect: &str, field: &str) -> Vec<f64> {
-    let stack = lab.state().preset_file().preset.stack_at(lab.state().shown_time_s());
-    let enabled = stack.get(effect).unwrap_or_else(|| panic!("{effect} is not enabled"));
-    enabled.effect.field(field).expect("a field of the effect").get(&enabled.words)
+    let stack = lab
+        .state()
+        .preset_file()
+        .preset
+        .stack_at(lab.state().shown_time_s());
+    let enabled = stack
+        .get(effect)
+        .unwrap_or_else(|| panic!("{effect} is not enabled"));
+    enabled
+        .effect
+        .field(field)
+        .expect("a field of the effect")
+        .get(&enabled.words)
 }
 
 pub fn key_times(lab: &Lab, effect: &str, field: &str) -> Vec<f64> {
-    let track = lab.state().preset_file().preset.animation.get(effect, field);
-    track.map_or(Vec::new(), |track| track.keys().iter().map(|key| key.time_s).collect())
+    let track = lab
+        .state()
+        .preset_file()
+        .preset
+        .animation
+        .get(effect, field);
+    track.map_or(Vec::new(), |track| {
+        track.keys().iter().map(|key| key.time_s).collect()
+    })
 }
 
 /// Drags the playhead from one fraction of the ruler to another.
@@ -327,12 +495,18 @@ pub fn scrub(lab: &mut Lab, from: f32, to: f32) {
 pub fn picture(lab: &mut Lab) -> image::RgbaImage {
     let Rect { min, max } = lab.get_by_label("Picture").rect();
     let window = lab.screenshot();
-    let [x, y, width, height] = [min.x, min.y, max.x - min.x, max.y - min.y].map(|v| v.round() as u32);
+    let [x, y, width, height] =
+        [min.x, min.y, max.x - min.x, max.y - min.y].map(|v| v.round() as u32);
     image::imageops::crop_imm(&window, x, y, width, height).to_image()
 }
 
 pub fn error_lines(lab: &Lab) -> Vec<String> {
-    lab.state().log_text().lines().filter(|line| line.starts_with("error")).map(str::to_owned).collect()
+    lab.state()
+        .log_text()
+        .lines()
+        .filter(|line| line.starts_with("error"))
+        .map(str::to_owned)
+        .collect()
 }
 
 /// Steps until no toast lies over the picture.
@@ -342,7 +516,8 @@ pub fn wait_for_toasts(lab: &mut Lab) {
     }
 }
 
-/// Is this pixel of the picture clear of the buttons over its top and of the ball in its corner that turns the light?
+/// Is this pixel of the picture clear of the buttons over its top and of the ball in its corner
+/// that turns the light?
 pub fn is_clear(picture: &image::RgbaImage, x: u32, y: u32) -> bool {
     y >= 48 && (x + 96 < picture.width() || y + 96 < picture.height())
 }
@@ -356,11 +531,16 @@ pub fn middle(lab: &mut Lab) -> image::RgbaImage {
     image::imageops::crop_imm(&whole, 0, 48, whole.width(), whole.height() - 208).to_image()
 }
 
-/// Removes what a test has deleted in `folder` from the trash of the system, where that can be listed.
+/// Removes what a test has deleted in `folder` from the trash of the system, where that can be
+/// listed.
 #[cfg(any(windows, target_os = "linux"))]
 pub fn remove_from_trash(folder: &Path) {
     let folder = folder.canonicalize().expect("a folder");
-    let own: Vec<_> = trash::os_limited::list().expect("a trash").into_iter().filter(|item| item.original_parent == folder).collect();
+    let own: Vec<_> = trash::os_limited::list()
+        .expect("a trash")
+        .into_iter()
+        .filter(|item| item.original_parent == folder)
+        .collect();
     assert!(!own.is_empty(), "what was deleted is in the trash");
     trash::os_limited::purge_all(own).expect("a trash");
 }

@@ -1,4 +1,5 @@
-//! Promise: in the inspector every value has a control with a name, a drag is one undo step, and effects and clips are switched on and off.
+//! Promise: in the inspector every value has a control with a name, a drag is one undo step, and
+//! effects and clips are switched on and off.
 
 use eframe::egui::{self, Key, Modifiers, Role, vec2};
 use egui_kittest::kittest::Queryable as _;
@@ -7,7 +8,9 @@ use crate::harness::*;
 
 #[test]
 fn every_widget_of_every_folder_and_dialog_has_a_name() {
-    let Some(mut lab) = lab("facet-sweep") else { return };
+    let Some(mut lab) = lab("facet-sweep") else {
+        return;
+    };
     for folder in ["Camera", "Clock", "Kernel", "Preset"] {
         lab.get_by_label(folder).click();
         lab.run_steps(2);
@@ -16,16 +19,25 @@ fn every_widget_of_every_folder_and_dialog_has_a_name() {
     for tab in ["Scene", "Presets"] {
         click(&mut lab, Role::Button, tab);
     }
-    for row in ["Animate facet.front", "Animate lambert.sun", "Show the curve of facet.front", "Key facet.front 0.000 s"] {
+    for row in [
+        "Animate facet.front",
+        "Animate lambert.sun",
+        "Show the curve of facet.front",
+        "Key facet.front 0.000 s",
+    ] {
         click(&mut lab, Role::Button, row);
     }
-    lab.get_by_label("Key facet.front 0.000 s").click_secondary();
+    lab.get_by_label("Key facet.front 0.000 s")
+        .click_secondary();
     lab.run_steps(3);
     settle(&mut lab);
     press(&mut lab, Modifiers::NONE, Key::Escape);
-    for (modifiers, key) in
-        [(Modifiers::NONE, Key::F1), (Modifiers::NONE, Key::L), (Modifiers::COMMAND, Key::O), (Modifiers::NONE, Key::F12)]
-    {
+    for (modifiers, key) in [
+        (Modifiers::NONE, Key::F1),
+        (Modifiers::NONE, Key::L),
+        (Modifiers::COMMAND, Key::O),
+        (Modifiers::NONE, Key::F12),
+    ] {
         press(&mut lab, modifiers, key);
         press(&mut lab, Modifiers::NONE, Key::Escape);
     }
@@ -33,26 +45,43 @@ fn every_widget_of_every_folder_and_dialog_has_a_name() {
 
 #[test]
 fn a_slider_drag_is_one_undo_step() {
-    let Some(mut lab) = lab("lambert") else { return };
+    let Some(mut lab) = lab("lambert") else {
+        return;
+    };
     let before = value(&lab, "lambert", "headlight");
     let rail = slider(&lab, "lambert.headlight").rect();
-    drag(&mut lab, rail.left_center() + vec2(14.0, 0.0), rail.right_center() - vec2(10.0, 0.0));
+    drag(
+        &mut lab,
+        rail.left_center() + vec2(14.0, 0.0),
+        rail.right_center() - vec2(10.0, 0.0),
+    );
     let after = value(&lab, "lambert", "headlight");
     assert!(after[0] > before[0] + 0.2, "{before:?} {after:?}");
     assert_eq!(lab.state().undo_steps(), 1);
     undo(&mut lab);
-    assert_eq!((value(&lab, "lambert", "headlight"), lab.state().undo_steps()), (before, 0));
+    assert_eq!(
+        (
+            value(&lab, "lambert", "headlight"),
+            lab.state().undo_steps()
+        ),
+        (before, 0)
+    );
     press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     assert_eq!(value(&lab, "lambert", "headlight"), after);
 }
 
 #[test]
 fn enabling_an_effect_shows_its_sliders_and_disabling_hides_them() {
-    let Some(mut lab) = lab("lambert") else { return };
+    let Some(mut lab) = lab("lambert") else {
+        return;
+    };
     assert!(!has_slider(&lab, "facet.amount"));
     click(&mut lab, Role::CheckBox, "facet");
     assert!(has_slider(&lab, "facet.amount"));
-    assert!(!has_slider(&lab, "facet.radius_m"), "only the radial pattern has a radius");
+    assert!(
+        !has_slider(&lab, "facet.radius_m"),
+        "only the radial pattern has a radius"
+    );
     assert_eq!(lab.state().undo_steps(), 1);
     click(&mut lab, Role::CheckBox, "facet");
     assert!(!has_slider(&lab, "facet.amount"));
@@ -60,11 +89,17 @@ fn enabling_an_effect_shows_its_sliders_and_disabling_hides_them() {
 
 #[test]
 fn a_changed_value_has_a_reset_button_that_leads_to_its_default() {
-    let Some(mut lab) = lab("lambert") else { return };
+    let Some(mut lab) = lab("lambert") else {
+        return;
+    };
     assert!(lab.query_by_label("Reset lambert.headlight").is_none());
     let default = value(&lab, "lambert", "headlight");
     let rail = slider(&lab, "lambert.headlight").rect();
-    drag(&mut lab, rail.left_center() + vec2(14.0, 0.0), rail.center());
+    drag(
+        &mut lab,
+        rail.left_center() + vec2(14.0, 0.0),
+        rail.center(),
+    );
     assert_ne!(value(&lab, "lambert", "headlight"), default);
     click(&mut lab, Role::Button, "Reset lambert.headlight");
     assert_eq!(value(&lab, "lambert", "headlight"), default);
@@ -74,8 +109,13 @@ fn a_changed_value_has_a_reset_button_that_leads_to_its_default() {
 #[test]
 fn muting_changes_the_picture_and_not_the_preset() {
     draw_pictures();
-    let Some(mut lab) = lab("lambert") else { return };
-    let (preset, draws) = (lab.state().preset_file().preset.clone(), lab.state().draws());
+    let Some(mut lab) = lab("lambert") else {
+        return;
+    };
+    let (preset, draws) = (
+        lab.state().preset_file().preset.clone(),
+        lab.state().draws(),
+    );
     click(&mut lab, Role::Button, "Mute lambert");
     assert!(lab.state().draws() > draws);
     assert_eq!(lab.state().preset_file().preset, preset);
@@ -84,7 +124,9 @@ fn muting_changes_the_picture_and_not_the_preset() {
 
 #[test]
 fn typing_a_number_does_not_trigger_shortcuts() {
-    let Some(mut lab) = lab("lambert") else { return };
+    let Some(mut lab) = lab("lambert") else {
+        return;
+    };
     let camera = lab.state().preset_file().preset.camera;
     let field = lab.get_by_label("lambert.headlight value");
     field.click();
@@ -97,13 +139,19 @@ fn typing_a_number_does_not_trigger_shortcuts() {
     lab.key_press(Key::Enter);
     lab.run_steps(3);
     settle(&mut lab);
-    assert_eq!(lab.state().preset_file().preset.camera, camera, "7 is the key of the top view");
+    assert_eq!(
+        lab.state().preset_file().preset.camera,
+        camera,
+        "7 is the key of the top view"
+    );
     assert_eq!(value(&lab, "lambert", "headlight"), [f64::from(0.7f32)]);
 }
 
 #[test]
 fn randomize_stays_within_soft_ranges_and_is_one_undo_step() {
-    let Some(mut lab) = lab("facet-sweep") else { return };
+    let Some(mut lab) = lab("facet-sweep") else {
+        return;
+    };
     let before = lab.state().preset_file().preset.clone();
     press(&mut lab, Modifiers::NONE, Key::R);
     let after = lab.state().preset_file().preset.clone();
@@ -113,7 +161,9 @@ fn randomize_stays_within_soft_ranges_and_is_one_undo_step() {
         for field in &enabled.effect.fields {
             let components = field.get(&enabled.words);
             assert!(
-                components.iter().all(|value| (field.soft[0]..=field.soft[1]).contains(value)),
+                components
+                    .iter()
+                    .all(|value| (field.soft[0]..=field.soft[1]).contains(value)),
                 "{}.{}",
                 enabled.effect.name,
                 field.name
@@ -129,9 +179,17 @@ fn a_second_effect_of_a_slot_is_refused_and_offered_instead_of_the_first() {
     let Some(mut lab) = lab("xray") else { return };
     let has = |lab: &Lab, name: &str| lab.state().preset_file().preset.stack.get(name).is_some();
     click(&mut lab, Role::CheckBox, "overdraw");
-    assert!(has(&lab, "xray") && !has(&lab, "overdraw"), "nothing was switched");
-    let sentence = "xray and overdraw both take the visibility slot of the rasterizer; switch one of them off";
-    assert!(lab.state().log_text().contains(sentence), "{}", lab.state().log_text());
+    assert!(
+        has(&lab, "xray") && !has(&lab, "overdraw"),
+        "nothing was switched"
+    );
+    let sentence =
+        "xray and overdraw both take the visibility slot of the rasterizer; switch one of them off";
+    assert!(
+        lab.state().log_text().contains(sentence),
+        "{}",
+        lab.state().log_text()
+    );
     click(&mut lab, Role::Button, "overdraw instead of xray");
     assert!(!has(&lab, "xray") && has(&lab, "overdraw"));
     assert!(slider(&lab, "overdraw.max_layers").rect().width() > 0.0);
@@ -142,7 +200,9 @@ fn a_second_effect_of_a_slot_is_refused_and_offered_instead_of_the_first() {
 #[test]
 fn clips_are_chosen_held_and_blended_in_their_folder() {
     draw_pictures();
-    let Some(mut lab) = lab("builtin:tentacle?tess=3") else { return };
+    let Some(mut lab) = lab("builtin:tentacle?tess=3") else {
+        return;
+    };
     let play = |lab: &Lab| lab.state().preset_file().preset.playback.clone();
     let choose = |lab: &mut Lab, menu: &str, entry: &str| {
         click(lab, Role::ComboBox, menu);
@@ -151,7 +211,10 @@ fn clips_are_chosen_held_and_blended_in_their_folder() {
         settle(lab);
     };
     assert_eq!(play(&lab).clip, "");
-    assert!(lab.query_by_label("Hold the clip").is_none(), "at rest there is nothing to hold");
+    assert!(
+        lab.query_by_label("Hold the clip").is_none(),
+        "at rest there is nothing to hold"
+    );
     choose(&mut lab, "scene.clip", "Twist");
     assert_eq!(play(&lab).clip, "Twist");
     assert!(lab.state().preset_file().preset.is_moving());
@@ -161,7 +224,10 @@ fn clips_are_chosen_held_and_blended_in_their_folder() {
     click(&mut lab, Role::CheckBox, "Hold the clip");
     assert!(play(&lab).clip_time_s.is_some() && has_slider(&lab, "scene.pose_s"));
     undo(&mut lab);
-    assert_eq!((play(&lab).clip_time_s, play(&lab).second_clip.as_str()), (None, "Sway"));
+    assert_eq!(
+        (play(&lab).clip_time_s, play(&lab).second_clip.as_str()),
+        (None, "Sway")
+    );
 
     // The picture follows, and is what the oracle says.
     let before = lab.state().draws();
@@ -173,7 +239,9 @@ fn clips_are_chosen_held_and_blended_in_their_folder() {
 #[test]
 fn the_scene_shows_its_images_and_lets_one_look_through_its_cameras() {
     draw_pictures();
-    let Some(mut lab) = lab("builtin:grid?cell=16") else { return };
+    let Some(mut lab) = lab("builtin:grid?cell=16") else {
+        return;
+    };
     let chosen = |lab: &Lab| lab.state().preset_file().preset.scene_camera.clone();
     let choose = |lab: &mut Lab, entry: &str| {
         click(lab, Role::ComboBox, "scene.camera");
@@ -189,21 +257,42 @@ fn the_scene_shows_its_images_and_lets_one_look_through_its_cameras() {
     undo(&mut lab);
     assert_eq!(chosen(&lab), "pixels in perspective");
 
-    let Some(lab) = self::lab("builtin:panels") else { return };
+    let Some(lab) = self::lab("builtin:panels") else {
+        return;
+    };
     assert!(lab.query_by_label_contains("3 images, ").is_some());
-    assert!(lab.query_by_label("scene.camera").is_none(), "a scene without cameras has no menu of them");
+    assert!(
+        lab.query_by_label("scene.camera").is_none(),
+        "a scene without cameras has no menu of them"
+    );
 }
 
 #[test]
 fn the_title_of_an_effect_folds_it_and_only_its_box_removes_it() {
-    let Some(mut lab) = lab("facet-knot") else { return };
-    let enabled = |lab: &Lab| lab.state().preset_file().preset.stack.get("facet").is_some();
+    let Some(mut lab) = lab("facet-knot") else {
+        return;
+    };
+    let enabled = |lab: &Lab| {
+        lab.state()
+            .preset_file()
+            .preset
+            .stack
+            .get("facet")
+            .is_some()
+    };
     assert!(has_slider(&lab, "facet.amount"));
     click(&mut lab, Role::Button, "Fold facet");
-    assert!(enabled(&lab) && !has_slider(&lab, "facet.amount"), "the title does not fold the effect");
+    assert!(
+        enabled(&lab) && !has_slider(&lab, "facet.amount"),
+        "the title does not fold the effect"
+    );
     click(&mut lab, Role::Button, "Unfold facet");
     assert!(enabled(&lab) && has_slider(&lab, "facet.amount"));
-    assert_eq!(lab.state().undo_steps(), 0, "folding is no change of the preset");
+    assert_eq!(
+        lab.state().undo_steps(),
+        0,
+        "folding is no change of the preset"
+    );
     click(&mut lab, Role::CheckBox, "facet");
     assert!(!enabled(&lab));
 }
@@ -211,7 +300,9 @@ fn the_title_of_an_effect_folds_it_and_only_its_box_removes_it() {
 #[test]
 fn the_tick_of_the_gradient_adds_a_color_at_the_bottom_and_removes_it() {
     draw_pictures();
-    let Some(mut lab) = lab("lambert") else { return };
+    let Some(mut lab) = lab("lambert") else {
+        return;
+    };
     let bottom = |lab: &Lab| lab.state().preset_file().preset.output.background_bottom;
     let corners = |lab: &mut Lab| {
         let seen = picture(lab);
@@ -225,10 +316,16 @@ fn the_tick_of_the_gradient_adds_a_color_at_the_bottom_and_removes_it() {
     click(&mut lab, Role::CheckBox, "gradient");
     settle(&mut lab);
     let preset = &lab.state().preset_file().preset;
-    assert!(bottom(&lab).is_some_and(|bottom| bottom != preset.output.background), "a gradient that can be seen");
+    assert!(
+        bottom(&lab).is_some_and(|bottom| bottom != preset.output.background),
+        "a gradient that can be seen"
+    );
     lab.get_by_label("output.background_bottom");
     let [top_after, below_after] = corners(&mut lab);
-    assert!(below_after != below && top_after.0[0].abs_diff(top.0[0]) < 12, "{top_after:?} {below_after:?}");
+    assert!(
+        below_after != below && top_after.0[0].abs_diff(top.0[0]) < 12,
+        "{top_after:?} {below_after:?}"
+    );
     assert_eq!(lab.state().undo_steps(), 1);
 
     click(&mut lab, Role::CheckBox, "gradient");
@@ -240,16 +337,32 @@ fn the_tick_of_the_gradient_adds_a_color_at_the_bottom_and_removes_it() {
 
 #[test]
 fn the_tick_of_the_ground_puts_one_under_the_scene_and_shows_its_rows() {
-    let Some(mut lab) = lab("lambert") else { return };
+    let Some(mut lab) = lab("lambert") else {
+        return;
+    };
     let triangles = |lab: &Lab| lab.state().scene_triangles();
     let (before, camera) = (triangles(&lab), lab.state().preset_file().preset.camera);
     assert!(!has_slider(&lab, "ground.size"));
     click(&mut lab, Role::CheckBox, "ground");
     settle(&mut lab);
-    let ground = lab.state().preset_file().preset.ground.expect("it has a ground");
+    let ground = lab
+        .state()
+        .preset_file()
+        .preset
+        .ground
+        .expect("it has a ground");
     assert_eq!(ground, rasterlab::scene::Ground::default());
-    assert_eq!(triangles(&lab), before + u64::from(6 * ground.cells * ground.cells));
-    assert_eq!((lab.state().preset_file().preset.camera, lab.state().undo_steps()), (camera, 1));
+    assert_eq!(
+        triangles(&lab),
+        before + u64::from(6 * ground.cells * ground.cells)
+    );
+    assert_eq!(
+        (
+            lab.state().preset_file().preset.camera,
+            lab.state().undo_steps()
+        ),
+        (camera, 1)
+    );
     for row in ["ground.shape", "ground.color"] {
         lab.get_by_label(row);
     }
@@ -257,8 +370,14 @@ fn the_tick_of_the_ground_puts_one_under_the_scene_and_shows_its_rows() {
 
     click(&mut lab, Role::CheckBox, "ground");
     settle(&mut lab);
-    assert_eq!((lab.state().preset_file().preset.ground, triangles(&lab)), (None, before));
+    assert_eq!(
+        (lab.state().preset_file().preset.ground, triangles(&lab)),
+        (None, before)
+    );
     undo(&mut lab);
     settle(&mut lab);
-    assert_eq!(triangles(&lab), before + u64::from(6 * ground.cells * ground.cells));
+    assert_eq!(
+        triangles(&lab),
+        before + u64::from(6 * ground.cells * ground.cells)
+    );
 }

@@ -1,4 +1,5 @@
-//! Promise: memory that a long job takes is given back: after Trade, and after an extreme case, the program needs at most a fifth more than before.
+//! Promise: memory that a long job takes is given back: after Trade, and after an extreme case, the
+//! program needs at most a fifth more than before.
 #![cfg(all(target_os = "linux", target_env = "gnu"))]
 
 use std::time::{Duration, Instant};
@@ -11,8 +12,16 @@ use crate::harness::*;
 /// Memory of this process that does not come from files, MB.
 fn resident_mb() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").expect("Linux tells");
-    let line = status.lines().find_map(|line| line.strip_prefix("RssAnon:")).expect("its anonymous memory");
-    line.trim().trim_end_matches("kB").trim().parse::<f64>().expect("a number") / 1024.0
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("RssAnon:"))
+        .expect("its anonymous memory");
+    line.trim()
+        .trim_end_matches("kB")
+        .trim()
+        .parse::<f64>()
+        .expect("a number")
+        / 1024.0
 }
 
 /// Measures the options of depth.
@@ -29,7 +38,10 @@ fn trade(lab: &mut Lab) {
 
 /// Draws and judges the largest pictures.
 fn extremes(lab: &mut Lab) {
-    if lab.query_by_role_and_label(Role::TextInput, "Cases").is_none() {
+    if lab
+        .query_by_role_and_label(Role::TextInput, "Cases")
+        .is_none()
+    {
         click(lab, Role::Button, "View");
         click(lab, Role::Button, "Run extreme cases…");
         lab.get_by_label("Cases").focus();
@@ -39,16 +51,24 @@ fn extremes(lab: &mut Lab) {
     }
     click(lab, Role::Button, "Run 1 case");
     let patience = Instant::now() + Duration::from_secs(240);
-    while lab.query_by_role_and_label(Role::Button, "Stop the run").is_some() {
+    while lab
+        .query_by_role_and_label(Role::Button, "Stop the run")
+        .is_some()
+    {
         assert!(Instant::now() < patience, "the case does not end");
         lab.step();
         std::thread::sleep(Duration::from_millis(5));
     }
     settle(lab);
-    assert!(lab.state().log_text().contains("1 case: 1 "), "{}", lab.state().log_text());
+    assert!(
+        lab.state().log_text().contains("1 case: 1 "),
+        "{}",
+        lab.state().log_text()
+    );
 }
 
-/// Does the job twice, so that what is kept once, as compiled kernels are, is not taken for what grows.
+/// Does the job twice, so that what is kept once, as compiled kernels are, is not taken for what
+/// grows.
 fn returns(job: fn(&mut Lab)) {
     draw_pictures();
     let mut lab = lab("facet-sweep").expect("the parent has an adapter");
@@ -58,7 +78,10 @@ fn returns(job: fn(&mut Lab)) {
         resident_mb()
     });
     println!("{before:.0} MB before, {after:.0?} MB after");
-    assert!(after[1] <= 1.2 * before, "{before:.0} MB before, {after:.0?} MB after");
+    assert!(
+        after[1] <= 1.2 * before,
+        "{before:.0} MB before, {after:.0?} MB after"
+    );
 }
 
 /// Run by the next test in separate processes, whose memory nothing else uses.
@@ -79,12 +102,16 @@ fn memory_after_a_long_job_is_about_what_it_was_before() {
     if crate::common::gpu().is_none() {
         return;
     }
-    for job in ["memory::child_that_measures", "memory::child_that_runs_an_extreme_case"] {
+    for job in [
+        "memory::child_that_measures",
+        "memory::child_that_runs_an_extreme_case",
+    ] {
         let child = std::process::Command::new(std::env::current_exe().expect("this test"))
             .args(["--exact", job, "--ignored", "--nocapture"])
             .output()
             .expect("the child starts");
-        let said = String::from_utf8_lossy(&child.stdout).into_owned() + &String::from_utf8_lossy(&child.stderr);
+        let said = String::from_utf8_lossy(&child.stdout).into_owned()
+            + &String::from_utf8_lossy(&child.stderr);
         assert!(child.status.success(), "{said}");
     }
 }

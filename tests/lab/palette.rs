@@ -1,5 +1,6 @@
-//! Promise: Ctrl+K opens a search over actions, effects, parameters, values, presets and accuracy options; Enter carries out what is
-//! selected, Escape nothing, and no key that is typed there is a shortcut.
+//! Promise: Ctrl+K opens a search over actions, effects, parameters, values, presets and accuracy
+//! options; Enter carries out what is selected, Escape nothing, and no key that is typed there is a
+//! shortcut.
 
 use eframe::egui::{Event, Key, Modifiers, Role};
 use egui_kittest::{
@@ -13,7 +14,8 @@ use crate::harness::*;
 const SEARCH: &str = "Search commands";
 
 fn is_open(lab: &Lab) -> bool {
-    lab.query_by_role_and_label(Role::TextInput, SEARCH).is_some()
+    lab.query_by_role_and_label(Role::TextInput, SEARCH)
+        .is_some()
 }
 
 /// Opens the palette and types `text`.
@@ -34,49 +36,90 @@ fn key(lab: &mut Lab, key: Key) {
 
 /// The rows of the list, which are higher than buttons.
 fn rows(lab: &Lab) -> impl Iterator<Item = Node<'_>> {
-    lab.query_all_by_role(Role::Button).filter(|node| (node.rect().height() - 28.0).abs() < 0.5)
+    lab.query_all_by_role(Role::Button)
+        .filter(|node| (node.rect().height() - 28.0).abs() < 0.5)
 }
 
 /// The entry that Enter would carry out.
 fn selected(lab: &Lab) -> String {
-    let nodes: Vec<String> = rows(lab).filter(is_on).filter_map(|node| node.accesskit_node().label()).collect();
+    let nodes: Vec<String> = rows(lab)
+        .filter(is_on)
+        .filter_map(|node| node.accesskit_node().label())
+        .collect();
     assert_eq!(nodes.len(), 1, "{nodes:?}");
     nodes.concat()
 }
 
 #[test]
 fn typed_letters_search_and_are_never_shortcuts() {
-    let Some(mut lab) = lab("facet-knot") else { return };
+    let Some(mut lab) = lab("facet-knot") else {
+        return;
+    };
     let before = lab.state().preset_file().preset.clone();
-    // The key and the letters in one frame, as a fast typist on a slow machine has it: R would randomize, V verify, O show overlays.
-    let pressed = |key, modifiers| Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers };
-    let letters = [Key::O, Key::V, Key::E, Key::R].into_iter().zip(["o", "v", "e", "r"]);
-    let typed = letters.flat_map(|(key, text)| [pressed(key, Modifiers::NONE), Event::Text(text.into())]);
-    lab.input_mut().events.extend([pressed(Key::K, Modifiers::COMMAND)].into_iter().chain(typed));
+    // The key and the letters in one frame, as a fast typist on a slow machine has it: R would
+    // randomize, V verify, O show overlays.
+    let pressed = |key, modifiers| Event::Key {
+        key,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers,
+    };
+    let letters = [Key::O, Key::V, Key::E, Key::R]
+        .into_iter()
+        .zip(["o", "v", "e", "r"]);
+    let typed =
+        letters.flat_map(|(key, text)| [pressed(key, Modifiers::NONE), Event::Text(text.into())]);
+    lab.input_mut().events.extend(
+        [pressed(Key::K, Modifiers::COMMAND)]
+            .into_iter()
+            .chain(typed),
+    );
     lab.run_steps(6);
     settle(&mut lab);
-    let field = lab.get_by_role_and_label(Role::TextInput, SEARCH).accesskit_node().value();
+    let field = lab
+        .get_by_role_and_label(Role::TextInput, SEARCH)
+        .accesskit_node()
+        .value();
     assert_eq!(field.as_deref(), Some("over"));
-    let found: Vec<_> = rows(&lab).filter_map(|node| node.accesskit_node().label()).collect();
+    let found: Vec<_> = rows(&lab)
+        .filter_map(|node| node.accesskit_node().label())
+        .collect();
     let is_found = |label: &str| found.iter().any(|found| found == label);
-    assert!(is_found("Show or hide overlays") && !is_found("Show or hide the log"), "{found:?}");
+    assert!(
+        is_found("Show or hide overlays") && !is_found("Show or hide the log"),
+        "{found:?}"
+    );
     for key in [Key::Delete, Key::Space, Key::F11, Key::OpenBracket] {
         press(&mut lab, Modifiers::NONE, key);
     }
-    assert_eq!((&lab.state().preset_file().preset, lab.state().undo_steps()), (&before, 0), "a key reached a shortcut");
-    assert!(!lab.state().log_text().contains("seed"), "{}", lab.state().log_text());
+    assert_eq!(
+        (&lab.state().preset_file().preset, lab.state().undo_steps()),
+        (&before, 0),
+        "a key reached a shortcut"
+    );
+    assert!(
+        !lab.state().log_text().contains("seed"),
+        "{}",
+        lab.state().log_text()
+    );
     key(&mut lab, Key::Escape);
     assert!(!is_open(&lab) && lab.state().preset_file().preset == before);
 }
 
 #[test]
 fn arrows_select_and_enter_carries_out_actions_and_effects() {
-    let Some(mut lab) = lab("facet-knot") else { return };
+    let Some(mut lab) = lab("facet-knot") else {
+        return;
+    };
     search(&mut lab, "front view");
     assert_eq!(selected(&lab), "Front view");
     let camera = lab.state().preset_file().preset.camera;
     key(&mut lab, Key::Enter);
-    assert!(!is_open(&lab) && lab.state().preset_file().preset.camera != camera, "the view did not change");
+    assert!(
+        !is_open(&lab) && lab.state().preset_file().preset.camera != camera,
+        "the view did not change"
+    );
     undo(&mut lab);
 
     search(&mut lab, "enable toon");
@@ -106,8 +149,19 @@ fn arrows_select_and_enter_carries_out_actions_and_effects() {
 #[test]
 fn the_palette_names_and_obeys_the_keys_of_the_user_and_closes_before_panels() {
     let folder = tempfile::tempdir().expect("a folder");
-    std::fs::write(folder.path().join("settings.toml"), "[keys]\nrandomize = [\"J\"]\npalette = [\"Ctrl+P\"]\n").expect("a file");
-    let Some(mut lab) = created(Some("facet-knot"), Folders::default(), Some(folder.path().to_owned()), SIZE) else { return };
+    std::fs::write(
+        folder.path().join("settings.toml"),
+        "[keys]\nrandomize = [\"J\"]\npalette = [\"Ctrl+P\"]\n",
+    )
+    .expect("a file");
+    let Some(mut lab) = created(
+        Some("facet-knot"),
+        Folders::default(),
+        Some(folder.path().to_owned()),
+        SIZE,
+    ) else {
+        return;
+    };
     settle(&mut lab);
     press(&mut lab, Modifiers::NONE, Key::L); // The log.
     press(&mut lab, Modifiers::COMMAND, Key::K);
@@ -115,56 +169,87 @@ fn the_palette_names_and_obeys_the_keys_of_the_user_and_closes_before_panels() {
     press(&mut lab, Modifiers::COMMAND, Key::P);
     typing(&mut lab, "randomize effects");
     assert_eq!(selected(&lab), "Randomize effects");
-    let row = lab.get_by_role_and_label(Role::Button, "Randomize effects").accesskit_node();
+    let row = lab
+        .get_by_role_and_label(Role::Button, "Randomize effects")
+        .accesskit_node();
     assert_eq!(row.data().keyboard_shortcut(), Some("J"));
     press(&mut lab, Modifiers::COMMAND, Key::P);
     assert!(!is_open(&lab), "the key that opens it closes it");
 
     press(&mut lab, Modifiers::COMMAND, Key::P);
     press(&mut lab, Modifiers::NONE, Key::Escape);
-    assert!(!is_open(&lab) && lab.query_by_label("Clear the log").is_some(), "Escape closed the palette alone");
+    assert!(
+        !is_open(&lab) && lab.query_by_label("Clear the log").is_some(),
+        "Escape closed the palette alone"
+    );
     press(&mut lab, Modifiers::NONE, Key::Escape);
     assert!(lab.query_by_label("Clear the log").is_none());
 }
 
 #[test]
 fn a_value_behind_a_path_is_set_as_one_step_and_a_wrong_one_is_refused_in_words() {
-    let Some(mut lab) = lab("facet-knot") else { return };
+    let Some(mut lab) = lab("facet-knot") else {
+        return;
+    };
     let before = value(&lab, "facet", "amount");
     search(&mut lab, "facet.amount 0.5");
     assert_eq!(selected(&lab), "Set facet.amount to 0.5");
     key(&mut lab, Key::Enter);
-    assert_eq!((value(&lab, "facet", "amount"), lab.state().undo_steps()), (vec![0.5], 1));
+    assert_eq!(
+        (value(&lab, "facet", "amount"), lab.state().undo_steps()),
+        (vec![0.5], 1)
+    );
     undo(&mut lab);
     assert_eq!(value(&lab, "facet", "amount"), before);
 
     search(&mut lab, "facet.amount 7");
     key(&mut lab, Key::Enter);
     assert_eq!(value(&lab, "facet", "amount"), before);
-    assert!(lab.state().log_text().contains("facet.amount 7 lies outside 0..=1"), "{}", lab.state().log_text());
+    assert!(
+        lab.state()
+            .log_text()
+            .contains("facet.amount 7 lies outside 0..=1"),
+        "{}",
+        lab.state().log_text()
+    );
 
     search(&mut lab, "depth = log16");
     assert_eq!(selected(&lab), "accuracy.depth = log16");
     key(&mut lab, Key::Enter);
-    assert_eq!(lab.state().preset_file().preset.accuracy.pins.words(), "depth=log16");
+    assert_eq!(
+        lab.state().preset_file().preset.accuracy.pins.words(),
+        "depth=log16"
+    );
 }
 
 #[test]
 fn a_path_leads_to_its_row_which_has_the_focus() {
-    let Some(mut lab) = lab("facet-knot") else { return };
-    assert!(lab.query_by_label("clock.speed value").is_none(), "the folder is closed");
+    let Some(mut lab) = lab("facet-knot") else {
+        return;
+    };
+    assert!(
+        lab.query_by_label("clock.speed value").is_none(),
+        "the folder is closed"
+    );
     search(&mut lab, "clock.speed");
     assert_eq!(selected(&lab), "clock.speed");
     key(&mut lab, Key::Enter);
     let row = lab.get_by_label("clock.speed value");
     assert!(row.is_focused(), "the number has the focus");
     let inspector = lab.get_by_label("Picture").rect().right()..1280.0;
-    assert!(inspector.contains(&row.rect().center().x) && (60.0..700.0).contains(&row.rect().center().y), "{:?}", row.rect());
+    assert!(
+        inspector.contains(&row.rect().center().x)
+            && (60.0..700.0).contains(&row.rect().center().y),
+        "{:?}",
+        row.rect()
+    );
 
     // A parameter of an effect that is not in the stack enables it, and a folded effect unfolds.
     search(&mut lab, "toon.softness");
     key(&mut lab, Key::Enter);
-    assert!(has_slider(&lab, "toon.softness") && lab.get_by_label("toon.softness value").is_focused());
+    assert!(
+        has_slider(&lab, "toon.softness") && lab.get_by_label("toon.softness value").is_focused()
+    );
     click(&mut lab, Role::Button, "Fold facet");
     search(&mut lab, "facet.amount");
     key(&mut lab, Key::Enter);
@@ -173,9 +258,15 @@ fn a_path_leads_to_its_row_which_has_the_focus() {
 
 #[test]
 fn presets_and_scenes_open() {
-    let Some(mut lab) = lab("facet-knot") else { return };
+    let Some(mut lab) = lab("facet-knot") else {
+        return;
+    };
     search(&mut lab, "open hatch");
-    assert!(selected(&lab).ends_with("(hatch)") || selected(&lab) == "Open hatch", "{}", selected(&lab));
+    assert!(
+        selected(&lab).ends_with("(hatch)") || selected(&lab) == "Open hatch",
+        "{}",
+        selected(&lab)
+    );
     key(&mut lab, Key::Enter);
     assert_eq!(lab.state().preset_file().id, "hatch");
     undo(&mut lab);
@@ -186,5 +277,8 @@ fn presets_and_scenes_open() {
     lab.run_steps(4);
     settle(&mut lab);
     assert!(!is_open(&lab));
-    assert_eq!(lab.state().preset_file().preset.scene, rasterlab::preset::SceneSource::Builtin("sphere".into()));
+    assert_eq!(
+        lab.state().preset_file().preset.scene,
+        rasterlab::preset::SceneSource::Builtin("sphere".into())
+    );
 }

@@ -1,6 +1,7 @@
-//! Promise: a drag of an effect's slider prepares nothing: no picture of it is planned, no kernel's text linked, no pipeline compiled, no
-//! buffer, texture or bind group made, and nothing explained anew. Only a change of the drawn size, with which a slow adapter keeps up, may
-//! make any of these.
+//! Promise: a drag of an effect's slider prepares nothing: no picture of it is planned, no kernel's
+//! text linked, no pipeline compiled, no buffer, texture or bind group made, and nothing explained
+//! anew. Only a change of the drawn size, with which a slow adapter keeps up, may make any of
+//! these.
 
 use std::time::{Duration, Instant};
 
@@ -8,7 +9,8 @@ use eframe::egui::Pos2;
 
 use crate::harness::*;
 
-/// Pictures of one size after which the thread of the picture has no order of an earlier size left: it draws one and keeps one.
+/// Pictures of one size after which the thread of the picture has no order of an earlier size left:
+/// it draws one and keeps one.
 const BEFORE: u64 = 3;
 /// Pictures that are looked at.
 const PICTURES: u64 = 12;
@@ -16,12 +18,26 @@ const PICTURES: u64 = 12;
 #[test]
 fn a_drag_of_a_slider_prepares_nothing() {
     draw_pictures();
-    let Some(mut lab) = lab_on_new_devices("facet") else { return };
+    let Some(mut lab) = lab_on_new_devices("facet") else {
+        return;
+    };
     let rail = slider(&lab, "facet.amount").rect();
     // To and fro, never the same twice in a row.
-    let at = |i: u32| Pos2::new(rail.left() + rail.width() * (0.2 + 0.6 * (i as f32 * 0.37).sin().abs()), rail.center().y);
+    let at = |i: u32| {
+        Pos2::new(
+            rail.left() + rail.width() * (0.2 + 0.6 * (i as f32 * 0.37).sin().abs()),
+            rail.center().y,
+        )
+    };
     let first = lab.state().gpu().prepared.so_far();
-    assert!(first.plans > 0 && first.texts > 0 && first.pipelines > 0 && first.buffers > 0 && first.bind_groups > 0, "{first:?}");
+    assert!(
+        first.plans > 0
+            && first.texts > 0
+            && first.pipelines > 0
+            && first.buffers > 0
+            && first.bind_groups > 0,
+        "{first:?}"
+    );
     lab.hover_at(at(0));
     lab.step();
     lab.drag_at(at(0));
@@ -43,7 +59,12 @@ fn a_drag_of_a_slider_prepares_nothing() {
         match known {
             None => known = Some((prepared, draws)),
             Some((before, of)) => {
-                assert_eq!(before, prepared, "after {} pictures of {size:?}", draws - of);
+                assert_eq!(
+                    before,
+                    prepared,
+                    "after {} pictures of {size:?}",
+                    draws - of
+                );
                 amounts.push(value(&lab, "facet", "amount"));
                 seen += draws - of;
                 known = Some((prepared, draws));
@@ -52,7 +73,11 @@ fn a_drag_of_a_slider_prepares_nothing() {
         if seen >= PICTURES {
             break;
         }
-        assert!(Instant::now() < patience, "{seen} pictures of a size that rests\n{}", lab.state().log_text());
+        assert!(
+            Instant::now() < patience,
+            "{seen} pictures of a size that rests\n{}",
+            lab.state().log_text()
+        );
     }
     amounts.dedup();
     assert!(amounts.len() > 3, "the slider does not move: {amounts:?}");

@@ -1,5 +1,5 @@
-//! Promise: the parts that an effect changes are chosen in the inspector, from a list or by a click on the model; every choice is a step of
-//! undo, and a part that the scene does not have is said.
+//! Promise: the parts that an effect changes are chosen in the inspector, from a list or by a click
+//! on the model; every choice is a step of undo, and a part that the scene does not have is said.
 
 use eframe::egui::{self, Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
@@ -9,7 +9,14 @@ use crate::harness::*;
 const PRESET: &str = "schema = 2\n[scene]\nbuiltin = \"cube-wall\"\n[camera]\neye = [0.0, 0.0, 12.0]\ntarget = [0.0, 0.0, 0.0]\n[effects.lambert]\n[effects.toon]\n[effects.outline]\n";
 
 fn on(lab: &Lab, effect: &str) -> String {
-    lab.state().preset_file().preset.stack.get(effect).unwrap_or_else(|| panic!("{effect} is off")).on.to_string()
+    lab.state()
+        .preset_file()
+        .preset
+        .stack
+        .get(effect)
+        .unwrap_or_else(|| panic!("{effect} is off"))
+        .on
+        .to_string()
 }
 
 fn type_text(lab: &mut Lab, text: &str) {
@@ -21,9 +28,14 @@ fn type_text(lab: &mut Lab, text: &str) {
 fn boxes_of_the_picker_set_the_scope_and_undo_takes_each_back() {
     draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let Some(mut lab) = lab_of(folder.path(), PRESET) else { return };
+    let Some(mut lab) = lab_of(folder.path(), PRESET) else {
+        return;
+    };
     let everywhere = middle(&mut lab);
-    assert!(lab.query_by_label("Parts of outline").is_none(), "an effect on pixels has no parts");
+    assert!(
+        lab.query_by_label("Parts of outline").is_none(),
+        "an effect on pixels has no parts"
+    );
     click(&mut lab, Role::Button, "Parts of toon");
     click(&mut lab, Role::CheckBox, "material:coral");
     assert_eq!(on(&lab, "toon"), "material:coral");
@@ -43,11 +55,16 @@ fn boxes_of_the_picker_set_the_scope_and_undo_takes_each_back() {
 #[test]
 fn the_search_finds_parts_and_takes_patterns() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let Some(mut lab) = lab_of(folder.path(), PRESET) else { return };
+    let Some(mut lab) = lab_of(folder.path(), PRESET) else {
+        return;
+    };
     click(&mut lab, Role::Button, "Parts of toon");
     click(&mut lab, Role::TextInput, "Search parts for toon");
     type_text(&mut lab, "ink");
-    assert!(lab.query_by_role_and_label(Role::CheckBox, "material:coral").is_none());
+    assert!(
+        lab.query_by_role_and_label(Role::CheckBox, "material:coral")
+            .is_none()
+    );
     click(&mut lab, Role::CheckBox, "material:ink");
     click(&mut lab, Role::TextInput, "Search parts for toon");
     lab.key_press_modifiers(Modifiers::COMMAND, Key::A);
@@ -66,8 +83,14 @@ fn the_search_finds_parts_and_takes_patterns() {
 #[test]
 fn a_click_on_the_model_adds_the_part_under_it() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let Some(mut lab) = lab_of(folder.path(), PRESET) else { return };
-    for (kind, is_right) in [("material", "material:"), ("node", "node:cube "), ("mesh", "mesh:cube")] {
+    let Some(mut lab) = lab_of(folder.path(), PRESET) else {
+        return;
+    };
+    for (kind, is_right) in [
+        ("material", "material:"),
+        ("node", "node:cube "),
+        ("mesh", "mesh:cube"),
+    ] {
         click(&mut lab, Role::Button, "Parts of toon");
         click(&mut lab, Role::Button, &format!("Pick a {kind} for toon"));
         // The center itself lies between four cubes.
@@ -79,9 +102,28 @@ fn a_click_on_the_model_adds_the_part_under_it() {
         lab.drop_at(center);
         lab.run_steps(3);
         settle(&mut lab);
-        assert!(on(&lab, "toon").split(", ").last().expect("a pattern").starts_with(is_right), "{kind}: {}", on(&lab, "toon"));
+        assert!(
+            on(&lab, "toon")
+                .split(", ")
+                .last()
+                .expect("a pattern")
+                .starts_with(is_right),
+            "{kind}: {}",
+            on(&lab, "toon")
+        );
     }
-    assert_eq!(lab.state().preset_file().preset.stack.get("toon").expect("it is on").on.patterns().len(), 3);
+    assert_eq!(
+        lab.state()
+            .preset_file()
+            .preset
+            .stack
+            .get("toon")
+            .expect("it is on")
+            .on
+            .patterns()
+            .len(),
+        3
+    );
     // Nothing more is picked.
     undo(&mut lab);
     undo(&mut lab);
@@ -92,9 +134,17 @@ fn a_click_on_the_model_adds_the_part_under_it() {
 #[test]
 fn a_part_that_the_scene_does_not_have_is_said() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let text = PRESET.replace("[effects.toon]\n", "[effects.toon]\non = \"material:corral\"\n");
-    let Some(lab) = lab_of(folder.path(), &text) else { return };
+    let text = PRESET.replace(
+        "[effects.toon]\n",
+        "[effects.toon]\non = \"material:corral\"\n",
+    );
+    let Some(lab) = lab_of(folder.path(), &text) else {
+        return;
+    };
     let said = |lab: &Lab, text: &str| lab.query_all_by_label_contains(text).count() > 0;
-    assert!(said(&lab, "the scene has no material that matches \"corral\"") && said(&lab, "did you mean \"coral\"?"));
+    assert!(
+        said(&lab, "the scene has no material that matches \"corral\"")
+            && said(&lab, "did you mean \"coral\"?")
+    );
     assert_eq!(on(&lab, "toon"), "material:corral");
 }

@@ -1,6 +1,7 @@
-//! Promise: the numbers in the header are those of the picture that is shown: measured at rest, never a first sample, never of another
-//! preset or size; and the same count of wrong pixels stands in the header and in the legend. The file of the log tells how long the window
-//! and the pictures took.
+//! Promise: the numbers in the header are those of the picture that is shown: measured at rest,
+//! never a first sample, never of another preset or size; and the same count of wrong pixels stands
+//! in the header and in the legend. The file of the log tells how long the window and the pictures
+//! took.
 
 use std::time::Duration;
 
@@ -14,8 +15,14 @@ use crate::{
 
 /// The texts of the window that contain `part`. What a label says is its value.
 fn texts(lab: &Lab, part: &str) -> Vec<String> {
-    let text = |node: egui_kittest::Node<'_>| node.accesskit_node().label().or_else(|| node.accesskit_node().value());
-    lab.query_all_by_label_contains(part).filter_map(text).collect()
+    let text = |node: egui_kittest::Node<'_>| {
+        node.accesskit_node()
+            .label()
+            .or_else(|| node.accesskit_node().value())
+    };
+    lab.query_all_by_label_contains(part)
+        .filter_map(text)
+        .collect()
 }
 
 fn has_timer(lab: &Lab) -> bool {
@@ -25,24 +32,37 @@ fn has_timer(lab: &Lab) -> bool {
 #[test]
 fn the_cost_is_a_median_at_rest_and_then_nothing_is_drawn() {
     draw_pictures();
-    let Some(mut lab) = lab("lambert") else { return };
+    let Some(mut lab) = lab("lambert") else {
+        return;
+    };
     if !has_timer(&lab) {
         assert!(!texts(&lab, "no GPU timer").is_empty());
         return;
     }
     assert!(!texts(&lab, " ms GPU").is_empty() && texts(&lab, "timing…").is_empty());
     let draws = lab.state().draws();
-    assert!(draws >= 6, "{draws} frames: the first, and five at least that are measured");
+    assert!(
+        draws >= 6,
+        "{draws} frames: the first, and five at least that are measured"
+    );
     lab.run_steps(30);
     assert_eq!(lab.state().draws(), draws, "an idle window draws");
-    assert_eq!(lab.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay, Duration::MAX, "{:?}", lab.ctx.repaint_causes());
+    assert_eq!(
+        lab.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay,
+        Duration::MAX,
+        "{:?}",
+        lab.ctx.repaint_causes()
+    );
 
     lab.key_press(Key::Num7);
     lab.run_steps(2);
     // Where these two steps take long, the next picture has been measured within them.
     let is_measured = lab.state().draws() >= draws + 6;
     let times = texts(&lab, " ms GPU");
-    assert!(is_measured || !texts(&lab, "timing…").is_empty() && times.is_empty(), "the time of another picture is shown: {times:?}");
+    assert!(
+        is_measured || !texts(&lab, "timing…").is_empty() && times.is_empty(),
+        "the time of another picture is shown: {times:?}"
+    );
     settle(&mut lab);
     assert!(!texts(&lab, " ms GPU").is_empty());
     assert!(lab.state().draws() >= draws + 6);
@@ -52,7 +72,9 @@ fn the_cost_is_a_median_at_rest_and_then_nothing_is_drawn() {
 #[test]
 fn the_time_of_the_picture_before_is_gone_before_the_next_is_drawn() {
     draw_pictures();
-    let Some(mut lab) = lab_on_new_devices("lambert") else { return };
+    let Some(mut lab) = lab_on_new_devices("lambert") else {
+        return;
+    };
     if !has_timer(&lab) {
         return;
     }
@@ -61,23 +83,32 @@ fn the_time_of_the_picture_before_is_gone_before_the_next_is_drawn() {
     tick(&mut lab, "hatch");
     until_compiling(&mut lab);
     lab.run_steps(3);
-    assert!(texts(&lab, " ms GPU").is_empty(), "an old time stands beside a changed preset: {:?}", texts(&lab, " ms GPU"));
+    assert!(
+        texts(&lab, " ms GPU").is_empty(),
+        "an old time stands beside a changed preset: {:?}",
+        texts(&lab, " ms GPU")
+    );
     assert!(!texts(&lab, "timing…").is_empty());
     lab.state_mut().hold_compiling(false);
     settle(&mut lab);
     assert!(!texts(&lab, " ms GPU").is_empty());
 }
 
-/// A picture in motion is timed by the median of its newest frames; those of another preset with the same kernels do not count.
+/// A picture in motion is timed by the median of its newest frames; those of another preset with
+/// the same kernels do not count.
 #[test]
 fn frames_of_the_preset_before_do_not_count_for_the_next() {
     draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     for (id, amount) in [("aa1", 0.25), ("aa2", 0.75)] {
-        let text = format!("schema = 2\n[scene]\nbuiltin = \"teapot?tess=4\"\n[effects.facet]\namount = {amount}\n");
+        let text = format!(
+            "schema = 2\n[scene]\nbuiltin = \"teapot?tess=4\"\n[effects.facet]\namount = {amount}\n"
+        );
         std::fs::write(folder.path().join(format!("{id}.toml")), text).expect("a file");
     }
-    let Some(mut lab) = lab_in("aa1", Some(folder.path())) else { return };
+    let Some(mut lab) = lab_in("aa1", Some(folder.path())) else {
+        return;
+    };
     if !has_timer(&lab) {
         return;
     }
@@ -93,7 +124,11 @@ fn frames_of_the_preset_before_do_not_count_for_the_next() {
     let before = lab.state().draws();
     while lab.state().draws() < before + 2 {
         lab.step();
-        assert!(texts(&lab, "≈").is_empty(), "{:?} is of the preset before", texts(&lab, "≈"));
+        assert!(
+            texts(&lab, "≈").is_empty(),
+            "{:?} is of the preset before",
+            texts(&lab, "≈")
+        );
     }
     settle(&mut lab);
     assert_eq!(lab.state().preset_file().id, "aa2");
@@ -102,25 +137,43 @@ fn frames_of_the_preset_before_do_not_count_for_the_next() {
 #[test]
 fn a_new_size_and_another_preset_reset_time_and_verdict() {
     draw_pictures();
-    let Some(mut lab) = lab("lambert") else { return };
+    let Some(mut lab) = lab("lambert") else {
+        return;
+    };
     let size = lab.get_by_label("Picture").rect().size();
     click(&mut lab, Role::Button, "Verify");
-    assert_eq!(lab.get_by_label("Picture").rect().size(), size, "a verdict changes the size of the picture");
+    assert_eq!(
+        lab.get_by_label("Picture").rect().size(),
+        size,
+        "a verdict changes the size of the picture"
+    );
     assert!(texts(&lab, "error not measured").is_empty() && !texts(&lab, " snapped").is_empty());
     lab.set_size(vec2(1216.0, 800.0));
     lab.run_steps(2);
-    assert!(!texts(&lab, "error not measured").is_empty(), "a verdict on another size is shown: {:?}", texts(&lab, " snapped"));
+    assert!(
+        !texts(&lab, "error not measured").is_empty(),
+        "a verdict on another size is shown: {:?}",
+        texts(&lab, " snapped")
+    );
     assert!(texts(&lab, " ms GPU").is_empty());
     settle(&mut lab);
     click(&mut lab, Role::Button, "Verify");
     assert!(texts(&lab, "error not measured").is_empty());
     press(&mut lab, Modifiers::NONE, Key::CloseBracket);
-    assert!(!texts(&lab, "error not measured").is_empty(), "a verdict on another preset is shown: {:?}", texts(&lab, " snapped"));
+    assert!(
+        !texts(&lab, "error not measured").is_empty(),
+        "a verdict on another preset is shown: {:?}",
+        texts(&lab, " snapped")
+    );
     // A verdict that comes after the change is dropped as well.
     lab.get_by_role_and_label(Role::Button, "Verify").click();
     lab.run_steps(2);
     press(&mut lab, Modifiers::NONE, Key::OpenBracket);
-    assert!(!texts(&lab, "error not measured").is_empty(), "a late verdict on another preset is shown: {:?}", texts(&lab, " snapped"));
+    assert!(
+        !texts(&lab, "error not measured").is_empty(),
+        "a late verdict on another preset is shown: {:?}",
+        texts(&lab, " snapped")
+    );
 }
 
 #[test]
@@ -128,27 +181,48 @@ fn header_and_legend_count_the_same_wrong_pixels() {
     draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let text = "schema = 2\n[scene]\nbuiltin = \"teapot\"\n[effects.facet]\n[accuracy]\ncoverage = \"fixed4\"\n";
-    let Some(mut lab) = lab_of(folder.path(), text) else { return };
+    let Some(mut lab) = lab_of(folder.path(), text) else {
+        return;
+    };
     press(&mut lab, Modifiers::NONE, Key::O);
     let header = texts(&lab, "wrong: 0 snapped, ");
-    let header = header.first().unwrap_or_else(|| panic!("no header: {:?}", texts(&lab, "wrong")));
-    let count = header.trim_start_matches("wrong: 0 snapped, ").split(" true").next().expect("a count");
+    let header = header
+        .first()
+        .unwrap_or_else(|| panic!("no header: {:?}", texts(&lab, "wrong")));
+    let count = header
+        .trim_start_matches("wrong: 0 snapped, ")
+        .split(" true")
+        .next()
+        .expect("a count");
     assert_ne!(count, "0", "a grid of 1/16 px moves edges");
     let legend = format!("wrong (true): {count} px");
-    assert!(lab.query_by_label(&legend).is_some(), "{header} beside {:?}", texts(&lab, "wrong (true)"));
+    assert!(
+        lab.query_by_label(&legend).is_some(),
+        "{header} beside {:?}",
+        texts(&lab, "wrong (true)")
+    );
     assert!(texts(&lab, "no errors").is_empty());
     // What the two counts mean is said on hover.
-    let words = "True: pixels that show another triangle than the exact picture of the true positions";
+    let words =
+        "True: pixels that show another triangle than the exact picture of the true positions";
     assert!(texts(&lab, words).is_empty());
-    lab.get_all_by_label_contains("wrong: 0 snapped, ").next().expect("the header").hover();
+    lab.get_all_by_label_contains("wrong: 0 snapped, ")
+        .next()
+        .expect("the header")
+        .hover();
     lab.run_steps(12);
-    assert!(!texts(&lab, words).is_empty(), "the counts are not explained");
+    assert!(
+        !texts(&lab, words).is_empty(),
+        "the counts are not explained"
+    );
 }
 
 #[test]
 fn the_timing_panel_lists_passes_rest_and_latency() {
     draw_pictures();
-    let Some(mut lab) = lab("lambert") else { return };
+    let Some(mut lab) = lab("lambert") else {
+        return;
+    };
     if !has_timer(&lab) {
         return;
     }
@@ -167,21 +241,31 @@ fn the_timing_panel_lists_passes_rest_and_latency() {
     let view = lab.get_by_label("Picture").rect();
     drag(&mut lab, view.center(), view.center() + vec2(60.0, 20.0));
     assert!(!texts(&lab, "input to picture: ").is_empty());
-    assert!(!texts(&lab, " ms a frame, longest ").is_empty(), "the panel does not tell how long the window takes");
+    assert!(
+        !texts(&lab, " ms a frame, longest ").is_empty(),
+        "the panel does not tell how long the window takes"
+    );
     click(&mut lab, Role::Button, "Close timing");
     assert!(texts(&lab, "Times of ").is_empty());
     press(&mut lab, Modifiers::NONE, Key::G);
     assert!(!texts(&lab, "Times of ").is_empty());
     press(&mut lab, Modifiers::NONE, Key::Escape);
-    assert!(texts(&lab, "Times of ").is_empty(), "Escape closes the panel");
+    assert!(
+        texts(&lab, "Times of ").is_empty(),
+        "Escape closes the panel"
+    );
 }
 
 #[test]
-fn the_file_of_the_log_tells_the_longest_frame_and_the_slowest_picture_and_a_window_at_rest_writes_nothing() {
+fn the_file_of_the_log_tells_the_longest_frame_and_the_slowest_picture_and_a_window_at_rest_writes_nothing()
+ {
     draw_pictures();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("window.log");
-    let Some(mut lab) = lab_with_log("lambert", std::fs::File::create(&path).expect("a file")) else { return };
+    let Some(mut lab) = lab_with_log("lambert", std::fs::File::create(&path).expect("a file"))
+    else {
+        return;
+    };
     let view = lab.get_by_label("Picture").rect();
     drag(&mut lab, view.center(), view.center() + vec2(60.0, 20.0));
     lab.run_steps(12); // More than a second.
@@ -194,14 +278,29 @@ fn the_file_of_the_log_tells_the_longest_frame_and_the_slowest_picture_and_a_win
             .collect::<Vec<_>>()
     };
     let written = notes();
-    assert!(!written.is_empty() && written.iter().all(|line| line.contains(" frames, longest ")), "{written:#?}");
-    assert!(written.iter().any(|line| line.contains(" pictures after their inputs: median ")), "{written:#?}");
-    assert!(!lab.state().log_text().contains("timing: "), "the log of the window is for messages");
+    assert!(
+        !written.is_empty()
+            && written
+                .iter()
+                .all(|line| line.contains(" frames, longest ")),
+        "{written:#?}"
+    );
+    assert!(
+        written
+            .iter()
+            .any(|line| line.contains(" pictures after their inputs: median ")),
+        "{written:#?}"
+    );
+    assert!(
+        !lab.state().log_text().contains("timing: "),
+        "the log of the window is for messages"
+    );
     // The frame that writes a note asks for no other.
     let rests = (0..12).any(|_| {
         let before = notes().len();
         lab.step();
-        notes().len() > before && lab.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay == Duration::MAX
+        notes().len() > before
+            && lab.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay == Duration::MAX
     });
     assert!(rests, "{:?}", lab.ctx.repaint_causes());
 }

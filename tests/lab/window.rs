@@ -1,4 +1,5 @@
-//! Promise: a real window on a virtual display (Xvfb) opens, draws, follows the pointer, saves a preset and closes.
+//! Promise: a real window on a virtual display (Xvfb) opens, draws, follows the pointer, saves a
+//! preset and closes.
 
 use std::{
     io::{BufRead as _, BufReader},
@@ -12,8 +13,9 @@ use x11rb::{
     connection::Connection as _,
     protocol::{
         xproto::{
-            BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ClientMessageEvent, ConnectionExt as _, EventMask, ImageFormat, InputFocus,
-            KEY_PRESS_EVENT, KEY_RELEASE_EVENT, MOTION_NOTIFY_EVENT, Window,
+            BUTTON_PRESS_EVENT, BUTTON_RELEASE_EVENT, ClientMessageEvent, ConnectionExt as _,
+            EventMask, ImageFormat, InputFocus, KEY_PRESS_EVENT, KEY_RELEASE_EVENT,
+            MOTION_NOTIFY_EVENT, Window,
         },
         xtest::ConnectionExt as _,
     },
@@ -22,7 +24,8 @@ use x11rb::{
 
 const SIZE: [u16; 2] = [1280, 800];
 
-/// How long anything may take before the test gives up: a software adapter compiles kernels on a busy machine.
+/// How long anything may take before the test gives up: a software adapter compiles kernels on a
+/// busy machine.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// A process that does not outlive its test.
@@ -47,36 +50,68 @@ impl Display {
     fn open() -> Self {
         let [width, height] = SIZE;
         let server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-nolisten", "tcp", "-screen", "0", &format!("{width}x{height}x24")])
+            .args([
+                "-displayfd",
+                "1",
+                "-nolisten",
+                "tcp",
+                "-screen",
+                "0",
+                &format!("{width}x{height}x24"),
+            ])
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn();
-        let mut server = Owned(server.expect("Xvfb cannot be started; install it (Debian: apt-get install xvfb)"));
+        let mut server = Owned(
+            server.expect("Xvfb cannot be started; install it (Debian: apt-get install xvfb)"),
+        );
         let mut number = String::new();
-        BufReader::new(server.0.stdout.take().expect("a pipe")).read_line(&mut number).expect("Xvfb says its display");
+        BufReader::new(server.0.stdout.take().expect("a pipe"))
+            .read_line(&mut number)
+            .expect("Xvfb says its display");
         let name = format!(":{}", number.trim());
-        let (x, screen) = RustConnection::connect(Some(&name)).unwrap_or_else(|error| panic!("display {name}: {error}"));
+        let (x, screen) = RustConnection::connect(Some(&name))
+            .unwrap_or_else(|error| panic!("display {name}: {error}"));
         let root = x.setup().roots[screen].root;
-        Self { x, root, name, _server: server }
+        Self {
+            x,
+            root,
+            name,
+            _server: server,
+        }
     }
 
     /// The screen's pixels, rows from the top, `[r, g, b]`.
     fn screenshot(&self) -> Vec<[u8; 3]> {
         let [width, height] = SIZE;
-        let image =
-            self.x.get_image(ImageFormat::Z_PIXMAP, self.root, 0, 0, width, height, !0).expect("a request").reply().expect("a screenshot");
-        image.data.chunks_exact(4).map(|p| [p[2], p[1], p[0]]).collect()
+        let image = self
+            .x
+            .get_image(ImageFormat::Z_PIXMAP, self.root, 0, 0, width, height, !0)
+            .expect("a request")
+            .reply()
+            .expect("a screenshot");
+        image
+            .data
+            .chunks_exact(4)
+            .map(|p| [p[2], p[1], p[0]])
+            .collect()
     }
 
     /// The part where the picture is, between the panels.
     fn view(&self) -> Vec<[u8; 3]> {
         let shot = self.screenshot();
         let width = usize::from(SIZE[0]);
-        (90..usize::from(SIZE[1]) - 90).flat_map(|y| shot[y * width + 290..y * width + 920].to_vec()).collect()
+        (90..usize::from(SIZE[1]) - 90)
+            .flat_map(|y| shot[y * width + 290..y * width + 920].to_vec())
+            .collect()
     }
 
     fn fake(&self, kind: u8, detail: u8, [x, y]: [i16; 2]) {
-        self.x.xtest_fake_input(kind, detail, 0, self.root, x, y, 0).expect("a request").check().expect("fake input");
+        self.x
+            .xtest_fake_input(kind, detail, 0, self.root, x, y, 0)
+            .expect("a request")
+            .check()
+            .expect("fake input");
         std::thread::sleep(Duration::from_millis(30));
     }
 
@@ -84,7 +119,11 @@ impl Display {
         self.fake(MOTION_NOTIFY_EVENT, 0, from);
         self.fake(BUTTON_PRESS_EVENT, 1, [0, 0]);
         for step in 1..=10 {
-            self.fake(MOTION_NOTIFY_EVENT, 0, [from[0] + by[0] * step / 10, from[1] + by[1] * step / 10]);
+            self.fake(
+                MOTION_NOTIFY_EVENT,
+                0,
+                [from[0] + by[0] * step / 10, from[1] + by[1] * step / 10],
+            );
         }
         self.fake(BUTTON_RELEASE_EVENT, 1, [0, 0]);
     }
@@ -92,46 +131,97 @@ impl Display {
     /// Presses keys together, by X keysyms, and lets them go.
     fn press(&self, keysyms: &[u32]) {
         let codes: Vec<u8> = keysyms.iter().map(|&keysym| self.keycode(keysym)).collect();
-        codes.iter().for_each(|&code| self.fake(KEY_PRESS_EVENT, code, [0, 0]));
-        codes.iter().rev().for_each(|&code| self.fake(KEY_RELEASE_EVENT, code, [0, 0]));
+        codes
+            .iter()
+            .for_each(|&code| self.fake(KEY_PRESS_EVENT, code, [0, 0]));
+        codes
+            .iter()
+            .rev()
+            .for_each(|&code| self.fake(KEY_RELEASE_EVENT, code, [0, 0]));
     }
 
     fn keycode(&self, keysym: u32) -> u8 {
         let setup = self.x.setup();
         let (low, high) = (setup.min_keycode, setup.max_keycode);
-        let map = self.x.get_keyboard_mapping(low, high - low + 1).expect("a request").reply().expect("a keyboard map");
-        let index = map.keysyms.chunks(map.keysyms_per_keycode.into()).position(|symbols| symbols.contains(&keysym));
+        let map = self
+            .x
+            .get_keyboard_mapping(low, high - low + 1)
+            .expect("a request")
+            .reply()
+            .expect("a keyboard map");
+        let index = map
+            .keysyms
+            .chunks(map.keysyms_per_keycode.into())
+            .position(|symbols| symbols.contains(&keysym));
         low + index.unwrap_or_else(|| panic!("no key for keysym {keysym:#x}")) as u8
     }
 
     /// The lab's window.
     fn window(&self) -> Window {
-        let children = self.x.query_tree(self.root).expect("a request").reply().expect("the window tree").children;
+        let children = self
+            .x
+            .query_tree(self.root)
+            .expect("a request")
+            .reply()
+            .expect("the window tree")
+            .children;
         let viewable = |w: &Window| {
-            let size = self.x.get_geometry(*w).ok().and_then(|cookie| cookie.reply().ok());
+            let size = self
+                .x
+                .get_geometry(*w)
+                .ok()
+                .and_then(|cookie| cookie.reply().ok());
             size.is_some_and(|size| size.width > 600)
         };
-        *children.iter().find(|w| viewable(w)).expect("the lab's window")
+        *children
+            .iter()
+            .find(|w| viewable(w))
+            .expect("the lab's window")
     }
 
     /// Width and height of the lab's window.
     fn size(&self) -> [u16; 2] {
-        let geometry = self.x.get_geometry(self.window()).expect("a request").reply().expect("the window's geometry");
+        let geometry = self
+            .x
+            .get_geometry(self.window())
+            .expect("a request")
+            .reply()
+            .expect("the window's geometry");
         [geometry.width, geometry.height]
     }
 
     /// Gives the keyboard to the window, as a window manager would.
     fn focus(&self) {
         let window = self.window();
-        self.x.set_input_focus(InputFocus::POINTER_ROOT, window, x11rb::CURRENT_TIME).expect("a request").check().expect("the focus");
+        self.x
+            .set_input_focus(InputFocus::POINTER_ROOT, window, x11rb::CURRENT_TIME)
+            .expect("a request")
+            .check()
+            .expect("the focus");
     }
 
     /// What a window manager sends when its close button is pressed.
     fn ask_to_close(&self) {
-        let atom = |name: &str| self.x.intern_atom(false, name.as_bytes()).expect("a request").reply().expect("an atom").atom;
+        let atom = |name: &str| {
+            self.x
+                .intern_atom(false, name.as_bytes())
+                .expect("a request")
+                .reply()
+                .expect("an atom")
+                .atom
+        };
         let window = self.window();
-        let event = ClientMessageEvent::new(32, window, atom("WM_PROTOCOLS"), [atom("WM_DELETE_WINDOW"), x11rb::CURRENT_TIME, 0, 0, 0]);
-        self.x.send_event(false, window, EventMask::NO_EVENT, event).expect("a request").check().expect("the event is sent");
+        let event = ClientMessageEvent::new(
+            32,
+            window,
+            atom("WM_PROTOCOLS"),
+            [atom("WM_DELETE_WINDOW"), x11rb::CURRENT_TIME, 0, 0, 0],
+        );
+        self.x
+            .send_event(false, window, EventMask::NO_EVENT, event)
+            .expect("a request")
+            .check()
+            .expect("the event is sent");
     }
 }
 
@@ -156,7 +246,11 @@ fn wait_for(what: &str, lab: &mut Owned, mut reached: impl FnMut() -> bool) {
         if let Some(status) = lab.0.try_wait().expect("the status of a child process") {
             panic!("the lab ended with {status} before {what}");
         }
-        assert!(Instant::now() < patience, "{what}: it did not happen within {} s", PATIENCE.as_secs());
+        assert!(
+            Instant::now() < patience,
+            "{what}: it did not happen within {} s",
+            PATIENCE.as_secs()
+        );
         std::thread::sleep(Duration::from_millis(100));
     }
 }
@@ -175,9 +269,19 @@ fn wait_for_exit(lab: &mut Owned) -> ExitStatus {
 /// Pixels that differ clearly from the most frequent color.
 fn drawn(view: &[[u8; 3]]) -> usize {
     let mut counts = std::collections::HashMap::new();
-    view.iter().for_each(|pixel| *counts.entry(*pixel).or_insert(0usize) += 1);
-    let Some((background, _)) = counts.into_iter().max_by_key(|(_, count)| *count) else { return 0 };
-    view.iter().filter(|pixel| pixel.iter().zip(background).any(|(a, b)| a.abs_diff(b) > 24)).count()
+    view.iter()
+        .for_each(|pixel| *counts.entry(*pixel).or_insert(0usize) += 1);
+    let Some((background, _)) = counts.into_iter().max_by_key(|(_, count)| *count) else {
+        return 0;
+    };
+    view.iter()
+        .filter(|pixel| {
+            pixel
+                .iter()
+                .zip(background)
+                .any(|(a, b)| a.abs_diff(b) > 24)
+        })
+        .count()
 }
 
 const CONTROL: u32 = 0xffe3;
@@ -199,7 +303,9 @@ fn a_real_window_opens_draws_follows_the_hand_saves_and_closes() {
     let home = tempfile::tempdir().expect("a temporary folder");
     let display = Display::open();
     let mut lab = start(&display, home.path(), &["facet-knot"]);
-    wait_for("the picture appeared", &mut lab, || drawn(&display.view()) > 5_000);
+    wait_for("the picture appeared", &mut lab, || {
+        drawn(&display.view()) > 5_000
+    });
 
     let before = display.view();
     wait_for("the picture followed the pointer", &mut lab, || {
@@ -210,7 +316,9 @@ fn a_real_window_opens_draws_follows_the_hand_saves_and_closes() {
     });
 
     display.focus();
-    let saved: PathBuf = home.path().join(".config/rasterlab/presets/my-facet-knot.toml");
+    let saved: PathBuf = home
+        .path()
+        .join(".config/rasterlab/presets/my-facet-knot.toml");
     display.press(&[CONTROL, u32::from(b's')]);
     std::thread::sleep(Duration::from_millis(500));
     wait_for("the preset was saved", &mut lab, || {
@@ -219,12 +327,17 @@ fn a_real_window_opens_draws_follows_the_hand_saves_and_closes() {
     });
     let preset_file = preset_file::load(&saved).expect("the saved preset loads");
     assert!(preset_file.preset.camera.is_some() && preset_file.warnings.is_empty());
-    let built_in = preset_file::open("facet-knot", &Folders::default()).expect("a built-in preset").preset;
+    let built_in = preset_file::open("facet-knot", &Folders::default())
+        .expect("a built-in preset")
+        .preset;
     assert_eq!(preset_file.preset.stack, built_in.stack);
     assert_ne!(preset_file.preset.camera, built_in.camera);
 
     display.press(&[CONTROL, u32::from(b'q')]);
-    assert!(wait_for_exit(&mut lab).success(), "the lab closes with status 0");
+    assert!(
+        wait_for_exit(&mut lab).success(),
+        "the lab closes with status 0"
+    );
 }
 
 #[test]
@@ -239,10 +352,15 @@ fn a_window_closes_when_its_frame_is_closed() {
     std::fs::write(&settings, "[window]\nsize = [1100, 700]\n").expect("a file");
     let display = Display::open();
     let mut lab = start(&display, home.path(), &["builtin:cube-wall"]);
-    wait_for("the picture appeared", &mut lab, || drawn(&display.view()) > 5_000);
+    wait_for("the picture appeared", &mut lab, || {
+        drawn(&display.view()) > 5_000
+    });
     assert_eq!(display.size(), [1100, 700]);
     display.ask_to_close();
-    assert!(wait_for_exit(&mut lab).success(), "the lab closes with status 0");
+    assert!(
+        wait_for_exit(&mut lab).success(),
+        "the lab closes with status 0"
+    );
 }
 
 /// An effect that paints everything in this color.
@@ -264,17 +382,33 @@ fn an_effect_file_is_edited_under_a_running_window() {
     std::fs::write(&file, paint("1.0, 0.0, 0.0")).expect("a file");
     let display = Display::open();
     let mut lab = start(&display, home.path(), &["teapot", "--set", "paint"]);
-    let painted = |color: [u8; 3]| display.view().iter().filter(|pixel| **pixel == color).count() > 5_000;
+    let painted = |color: [u8; 3]| {
+        display
+            .view()
+            .iter()
+            .filter(|pixel| **pixel == color)
+            .count()
+            > 5_000
+    };
     wait_for("the picture appeared", &mut lab, || painted([255, 0, 0]));
     std::fs::write(&file, paint("0.0, 1.0, 0.0")).expect("a file");
     wait_for("the edit was seen", &mut lab, || painted([0, 255, 0]));
 
     // The color of the badge's title, theme::RED, is on the screen where nothing else is red.
-    let badge = || display.view().iter().filter(|[r, g, b]| *r > 220 && (80..150).contains(g) && (80..150).contains(b)).count() > 40;
+    let badge = || {
+        display
+            .view()
+            .iter()
+            .filter(|[r, g, b]| *r > 220 && (80..150).contains(g) && (80..150).contains(b))
+            .count()
+            > 40
+    };
     assert!(!badge());
     std::fs::write(&file, paint("0.0, 0.0, oops")).expect("a file");
     wait_for("the badge appeared", &mut lab, badge);
     assert!(painted([0, 255, 0]), "the last good picture went away");
     std::fs::write(&file, paint("0.0, 0.0, 1.0")).expect("a file");
-    wait_for("the effect was healed", &mut lab, || painted([0, 0, 255]) && !badge());
+    wait_for("the effect was healed", &mut lab, || {
+        painted([0, 0, 255]) && !badge()
+    });
 }

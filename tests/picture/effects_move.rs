@@ -1,5 +1,6 @@
-//! Promise: effects that move vertices are exact within the bound they state, on every option, and change nothing at all
-//! when they move nothing. Needs an adapter for all but what the oracle says of itself.
+//! Promise: effects that move vertices are exact within the bound they state, on every option, and
+//! change nothing at all when they move nothing. Needs an adapter for all but what the oracle says
+//! of itself.
 
 use std::sync::Arc;
 
@@ -27,9 +28,16 @@ use crate::common::*;
 const MOVING: [&str; 3] = ["explode", "inflate", "wobble"];
 
 fn set(stack: &mut Stack, effect: &str, field: &str, values: &[f64]) {
-    let enabled = stack.get_mut(effect).unwrap_or_else(|| panic!("{effect} is on"));
-    let field = enabled.effect.field(field).unwrap_or_else(|| panic!("{effect} has {field}"));
-    field.set(&mut enabled.words, values).unwrap_or_else(|error| panic!("{effect}: {error}"));
+    let enabled = stack
+        .get_mut(effect)
+        .unwrap_or_else(|| panic!("{effect} is on"));
+    let field = enabled
+        .effect
+        .field(field)
+        .unwrap_or_else(|| panic!("{effect} has {field}"));
+    field
+        .set(&mut enabled.words, values)
+        .unwrap_or_else(|error| panic!("{effect}: {error}"));
 }
 
 /// An effect with lengths that suit a scene of this size, and everything it can do switched on.
@@ -60,7 +68,10 @@ fn suited(effect: &str, scene: &Scene) -> Stack {
 fn resting(effect: &str, scene: &Scene) -> Stack {
     let mut stack = suited(effect, scene);
     for field in ["amount_m", "spin_turns", "shrink", "amplitude_m"] {
-        if stack.get(effect).is_some_and(|enabled| enabled.effect.field(field).is_some()) {
+        if stack
+            .get(effect)
+            .is_some_and(|enabled| enabled.effect.field(field).is_some())
+        {
             set(&mut stack, effect, field, &[0.0]);
         }
     }
@@ -74,13 +85,28 @@ fn lit(mut stack: Stack) -> Stack {
 
 #[test]
 fn all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_parallel_rays() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let mut far = Scene::clone(&scene("knot?tess=6"));
     let offset = DVec3::new(1e4, -2e4, 1e4);
-    far.instances[0].world_from_object = glam::DMat4::from_translation(offset) * glam::DMat4::from_scale(DVec3::new(-1.0, 1.5, 0.5));
-    let near = Camera { eye: offset + DVec3::new(1.0, 1.0, 4.0), target: offset, ..Camera::default() };
-    let flat = Camera { projection: Projection::Orthographic { height_m: 3.0 }, ..Camera::default() };
-    let inside = Camera { eye: DVec3::new(0.2, -0.1, 0.3), target: DVec3::X, near_m: 0.05, ..Camera::default() };
+    far.instances[0].world_from_object =
+        glam::DMat4::from_translation(offset) * glam::DMat4::from_scale(DVec3::new(-1.0, 1.5, 0.5));
+    let near = Camera {
+        eye: offset + DVec3::new(1.0, 1.0, 4.0),
+        target: offset,
+        ..Camera::default()
+    };
+    let flat = Camera {
+        projection: Projection::Orthographic { height_m: 3.0 },
+        ..Camera::default()
+    };
+    let inside = Camera {
+        eye: DVec3::new(0.2, -0.1, 0.3),
+        target: DVec3::X,
+        near_m: 0.05,
+        ..Camera::default()
+    };
     let cases = [
         ("mirrored far away", Arc::new(far), near),
         ("orthographic", scene("teapot?tess=5"), flat),
@@ -93,7 +119,14 @@ fn all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_paral
         for (pattern, name) in ["uniform", "sweep", "radial", "random"].iter().enumerate() {
             set(&mut stack, "explode", "pattern", &[pattern as f64]);
             for option in options(&renderer) {
-                exact(&mut renderer, &scene, &view, &stack, &pinned(option), &format!("{what}, {name}, {}", option.name()));
+                exact(
+                    &mut renderer,
+                    &scene,
+                    &view,
+                    &stack,
+                    &pinned(option),
+                    &format!("{what}, {name}, {}", option.name()),
+                );
             }
         }
     }
@@ -106,7 +139,8 @@ fn an_effect_that_moves_nothing_changes_nothing() {
         let view = view(&scene, [160, 120]);
         let none = oracle::render(&scene, &view, &lit(Stack::default())).expect("a builtin fits");
         for effect in MOVING {
-            let resting = oracle::render(&scene, &view, &lit(resting(effect, &scene))).expect("a builtin fits");
+            let resting = oracle::render(&scene, &view, &lit(resting(effect, &scene)))
+                .expect("a builtin fits");
             assert_eq!(
                 (&resting.triangle_id, &resting.depth_key, &resting.color),
                 (&none.triangle_id, &none.depth_key, &none.color),
@@ -114,16 +148,33 @@ fn an_effect_that_moves_nothing_changes_nothing() {
             );
         }
     }
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let usual = renderer.gpu().caps.tuning();
     for query in ["cube-wall", "near"] {
         let scene = scene(query);
         let view = view(&scene, [160, 120]);
         // With nothing left out, so that no shorter way round a sum rounds otherwise.
-        renderer.set_tuning(Tuning { specialized: false, ..usual });
-        let none = captured(&mut renderer, &scene, &view, &lit(Stack::default()), &pinned(Visibility::Split32));
+        renderer.set_tuning(Tuning {
+            specialized: false,
+            ..usual
+        });
+        let none = captured(
+            &mut renderer,
+            &scene,
+            &view,
+            &lit(Stack::default()),
+            &pinned(Visibility::Split32),
+        );
         for effect in MOVING {
-            let resting = captured(&mut renderer, &scene, &view, &lit(resting(effect, &scene)), &pinned(Visibility::Split32));
+            let resting = captured(
+                &mut renderer,
+                &scene,
+                &view,
+                &lit(resting(effect, &scene)),
+                &pinned(Visibility::Split32),
+            );
             assert_eq!(resting.frame, none.frame, "{query} {effect}");
         }
     }
@@ -145,34 +196,73 @@ fn telescope() -> (Arc<Scene>, View) {
 /// Shares of its stated bound that an adapter uses, seen through a telescope.
 #[test]
 fn stated_bounds_hold_under_a_telescope_and_are_not_idle() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let (scene, view) = telescope();
     let draws = draws(&scene, &view).expect("a builtin fits");
     for effect in MOVING {
         let stack = suited(effect, &scene);
-        let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &pinned(Visibility::Split32), effect);
-        let reference = oracle::project(&oracle::Shot::new(&scene, &draws, &view, &stack)).expect("nobody cancels it");
+        let (capture, _) = exact(
+            &mut renderer,
+            &scene,
+            &view,
+            &stack,
+            &pinned(Visibility::Split32),
+            effect,
+        );
+        let reference = oracle::project(&oracle::Shot::new(&scene, &draws, &view, &stack))
+            .expect("nobody cancels it");
         let bounds = oracle::snap_bounds(&oracle::Shot::new(&scene, &draws, &view, &stack));
         let (mut largest, mut median) = (0.0f64, Vec::new());
-        for ((found, own), bound) in capture.geometry.vertices.iter().zip(&reference.vertices).zip(bounds) {
-            let (0, 0, Some([x, y])) = (found.flags, own.flags, bound) else { continue };
-            let share = (f64::from(found.x.abs_diff(own.x)) / (1.0 + x)).max(f64::from(found.y.abs_diff(own.y)) / (1.0 + y));
+        for ((found, own), bound) in capture
+            .geometry
+            .vertices
+            .iter()
+            .zip(&reference.vertices)
+            .zip(bounds)
+        {
+            let (0, 0, Some([x, y])) = (found.flags, own.flags, bound) else {
+                continue;
+            };
+            let share = (f64::from(found.x.abs_diff(own.x)) / (1.0 + x))
+                .max(f64::from(found.y.abs_diff(own.y)) / (1.0 + y));
             largest = largest.max(share);
             median.push(x);
         }
         median.sort_by(f64::total_cmp);
         let middle = median[median.len() / 2];
-        eprintln!("{effect}: {} corners, median bound {middle:.1} units, largest share used {largest:.3}", median.len());
-        assert!(middle > 4.0, "{effect}: the telescope shows nothing, {middle} units");
-        assert!((0.01..=1.0).contains(&largest), "{effect}: {largest} of the bound");
+        eprintln!(
+            "{effect}: {} corners, median bound {middle:.1} units, largest share used {largest:.3}",
+            median.len()
+        );
+        assert!(
+            middle > 4.0,
+            "{effect}: the telescope shows nothing, {middle} units"
+        );
+        assert!(
+            (0.01..=1.0).contains(&largest),
+            "{effect}: {largest} of the bound"
+        );
     }
 }
 
-// ---------------------------------------------------------------- what the effects promise of themselves
+// -------- what the effects promise of themselves
 
 fn vertex(rng: &mut Rng) -> Vertex {
-    let mut point = |reach: f64| DVec3::new(rng.real(-reach, reach), rng.real(-reach, reach), rng.real(-reach, reach));
-    let (position, normal, flat_normal, arm) = (point(2.0), point(1.0).normalize(), point(1.0).normalize(), point(0.1));
+    let mut point = |reach: f64| {
+        DVec3::new(
+            rng.real(-reach, reach),
+            rng.real(-reach, reach),
+            rng.real(-reach, reach),
+        )
+    };
+    let (position, normal, flat_normal, arm) = (
+        point(2.0),
+        point(1.0).normalize(),
+        point(1.0).normalize(),
+        point(0.1),
+    );
     Vertex {
         position,
         offset: DVec3::ZERO,
@@ -190,22 +280,52 @@ fn a_wobbling_normal_is_the_numerical_derivative_of_the_position() {
     let mut rng = Rng(3);
     for case in 0..200 {
         let mut stack = stack(&["wobble"]);
-        set(&mut stack, "wobble", "direction", &[rng.real(-1.0, 1.0), rng.real(-1.0, 1.0), rng.real(-1.0, 1.0)]);
-        set(&mut stack, "wobble", "sway", &[rng.real(-1.0, 1.0), rng.real(-1.0, 1.0), rng.real(-1.0, 1.0)]);
+        set(
+            &mut stack,
+            "wobble",
+            "direction",
+            &[
+                rng.real(-1.0, 1.0),
+                rng.real(-1.0, 1.0),
+                rng.real(-1.0, 1.0),
+            ],
+        );
+        set(
+            &mut stack,
+            "wobble",
+            "sway",
+            &[
+                rng.real(-1.0, 1.0),
+                rng.real(-1.0, 1.0),
+                rng.real(-1.0, 1.0),
+            ],
+        );
         set(&mut stack, "wobble", "amplitude_m", &[rng.real(0.0, 0.4)]);
         set(&mut stack, "wobble", "wavelength_m", &[rng.real(0.5, 3.0)]);
         let here = vertex(&mut rng);
         let place = |p: DVec3| {
-            let moved = stack.moved(Vertex { position: p, ..here }, 0);
+            let moved = stack.moved(
+                Vertex {
+                    position: p,
+                    ..here
+                },
+                0,
+            );
             moved.position + moved.offset
         };
         let step = 1e-5;
-        let along = |axis: DVec3| (place(here.position + axis * step) - place(here.position - axis * step)) / (2.0 * step);
+        let along = |axis: DVec3| {
+            (place(here.position + axis * step) - place(here.position - axis * step)) / (2.0 * step)
+        };
         let jacobian = DMat3::from_cols(along(DVec3::X), along(DVec3::Y), along(DVec3::Z));
         let [x, y, z] = [jacobian.x_axis, jacobian.y_axis, jacobian.z_axis];
-        let expected = (DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * here.normal).normalize();
+        let expected =
+            (DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * here.normal).normalize();
         let found = stack.moved(here, 0).normal;
-        assert!(found.distance(expected) < 1e-6, "case {case}: {found} for {expected}");
+        assert!(
+            found.distance(expected) < 1e-6,
+            "case {case}: {found} for {expected}"
+        );
     }
 }
 
@@ -218,13 +338,16 @@ fn exploding_and_turning_keeps_every_triangle_and_its_area() {
     set(&mut stack, "explode", "spin_turns", &[0.37]);
     set(&mut stack, "explode", "scatter", &[0.6]);
     let draws = draws(&scene, &view).expect("a builtin fits");
-    let geometry = oracle::project(&oracle::Shot::new(&scene, &draws, &view, &stack)).expect("nobody cancels it");
+    let geometry = oracle::project(&oracle::Shot::new(&scene, &draws, &view, &stack))
+        .expect("nobody cancels it");
     assert_eq!(geometry.vertices.len() as u64, 3 * scene.triangle_count());
     assert!(geometry.has_unshared_vertices);
 
     let primitive = &scene.primitives[0];
     for t in 0..primitive.triangle_count() {
-        let places = primitive.corners(&scene, t).map(|v| DVec3::from(primitive.position(&scene, v).map(f64::from)));
+        let places = primitive
+            .corners(&scene, t)
+            .map(|v| DVec3::from(primitive.position(&scene, v).map(f64::from)));
         let center = places.iter().sum::<DVec3>() / 3.0;
         let normal = (places[1] - places[0]).cross(places[2] - places[0]);
         let moved = places.map(|position| {
@@ -241,10 +364,16 @@ fn exploding_and_turning_keeps_every_triangle_and_its_area() {
             position + stack.moved(corner, 0).offset
         });
         let turned = (moved[1] - moved[0]).cross(moved[2] - moved[0]);
-        assert!(turned.distance(normal) < 1e-12 * normal.length().max(1e-3), "triangle {t}: its plane or its area changed");
+        assert!(
+            turned.distance(normal) < 1e-12 * normal.length().max(1e-3),
+            "triangle {t}: its plane or its area changed"
+        );
         let flight = moved.iter().sum::<DVec3>() / 3.0 - center;
         let expected = 0.4 * (1.0 - f64::from(0.6f32) * hash_unit(t ^ 0x85eb_ca6b));
-        assert!((flight.length() - expected).abs() < 1e-6 && flight.dot(normal) > 0.0, "triangle {t} flew {flight}");
+        assert!(
+            (flight.length() - expected).abs() < 1e-6 && flight.dot(normal) > 0.0,
+            "triangle {t} flew {flight}"
+        );
     }
 }
 
@@ -278,14 +407,24 @@ fn a_bound_grows_with_what_an_effect_is_given_and_with_what_it_does() {
             let here = vertex(&mut rng);
             assert_eq!(still.error_bound(here, given, 0), given, "{effect} at rest");
             assert_eq!(still.moved(here, 0), here, "{effect} at rest");
-            let (fine, coarse) = (moving.error_bound(here, given, 0), moving.error_bound(here, coarser, 0));
-            assert!(fine.offset_m > 0.0 && fine.offset_m < 2e-5, "{effect}: {}", fine.offset_m);
-            assert!(coarse.offset_m > fine.offset_m && coarse.normal >= fine.normal, "{effect}");
+            let (fine, coarse) = (
+                moving.error_bound(here, given, 0),
+                moving.error_bound(here, coarser, 0),
+            );
+            assert!(
+                fine.offset_m > 0.0 && fine.offset_m < 2e-5,
+                "{effect}: {}",
+                fine.offset_m
+            );
+            assert!(
+                coarse.offset_m > fine.offset_m && coarse.normal >= fine.normal,
+                "{effect}"
+            );
         }
     }
 }
 
-// ---------------------------------------------------------------- mutants
+// -------- mutants
 
 fn still_life(query: &str) -> (Arc<Scene>, View) {
     let scene = scene(query);
@@ -295,9 +434,16 @@ fn still_life(query: &str) -> (Arc<Scene>, View) {
 
 #[test]
 fn kernels_that_move_wrongly_are_caught() {
-    let Some(mut healthy) = renderer() else { return };
+    let Some(mut healthy) = renderer() else {
+        return;
+    };
     let mutants = [
-        ("a wave turns normals the wrong way", "wobble", "- direction * dot(sway, v.normal)", "+ direction * dot(sway, v.normal)"),
+        (
+            "a wave turns normals the wrong way",
+            "wobble",
+            "- direction * dot(sway, v.normal)",
+            "+ direction * dot(sway, v.normal)",
+        ),
         (
             "corners take their neighbor's record",
             "explode",
@@ -310,7 +456,12 @@ fn kernels_that_move_wrongly_are_caught() {
             "    return vertex_effects_clip(draw, vertex, id, floats_of_class(position_bits(draw, vertex), 0u));\n}\n\n// What the samples",
             "    return transform_clip(draw, floats_of_class(position_bits(draw, vertex), 0u));\n}\n\n// What the samples",
         ),
-        ("the last term of the sine is halved", "wobble", "y * 39.5367061", "y * 20.0"),
+        (
+            "the last term of the sine is halved",
+            "wobble",
+            "y * 39.5367061",
+            "y * 20.0",
+        ),
     ];
     let mut failures = Vec::new();
     for (what, effect, from, to) in mutants {
@@ -323,10 +474,23 @@ fn kernels_that_move_wrongly_are_caught() {
         if effect == "wobble" {
             set(&mut stack, effect, "amplitude_m", &[0.15]);
         }
-        exact(&mut healthy, &scene, &view, &stack, &pinned(Visibility::Split32), &format!("without the mistake: {what}"));
+        exact(
+            &mut healthy,
+            &scene,
+            &view,
+            &stack,
+            &pinned(Visibility::Split32),
+            &format!("without the mistake: {what}"),
+        );
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
-        let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &pinned(Visibility::Split32));
+        let (_, verdict) = judged(
+            &mut wrong,
+            &scene,
+            &view,
+            &stack,
+            &pinned(Visibility::Split32),
+        );
         match exactness(&verdict.report) {
             Ok(()) => failures.push(what),
             Err(faults) => eprintln!("{what}: {faults}"),

@@ -1,4 +1,5 @@
-//! Promises about pictures: effects, materials, skins, shadows, particles and dots look as in the oracle.
+//! Promises about pictures: effects, materials, skins, shadows, particles and dots look as in the
+//! oracle.
 
 #[path = "../common/mod.rs"]
 mod common;

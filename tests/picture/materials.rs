@@ -1,4 +1,5 @@
-//! Promise: textures and alpha masks appear in the picture as in the oracle's, whichever way they are sampled.
+//! Promise: textures and alpha masks appear in the picture as in the oracle's, whichever way they
+//! are sampled.
 
 use std::sync::Arc;
 
@@ -28,13 +29,22 @@ type Picture = Vec<[u8; 4]>;
 
 /// `scene` from `eye` to `target`.
 fn from_eye(scene: &Scene, eye: [f64; 3], target: [f64; 3], size: [u32; 2]) -> View {
-    let camera = Camera { eye: eye.into(), target: target.into(), ..Camera::default() };
+    let camera = Camera {
+        eye: eye.into(),
+        target: target.into(),
+        ..Camera::default()
+    };
     seen_by(scene, camera, size)
 }
 
 fn seen_by(scene: &Scene, camera: Camera, size: [u32; 2]) -> View {
     let scene_source = SceneSource::Builtin(scene.name.clone());
-    Preset { scene: scene_source, camera: Some(camera), ..Preset::default() }.view(scene, size)
+    Preset {
+        scene: scene_source,
+        camera: Some(camera),
+        ..Preset::default()
+    }
+    .view(scene, size)
 }
 
 /// The panels as the preset of that name sees them.
@@ -44,40 +54,68 @@ fn panels(size: [u32; 2]) -> (Arc<Scene>, View) {
     (scene, view)
 }
 
-// ---------------------------------------------------------------- pictures
+// -------- pictures
 
 #[test]
 fn images_look_as_in_the_oracle_from_every_side() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let (panels, front) = panels([200, 150]);
     // Over the ground, which is cut behind the eye and runs to the horizon.
     let low = from_eye(&panels, [0.3, -1.9, 1.5], [0.0, -2.2, -6.0], [200, 150]);
-    let flat = Camera { eye: DVec3::new(2.0, 1.5, 5.0), projection: Projection::Orthographic { height_m: 5.0 }, ..Camera::default() };
+    let flat = Camera {
+        eye: DVec3::new(2.0, 1.5, 5.0),
+        projection: Projection::Orthographic { height_m: 5.0 },
+        ..Camera::default()
+    };
     let parallel = seen_by(&panels, flat, [160, 120]);
     let globe = scene("globe?tess=6");
     let near = from_eye(&globe, [0.4, 0.5, 1.5], [0.0, 0.0, 0.0], [160, 120]);
     let (mut cut, options) = (0, options(&renderer));
-    for (turn, (what, scene, view)) in
-        [("in front", &panels, &front), ("over the ground", &panels, &low), ("parallel", &panels, &parallel), ("globe", &globe, &near)]
-            .into_iter()
-            .enumerate()
+    for (turn, (what, scene, view)) in [
+        ("in front", &panels, &front),
+        ("over the ground", &panels, &low),
+        ("parallel", &panels, &parallel),
+        ("globe", &globe, &near),
+    ]
+    .into_iter()
+    .enumerate()
     {
         let names = [&["facet", "lambert", "fog"][..], &["explode", "lambert"]][turn / 2];
-        let (capture, _) = exact(&mut renderer, scene, view, &stack(names), &pinned(options[turn % options.len()]), what);
+        let (capture, _) = exact(
+            &mut renderer,
+            scene,
+            view,
+            &stack(names),
+            &pinned(options[turn % options.len()]),
+            what,
+        );
         cut += capture.frame.counters.clipped;
     }
     assert!(cut > 0, "no triangle was cut");
 }
 
 /// A square of `side` pixels, its image's coordinates running from `from` to `to` along both axes.
-fn pixel_square(side: u32, [from, to]: [f32; 2], image: Image, texture: Texture) -> (Arc<Scene>, View) {
+fn pixel_square(
+    side: u32,
+    [from, to]: [f32; 2],
+    image: Image,
+    texture: Texture,
+) -> (Arc<Scene>, View) {
     let s = side as f32;
     let corners = [[0.0, 0.0, 0.5], [s, 0.0, 0.5], [s, s, 0.5], [0.0, s, 0.5]];
-    let mut scene =
-        (*scene_of_meshes(&[SimpleMesh { positions: corners.to_vec(), indices: vec![0, 1, 2, 0, 2, 3], ..SimpleMesh::default() }])).clone();
+    let mut scene = (*scene_of_meshes(&[SimpleMesh {
+        positions: corners.to_vec(),
+        indices: vec![0, 1, 2, 0, 2, 3],
+        ..SimpleMesh::default()
+    }]))
+    .clone();
     let texcoords: Vec<f32> = [[from, from], [to, from], [to, to], [from, to]].concat();
     let offset = scene.vertex_bytes.len();
-    scene.vertex_bytes.extend(texcoords.iter().flat_map(|v| v.to_le_bytes()));
+    scene
+        .vertex_bytes
+        .extend(texcoords.iter().flat_map(|v| v.to_le_bytes()));
     scene.primitives[0].texcoords[0] = Some(Accessor::packed_f32(offset, 2, 4));
     scene.materials[0].base_texture = Some(texture);
     scene.images.push(image);
@@ -95,10 +133,26 @@ fn noise(side: u32) -> Image {
 
 /// The oracle's picture, and the adapter's, where there is one.
 fn pictures(scene: &Arc<Scene>, view: &View) -> Vec<(&'static str, Picture)> {
-    let mut pictures = vec![("oracle", oracle::render(scene, view, &Stack::default()).expect("it fits").color)];
+    let mut pictures = vec![(
+        "oracle",
+        oracle::render(scene, view, &Stack::default())
+            .expect("it fits")
+            .color,
+    )];
     if let Some(mut renderer) = renderer() {
         let option = quick_option(&renderer);
-        pictures.push(("adapter", captured(&mut renderer, scene, view, &Stack::default(), &pinned(option)).frame.color));
+        pictures.push((
+            "adapter",
+            captured(
+                &mut renderer,
+                scene,
+                view,
+                &Stack::default(),
+                &pinned(option),
+            )
+            .frame
+            .color,
+        ));
     }
     pictures
 }
@@ -119,15 +173,25 @@ fn a_texel_a_pixel_is_the_image_itself_and_beyond_its_edges_what_the_sampler_say
         (Wrap::Clamp, _) => SIDE - 1,
     };
     let wraps = [Wrap::Repeat, Wrap::Mirrored, Wrap::Clamp];
-    for (across, down) in wraps.iter().flat_map(|&across| wraps.map(|down| (across, down))) {
+    for (across, down) in wraps
+        .iter()
+        .flat_map(|&across| wraps.map(|down| (across, down)))
+    {
         for filter in [Filter::Nearest, Filter::Linear] {
-            let texture = Texture { wrap: [across, down], mag_filter: filter, ..Texture::plain(0) };
+            let texture = Texture {
+                wrap: [across, down],
+                mag_filter: filter,
+                ..Texture::plain(0)
+            };
             let (scene, view) = pixel_square(3 * SIDE as u32, [-1.0, 2.0], image.clone(), texture);
             for (who, picture) in pictures(&scene, &view) {
                 for (at, pixel) in picture.iter().enumerate() {
                     let (x, y) = (at as i64 % (3 * SIDE) - SIDE, at as i64 / (3 * SIDE) - SIDE);
                     let texel = texels[(expected(down, y) * SIDE + expected(across, x)) as usize];
-                    assert_eq!(*pixel, texel, "{who}: {across:?} x {down:?} {filter:?} at {x}, {y}");
+                    assert_eq!(
+                        *pixel, texel,
+                        "{who}: {across:?} x {down:?} {filter:?} at {x}, {y}"
+                    );
                 }
             }
         }
@@ -140,12 +204,23 @@ fn between_texels_their_light_is_mixed_and_from_afar_their_mean_is_seen() {
     let image = noise(8).with_mipmaps();
     let texel = |x: usize, y: usize| image.levels[0].texels[y * 8 + x];
     let mean = |x: usize, y: usize, c: usize| {
-        let sum: f64 = [(0, 0), (1, 0), (0, 1), (1, 1)].iter().map(|(i, j)| light(texel((x + i) % 8, (y + j) % 8)[c])).sum();
+        let sum: f64 = [(0, 0), (1, 0), (0, 1), (1, 1)]
+            .iter()
+            .map(|(i, j)| light(texel((x + i) % 8, (y + j) % 8)[c]))
+            .sum();
         rasterlab::math::srgb_byte(sum / 4.0)
     };
     // Half a texel aside every pixel has four texels around it.
     let half = 1.0 / 16.0;
-    let (scene, view) = pixel_square(8, [half, 1.0 + half], image.clone(), Texture { mip_filter: MipFilter::Unused, ..Texture::plain(0) });
+    let (scene, view) = pixel_square(
+        8,
+        [half, 1.0 + half],
+        image.clone(),
+        Texture {
+            mip_filter: MipFilter::Unused,
+            ..Texture::plain(0)
+        },
+    );
     // Two texels a pixel: the first copy, whose texels are the means of four.
     let (far, far_view) = pixel_square(4, [0.0, 1.0], image.clone(), Texture::plain(0));
     for (who, scene, view, step) in [("between", &scene, &view, 1), ("afar", &far, &far_view, 2)] {
@@ -153,7 +228,10 @@ fn between_texels_their_light_is_mixed_and_from_afar_their_mean_is_seen() {
             let width = view.width as usize;
             for (at, pixel) in picture.iter().enumerate() {
                 let (x, y) = (at % width * step, at / width * step);
-                let off = (0..3).map(|c| pixel[c].abs_diff(mean(x, y, c))).max().expect("three channels");
+                let off = (0..3)
+                    .map(|c| pixel[c].abs_diff(mean(x, y, c)))
+                    .max()
+                    .expect("three channels");
                 assert!(off <= 1, "{who} {by} at {x}, {y}: {pixel:?}");
             }
         }
@@ -168,7 +246,9 @@ fn what_shines_is_seen_in_the_dark_and_what_is_unlit_in_any_light() {
         let effect = stack.get_mut("lambert").expect("just enabled");
         for name in ["sun", "sky", "ground"] {
             let field = effect.effect.field(name).expect("lambert has it");
-            field.set(&mut effect.words, &[0.0, 0.0, 0.0, 1.0]).expect("black");
+            field
+                .set(&mut effect.words, &[0.0, 0.0, 0.0, 1.0])
+                .expect("black");
         }
         let field = effect.effect.field("headlight").expect("lambert has it");
         field.set(&mut effect.words, &[0.0]).expect("off");
@@ -193,12 +273,25 @@ fn what_shines_is_seen_in_the_dark_and_what_is_unlit_in_any_light() {
 
 #[test]
 fn mistakes_in_looking_up_texels_are_caught() {
-    let Some(mut healthy) = renderer() else { return };
+    let Some(mut healthy) = renderer() else {
+        return;
+    };
     let (scene, view) = panels([200, 150]);
     let (stack, option) = (stack(&["lambert"]), pinned(Visibility::Split32));
-    exact(&mut healthy, &scene, &view, &stack, &option, "without a mistake");
+    exact(
+        &mut healthy,
+        &scene,
+        &view,
+        &stack,
+        &option,
+        "without a mistake",
+    );
     let mistakes = [
-        ("a hundredth of a texel aside", "clamp(uv * vec2f(size),", "clamp(uv * vec2f(size) + 0.01,"),
+        (
+            "a hundredth of a texel aside",
+            "clamp(uv * vec2f(size),",
+            "clamp(uv * vec2f(size) + 0.01,",
+        ),
         ("a copy too small", "0.5 * log2(", "0.125 + 0.5 * log2("),
     ];
     let mut missed = Vec::new();
@@ -214,28 +307,47 @@ fn mistakes_in_looking_up_texels_are_caught() {
     assert_eq!(missed, Vec::<&str>::new());
 }
 
-// ---------------------------------------------------------------- masks
+// -------- masks
 
 /// The crown from outside, and from inside, where leaves are cut at the eye.
 fn crowns(size: [u32; 2]) -> (Arc<Scene>, [(&'static str, View); 2]) {
     let scene = scene("leaves?n=60");
     let outside = from_eye(&scene, [0.6, 0.9, 3.6], [0.0, 0.0, 0.0], size);
-    let camera = Camera { eye: DVec3::new(0.55, 0.1, 0.75), target: DVec3::new(-0.3, -0.1, 0.0), near_m: 0.2, ..Camera::default() };
+    let camera = Camera {
+        eye: DVec3::new(0.55, 0.1, 0.75),
+        target: DVec3::new(-0.3, -0.1, 0.0),
+        near_m: 0.2,
+        ..Camera::default()
+    };
     let inside = seen_by(&scene, camera, size);
     (scene, [("outside", outside), ("inside", inside)])
 }
 
 #[test]
 fn masks_leave_out_the_same_samples_in_every_kernel_and_in_the_oracle() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let (scene, views) = crowns([160, 120]);
-    let stacks = [&["lambert"][..], &["dissolve", "stipple"], &["draw_order"], &["explode"]];
+    let stacks = [
+        &["lambert"][..],
+        &["dissolve", "stipple"],
+        &["draw_order"],
+        &["explode"],
+    ];
     let (options, mut cut) = (options(&renderer), 0);
     for (what, view) in &views {
         for (turn, names) in stacks.iter().enumerate() {
             renderer.set_tuning(tunings()[turn % 4]);
             let option = options[turn % options.len()];
-            let (capture, _) = exact(&mut renderer, &scene, view, &stack(names), &pinned(option), &format!("{what} {names:?}"));
+            let (capture, _) = exact(
+                &mut renderer,
+                &scene,
+                view,
+                &stack(names),
+                &pinned(option),
+                &format!("{what} {names:?}"),
+            );
             cut += capture.geometry.clipped_triangles.len();
         }
     }
@@ -253,8 +365,13 @@ fn cut_at(scene: &Scene, alpha_cutoff: Option<f32>) -> Scene {
 fn an_alpha_of_just_the_cutoff_is_drawn_whatever_the_byte() {
     let (scene, _) = crowns([8, 8]);
     for byte in 0..=255u32 {
-        let least = cut_at(&scene, Some(byte as f32 / 255.0)).materials[0].alpha_threshold().expect("a mask");
-        assert!(least <= byte << 16 && least + 2 > byte << 16, "{byte}: {least}");
+        let least = cut_at(&scene, Some(byte as f32 / 255.0)).materials[0]
+            .alpha_threshold()
+            .expect("a mask");
+        assert!(
+            least <= byte << 16 && least + 2 > byte << 16,
+            "{byte}: {least}"
+        );
     }
 }
 
@@ -262,37 +379,96 @@ fn an_alpha_of_just_the_cutoff_is_drawn_whatever_the_byte() {
 fn a_higher_cutoff_draws_a_part_of_what_a_lower_one_does() {
     let (scene, [(_, view), _]) = crowns([200, 150]);
     let stack = stack(&["xray"]);
-    let layers = |alpha_cutoff| oracle::render(&cut_at(&scene, alpha_cutoff), &view, &stack).expect("it fits").layer_sums;
-    let cutoffs = [None, Some(0.0), Some(0.2), Some(0.5), Some(0.51), Some(0.9), Some(1.0), Some(1.5)];
-    let counts: Vec<Vec<u32>> = cutoffs.iter().map(|&alpha_cutoff| layers(alpha_cutoff)).collect();
+    let layers = |alpha_cutoff| {
+        oracle::render(&cut_at(&scene, alpha_cutoff), &view, &stack)
+            .expect("it fits")
+            .layer_sums
+    };
+    let cutoffs = [
+        None,
+        Some(0.0),
+        Some(0.2),
+        Some(0.5),
+        Some(0.51),
+        Some(0.9),
+        Some(1.0),
+        Some(1.5),
+    ];
+    let counts: Vec<Vec<u32>> = cutoffs
+        .iter()
+        .map(|&alpha_cutoff| layers(alpha_cutoff))
+        .collect();
     for pair in counts.windows(2) {
-        assert!(pair[0].iter().zip(&pair[1]).all(|(more, fewer)| more >= fewer));
+        assert!(
+            pair[0]
+                .iter()
+                .zip(&pair[1])
+                .all(|(more, fewer)| more >= fewer)
+        );
     }
     let sums: Vec<u32> = counts.iter().map(|counts| counts.iter().sum()).collect();
-    assert!(sums[0] == sums[1] && sums[1] > sums[2] && sums[2] > sums[3] && sums[5] > sums[6] && sums[6] > 0 && sums[7] == 0, "{sums:?}");
+    assert!(
+        sums[0] == sums[1]
+            && sums[1] > sums[2]
+            && sums[2] > sums[3]
+            && sums[5] > sums[6]
+            && sums[6] > 0
+            && sums[7] == 0,
+        "{sums:?}"
+    );
 }
 
 #[test]
 fn a_mask_of_a_texel_a_pixel_is_the_alpha_of_the_image() {
-    let image = Image::new("dots", [8, 8], (0..64).map(|at| [255, 255, 255, rasterlab::math::hash(at) as u8]).collect());
+    let image = Image::new(
+        "dots",
+        [8, 8],
+        (0..64)
+            .map(|at| [255, 255, 255, rasterlab::math::hash(at) as u8])
+            .collect(),
+    );
     for filter in [Filter::Nearest, Filter::Linear] {
-        for (wrap, span) in [(Wrap::Repeat, [0.0, 1.0]), (Wrap::Mirrored, [1.0, 2.0]), (Wrap::Clamp, [0.0, 1.0])] {
-            let texture = Texture { wrap: [wrap; 2], mag_filter: filter, ..Texture::plain(0) };
+        for (wrap, span) in [
+            (Wrap::Repeat, [0.0, 1.0]),
+            (Wrap::Mirrored, [1.0, 2.0]),
+            (Wrap::Clamp, [0.0, 1.0]),
+        ] {
+            let texture = Texture {
+                wrap: [wrap; 2],
+                mag_filter: filter,
+                ..Texture::plain(0)
+            };
             let (scene, view) = pixel_square(8, span, image.clone(), texture);
             for least in [1u8, 100, 128, 200, 255] {
                 let masked = Arc::new(cut_at(&scene, Some((f32::from(least) - 0.5) / 255.0)));
-                let own = oracle::render(&masked, &view, &Stack::default()).expect("it fits").triangle_id;
+                let own = oracle::render(&masked, &view, &Stack::default())
+                    .expect("it fits")
+                    .triangle_id;
                 let mut all = vec![("oracle", own)];
                 if let Some(mut renderer) = renderer() {
-                    let capture = captured(&mut renderer, &masked, &view, &Stack::default(), &pinned(Visibility::Split32));
+                    let capture = captured(
+                        &mut renderer,
+                        &masked,
+                        &view,
+                        &Stack::default(),
+                        &pinned(Visibility::Split32),
+                    );
                     assert_eq!(capture.frame.counters.depth_without_id, 0);
                     all.push(("adapter", capture.frame.triangle_id));
                 }
                 for (who, triangle_ids) in all {
                     for (at, triangle_id) in triangle_ids.iter().enumerate() {
-                        let (x, y) = if wrap == Wrap::Mirrored { (7 - at % 8, 7 - at / 8) } else { (at % 8, at / 8) };
+                        let (x, y) = if wrap == Wrap::Mirrored {
+                            (7 - at % 8, 7 - at / 8)
+                        } else {
+                            (at % 8, at / 8)
+                        };
                         let is_drawn = image.levels[0].texels[8 * y + x][3] >= least;
-                        assert_eq!(*triangle_id != u32::MAX, is_drawn, "{who}: {filter:?} {wrap:?} {least} at {at}");
+                        assert_eq!(
+                            *triangle_id != u32::MAX,
+                            is_drawn,
+                            "{who}: {filter:?} {wrap:?} {least} at {at}"
+                        );
                     }
                 }
             }
@@ -302,7 +478,9 @@ fn a_mask_of_a_texel_a_pixel_is_the_alpha_of_the_image() {
 
 #[test]
 fn mistakes_in_masks_are_caught() {
-    let Some(mut healthy) = renderer() else { return };
+    let Some(mut healthy) = renderer() else {
+        return;
+    };
     let (scene, views) = crowns([200, 150]);
     let (stack, option) = (stack(&[]), pinned(Visibility::Split32));
     let mistakes = [
@@ -311,16 +489,29 @@ fn mistakes_in_masks_are_caught() {
             "fixed_umul(spread.x, near.x).hi, fixed_umul(spread.y, near.y).hi, fixed_umul(spread.z, near.z).hi",
             "spread",
         ),
-        ("a piece placed as its parent", "corners[1] = a +", "corners[1] = b + 0 *"),
+        (
+            "a piece placed as its parent",
+            "corners[1] = a +",
+            "corners[1] = b + 0 *",
+        ),
     ];
     for (what, view) in &views {
-        exact(&mut healthy, &scene, view, &stack, &option, &format!("without a mistake {what}"));
+        exact(
+            &mut healthy,
+            &scene,
+            view,
+            &stack,
+            &option,
+            &format!("without a mistake {what}"),
+        );
     }
     let mut missed = Vec::new();
     for (what, from, to) in mistakes {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
-        let why = views.iter().find_map(|(_, view)| exactness(&judged(&mut wrong, &scene, view, &stack, &option).1.report).err());
+        let why = views.iter().find_map(|(_, view)| {
+            exactness(&judged(&mut wrong, &scene, view, &stack, &option).1.report).err()
+        });
         match why {
             None => missed.push(what),
             Some(why) => eprintln!("{what}: {why}"),
@@ -331,24 +522,51 @@ fn mistakes_in_masks_are_caught() {
 
 #[test]
 fn the_tier_strict_takes_masks_unless_something_masked_is_cut() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let (scene, [(_, outside), (_, inside)]) = crowns([96, 72]);
-    let strict = AccuracyRequest { tier: Tier::Strict, ..AccuracyRequest::default() };
-    let (capture, _) = exact(&mut renderer, &scene, &outside, &stack(&["lambert"]), &strict, "strict");
-    let (triangle_ids, keys) = oracle::strict_frame(&scene, &outside, &stack(&["lambert"])).expect("it fits");
-    assert_eq!((capture.frame.triangle_id, capture.frame.depth_key), (triangle_ids, keys));
+    let strict = AccuracyRequest {
+        tier: Tier::Strict,
+        ..AccuracyRequest::default()
+    };
+    let (capture, _) = exact(
+        &mut renderer,
+        &scene,
+        &outside,
+        &stack(&["lambert"]),
+        &strict,
+        "strict",
+    );
+    let (triangle_ids, keys) =
+        oracle::strict_frame(&scene, &outside, &stack(&["lambert"])).expect("it fits");
+    assert_eq!(
+        (capture.frame.triangle_id, capture.frame.depth_key),
+        (triangle_ids, keys)
+    );
     renderer.set_scene(&scene).block_on().expect("it fits");
-    let error = renderer.draw(&inside, &stack(&["lambert"]), &strict).block_on().expect_err("a cut leaf").to_string();
-    assert!(error.contains("the mask of a clipped triangle is placed in floats"), "{error}");
+    let error = renderer
+        .draw(&inside, &stack(&["lambert"]), &strict)
+        .block_on()
+        .expect_err("a cut leaf")
+        .to_string();
+    assert!(
+        error.contains("the mask of a clipped triangle is placed in floats"),
+        "{error}"
+    );
 }
 
-// ---------------------------------------------------------------- nothing that a scene does not need
+// -------- nothing that a scene does not need
 
 #[test]
 fn a_scene_of_plain_colors_has_no_texture_and_no_word_of_one() {
     for effects in [
         vec![],
-        EFFECTS.iter().filter(|&effect| effect.hooks.slot.is_none() && effect.name != "shadow").cloned().collect::<Vec<Arc<Effect>>>(),
+        EFFECTS
+            .iter()
+            .filter(|&effect| effect.hooks.slot.is_none() && effect.name != "shadow")
+            .cloned()
+            .collect::<Vec<Arc<Effect>>>(),
     ] {
         // A shadow map is a texture, too.
         let mut plain = KernelKey::complete(Fetch::Indexed, Visibility::Split32, effects.clone());
@@ -356,8 +574,15 @@ fn a_scene_of_plain_colors_has_no_texture_and_no_word_of_one() {
         assert!(!plain.to_string().contains("material_atlas"));
         for pass in plain.frame() {
             let root = pass.path();
-            let linked = link::link(&Library::Embedded, &root, &plain, &plain.variants(pass)).expect("every file is there");
-            for trace in ["texture", "Lookup", "Slopes", "alpha_threshold", "fn alpha_mask"] {
+            let linked = link::link(&Library::Embedded, &root, &plain, &plain.variants(pass))
+                .expect("every file is there");
+            for trace in [
+                "texture",
+                "Lookup",
+                "Slopes",
+                "alpha_threshold",
+                "fn alpha_mask",
+            ] {
                 assert!(!linked.text.contains(trace), "{}: {trace}", pass.label());
             }
         }
@@ -365,50 +590,115 @@ fn a_scene_of_plain_colors_has_no_texture_and_no_word_of_one() {
         painted.surface.has_material_atlas = true;
         let text = |key: &KernelKey, pass: Pass| {
             let root = pass.path();
-            link::link(&Library::Embedded, &root, key, &key.variants(pass)).expect("every file is there").text
+            link::link(&Library::Embedded, &root, key, &key.variants(pass))
+                .expect("every file is there")
+                .text
         };
-        // What a mask adds are a texture and records behind the vertices; storage buffers stay within the portable eight.
+        // What a mask adds are a texture and records behind the vertices; storage buffers stay
+        // within the portable eight.
         let mut masked = painted.clone();
         masked.samples.has_mask = true;
         for pass in masked.frame() {
-            assert!(!text(&painted, pass).contains("fn alpha_mask_texel"), "{}", pass.label());
+            assert!(
+                !text(&painted, pass).contains("fn alpha_mask_texel"),
+                "{}",
+                pass.label()
+            );
             let root = pass.path();
-            let linked = link::link(&Library::Embedded, &root, &masked, &masked.variants(pass)).expect("every file is there");
-            let reflected = reflect::reflect(&linked, false).unwrap_or_else(|error| panic!("{}: {error}", pass.label()));
+            let linked = link::link(&Library::Embedded, &root, &masked, &masked.variants(pass))
+                .expect("every file is there");
+            let reflected = reflect::reflect(&linked, false)
+                .unwrap_or_else(|error| panic!("{}: {error}", pass.label()));
             let bindings = reflected.bindings(pass.stem());
-            let storage = bindings.iter().filter(|binding| matches!(binding.kind, reflect::BindingKind::Storage { .. })).count();
-            assert!(storage <= 8, "{} binds {storage} storage buffers", pass.label());
+            let storage = bindings
+                .iter()
+                .filter(|binding| matches!(binding.kind, reflect::BindingKind::Storage { .. }))
+                .count();
+            assert!(
+                storage <= 8,
+                "{} binds {storage} storage buffers",
+                pass.label()
+            );
         }
         let root = Pass::Resolve.path();
-        let linked = link::link(&Library::Embedded, &root, &painted, &painted.variants(Pass::Resolve)).expect("every file is there");
+        let linked = link::link(
+            &Library::Embedded,
+            &root,
+            &painted,
+            &painted.variants(Pass::Resolve),
+        )
+        .expect("every file is there");
         let reflected = reflect::reflect(&linked, false).expect("valid");
-        let textures =
-            reflected.bindings("resolve").into_iter().filter(|binding| binding.kind == (reflect::BindingKind::Texture { layered: true }));
-        assert_eq!(textures.map(|binding| binding.name).collect::<Vec<_>>(), ["material_atlas"]);
+        let textures = reflected
+            .bindings("resolve")
+            .into_iter()
+            .filter(|binding| binding.kind == (reflect::BindingKind::Texture { layered: true }));
+        assert_eq!(
+            textures.map(|binding| binding.name).collect::<Vec<_>>(),
+            ["material_atlas"]
+        );
     }
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let mut buffers = |query: &str| {
         let scene = scene(query);
         let view = view(&scene, [64, 48]);
-        captured(&mut renderer, &scene, &view, &stack(&["lambert"]), &pinned(Visibility::Split32));
+        captured(
+            &mut renderer,
+            &scene,
+            &view,
+            &stack(&["lambert"]),
+            &pinned(Visibility::Split32),
+        );
         let explained = renderer.explain();
-        let said =
-            explained.omitted.iter().chain(&explained.reasons).find(|note| note.name == "material atlas").map(|note| note.why.clone());
-        (explained.buffers.iter().find(|buffer| buffer.name == "material_atlas").map(|buffer| buffer.bytes), said.expect("a line about it"))
+        let said = explained
+            .omitted
+            .iter()
+            .chain(&explained.reasons)
+            .find(|note| note.name == "material atlas")
+            .map(|note| note.why.clone());
+        (
+            explained
+                .buffers
+                .iter()
+                .find(|buffer| buffer.name == "material_atlas")
+                .map(|buffer| buffer.bytes),
+            said.expect("a line about it"),
+        )
     };
-    assert_eq!(buffers("teapot?tess=4"), (None, "no material is more than a base color".into()));
+    assert_eq!(
+        buffers("teapot?tess=4"),
+        (None, "no material is more than a base color".into())
+    );
     let (bytes, why) = buffers("panels");
-    assert!(bytes.is_some_and(|bytes| bytes >= 4 * 64 * 64) && why.starts_with("7 of 7 materials"), "{bytes:?} {why}");
-    assert_eq!(buffers("teapot?tess=4").0, None, "a texture outlives its scene");
+    assert!(
+        bytes.is_some_and(|bytes| bytes >= 4 * 64 * 64) && why.starts_with("7 of 7 materials"),
+        "{bytes:?} {why}"
+    );
+    assert_eq!(
+        buffers("teapot?tess=4").0,
+        None,
+        "a texture outlives its scene"
+    );
 }
 
 #[test]
 fn another_scene_of_textures_brings_its_own() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scenes = ["panels", "globe?tess=4", "panels?repeats=2"].map(scene);
     for scene in scenes.iter().chain(&scenes) {
         let view = view(scene, [96, 72]);
-        exact(&mut renderer, scene, &view, &stack(&["lambert"]), &pinned(Visibility::Split32), &scene.name);
+        exact(
+            &mut renderer,
+            scene,
+            &view,
+            &stack(&["lambert"]),
+            &pinned(Visibility::Split32),
+            &scene.name,
+        );
     }
 }
 
@@ -420,16 +710,32 @@ fn textured_boxes_of_the_corpus_show_their_image() {
         return;
     }
     let mut pictures = Vec::new();
-    for file in
-        ["BoxTextured-glTF/BoxTextured.gltf", "BoxTextured-glTF-Embedded/BoxTextured.gltf", "BoxTextured-glTF-Binary/BoxTextured.glb"]
-    {
-        let mut scene = host::model::load(&corpus.join(file)).unwrap_or_else(|error| panic!("{error}"));
-        // The one with its image beside it is mirrored and clamped, which mixes other texels at the image's edge.
+    for file in [
+        "BoxTextured-glTF/BoxTextured.gltf",
+        "BoxTextured-glTF-Embedded/BoxTextured.gltf",
+        "BoxTextured-glTF-Binary/BoxTextured.glb",
+    ] {
+        let mut scene =
+            host::model::load(&corpus.join(file)).unwrap_or_else(|error| panic!("{error}"));
+        // The one with its image beside it is mirrored and clamped, which mixes other texels at the
+        // image's edge.
         let texture = scene.materials[0].base_texture.as_mut().expect("a texture");
         let is_beside = file == "BoxTextured-glTF/BoxTextured.gltf";
-        assert_eq!(texture.wrap, if is_beside { [Wrap::Mirrored, Wrap::Clamp] } else { [Wrap::Repeat; 2] }, "{file}");
+        assert_eq!(
+            texture.wrap,
+            if is_beside {
+                [Wrap::Mirrored, Wrap::Clamp]
+            } else {
+                [Wrap::Repeat; 2]
+            },
+            "{file}"
+        );
         texture.wrap = [Wrap::Repeat; 2];
-        assert_eq!((scene.images.len(), scene.images[0].size()), (1, [211, 211]), "{file}");
+        assert_eq!(
+            (scene.images.len(), scene.images[0].size()),
+            (1, [211, 211]),
+            "{file}"
+        );
         let view = view(&scene, [96, 72]);
         let frame = oracle::render(&scene, &view, &Stack::default()).expect("it fits");
         let colors: std::collections::BTreeSet<[u8; 4]> = frame.color.iter().copied().collect();
@@ -437,7 +743,9 @@ fn textured_boxes_of_the_corpus_show_their_image() {
         pictures.push(frame.color);
     }
     assert!(
-        pictures.iter().all(|picture| compare::pictures(picture, &pictures[0], 0).pixels_over_tolerance == 0),
+        pictures
+            .iter()
+            .all(|picture| compare::pictures(picture, &pictures[0], 0).pixels_over_tolerance == 0),
         "three ways to store one box"
     );
 }

@@ -1,5 +1,6 @@
-//! Promise: particles fly as their definition says, on every option and however a frame was reached; their discs are decided in
-//! integers; mistakes in the pass are found; and who has none pays nothing. The second half needs an adapter.
+//! Promise: particles fly as their definition says, on every option and however a frame was
+//! reached; their discs are decided in integers; mistakes in the pass are found; and who has none
+//! pays nothing. The second half needs an adapter.
 
 use std::sync::Arc;
 
@@ -32,25 +33,43 @@ const SIZE: [u32; 2] = [96, 72];
 fn preset_file(fields: &[(&str, &[f64])]) -> Preset {
     let mut preset = Preset::default();
     let words = &mut preset.stack.enable(&EFFECT).words;
-    for (name, value) in [("count", &[500.0][..]), ("radius_m", &[0.03])].iter().chain(fields) {
-        let field = EFFECT.field(name).unwrap_or_else(|| panic!("no field {name}"));
-        field.set(words, value).unwrap_or_else(|error| panic!("{error}"));
+    for (name, value) in [("count", &[500.0][..]), ("radius_m", &[0.03])]
+        .iter()
+        .chain(fields)
+    {
+        let field = EFFECT
+            .field(name)
+            .unwrap_or_else(|| panic!("no field {name}"));
+        field
+            .set(words, value)
+            .unwrap_or_else(|error| panic!("{error}"));
     }
     preset
 }
 
 fn at(preset: &Preset, frame: u32) -> Preset {
     let rate: Particles = preset.stack.params(&EFFECT.name).expect("particles");
-    let clock = Clock { time_s: f64::from(frame) / f64::from(rate.rate), ..preset.clock };
-    Preset { clock, ..preset.clone() }
+    let clock = Clock {
+        time_s: f64::from(frame) / f64::from(rate.rate),
+        ..preset.clock
+    };
+    Preset {
+        clock,
+        ..preset.clone()
+    }
 }
 
 fn on(curl: CurlNoise, state: ParticleStorage) -> AccuracyRequest {
-    AccuracyRequest { pins: PinnedOptions::of(curl).with(state), ..AccuracyRequest::default() }
+    AccuracyRequest {
+        pins: PinnedOptions::of(curl).with(state),
+        ..AccuracyRequest::default()
+    }
 }
 
 fn particle_options() -> impl Iterator<Item = (CurlNoise, ParticleStorage)> {
-    CurlNoise::ALL.iter().flat_map(|&curl| ParticleStorage::ALL.iter().map(move |&state| (curl, state)))
+    CurlNoise::ALL
+        .iter()
+        .flat_map(|&curl| ParticleStorage::ALL.iter().map(move |&state| (curl, state)))
 }
 
 /// The swarm of a frame.
@@ -62,36 +81,69 @@ fn flown(
     accuracy: &AccuracyRequest,
 ) -> (Capture, ParticleReadback) {
     let preset = at(preset, frame);
-    let capture = captured(renderer, scene, &preset.view(scene, SIZE), &preset.evaluated_stack(), accuracy);
-    let particle_readback = capture.geometry.particle_readback.clone().expect("particles");
+    let capture = captured(
+        renderer,
+        scene,
+        &preset.view(scene, SIZE),
+        &preset.evaluated_stack(),
+        accuracy,
+    );
+    let particle_readback = capture
+        .geometry
+        .particle_readback
+        .clone()
+        .expect("particles");
     (capture, particle_readback)
 }
 
-fn measured(renderer: &mut Renderer, scene: &Arc<Scene>, preset: &Preset, frame: u32, accuracy: &AccuracyRequest) -> (Capture, Measured) {
+fn measured(
+    renderer: &mut Renderer,
+    scene: &Arc<Scene>,
+    preset: &Preset,
+    frame: u32,
+    accuracy: &AccuracyRequest,
+) -> (Capture, Measured) {
     let preset = at(preset, frame);
-    let (capture, verdict) = judged(renderer, scene, &preset.view(scene, SIZE), &preset.evaluated_stack(), accuracy);
+    let (capture, verdict) = judged(
+        renderer,
+        scene,
+        &preset.view(scene, SIZE),
+        &preset.evaluated_stack(),
+        accuracy,
+    );
     (capture, verdict.report)
 }
 
-// ---------------------------------------------------------------- the oracle alone
+// -------- the oracle alone
 
 #[test]
 fn the_flow_has_no_sources_and_no_sinks() {
     let mut rng = Rng(3);
     for octaves in 1..=6 {
-        let p = Particles { octaves, persistence: 0.8, ..Particles::default() };
+        let p = Particles {
+            octaves,
+            persistence: 0.8,
+            ..Particles::default()
+        };
         let (mut largest, mut steepest) = (0.0f64, 0.0f64);
         for _ in 0..300 {
             let place = DVec3::from_array([0, 1, 2].map(|_| rng.real(-3.0, 3.0)));
             let h = 1e-5;
             let slope = |axis: usize| {
-                (particles_flow(&p, place + DVec3::AXES[axis] * h) - particles_flow(&p, place - DVec3::AXES[axis] * h)) / (2.0 * h)
+                (particles_flow(&p, place + DVec3::AXES[axis] * h)
+                    - particles_flow(&p, place - DVec3::AXES[axis] * h))
+                    / (2.0 * h)
             };
             let slopes = [slope(0), slope(1), slope(2)];
             largest = largest.max((slopes[0].x + slopes[1].y + slopes[2].z).abs());
-            steepest = slopes.iter().fold(steepest, |most, slope| most.max(slope.abs().max_element()));
+            steepest = slopes
+                .iter()
+                .fold(steepest, |most, slope| most.max(slope.abs().max_element()));
         }
-        assert!(steepest > 0.3 && largest < 1e-4 * steepest, "{octaves} octaves: divergence {largest} where slopes reach {steepest}");
+        assert!(
+            steepest > 0.3 && largest < 1e-4 * steepest,
+            "{octaves} octaves: divergence {largest} where slopes reach {steepest}"
+        );
     }
 }
 
@@ -101,49 +153,111 @@ fn particles_flow(p: &Particles, place: DVec3) -> DVec3 {
 
 #[test]
 fn the_flow_is_about_as_fast_as_it_says_and_nowhere_jumps() {
-    let p = Particles { octaves: 1, speed_mps: 2.0, swirl_m: 0.7, ..Particles::default() };
+    let p = Particles {
+        octaves: 1,
+        speed_mps: 2.0,
+        swirl_m: 0.7,
+        ..Particles::default()
+    };
     let mut rng = Rng(4);
-    let speeds: Vec<f64> =
-        (0..4000).map(|_| particles_flow(&p, DVec3::from_array([0, 1, 2].map(|_| rng.real(-9.0, 9.0)))).length()).collect();
+    let speeds: Vec<f64> = (0..4000)
+        .map(|_| {
+            particles_flow(
+                &p,
+                DVec3::from_array([0, 1, 2].map(|_| rng.real(-9.0, 9.0))),
+            )
+            .length()
+        })
+        .collect();
     let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
     assert!((mean / 2.0 - 1.0).abs() < 0.15, "{mean} m/s");
     // Along a line through many cells of the lattice.
-    let along = |i: i32| particles_flow(&p, DVec3::new(0.31, -0.2, 0.05) + DVec3::new(1.0, 0.61, 0.37) * (f64::from(i) * 1e-4));
-    let jump = (0..30_000).map(|i| along(i).distance(along(i + 1))).fold(0.0, f64::max);
-    assert!(jump < 0.02, "{jump} m/s between neighbors a tenth of a millimeter apart");
+    let along = |i: i32| {
+        particles_flow(
+            &p,
+            DVec3::new(0.31, -0.2, 0.05) + DVec3::new(1.0, 0.61, 0.37) * (f64::from(i) * 1e-4),
+        )
+    };
+    let jump = (0..30_000)
+        .map(|i| along(i).distance(along(i + 1)))
+        .fold(0.0, f64::max);
+    assert!(
+        jump < 0.02,
+        "{jump} m/s between neighbors a tenth of a millimeter apart"
+    );
 }
 
 #[test]
 fn births_fill_the_ellipsoid_evenly_and_lives_begin_at_every_age() {
     let spread = [0.5, 1.0, 2.0];
-    let preset = preset_file(&[("count", &[20_000.0]), ("half_axes", &spread), ("center", &[1.0, 2.0, 3.0])]);
+    let preset = preset_file(&[
+        ("count", &[20_000.0]),
+        ("half_axes", &spread),
+        ("center", &[1.0, 2.0, 3.0]),
+    ]);
     let p: Particles = preset.stack.params(&EFFECT.name).expect("particles");
-    let particle_states: Vec<_> = (0..20_000).map(|id| oracle::particles::first(&p, id)).collect();
-    let shares: Vec<DVec3> = particle_states.iter().map(|f| (f.position - DVec3::new(1.0, 2.0, 3.0)) / DVec3::from_array(spread)).collect();
+    let particle_states: Vec<_> = (0..20_000)
+        .map(|id| oracle::particles::first(&p, id))
+        .collect();
+    let shares: Vec<DVec3> = particle_states
+        .iter()
+        .map(|f| (f.position - DVec3::new(1.0, 2.0, 3.0)) / DVec3::from_array(spread))
+        .collect();
     assert!(shares.iter().all(|share| share.length() <= 1.0));
-    // A ball of half the radius has an eighth of the volume; one of 0.8, 0.512 of it. The last attempt, halved, adds 1 %.
+    // A ball of half the radius has an eighth of the volume; one of 0.8, 0.512 of it. The last
+    // attempt, halved, adds 1 %.
     for (radius, volume) in [(0.5, 0.125), (0.8, 0.512)] {
-        let within = shares.iter().filter(|share| share.length() <= radius).count() as f64 / 20_000.0;
-        assert!((within - volume).abs() < 0.025, "{within} of them within {radius}, where {volume} should be");
+        let within = shares
+            .iter()
+            .filter(|share| share.length() <= radius)
+            .count() as f64
+            / 20_000.0;
+        assert!(
+            (within - volume).abs() < 0.025,
+            "{within} of them within {radius}, where {volume} should be"
+        );
     }
     for axis in 0..3 {
         let mean = shares.iter().map(|share| share[axis]).sum::<f64>() / 20_000.0;
         assert!(mean.abs() < 0.02, "axis {axis} leans by {mean}");
     }
     let [longest, chance] = particles::life_steps(&p);
-    assert!(particle_states.iter().all(|f| f.age < longest && f.births == 0 && f.velocity == DVec3::ZERO));
-    let young = particle_states.iter().filter(|f| f.age * 2 < longest - chance / 2).count();
-    assert!((8_000..14_000).contains(&young), "{young} of 20000 are in the first half of their life");
+    assert!(
+        particle_states
+            .iter()
+            .all(|f| f.age < longest && f.births == 0 && f.velocity == DVec3::ZERO)
+    );
+    let young = particle_states
+        .iter()
+        .filter(|f| f.age * 2 < longest - chance / 2)
+        .count();
+    assert!(
+        (8_000..14_000).contains(&young),
+        "{young} of 20000 are in the first half of their life"
+    );
 }
 
 /// The samples of one triangle that its disc has, in a picture of so many pixels.
 fn disc(corners: [[i32; 2]; 3], view: &View) -> Vec<u32> {
-    let corners = corners.map(|[x, y]| SnappedVertex { x, y, depth: 0.5, inv_w: 1.0, flags: 0 });
-    let geometry = Geometry { particle_discs: 0..1, ..Geometry::default() };
+    let corners = corners.map(|[x, y]| SnappedVertex {
+        x,
+        y,
+        depth: 0.5,
+        inv_w: 1.0,
+        flags: 0,
+    });
+    let geometry = Geometry {
+        particle_discs: 0..1,
+        ..Geometry::default()
+    };
     let stack = stack(&[]);
-    oracle::cover_with(&SampleTests::of_effects(&stack, &geometry), &[OrientedTriangle::clockwise(0, corners)], view)
-        .expect("nobody cancels it")
-        .layers()
+    oracle::cover_with(
+        &SampleTests::of_effects(&stack, &geometry),
+        &[OrientedTriangle::clockwise(0, corners)],
+        view,
+    )
+    .expect("nobody cancels it")
+    .layers()
 }
 
 #[test]
@@ -153,7 +267,11 @@ fn a_disc_is_the_ellipse_that_touches_the_sides_in_their_middles() {
     let upright = |r: f64, at: [f64; 2]| {
         let unit = |v: f64| (v * 256.0).round() as i32;
         let s = 3f64.sqrt() * r;
-        [[unit(at[0]), unit(at[1] - 2.0 * r)], [unit(at[0] + s), unit(at[1] + r)], [unit(at[0] - s), unit(at[1] + r)]]
+        [
+            [unit(at[0]), unit(at[1] - 2.0 * r)],
+            [unit(at[0] + s), unit(at[1] + r)],
+            [unit(at[0] - s), unit(at[1] + r)],
+        ]
     };
     for radius in [0.4, 1.0, 2.5, 7.3, 40.0] {
         let layers = disc(upright(radius, [64.2, 63.7]), &view);
@@ -166,37 +284,78 @@ fn a_disc_is_the_ellipse_that_touches_the_sides_in_their_middles() {
         assert_eq!(wrong.count(), 0, "radius {radius}");
         assert!(radius < 1.0 || layers.contains(&1));
     }
-    // Corners in any order make the same disc, and half a triangle's fraction of the area is pi / (3 sqrt 3).
+    // Corners in any order make the same disc, and half a triangle's fraction of the area is pi /
+    // (3 sqrt 3).
     let [a, b, c] = [[1000, 900], [31_000, 5_000], [9_000, 30_000]];
     let count = |corners| disc(corners, &view).iter().sum::<u32>();
     let (one, two) = (disc([a, b, c], &view), disc([b, c, a], &view));
     assert_eq!(one, two);
-    let area = f64::from((b[0] - a[0]) as i64 as i32) * f64::from(c[1] - a[1]) - f64::from(b[1] - a[1]) * f64::from(c[0] - a[0]);
+    let area = f64::from((b[0] - a[0]) as i64 as i32) * f64::from(c[1] - a[1])
+        - f64::from(b[1] - a[1]) * f64::from(c[0] - a[0]);
     let share = f64::from(count([a, b, c])) / (area / 2.0 / 65536.0);
     assert!((share - 0.6046).abs() < 0.005, "{share} of the triangle");
 }
 
-// ---------------------------------------------------------------- on an adapter
+// -------- on an adapter
 
 #[test]
 fn every_step_is_within_its_bound_with_every_option() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scene = scene("chamber");
     let preset_files: [&[(&str, &[f64])]; 5] = [
         &[],
-        &[("octaves", &[6.0]), ("persistence", &[0.9]), ("swirl_m", &[0.2]), ("speed_mps", &[3.0]), ("seed", &[77.0])],
-        &[("drag", &[0.0]), ("attraction", &[12.0]), ("attractor_m", &[0.05]), ("attractor", &[0.3, -0.2, 0.1])],
-        &[("lifetime_s", &[0.1]), ("lifetime_variation", &[1.0]), ("rate", &[30.0]), ("evolve", &[3.0])],
-        &[("room_m", &[0.6]), ("half_axes", &[0.3, 0.9, 0.6]), ("speed_mps", &[4.0]), ("center", &[40.0, -3.0, 7.0])],
+        &[
+            ("octaves", &[6.0]),
+            ("persistence", &[0.9]),
+            ("swirl_m", &[0.2]),
+            ("speed_mps", &[3.0]),
+            ("seed", &[77.0]),
+        ],
+        &[
+            ("drag", &[0.0]),
+            ("attraction", &[12.0]),
+            ("attractor_m", &[0.05]),
+            ("attractor", &[0.3, -0.2, 0.1]),
+        ],
+        &[
+            ("lifetime_s", &[0.1]),
+            ("lifetime_variation", &[1.0]),
+            ("rate", &[30.0]),
+            ("evolve", &[3.0]),
+        ],
+        &[
+            ("room_m", &[0.6]),
+            ("half_axes", &[0.3, 0.9, 0.6]),
+            ("speed_mps", &[4.0]),
+            ("center", &[40.0, -3.0, 7.0]),
+        ],
     ];
     for (number, fields) in preset_files.iter().enumerate() {
         // Of four options each look meets two.
         for (curl, state) in particle_options().skip(number % 2).step_by(2) {
             for frame in [0, 1, 13, 40] {
-                let (_, accuracy) = measured(&mut renderer, &scene, &preset_file(fields), frame, &on(curl, state));
-                let what = format!("look {number}, frame {frame}, {} {}", curl.name(), state.name());
-                accuracy.within(&Budget::default()).unwrap_or_else(|why| panic!("{what}: {why}"));
-                assert_eq!((accuracy.particles, accuracy.particles_outside_bound), (500, 0), "{what}");
+                let (_, accuracy) = measured(
+                    &mut renderer,
+                    &scene,
+                    &preset_file(fields),
+                    frame,
+                    &on(curl, state),
+                );
+                let what = format!(
+                    "look {number}, frame {frame}, {} {}",
+                    curl.name(),
+                    state.name()
+                );
+                accuracy
+                    .within(&Budget::default())
+                    .unwrap_or_else(|why| panic!("{what}: {why}"));
+                assert_eq!(
+                    (accuracy.particles, accuracy.particles_outside_bound),
+                    (500, 0),
+                    "{what}"
+                );
             }
         }
     }
@@ -217,42 +376,106 @@ fn a_frame_is_the_same_however_it_was_reached() {
         for frame in (0..=45).flat_map(|frame| vec![frame; 1 + usize::from(frame % 7 == 0)]) {
             flown(&mut renderer, &scene, &preset, frame, &accuracy);
         }
-        for (way, frames) in [("played", &[45][..]), ("again", &[45]), ("scrubbed", &[60, 45]), ("from the start", &[0, 1, 44, 45])] {
+        for (way, frames) in [
+            ("played", &[45][..]),
+            ("again", &[45]),
+            ("scrubbed", &[60, 45]),
+            ("from the start", &[0, 1, 44, 45]),
+        ] {
             let mut last = None;
             for &frame in frames {
                 last = Some(flown(&mut renderer, &scene, &preset, frame, &accuracy));
             }
             let (capture, particle_readback) = last.expect("frames");
-            assert!(particle_readback == reference, "{way}, {} {}: the particles differ", curl.name(), state.name());
-            assert!(capture.frame == jumped.frame, "{way}, {} {}: the picture differs", curl.name(), state.name());
+            assert!(
+                particle_readback == reference,
+                "{way}, {} {}: the particles differ",
+                curl.name(),
+                state.name()
+            );
+            assert!(
+                capture.frame == jumped.frame,
+                "{way}, {} {}: the picture differs",
+                curl.name(),
+                state.name()
+            );
         }
         // Another preset between leaves no trace.
-        flown(&mut renderer, &scene, &preset_file(&[("count", &[70.0]), ("seed", &[9.0])]), 12, &accuracy);
+        flown(
+            &mut renderer,
+            &scene,
+            &preset_file(&[("count", &[70.0]), ("seed", &[9.0])]),
+            12,
+            &accuracy,
+        );
         assert!(flown(&mut renderer, &scene, &preset, 45, &accuracy).1 == reference);
-        let other =
-            flown(&mut renderer, &scene, &preset_file(&[("lifetime_s", &[0.4]), ("count", &[333.0]), ("seed", &[2.0])]), 45, &accuracy).1;
+        let other = flown(
+            &mut renderer,
+            &scene,
+            &preset_file(&[
+                ("lifetime_s", &[0.4]),
+                ("count", &[333.0]),
+                ("seed", &[2.0]),
+            ]),
+            45,
+            &accuracy,
+        )
+        .1;
         assert!(other != reference, "the seed changes nothing");
     }
 }
 
 #[test]
 fn none_few_and_odd_numbers_of_particles_are_drawn() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scene = scene("chamber");
-    let bare = captured(&mut renderer, &scene, &Preset::default().view(&scene, SIZE), &stack(&[]), &AccuracyRequest::default());
+    let bare = captured(
+        &mut renderer,
+        &scene,
+        &Preset::default().view(&scene, SIZE),
+        &stack(&[]),
+        &AccuracyRequest::default(),
+    );
     for count in [0u32, 1, 2, 63, 65, 257] {
-        let preset = at(&preset_file(&[("count", &[f64::from(count)]), ("radius_m", &[0.1])]), 20);
+        let preset = at(
+            &preset_file(&[("count", &[f64::from(count)]), ("radius_m", &[0.1])]),
+            20,
+        );
         let view = preset.view(&scene, SIZE);
-        let (capture, verdict) = judged(&mut renderer, &scene, &view, &preset.evaluated_stack(), &AccuracyRequest::default());
+        let (capture, verdict) = judged(
+            &mut renderer,
+            &scene,
+            &view,
+            &preset.evaluated_stack(),
+            &AccuracyRequest::default(),
+        );
         exactness(&verdict.report).unwrap_or_else(|why| panic!("{count}: {why}"));
-        let particle_readback =
-            capture.geometry.particle_readback.as_ref().map_or(0, |particle_readback| particle_readback.after.len() as u32);
-        assert_eq!((particle_readback, verdict.report.particles), (count, count.into()));
+        let particle_readback = capture
+            .geometry
+            .particle_readback
+            .as_ref()
+            .map_or(0, |particle_readback| particle_readback.after.len() as u32);
+        assert_eq!(
+            (particle_readback, verdict.report.particles),
+            (count, count.into())
+        );
         let first = scene.triangle_count() as u32;
-        let shown = capture.frame.triangle_id.iter().filter(|&&triangle_id| triangle_id != u32::MAX && triangle_id >= first).count();
-        assert!(count < 60 || shown > 20, "{count}: {shown} pixels show particles");
+        let shown = capture
+            .frame
+            .triangle_id
+            .iter()
+            .filter(|&&triangle_id| triangle_id != u32::MAX && triangle_id >= first)
+            .count();
         assert!(
-            count > 0 || capture.frame.triangle_id == captured_of(&mut renderer, &scene, &view).frame.triangle_id,
+            count < 60 || shown > 20,
+            "{count}: {shown} pixels show particles"
+        );
+        assert!(
+            count > 0
+                || capture.frame.triangle_id
+                    == captured_of(&mut renderer, &scene, &view).frame.triangle_id,
             "none is as without"
         );
     }
@@ -260,33 +483,69 @@ fn none_few_and_odd_numbers_of_particles_are_drawn() {
 }
 
 fn captured_of(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View) -> Capture {
-    captured(renderer, scene, view, &stack(&[]), &AccuracyRequest::default())
+    captured(
+        renderer,
+        scene,
+        view,
+        &stack(&[]),
+        &AccuracyRequest::default(),
+    )
 }
 
 #[test]
 fn lives_end_and_begin_again_inside_the_room() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scene = scene("chamber");
-    let preset = preset_file(&[("lifetime_s", &[0.25]), ("room_m", &[0.8]), ("half_axes", &[0.4, 0.4, 0.4]), ("speed_mps", &[5.0])]);
+    let preset = preset_file(&[
+        ("lifetime_s", &[0.25]),
+        ("room_m", &[0.8]),
+        ("half_axes", &[0.4, 0.4, 0.4]),
+        ("speed_mps", &[5.0]),
+    ]);
     let p: Particles = preset.stack.params(&EFFECT.name).expect("particles");
     let [longest, _] = particles::life_steps(&p);
     assert_eq!(longest, 15);
     for (curl, state) in particle_options() {
         let particle_readback = flown(&mut renderer, &scene, &preset, 100, &on(curl, state)).1;
         let held = |flight: &ParticleState| flight.position.iter().all(|at| at.abs() <= 0.8 + 1e-5);
-        assert!(particle_readback.after.iter().all(|flight| held(flight) && flight.age < longest && flight.births >= 100 / longest - 1));
-        let reborn = particle_readback.after.iter().filter(|flight| flight.age == 0).count();
-        assert!((10..200).contains(&reborn), "{reborn} of 500 were born in this very step");
-        let ball = |flight: &ParticleState| flight.position.iter().map(|at| at * at).sum::<f32>().sqrt() <= 0.4 + 1e-4;
-        assert!(particle_readback.after.iter().filter(|flight| flight.age == 0).all(ball));
+        assert!(particle_readback.after.iter().all(|flight| held(flight)
+            && flight.age < longest
+            && flight.births >= 100 / longest - 1));
+        let reborn = particle_readback
+            .after
+            .iter()
+            .filter(|flight| flight.age == 0)
+            .count();
+        assert!(
+            (10..200).contains(&reborn),
+            "{reborn} of 500 were born in this very step"
+        );
+        let ball = |flight: &ParticleState| {
+            flight.position.iter().map(|at| at * at).sum::<f32>().sqrt() <= 0.4 + 1e-4
+        };
+        assert!(
+            particle_readback
+                .after
+                .iter()
+                .filter(|flight| flight.age == 0)
+                .all(ball)
+        );
     }
 }
 
 #[test]
 fn for_a_second_particles_follow_the_reference_and_rough_options_drift() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scene = scene("chamber");
-    let preset = preset_file(&[("lifetime_s", &[30.0]), ("lifetime_variation", &[0.1]), ("room_m", &[4.0])]);
+    let preset = preset_file(&[
+        ("lifetime_s", &[30.0]),
+        ("lifetime_variation", &[0.1]),
+        ("room_m", &[4.0]),
+    ]);
     let drift = |renderer: &mut Renderer, frame: u32, curl: CurlNoise, state: ParticleStorage| {
         let (_, accuracy) = measured(renderer, &scene, &preset, frame, &on(curl, state));
         eprintln!(
@@ -302,40 +561,88 @@ fn for_a_second_particles_follow_the_reference_and_rough_options_drift() {
     };
     let mut last = 0.0;
     for frame in [0, 30, 60, 120, 240, 480] {
-        let accuracy = drift(&mut renderer, frame, CurlNoise::Analytic, ParticleStorage::Float32);
+        let accuracy = drift(
+            &mut renderer,
+            frame,
+            CurlNoise::Analytic,
+            ParticleStorage::Float32,
+        );
         assert!(accuracy.mean_divergence_m >= last, "chaos does not heal");
         last = accuracy.mean_divergence_m;
-        assert!(frame > 60 || accuracy.max_divergence_px < 0.1, "frame {frame}: {} px", accuracy.max_divergence_px);
+        assert!(
+            frame > 60 || accuracy.max_divergence_px < 0.1,
+            "frame {frame}: {} px",
+            accuracy.max_divergence_px
+        );
     }
-    let exact = drift(&mut renderer, 60, CurlNoise::Analytic, ParticleStorage::Float32).mean_divergence_m;
-    for (curl, state) in particle_options().filter(|options| *options != (CurlNoise::Analytic, ParticleStorage::Float32)) {
+    let exact = drift(
+        &mut renderer,
+        60,
+        CurlNoise::Analytic,
+        ParticleStorage::Float32,
+    )
+    .mean_divergence_m;
+    for (curl, state) in particle_options()
+        .filter(|options| *options != (CurlNoise::Analytic, ParticleStorage::Float32))
+    {
         let rough = drift(&mut renderer, 60, curl, state).mean_divergence_m;
-        assert!(rough > 10.0 * exact && rough < 0.05, "{} {}: {rough} m, where {exact} m are due to rounding", curl.name(), state.name());
+        assert!(
+            rough > 10.0 * exact && rough < 0.05,
+            "{} {}: {rough} m, where {exact} m are due to rounding",
+            curl.name(),
+            state.name()
+        );
     }
 }
 
 #[test]
 fn discs_of_every_size_are_the_oracle_s_with_every_option_and_tuning() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scene = scene("chamber");
-    // Less than a pixel, ordinary, larger than a tile, and as large as the picture with the eye among them.
-    for (size, effects) in [(0.004, &[][..]), (0.03, &["xray"]), (0.5, &["dissolve"]), (3.0, &["overdraw"]), (9.0, &[])] {
-        let mut preset =
-            at(&preset_file(&[("radius_m", &[size]), ("count", &[60.0]), ("half_axes", &[3.0, 3.0, 3.0]), ("room_m", &[6.0])]), 25);
+    // Less than a pixel, ordinary, larger than a tile, and as large as the picture with the eye
+    // among them.
+    for (size, effects) in [
+        (0.004, &[][..]),
+        (0.03, &["xray"]),
+        (0.5, &["dissolve"]),
+        (3.0, &["overdraw"]),
+        (9.0, &[]),
+    ] {
+        let mut preset = at(
+            &preset_file(&[
+                ("radius_m", &[size]),
+                ("count", &[60.0]),
+                ("half_axes", &[3.0, 3.0, 3.0]),
+                ("room_m", &[6.0]),
+            ]),
+            25,
+        );
         for name in effects {
             preset.stack.enable(Effect::find(name).expect("an effect"));
         }
         if size > 1.0 {
-            preset.camera = Some(Camera { eye: DVec3::new(0.2, 0.1, 1.0), ..Camera::default() });
+            preset.camera = Some(Camera {
+                eye: DVec3::new(0.2, 0.1, 1.0),
+                ..Camera::default()
+            });
         }
         let (view, stack) = (preset.view(&scene, SIZE), preset.evaluated_stack());
         let mut first: Option<Capture> = None;
-        for (tuning, option) in tunings().into_iter().zip(options(&renderer).into_iter().cycle()) {
+        for (tuning, option) in tunings()
+            .into_iter()
+            .zip(options(&renderer).into_iter().cycle())
+        {
             renderer.set_tuning(tuning);
             let what = format!("size {size}, {} {tuning:?}", option.name());
             let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &pinned(option), &what);
             let first = first.get_or_insert_with(|| capture.clone());
-            assert!(capture.frame.triangle_id == first.frame.triangle_id && capture.frame.depth_key == first.frame.depth_key, "{what}");
+            assert!(
+                capture.frame.triangle_id == first.frame.triangle_id
+                    && capture.frame.depth_key == first.frame.depth_key,
+                "{what}"
+            );
         }
         let cut = first.expect("an option").frame.counters.clipped;
         assert!(size < 9.0 || cut > 0, "nothing is cut by the near plane");
@@ -344,65 +651,119 @@ fn discs_of_every_size_are_the_oracle_s_with_every_option_and_tuning() {
 
 #[test]
 fn what_fills_boxes_or_draws_corners_shows_no_discs() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scene = scene("chamber");
     for name in ["boxes", "points"] {
         let mut preset = at(&preset_file(&[("count", &[60.0])]), 10);
         preset.stack.enable(Effect::find(name).expect("an effect"));
-        exact(&mut renderer, &scene, &preset.view(&scene, SIZE), &preset.evaluated_stack(), &AccuracyRequest::default(), name);
+        exact(
+            &mut renderer,
+            &scene,
+            &preset.view(&scene, SIZE),
+            &preset.evaluated_stack(),
+            &AccuracyRequest::default(),
+            name,
+        );
     }
 }
 
 #[test]
 fn keys_lead_the_attractor_and_a_frame_of_them_is_the_same_however_it_was_reached() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scene = scene("chamber");
-    let mut preset = preset_file(&[("attraction", &[9.0]), ("drag", &[1.0]), ("lifetime_s", &[9.0])]);
-    let key = |time_s: f64, x: f64| Keyframe { time_s, value: vec![x, 0.0, 0.0], easing: Easing::Linear };
+    let mut preset = preset_file(&[
+        ("attraction", &[9.0]),
+        ("drag", &[1.0]),
+        ("lifetime_s", &[9.0]),
+    ]);
+    let key = |time_s: f64, x: f64| Keyframe {
+        time_s,
+        value: vec![x, 0.0, 0.0],
+        easing: Easing::Linear,
+    };
     let field = EFFECT.field("attractor").expect("an attractor");
-    preset.animation.put(Track::new(&EFFECT, field, vec![key(0.0, -2.0), key(0.5, 2.0)]).expect("sound keys"));
+    preset
+        .animation
+        .put(Track::new(&EFFECT, field, vec![key(0.0, -2.0), key(0.5, 2.0)]).expect("sound keys"));
     let particle_timeline = at(&preset, 40).particle_timeline().expect("particles");
     let x = |step: u32| read::<Particles>(particle_timeline.words(step)).attractor[0];
     assert_eq!((particle_timeline.len(), particle_timeline.frame), (40, 40));
-    assert!((1..40).all(|step| x(step) < x(step + 1)) && x(30) < 1.0 && x(40) > x(30), "the attraction follows behind");
+    assert!(
+        (1..40).all(|step| x(step) < x(step + 1)) && x(30) < 1.0 && x(40) > x(30),
+        "the attraction follows behind"
+    );
     let accuracy = AccuracyRequest::default();
     let (jumped, reference) = flown(&mut renderer, &scene, &preset, 40, &accuracy);
     for frame in [0, 5, 6, 39] {
         let (_, measured) = measured(&mut renderer, &scene, &preset, frame, &accuracy);
-        measured.within(&Budget::default()).unwrap_or_else(|why| panic!("frame {frame}: {why}"));
+        measured
+            .within(&Budget::default())
+            .unwrap_or_else(|why| panic!("frame {frame}: {why}"));
     }
     let (again, particle_readback) = flown(&mut renderer, &scene, &preset, 40, &accuracy);
     assert!(particle_readback == reference && again.frame == jumped.frame);
     // What a bench draws is the same picture.
     let posed = at(&preset, 40).evaluated();
-    assert_eq!(posed.particle_timeline(), at(&preset, 40).particle_timeline());
+    assert_eq!(
+        posed.particle_timeline(),
+        at(&preset, 40).particle_timeline()
+    );
 }
 
 #[test]
 fn too_many_particles_are_refused_with_a_sentence() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scene = scene("chamber");
     let most = renderer.gpu().caps.max_storage_binding_bytes;
     let preset = preset_file(&[("count", &[4e6])]);
-    renderer.set_scene(&scene).block_on().expect("a builtin fits");
-    let drawn = renderer.draw_complete(&preset.view(&scene, [8, 8]), &preset.evaluated_stack(), &AccuracyRequest::default()).block_on();
+    renderer
+        .set_scene(&scene)
+        .block_on()
+        .expect("a builtin fits");
+    let drawn = renderer
+        .draw_complete(
+            &preset.view(&scene, [8, 8]),
+            &preset.evaluated_stack(),
+            &AccuracyRequest::default(),
+        )
+        .block_on();
     if most < 4_000_000 * 72 {
         let sentence = drawn.expect_err("it does not fit").to_string();
         assert!(sentence.contains("vertex_bytes"), "{sentence}");
     }
     // What was there before is still drawn.
     let few = at(&preset_file(&[]), 3);
-    exact(&mut renderer, &scene, &few.view(&scene, SIZE), &few.evaluated_stack(), &AccuracyRequest::default(), "after a refusal");
+    exact(
+        &mut renderer,
+        &scene,
+        &few.view(&scene, SIZE),
+        &few.evaluated_stack(),
+        &AccuracyRequest::default(),
+        "after a refusal",
+    );
 }
 
 #[test]
 fn a_mistake_in_the_pass_is_found() {
     let Some(gpu) = gpu() else { return };
     let scene = scene("chamber");
-    let preset = preset_file(&[("lifetime_s", &[0.3]), ("attraction", &[2.0]), ("radius_m", &[0.1])]);
+    let preset = preset_file(&[
+        ("lifetime_s", &[0.3]),
+        ("attraction", &[2.0]),
+        ("radius_m", &[0.1]),
+    ]);
     for (right, wrong) in [
         ("(t - 1.0) * (t - 1.0)", "(t - 1.0) * t"),
-        ("(frame_number & 1u) * particle_step.count + id);\n    particle_states", "id);\n    particle_states"),
+        (
+            "(frame_number & 1u) * particle_step.count + id);\n    particle_states",
+            "id);\n    particle_states",
+        ),
         ("vec2f(0.0, 2.0)", "vec2f(0.0, 1.99)"),
         ("2u * areas.x", "areas.x"),
     ] {
@@ -410,11 +771,31 @@ fn a_mistake_in_the_pass_is_found() {
         let mut renderer = Renderer::with_library(gpu.clone(), mutant.shaders());
         let is_found = [0, 1, 18].into_iter().any(|frame| {
             let preset = at(&preset, frame);
-            renderer.set_scene(&scene).block_on().expect("a builtin fits");
+            renderer
+                .set_scene(&scene)
+                .block_on()
+                .expect("a builtin fits");
             let (view, stack) = (preset.view(&scene, SIZE), preset.evaluated_stack());
-            let Ok(capture) = renderer.capture(&view, &stack, &AccuracyRequest::default()).block_on() else { return true };
-            let verdict = oracle::judge(&scene, &view, &stack, &AdapterPicture { previous: None, ..capture.picture() });
-            verdict.expect("it can be judged").report.within(&Budget::default()).is_err()
+            let Ok(capture) = renderer
+                .capture(&view, &stack, &AccuracyRequest::default())
+                .block_on()
+            else {
+                return true;
+            };
+            let verdict = oracle::judge(
+                &scene,
+                &view,
+                &stack,
+                &AdapterPicture {
+                    previous: None,
+                    ..capture.picture()
+                },
+            );
+            verdict
+                .expect("it can be judged")
+                .report
+                .within(&Budget::default())
+                .is_err()
         });
         assert!(is_found, "{wrong:?} for {right:?} goes unnoticed");
     }

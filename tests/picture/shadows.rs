@@ -1,5 +1,6 @@
-//! Promise: the light that arrives is what the oracle's own shadow map says, where geometry says, on every option; mistakes in
-//! it are found; and a preset without it has nothing of it. Most of it needs an adapter.
+//! Promise: the light that arrives is what the oracle's own shadow map says, where geometry says,
+//! on every option; mistakes in it are found; and a preset without it has nothing of it. Most of it
+//! needs an adapter.
 
 use std::sync::Arc;
 
@@ -29,14 +30,30 @@ fn lit(effects: &[&str], values: &[(&str, &str, f64)]) -> Stack {
     for (effect, field, value) in values {
         let enabled = stack.get_mut(effect).expect("an effect of the stack");
         let field = enabled.effect.field(field).expect("a field");
-        field.set(&mut enabled.words, &vec![*value; field.value_type.components()]).expect("within its range");
+        field
+            .set(
+                &mut enabled.words,
+                &vec![*value; field.value_type.components()],
+            )
+            .expect("within its range");
     }
     stack
 }
 
 /// Nothing but the light: what it does not reach is black.
 fn light_alone(values: &[(&str, &str, f64)]) -> Stack {
-    lit(&["shadow"], &[&[("shadow", "light", 1.0), ("shadow", "sky", 0.0), ("shadow", "ground", 0.0)], values].concat())
+    lit(
+        &["shadow"],
+        &[
+            &[
+                ("shadow", "light", 1.0),
+                ("shadow", "sky", 0.0),
+                ("shadow", "ground", 0.0),
+            ],
+            values,
+        ]
+        .concat(),
+    )
 }
 
 fn on(view: &View, map: ShadowMapSize, taps: ShadowTaps) -> View {
@@ -46,8 +63,16 @@ fn on(view: &View, map: ShadowMapSize, taps: ShadowTaps) -> View {
 /// A horizontal square, seen from both sides.
 fn plate(half: f32, height: f32) -> SimpleMesh {
     let corner = |x: f32, z: f32| [half * x, height, half * z];
-    let [a, b, c, d] = [corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0), corner(-1.0, -1.0)];
-    SimpleMesh { normals: vec![[0.0, 1.0, 0.0]; 6], ..triangle_soup(vec![a, b, c, a, c, d]) }
+    let [a, b, c, d] = [
+        corner(-1.0, 1.0),
+        corner(1.0, 1.0),
+        corner(1.0, -1.0),
+        corner(-1.0, -1.0),
+    ];
+    SimpleMesh {
+        normals: vec![[0.0, 1.0, 0.0]; 6],
+        ..triangle_soup(vec![a, b, c, a, c, d])
+    }
 }
 
 /// A smooth unit sphere.
@@ -58,51 +83,104 @@ fn ball() -> Arc<Scene> {
         let (sin, cos) = (std::f64::consts::PI * f64::from(i) / f64::from(ROWS)).sin_cos();
         DVec3::new(s * sin, c, s * cos).as_vec3().to_array()
     };
-    let cell = |i: u32, j: u32| [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i, j), at(i + 1, j + 1), at(i + 1, j)];
-    let positions: Vec<[f32; 3]> = (0..ROWS).flat_map(|j| (0..2 * ROWS).flat_map(move |i| cell(i, j))).collect();
-    scene_of_meshes(&[SimpleMesh { normals: positions.clone(), double_sided: false, ..triangle_soup(positions) }])
+    let cell = |i: u32, j: u32| {
+        [
+            at(i, j),
+            at(i, j + 1),
+            at(i + 1, j + 1),
+            at(i, j),
+            at(i + 1, j + 1),
+            at(i + 1, j),
+        ]
+    };
+    let positions: Vec<[f32; 3]> = (0..ROWS)
+        .flat_map(|j| (0..2 * ROWS).flat_map(move |i| cell(i, j)))
+        .collect();
+    scene_of_meshes(&[SimpleMesh {
+        normals: positions.clone(),
+        double_sided: false,
+        ..triangle_soup(positions)
+    }])
 }
 
 fn slanted(scene: &Scene, size: [u32; 2]) -> View {
-    camera_view(scene, &Camera { eye: DVec3::new(1.5, 4.0, 5.0), ..Camera::default() }, size)
+    camera_view(
+        scene,
+        &Camera {
+            eye: DVec3::new(1.5, 4.0, 5.0),
+            ..Camera::default()
+        },
+        size,
+    )
 }
 
 fn boxed(query: &str) -> Arc<Scene> {
-    Arc::new(rasterlab::scene::builtin::build(query).expect("a builtin").in_room(1.6))
+    Arc::new(
+        rasterlab::scene::builtin::build(query)
+            .expect("a builtin")
+            .in_room(1.6),
+    )
 }
 
-// ---------------------------------------------------------------- geometry
+// -------- geometry
 
 /// Where a pixel's ray meets the plane y = 0.
 fn on_floor(view: &View, x: usize, y: usize) -> DVec3 {
-    let [right, up] = [(x as f64 + 0.5) / f64::from(view.width), (y as f64 + 0.5) / f64::from(view.height)];
-    let ray = view.forward + view.ndc_axes[0] * (2.0 * right - 1.0) + view.ndc_axes[1] * (1.0 - 2.0 * up);
+    let [right, up] = [
+        (x as f64 + 0.5) / f64::from(view.width),
+        (y as f64 + 0.5) / f64::from(view.height),
+    ];
+    let ray =
+        view.forward + view.ndc_axes[0] * (2.0 * right - 1.0) + view.ndc_axes[1] * (1.0 - 2.0 * up);
     view.eye - ray * (view.eye.y / ray.y)
 }
 
 #[test]
 fn a_plate_throws_its_shadow_where_geometry_says_to_a_texel() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     const HALF: f64 = 0.6;
     let scene = scene_of_meshes(&[plate(2.0, 0.0), plate(HALF as f32, 1.0)]);
     for (azimuth, elevation) in [(0.0, 90.0), (25.0, 60.0), (-130.0, 40.0)] {
-        let stack = light_alone(&[("shadow", "azimuth_deg", azimuth), ("shadow", "elevation_deg", elevation)]);
+        let stack = light_alone(&[
+            ("shadow", "azimuth_deg", azimuth),
+            ("shadow", "elevation_deg", elevation),
+        ]);
         let toward = read::<Shadow>(&stack.0[0].words).toward();
         for map in [ShadowMapSize::Side256, ShadowMapSize::Side512] {
             let view = on(&slanted(&scene, [200, 150]), map, ShadowTaps::One);
             let light = stack.light_view(&scene, &view).expect("there is a light");
-            let texel_m = 2.0 / (light.clip_from_world.row(0).truncate().length() * f64::from(light.width));
-            let (capture, _) =
-                exact(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default(), &format!("{azimuth} {elevation} {map:?}"));
+            let texel_m =
+                2.0 / (light.clip_from_world.row(0).truncate().length() * f64::from(light.width));
+            let (capture, _) = exact(
+                &mut renderer,
+                &scene,
+                &view,
+                &stack,
+                &AccuracyRequest::default(),
+                &format!("{azimuth} {elevation} {map:?}"),
+            );
             let mut counts = [0, 0];
-            for (i, color) in capture.frame.color.iter().enumerate().filter(|(i, _)| capture.frame.triangle_id[*i] < 2) {
-                let above = on_floor(&view, i % view.width as usize, i / view.width as usize) + toward / toward.y;
+            for (i, color) in capture
+                .frame
+                .color
+                .iter()
+                .enumerate()
+                .filter(|(i, _)| capture.frame.triangle_id[*i] < 2)
+            {
+                let above = on_floor(&view, i % view.width as usize, i / view.width as usize)
+                    + toward / toward.y;
                 let inside = HALF - above.x.abs().max(above.z.abs());
                 if inside.abs() * toward.y <= texel_m {
                     continue;
                 }
                 let is_dark = color[0] == 0;
-                assert_eq!(is_dark, inside > 0.0, "{azimuth} {elevation} {map:?}: pixel {i}, {inside} m inside, a texel has {texel_m} m");
+                assert_eq!(
+                    is_dark,
+                    inside > 0.0,
+                    "{azimuth} {elevation} {map:?}: pixel {i}, {inside} m inside, a texel has {texel_m} m"
+                );
                 counts[usize::from(is_dark)] += 1;
             }
             assert!(counts.iter().all(|&count| count > 200), "{counts:?}");
@@ -112,16 +190,45 @@ fn a_plate_throws_its_shadow_where_geometry_says_to_a_texel() {
 
 #[test]
 fn what_nothing_covers_is_lit_and_what_is_covered_is_dark() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let above = [("shadow", "elevation_deg", 90.0)];
-    let (alone, covered) = (scene_of_meshes(&[plate(1.0, 0.0)]), scene_of_meshes(&[plate(1.0, 0.0), plate(1.5, 1.5)]));
-    let low = |scene: &Scene| camera_view(scene, &Camera { eye: DVec3::new(0.5, 0.8, 6.0), ..Camera::default() }, [160, 120]);
+    let (alone, covered) = (
+        scene_of_meshes(&[plate(1.0, 0.0)]),
+        scene_of_meshes(&[plate(1.0, 0.0), plate(1.5, 1.5)]),
+    );
+    let low = |scene: &Scene| {
+        camera_view(
+            scene,
+            &Camera {
+                eye: DVec3::new(0.5, 0.8, 6.0),
+                ..Camera::default()
+            },
+            [160, 120],
+        )
+    };
     for map in [ShadowMapSize::Side256, ShadowMapSize::Side1024] {
         for taps in [ShadowTaps::One, ShadowTaps::Nine, ShadowTaps::TwentyFive] {
             for (scene, byte) in [(&alone, 255), (&covered, 0)] {
-                let (view, what) = (on(&low(scene), map, taps), format!("{map:?} {taps:?} {byte}"));
-                let (capture, _) = exact(&mut renderer, scene, &view, &light_alone(&above), &AccuracyRequest::default(), &what);
-                let floor = capture.frame.triangle_id.iter().zip(&capture.frame.color).filter(|(triangle_id, _)| **triangle_id < 2);
+                let (view, what) = (
+                    on(&low(scene), map, taps),
+                    format!("{map:?} {taps:?} {byte}"),
+                );
+                let (capture, _) = exact(
+                    &mut renderer,
+                    scene,
+                    &view,
+                    &light_alone(&above),
+                    &AccuracyRequest::default(),
+                    &what,
+                );
+                let floor = capture
+                    .frame
+                    .triangle_id
+                    .iter()
+                    .zip(&capture.frame.color)
+                    .filter(|(triangle_id, _)| **triangle_id < 2);
                 let wrong = floor.clone().filter(|(_, color)| color[0] != byte).count();
                 assert!(floor.count() > 300 && wrong == 0, "{what}: {wrong} pixels");
             }
@@ -133,64 +240,136 @@ fn what_nothing_covers_is_lit_and_what_is_covered_is_dark() {
 fn acne(unshaded: &Capture, shaded: &Capture) -> usize {
     let pairs = unshaded.frame.color.iter().zip(&shaded.frame.color);
     // A quarter of the light, gamma-encoded.
-    pairs.filter(|(bare, lit)| bare[0] >= 137 && bare[0].abs_diff(lit[0]) > 1).count()
+    pairs
+        .filter(|(bare, lit)| bare[0] >= 137 && bare[0].abs_diff(lit[0]) > 1)
+        .count()
 }
 
 #[test]
 fn a_ball_casts_no_shadow_on_its_lit_side() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scene = ball();
     let view = slanted(&scene, [160, 120]);
     for (azimuth, elevation) in [(40.0, 48.0), (-70.0, 10.0), (0.0, 90.0)] {
-        let towards = [("shadow", "azimuth_deg", azimuth), ("shadow", "elevation_deg", elevation)];
+        let towards = [
+            ("shadow", "azimuth_deg", azimuth),
+            ("shadow", "elevation_deg", elevation),
+        ];
         let bare = light_alone(&[&towards[..], &[("shadow", "strength", 0.0)]].concat());
         for &map in ShadowMapSize::ALL {
             for &taps in ShadowTaps::ALL {
                 let view = on(&view, map, taps);
-                let [unshaded, shaded] =
-                    [&bare, &light_alone(&towards)].map(|stack| captured(&mut renderer, &scene, &view, stack, &AccuracyRequest::default()));
-                assert_eq!(acne(&unshaded, &shaded), 0, "{azimuth} {elevation} {map:?} {taps:?}");
+                let [unshaded, shaded] = [&bare, &light_alone(&towards)].map(|stack| {
+                    captured(
+                        &mut renderer,
+                        &scene,
+                        &view,
+                        stack,
+                        &AccuracyRequest::default(),
+                    )
+                });
+                assert_eq!(
+                    acne(&unshaded, &shaded),
+                    0,
+                    "{azimuth} {elevation} {map:?} {taps:?}"
+                );
             }
         }
     }
     // The test can fail: surfaces behind their own depths are speckled.
     let drowned = light_alone(&[("shadow", "bias", -1.0)]);
-    let [unshaded, shaded] = [light_alone(&[("shadow", "strength", 0.0)]), drowned]
-        .map(|stack| captured(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default()));
+    let [unshaded, shaded] = [light_alone(&[("shadow", "strength", 0.0)]), drowned].map(|stack| {
+        captured(
+            &mut renderer,
+            &scene,
+            &view,
+            &stack,
+            &AccuracyRequest::default(),
+        )
+    });
     assert!(acne(&unshaded, &shaded) > 1000);
 }
 
 #[test]
 fn a_light_that_looks_as_the_eye_does_sees_all_that_the_eye_sees() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scene = ball();
-    let towards = [("shadow", "azimuth_deg", 30.0), ("shadow", "elevation_deg", 35.0)];
+    let towards = [
+        ("shadow", "azimuth_deg", 30.0),
+        ("shadow", "elevation_deg", 35.0),
+    ];
     let toward = read::<Shadow>(&light_alone(&towards).0[0].words).toward();
-    let camera = Camera { eye: toward * 4.0, projection: Projection::Orthographic { height_m: 2.4 }, ..Camera::default() };
+    let camera = Camera {
+        eye: toward * 4.0,
+        projection: Projection::Orthographic { height_m: 2.4 },
+        ..Camera::default()
+    };
     let view = camera_view(&scene, &camera, [160, 120]);
-    let [unshaded, shaded] = [light_alone(&[&towards[..], &[("shadow", "strength", 0.0)]].concat()), light_alone(&towards)]
-        .map(|stack| captured(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default()));
+    let [unshaded, shaded] = [
+        light_alone(&[&towards[..], &[("shadow", "strength", 0.0)]].concat()),
+        light_alone(&towards),
+    ]
+    .map(|stack| {
+        captured(
+            &mut renderer,
+            &scene,
+            &view,
+            &stack,
+            &AccuracyRequest::default(),
+        )
+    });
     assert_eq!(acne(&unshaded, &shaded), 0);
 }
 
-// ---------------------------------------------------------------- the oracle's twin
+// -------- the oracle's twin
 
-/// Scenes and stacks that take every path of a shadow: queues, clipped triangles, effects that move or discard, layers, skins.
+/// Scenes and stacks that take every path of a shadow: queues, clipped triangles, effects that move
+/// or discard, layers, skins.
 fn cases() -> Vec<(Arc<Scene>, Stack)> {
-    let sweep = [("explode", "pattern", 1.0), ("explode", "width", 1.0), ("explode", "front", 0.5)];
-    let front = [("dissolve", "pattern", 1.0), ("dissolve", "width", 1.0), ("dissolve", "front", 0.5)];
+    let sweep = [
+        ("explode", "pattern", 1.0),
+        ("explode", "width", 1.0),
+        ("explode", "front", 0.5),
+    ];
+    let front = [
+        ("dissolve", "pattern", 1.0),
+        ("dissolve", "width", 1.0),
+        ("dissolve", "front", 0.5),
+    ];
     vec![
         (boxed("knot?tess=8"), lit(&["shadow"], &[])),
-        (boxed("cube-wall?columns=5&rows=4"), lit(&["shadow"], &[("shadow", "shading", 1.0), ("shadow", "strength", 0.7)])),
-        (boxed("teapot?tess=5"), lit(&["lambert", "shadow", "toon"], &[("shadow", "shading", 1.0)])),
+        (
+            boxed("cube-wall?columns=5&rows=4"),
+            lit(
+                &["shadow"],
+                &[("shadow", "shading", 1.0), ("shadow", "strength", 0.7)],
+            ),
+        ),
+        (
+            boxed("teapot?tess=5"),
+            lit(
+                &["lambert", "shadow", "toon"],
+                &[("shadow", "shading", 1.0)],
+            ),
+        ),
         (boxed("tentacle?tess=3"), lit(&["shadow"], &[])),
-        (boxed("sphere?triangles=2000"), lit(&["wobble", "shadow"], &[])),
+        (
+            boxed("sphere?triangles=2000"),
+            lit(&["wobble", "shadow"], &[]),
+        ),
         (boxed("teapot?tess=4"), lit(&["explode", "shadow"], &sweep)),
         (boxed("teapot?tess=5"), lit(&["dissolve", "shadow"], &front)),
         (boxed("knot?tess=6"), lit(&["stipple", "shadow"], &[])),
         (boxed("leaves"), lit(&["shadow"], &[])),
         (boxed("knot?tess=6"), lit(&["shadow", "xray"], &[])),
-        (boxed("knot?tess=6"), lit(&["shadow", "dither"], &[("dither", "levels", 5.0)])),
+        (
+            boxed("knot?tess=6"),
+            lit(&["shadow", "dither"], &[("dither", "levels", 5.0)]),
+        ),
         (scene("near"), lit(&["shadow"], &[])),
         (scene("stack"), lit(&["shadow"], &[])),
         (scene("sizes"), lit(&["shadow"], &[])),
@@ -200,22 +379,47 @@ fn cases() -> Vec<(Arc<Scene>, Stack)> {
 
 #[test]
 fn every_size_of_map_and_filter_is_what_the_oracle_draws() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scene = boxed("knot?tess=6");
     let quick = quick_option(&renderer);
     let mut tuning = renderer.gpu().caps.tuning();
     for (turn, &map) in ShadowMapSize::ALL.iter().enumerate() {
         let taps = ShadowTaps::ALL[turn % 3];
         let view = on(&view(&scene, [96, 72]), map, taps);
-        let (capture, _) = exact(&mut renderer, &scene, &view, &lit(&["shadow"], &[]), &pinned(quick), &format!("{map:?} {taps:?}"));
-        let keys = &capture.geometry.shadow_map.expect("there is a map").depth_keys;
+        let (capture, _) = exact(
+            &mut renderer,
+            &scene,
+            &view,
+            &lit(&["shadow"], &[]),
+            &pinned(quick),
+            &format!("{map:?} {taps:?}"),
+        );
+        let keys = &capture
+            .geometry
+            .shadow_map
+            .expect("there is a map")
+            .depth_keys;
         assert_eq!(keys.len(), (map.side() * map.side()) as usize);
         // The map is read from the buffer in which it was drawn, or from a texture, its copy.
         if std::mem::replace(&mut tuning.buffered_shadow_map, false) {
             renderer.set_tuning(tuning);
-            let copied = captured(&mut renderer, &scene, &view, &lit(&["shadow"], &[]), &pinned(quick));
-            assert_eq!(renderer.key().map(|key| key.work.buffered_shadow_map), Some(false));
-            assert_eq!(copied.frame.color, capture.frame.color, "{map:?} {taps:?} from a texture");
+            let copied = captured(
+                &mut renderer,
+                &scene,
+                &view,
+                &lit(&["shadow"], &[]),
+                &pinned(quick),
+            );
+            assert_eq!(
+                renderer.key().map(|key| key.work.buffered_shadow_map),
+                Some(false)
+            );
+            assert_eq!(
+                copied.frame.color, capture.frame.color,
+                "{map:?} {taps:?} from a texture"
+            );
             tuning.buffered_shadow_map = true;
             renderer.set_tuning(tuning);
         } else {
@@ -226,43 +430,131 @@ fn every_size_of_map_and_filter_is_what_the_oracle_draws() {
 
 #[test]
 fn the_light_may_stand_anywhere() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scene = boxed("teapot?tess=4");
     let quick = quick_option(&renderer);
-    let coarse = |scene: &Scene| on(&view(scene, [96, 72]), ShadowMapSize::Side256, ShadowTaps::TwentyFive);
-    for (azimuth, elevation) in [(0.0, 90.0), (77.0, -90.0), (0.0, 0.0), (90.0, 0.0), (-180.0, 89.9999), (35_999.0, -35.0)] {
-        let stack = lit(&["shadow"], &[("shadow", "azimuth_deg", azimuth), ("shadow", "elevation_deg", elevation)]);
-        exact(&mut renderer, &scene, &coarse(&scene), &stack, &pinned(quick), &format!("{azimuth} {elevation}"));
+    let coarse = |scene: &Scene| {
+        on(
+            &view(scene, [96, 72]),
+            ShadowMapSize::Side256,
+            ShadowTaps::TwentyFive,
+        )
+    };
+    for (azimuth, elevation) in [
+        (0.0, 90.0),
+        (77.0, -90.0),
+        (0.0, 0.0),
+        (90.0, 0.0),
+        (-180.0, 89.9999),
+        (35_999.0, -35.0),
+    ] {
+        let stack = lit(
+            &["shadow"],
+            &[
+                ("shadow", "azimuth_deg", azimuth),
+                ("shadow", "elevation_deg", elevation),
+            ],
+        );
+        exact(
+            &mut renderer,
+            &scene,
+            &coarse(&scene),
+            &stack,
+            &pinned(quick),
+            &format!("{azimuth} {elevation}"),
+        );
     }
     for (bias, slope) in [(-64.0, 64.0), (64.0, -64.0), (0.0, 0.0)] {
-        let stack = lit(&["shadow"], &[("shadow", "bias", bias), ("shadow", "slope", slope)]);
-        let (_, verdict) = judged(&mut renderer, &scene, &coarse(&scene), &stack, &pinned(quick));
+        let stack = lit(
+            &["shadow"],
+            &[("shadow", "bias", bias), ("shadow", "slope", slope)],
+        );
+        let (_, verdict) = judged(
+            &mut renderer,
+            &scene,
+            &coarse(&scene),
+            &stack,
+            &pinned(quick),
+        );
         let a = &verdict.report;
-        assert!(a.max_color_delta <= 1 && a.wrong_triangles + a.key_outside_bound == 0, "{bias} {slope}: {a:?}");
+        assert!(
+            a.max_color_delta <= 1 && a.wrong_triangles + a.key_outside_bound == 0,
+            "{bias} {slope}: {a:?}"
+        );
     }
 }
 
-/// The light's view drawn as a picture: triangle ids to the sample, keys within their bound, and the map has those keys.
+/// The light's view drawn as a picture: triangle ids to the sample, keys within their bound, and
+/// the map has those keys.
 #[test]
 fn the_map_is_the_picture_that_the_light_sees() {
-    let Some(mut renderer) = renderer() else { return };
-    for (scene, stack) in cases().into_iter().filter(|(scene, _)| scene.triangle_count() > 0) {
-        let view = on(&view(&scene, [64, 48]), ShadowMapSize::Side256, ShadowTaps::One);
-        let capture = captured(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default());
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
+    for (scene, stack) in cases()
+        .into_iter()
+        .filter(|(scene, _)| scene.triangle_count() > 0)
+    {
+        let view = on(
+            &view(&scene, [64, 48]),
+            ShadowMapSize::Side256,
+            ShadowTaps::One,
+        );
+        let capture = captured(
+            &mut renderer,
+            &scene,
+            &view,
+            &stack,
+            &AccuracyRequest::default(),
+        );
         let map = capture.geometry.shadow_map.expect("there is a map");
-        let (light, casting) = (stack.light_view(&scene, &view).expect("there is a light"), stack.shadow_casters());
-        let (seen, verdict) = judged(&mut renderer, &scene, &light, &casting, &pinned(Visibility::Split32));
+        let (light, casting) = (
+            stack.light_view(&scene, &view).expect("there is a light"),
+            stack.shadow_casters(),
+        );
+        let (seen, verdict) = judged(
+            &mut renderer,
+            &scene,
+            &light,
+            &casting,
+            &pinned(Visibility::Split32),
+        );
         // A map has depths and no triangle ids, and layers a quantum apart are all in the band.
-        verdict.report.within(&Budget::default()).unwrap_or_else(|faults| panic!("{}: {faults}", scene.name));
-        assert!(seen.frame.depth_key == map.depth_keys, "{}: the map has other depths", scene.name);
-        assert_eq!(seen.geometry.vertices, map.geometry.vertices, "{}", scene.name);
-        let own = oracle::shadow_map(&scene, &view, &stack).expect("a scene that fits").expect("there is a light");
-        let differs = own.depth_keys.iter().zip(&map.depth_keys).filter(|(a, b)| (**a == 0) != (**b == 0)).count();
-        assert!(differs * 200 <= own.depth_keys.len(), "{}: {differs} texels of {}", scene.name, own.depth_keys.len());
+        verdict
+            .report
+            .within(&Budget::default())
+            .unwrap_or_else(|faults| panic!("{}: {faults}", scene.name));
+        assert!(
+            seen.frame.depth_key == map.depth_keys,
+            "{}: the map has other depths",
+            scene.name
+        );
+        assert_eq!(
+            seen.geometry.vertices, map.geometry.vertices,
+            "{}",
+            scene.name
+        );
+        let own = oracle::shadow_map(&scene, &view, &stack)
+            .expect("a scene that fits")
+            .expect("there is a light");
+        let differs = own
+            .depth_keys
+            .iter()
+            .zip(&map.depth_keys)
+            .filter(|(a, b)| (**a == 0) != (**b == 0))
+            .count();
+        assert!(
+            differs * 200 <= own.depth_keys.len(),
+            "{}: {differs} texels of {}",
+            scene.name,
+            own.depth_keys.len()
+        );
     }
 }
 
-// ---------------------------------------------------------------- against rays
+// -------- against rays
 
 #[test]
 fn finer_maps_are_nearer_to_the_rays() {
@@ -270,22 +562,41 @@ fn finer_maps_are_nearer_to_the_rays() {
     let stack = lit(&["shadow"], &[]);
     let errors = |map: ShadowMapSize, taps: ShadowTaps| {
         let view = on(&view(&scene, [240, 180]), map, taps);
-        let triangle_ids = oracle::render(&scene, &view, &stack).expect("a scene that fits").triangle_id;
+        let triangle_ids = oracle::render(&scene, &view, &stack)
+            .expect("a scene that fits")
+            .triangle_id;
         let draws = rasterlab::scene::draw::draws(&scene, &view).expect("a scene that fits");
         let light = oracle::shadow_map(&scene, &view, &stack).expect("a scene that fits");
         let geometry = rasterlab::frame::Geometry {
             shadow_map: light,
-            ..oracle::project(&oracle::Shot::new(&scene, &draws, &view, &Stack::default())).expect("nobody cancels it")
+            ..oracle::project(&oracle::Shot::new(&scene, &draws, &view, &Stack::default()))
+                .expect("nobody cancels it")
         };
-        oracle::shadow_errors(&scene, &view, &stack, &triangle_ids, &geometry).expect("a scene that fits").expect("there is a light")
+        oracle::shadow_errors(&scene, &view, &stack, &triangle_ids, &geometry)
+            .expect("a scene that fits")
+            .expect("there is a light")
     };
-    let [coarse, usual, fine] =
-        [ShadowMapSize::Side256, ShadowMapSize::Side1024, ShadowMapSize::Side4096].map(|map| errors(map, ShadowTaps::One));
+    let [coarse, usual, fine] = [
+        ShadowMapSize::Side256,
+        ShadowMapSize::Side1024,
+        ShadowMapSize::Side4096,
+    ]
+    .map(|map| errors(map, ShadowTaps::One));
     assert!(coarse.pixels > 10_000 && coarse.pixels == fine.pixels);
-    assert!(coarse.wrong > usual.wrong && usual.wrong > fine.wrong, "{coarse:?} {usual:?} {fine:?}");
-    assert!(coarse.rms > 1.2 * usual.rms && usual.rms > 1.2 * fine.rms, "{coarse:?} {usual:?} {fine:?}");
-    assert!(fine.wrong * 1000 < fine.pixels, "{fine:?}: one in a thousand even with the finest map");
-    // A wider filter is softer than a light without extent, so it errs more in all, and seldom by half.
+    assert!(
+        coarse.wrong > usual.wrong && usual.wrong > fine.wrong,
+        "{coarse:?} {usual:?} {fine:?}"
+    );
+    assert!(
+        coarse.rms > 1.2 * usual.rms && usual.rms > 1.2 * fine.rms,
+        "{coarse:?} {usual:?} {fine:?}"
+    );
+    assert!(
+        fine.wrong * 1000 < fine.pixels,
+        "{fine:?}: one in a thousand even with the finest map"
+    );
+    // A wider filter is softer than a light without extent, so it errs more in all, and seldom by
+    // half.
     let soft = errors(ShadowMapSize::Side1024, ShadowTaps::TwentyFive);
     assert!(soft.wrong < 2 * usual.wrong, "{usual:?} {soft:?}");
 }
@@ -297,7 +608,12 @@ fn rays_know_a_plate_from_the_sky() {
     let view = slanted(&scene, [120, 90]);
     let frame = oracle::render_reference(&scene, &view, &stack).expect("a scene that fits");
     let mut counts = [0, 0];
-    for (i, color) in frame.color.iter().enumerate().filter(|(i, _)| frame.triangle_id[*i] < 2) {
+    for (i, color) in frame
+        .color
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| frame.triangle_id[*i] < 2)
+    {
         let at = on_floor(&view, i % 120, i / 120);
         let inside = 0.6 - at.x.abs().max(at.z.abs());
         if inside.abs() > 1e-3 {
@@ -308,21 +624,34 @@ fn rays_know_a_plate_from_the_sky() {
     assert!(counts.iter().all(|&count| count > 100), "{counts:?}");
 }
 
-// ---------------------------------------------------------------- what is not there
+// -------- what is not there
 
 #[test]
 fn a_preset_without_a_light_has_no_pass_buffer_or_text_of_it() {
-    let key = |effects: Vec<Arc<Effect>>| KernelKey::complete(Fetch::Indexed, Visibility::Split32, effects);
+    let key = |effects: Vec<Arc<Effect>>| {
+        KernelKey::complete(Fetch::Indexed, Visibility::Split32, effects)
+    };
     let shadow = Effect::find("shadow").expect("an effect");
-    for (effects, is_there) in
-        [(vec![], false), (vec![Effect::find("lambert").expect("an effect").clone()], false), (vec![shadow.clone()], true)]
-    {
+    for (effects, is_there) in [
+        (vec![], false),
+        (
+            vec![Effect::find("lambert").expect("an effect").clone()],
+            false,
+        ),
+        (vec![shadow.clone()], true),
+    ] {
         let key = key(effects);
         for pass in key.frame() {
-            let linked = link::link(&Library::Embedded, &pass.path(), &key, &key.variants(pass)).expect("links");
+            let linked = link::link(&Library::Embedded, &pass.path(), &key, &key.variants(pass))
+                .expect("links");
             let has_text = linked.text.contains("shadow_map");
             assert!(!has_text || is_there, "{} of {key}", pass.label());
-            assert_eq!(has_text, is_there && pass.stem() == "resolve", "{} of {key}", pass.label());
+            assert_eq!(
+                has_text,
+                is_there && pass.stem() == "resolve",
+                "{} of {key}",
+                pass.label()
+            );
         }
     }
     let Some(gpu) = own_gpu() else { return };
@@ -330,39 +659,91 @@ fn a_preset_without_a_light_has_no_pass_buffer_or_text_of_it() {
     // Small triangles, whose kernels are the same in every map.
     let scene = scene("sphere?triangles=5000");
     let view = view(&scene, [64, 48]);
-    captured(&mut renderer, &scene, &view, &stack(&["shadow"]), &AccuracyRequest::default());
+    captured(
+        &mut renderer,
+        &scene,
+        &view,
+        &stack(&["shadow"]),
+        &AccuracyRequest::default(),
+    );
     let known = renderer.compiled();
-    captured(&mut renderer, &scene, &on(&view, ShadowMapSize::Side512, ShadowTaps::Nine), &stack(&["shadow"]), &AccuracyRequest::default());
-    assert_eq!(renderer.compiled(), known, "another size of map compiles nothing");
+    captured(
+        &mut renderer,
+        &scene,
+        &on(&view, ShadowMapSize::Side512, ShadowTaps::Nine),
+        &stack(&["shadow"]),
+        &AccuracyRequest::default(),
+    );
+    assert_eq!(
+        renderer.compiled(),
+        known,
+        "another size of map compiles nothing"
+    );
 }
 
 #[test]
 fn a_preset_pins_size_and_taps() {
     let pins = PinnedOptions::of(ShadowMapSize::Side2048).with(ShadowTaps::One);
-    let preset = Preset { accuracy: AccuracyRequest { pins, ..AccuracyRequest::default() }, ..Preset::default() };
+    let preset = Preset {
+        accuracy: AccuracyRequest {
+            pins,
+            ..AccuracyRequest::default()
+        },
+        ..Preset::default()
+    };
     let view = preset.view(&scene("teapot?tess=2"), [8, 8]);
-    assert_eq!(view.precision.shadow, ShadowResolution { side: 2048, taps: 1 });
-    assert_eq!(view.precision.shadow.options(), (ShadowMapSize::Side2048, ShadowTaps::One));
+    assert_eq!(
+        view.precision.shadow,
+        ShadowResolution {
+            side: 2048,
+            taps: 1
+        }
+    );
+    assert_eq!(
+        view.precision.shadow.options(),
+        (ShadowMapSize::Side2048, ShadowTaps::One)
+    );
 }
 
 #[test]
 fn walls_catch_shadows_and_cast_none_and_stand_still() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scene = boxed("teapot?tess=4");
-    let walls = u64::from(scene.primitives[scene.instances.last().expect("a room").primitive].vertex_count());
+    let walls = u64::from(
+        scene.primitives[scene.instances.last().expect("a room").primitive].vertex_count(),
+    );
     let from_below = lit(&["shadow"], &[("shadow", "elevation_deg", -50.0)]);
-    let coarse = on(&view(&scene, [96, 72]), ShadowMapSize::Side256, ShadowTaps::Nine);
+    let coarse = on(
+        &view(&scene, [96, 72]),
+        ShadowMapSize::Side256,
+        ShadowTaps::Nine,
+    );
     let mut turned = coarse;
     turned.scene_state.world_from_scene = rasterlab::math::rotation_y(0.7);
-    let (capture, _) = exact(&mut renderer, &scene, &turned, &from_below, &AccuracyRequest::default(), "from below");
+    let (capture, _) = exact(
+        &mut renderer,
+        &scene,
+        &turned,
+        &from_below,
+        &AccuracyRequest::default(),
+        "from below",
+    );
     let map = capture.geometry.shadow_map.expect("there is a map");
-    assert_eq!(map.geometry.vertices.len() as u64 + walls, scene.vertex_count());
+    assert_eq!(
+        map.geometry.vertices.len() as u64 + walls,
+        scene.vertex_count()
+    );
     assert!(map.depth_keys.contains(&0) && map.depth_keys.iter().any(|&key| key != 0));
     let draws = rasterlab::scene::draw::draws(&scene, &turned).expect("a scene that fits");
-    assert_eq!(draws.last().expect("a room").world_from_object, DMat4::IDENTITY);
+    assert_eq!(
+        draws.last().expect("a room").world_from_object,
+        DMat4::IDENTITY
+    );
 }
 
-// ---------------------------------------------------------------- mutants
+// -------- mutants
 
 #[test]
 fn mistakes_in_the_light_are_found() {
@@ -370,22 +751,54 @@ fn mistakes_in_the_light_are_found() {
     let gpu = usual.gpu().clone();
     drop(usual);
     let scene = boxed("knot?tess=6");
-    let sweep = [("explode", "pattern", 1.0), ("explode", "width", 1.0), ("explode", "front", 0.5)];
+    let sweep = [
+        ("explode", "pattern", 1.0),
+        ("explode", "width", 1.0),
+        ("explode", "front", 0.5),
+    ];
     let (plain, parted) = (lit(&["shadow"], &[]), lit(&["explode", "shadow"], &sweep));
     for (from, to, stack) in [
-        ("texel.y * side + texel.x", "texel.x * side + texel.y", &plain),
-        ("vec2i(first) + texel", "vec2i(first) + texel + vec2i(1, 0)", &plain),
-        ("atomicMax(&depth_keys[pixel], key)", "atomicMin(&depth_keys[pixel], key)", &plain),
-        ("picture_from_world * vec4f(center, 1.0)", "picture_from_world * vec4f(center.zyx, 1.0)", &parted),
+        (
+            "texel.y * side + texel.x",
+            "texel.x * side + texel.y",
+            &plain,
+        ),
+        (
+            "vec2i(first) + texel",
+            "vec2i(first) + texel + vec2i(1, 0)",
+            &plain,
+        ),
+        (
+            "atomicMax(&depth_keys[pixel], key)",
+            "atomicMin(&depth_keys[pixel], key)",
+            &plain,
+        ),
+        (
+            "picture_from_world * vec4f(center, 1.0)",
+            "picture_from_world * vec4f(center.zyx, 1.0)",
+            &parted,
+        ),
     ] {
         if from == "texel.y * side + texel.x" && !gpu.caps.tuning().buffered_shadow_map {
             continue;
         }
         let mutated = mutated(from, to);
         let mut renderer = Renderer::with_library(gpu.clone(), mutated.shaders());
-        let view = on(&view(&scene, [120, 90]), ShadowMapSize::Side512, ShadowTaps::Nine);
-        let option = if options(&renderer).contains(&Visibility::Packed64) { Visibility::Packed64 } else { Visibility::Split32 };
+        let view = on(
+            &view(&scene, [120, 90]),
+            ShadowMapSize::Side512,
+            ShadowTaps::Nine,
+        );
+        let option = if options(&renderer).contains(&Visibility::Packed64) {
+            Visibility::Packed64
+        } else {
+            Visibility::Split32
+        };
         let (_, verdict) = judged(&mut renderer, &scene, &view, stack, &pinned(option));
-        assert!(exactness(&verdict.report).is_err(), "{from:?} as {to:?} passes: {:?}", verdict.report);
+        assert!(
+            exactness(&verdict.report).is_err(),
+            "{from:?} as {to:?} passes: {:?}",
+            verdict.report
+        );
     }
 }

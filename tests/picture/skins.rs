@@ -1,5 +1,5 @@
-//! Promise: skins, morph targets and clips deform meshes as in glTF and the oracle, with both options of skinning, and mistakes in
-//! the pass are found. The second half needs an adapter.
+//! Promise: skins, morph targets and clips deform meshes as in glTF and the oracle, with both
+//! options of skinning, and mistakes in the pass are found. The second half needs an adapter.
 
 use std::sync::Arc;
 
@@ -25,13 +25,30 @@ use rasterlab::{
 use crate::common::*;
 
 /// The default view of a scene at a time of one or two clips.
-fn moment(scene: &Scene, clips: [&str; 2], time_s: f64, skinning: Skinning, size: [u32; 2]) -> View {
+fn moment(
+    scene: &Scene,
+    clips: [&str; 2],
+    time_s: f64,
+    skinning: Skinning,
+    size: [u32; 2],
+) -> View {
     let [clip, other] = clips.map(str::to_owned);
     let blend = if other.is_empty() { 0.0 } else { 0.5 };
     Preset {
-        playback: ClipPlayback { clip, second_clip: other, blend, ..ClipPlayback::default() },
-        clock: Clock { time_s, ..Clock::default() },
-        accuracy: AccuracyRequest { pins: PinnedOptions::of(skinning), ..AccuracyRequest::default() },
+        playback: ClipPlayback {
+            clip,
+            second_clip: other,
+            blend,
+            ..ClipPlayback::default()
+        },
+        clock: Clock {
+            time_s,
+            ..Clock::default()
+        },
+        accuracy: AccuracyRequest {
+            pins: PinnedOptions::of(skinning),
+            ..AccuracyRequest::default()
+        },
         ..Preset::default()
     }
     .view(scene, size)
@@ -39,9 +56,14 @@ fn moment(scene: &Scene, clips: [&str; 2], time_s: f64, skinning: Skinning, size
 
 /// Every vertex of all draws as the oracle deforms it, rounded to f32: position and normal.
 fn deformed(scene: &Scene, view: &View) -> Vec<[f32; 6]> {
-    oracle::project(&oracle::Shot::new(scene, &draws(scene, view).expect("a builtin fits"), view, &Stack::default()))
-        .expect("nobody cancels it")
-        .deformed
+    oracle::project(&oracle::Shot::new(
+        scene,
+        &draws(scene, view).expect("a builtin fits"),
+        view,
+        &Stack::default(),
+    ))
+    .expect("nobody cancels it")
+    .deformed
 }
 
 fn place(deformed: &[f32; 6]) -> DVec3 {
@@ -52,7 +74,7 @@ fn normal(deformed: &[f32; 6]) -> DVec3 {
     DVec3::new(deformed[3].into(), deformed[4].into(), deformed[5].into())
 }
 
-// ---------------------------------------------------------------- the oracle alone
+// -------- the oracle alone
 
 #[test]
 fn a_skeleton_that_stands_as_it_was_bound_leaves_every_bit() {
@@ -75,26 +97,59 @@ fn carried(scene: &Scene, place: DMat4) -> Scene {
     for node in &mut scene.rig.nodes {
         node.parent = Some(node.parent.map_or(0, |parent| parent + 1));
     }
-    scene.rig.nodes.insert(0, Node { name: "carrier".into(), parent: None, rest: LocalTransform::Matrix(place), weights: Vec::new() });
-    scene.rig.skins.iter_mut().flat_map(|skin| &mut skin.joints).for_each(|joint| *joint += 1);
-    scene.rig.clips.iter_mut().flat_map(|clip| &mut clip.channels).for_each(|channel| channel.node += 1);
-    scene.instances.iter_mut().for_each(|instance| instance.node = instance.node.map(|node| node + 1));
+    scene.rig.nodes.insert(
+        0,
+        Node {
+            name: "carrier".into(),
+            parent: None,
+            rest: LocalTransform::Matrix(place),
+            weights: Vec::new(),
+        },
+    );
+    scene
+        .rig
+        .skins
+        .iter_mut()
+        .flat_map(|skin| &mut skin.joints)
+        .for_each(|joint| *joint += 1);
+    scene
+        .rig
+        .clips
+        .iter_mut()
+        .flat_map(|clip| &mut clip.channels)
+        .for_each(|channel| channel.node += 1);
+    scene
+        .instances
+        .iter_mut()
+        .for_each(|instance| instance.node = instance.node.map(|node| node + 1));
     scene
 }
 
 #[test]
 fn joints_that_all_move_alike_move_the_mesh_as_a_whole() {
     let still = scene("tentacle?tess=3");
-    let rigid = DMat4::from_rotation_translation(DQuat::from_axis_angle(DVec3::new(2.0, -1.0, 2.0) / 3.0, 1.9), DVec3::new(3.0, -4.0, 5.0));
+    let rigid = DMat4::from_rotation_translation(
+        DQuat::from_axis_angle(DVec3::new(2.0, -1.0, 2.0) / 3.0, 1.9),
+        DVec3::new(3.0, -4.0, 5.0),
+    );
     let moved = carried(&still, rigid);
     for skinning in Skinning::ALL {
         // At rest, and deformed as far as possible.
         for clips in [["", ""], ["Curl", "Breathe"]] {
-            let [a, b] = [&*still, &moved].map(|scene| deformed(scene, &moment(scene, clips, 1.5, *skinning, [64, 64])));
+            let [a, b] = [&*still, &moved]
+                .map(|scene| deformed(scene, &moment(scene, clips, 1.5, *skinning, [64, 64])));
             for (a, b) in a.iter().zip(&b) {
                 // Matrices and both vertices are rounded to f32, at some 8 m from the origin.
-                assert!(rigid.transform_point3(place(a)).distance(place(b)) < 4e-6, "{}: {a:?} {b:?}", skinning.name());
-                assert!(rigid.transform_vector3(normal(a)).distance(normal(b)) < 4e-6, "{}: {a:?} {b:?}", skinning.name());
+                assert!(
+                    rigid.transform_point3(place(a)).distance(place(b)) < 4e-6,
+                    "{}: {a:?} {b:?}",
+                    skinning.name()
+                );
+                assert!(
+                    rigid.transform_vector3(normal(a)).distance(normal(b)) < 4e-6,
+                    "{}: {a:?} {b:?}",
+                    skinning.name()
+                );
             }
         }
     }
@@ -116,8 +171,17 @@ fn the_order_in_which_joints_are_named_does_not_matter() {
         }
     }
     for skinning in Skinning::ALL {
-        let [a, b] = [&*scene, &turned].map(|scene| deformed(scene, &moment(scene, ["Sway", "Curl"], 1.1, *skinning, [64, 64])));
-        let furthest = a.iter().zip(&b).map(|(a, b)| place(a).distance(place(b))).fold(0.0, f64::max);
+        let [a, b] = [&*scene, &turned].map(|scene| {
+            deformed(
+                scene,
+                &moment(scene, ["Sway", "Curl"], 1.1, *skinning, [64, 64]),
+            )
+        });
+        let furthest = a
+            .iter()
+            .zip(&b)
+            .map(|(a, b)| place(a).distance(place(b)))
+            .fold(0.0, f64::max);
         assert!(furthest < 5e-7, "{}: {furthest}", skinning.name());
     }
 }
@@ -128,14 +192,24 @@ fn dual_quaternions_keep_lengths_under_a_twist_where_the_linear_blend_does_not()
     let away = |skinning| {
         let view = moment(&scene, ["Twist", ""], 1.0, skinning, [64, 64]);
         let shrunk = |(vertex, deformed): (usize, &[f32; 6])| {
-            let [x, y, z] = scene.primitives[0].position(&scene, vertex as u32).map(f64::from);
-            // A twist turns every vertex about the axis: its distance from there stays, and its height.
+            let [x, y, z] = scene.primitives[0]
+                .position(&scene, vertex as u32)
+                .map(f64::from);
+            // A twist turns every vertex about the axis: its distance from there stays, and its
+            // height.
             let lost = x.hypot(z) - place(deformed).x.hypot(place(deformed).z);
             (lost / x.hypot(z).max(1e-3), (place(deformed).y - y).abs())
         };
-        let all: Vec<(f64, f64)> = deformed(&scene, &view).iter().enumerate().map(shrunk).collect();
+        let all: Vec<(f64, f64)> = deformed(&scene, &view)
+            .iter()
+            .enumerate()
+            .map(shrunk)
+            .collect();
         let largest = |pick: fn(&(f64, f64)) -> f64| all.iter().map(pick).fold(0.0, f64::max);
-        (largest(|(lost, _)| lost.abs()), largest(|(_, risen)| *risen))
+        (
+            largest(|(lost, _)| lost.abs()),
+            largest(|(_, risen)| *risen),
+        )
     };
     let (dual, linear) = (away(Skinning::Dual), away(Skinning::Linear));
     assert!(dual.0 < 1e-6 && dual.1 < 1e-6, "{dual:?}");
@@ -150,23 +224,46 @@ fn the_linear_blend_loses_volume_and_dual_quaternions_hardly_any() {
         oracle::volume(&scene, &draws(&scene, &view).expect("it fits"))
     };
     let rest = volume("", Skinning::Linear);
-    let [linear, dual] = [Skinning::Linear, Skinning::Dual].map(|skinning| volume("Twist", skinning) / rest);
-    assert!(rest > 0.1 && (dual - 1.0).abs() < 0.01 && linear < 0.93, "rest {rest} m³, dual {dual}, linear {linear}");
+    let [linear, dual] =
+        [Skinning::Linear, Skinning::Dual].map(|skinning| volume("Twist", skinning) / rest);
+    assert!(
+        rest > 0.1 && (dual - 1.0).abs() < 0.01 && linear < 0.93,
+        "rest {rest} m³, dual {dual}, linear {linear}"
+    );
 }
 
 #[test]
 fn a_deformed_mesh_stays_in_its_box() {
-    for query in ["tentacle?tess=3", "tentacle?tess=2&influences=8&joints=20", "tentacle?tess=1&instances=5"] {
+    for query in [
+        "tentacle?tess=3",
+        "tentacle?tess=2&influences=8&joints=20",
+        "tentacle?tess=1&instances=5",
+    ] {
         let scene = scene(query);
-        for (clip, skinning) in
-            ["Sway", "Curl", "Twist", "Breathe"].into_iter().flat_map(|clip| Skinning::ALL.iter().map(move |s| (clip, *s)))
+        for (clip, skinning) in ["Sway", "Curl", "Twist", "Breathe"]
+            .into_iter()
+            .flat_map(|clip| Skinning::ALL.iter().map(move |s| (clip, *s)))
         {
             for step in 0..7 {
-                let view = moment(&scene, [clip, ""], 0.6 * f64::from(step), skinning, [64, 64]);
-                let bounds = view.scene_state.pose.as_ref().expect("it has a rig").bounds(&scene);
+                let view = moment(
+                    &scene,
+                    [clip, ""],
+                    0.6 * f64::from(step),
+                    skinning,
+                    [64, 64],
+                );
+                let bounds = view
+                    .scene_state
+                    .pose
+                    .as_ref()
+                    .expect("it has a rig")
+                    .bounds(&scene);
                 for deformed in deformed(&scene, &view) {
                     let p = place(&deformed);
-                    assert!(p.cmpge(bounds.min - 1e-6).all() && p.cmple(bounds.max + 1e-6).all(), "{query} {clip} {p} {bounds:?}");
+                    assert!(
+                        p.cmpge(bounds.min - 1e-6).all() && p.cmple(bounds.max + 1e-6).all(),
+                        "{query} {clip} {p} {bounds:?}"
+                    );
                 }
             }
         }
@@ -178,38 +275,97 @@ fn a_deformed_mesh_stays_in_its_box() {
 fn a_click_lands_on_the_deformed_mesh() {
     let scene = scene("tentacle?tess=4&influences=8");
     let view = moment(&scene, ["Curl", "Breathe"], 1.4, Skinning::Linear, [64, 48]);
-    let deform: &Deform = view.scene_state.pose.as_ref().and_then(|pose| pose.deform(0)).expect("it bends");
+    let deform: &Deform = view
+        .scene_state
+        .pose
+        .as_ref()
+        .and_then(|pose| pose.deform(0))
+        .expect("it bends");
     for (vertex, deformed) in deformed(&scene, &view).iter().enumerate() {
-        assert!(deform.position(&scene, &scene.primitives[0], vertex as u32).distance(place(deformed)) < 3e-7);
+        assert!(
+            deform
+                .position(&scene, &scene.primitives[0], vertex as u32)
+                .distance(place(deformed))
+                < 3e-7
+        );
     }
     let frame = oracle::render(&scene, &view, &Stack::default()).expect("it fits");
-    let covered = frame.triangle_id.iter().position(|triangle_id| *triangle_id != rasterlab::frame::NO_TRIANGLE).expect("something shows");
-    let screen = glam::DVec2::new((covered % 64) as f64 + 0.5, (covered / 64) as f64 + 0.5) / glam::DVec2::new(64.0, 48.0);
+    let covered = frame
+        .triangle_id
+        .iter()
+        .position(|triangle_id| *triangle_id != rasterlab::frame::NO_TRIANGLE)
+        .expect("something shows");
+    let screen = glam::DVec2::new((covered % 64) as f64 + 0.5, (covered / 64) as f64 + 0.5)
+        / glam::DVec2::new(64.0, 48.0);
     assert!(rasterlab::scene::pick::pick(&scene, &view, screen).is_some());
 }
 
 #[test]
 fn a_preset_names_its_clips_and_an_unknown_clip_lists_those_there_are() {
     let scene = scene("tentacle?tess=1");
-    let play = |clip: &str, other: &str| ClipPlayback { clip: clip.into(), second_clip: other.into(), ..ClipPlayback::default() };
+    let play = |clip: &str, other: &str| ClipPlayback {
+        clip: clip.into(),
+        second_clip: other.into(),
+        ..ClipPlayback::default()
+    };
     assert_eq!(play("Sway", "#2").check(&scene), Ok(()));
     let known = "; it has \"Sway\", \"Curl\", \"Twist\", \"Breathe\"".to_owned();
     assert_eq!(
         play("Sway", "sway").check(&scene),
-        Err(MissingInScene { key: "scene.second_clip", what: "clip", name: "sway".into(), known })
+        Err(MissingInScene {
+            key: "scene.second_clip",
+            what: "clip",
+            name: "sway".into(),
+            known
+        })
     );
     assert_eq!(
-        play("Walk", "").check(&crate::common::scene("teapot?tess=1")).unwrap_err().to_string(),
+        play("Walk", "")
+            .check(&crate::common::scene("teapot?tess=1"))
+            .unwrap_err()
+            .to_string(),
         "scene.clip: the scene has no clip \"Walk\"; it has no clips"
     );
-    let at = |play: ClipPlayback, time_s: f64| Preset { playback: play, clock: Clock { time_s, ..Clock::default() }, ..Preset::default() };
+    let at = |play: ClipPlayback, time_s: f64| Preset {
+        playback: play,
+        clock: Clock {
+            time_s,
+            ..Clock::default()
+        },
+        ..Preset::default()
+    };
     let moving = at(play("Sway", ""), 1.0);
     assert!(moving.is_moving() && moving.pose(&scene) != at(play("Sway", ""), 2.0).pose(&scene));
-    let held = |time_s| at(ClipPlayback { clip_time_s: Some(0.5), ..play("Sway", "") }, time_s);
+    let held = |time_s| {
+        at(
+            ClipPlayback {
+                clip_time_s: Some(0.5),
+                ..play("Sway", "")
+            },
+            time_s,
+        )
+    };
     assert!(!held(1.0).is_moving() && held(1.0).pose(&scene) == held(2.0).pose(&scene));
-    assert_eq!(at(ClipPlayback { speed: 0.5, ..play("Sway", "") }, 1.0).pose(&scene), held(0.0).pose(&scene));
-    assert_eq!(at(play("Sway", ""), 1.0).pose(&scene), at(play("Sway", ""), 4e6 + 1.0).pose(&scene), "a clip loops forever");
-    assert_eq!(Preset::default().pose(&crate::common::scene("teapot?tess=1")), None);
+    assert_eq!(
+        at(
+            ClipPlayback {
+                speed: 0.5,
+                ..play("Sway", "")
+            },
+            1.0
+        )
+        .pose(&scene),
+        held(0.0).pose(&scene)
+    );
+    assert_eq!(
+        at(play("Sway", ""), 1.0).pose(&scene),
+        at(play("Sway", ""), 4e6 + 1.0).pose(&scene),
+        "a clip loops forever"
+    );
+    assert_eq!(
+        Preset::default().pose(&crate::common::scene("teapot?tess=1")),
+        None
+    );
 }
 
 #[test]
@@ -220,8 +376,16 @@ fn nodes_that_a_clip_moves_are_placed_again() {
     scene.rig = tower.rig;
     scene.instances[0].node = Some(1);
     let view = |time_s| {
-        let motion = Motion { clip: scene.rig.clip("Sway"), time_s, ..Motion::default() };
-        let mut view = camera_view(&scene, &rasterlab::scene::camera::Camera::default(), [64, 48]);
+        let motion = Motion {
+            clip: scene.rig.clip("Sway"),
+            time_s,
+            ..Motion::default()
+        };
+        let mut view = camera_view(
+            &scene,
+            &rasterlab::scene::camera::Camera::default(),
+            [64, 48],
+        );
         view.scene_state.pose = Some(Arc::new(Pose::at(&scene, &motion)));
         view
     };
@@ -229,30 +393,56 @@ fn nodes_that_a_clip_moves_are_placed_again() {
     assert_ne!(a[0].world_from_object, b[0].world_from_object);
     assert_eq!(a[1], b[1], "an instance without a node does not move");
     let upper = scene.rig.nodes[0].rest.matrix();
-    assert_eq!(rounded_columns(&upper), rounded_columns(&LocalTransform::Trs(Trs::default()).matrix()));
+    assert_eq!(
+        rounded_columns(&upper),
+        rounded_columns(&LocalTransform::Trs(Trs::default()).matrix())
+    );
 }
 
-// ---------------------------------------------------------------- on the adapter
+// -------- on the adapter
 
 /// Checks every picture of this file.
-fn insist(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View, stack: &Stack, option: Visibility, what: &str) -> f64 {
+fn insist(
+    renderer: &mut Renderer,
+    scene: &Arc<Scene>,
+    view: &View,
+    stack: &Stack,
+    option: Visibility,
+    what: &str,
+) -> f64 {
     let (_, verdict) = exact(renderer, scene, view, stack, &pinned(option), what);
     let a = &verdict.report;
-    assert!(a.deformed_vertices > 0 && a.max_deform_px < 0.01 && a.max_deform_ulp < 100.0, "{what}: {a:?}");
+    assert!(
+        a.deformed_vertices > 0 && a.max_deform_px < 0.01 && a.max_deform_ulp < 100.0,
+        "{what}: {a:?}"
+    );
     a.max_deform_ulp
 }
 
 #[test]
 fn every_option_deforms_as_the_oracle_does() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let stack = stack(&["lambert", "depth"]);
     let mut largest: f64 = 0.0;
-    for query in ["tentacle?tess=4", "tentacle?tess=3&influences=8&joints=16", "tentacle?tess=2&influences=1&instances=7"] {
+    for query in [
+        "tentacle?tess=4",
+        "tentacle?tess=3&influences=8&joints=16",
+        "tentacle?tess=2&influences=1&instances=7",
+    ] {
         let scene = scene(query);
-        for (clips, time_s) in
-            [(["", ""], 0.0), (["Sway", ""], 0.9), (["Curl", "Breathe"], 1.4), (["Twist", ""], 1.0), (["Breathe", ""], 2.0)]
-        {
-            for (skinning, option) in Skinning::ALL.iter().zip(options(&renderer).into_iter().cycle()) {
+        for (clips, time_s) in [
+            (["", ""], 0.0),
+            (["Sway", ""], 0.9),
+            (["Curl", "Breathe"], 1.4),
+            (["Twist", ""], 1.0),
+            (["Breathe", ""], 2.0),
+        ] {
+            for (skinning, option) in Skinning::ALL
+                .iter()
+                .zip(options(&renderer).into_iter().cycle())
+            {
                 let view = moment(&scene, clips, time_s, *skinning, [160, 120]);
                 let what = format!("{query} {clips:?} {} {}", skinning.name(), option.name());
                 largest = largest.max(insist(&mut renderer, &scene, &view, &stack, option, &what));
@@ -264,22 +454,38 @@ fn every_option_deforms_as_the_oracle_does() {
 
 #[test]
 fn effects_work_on_deformed_meshes() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scene = scene("tentacle?tess=4");
     for skinning in Skinning::ALL {
         let view = moment(&scene, ["Curl", "Breathe"], 1.3, *skinning, [160, 120]);
-        for effects in
-            [&["explode", "facet"][..], &["wobble", "lambert"], &["inflate", "normals"], &["dissolve", "lambert"], &["xray"], &["points"]]
-        {
+        for effects in [
+            &["explode", "facet"][..],
+            &["wobble", "lambert"],
+            &["inflate", "normals"],
+            &["dissolve", "lambert"],
+            &["xray"],
+            &["points"],
+        ] {
             let what = format!("{effects:?} {}", skinning.name());
-            insist(&mut renderer, &scene, &view, &stack(effects), Visibility::Split32, &what);
+            insist(
+                &mut renderer,
+                &scene,
+                &view,
+                &stack(effects),
+                Visibility::Split32,
+                &what,
+            );
         }
     }
 }
 
 #[test]
 fn a_camera_among_the_joints_is_clipped_like_any() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scene = scene("tentacle?tess=4&instances=9");
     let camera = rasterlab::scene::camera::Camera {
         eye: DVec3::new(0.1, 0.8, 0.1),
@@ -287,19 +493,56 @@ fn a_camera_among_the_joints_is_clipped_like_any() {
         near_m: 0.05,
         ..rasterlab::scene::camera::Camera::default()
     };
-    let play = ClipPlayback { clip: "Sway".into(), ..ClipPlayback::default() };
-    let preset = Preset { camera: Some(camera), playback: play, clock: Clock { time_s: 0.7, ..Clock::default() }, ..Preset::default() };
+    let play = ClipPlayback {
+        clip: "Sway".into(),
+        ..ClipPlayback::default()
+    };
+    let preset = Preset {
+        camera: Some(camera),
+        playback: play,
+        clock: Clock {
+            time_s: 0.7,
+            ..Clock::default()
+        },
+        ..Preset::default()
+    };
     let view = preset.view(&scene, [160, 120]);
-    let (capture, verdict) = exact(&mut renderer, &scene, &view, &stack(&["lambert"]), &pinned(Visibility::Split32), "inside");
-    assert!(capture.frame.counters.clipped > 0 && verdict.report.deformed_vertices > 0, "{:?}", capture.frame.counters);
+    let (capture, verdict) = exact(
+        &mut renderer,
+        &scene,
+        &view,
+        &stack(&["lambert"]),
+        &pinned(Visibility::Split32),
+        "inside",
+    );
+    assert!(
+        capture.frame.counters.clipped > 0 && verdict.report.deformed_vertices > 0,
+        "{:?}",
+        capture.frame.counters
+    );
 }
 
 #[test]
 fn a_thousand_skinned_instances_are_exact() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scene = scene("tentacle?tess=1&instances=1000");
-    let view = moment(&scene, ["Sway", "Breathe"], 1.7, Skinning::Linear, [160, 120]);
-    insist(&mut renderer, &scene, &view, &stack(&["lambert"]), Visibility::Split32, "a thousand");
+    let view = moment(
+        &scene,
+        ["Sway", "Breathe"],
+        1.7,
+        Skinning::Linear,
+        [160, 120],
+    );
+    insist(
+        &mut renderer,
+        &scene,
+        &view,
+        &stack(&["lambert"]),
+        Visibility::Split32,
+        "a thousand",
+    );
     let passes = renderer.explain().passes;
     assert_eq!(passes[0].name, "deform", "{passes:?}");
 }
@@ -323,45 +566,90 @@ fn careless() -> Arc<Scene> {
 
 #[test]
 fn weights_that_are_zero_or_do_not_sum_to_one_are_put_right_alike() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     let scene = careless();
     for skinning in Skinning::ALL {
         let view = moment(&scene, ["Curl", ""], 1.2, *skinning, [160, 120]);
-        insist(&mut renderer, &scene, &view, &stack(&["lambert"]), Visibility::Split32, skinning.name());
+        insist(
+            &mut renderer,
+            &scene,
+            &view,
+            &stack(&["lambert"]),
+            Visibility::Split32,
+            skinning.name(),
+        );
     }
 }
 
 #[test]
 fn quantized_positions_are_drawn_and_deformed_like_any() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
     for normalized in [false, true] {
         let mut scene = (*scene("tentacle?tess=3")).clone();
         let primitive = scene.primitives[0].clone();
         let offset = scene.vertex_bytes.len() as u32;
         let one = if normalized { 32_767.0 / 2.5 } else { 2_000.0 };
         for vertex in 0..primitive.vertex_count() {
-            let place = primitive.position(&scene, vertex).map(|v| (f64::from(v) * one).round() as i16);
-            scene.vertex_bytes.extend(place.iter().chain([&0]).flat_map(|v| v.to_le_bytes()));
+            let place = primitive
+                .position(&scene, vertex)
+                .map(|v| (f64::from(v) * one).round() as i16);
+            scene
+                .vertex_bytes
+                .extend(place.iter().chain([&0]).flat_map(|v| v.to_le_bytes()));
         }
         let count = primitive.vertex_count();
-        scene.primitives[0].positions =
-            Accessor { offset, stride: 8, component_type: ComponentType::I16, components: 3, normalized, count };
-        // Morph targets and joints are in meters: the quantized mesh is rigid and scaled by its instance.
+        scene.primitives[0].positions = Accessor {
+            offset,
+            stride: 8,
+            component_type: ComponentType::I16,
+            components: 3,
+            normalized,
+            count,
+        };
+        // Morph targets and joints are in meters: the quantized mesh is rigid and scaled by its
+        // instance.
         let scale = if normalized { 2.5 } else { 1.0 / 2_000.0 };
         let mut placed = scene.clone();
         placed.rig = Default::default();
-        placed.instances = vec![rasterlab::scene::Instance::fixed(0, DMat4::from_scale(DVec3::splat(scale)))];
+        placed.instances = vec![rasterlab::scene::Instance::fixed(
+            0,
+            DMat4::from_scale(DVec3::splat(scale)),
+        )];
         placed.primitives[0].deformation = Default::default();
         placed.primitives[0].bounds.min *= 1.1 / scale;
         placed.primitives[0].bounds.max *= 1.1 / scale;
         placed.primitives[0].longest_edge *= 1.1 / scale;
         let placed = Arc::new(placed);
         let view = crate::common::view(&placed, [160, 120]);
-        exact(&mut renderer, &placed, &view, &stack(&["lambert"]), &pinned(Visibility::Split32), "placed");
+        exact(
+            &mut renderer,
+            &placed,
+            &view,
+            &stack(&["lambert"]),
+            &pinned(Visibility::Split32),
+            "placed",
+        );
         if normalized {
             let scene = Arc::new(scene);
-            let view = moment(&scene, ["Curl", "Breathe"], 1.2, Skinning::Linear, [160, 120]);
-            insist(&mut renderer, &scene, &view, &stack(&["lambert"]), Visibility::Split32, "deformed");
+            let view = moment(
+                &scene,
+                ["Curl", "Breathe"],
+                1.2,
+                Skinning::Linear,
+                [160, 120],
+            );
+            insist(
+                &mut renderer,
+                &scene,
+                &view,
+                &stack(&["lambert"]),
+                Visibility::Split32,
+                "deformed",
+            );
         }
     }
 }
@@ -372,26 +660,53 @@ fn mistakes_in_the_pass_are_found() {
     let stack = stack(&["lambert"]);
     let scene = careless();
     let mutants = [
-        ("joint off by one", "min(u32(pull_component(format, byte))", "min(u32(pull_component(format, byte)) + 1u"),
+        (
+            "joint off by one",
+            "min(u32(pull_component(format, byte))",
+            "min(u32(pull_component(format, byte)) + 1u",
+        ),
         (
             "only the first four are followed",
             "for (var i = 0u; i < 4u * deforms[deform].sets; i += 1u) {\n        let weight = influence_weight(deform, vertex, i, sum);\n        let row = 3u",
             "for (var i = 0u; i < 4u * min(1u, deforms[deform].sets); i += 1u) {\n        let weight = influence_weight(deform, vertex, i, sum);\n        let row = 3u",
         ),
-        ("normals left as they were", "skinning_normal(skinning, morph_targets_normal(draw, vertex, normal.xyz))", "normal.xyz"),
-        ("a rotation's opposite taken as another", "select(weight, -weight,", "select(weight, weight,"),
+        (
+            "normals left as they were",
+            "skinning_normal(skinning, morph_targets_normal(draw, vertex, normal.xyz))",
+            "normal.xyz",
+        ),
+        (
+            "a rotation's opposite taken as another",
+            "select(weight, -weight,",
+            "select(weight, weight,",
+        ),
     ];
     for (what, from, to) in mutants {
         let mutant = mutated(from, to);
         let mut found = false;
-        for (skinning, clips, time_s) in Skinning::ALL.iter().flat_map(|s| [(*s, ["Curl", "Breathe"], 1.4), (*s, ["Twist", ""], 1.0)]) {
-            // Of a rotation and its opposite, files have either: half of the joints turn a whole turn more.
-            let scene = if what.contains("opposite") { crate::common::scene("tentacle?joints=3&tess=3") } else { scene.clone() };
+        for (skinning, clips, time_s) in Skinning::ALL
+            .iter()
+            .flat_map(|s| [(*s, ["Curl", "Breathe"], 1.4), (*s, ["Twist", ""], 1.0)])
+        {
+            // Of a rotation and its opposite, files have either: half of the joints turn a whole
+            // turn more.
+            let scene = if what.contains("opposite") {
+                crate::common::scene("tentacle?joints=3&tess=3")
+            } else {
+                scene.clone()
+            };
             let view = moment(&scene, clips, time_s, skinning, [120, 90]);
             let mut renderer = Renderer::with_library(gpu.clone(), mutant.shaders());
-            let (_, verdict) = judged(&mut renderer, &scene, &view, &stack, &pinned(Visibility::Split32));
+            let (_, verdict) = judged(
+                &mut renderer,
+                &scene,
+                &view,
+                &stack,
+                &pinned(Visibility::Split32),
+            );
             let faults = verdict.report.within(&Budget::default());
-            found |= faults.is_err_and(|faults| faults.contains("deformed vertices lie outside their bound"));
+            found |= faults
+                .is_err_and(|faults| faults.contains("deformed vertices lie outside their bound"));
         }
         assert!(found, "{what} was not found");
     }

@@ -49,7 +49,8 @@ pub struct BenchRow {
     pub triangles: u64,
     pub option: String,
     pub adapter: String,
-    /// Whole frame, clears and resolve included; none without timestamps or where the row could not run.
+    /// Whole frame, clears and resolve included; none without timestamps or where the row could
+    /// not run.
     pub ms_p50: Option<f64>,
     pub ms_p95: Option<f64>,
     /// Valid samples.
@@ -67,7 +68,11 @@ pub type Judge<'a> = &'a dyn Fn(&Stack, &Capture) -> Verdict;
 
 impl BenchRow {
     fn add_note(&mut self, text: &str) {
-        self.note = Some(self.note.take().map_or_else(|| text.into(), |note| format!("{note}; {text}")));
+        self.note = Some(
+            self.note
+                .take()
+                .map_or_else(|| text.into(), |note| format!("{note}; {text}")),
+        );
     }
 }
 
@@ -79,9 +84,16 @@ const MAX_WARM_UP: Duration = Duration::from_secs(3);
 const SETTLED_ROUNDS: usize = 12;
 const SETTLED: f64 = 0.02;
 
-/// The order of a round: forth and back in turn, so that a clock that drifts in one direction favors nothing.
+/// The order of a round: forth and back in turn, so that a clock that drifts in one direction
+/// favors nothing.
 fn in_turn(entries: usize, round: usize) -> impl Iterator<Item = usize> {
-    (0..entries).map(move |i| if round.is_multiple_of(2) { i } else { entries - 1 - i })
+    (0..entries).map(move |i| {
+        if round.is_multiple_of(2) {
+            i
+        } else {
+            entries - 1 - i
+        }
+    })
 }
 
 /// Something that draws the scene.
@@ -121,7 +133,8 @@ struct Lab<'a> {
     timer: Option<Timer>,
 }
 
-/// Measures every option that the adapter has, and the baselines. Rows keep their order for all figures.
+/// Measures every option that the adapter has, and the baselines. Rows keep their order for all
+/// figures.
 pub fn bench(
     gpu: &Arc<Gpu>,
     preset: &Preset,
@@ -133,7 +146,14 @@ pub fn bench(
 ) -> Result<Vec<BenchRow>, RenderError> {
     let mut lab = Lab::new(gpu, preset, scene, options);
     let (entries, missing) = lab.line_up(scene, judge)?;
-    lab.measure(scene, scene_name, entries, missing, options.samples, progress)
+    lab.measure(
+        scene,
+        scene_name,
+        entries,
+        missing,
+        options.samples,
+        progress,
+    )
 }
 
 /// Measures stacks by name on one scene and camera, interleaved, each on the planned option.
@@ -151,16 +171,33 @@ pub fn bench_stacks(
     for (name, stack) in stacks {
         let mut renderer = Renderer::new(gpu.clone());
         renderer.set_scene(scene).block_on()?;
-        let verdict = judge(stack, &renderer.capture(&lab.view, stack, &AccuracyRequest::default()).block_on()?);
+        let verdict = judge(
+            stack,
+            &renderer
+                .capture(&lab.view, stack, &AccuracyRequest::default())
+                .block_on()?,
+        );
         let contender = Contender::Stacked(name.clone(), Box::new((stack.clone(), renderer)));
         entries.push(Entry::new(contender, (&verdict.report).into()));
     }
-    lab.measure(scene, &scene.name, entries, Vec::new(), options.samples, progress)
+    lab.measure(
+        scene,
+        &scene.name,
+        entries,
+        Vec::new(),
+        options.samples,
+        progress,
+    )
 }
 
 impl<'a> Lab<'a> {
     fn new(gpu: &'a Arc<Gpu>, preset: &'a Preset, scene: &Scene, options: &BenchOptions) -> Self {
-        Self { gpu, preset, view: preset.view(scene, options.size), timer: Timer::new(gpu) }
+        Self {
+            gpu,
+            preset,
+            view: preset.view(scene, options.size),
+            timer: Timer::new(gpu),
+        }
     }
 
     /// Draws all contenders in turn, round after round: whole frames first, then pass by pass.
@@ -177,18 +214,30 @@ impl<'a> Lab<'a> {
         let rounds = samples + samples / 3;
         let all = rounds * entries.len();
         for round in 0..rounds {
-            let detail = if round < samples { Detail::Whole } else { Detail::Passes };
+            let detail = if round < samples {
+                Detail::Whole
+            } else {
+                Detail::Passes
+            };
             for (i, at) in in_turn(entries.len(), round).enumerate() {
                 let entry = &mut entries[at];
                 let times = self.sample(&mut entry.contender, detail, FRAMES_PER_SAMPLE)?;
                 entry.keep(times, detail);
-                progress(&entry.contender.option(), round * entries.len() + i + 1, all);
+                progress(
+                    &entry.contender.option(),
+                    round * entries.len() + i + 1,
+                    all,
+                );
             }
         }
         let row = |option: String, error: ErrorStats, note: Option<String>| BenchRow {
             scene: scene_name.into(),
             triangles: scene.triangle_count()
-                + self.preset.stack.particle_settings().map_or(0, |particle_settings| particle_settings.count.into()),
+                + self
+                    .preset
+                    .stack
+                    .particle_settings()
+                    .map_or(0, |particle_settings| particle_settings.count.into()),
             option,
             adapter: self.gpu.summary.name.clone(),
             ms_p50: None,
@@ -199,33 +248,55 @@ impl<'a> Lab<'a> {
             is_promised: false,
             note,
         };
-        let mut rows: Vec<BenchRow> = entries.into_iter().map(|entry| entry.finish(&row)).collect();
+        let mut rows: Vec<BenchRow> = entries
+            .into_iter()
+            .map(|entry| entry.finish(&row))
+            .collect();
         if !is_settled {
-            rows.iter_mut().for_each(|row| row.add_note("the times did not settle while warming up; compare ratios alone"));
+            rows.iter_mut().for_each(|row| {
+                row.add_note("the times did not settle while warming up; compare ratios alone")
+            });
         }
-        rows.extend(missing.into_iter().map(|(option, why)| row(option, ErrorStats::default(), Some(format!("{scene_name}: {why}")))));
+        rows.extend(missing.into_iter().map(|(option, why)| {
+            row(
+                option,
+                ErrorStats::default(),
+                Some(format!("{scene_name}: {why}")),
+            )
+        }));
         Ok(rows)
     }
 }
 
 impl Lab<'_> {
-    /// Keeps the device busy, then draws all contenders in turn until the time of a round has settled. Returns false if it does not
-    /// settle.
+    /// Keeps the device busy, then draws all contenders in turn until the time of a round has
+    /// settled. Returns false if it does not settle.
     fn warm_up(&mut self, entries: &mut [Entry]) -> Result<bool, RenderError> {
-        warm_up::warm_up(self.gpu, warm_up::FROM_IDLE, entries.len(), async |at, frames| {
-            self.sample(&mut entries[at].contender, Detail::Whole, frames).map(|_| true)
-        })
+        warm_up::warm_up(
+            self.gpu,
+            warm_up::FROM_IDLE,
+            entries.len(),
+            async |at, frames| {
+                self.sample(&mut entries[at].contender, Detail::Whole, frames)
+                    .map(|_| true)
+            },
+        )
         .block_on()?;
         let begin = Instant::now();
         let mut rounds = Vec::new();
-        while rounds.len() < MIN_WARM_UP_ROUNDS || rounds.len() < MAX_WARM_UP_ROUNDS && begin.elapsed() < MAX_WARM_UP {
+        while rounds.len() < MIN_WARM_UP_ROUNDS
+            || rounds.len() < MAX_WARM_UP_ROUNDS && begin.elapsed() < MAX_WARM_UP
+        {
             let mut round_ms = Some(0.0);
             for at in in_turn(entries.len(), rounds.len()) {
-                let times = self.sample(&mut entries[at].contender, Detail::Whole, FRAMES_PER_SAMPLE)?;
+                let times =
+                    self.sample(&mut entries[at].contender, Detail::Whole, FRAMES_PER_SAMPLE)?;
                 round_ms = round_ms.zip(times.total_ms).map(|(sum, ms)| sum + ms);
             }
             // Without timestamps there is nothing to wait for.
-            let Some(round_ms) = round_ms else { return Ok(true) };
+            let Some(round_ms) = round_ms else {
+                return Ok(true);
+            };
             rounds.push(round_ms);
             if timing::is_settled(&rounds, SETTLED_ROUNDS, SETTLED) {
                 return Ok(true);
@@ -236,18 +307,31 @@ impl Lab<'_> {
     }
 
     /// Sets up every contender and measures its error. Second: rows that cannot run, and why.
-    #[allow(clippy::type_complexity, reason = "a pair of lists, named in the line above")]
-    fn line_up(&mut self, scene: &Arc<Scene>, judge: Judge) -> Result<(Vec<Entry>, Vec<(String, String)>), RenderError> {
+    #[allow(
+        clippy::type_complexity,
+        reason = "a pair of lists, named in the line above"
+    )]
+    fn line_up(
+        &mut self,
+        scene: &Arc<Scene>,
+        judge: Judge,
+    ) -> Result<(Vec<Entry>, Vec<(String, String)>), RenderError> {
         let (mut entries, mut missing) = (Vec::new(), Vec::new());
         let mut expected = None;
         for &visibility in Visibility::ALL {
             let mut renderer = Renderer::new(self.gpu.clone());
             renderer.set_scene(scene).block_on()?;
             if !visibility.is_supported(self.gpu.caps.int64_atomics) {
-                missing.push((visibility.name().into(), "packed64 needs 64-bit atomics, which this adapter lacks".into()));
+                missing.push((
+                    visibility.name().into(),
+                    "packed64 needs 64-bit atomics, which this adapter lacks".into(),
+                ));
                 continue;
             }
-            let capture = match renderer.capture(&self.view, &self.preset.stack, &pinned(visibility)).block_on() {
+            let capture = match renderer
+                .capture(&self.view, &self.preset.stack, &pinned(visibility))
+                .block_on()
+            {
                 Err(error) if error.is_unsupported() => {
                     missing.push((visibility.name().into(), error.to_string()));
                     continue;
@@ -255,31 +339,51 @@ impl Lab<'_> {
                 capture => capture?,
             };
             let verdict = judge(&self.preset.stack, &capture);
-            entries.push(Entry::new(Contender::Ours(visibility, Box::new(renderer)), (&verdict.report).into()));
+            entries.push(Entry::new(
+                Contender::Ours(visibility, Box::new(renderer)),
+                (&verdict.report).into(),
+            ));
             expected = Some(verdict.expected);
         }
-        let (Some(expected), Some(key)) = (expected, self.first_key(&entries)) else { return Ok((entries, missing)) };
+        let (Some(expected), Some(key)) = (expected, self.first_key(&entries)) else {
+            return Ok((entries, missing));
+        };
         if key.generated.has_particles {
-            missing.extend(["naive", "hardware"].map(|name| (name.to_owned(), "it draws what a file has, and no particles".to_owned())));
+            missing.extend(["naive", "hardware"].map(|name| {
+                (
+                    name.to_owned(),
+                    "it draws what a file has, and no particles".to_owned(),
+                )
+            }));
             return Ok((entries, missing));
         }
         for viewport in [Viewport::AsWritten, Viewport::Folded] {
             match Naive::new(self.gpu, scene, &self.view, &key, viewport).block_on() {
                 Ok(naive) => {
                     let picture = naive.picture(self.gpu).block_on()?;
-                    entries.push(Entry::new(Contender::Naive(viewport, Box::new(naive)), picture_error(&picture, &expected)));
+                    entries.push(Entry::new(
+                        Contender::Naive(viewport, Box::new(naive)),
+                        picture_error(&picture, &expected),
+                    ));
                 }
-                Err(error) if error.is_unsupported() => missing.push(("naive".into(), error.to_string())),
+                Err(error) if error.is_unsupported() => {
+                    missing.push(("naive".into(), error.to_string()))
+                }
                 Err(error) => return Err(error),
             }
         }
         match Hardware::new(self.gpu, scene, &self.view, &self.preset.stack, &key).block_on() {
             Ok(Ok(hardware)) => {
                 let picture = hardware.picture(self.gpu).block_on()?;
-                entries.push(Entry::new(Contender::Hardware(Box::new(hardware)), picture_error(&picture, &expected)));
+                entries.push(Entry::new(
+                    Contender::Hardware(Box::new(hardware)),
+                    picture_error(&picture, &expected),
+                ));
             }
             Ok(Err(why)) => missing.push(("hardware".into(), why)),
-            Err(error) if error.is_unsupported() => missing.push(("hardware".into(), error.to_string())),
+            Err(error) if error.is_unsupported() => {
+                missing.push(("hardware".into(), error.to_string()))
+            }
             Err(error) => return Err(error),
         }
         Ok((entries, missing))
@@ -293,18 +397,30 @@ impl Lab<'_> {
     }
 
     /// Draws so many frames without a pause, waits, and times the last.
-    fn sample(&mut self, contender: &mut Contender, detail: Detail, frames: usize) -> Result<Times, RenderError> {
+    fn sample(
+        &mut self,
+        contender: &mut Contender,
+        detail: Detail,
+        frames: usize,
+    ) -> Result<Times, RenderError> {
         let ours = match contender {
-            Contender::Ours(visibility, renderer) => Some((renderer.as_mut(), &self.preset.stack, pinned(*visibility))),
+            Contender::Ours(visibility, renderer) => {
+                Some((renderer.as_mut(), &self.preset.stack, pinned(*visibility)))
+            }
             Contender::Stacked(_, own) => Some((&mut own.1, &own.0, AccuracyRequest::default())),
             _ => None,
         };
         if let Some((renderer, stack, accuracy)) = ours {
             for _ in 0..frames {
-                renderer.draw_timed(&self.view, stack, &accuracy, detail, Wait::Simulation).block_on()?;
+                renderer
+                    .draw_timed(&self.view, stack, &accuracy, detail, Wait::Simulation)
+                    .block_on()?;
             }
             let report = renderer.finish().block_on()?;
-            return Ok(Times { total_ms: report.gpu_ms, passes: report.passes });
+            return Ok(Times {
+                total_ms: report.gpu_ms,
+                passes: report.passes,
+            });
         }
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         for frame in 1..=frames {
@@ -318,25 +434,41 @@ impl Lab<'_> {
                 Contender::Ours(..) | Contender::Stacked(..) => {}
             }
         }
-        let staged = Staged::stage(self.gpu, &mut encoder, StatSources::default(), self.timer.as_ref(), None);
+        let staged = Staged::stage(
+            self.gpu,
+            &mut encoder,
+            StatSources::default(),
+            self.timer.as_ref(),
+            None,
+        );
         self.gpu.queue.submit([encoder.finish()]);
         let pending = staged.begin();
         pending.ready(self.gpu).block_on()?;
-        pending.read(self.timer.as_ref()).map(|(_, times)| times).ok_or(RenderError::Lost)
+        pending
+            .read(self.timer.as_ref())
+            .map(|(_, times)| times)
+            .ok_or(RenderError::Lost)
     }
 }
 
 fn pinned(visibility: Visibility) -> AccuracyRequest {
-    AccuracyRequest { pins: PinnedOptions::of(visibility), ..AccuracyRequest::default() }
+    AccuracyRequest {
+        pins: PinnedOptions::of(visibility),
+        ..AccuracyRequest::default()
+    }
 }
 
-/// Error of a picture that has no triangle ids: where it shows something it should not or the reverse, and how far off it is.
+/// Error of a picture that has no triangle ids: where it shows something it should not or the
+/// reverse, and how far off it is.
 fn picture_error(picture: &[[u8; 4]], expected: &Frame) -> ErrorStats {
     let is_drawn = |i: usize| picture[i][3] != 0;
     let is_owned = |i: usize| expected.triangle_id[i] != NO_TRIANGLE;
-    let count = |wrong: &dyn Fn(usize) -> bool| (0..picture.len()).filter(|&i| wrong(i)).count() as u64;
+    let count =
+        |wrong: &dyn Fn(usize) -> bool| (0..picture.len()).filter(|&i| wrong(i)).count() as u64;
     // Only pixels that both drew: a hole is counted as one, not as a color.
-    let both: Vec<usize> = (0..picture.len()).filter(|&i| is_drawn(i) && is_owned(i)).collect();
+    let both: Vec<usize> = (0..picture.len())
+        .filter(|&i| is_drawn(i) && is_owned(i))
+        .collect();
     let opaque = |c: [u8; 4]| [c[0], c[1], c[2], 255];
     let ours: Vec<_> = both.iter().map(|&i| opaque(picture[i])).collect();
     let theirs: Vec<_> = both.iter().map(|&i| opaque(expected.color[i])).collect();
@@ -352,7 +484,13 @@ fn picture_error(picture: &[[u8; 4]], expected: &Frame) -> ErrorStats {
 
 impl Entry {
     fn new(contender: Contender, error: ErrorStats) -> Self {
-        Self { contender, error, whole: Vec::new(), invalid: 0, passes: Vec::new() }
+        Self {
+            contender,
+            error,
+            whole: Vec::new(),
+            invalid: 0,
+            passes: Vec::new(),
+        }
     }
 
     fn keep(&mut self, times: Times, detail: Detail) {
@@ -380,7 +518,11 @@ impl Entry {
         };
         let percentile = |samples: &[f64], p| timing::percentile(samples, p);
         let pass = |(name, samples): (String, Vec<f64>)| {
-            Some(PassTime { name, ms_p50: percentile(&samples, 0.5)?, ms_p95: percentile(&samples, 0.95)? })
+            Some(PassTime {
+                name,
+                ms_p50: percentile(&samples, 0.5)?,
+                ms_p95: percentile(&samples, 0.95)?,
+            })
         };
         BenchRow {
             ms_p50: percentile(&self.whole, 0.5),

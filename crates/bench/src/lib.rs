@@ -1,5 +1,5 @@
-//! What the kernels cost and how wrong they are: [`stress`] holds the extreme cases, [`baselines`] times our options beside two other
-//! rasterizers, [`trade`] times every combination of options.
+//! What the kernels cost and how wrong they are: [`stress`] holds the extreme cases, [`baselines`]
+//! times our options beside two other rasterizers, [`trade`] times every combination of options.
 
 pub mod baselines;
 pub mod stress;

@@ -25,7 +25,10 @@ pub(crate) enum Words {
 
 impl Words {
     pub(crate) fn one(register: u32) -> Words {
-        Words::Range { start: register, len: 1 }
+        Words::Range {
+            start: register,
+            len: 1,
+        }
     }
 
     pub(crate) fn none() -> Words {
@@ -44,15 +47,27 @@ impl Words {
         match self {
             Words::Range { start, len } => start + index.min(len.saturating_sub(1)),
             Words::Repeat { register, .. } => *register,
-            Words::List(list) => list.get(index as usize).or(list.last()).copied().unwrap_or(0),
+            Words::List(list) => list
+                .get(index as usize)
+                .or(list.last())
+                .copied()
+                .unwrap_or(0),
         }
     }
 
     pub(crate) fn slice(&self, offset: u32, words: u32) -> Words {
         match self {
-            Words::Range { start, .. } => Words::Range { start: start + offset, len: words },
-            Words::Repeat { register, .. } => Words::Repeat { register: *register, len: words },
-            Words::List(_) => (offset..offset + words).map(|index| self.at(index)).collect(),
+            Words::Range { start, .. } => Words::Range {
+                start: start + offset,
+                len: words,
+            },
+            Words::Repeat { register, .. } => Words::Repeat {
+                register: *register,
+                len: words,
+            },
+            Words::List(_) => (offset..offset + words)
+                .map(|index| self.at(index))
+                .collect(),
         }
     }
 
@@ -65,8 +80,16 @@ impl FromIterator<u32> for Words {
     fn from_iter<I: IntoIterator<Item = u32>>(registers: I) -> Words {
         let list: Rc<[u32]> = registers.into_iter().collect();
         match list.first() {
-            Some(&start) if list.iter().enumerate().all(|(at, &register)| start + at as u32 == register) => {
-                Words::Range { start, len: list.len() as u32 }
+            Some(&start)
+                if list
+                    .iter()
+                    .enumerate()
+                    .all(|(at, &register)| start + at as u32 == register) =>
+            {
+                Words::Range {
+                    start,
+                    len: list.len() as u32,
+                }
             }
             _ => Words::List(list),
         }
@@ -114,7 +137,11 @@ impl Code {
     pub(crate) fn count(&mut self, words: u32) -> Result<(), Full> {
         self.work += 1 + words as usize / 8;
         // Lowering may take longer than its result is long, but not without end.
-        if self.work > self.limits.instructions.saturating_mul(4) { Err(Full::Instructions) } else { Ok(()) }
+        if self.work > self.limits.instructions.saturating_mul(4) {
+            Err(Full::Instructions)
+        } else {
+            Ok(())
+        }
     }
 
     pub(crate) fn allocate(&mut self, words: u32) -> Result<u32, Full> {
@@ -143,7 +170,9 @@ impl Code {
     /// Value of a register that never changes.
     pub(crate) fn known(&self, register: u32) -> Option<Word> {
         let register = register as usize;
-        self.is_constant.get(register)?.then(|| self.image[register])
+        self.is_constant
+            .get(register)?
+            .then(|| self.image[register])
     }
 
     pub(crate) fn push(&mut self, op: Op, d: u32, a: u32, b: u32, c: u32) -> Result<(), Full> {
@@ -162,7 +191,8 @@ impl Code {
         self.pure(op, a, b, a)
     }
 
-    /// Register with the result of a pure instruction, which is computed at once if its operands are constants.
+    /// Register with the result of a pure instruction, which is computed at once if its operands
+    /// are constants.
     pub(crate) fn pure(&mut self, op: Op, a: u32, b: u32, c: u32) -> Result<u32, Full> {
         if let (Some(a), Some(b), Some(c)) = (self.known(a), self.known(b), self.known(c)) {
             let word = match self.precision {
@@ -186,11 +216,22 @@ impl Code {
             Words::Repeat { register, .. } if len > 4 => self.push(Op::Fill, d, register, 0, len),
             _ => {
                 let (first, end) = (d, d + len);
-                let moves = || words.iter().enumerate().filter(|&(at, from)| d + at as u32 != from);
+                let moves = || {
+                    words
+                        .iter()
+                        .enumerate()
+                        .filter(|&(at, from)| d + at as u32 != from)
+                };
                 if moves().any(|(_, from)| (first..end).contains(&from)) {
                     let scratch = self.allocate(len)?;
                     self.moves(scratch, words)?;
-                    return self.moves(d, &Words::Range { start: scratch, len });
+                    return self.moves(
+                        d,
+                        &Words::Range {
+                            start: scratch,
+                            len,
+                        },
+                    );
                 }
                 self.moves(d, words)
             }
@@ -225,7 +266,11 @@ impl Code {
             return Ok(start);
         }
         let len = words.len();
-        if let Some(known) = words.iter().map(|register| self.known(register)).collect::<Option<Vec<Word>>>() {
+        if let Some(known) = words
+            .iter()
+            .map(|register| self.known(register))
+            .collect::<Option<Vec<Word>>>()
+        {
             if let Some(&start) = self.tables.get(&known) {
                 return Ok(start);
             }

@@ -1,9 +1,12 @@
-//! What is known about a function before it is lowered: which loads need a copy, and which variables need not be initialized.
+//! What is known about a function before it is lowered: which loads need a copy, and which
+//! variables need not be initialized.
 //!
-//! Statements are numbered in the order of the source. A load may stand for the variable's own registers if nothing is stored to them
-//! before the last use of what was loaded.
+//! Statements are numbered in the order of the source. A load may stand for the variable's own
+//! registers if nothing is stored to them before the last use of what was loaded.
 
-use naga::{AddressSpace, Block, Expression, Function, Handle, LocalVariable, Module, Statement, TypeInner};
+use naga::{
+    AddressSpace, Block, Expression, Function, Handle, LocalVariable, Module, Statement, TypeInner,
+};
 
 use crate::layout::{Layout, NoLayout};
 use crate::operands::{operands, passes_operands_on};
@@ -13,7 +16,8 @@ pub(crate) struct Facts {
     pub copied: Vec<bool>,
     /// Variables that are stored to as a whole before they are read, by variable.
     pub stored_first: Vec<bool>,
-    /// The argument that is stored first to a variable and used nowhere else, by variable; only outside of loops and branches.
+    /// The argument that is stored first to a variable and used nowhere else, by variable; only
+    /// outside of loops and branches.
     pub argument: Vec<Option<u32>>,
     pub returning: Returning,
 }
@@ -29,7 +33,8 @@ pub(crate) enum Returning {
     Mixed,
 }
 
-/// What a pointer leads to. Pointers that were passed in and private variables may lead to the same memory.
+/// What a pointer leads to. Pointers that were passed in and private variables may lead to the same
+/// memory.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Root {
     Local(Handle<LocalVariable>),
@@ -165,7 +170,11 @@ impl<'m> Walk<'_, 'm> {
                 }
             }
             Statement::Block(block) => self.block(block)?,
-            Statement::If { condition, accept, reject } => {
+            Statement::If {
+                condition,
+                accept,
+                reject,
+            } => {
                 self.used(*condition, None);
                 self.block(accept)?;
                 self.block(reject)?;
@@ -176,9 +185,17 @@ impl<'m> Walk<'_, 'm> {
                     self.block(&case.body)?;
                 }
             }
-            Statement::Loop { body, continuing, break_if } => {
+            Statement::Loop {
+                body,
+                continuing,
+                break_if,
+            } => {
                 let id = self.loops.len();
-                self.loops.push(Loop { start: self.at, end: u32::MAX, parent: self.open_loop });
+                self.loops.push(Loop {
+                    start: self.at,
+                    end: u32::MAX,
+                    parent: self.open_loop,
+                });
                 let outside = self.open_loop.replace(id);
                 self.block(body)?;
                 self.block(continuing)?;
@@ -200,21 +217,39 @@ impl<'m> Walk<'_, 'm> {
                 self.used(*value, None);
                 self.used(*pointer, Some(*value));
                 let extent = self.extent(*pointer)?;
-                self.stores.push(Store { extent, at: self.at, is_call: false });
+                self.stores.push(Store {
+                    extent,
+                    at: self.at,
+                    is_call: false,
+                });
             }
-            Statement::Call { arguments, result, .. } => {
+            Statement::Call {
+                arguments, result, ..
+            } => {
                 for &argument in arguments {
                     self.used(argument, None);
                     let inner = self.types[argument].inner_with(&self.module.types);
                     if inner.pointer_space().is_some() {
                         let mut extent = self.extent(argument)?;
                         (extent.start, extent.end) = (0, u32::MAX);
-                        self.stores.push(Store { extent, at: self.at, is_call: true });
+                        self.stores.push(Store {
+                            extent,
+                            at: self.at,
+                            is_call: true,
+                        });
                     }
                 }
                 // It may store to private variables.
-                let extent = Extent { root: Root::Outer, start: 0, end: u32::MAX };
-                self.stores.push(Store { extent, at: self.at, is_call: true });
+                let extent = Extent {
+                    root: Root::Outer,
+                    start: 0,
+                    end: u32::MAX,
+                };
+                self.stores.push(Store {
+                    extent,
+                    at: self.at,
+                    is_call: true,
+                });
                 if let Some(result) = *result {
                     self.emitted[result.index()] = self.at;
                     self.calls.push((arguments.clone(), result));
@@ -233,12 +268,14 @@ impl<'m> Walk<'_, 'm> {
         if let Expression::LocalVariable(local) = self.function.expressions[handle] {
             let local = &mut self.locals[local.index()];
             local.last = at;
-            local.first.get_or_insert(stored.and_then(|value| Some((*self.blocks.last()?, value))));
+            local
+                .first
+                .get_or_insert(stored.and_then(|value| Some((*self.blocks.last()?, value))));
         }
     }
 
-    /// The last moment at which a value from `from` is needed that is used at `to`: if that is in a loop that it comes from outside of, the
-    /// loop's end.
+    /// The last moment at which a value from `from` is needed that is used at `to`: if that is in a
+    /// loop that it comes from outside of, the loop's end.
     fn extended(&self, from: u32, to: u32) -> u32 {
         let mut last = to;
         let mut inside = self.loop_of.get(to as usize).copied().flatten();
@@ -262,7 +299,9 @@ impl<'m> Walk<'_, 'm> {
             let mut changed = false;
             for (handle, expression) in self.function.expressions.iter().rev() {
                 if passes_operands_on(expression) {
-                    operands(expression, |operand| changed |= self.lives_as(operand, handle));
+                    operands(expression, |operand| {
+                        changed |= self.lives_as(operand, handle)
+                    });
                 }
             }
             // The last first: arguments may be results of earlier calls.
@@ -292,18 +331,37 @@ impl<'m> Walk<'_, 'm> {
     fn extent(&mut self, pointer: Handle<Expression>) -> Result<Extent, NoLayout> {
         Ok(match self.function.expressions[pointer] {
             Expression::LocalVariable(local) => {
-                let end = self.layout.words_of(self.function.local_variables[local].ty)?;
-                Extent { root: Root::Local(local), start: 0, end }
+                let end = self
+                    .layout
+                    .words_of(self.function.local_variables[local].ty)?;
+                Extent {
+                    root: Root::Local(local),
+                    start: 0,
+                    end,
+                }
             }
             Expression::GlobalVariable(global) => {
-                let is_private = self.module.global_variables[global].space == AddressSpace::Private;
-                Extent { root: if is_private { Root::Outer } else { Root::Constant }, start: 0, end: u32::MAX }
+                let is_private =
+                    self.module.global_variables[global].space == AddressSpace::Private;
+                Extent {
+                    root: if is_private {
+                        Root::Outer
+                    } else {
+                        Root::Constant
+                    },
+                    start: 0,
+                    end: u32::MAX,
+                }
             }
             Expression::AccessIndex { base, index } => {
                 let whole = self.extent(base)?;
                 let inner = self.types[base].inner_with(&self.module.types);
-                let is_pointer_to_composite = !matches!(inner, TypeInner::ValuePointer { size: None, .. });
-                if whole.root == Root::Outer || whole.root == Root::Constant || !is_pointer_to_composite {
+                let is_pointer_to_composite =
+                    !matches!(inner, TypeInner::ValuePointer { size: None, .. });
+                if whole.root == Root::Outer
+                    || whole.root == Root::Constant
+                    || !is_pointer_to_composite
+                {
                     return Ok(whole);
                 }
                 let inner = self.layout.pointee(inner).into_owned();
@@ -313,17 +371,27 @@ impl<'m> Walk<'_, 'm> {
                 if whole.end - whole.start != of_base {
                     return Ok(whole);
                 }
-                Extent { root: whole.root, start: whole.start + offset, end: whole.start + offset + words }
+                Extent {
+                    root: whole.root,
+                    start: whole.start + offset,
+                    end: whole.start + offset + words,
+                }
             }
             Expression::Access { base, .. } => self.extent(base)?,
-            _ => Extent { root: Root::Outer, start: 0, end: u32::MAX },
+            _ => Extent {
+                root: Root::Outer,
+                start: 0,
+                end: u32::MAX,
+            },
         })
     }
 
     fn conclude(mut self) -> Result<Facts, NoLayout> {
         let mut copied = vec![false; self.last.len()];
         for (handle, expression) in self.function.expressions.iter() {
-            let Expression::Load { pointer } = *expression else { continue };
+            let Expression::Load { pointer } = *expression else {
+                continue;
+            };
             if self.uses[handle.index()] == 0 {
                 continue;
             }
@@ -335,15 +403,22 @@ impl<'m> Walk<'_, 'm> {
                 continue;
             }
             let after = self.stores.partition_point(|store| store.at <= from);
-            copied[handle.index()] = self.stores[after..].iter().take_while(|store| store.at <= last).any(|store| {
-                let overlaps = store.extent.root == extent.root && store.extent.start < extent.end && extent.start < store.extent.end;
-                overlaps && (store.at < last || store.is_call)
-            });
+            copied[handle.index()] = self.stores[after..]
+                .iter()
+                .take_while(|store| store.at <= last)
+                .any(|store| {
+                    let overlaps = store.extent.root == extent.root
+                        && store.extent.start < extent.end
+                        && extent.start < store.extent.end;
+                    overlaps && (store.at < last || store.is_call)
+                });
         }
         let mut stored_first = vec![false; self.locals.len()];
         let mut argument = vec![None; self.locals.len()];
         for (index, local) in self.locals.iter().enumerate() {
-            let Some(Some((block, value))) = local.first else { continue };
+            let Some(Some((block, value))) = local.first else {
+                continue;
+            };
             stored_first[index] = local.last <= self.block_ends[block];
             if let Expression::FunctionArgument(number) = self.function.expressions[value]
                 && stored_first[index]
@@ -355,13 +430,23 @@ impl<'m> Walk<'_, 'm> {
             }
         }
         let returning = self.returning(&copied);
-        Ok(Facts { copied, stored_first, argument, returning })
+        Ok(Facts {
+            copied,
+            stored_first,
+            argument,
+            returning,
+        })
     }
 
     /// Does one expression alone stand for the argument?
     fn is_only_argument(&self, number: u32) -> bool {
         let stands_for = |expression: &Expression| matches!(expression, Expression::FunctionArgument(other) if *other == number);
-        self.function.expressions.iter().filter(|(_, expression)| stands_for(expression)).count() == 1
+        self.function
+            .expressions
+            .iter()
+            .filter(|(_, expression)| stands_for(expression))
+            .count()
+            == 1
     }
 
     fn returning(&self, copied: &[bool]) -> Returning {
@@ -370,9 +455,15 @@ impl<'m> Walk<'_, 'm> {
         }
         let mut variable = None;
         for value in &self.returns {
-            let Some(value) = *value else { return Returning::Mixed };
-            let Expression::Load { pointer } = self.function.expressions[value] else { return Returning::Mixed };
-            let Expression::LocalVariable(local) = self.function.expressions[pointer] else { return Returning::Mixed };
+            let Some(value) = *value else {
+                return Returning::Mixed;
+            };
+            let Expression::Load { pointer } = self.function.expressions[value] else {
+                return Returning::Mixed;
+            };
+            let Expression::LocalVariable(local) = self.function.expressions[pointer] else {
+                return Returning::Mixed;
+            };
             if copied[value.index()] || variable.is_some_and(|other| other != local) {
                 return Returning::Mixed;
             }

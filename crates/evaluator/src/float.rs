@@ -40,18 +40,30 @@ pub(crate) fn smooth_step<const SINGLE: bool>(low: f64, high: f64, x: f64) -> f6
 /// a * b + c with one rounding to the precision.
 #[inline(always)]
 pub(crate) fn fma<const SINGLE: bool>(a: f64, b: f64, c: f64) -> f64 {
-    if SINGLE { f64::from((a as f32).mul_add(b as f32, c as f32)) } else { a.mul_add(b, c) }
+    if SINGLE {
+        f64::from((a as f32).mul_add(b as f32, c as f32))
+    } else {
+        a.mul_add(b, c)
+    }
 }
 
-/// Fraction in [0.5, 1) with the sign of `x`, and exponent: x = fraction * 2^exponent. Zero, NaN and infinities come with exponent 0.
+/// Fraction in [0.5, 1) with the sign of `x`, and exponent: x = fraction * 2^exponent. Zero, NaN
+/// and infinities come with exponent 0.
 pub(crate) fn frexp(x: f64) -> (f64, i32) {
     if x == 0.0 || !x.is_finite() {
         return (x, 0);
     }
-    let (scaled, shift) = if x.abs() < f64::MIN_POSITIVE { (x * 2f64.powi(64), -64) } else { (x, 0) };
+    let (scaled, shift) = if x.abs() < f64::MIN_POSITIVE {
+        (x * 2f64.powi(64), -64)
+    } else {
+        (x, 0)
+    };
     let bits = scaled.to_bits();
     let exponent = ((bits >> 52) & 0x7ff) as i32 - 1022;
-    (f64::from_bits(bits & !(0x7ff << 52) | (1022 << 52)), exponent + shift)
+    (
+        f64::from_bits(bits & !(0x7ff << 52) | (1022 << 52)),
+        exponent + shift,
+    )
 }
 
 /// x * 2^exponent, also where the power alone would overflow.
@@ -65,12 +77,20 @@ pub(crate) fn ldexp(x: f64, exponent: i32) -> f64 {
 
 /// Toward zero, limited to the range of i32 as far as the precision has numbers in it; 0 for NaN.
 pub(crate) fn to_i32<const SINGLE: bool>(x: f64) -> i32 {
-    if SINGLE { x.min(2147483520.0) as i32 * i32::from(!x.is_nan()) } else { x as i32 }
+    if SINGLE {
+        x.min(2147483520.0) as i32 * i32::from(!x.is_nan())
+    } else {
+        x as i32
+    }
 }
 
 /// Toward zero, limited to the range of u32 as far as the precision has numbers in it; 0 for NaN.
 pub(crate) fn to_u32<const SINGLE: bool>(x: f64) -> u32 {
-    if SINGLE { x.min(4294967040.0) as u32 * u32::from(!x.is_nan()) } else { x as u32 }
+    if SINGLE {
+        x.min(4294967040.0) as u32 * u32::from(!x.is_nan())
+    } else {
+        x as u32
+    }
 }
 
 /// Bits of the half-precision float nearest to the f32 nearest to `x`, ties to even.
@@ -85,7 +105,8 @@ pub(crate) fn to_half(x: f64) -> u32 {
         return sign | 0x7c00;
     }
     if magnitude < 2f64.powi(-14) {
-        // Subnormal, or the least normal number after rounding: its bits continue those of the subnormals.
+        // Subnormal, or the least normal number after rounding: its bits continue those of the
+        // subnormals.
         return sign | (magnitude * 2f64.powi(24)).round_ties_even() as u32;
     }
     let (fraction, exponent) = frexp(magnitude);
@@ -104,10 +125,15 @@ pub(crate) fn from_half(bits: u32) -> f64 {
         31 => f64::NAN,
         _ => (1024.0 + significand) * 2f64.powi(exponent as i32 - 25),
     };
-    if bits & 0x8000 == 0 { magnitude } else { -magnitude }
+    if bits & 0x8000 == 0 {
+        magnitude
+    } else {
+        -magnitude
+    }
 }
 
-/// Nearest integer to `x` * `scale` with halves up, as the packing functions of WGSL round; `x` is rounded to f32 and limited to [low, 1].
+/// Nearest integer to `x` * `scale` with halves up, as the packing functions of WGSL round; `x` is
+/// rounded to f32 and limited to [low, 1].
 pub(crate) fn normalized(x: f64, low: f64, scale: f64) -> i32 {
     let x = clamp(f64::from(x as f32), low, 1.0);
     (0.5 + scale * x).floor() as i32

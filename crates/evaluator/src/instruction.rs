@@ -1,6 +1,7 @@
 //! Instructions of the register machine.
 
-/// What an instruction does. Unless stated otherwise `d` is the register written and `a`, `b`, `c` are registers read.
+/// What an instruction does. Unless stated otherwise `d` is the register written and `a`, `b`, `c`
+/// are registers read.
 ///
 /// Suffixes: F float, U u32, I i32, W a word of either signedness or a bool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -138,7 +139,8 @@ pub(crate) enum Op {
     LoadIndexed,
     /// `c` words from `a` to register `d` + value of `b`.
     StoreIndexed,
-    /// Function `d` of the host with `b` words of arguments at `a`, followed by `c` words of results.
+    /// Function `d` of the host with `b` words of arguments at `a`, followed by `c` words of
+    /// results.
     External,
     /// To instruction `d`.
     Jump,

@@ -25,7 +25,12 @@ pub(crate) struct Layout<'m> {
 
 impl<'m> Layout<'m> {
     pub(crate) fn new(module: &'m Module, limit: usize) -> Layout<'m> {
-        Layout { module, limit: limit.min(i32::MAX as usize), words: vec![None; module.types.len()], lengths: Vec::new() }
+        Layout {
+            module,
+            limit: limit.min(i32::MAX as usize),
+            words: vec![None; module.types.len()],
+            lengths: Vec::new(),
+        }
     }
 
     pub(crate) fn words_of(&mut self, ty: Handle<Type>) -> Result<u32, NoLayout> {
@@ -48,7 +53,11 @@ impl<'m> Layout<'m> {
                 supported(*scalar)?;
                 *size as u64
             }
-            TypeInner::Matrix { columns, rows, scalar } => {
+            TypeInner::Matrix {
+                columns,
+                rows,
+                scalar,
+            } => {
                 supported(*scalar)?;
                 *columns as u64 * *rows as u64
             }
@@ -67,12 +76,16 @@ impl<'m> Layout<'m> {
             TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. } => {
                 return Err(NoLayout::Unsupported("a pointer as a value".to_owned()));
             }
-            TypeInner::Image { .. } | TypeInner::BindingArray { .. } => return Err(NoLayout::Unsupported("a texture".to_owned())),
+            TypeInner::Image { .. } | TypeInner::BindingArray { .. } => {
+                return Err(NoLayout::Unsupported("a texture".to_owned()));
+            }
             TypeInner::Sampler { .. } => return Err(NoLayout::Unsupported("a sampler".to_owned())),
             TypeInner::AccelerationStructure { .. } | TypeInner::RayQuery { .. } => {
                 return Err(NoLayout::Unsupported("ray tracing".to_owned()));
             }
-            TypeInner::CooperativeMatrix { .. } => return Err(NoLayout::Unsupported("a cooperative matrix".to_owned())),
+            TypeInner::CooperativeMatrix { .. } => {
+                return Err(NoLayout::Unsupported("a cooperative matrix".to_owned()));
+            }
         };
         match u32::try_from(words) {
             Ok(words) if words as usize <= self.limit => Ok(words),
@@ -85,9 +98,13 @@ impl<'m> Layout<'m> {
             ArraySize::Constant(length) => Ok(length.get()),
             ArraySize::Pending(constant) => {
                 let known = self.lengths.iter().find(|(handle, _)| *handle == constant);
-                known.map(|&(_, length)| length).ok_or(NoLayout::Pending(constant))
+                known
+                    .map(|&(_, length)| length)
+                    .ok_or(NoLayout::Pending(constant))
             }
-            ArraySize::Dynamic => Err(NoLayout::Unsupported("an array without a length".to_owned())),
+            ArraySize::Dynamic => Err(NoLayout::Unsupported(
+                "an array without a length".to_owned(),
+            )),
         }
     }
 
@@ -98,13 +115,20 @@ impl<'m> Layout<'m> {
     {
         match *inner {
             TypeInner::Pointer { base, .. } => Cow::Borrowed(&self.module.types[base].inner),
-            TypeInner::ValuePointer { size: Some(size), scalar, .. } => Cow::Owned(TypeInner::Vector { size, scalar }),
-            TypeInner::ValuePointer { size: None, scalar, .. } => Cow::Owned(TypeInner::Scalar(scalar)),
+            TypeInner::ValuePointer {
+                size: Some(size),
+                scalar,
+                ..
+            } => Cow::Owned(TypeInner::Vector { size, scalar }),
+            TypeInner::ValuePointer {
+                size: None, scalar, ..
+            } => Cow::Owned(TypeInner::Scalar(scalar)),
             _ => Cow::Borrowed(inner),
         }
     }
 
-    /// First word and number of words of part `index` of a composite; the last part for an index beyond.
+    /// First word and number of words of part `index` of a composite; the last part for an index
+    /// beyond.
     pub(crate) fn part(&mut self, inner: &TypeInner, index: u32) -> Result<(u32, u32), NoLayout> {
         if let TypeInner::Struct { members, .. } = inner {
             let mut offset = 0;
@@ -115,13 +139,16 @@ impl<'m> Layout<'m> {
                 }
                 offset += words;
             }
-            return Err(NoLayout::Unsupported("a member that its struct does not have".to_owned()));
+            return Err(NoLayout::Unsupported(
+                "a member that its struct does not have".to_owned(),
+            ));
         }
         let (count, stride) = self.elements(inner)?;
         Ok((index.min(count.saturating_sub(1)) * stride, stride))
     }
 
-    /// Number of elements of an array, columns of a matrix or components of a vector, and words of each.
+    /// Number of elements of an array, columns of a matrix or components of a vector, and words of
+    /// each.
     pub(crate) fn elements(&mut self, inner: &TypeInner) -> Result<(u32, u32), NoLayout> {
         match inner {
             TypeInner::Vector { size, .. } => Ok((*size as u32, 1)),
@@ -131,7 +158,9 @@ impl<'m> Layout<'m> {
                 self.words(inner)?;
                 Ok((self.length(*size)?, self.words_of(*base)?))
             }
-            _ => Err(NoLayout::Unsupported("an index into a value without elements".to_owned())),
+            _ => Err(NoLayout::Unsupported(
+                "an index into a value without elements".to_owned(),
+            )),
         }
     }
 }
@@ -140,7 +169,13 @@ fn supported(scalar: naga::Scalar) -> Result<(), NoLayout> {
     match (scalar.kind, scalar.width) {
         (ScalarKind::Bool, _) | (ScalarKind::AbstractInt | ScalarKind::AbstractFloat, _) => Ok(()),
         (_, 4) => Ok(()),
-        (ScalarKind::Float, width) => Err(NoLayout::Unsupported(format!("floats of {} bits", 8 * u32::from(width)))),
-        (_, width) => Err(NoLayout::Unsupported(format!("integers of {} bits", 8 * u32::from(width)))),
+        (ScalarKind::Float, width) => Err(NoLayout::Unsupported(format!(
+            "floats of {} bits",
+            8 * u32::from(width)
+        ))),
+        (_, width) => Err(NoLayout::Unsupported(format!(
+            "integers of {} bits",
+            8 * u32::from(width)
+        ))),
     }
 }

@@ -1,5 +1,6 @@
-//! Evaluates functions of WGSL on the CPU, without a driver: naga's IR is lowered to flat code over scalar registers, integers are exact,
-//! and floats are f64 (or rounded to f32 after every operation).
+//! Evaluates functions of WGSL on the CPU, without a driver: naga's IR is lowered to flat code over
+//! scalar registers, integers are exact, and floats are f64 (or rounded to f32 after every
+//! operation).
 
 mod code;
 mod error;

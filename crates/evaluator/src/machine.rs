@@ -8,8 +8,9 @@ use crate::word::Word;
 
 /// Functions that the host implements instead of WGSL.
 pub trait Host {
-    /// Computes function `index` of `Options::externals`; arguments and result are flattened as those of a program are. `result` comes with
-    /// the words of an earlier call, and all of it must be written.
+    /// Computes function `index` of `Options::externals`; arguments and result are flattened as
+    /// those of a program are. `result` comes with the words of an earlier call, and all of it
+    /// must be written.
     fn external(&mut self, index: usize, arguments: &[Word], result: &mut [Word]);
 }
 
@@ -32,7 +33,10 @@ pub struct Machine<'p> {
 impl Program {
     /// Registers for calls from one thread.
     pub fn machine(&self) -> Machine<'_> {
-        Machine { program: self, registers: self.registers() }
+        Machine {
+            program: self,
+            registers: self.registers(),
+        }
     }
 
     /// The registers of a machine, for [`Program::call`].
@@ -41,10 +45,18 @@ impl Program {
     }
 
     /// [`Machine::call`] on registers that [`Program::registers`] of this program gave.
-    pub fn call<'r>(&self, registers: &'r mut [Word], arguments: &[Word], host: &mut dyn Host) -> Result<&'r [Word], EvalError> {
+    pub fn call<'r>(
+        &self,
+        registers: &'r mut [Word],
+        arguments: &[Word],
+        host: &mut dyn Host,
+    ) -> Result<&'r [Word], EvalError> {
         let inputs = self.arguments.clone();
         if inputs.len() != arguments.len() {
-            return Err(EvalError::Arguments { expected: inputs.len(), given: arguments.len() });
+            return Err(EvalError::Arguments {
+                expected: inputs.len(),
+                given: arguments.len(),
+            });
         }
         registers[inputs].copy_from_slice(arguments);
         let stopped = match self.precision {
@@ -52,7 +64,10 @@ impl Program {
             Precision::Single => self.run::<true>(registers, host),
         };
         if let Some(at) = stopped {
-            return Err(EvalError::Steps { steps: self.steps, function: self.function_at(at).to_owned() });
+            return Err(EvalError::Steps {
+                steps: self.steps,
+                function: self.function_at(at).to_owned(),
+            });
         }
         Ok(&registers[self.result.clone()])
     }
@@ -74,11 +89,19 @@ impl Program {
                 }
                 Op::LoadIndexed => {
                     let from = a + r[b].to_u32() as usize;
-                    if c == 1 { r[d] = r[from] } else { r.copy_within(from..from + c, d) }
+                    if c == 1 {
+                        r[d] = r[from]
+                    } else {
+                        r.copy_within(from..from + c, d)
+                    }
                 }
                 Op::StoreIndexed => {
                     let to = d + r[b].to_u32() as usize;
-                    if c == 1 { r[to] = r[a] } else { r.copy_within(a..a + c, to) }
+                    if c == 1 {
+                        r[to] = r[a]
+                    } else {
+                        r.copy_within(a..a + c, to)
+                    }
                 }
                 Op::External => {
                     let (arguments, result) = r[a..a + b + c].split_at_mut(b);
@@ -101,7 +124,9 @@ impl Program {
                     }
                 }
                 Op::JumpBack => {
-                    let Some(rest) = steps.checked_sub(u64::from(i.b)) else { return Some(next - 1) };
+                    let Some(rest) = steps.checked_sub(u64::from(i.b)) else {
+                        return Some(next - 1);
+                    };
                     steps = rest;
                     next = d;
                 }
@@ -117,19 +142,26 @@ impl<'p> Machine<'p> {
         self.program
     }
 
-    /// Sets the global variable `index` of `Options::globals` for the calls that follow; variables are zero until then. A variable that the
-    /// function does not reach is ignored.
+    /// Sets the global variable `index` of `Options::globals` for the calls that follow; variables
+    /// are zero until then. A variable that the function does not reach is ignored.
     pub fn set_global(&mut self, index: usize, words: &[Word]) -> Result<(), EvalError> {
-        let Some(range) = self.program.globals.get(index).cloned().flatten() else { return Ok(()) };
+        let Some(range) = self.program.globals.get(index).cloned().flatten() else {
+            return Ok(());
+        };
         if range.len() != words.len() {
-            return Err(EvalError::Global { index, expected: range.len(), given: words.len() });
+            return Err(EvalError::Global {
+                index,
+                expected: range.len(),
+                given: words.len(),
+            });
         }
         self.registers[range].copy_from_slice(words);
         Ok(())
     }
 
-    /// Evaluates the function. `arguments` and the result are flattened in the order in which members, components, columns and elements
-    /// are declared; in single precision floats must be f32 values. Takes no longer than `Limits::steps` allow.
+    /// Evaluates the function. `arguments` and the result are flattened in the order in which
+    /// members, components, columns and elements are declared; in single precision floats must
+    /// be f32 values. Takes no longer than `Limits::steps` allow.
     pub fn call(&mut self, arguments: &[Word], host: &mut dyn Host) -> Result<&[Word], EvalError> {
         self.program.call(&mut self.registers, arguments, host)
     }

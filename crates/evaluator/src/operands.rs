@@ -19,13 +19,23 @@ pub(crate) fn operands(expression: &Expression, mut f: impl FnMut(Handle<Express
             f(left);
             f(right);
         }
-        Expression::Select { condition, accept, reject } => {
+        Expression::Select {
+            condition,
+            accept,
+            reject,
+        } => {
             f(condition);
             f(accept);
             f(reject);
         }
         Expression::Relational { argument, .. } => f(argument),
-        Expression::Math { arg, arg1, arg2, arg3, .. } => {
+        Expression::Math {
+            arg,
+            arg1,
+            arg2,
+            arg3,
+            ..
+        } => {
             f(arg);
             [arg1, arg2, arg3].into_iter().flatten().for_each(f);
         }

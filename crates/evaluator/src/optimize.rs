@@ -18,10 +18,16 @@ pub(crate) fn optimize(
     let shift = prologue.len() as u32;
     let mut all = prologue;
     all.append(&mut code.instructions);
-    for instruction in all.iter_mut().filter(|instruction| instruction.op.is_jump()) {
+    for instruction in all
+        .iter_mut()
+        .filter(|instruction| instruction.op.is_jump())
+    {
         instruction.d += shift;
     }
-    let mut marks: Vec<(u32, u32)> = marks.into_iter().map(|(first, function)| (first + shift, function)).collect();
+    let mut marks: Vec<(u32, u32)> = marks
+        .into_iter()
+        .map(|(first, function)| (first + shift, function))
+        .collect();
 
     let mut reads = count_reads(&all, code, result);
     let mut is_kept = vec![true; all.len()];
@@ -47,7 +53,8 @@ fn count_reads(all: &[Instruction], code: &Code, result: Range<usize>) -> Vec<u3
     reads
 }
 
-/// Calls `f` for each register that an instruction reads, but not for those it reads through an index.
+/// Calls `f` for each register that an instruction reads, but not for those it reads through an
+/// index.
 fn for_reads(instruction: &Instruction, mut f: impl FnMut(u32)) {
     let Instruction { op, a, b, c, .. } = *instruction;
     match op {
@@ -83,7 +90,11 @@ fn drop_moves(all: &mut [Instruction], code: &Code, reads: &[u32], is_kept: &mut
     }
     for at in 0..all.len() {
         let Instruction { op, d, a, .. } = all[at];
-        if op != Op::Move || !is_kept[at] || !code.is_temporary[a as usize] || reads[a as usize] != 1 {
+        if op != Op::Move
+            || !is_kept[at]
+            || !code.is_temporary[a as usize]
+            || reads[a as usize] != 1
+        {
             continue;
         }
         let mut before = at;
@@ -121,8 +132,16 @@ fn compact(all: Vec<Instruction>, is_kept: &[bool], marks: &mut [(u32, u32)]) ->
     for (first, _) in marks.iter_mut() {
         *first = moved[*first as usize];
     }
-    let mut rest: Vec<Instruction> = all.into_iter().zip(is_kept).filter(|(_, keep)| **keep).map(|(instruction, _)| instruction).collect();
-    for instruction in rest.iter_mut().filter(|instruction| instruction.op.is_jump()) {
+    let mut rest: Vec<Instruction> = all
+        .into_iter()
+        .zip(is_kept)
+        .filter(|(_, keep)| **keep)
+        .map(|(instruction, _)| instruction)
+        .collect();
+    for instruction in rest
+        .iter_mut()
+        .filter(|instruction| instruction.op.is_jump())
+    {
         instruction.d = moved[instruction.d as usize];
     }
     rest

@@ -19,7 +19,8 @@ pub enum Precision {
 /// Bounds on what a function may take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Instructions executed by one call, counted at the end of every turn of a loop by the length of its body.
+    /// Instructions executed by one call, counted at the end of every turn of a loop by the length
+    /// of its body.
     pub steps: u64,
     /// Scratch memory in words of 8 bytes.
     pub slots: usize,
@@ -29,7 +30,11 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Limits {
-        Limits { steps: 1_000_000, slots: 1 << 16, instructions: 1 << 17 }
+        Limits {
+            steps: 1_000_000,
+            slots: 1 << 16,
+            instructions: 1 << 17,
+        }
     }
 }
 
@@ -38,19 +43,22 @@ impl Default for Limits {
 pub struct Options<'a> {
     pub precision: Precision,
     pub limits: Limits,
-    /// Values of override constants by name, or by number for those with an `@id`; true is any value but 0. Others keep their defaults.
+    /// Values of override constants by name, or by number for those with an `@id`; true is any
+    /// value but 0. Others keep their defaults.
     pub overrides: HashMap<String, f64>,
     /// Functions that the host implements. Their bodies are not looked at.
     pub externals: Vec<String>,
-    /// Module-scope variables that the host supplies by `Machine::set_global`. Private variables need not be supplied.
+    /// Module-scope variables that the host supplies by `Machine::set_global`. Private variables
+    /// need not be supplied.
     pub globals: Vec<String>,
-    /// Text from which the module was parsed: with it a literal has all its digits. Without it, and for constants that are used by name or
-    /// that naga computed from others, a literal is the shortest decimal number that names its f32.
+    /// Text from which the module was parsed: with it a literal has all its digits. Without it,
+    /// and for constants that are used by name or that naga computed from others, a literal is
+    /// the shortest decimal number that names its f32.
     pub source: Option<&'a str>,
 }
 
-/// A function of a shader, lowered to flat code over scalar registers, with all calls inlined. Immutable: threads share it, each with a
-/// machine of its own.
+/// A function of a shader, lowered to flat code over scalar registers, with all calls inlined.
+/// Immutable: threads share it, each with a machine of its own.
 #[derive(Clone, Debug)]
 pub struct Program {
     pub(crate) precision: Precision,
@@ -68,7 +76,8 @@ pub struct Program {
 }
 
 impl Program {
-    /// Scalars of all arguments, flattened in the order in which members, components, columns and elements are declared.
+    /// Scalars of all arguments, flattened in the order in which members, components, columns and
+    /// elements are declared.
     pub fn argument_words(&self) -> usize {
         self.arguments.len()
     }
@@ -94,8 +103,12 @@ impl Program {
     }
 
     pub(crate) fn function_at(&self, instruction: usize) -> &str {
-        let after = self.marks.partition_point(|&(first, _)| first as usize <= instruction);
-        let name = after.checked_sub(1).and_then(|mark| self.names.get(self.marks[mark].1 as usize));
+        let after = self
+            .marks
+            .partition_point(|&(first, _)| first as usize <= instruction);
+        let name = after
+            .checked_sub(1)
+            .and_then(|mark| self.names.get(self.marks[mark].1 as usize));
         name.map_or("", String::as_str)
     }
 }

@@ -1,12 +1,20 @@
 //! The pure instructions: one result from up to three words.
 
-use crate::float::{clamp, fma, frexp, from_half, ldexp, mix, normalized, round, sign, smooth_step, to_half, to_i32, to_u32};
+use crate::float::{
+    clamp, fma, frexp, from_half, ldexp, mix, normalized, round, sign, smooth_step, to_half,
+    to_i32, to_u32,
+};
 use crate::instruction::Op;
 use crate::word::Word;
 
 /// Result of a pure instruction. The operands are read on demand, so that each reads only its own.
 #[inline(always)]
-pub(crate) fn evaluate<const SINGLE: bool>(op: Op, a: impl Fn() -> Word, b: impl Fn() -> Word, c: impl Fn() -> Word) -> Word {
+pub(crate) fn evaluate<const SINGLE: bool>(
+    op: Op,
+    a: impl Fn() -> Word,
+    b: impl Fn() -> Word,
+    c: impl Fn() -> Word,
+) -> Word {
     let f = |x: f64| Word::from_f64(round::<SINGLE>(x));
     // For results that need no rounding.
     let exact = Word::from_f64;
@@ -42,7 +50,11 @@ pub(crate) fn evaluate<const SINGLE: bool>(op: Op, a: impl Fn() -> Word, b: impl
         Op::TanhF => f(libm::tanh(af())),
         Op::AsinhF => f(libm::asinh(af())),
         // libm's is not NaN below 1.
-        Op::AcoshF => f(if af() < 1.0 { f64::NAN } else { libm::acosh(af()) }),
+        Op::AcoshF => f(if af() < 1.0 {
+            f64::NAN
+        } else {
+            libm::acosh(af())
+        }),
         Op::AtanhF => f(libm::atanh(af())),
         Op::ExpF => f(libm::exp(af())),
         Op::Exp2F => f(libm::exp2(af())),
@@ -50,7 +62,11 @@ pub(crate) fn evaluate<const SINGLE: bool>(op: Op, a: impl Fn() -> Word, b: impl
         Op::Log2F => f(libm::log2(af())),
         Op::RadiansF => f(af().to_radians()),
         Op::DegreesF => f(af().to_degrees()),
-        Op::ModfFractF => f(if af().is_infinite() { 0.0f64.copysign(af()) } else { af() - af().trunc() }),
+        Op::ModfFractF => f(if af().is_infinite() {
+            0.0f64.copysign(af())
+        } else {
+            af() - af().trunc()
+        }),
         Op::FrexpFractF => exact(frexp(af()).0),
         Op::FrexpExponentF => i(frexp(af()).1),
         Op::QuantizeToF16 => exact(from_half(to_half(af()))),
@@ -68,7 +84,11 @@ pub(crate) fn evaluate<const SINGLE: bool>(op: Op, a: impl Fn() -> Word, b: impl
         // All bits set where there is none.
         Op::FirstLeadingU => u(31u32.wrapping_sub(au().leading_zeros())),
         Op::FirstLeadingI => u(31u32.wrapping_sub((ai() ^ (ai() >> 31)).leading_zeros())),
-        Op::FirstTrailing => u(if au() == 0 { u32::MAX } else { au().trailing_zeros() }),
+        Op::FirstTrailing => u(if au() == 0 {
+            u32::MAX
+        } else {
+            au().trailing_zeros()
+        }),
         Op::IntFromFloat => i(to_i32::<SINGLE>(af())),
         Op::UintFromFloat => u(to_u32::<SINGLE>(af())),
         Op::FloatFromInt => f(f64::from(ai())),
@@ -115,9 +135,17 @@ pub(crate) fn evaluate<const SINGLE: bool>(op: Op, a: impl Fn() -> Word, b: impl
         Op::SubW => u(au().wrapping_sub(bu())),
         Op::MulW => u(au().wrapping_mul(bu())),
         Op::DivU => u(au().checked_div(bu()).unwrap_or(au())),
-        Op::DivI => i(if bi() == 0 { ai() } else { ai().wrapping_div(bi()) }),
+        Op::DivI => i(if bi() == 0 {
+            ai()
+        } else {
+            ai().wrapping_div(bi())
+        }),
         Op::RemU => u(au().checked_rem(bu()).unwrap_or(0)),
-        Op::RemI => i(if bi() == 0 { 0 } else { ai().wrapping_rem(bi()) }),
+        Op::RemI => i(if bi() == 0 {
+            0
+        } else {
+            ai().wrapping_rem(bi())
+        }),
         Op::MinU => u(au().min(bu())),
         Op::MinI => i(ai().min(bi())),
         Op::MaxU => u(au().max(bu())),
@@ -127,7 +155,9 @@ pub(crate) fn evaluate<const SINGLE: bool>(op: Op, a: impl Fn() -> Word, b: impl
         Op::ShiftRightI => i(ai().wrapping_shr(bu())),
         Op::BitMask => u(bit_mask(au(), bu())),
         Op::Dot4U => u((0..4).map(|byte| lane(au(), byte) * lane(bu(), byte)).sum()),
-        Op::Dot4I => i((0..4).map(|byte| signed_lane(au(), byte) * signed_lane(bu(), byte)).sum()),
+        Op::Dot4I => i((0..4)
+            .map(|byte| signed_lane(au(), byte) * signed_lane(bu(), byte))
+            .sum()),
         Op::MulAddF => f(round::<SINGLE>(af() * bf()) + cf()),
         Op::FmaF => exact(fma::<SINGLE>(af(), bf(), cf())),
         Op::MixF => exact(mix::<SINGLE>(af(), bf(), cf())),
@@ -145,7 +175,11 @@ pub(crate) fn evaluate<const SINGLE: bool>(op: Op, a: impl Fn() -> Word, b: impl
             let count = c().to_u32().min(32 - bu().min(32));
             let unused = 32 - count;
             let bits = extract_bits(au(), bu(), count);
-            i(if count == 0 { 0 } else { (bits << unused).cast_signed() >> unused })
+            i(if count == 0 {
+                0
+            } else {
+                (bits << unused).cast_signed() >> unused
+            })
         }
         Op::ScaleIndex
         | Op::Copy

@@ -1,6 +1,7 @@
 //! One scalar of the shader, in 64 bits.
 
-/// One scalar: a float as an f64, an integer in the low 32 bits, or a bool as 0 or 1. The type is known from the function's signature.
+/// One scalar: a float as an f64, an integer in the low 32 bits, or a bool as 0 or 1. The type is
+/// known from the function's signature.
 #[derive(Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct Word(u64);
 

@@ -1,5 +1,6 @@
-//! What lies on disk: [`host`] gives the core model files, folders of shaders and the memory of the machine; [`preset_file`] reads and writes presets as TOML, [`effect_files`] are effects that anyone can write, and
-//! [`film`] writes the frames of an animated preset.
+//! What lies on disk: [`host`] gives the core model files, folders of shaders and the memory of the
+//! machine; [`preset_file`] reads and writes presets as TOML, [`effect_files`] are effects that
+//! anyone can write, and [`film`] writes the frames of an animated preset.
 
 pub mod effect_files;
 pub mod film;

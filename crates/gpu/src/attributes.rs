@@ -1,5 +1,5 @@
-//! The layout of `vertex_bytes`: attributes as the file has them, then vertices that joints and morph targets deform, then packed
-//! positions.
+//! The layout of `vertex_bytes`: attributes as the file has them, then vertices that joints and
+//! morph targets deform, then packed positions.
 
 use super::packing;
 use crate::scene::{Accessor, Scene};
@@ -54,7 +54,10 @@ impl AttributeLayout {
     }
 }
 
-/// Component type in bits 0 to 2, normalized in bit 3 (`shaders/lib/attributes.wgsl`), number of components from bit 8.
+/// Component type in bits 0 to 2, normalized in bit 3 (`shaders/lib/attributes.wgsl`), number of
+/// components from bit 8.
 pub fn format_word(accessor: &Accessor) -> u32 {
-    (accessor.component_type as u32 - 5120) | u32::from(accessor.normalized) << 3 | accessor.components << 8
+    (accessor.component_type as u32 - 5120)
+        | u32::from(accessor.normalized) << 3
+        | accessor.components << 8
 }

@@ -1,4 +1,5 @@
-//! The watch over compiling: it is told when a renderer begins to compile, and it can stop the renderer before the next pipeline.
+//! The watch over compiling: it is told when a renderer begins to compile, and it can stop the
+//! renderer before the next pipeline.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -13,7 +14,10 @@ pub struct CompileWatch {
 impl CompileWatch {
     /// `began` is called on the thread that draws, each time before it compiles something.
     pub fn new(began: impl Fn() + Send + Sync + 'static) -> Self {
-        Self { began: Box::new(began), is_stopped: AtomicBool::new(false) }
+        Self {
+            began: Box::new(began),
+            is_stopped: AtomicBool::new(false),
+        }
     }
 
     /// Lets pipelines that are being compiled end, and begins no other until [`Self::allow`].
@@ -36,6 +40,10 @@ impl CompileWatch {
     /// # Errors
     /// [`RenderError::Stopped`] after [`Self::stop`].
     pub(super) fn check(&self) -> Result<(), RenderError> {
-        if self.is_stopped() { Err(RenderError::Stopped) } else { Ok(()) }
+        if self.is_stopped() {
+            Err(RenderError::Stopped)
+        } else {
+            Ok(())
+        }
     }
 }

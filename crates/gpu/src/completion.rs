@@ -1,5 +1,6 @@
-//! Completion of submitted work. Natively a device goes on while a thread polls it, so that these functions block: the only ones here that
-//! do. In a page the browser drives the device, and they give the thread back until it calls.
+//! Completion of submitted work. Natively a device goes on while a thread polls it, so that these
+//! functions block: the only ones here that do. In a page the browser drives the device, and they
+//! give the thread back until it calls.
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use native::{Mapping, idle};
@@ -18,7 +19,8 @@ mod native {
 
     use crate::{device::Gpu, error::RenderError};
 
-    /// A device that does not answer for so long counts as lost: software adapters have no watchdog.
+    /// A device that does not answer for so long counts as lost: software adapters have no
+    /// watchdog.
     const PATIENCE: Duration = Duration::from_secs(60);
 
     /// Returns when the queue is idle.
@@ -26,7 +28,10 @@ mod native {
     /// # Errors
     /// When the device is lost.
     pub async fn idle(gpu: &Gpu) -> Result<(), RenderError> {
-        match gpu.device.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) }) {
+        match gpu.device.poll(wgpu::PollType::Wait {
+            submission_index: None,
+            timeout: Some(PATIENCE),
+        }) {
             Ok(_) if !gpu.is_lost() => Ok(()),
             _ => Err(RenderError::Lost),
         }
@@ -40,7 +45,9 @@ mod native {
         pub fn begin(staging: &wgpu::Buffer) -> Self {
             let ready = Arc::<AtomicBool>::default();
             let called = ready.clone();
-            staging.map_async(wgpu::MapMode::Read, .., move |result| called.store(result.is_ok(), Ordering::Release));
+            staging.map_async(wgpu::MapMode::Read, .., move |result| {
+                called.store(result.is_ok(), Ordering::Release)
+            });
             Self(ready)
         }
 
@@ -88,7 +95,9 @@ mod page {
         pub fn begin(staging: &wgpu::Buffer) -> Self {
             let ready = Callback::default();
             let called = ready.clone();
-            staging.map_async(wgpu::MapMode::Read, .., move |result| called.call(result.is_ok()));
+            staging.map_async(wgpu::MapMode::Read, .., move |result| {
+                called.call(result.is_ok())
+            });
             Self(ready)
         }
 
@@ -139,7 +148,11 @@ mod page {
                     }
                 }
             });
-            if is_good.await && !gpu.is_lost() { Ok(()) } else { Err(RenderError::Lost) }
+            if is_good.await && !gpu.is_lost() {
+                Ok(())
+            } else {
+                Err(RenderError::Lost)
+            }
         }
     }
 }

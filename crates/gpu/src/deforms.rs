@@ -6,7 +6,9 @@ use super::{
     attributes::{AttributeLayout, format_word},
     records::{DeformRecord, MorphTargetRecord},
 };
-use crate::scene::{Accessor, Scene, deformation::Influences, draw::Draw, joint_transforms::JointTransforms};
+use crate::scene::{
+    Accessor, Scene, deformation::Influences, draw::Draw, joint_transforms::JointTransforms,
+};
 
 /// Everything that the skin pass reads besides the attributes.
 #[derive(Default)]
@@ -20,12 +22,21 @@ pub struct Deforms {
 /// Which of all vertices that may be deformed are deformed for a picture.
 pub fn deformed_ranges(scene: &Scene, draws: &[Draw]) -> Vec<Range<u32>> {
     let deformed = draws.iter().filter(|draw| draw.deform.is_some());
-    deformed.map(|draw| draw.first_deformable..draw.first_deformable + scene.primitives[draw.primitive].vertex_count()).collect()
+    deformed
+        .map(|draw| {
+            draw.first_deformable
+                ..draw.first_deformable + scene.primitives[draw.primitive].vertex_count()
+        })
+        .collect()
 }
 
 impl Deforms {
     /// Of those draws that are deformed; one record at least, since no binding is empty.
-    pub fn of<'a>(scene: &Scene, attributes: &AttributeLayout, draws: impl Iterator<Item = &'a Draw>) -> Self {
+    pub fn of<'a>(
+        scene: &Scene,
+        attributes: &AttributeLayout,
+        draws: impl Iterator<Item = &'a Draw>,
+    ) -> Self {
         let mut deforms = Self::default();
         let mut known = HashMap::new();
         draws.for_each(|draw| deforms.add(scene, attributes, draw, &mut known));
@@ -35,7 +46,13 @@ impl Deforms {
         deforms
     }
 
-    fn add(&mut self, scene: &Scene, attributes: &AttributeLayout, draw: &Draw, known: &mut HashMap<*const u8, u32>) {
+    fn add(
+        &mut self,
+        scene: &Scene,
+        attributes: &AttributeLayout,
+        draw: &Draw,
+        known: &mut HashMap<*const u8, u32>,
+    ) {
         let Some(deform) = &draw.deform else { return };
         let primitive = &scene.primitives[draw.primitive];
         let mut record = DeformRecord {
@@ -56,33 +73,56 @@ impl Deforms {
             record.joint_count = joint_transforms.len() as u32;
             let sets = &primitive.deformation.influences;
             record.sets = sets.len() as u32;
-            let each = |pick: fn(&Influences) -> u32| [0, 1].map(|set| sets.get(set).map_or(0, pick));
-            (record.joints_offset, record.weights_offset) = (each(|set| set.joints.offset), each(|set| set.weights.offset));
-            (record.joints_stride, record.weights_stride) = (each(|set| set.joints.stride), each(|set| set.weights.stride));
-            (record.joints_format, record.weights_format) = (each(|set| format_word(&set.joints)), each(|set| format_word(&set.weights)));
+            let each =
+                |pick: fn(&Influences) -> u32| [0, 1].map(|set| sets.get(set).map_or(0, pick));
+            (record.joints_offset, record.weights_offset) = (
+                each(|set| set.joints.offset),
+                each(|set| set.weights.offset),
+            );
+            (record.joints_stride, record.weights_stride) = (
+                each(|set| set.joints.stride),
+                each(|set| set.weights.stride),
+            );
+            (record.joints_format, record.weights_format) = (
+                each(|set| format_word(&set.joints)),
+                each(|set| format_word(&set.weights)),
+            );
         }
-        let morph_targets = deform.weights.iter().zip(&primitive.deformation.morph_targets).filter(|(weight, _)| **weight != 0.0);
-        self.morph_targets.extend(morph_targets.map(|(&weight, shape)| {
-            let part = |accessor: Option<&Accessor>| accessor.map_or([0; 3], |a| [a.offset, a.stride, format_word(a)]);
-            let ([position_offset, position_stride, position_format], [normal_offset, normal_stride, normal_format]) =
-                (part(shape.positions.as_ref()), part(shape.normals.as_ref()));
-            MorphTargetRecord {
-                weight,
-                position_offset,
-                position_stride,
-                position_format,
-                normal_offset,
-                normal_stride,
-                normal_format,
-                spare: 0,
-            }
-        }));
+        let morph_targets = deform
+            .weights
+            .iter()
+            .zip(&primitive.deformation.morph_targets)
+            .filter(|(weight, _)| **weight != 0.0);
+        self.morph_targets
+            .extend(morph_targets.map(|(&weight, shape)| {
+                let part = |accessor: Option<&Accessor>| {
+                    accessor.map_or([0; 3], |a| [a.offset, a.stride, format_word(a)])
+                };
+                let (
+                    [position_offset, position_stride, position_format],
+                    [normal_offset, normal_stride, normal_format],
+                ) = (part(shape.positions.as_ref()), part(shape.normals.as_ref()));
+                MorphTargetRecord {
+                    weight,
+                    position_offset,
+                    position_stride,
+                    position_format,
+                    normal_offset,
+                    normal_stride,
+                    normal_format,
+                    spare: 0,
+                }
+            }));
         record.shape_count = self.morph_targets.len() as u32 - record.first_shape;
         self.records.push(record);
     }
 
     /// Index of the first joint of these transforms, which draws of one skin share.
-    fn joints_of(&mut self, joint_transforms: &JointTransforms, known: &mut HashMap<*const u8, u32>) -> u32 {
+    fn joints_of(
+        &mut self,
+        joint_transforms: &JointTransforms,
+        known: &mut HashMap<*const u8, u32>,
+    ) -> u32 {
         let (bytes, vectors): (&[u8], usize) = match joint_transforms {
             JointTransforms::Linear(joints) => (bytemuck::cast_slice(joints), 3),
             JointTransforms::Dual(joints) => (bytemuck::cast_slice(joints), 5),

@@ -1,4 +1,5 @@
-//! Adapters and devices: what is there, what it can do, and one way to open it for window, command line and tests.
+//! Adapters and devices: what is there, what it can do, and one way to open it for window, command
+//! line and tests.
 
 use std::{
     cell::RefCell,
@@ -8,7 +9,9 @@ use std::{
     },
 };
 
-use super::{device_memory::DeviceMemory, pipeline_store::PipelineStore, preparations::Preparations};
+use super::{
+    device_memory::DeviceMemory, pipeline_store::PipelineStore, preparations::Preparations,
+};
 pub use crate::plan::Caps;
 
 /// Which adapter a person asked for.
@@ -35,7 +38,9 @@ pub struct AdapterSummary {
 /// Why no device could be had.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
-    #[error("no GPU adapter was found; install a Vulkan driver (Debian: mesa-vulkan-drivers) or use --adapter cpu")]
+    #[error(
+        "no GPU adapter was found; install a Vulkan driver (Debian: mesa-vulkan-drivers) or use --adapter cpu"
+    )]
     None,
     #[error("no adapter is called {wanted:?}; there are: {there}")]
     NoMatch { wanted: String, there: String },
@@ -63,15 +68,20 @@ pub struct Gpu {
 }
 
 /// The back ends that run our compute shaders.
-pub const BACKENDS: wgpu::Backends =
-    wgpu::Backends::VULKAN.union(wgpu::Backends::METAL).union(wgpu::Backends::DX12).union(wgpu::Backends::BROWSER_WEBGPU);
+pub const BACKENDS: wgpu::Backends = wgpu::Backends::VULKAN
+    .union(wgpu::Backends::METAL)
+    .union(wgpu::Backends::DX12)
+    .union(wgpu::Backends::BROWSER_WEBGPU);
 
 fn instance() -> wgpu::Instance {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
     descriptor.backends &= BACKENDS;
-    // Checked indirect dispatches cost a dispatch and two barriers each. Ours are folded and clamped by the kernel that
-    // writes them (`shaders/stages/geometry/dispatch_args.wgsl`), and tested past 65,535 workgroups.
-    descriptor.flags.remove(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
+    // Checked indirect dispatches cost a dispatch and two barriers each. Ours are folded and
+    // clamped by the kernel that writes them (`shaders/stages/geometry/dispatch_args.wgsl`),
+    // and tested past 65,535 workgroups.
+    descriptor
+        .flags
+        .remove(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
     wgpu::Instance::new(descriptor)
 }
 
@@ -89,23 +99,39 @@ async fn adapters() -> Vec<wgpu::Adapter> {
 
 /// Every adapter with what it can do, best first.
 pub async fn list() -> Vec<(AdapterSummary, Caps)> {
-    adapters().await.iter().map(|adapter| (summary(adapter), caps(adapter))).collect()
+    adapters()
+        .await
+        .iter()
+        .map(|adapter| (summary(adapter), caps(adapter)))
+        .collect()
 }
 
 /// Index in `names` (best first) of the adapter that `choice` means.
 pub fn choose(choice: &AdapterChoice, names: &[String]) -> Result<usize, OpenError> {
     let there = || names.join(", ");
     let AdapterChoice::Named(wanted) = choice else {
-        return if names.is_empty() { Err(OpenError::None) } else { Ok(0) };
+        return if names.is_empty() {
+            Err(OpenError::None)
+        } else {
+            Ok(0)
+        };
     };
     let needle = wanted.to_lowercase();
-    let matching: Vec<usize> = (0..names.len()).filter(|&i| names[i].to_lowercase().contains(&needle)).collect();
+    let matching: Vec<usize> = (0..names.len())
+        .filter(|&i| names[i].to_lowercase().contains(&needle))
+        .collect();
     match matching[..] {
         [] if names.is_empty() => Err(OpenError::None),
-        [] => Err(OpenError::NoMatch { wanted: wanted.clone(), there: there() }),
+        [] => Err(OpenError::NoMatch {
+            wanted: wanted.clone(),
+            there: there(),
+        }),
         [one] => Ok(one),
         [first, ..] if names[first].to_lowercase() == needle => Ok(first),
-        _ => Err(OpenError::Ambiguous { wanted: wanted.clone(), there: there() }),
+        _ => Err(OpenError::Ambiguous {
+            wanted: wanted.clone(),
+            there: there(),
+        }),
     }
 }
 
@@ -115,7 +141,11 @@ pub fn summary(adapter: &wgpu::Adapter) -> AdapterSummary {
     AdapterSummary {
         name: info.name,
         backend: info.backend.to_string(),
-        driver: [info.driver, info.driver_info].into_iter().filter(|s| !s.is_empty()).collect::<Vec<_>>().join(" "),
+        driver: [info.driver, info.driver_info]
+            .into_iter()
+            .filter(|s| !s.is_empty())
+            .collect::<Vec<_>>()
+            .join(" "),
         software: info.device_type == wgpu::DeviceType::Cpu,
     }
 }
@@ -125,18 +155,28 @@ fn wanted_features(adapter: &wgpu::Adapter) -> wgpu::Features {
     let int64 = wgpu::Features::SHADER_INT64 | wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX;
     let there = adapter.features();
     let additions = there & wgpu::Features::SHADER_INT64_ATOMIC_ALL_OPS;
-    let int64 = if there.contains(int64) { int64 | additions } else { wgpu::Features::empty() };
+    let int64 = if there.contains(int64) {
+        int64 | additions
+    } else {
+        wgpu::Features::empty()
+    };
     int64 | (there & wgpu::Features::TIMESTAMP_QUERY)
 }
 
 fn caps(adapter: &wgpu::Adapter) -> Caps {
-    let (features, limits, info) = (wanted_features(adapter), wanted_limits(adapter), adapter.get_info());
+    let (features, limits, info) = (
+        wanted_features(adapter),
+        wanted_limits(adapter),
+        adapter.get_info(),
+    );
     Caps {
         int64_atomics: features.contains(wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX),
         int64_additions: features.contains(wgpu::Features::SHADER_INT64_ATOMIC_ALL_OPS),
         timestamps: features.contains(wgpu::Features::TIMESTAMP_QUERY),
         // Kernels count bytes in 32 bits.
-        max_storage_binding_bytes: limits.max_storage_buffer_binding_size.min(u64::from(u32::MAX)),
+        max_storage_binding_bytes: limits
+            .max_storage_buffer_binding_size
+            .min(u64::from(u32::MAX)),
         max_buffer_bytes: limits.max_buffer_size,
         max_texture_side: limits.max_texture_dimension_2d,
         max_storage_buffers: limits.max_storage_buffers_per_shader_stage,
@@ -171,17 +211,24 @@ impl Gpu {
     /// When `choice` names none or several, or the adapter gives no device.
     pub async fn open(choice: &AdapterChoice) -> Result<Arc<Self>, OpenError> {
         let adapters = adapters().await;
-        let names: Vec<String> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
+        let names: Vec<String> = adapters
+            .iter()
+            .map(|adapter| adapter.get_info().name)
+            .collect();
         let adapter = &adapters[choose(choice, &names)?];
         let (device, queue) = adapter
             .request_device(&Self::descriptor(adapter))
             .await
-            .map_err(|error| OpenError::Device { adapter: adapter.get_info().name, reason: error.to_string() })?;
+            .map_err(|error| OpenError::Device {
+                adapter: adapter.get_info().name,
+                reason: error.to_string(),
+            })?;
         OPENED.with_borrow(|seen| seen.iter().for_each(|seen| seen(&device)));
         Ok(Self::adopt(adapter, device, queue))
     }
 
-    /// Calls `seen` with every device that this thread opens from now on. Tests lose devices of commands with it.
+    /// Calls `seen` with every device that this thread opens from now on. Tests lose devices of
+    /// commands with it.
     pub fn watch_opened(seen: impl Fn(&wgpu::Device) + 'static) {
         OPENED.set(Some(Box::new(seen)));
     }
@@ -204,7 +251,9 @@ impl Gpu {
         device.set_device_lost_callback(move |_, _| flag.store(true, Ordering::Relaxed));
         let slot = error.clone();
         device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| {
-            slot.lock().unwrap_or_else(|p| p.into_inner()).get_or_insert(e.to_string());
+            slot.lock()
+                .unwrap_or_else(|p| p.into_inner())
+                .get_or_insert(e.to_string());
         }));
         Arc::new(Self {
             device,
@@ -236,11 +285,18 @@ mod tests {
 
     #[test]
     fn choosing_by_name_is_exact_about_what_is_there() {
-        let names = ["NVIDIA H200".to_owned(), "llvmpipe (LLVM 15)".to_owned(), "llvmpipe".to_owned()];
+        let names = [
+            "NVIDIA H200".to_owned(),
+            "llvmpipe (LLVM 15)".to_owned(),
+            "llvmpipe".to_owned(),
+        ];
         let named = |n: &str| choose(&AdapterChoice::Named(n.into()), &names);
         assert_eq!(named("h200").unwrap(), 0);
         assert!(matches!(named("pipe"), Err(OpenError::Ambiguous { .. })));
         assert!(matches!(named("swift"), Err(OpenError::NoMatch { .. })));
-        assert!(matches!(choose(&AdapterChoice::Any, &[]), Err(OpenError::None)));
+        assert!(matches!(
+            choose(&AdapterChoice::Any, &[]),
+            Err(OpenError::None)
+        ));
     }
 }

@@ -8,7 +8,8 @@ use std::sync::{
 /// Most bytes on devices that are opened from now on; the largest number: as many as there are.
 static CHOSEN: AtomicU64 = AtomicU64::new(u64::MAX);
 
-/// Makes it the most bytes that buffers and textures may take on each device that is opened from now on.
+/// Makes it the most bytes that buffers and textures may take on each device that is opened from
+/// now on.
 pub fn choose_device_memory(bytes: u64) {
     CHOSEN.store(bytes, Ordering::Relaxed);
 }
@@ -29,7 +30,10 @@ pub struct Reserved {
 
 impl Default for DeviceMemory {
     fn default() -> Self {
-        Self { used: Arc::default(), most: AtomicU64::new(CHOSEN.load(Ordering::Relaxed)) }
+        Self {
+            used: Arc::default(),
+            most: AtomicU64::new(CHOSEN.load(Ordering::Relaxed)),
+        }
     }
 }
 
@@ -38,8 +42,13 @@ impl DeviceMemory {
     pub fn reserve(&self, bytes: u64) -> Option<Reserved> {
         let most = self.most.load(Ordering::Relaxed);
         let take = |used: u64| used.checked_add(bytes).filter(|sum| *sum <= most);
-        self.used.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take).ok()?;
-        Some(Reserved { used: self.used.clone(), bytes })
+        self.used
+            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, take)
+            .ok()?;
+        Some(Reserved {
+            used: self.used.clone(),
+            bytes,
+        })
     }
 
     /// Allows so many bytes from now on. What is taken stays.

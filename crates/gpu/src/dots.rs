@@ -1,4 +1,5 @@
-//! Dots on lines: runs of consecutive dots on line segments, and the list of those that the CPU finds visible where it chooses.
+//! Dots on lines: runs of consecutive dots on line segments, and the list of those that the CPU
+//! finds visible where it chooses.
 
 use std::sync::Arc;
 
@@ -72,31 +73,68 @@ impl DotStore {
             LineSource::Creases => Lines::edges(scene, Some(f32::from_bits(source.crease).into()))?,
             LineSource::Polyline => Lines::polyline(&source.polyline),
         };
-        let (spacing, dot_runs, dots, tree, chosen, frame) = (0, Vec::new(), 0, None, None, DotFrame::default());
-        Ok(Self { source, lines, spacing, dot_runs, dots, is_stale: true, tree, chosen, frame, chosen_ms: None })
+        let (spacing, dot_runs, dots, tree, chosen, frame) =
+            (0, Vec::new(), 0, None, None, DotFrame::default());
+        Ok(Self {
+            source,
+            lines,
+            spacing,
+            dot_runs,
+            dots,
+            is_stale: true,
+            tree,
+            chosen,
+            frame,
+            chosen_ms: None,
+        })
     }
 
-    /// The dots of a picture, from those of the one before where that had the same lines; none where no effect draws dots.
+    /// The dots of a picture, from those of the one before where that had the same lines; none
+    /// where no effect draws dots.
     ///
     /// # Errors
     /// When there are more dots or lines than one picture takes.
-    pub fn update(previous: Option<Self>, scene: &Scene, view: &View, stack: &Stack, key: &KernelKey) -> Result<Option<Self>, RenderError> {
-        let Some((dots, line_source)) = stack.dots().zip(key.effects.dots) else { return Ok(None) };
+    pub fn update(
+        previous: Option<Self>,
+        scene: &Scene,
+        view: &View,
+        stack: &Stack,
+        key: &KernelKey,
+    ) -> Result<Option<Self>, RenderError> {
+        let Some((dots, line_source)) = stack.dots().zip(key.effects.dots) else {
+            return Ok(None);
+        };
         let source = Source {
             line_source,
-            crease: if line_source == LineSource::Creases { dots.crease_deg.to_bits() } else { 0 },
-            polyline: if line_source == LineSource::Polyline { view.scene_state.polyline.clone() } else { Arc::default() },
+            crease: if line_source == LineSource::Creases {
+                dots.crease_deg.to_bits()
+            } else {
+                0
+            },
+            polyline: if line_source == LineSource::Polyline {
+                view.scene_state.polyline.clone()
+            } else {
+                Arc::default()
+            },
         };
         let known = previous.filter(|store| store.source == source);
         let mut store = known.map_or_else(|| Self::new(scene, source), Ok)?;
         if store.spacing != dots.spacing_m.to_bits() {
             let count = counted(&store.lines, &dots)?;
-            (store.dot_runs, store.dots, store.spacing) = (dot_runs(&store.lines, &dots), count as u32, dots.spacing_m.to_bits());
+            (store.dot_runs, store.dots, store.spacing) = (
+                dot_runs(&store.lines, &dots),
+                count as u32,
+                dots.spacing_m.to_bits(),
+            );
             (store.tree, store.is_stale) = (None, true);
         }
         store.frame = DotFrame {
-            clip_from_scene: rounded_columns(&(view.clip_from_world * view.scene_state.world_from_scene)),
-            ink: encoded(dots.color).to_array().map(|component| component as f32),
+            clip_from_scene: rounded_columns(
+                &(view.clip_from_world * view.scene_state.world_from_scene),
+            ),
+            ink: encoded(dots.color)
+                .to_array()
+                .map(|component| component as f32),
             center: [view.width, view.height].map(|pixels| (128 * pixels) as f32),
             dots: store.dots,
             dot_runs: store.dot_runs.len() as u32,
@@ -114,7 +152,9 @@ impl DotStore {
         (store.chosen, store.chosen_ms) = (None, None);
         if key.options.dot_culling == DotCulling::Cpu {
             let lines = &store.lines;
-            let tree = store.tree.get_or_insert_with(|| DotTree::new(scene, lines, &store.dot_runs));
+            let tree = store
+                .tree
+                .get_or_insert_with(|| DotTree::new(scene, lines, &store.dot_runs));
             let began = Instant::now();
             store.chosen = Some(tree.choose(&store.dot_runs, &dots, view));
             store.chosen_ms = Some(began.elapsed().as_secs_f64() * 1e3);
@@ -128,7 +168,12 @@ impl DotStore {
             dots: self.dots,
             runs: self.dot_runs.len() as u32,
             segments: self.lines.segments.len() as u32,
-            segment_bytes: self.lines.segments.iter().map(|segment| 4 * words(segment.ends).len() as u64).sum(),
+            segment_bytes: self
+                .lines
+                .segments
+                .iter()
+                .map(|segment| 4 * words(segment.ends).len() as u64)
+                .sum(),
             chosen: self.chosen.as_ref().map_or(0, |chosen| chosen.len() as u32),
         }
     }
@@ -138,28 +183,67 @@ impl DotStore {
         self.lines.first_segments.len()
     }
 
-    /// Writes what the passes over dots read. `is_new` tells of buffers that were made for this picture.
+    /// Writes what the passes over dots read. `is_new` tells of buffers that were made for this
+    /// picture.
     ///
     /// # Errors
     /// When a buffer is missing.
-    pub async fn write(&mut self, gpu: &Gpu, buffers: &Buffers, is_new: impl Fn(BufferId) -> bool) -> Result<(), RenderError> {
+    pub async fn write(
+        &mut self,
+        gpu: &Gpu,
+        buffers: &Buffers,
+        is_new: impl Fn(BufferId) -> bool,
+    ) -> Result<(), RenderError> {
         if self.is_stale || is_new(BufferId::DotSegments) || is_new(BufferId::DotRuns) {
-            let segments: Vec<u32> = self.lines.segments.iter().flat_map(|segment| words(segment.ends)).collect();
-            buffers.write_at(gpu, BufferId::DotSegments, 0, bytemuck::cast_slice(&segments)).await?;
-            buffers.write_at(gpu, BufferId::DotRuns, 0, bytemuck::cast_slice(&self.dot_runs)).await?;
+            let segments: Vec<u32> = self
+                .lines
+                .segments
+                .iter()
+                .flat_map(|segment| words(segment.ends))
+                .collect();
+            buffers
+                .write_at(
+                    gpu,
+                    BufferId::DotSegments,
+                    0,
+                    bytemuck::cast_slice(&segments),
+                )
+                .await?;
+            buffers
+                .write_at(
+                    gpu,
+                    BufferId::DotRuns,
+                    0,
+                    bytemuck::cast_slice(&self.dot_runs),
+                )
+                .await?;
             self.is_stale = false;
         }
-        buffers.write_at(gpu, BufferId::DotFrame, 0, bytemuck::bytes_of(&self.frame)).await?;
+        buffers
+            .write_at(gpu, BufferId::DotFrame, 0, bytemuck::bytes_of(&self.frame))
+            .await?;
         if let Some(chosen) = &self.chosen {
             let began = Instant::now();
-            buffers.write_at(gpu, BufferId::DotList, 0, bytemuck::cast_slice(chosen)).await?;
-            buffers.write_at(gpu, BufferId::DotCount, 0, bytemuck::bytes_of(&(chosen.len() as u32))).await?;
-            self.chosen_ms = self.chosen_ms.map(|ms| ms + began.elapsed().as_secs_f64() * 1e3);
+            buffers
+                .write_at(gpu, BufferId::DotList, 0, bytemuck::cast_slice(chosen))
+                .await?;
+            buffers
+                .write_at(
+                    gpu,
+                    BufferId::DotCount,
+                    0,
+                    bytemuck::bytes_of(&(chosen.len() as u32)),
+                )
+                .await?;
+            self.chosen_ms = self
+                .chosen_ms
+                .map(|ms| ms + began.elapsed().as_secs_f64() * 1e3);
         }
         Ok(())
     }
 
-    /// Records of all dots of the last picture, for a judge. `own` are the buffers of the view, `others` those that it shares.
+    /// Records of all dots of the last picture, for a judge. `own` are the buffers of the view,
+    /// `others` those that it shares.
     ///
     /// # Errors
     /// When the device is lost.
@@ -177,11 +261,22 @@ impl DotStore {
             let probed = PROBED.min(self.dots - first);
             let bytes = u64::from(probed) * size_of::<VertexRecord>() as u64;
             own.ensure(gpu, BufferId::DotRecords, bytes).await?;
-            let frame = DotFrame { first_probed: first, ..self.frame };
-            own.write_at(gpu, BufferId::DotFrame, 0, bytemuck::bytes_of(&frame)).await?;
+            let frame = DotFrame {
+                first_probed: first,
+                ..self.frame
+            };
+            own.write_at(gpu, BufferId::DotFrame, 0, bytemuck::bytes_of(&frame))
+                .await?;
             let group = others.with(own).bind_group(gpu, &pipeline)?;
-            let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("probe dots") });
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("dots_probe"), timestamp_writes: None });
+            let mut encoder = gpu
+                .device
+                .create_command_encoder(&wgpu::CommandEncoderDescriptor {
+                    label: Some("probe dots"),
+                });
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some("dots_probe"),
+                timestamp_writes: None,
+            });
             pass.set_pipeline(&pipeline.pipeline);
             pass.set_bind_group(0, &group, &[]);
             let [x, y] = folded(probed.div_ceil(DOT_GROUP));
@@ -189,20 +284,37 @@ impl DotStore {
             drop(pass);
             gpu.queue.submit([encoder.finish()]);
             let bytes = buffers::read(gpu, own.get(BufferId::DotRecords)?, bytes).await?;
-            records.extend(bytemuck::pod_collect_to_vec::<u8, VertexRecord>(&bytes).into_iter().map(VertexRecord::snapped));
+            records.extend(
+                bytemuck::pod_collect_to_vec::<u8, VertexRecord>(&bytes)
+                    .into_iter()
+                    .map(VertexRecord::snapped),
+            );
         }
         own.keep(|id| id != BufferId::DotRecords);
         Ok(records)
     }
 }
 
-/// The ends of a segment as the kernels read them: draw, both vertices and triangle, or two [`super::records::DotPoints`].
+/// The ends of a segment as the kernels read them: draw, both vertices and triangle, or two
+/// [`super::records::DotPoints`].
 fn words(ends: SegmentEnds) -> Vec<u32> {
     match ends {
-        SegmentEnds::Edge { draw, vertices: [a, b], triangle } => vec![draw, a, b, triangle],
-        SegmentEnds::Points(points) => {
-            points.iter().flat_map(|p| [p[0].to_bits(), p[1].to_bits(), p[2].to_bits(), 1.0f32.to_bits()]).collect()
-        }
+        SegmentEnds::Edge {
+            draw,
+            vertices: [a, b],
+            triangle,
+        } => vec![draw, a, b, triangle],
+        SegmentEnds::Points(points) => points
+            .iter()
+            .flat_map(|p| {
+                [
+                    p[0].to_bits(),
+                    p[1].to_bits(),
+                    p[2].to_bits(),
+                    1.0f32.to_bits(),
+                ]
+            })
+            .collect(),
     }
 }
 
@@ -211,9 +323,22 @@ fn words(ends: SegmentEnds) -> Vec<u32> {
 /// # Errors
 /// When one picture does not take so many.
 pub fn counted(lines: &Lines, dots: &Dots) -> Result<u64, DrawError> {
-    let on_line = |line: &[Segment]| line.last().map_or(0, |last| dots.count(last.start_m + last.length_m));
-    let count = lines.each().fold(0u64, |sum, (_, line)| sum.saturating_add(on_line(line)));
-    if count > MAX_DOTS { Err(DrawError::TooMany { what: "dots", count, limit: MAX_DOTS }) } else { Ok(count) }
+    let on_line = |line: &[Segment]| {
+        line.last()
+            .map_or(0, |last| dots.count(last.start_m + last.length_m))
+    };
+    let count = lines
+        .each()
+        .fold(0u64, |sum, (_, line)| sum.saturating_add(on_line(line)));
+    if count > MAX_DOTS {
+        Err(DrawError::TooMany {
+            what: "dots",
+            count,
+            limit: MAX_DOTS,
+        })
+    } else {
+        Ok(count)
+    }
 }
 
 /// Cuts lines into runs of dots. As many steps as there are dots, so these are [`counted`] first.
@@ -221,16 +346,24 @@ pub fn dot_runs(lines: &Lines, dots: &Dots) -> Vec<DotRunRecord> {
     let spacing_m = f64::from(dots.spacing_m);
     let (mut dot_runs, mut before) = (Vec::new(), 0);
     for (first_segment, line) in lines.each() {
-        let count = line.last().map_or(0, |last| dots.count(last.start_m + last.length_m));
+        let count = line
+            .last()
+            .map_or(0, |last| dots.count(last.start_m + last.length_m));
         let mut dot = 0;
         for (i, segment) in line.iter().enumerate() {
             let next_m = line.get(i + 1).map_or(f64::INFINITY, |next| next.start_m);
             while dot < count && dot as f64 * spacing_m < next_m {
                 let first = dot;
-                while dot < count && dot as f64 * spacing_m < next_m && dot - first < MAX_COUNT.into() {
+                while dot < count
+                    && dot as f64 * spacing_m < next_m
+                    && dot - first < MAX_COUNT.into()
+                {
                     dot += 1;
                 }
-                let fraction = |dot: u64| (((dot as f64 * spacing_m - segment.start_m) / segment.length_m) as f32).clamp(0.0, 1.0);
+                let fraction = |dot: u64| {
+                    (((dot as f64 * spacing_m - segment.start_m) / segment.length_m) as f32)
+                        .clamp(0.0, 1.0)
+                };
                 dot_runs.push(DotRunRecord {
                     segment: (first_segment + i) as u32,
                     first: (before + first) as u32,

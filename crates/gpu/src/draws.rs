@@ -1,5 +1,5 @@
-//! Draw data: what a view's passes read about every instance, computed on the CPU when the scene, the viewpoint or the format of the
-//! positions change.
+//! Draw data: what a view's passes read about every instance, computed on the CPU when the scene,
+//! the viewpoint or the format of the positions change.
 
 use std::{ops::Range, sync::Arc};
 
@@ -36,7 +36,8 @@ pub struct DrawInputs {
     pub scopes: Vec<Scope>,
 }
 
-/// What a view's passes read about every instance, computed on the CPU when the scene, the viewpoint or the position format changes.
+/// What a view's passes read about every instance, computed on the CPU when the scene, the
+/// viewpoint or the position format changes.
 pub struct DrawData {
     scene: Arc<Scene>,
     inputs: DrawInputs,
@@ -49,21 +50,33 @@ pub struct DrawData {
 }
 
 impl DrawData {
-    /// Of the draws of `scene` as the view has them. `boxes` are those of packed positions, one per primitive.
-    pub fn new(scene: &Arc<Scene>, draws: &[Draw], inputs: DrawInputs, boxes: &[PackedBox], meshlets: Option<&MeshletBuffers>) -> Self {
+    /// Of the draws of `scene` as the view has them. `boxes` are those of packed positions, one per
+    /// primitive.
+    pub fn new(
+        scene: &Arc<Scene>,
+        draws: &[Draw],
+        inputs: DrawInputs,
+        boxes: &[PackedBox],
+        meshlets: Option<&MeshletBuffers>,
+    ) -> Self {
         let attributes = &inputs.attributes;
         let record = |draw: &Draw| {
             let record = DrawRecord::new(draw, scene, attributes);
-            boxes.get(draw.primitive).map_or(record, |packed| record.packed(packed, attributes.first_packed() as u32))
+            boxes.get(draw.primitive).map_or(record, |packed| {
+                record.packed(packed, attributes.first_packed() as u32)
+            })
         };
         let mut records: Vec<DrawRecord> = draws.iter().map(record).collect();
         // A binding holds an element at least, even where nothing is to be drawn.
         records.resize(draws.len().max(1), DrawRecord::default());
-        // Nothing outside the picture is drawn, so it need not be deformed, unless its shadow may fall into the picture.
+        // Nothing outside the picture is drawn, so it need not be deformed, unless its shadow may
+        // fall into the picture.
         let is_deformed = |draw: &&Draw| inputs.deforms_offscreen || !is_outside(draw, scene);
         let deforms = Deforms::of(scene, attributes, draws.iter().filter(is_deformed));
         let deformed = deformed_ranges(scene, draws);
-        let instances = meshlets.map_or_else(Vec::new, |meshlets| meshlets.instances(scene, draws, &inputs.view));
+        let instances = meshlets.map_or_else(Vec::new, |meshlets| {
+            meshlets.instances(scene, draws, &inputs.view)
+        });
         let [vertices, triangles] = totals(scene, draws);
         let counts = SceneCounts {
             vertices,
@@ -76,7 +89,15 @@ impl DrawData {
             particles: 0,
             ..meshlets.map_or_else(SceneCounts::default, MeshletBuffers::counts)
         };
-        Self { scene: scene.clone(), inputs, records, deforms, deformed, instances, counts }
+        Self {
+            scene: scene.clone(),
+            inputs,
+            records,
+            deforms,
+            deformed,
+            instances,
+            counts,
+        }
     }
 
     /// Would these inputs give the same data?
@@ -101,10 +122,16 @@ impl DrawRecord {
         let color = primitive.colors.as_ref();
         let deformed = |part: usize| {
             let offset = attributes.deformed_vertex(draw.first_deformable) as usize + 12 * part;
-            Accessor { stride: DEFORMED_BYTES, ..Accessor::packed_f32(offset, 3, primitive.vertex_count() as usize) }
+            Accessor {
+                stride: DEFORMED_BYTES,
+                ..Accessor::packed_f32(offset, 3, primitive.vertex_count() as usize)
+            }
         };
-        let [positions, normals] =
-            if draw.deform.is_some() { [deformed(0), deformed(1)] } else { [primitive.positions, primitive.normals] };
+        let [positions, normals] = if draw.deform.is_some() {
+            [deformed(0), deformed(1)]
+        } else {
+            [primitive.positions, primitive.normals]
+        };
         Self {
             clip_from_object: draw.clip_from_object,
             world_from_object: rounded_columns(&draw.world_from_object),
@@ -143,18 +170,31 @@ impl DrawRecord {
     /// The same with positions in steps of a box, which begin `first` bytes into the attributes.
     fn packed(self, packed: &PackedBox, first: u32) -> Self {
         let wide = |[x, y, z]: [f32; 3]| [x, y, z, 0.0];
-        Self { origin: wide(packed.origin), step: wide(packed.step), position_offset: first + 4 * packed.first_word, ..self }
+        Self {
+            origin: wide(packed.origin),
+            step: wide(packed.step),
+            position_offset: first + 4 * packed.first_word,
+            ..self
+        }
     }
 }
 
-/// Cofactors of the placement, in the direction of its inverse transpose, scaled so that the largest entry is 1.
+/// Cofactors of the placement, in the direction of its inverse transpose, scaled so that the
+/// largest entry is 1.
 fn normal_from_object(draw: &Draw) -> [[f32; 4]; 4] {
     let m = DMat3::from_mat4(draw.world_from_object);
-    let mut cofactors = DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
+    let mut cofactors = DMat3::from_cols(
+        m.y_axis.cross(m.z_axis),
+        m.z_axis.cross(m.x_axis),
+        m.x_axis.cross(m.y_axis),
+    );
     if draw.mirrored {
         cofactors *= -1.0;
     }
-    let largest = cofactors.to_cols_array().iter().fold(0.0, |max: f64, v| max.max(v.abs()));
+    let largest = cofactors
+        .to_cols_array()
+        .iter()
+        .fold(0.0, |max: f64, v| max.max(v.abs()));
     if largest > 0.0 {
         cofactors *= 1.0 / largest;
     }

@@ -17,14 +17,29 @@ pub enum RenderError {
     #[error(
         "the buffer {buffer} would take {bytes} bytes; this adapter binds at most {limit}; take another adapter, or fewer triangles or pixels"
     )]
-    TooLarge { buffer: &'static str, bytes: u64, limit: u64 },
-    #[error("the picture is {width} x {height}; this adapter's textures end at {limit} pixels a side")]
+    TooLarge {
+        buffer: &'static str,
+        bytes: u64,
+        limit: u64,
+    },
+    #[error(
+        "the picture is {width} x {height}; this adapter's textures end at {limit} pixels a side"
+    )]
     TooWide { width: u32, height: u32, limit: u32 },
-    #[error("no memory for the buffer {buffer} of {bytes} bytes; take another adapter, or a smaller picture or scene")]
+    #[error(
+        "no memory for the buffer {buffer} of {bytes} bytes; take another adapter, or a smaller picture or scene"
+    )]
     OutOfMemory { buffer: &'static str, bytes: u64 },
     #[error("scale {} draws {}x{} pixels for a picture of {}x{}, and {why}; take a smaller scale", option.name(), drawn[0], drawn[1], shown[0], shown[1])]
-    Scaled { option: RenderScale, shown: [u32; 2], drawn: [u32; 2], why: Box<RenderError> },
-    #[error("checks trusted is for the shaders inside this program, not for those of a folder; use checked")]
+    Scaled {
+        option: RenderScale,
+        shown: [u32; 2],
+        drawn: [u32; 2],
+        why: Box<RenderError>,
+    },
+    #[error(
+        "checks trusted is for the shaders inside this program, not for those of a folder; use checked"
+    )]
     Untrusted,
     #[error("a pass binds {name}, which this frame does not have; this is a fault of rasterlab")]
     NoResource { name: &'static str },
@@ -62,7 +77,12 @@ impl RenderError {
         let [shown, drawn] = [shown, drawn].map(|view| [view.width, view.height]);
         match self {
             Self::TooLarge { .. } | Self::TooWide { .. } | Self::OutOfMemory { .. } => {
-                Self::Scaled { option, shown, drawn, why: Box::new(self) }
+                Self::Scaled {
+                    option,
+                    shown,
+                    drawn,
+                    why: Box::new(self),
+                }
             }
             other => other,
         }
@@ -75,16 +95,28 @@ impl RenderError {
             || matches!(self, Self::Untrusted | Self::Tickets(_))
     }
 
-    /// Another adapter may draw it: one with the option or the size. What no adapter could draw is wrong usage.
+    /// Another adapter may draw it: one with the option or the size. What no adapter could draw is
+    /// wrong usage.
     pub fn depends_on_adapter(&self) -> bool {
         matches!(self, Self::Plan(PlanError::NoInt64Atomics))
-            || matches!(self, Self::Scaled { .. } | Self::TooLarge { .. } | Self::TooWide { .. } | Self::OutOfMemory { .. })
+            || matches!(
+                self,
+                Self::Scaled { .. }
+                    | Self::TooLarge { .. }
+                    | Self::TooWide { .. }
+                    | Self::OutOfMemory { .. }
+            )
     }
 
     /// Is it a fault of the program, which no preset should be able to cause?
     pub fn is_fault(&self) -> bool {
-        matches!(self, Self::NoResource { .. } | Self::NoScene | Self::Overflow(_))
-            || matches!(self, Self::Link(_) | Self::Shader(_) | Self::Pipeline { .. })
+        matches!(
+            self,
+            Self::NoResource { .. } | Self::NoScene | Self::Overflow(_)
+        ) || matches!(
+            self,
+            Self::Link(_) | Self::Shader(_) | Self::Pipeline { .. }
+        )
     }
 
     pub fn is_lost(&self) -> bool {

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::{
-    buffers::BufferNote, device::Gpu, frame_layout::DotCounts, pass_purpose::pass_purpose, preparations::Preparation, recording::Resources,
-    shadow_pass::ShadowPass, view_resources::ViewResources,
+    buffers::BufferNote, device::Gpu, frame_layout::DotCounts, pass_purpose::pass_purpose,
+    preparations::Preparation, recording::Resources, shadow_pass::ShadowPass,
+    view_resources::ViewResources,
 };
 use crate::{
     plan::{Note, Plan, Tolerance, predict::Prediction},
@@ -39,7 +40,8 @@ pub struct SizesNote {
     pub bins: Vec<(f64, u32)>,
     /// How many take which path; not where effects move or reshape triangles.
     pub predicted: Option<SizeClasses>,
-    /// What the queues of the frame counted: medium and large triangles. Not while figures are still to come.
+    /// What the queues of the frame counted: medium and large triangles. Not while figures are
+    /// still to come.
     pub counted: Option<[u32; 2]>,
     /// The prediction holds, where both are known.
     pub prediction_holds: Option<bool>,
@@ -47,17 +49,29 @@ pub struct SizesNote {
 
 impl SizesNote {
     fn new(plan: &Plan, counted: Option<[u32; 2]>) -> Self {
-        let Plan { key, needs, classes, .. } = plan;
+        let Plan {
+            key,
+            needs,
+            classes,
+            ..
+        } = plan;
         let sizes = &needs.sizes;
         // What is cut comes back as pieces of any size, and what is hidden may never be queued.
-        let is_told = |_: &[u32; 2]| (!key.paths.has_clipping || sizes.near_clipped == 0) && !key.options.culling.occludes();
-        let is_near = |c: SizeClasses, [medium, large]: [u32; 2]| {
-            let near =
-                |predicted: f64, counted: u32| (predicted - f64::from(counted)).abs() <= c.error_bound + 0.02 * f64::from(counted) + 1.0;
-            // Those that exceed the pass which was left out are drawn by the one before.
-            (near(c.medium, medium) || !key.paths.has_medium) && (near(c.large, large) || !key.paths.has_large)
+        let is_told = |_: &[u32; 2]| {
+            (!key.paths.has_clipping || sizes.near_clipped == 0) && !key.options.culling.occludes()
         };
-        let prediction_holds = classes.zip(counted.filter(is_told)).map(|(classes, counted)| is_near(classes, counted));
+        let is_near = |c: SizeClasses, [medium, large]: [u32; 2]| {
+            let near = |predicted: f64, counted: u32| {
+                (predicted - f64::from(counted)).abs()
+                    <= c.error_bound + 0.02 * f64::from(counted) + 1.0
+            };
+            // Those that exceed the pass which was left out are drawn by the one before.
+            (near(c.medium, medium) || !key.paths.has_medium)
+                && (near(c.large, large) || !key.paths.has_large)
+        };
+        let prediction_holds = classes
+            .zip(counted.filter(is_told))
+            .map(|(classes, counted)| is_near(classes, counted));
         Self {
             triangles: sizes.triangles,
             sampled: sizes.sampled,
@@ -73,7 +87,11 @@ impl SizesNote {
 
 impl Explanation {
     /// What exists for the last frame of `picture`. `others` are resources that it shares.
-    pub fn new(picture: &ViewResources, others: &Resources<'_>, shadow: Option<&ShadowPass>) -> Self {
+    pub fn new(
+        picture: &ViewResources,
+        others: &Resources<'_>,
+        shadow: Option<&ShadowPass>,
+    ) -> Self {
         let mut buffers: Vec<BufferNote> = others.with(&picture.buffers).notes();
         buffers.sort_by(|a, b| a.name.cmp(&b.name));
         buffers.extend(shadow.into_iter().flat_map(ShadowPass::notes));
@@ -90,15 +108,29 @@ impl Explanation {
             };
         };
         let plan = &frame.plan;
-        let own = plan.key.frame().into_iter().map(|pass| Note { name: pass.label(), why: pass_purpose(pass).into() });
+        let own = plan.key.frame().into_iter().map(|pass| Note {
+            name: pass.label(),
+            why: pass_purpose(pass).into(),
+        });
         let mut reasons = plan.reasons();
         if let Some(dots) = &picture.dots {
-            let why = format!("{} dots on {} lines, as far as the lines are long", dots.counts().dots, dots.line_count());
-            reasons.push(Note { name: "dots".into(), why });
+            let why = format!(
+                "{} dots on {} lines, as far as the lines are long",
+                dots.counts().dots,
+                dots.line_count()
+            );
+            reasons.push(Note {
+                name: "dots".into(),
+                why,
+            });
         }
         Self {
             key: plan.key.to_string(),
-            passes: shadow.into_iter().flat_map(ShadowPass::passes).chain(own).collect(),
+            passes: shadow
+                .into_iter()
+                .flat_map(ShadowPass::passes)
+                .chain(own)
+                .collect(),
             buffers,
             reasons,
             omitted: plan.omissions(),
@@ -133,7 +165,9 @@ impl Subject {
             (Some(plan), Some(other)) => Arc::ptr_eq(plan, other),
             (plan, other) => plan.is_none() && other.is_none(),
         };
-        is_same_plan && (self.commands, self.dots, self.counted) == (other.commands, other.dots, other.counted)
+        is_same_plan
+            && (self.commands, self.dots, self.counted)
+                == (other.commands, other.dots, other.counted)
     }
 }
 
@@ -148,11 +182,18 @@ impl Explained {
     ) -> Arc<Explanation> {
         let subject = Subject {
             plan: picture.frame().ok().map(|frame| frame.plan.clone()),
-            commands: [picture.commands_revision(), shadow.and_then(|shadow| shadow.resources.commands_revision())],
-            dots: picture.dots.as_ref().map(|dots| (dots.counts(), dots.line_count())),
+            commands: [
+                picture.commands_revision(),
+                shadow.and_then(|shadow| shadow.resources.commands_revision()),
+            ],
+            dots: picture
+                .dots
+                .as_ref()
+                .map(|dots| (dots.counts(), dots.line_count())),
             counted: counted(picture),
         };
-        if let Some((_, explanation)) = self.0.as_ref().filter(|(known, _)| known.is_same(&subject)) {
+        if let Some((_, explanation)) = self.0.as_ref().filter(|(known, _)| known.is_same(&subject))
+        {
             return explanation.clone();
         }
         gpu.prepared.count(Preparation::Explanation);

@@ -1,6 +1,7 @@
-//! The layout of a frame, computed once from the kernel key, the scene's counts, the size of the picture and the capacity of the queues:
-//! which buffers it has and how large they are, what lies where in them, which bytes are cleared, and how many workgroups each
-//! pass takes. Buffers, uniforms, passes and readback all go by it.
+//! The layout of a frame, computed once from the kernel key, the scene's counts, the size of the
+//! picture and the capacity of the queues: which buffers it has and how large they are, what lies
+//! where in them, which bytes are cleared, and how many workgroups each pass takes. Buffers,
+//! uniforms, passes and readback all go by it.
 
 use std::{collections::BTreeMap, mem::offset_of, ops::Range};
 
@@ -8,8 +9,9 @@ use super::{
     buffers::color_stride,
     queues::Capacities,
     records::{
-        ClippedTriangleRecord, CounterRecord, CullingUniform, DeformRecord, DispatchArgs, DispatchSize, DotFrame, DotPoints, DotRunRecord,
-        DrawRecord, FrameUniform, InstanceRecord, MeshletRecord, MorphTargetRecord, OrderRecord, ScalingUniform, VertexRecord,
+        ClippedTriangleRecord, CounterRecord, CullingUniform, DeformRecord, DispatchArgs,
+        DispatchSize, DotFrame, DotPoints, DotRunRecord, DrawRecord, FrameUniform, InstanceRecord,
+        MeshletRecord, MorphTargetRecord, OrderRecord, ScalingUniform, VertexRecord,
     },
     resource_id::{BufferId, ClearedBy},
 };
@@ -43,7 +45,8 @@ pub struct SceneCounts {
     /// Triangles of all draws.
     pub triangles: u64,
     pub draws: u64,
-    /// Vertices in all draws that joints or morph targets can deform; the dispatch size of `deform`.
+    /// Vertices in all draws that joints or morph targets can deform; the dispatch size of
+    /// `deform`.
     pub deformable: u32,
     /// Deformed draws: one record each.
     pub deforms: u64,
@@ -174,11 +177,17 @@ const HIZ_BLOCK: u32 = 64;
 const ORDER_BLOCK: u64 = 1024;
 
 /// What the first pass of a frame may clear beside its own work: `shaders/variants/clear_step`.
-const CLEARED_IN_PASSES: &[BufferId] =
-    &[BufferId::Counters, BufferId::DepthKeys, BufferId::TriangleIds, BufferId::DepthAndId, BufferId::PackedDepthId];
+const CLEARED_IN_PASSES: &[BufferId] = &[
+    BufferId::Counters,
+    BufferId::DepthKeys,
+    BufferId::TriangleIds,
+    BufferId::DepthAndId,
+    BufferId::PackedDepthId,
+];
 /// Most workgroups that share a medium triangle or a tile of a large one, as the kernels have it.
 const MOST_PARTS: u32 = 4;
-/// Workgroups that a pass over a queue has even where a picture before had an empty queue: a fuller one is then drawn by 1,024 workgroups in turn.
+/// Workgroups that a pass over a queue has even where a picture before had an empty queue: a fuller
+/// one is then drawn by 1,024 workgroups in turn.
 const LEAST_QUEUE_GROUPS: u32 = 1024;
 /// Invocations of a workgroup of the passes over queues.
 const QUEUE_GROUP: u32 = 64;
@@ -188,7 +197,8 @@ const CLEARED_PIXELS: u64 = 4;
 /// Rows of a background of one color that are kept, to be copied all over the picture.
 const BACKGROUND_ROWS: u32 = 32;
 
-/// The layout of a frame: its buffers, their regions and cleared bytes, and the workgroups of every pass.
+/// The layout of a frame: its buffers, their regions and cleared bytes, and the workgroups of every
+/// pass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameLayout {
     buffers: BTreeMap<BufferId, BufferSpec>,
@@ -205,9 +215,29 @@ pub struct FrameLayout {
 
 impl FrameLayout {
     pub fn new(inputs: &LayoutInputs<'_>) -> Self {
-        let LayoutInputs { key, target, size, shown, has_gradient, scene, dots, effect_bytes, capacities } = inputs.clone();
+        let LayoutInputs {
+            key,
+            target,
+            size,
+            shown,
+            has_gradient,
+            scene,
+            dots,
+            effect_bytes,
+            capacities,
+        } = inputs.clone();
         let (buffers, regions) = (BTreeMap::new(), BTreeMap::new());
-        let mut layout = Self { buffers, regions, target, size, shown, has_gradient, scene, dots, capacities };
+        let mut layout = Self {
+            buffers,
+            regions,
+            target,
+            size,
+            shown,
+            has_gradient,
+            scene,
+            dots,
+            capacities,
+        };
         layout.add_uniforms(key, effect_bytes);
         layout.add_geometry(key);
         layout.add_queues(key);
@@ -223,10 +253,14 @@ impl FrameLayout {
             layout.add_dots(key);
         }
         if key.work.clears_in_passes {
-            CLEARED_IN_PASSES.iter().for_each(|&id| layout.clear_only(id, None));
+            CLEARED_IN_PASSES
+                .iter()
+                .for_each(|&id| layout.clear_only(id, None));
         }
         if key.work.clears_order {
-            [BufferId::SampleCounts, BufferId::BoundarySamples].into_iter().for_each(|id| layout.clear_only(id, None));
+            [BufferId::SampleCounts, BufferId::BoundarySamples]
+                .into_iter()
+                .for_each(|id| layout.clear_only(id, None));
         }
         layout
     }
@@ -261,8 +295,14 @@ impl FrameLayout {
     }
 
     /// What is cleared on an occasion.
-    pub fn cleared(&self, occasion: impl Fn(ClearedBy) -> bool) -> impl Iterator<Item = (BufferId, Range<u64>)> {
-        let cleared = self.buffers.iter().filter(move |(id, spec)| occasion(id.cleared_by()) && !spec.cleared.is_empty());
+    pub fn cleared(
+        &self,
+        occasion: impl Fn(ClearedBy) -> bool,
+    ) -> impl Iterator<Item = (BufferId, Range<u64>)> {
+        let cleared = self
+            .buffers
+            .iter()
+            .filter(move |(id, spec)| occasion(id.cleared_by()) && !spec.cleared.is_empty());
         cleared.map(|(id, spec)| (*id, spec.cleared.clone()))
     }
 
@@ -280,15 +320,32 @@ impl FrameLayout {
     }
 
     fn add(&mut self, id: BufferId, bytes: u64) {
-        let cleared = if id.cleared_by() == ClearedBy::Nothing { 0..0 } else { 0..bytes };
-        self.buffers.insert(id, BufferSpec { bytes, purpose: id.purpose(), cleared });
+        let cleared = if id.cleared_by() == ClearedBy::Nothing {
+            0..0
+        } else {
+            0..bytes
+        };
+        self.buffers.insert(
+            id,
+            BufferSpec {
+                bytes,
+                purpose: id.purpose(),
+                cleared,
+            },
+        );
     }
 
     /// A buffer of regions of so many bytes, one behind the other.
     fn add_regions(&mut self, id: BufferId, regions: &[(Region, u64)]) {
         let mut end = 0;
         for &(region, bytes) in regions {
-            self.regions.insert(region, Span { buffer: id, bytes: end..end + bytes });
+            self.regions.insert(
+                region,
+                Span {
+                    buffer: id,
+                    bytes: end..end + bytes,
+                },
+            );
             end += bytes;
         }
         self.add(id, end);
@@ -302,7 +359,9 @@ impl FrameLayout {
 
     /// Clears nothing but one region of a buffer.
     fn clear_only(&mut self, id: BufferId, region: Option<Region>) {
-        let cleared = region.and_then(|region| self.region(region)).map_or(0..0, |span| span.bytes.clone());
+        let cleared = region
+            .and_then(|region| self.region(region))
+            .map_or(0..0, |span| span.bytes.clone());
         if let Some(spec) = self.buffers.get_mut(&id) {
             spec.cleared = cleared;
         }
@@ -313,9 +372,20 @@ impl FrameLayout {
         if effect_bytes > 0 {
             self.add(BufferId::Effects, effect_bytes);
         }
-        // The array at the end of the struct has at least one element, and the buffer whole records of 16 bytes.
-        let blocks = if key.hides_blocks() { self.tile_count(HIDDEN_BLOCK).next_multiple_of(4) } else { 4 };
-        self.add_regions(BufferId::Counters, &[(Region::Counts, size_of::<CounterRecord>() as u64), (Region::HiddenBlocks, WORD * blocks)]);
+        // The array at the end of the struct has at least one element, and the buffer whole records
+        // of 16 bytes.
+        let blocks = if key.hides_blocks() {
+            self.tile_count(HIDDEN_BLOCK).next_multiple_of(4)
+        } else {
+            4
+        };
+        self.add_regions(
+            BufferId::Counters,
+            &[
+                (Region::Counts, size_of::<CounterRecord>() as u64),
+                (Region::HiddenBlocks, WORD * blocks),
+            ],
+        );
         if key.is_scaled() && self.target == Target::Picture {
             self.add(BufferId::Scaling, size_of::<ScalingUniform>() as u64);
         }
@@ -324,22 +394,39 @@ impl FrameLayout {
     fn add_geometry(&mut self, key: &KernelKey) {
         let scene = self.scene;
         // A binding needs at least one element, even for an empty scene.
-        self.add(BufferId::Draws, scene.draws.max(1) * size_of::<DrawRecord>() as u64);
+        self.add(
+            BufferId::Draws,
+            scene.draws.max(1) * size_of::<DrawRecord>() as u64,
+        );
         // The shadow map reuses the deformed vertices of the picture.
         if self.target != Target::ShadowMap {
             if key.deforms() {
-                self.add(BufferId::Deforms, scene.deforms * size_of::<DeformRecord>() as u64);
+                self.add(
+                    BufferId::Deforms,
+                    scene.deforms * size_of::<DeformRecord>() as u64,
+                );
             }
             if key.generated.has_joints {
-                self.add(BufferId::Joints, scene.joint_vectors * size_of::<[f32; 4]>() as u64);
+                self.add(
+                    BufferId::Joints,
+                    scene.joint_vectors * size_of::<[f32; 4]>() as u64,
+                );
             }
             if key.generated.has_morph_targets {
-                self.add(BufferId::MorphTargets, scene.morph_targets.max(1) * size_of::<MorphTargetRecord>() as u64);
+                self.add(
+                    BufferId::MorphTargets,
+                    scene.morph_targets.max(1) * size_of::<MorphTargetRecord>() as u64,
+                );
             }
         }
         let record = size_of::<VertexRecord>() as u64;
-        let setups = u64::from(key.sample_setups()) * (scene.triangles + u64::from(self.capacities.clipped_triangles));
-        let ranks = if key.samples.draw_order.is_none() { 0 } else { scene.triangles.div_ceil(4) };
+        let setups = u64::from(key.sample_setups())
+            * (scene.triangles + u64::from(self.capacities.clipped_triangles));
+        let ranks = if key.samples.draw_order.is_none() {
+            0
+        } else {
+            scene.triangles.div_ceil(4)
+        };
         self.add_regions(
             BufferId::Vertices,
             &[
@@ -370,24 +457,45 @@ impl FrameLayout {
             self.add(BufferId::DispatchArgs, size_of::<DispatchArgs>() as u64);
         }
         if key.paths.has_clipping {
-            self.add(BufferId::ClippedTriangles, u64::from(room.clipped_triangles) * size_of::<ClippedTriangleRecord>() as u64);
+            self.add(
+                BufferId::ClippedTriangles,
+                u64::from(room.clipped_triangles) * size_of::<ClippedTriangleRecord>() as u64,
+            );
         }
     }
 
     fn add_culling(&mut self, key: &KernelKey) {
         let (draws, meshlets) = (self.scene.draws.max(1), u64::from(self.scene.meshlets));
         self.add(BufferId::Culling, size_of::<CullingUniform>() as u64);
-        self.add(BufferId::Instances, draws * size_of::<InstanceRecord>() as u64);
-        self.add(BufferId::Meshlets, self.scene.meshlet_records * size_of::<MeshletRecord>() as u64);
+        self.add(
+            BufferId::Instances,
+            draws * size_of::<InstanceRecord>() as u64,
+        );
+        self.add(
+            BufferId::Meshlets,
+            self.scene.meshlet_records * size_of::<MeshletRecord>() as u64,
+        );
         let words = WORD * u64::from(self.scene.meshlet_words);
-        self.add_regions(BufferId::MeshletLists, &[(Region::MeshletWords, words), (Region::VisibleMeshlets, VISIBLE_MESHLET * meshlets)]);
+        self.add_regions(
+            BufferId::MeshletLists,
+            &[
+                (Region::MeshletWords, words),
+                (Region::VisibleMeshlets, VISIBLE_MESHLET * meshlets),
+            ],
+        );
         if key.options.culling == Culling::TwoPass {
             self.add(BufferId::MeshletVisibility, WORD * meshlets);
         }
         let blocks = self.tile_count(HIZ_BLOCK);
         let tiles = blocks * u64::from(HIZ_BLOCK / RESOLVE_TILE).pow(2);
         if key.options.culling.occludes() {
-            self.add_regions(BufferId::Hiz, &[(Region::HizTiles, WORD * tiles), (Region::HizBlocks, WORD * blocks)]);
+            self.add_regions(
+                BufferId::Hiz,
+                &[
+                    (Region::HizTiles, WORD * tiles),
+                    (Region::HizBlocks, WORD * blocks),
+                ],
+            );
         }
     }
 
@@ -395,10 +503,16 @@ impl FrameLayout {
         let triangles = self.scene.triangles;
         self.add(BufferId::DrawOrder, size_of::<OrderRecord>() as u64);
         self.add(BufferId::SampleCounts, WORD * triangles);
-        self.add(BufferId::BlockSums, 2 * WORD * triangles.div_ceil(ORDER_BLOCK));
+        self.add(
+            BufferId::BlockSums,
+            2 * WORD * triangles.div_ceil(ORDER_BLOCK),
+        );
         if key.samples.draw_order == Some(Mode::Submission) {
             // A bit for every pixel, and the first and last word that have any.
-            self.add(BufferId::BoundarySamples, WORD * (self.pixels().div_ceil(32) + 2));
+            self.add(
+                BufferId::BoundarySamples,
+                WORD * (self.pixels().div_ceil(32) + 2),
+            );
         }
     }
 
@@ -406,21 +520,41 @@ impl FrameLayout {
     fn add_visibility(&mut self, key: &KernelKey) {
         let pixels = self.pixels();
         let is_summed = matches!(key.framebuffer.layers, Some(Layers::Xray { .. }));
-        let sums = if is_summed { WORD * u64::from(key.sum_words()) * pixels } else { 0 };
-        let (nearest, words, with_sums) = match key.framebuffer_layout() {
-            FramebufferLayout::Split32 => (BufferId::DepthKeys, 1, "nearest depth key per pixel, 4 bytes, then the sums of its layers"),
-            FramebufferLayout::Packed64 => {
-                (BufferId::DepthAndId, 2, "depth key and triangle id per pixel, 8 bytes, then the sums of its layers")
-            }
-            FramebufferLayout::Packed32 => {
-                (BufferId::PackedDepthId, 1, "part of the depth key and triangle id per pixel, 4 bytes, then the sums of its layers")
-            }
+        let sums = if is_summed {
+            WORD * u64::from(key.sum_words()) * pixels
+        } else {
+            0
         };
-        self.add_regions(nearest, &[(Region::Nearest, words * WORD * pixels), (Region::XraySums, sums)]);
+        let (nearest, words, with_sums) = match key.framebuffer_layout() {
+            FramebufferLayout::Split32 => (
+                BufferId::DepthKeys,
+                1,
+                "nearest depth key per pixel, 4 bytes, then the sums of its layers",
+            ),
+            FramebufferLayout::Packed64 => (
+                BufferId::DepthAndId,
+                2,
+                "depth key and triangle id per pixel, 8 bytes, then the sums of its layers",
+            ),
+            FramebufferLayout::Packed32 => (
+                BufferId::PackedDepthId,
+                1,
+                "part of the depth key and triangle id per pixel, 4 bytes, then the sums of its layers",
+            ),
+        };
+        self.add_regions(
+            nearest,
+            &[
+                (Region::Nearest, words * WORD * pixels),
+                (Region::XraySums, sums),
+            ],
+        );
         if is_summed {
             self.describe(nearest, with_sums);
         }
-        if key.framebuffer_layout() == FramebufferLayout::Split32 && self.target != Target::ShadowMap {
+        if key.framebuffer_layout() == FramebufferLayout::Split32
+            && self.target != Target::ShadowMap
+        {
             self.add(BufferId::TriangleIds, WORD * pixels);
         }
         if key.work.listed_tiles {
@@ -433,13 +567,26 @@ impl FrameLayout {
 
     /// The picture, and what its resolve reads and writes.
     fn add_picture(&mut self, key: &KernelKey) {
-        let rows = |[width, height]: [u32; 2]| WORD * u64::from(color_stride(width)) * u64::from(height);
+        let rows =
+            |[width, height]: [u32; 2]| WORD * u64::from(color_stride(width)) * u64::from(height);
         let picture = rows(self.size);
-        let tiles = if key.work.listed_tiles { WORD * self.tile_count(RESOLVE_TILE) } else { 0 };
-        let gradient = if self.has_gradient { vec![(Region::BackgroundRows, WORD * u64::from(self.size[1]))] } else { Vec::new() };
+        let tiles = if key.work.listed_tiles {
+            WORD * self.tile_count(RESOLVE_TILE)
+        } else {
+            0
+        };
+        let gradient = if self.has_gradient {
+            vec![(Region::BackgroundRows, WORD * u64::from(self.size[1]))]
+        } else {
+            Vec::new()
+        };
         let has_dots = key.effects.dots.is_some();
         let strengths = if has_dots { WORD * self.pixels() } else { 0 };
-        let regions = [(Region::Pixels, picture), (Region::DotStrengths, strengths), (Region::TileList, tiles)];
+        let regions = [
+            (Region::Pixels, picture),
+            (Region::DotStrengths, strengths),
+            (Region::TileList, tiles),
+        ];
         self.add_regions(BufferId::Color, &[&regions[..], &gradient].concat());
         if has_dots {
             self.describe(
@@ -448,7 +595,10 @@ impl FrameLayout {
             );
             self.clear_only(BufferId::Color, Some(Region::DotStrengths));
         } else {
-            self.describe(BufferId::Color, "the picture, 4 bytes per pixel, and the list of tiles to resolve");
+            self.describe(
+                BufferId::Color,
+                "the picture, 4 bytes per pixel, and the list of tiles to resolve",
+            );
             self.clear_only(BufferId::Color, None);
         }
         if key.is_scaled() {
@@ -458,24 +608,43 @@ impl FrameLayout {
             self.add(BufferId::Previous, picture);
         }
         if key.keeps_background() || key.reads_previous() {
-            self.add(BufferId::Background, rows([self.size[0], self.background_rows()]));
+            self.add(
+                BufferId::Background,
+                rows([self.size[0], self.background_rows()]),
+            );
         }
     }
 
     /// Rows of the background that are kept, to be copied all over the picture.
     pub fn background_rows(&self) -> u32 {
-        if self.has_gradient { self.size[1] } else { BACKGROUND_ROWS }
+        if self.has_gradient {
+            self.size[1]
+        } else {
+            BACKGROUND_ROWS
+        }
     }
 
     fn add_dots(&mut self, key: &KernelKey) {
         let Some(dots) = self.dots else { return };
         self.add(BufferId::DotFrame, size_of::<DotFrame>() as u64);
-        self.add(BufferId::DotSegments, dots.segment_bytes.max(size_of::<DotPoints>() as u64));
-        self.add(BufferId::DotRuns, u64::from(dots.runs.max(1)) * size_of::<DotRunRecord>() as u64);
-        self.add(BufferId::DotEnds, u64::from(dots.segments) * size_of::<DotPoints>() as u64);
+        self.add(
+            BufferId::DotSegments,
+            dots.segment_bytes.max(size_of::<DotPoints>() as u64),
+        );
+        self.add(
+            BufferId::DotRuns,
+            u64::from(dots.runs.max(1)) * size_of::<DotRunRecord>() as u64,
+        );
+        self.add(
+            BufferId::DotEnds,
+            u64::from(dots.segments) * size_of::<DotPoints>() as u64,
+        );
         if key.options.dot_culling != DotCulling::Brute {
             // The capacity is the number of all dots, so the list never overflows.
-            self.add(BufferId::DotList, u64::from(dots.dots) * size_of::<[u32; 2]>() as u64);
+            self.add(
+                BufferId::DotList,
+                u64::from(dots.dots) * size_of::<[u32; 2]>() as u64,
+            );
             self.add(BufferId::DotCount, WORD);
         }
         if key.options.dot_culling == DotCulling::Gpu {
@@ -519,7 +688,10 @@ impl FrameLayout {
             Pass::TileLarge => most_large,
             // Several workgroups may share an entry.
             Pass::RasterMedium(_) => room.medium.saturating_mul(MOST_PARTS).max(most_large),
-            Pass::RasterAll(_) => room.medium.saturating_mul(MOST_PARTS).max(room.tiles.div_ceil(8)),
+            Pass::RasterAll(_) => room
+                .medium
+                .saturating_mul(MOST_PARTS)
+                .max(room.tiles.div_ceil(8)),
             _ => room.tiles.div_ceil(8),
         }
     }
@@ -534,8 +706,9 @@ impl FrameLayout {
         }
     }
 
-    /// Workgroups of a pass over a queue, of which each takes entries in turn. `demand` is what a picture before counted: where its queues
-    /// held little, fewer workgroups find work, and those that find none cost a little too. A queue that held more since is drawn whole.
+    /// Workgroups of a pass over a queue, of which each takes entries in turn. `demand` is what a
+    /// picture before counted: where its queues held little, fewer workgroups find work, and
+    /// those that find none cost a little too. A queue that held more since is drawn whole.
     fn queue_groups(&self, key: &KernelKey, pass: Pass, demand: Option<&CounterRecord>) -> u32 {
         let most = key.work.queue_groups.max(1);
         let usual = most.min(self.usually_queued(pass)).max(1);
@@ -552,8 +725,14 @@ impl FrameLayout {
         held.clamp(LEAST_QUEUE_GROUPS.min(usual), most)
     }
 
-    /// How many workgroups a pass takes. `demand` is what the queues of a picture before held, where it is known.
-    pub fn dispatch(&self, key: &KernelKey, pass: Pass, demand: Option<&CounterRecord>) -> Dispatch {
+    /// How many workgroups a pass takes. `demand` is what the queues of a picture before held,
+    /// where it is known.
+    pub fn dispatch(
+        &self,
+        key: &KernelKey,
+        pass: Pass,
+        demand: Option<&CounterRecord>,
+    ) -> Dispatch {
         let scene = &self.scene;
         let (triangles, group) = (scene.triangles as u32, key.work.group_size);
         let over = |count: u32| Dispatch::once(folded(count.div_ceil(group)));
@@ -563,7 +742,9 @@ impl FrameLayout {
             Pass::Particles => over(scene.particles),
             Pass::Skin => over(scene.deformable),
             Pass::Project if key.work.clears_in_passes => {
-                let sums = self.region(Region::XraySums).map_or(0, |span| (span.bytes.end - span.bytes.start) / (2 * WORD));
+                let sums = self
+                    .region(Region::XraySums)
+                    .map_or(0, |span| (span.bytes.end - span.bytes.start) / (2 * WORD));
                 let clearing = (self.pixels() + sums).div_ceil(CLEARED_PIXELS) as u32;
                 over((vertex_records(key, scene) as u32).max(clearing).max(1))
             }
@@ -571,16 +752,32 @@ impl FrameLayout {
             Pass::Cull(_) => over(scene.meshlets),
             Pass::DepthReduce => Dispatch::once(self.tiles(HIZ_BLOCK)),
             Pass::ProjectMeshlets => Dispatch::args(offset_of!(DispatchArgs, meshlets)),
-            Pass::RasterSmall(_) if key.culls() => Dispatch::args(offset_of!(DispatchArgs, meshlets)),
-            Pass::RasterPoints(_) => over(triangles.saturating_mul(key.work.invocations_per_triangle)),
+            Pass::RasterSmall(_) if key.culls() => {
+                Dispatch::args(offset_of!(DispatchArgs, meshlets))
+            }
+            Pass::RasterPoints(_) => {
+                over(triangles.saturating_mul(key.work.invocations_per_triangle))
+            }
             Pass::RasterSmall(_) | Pass::SampleSetup(TriangleSource::Triangles) => over(triangles),
-            Pass::SampleSetup(TriangleSource::ClippedTriangles) => Dispatch::args(offset_of!(DispatchArgs, clipped_triangles)),
-            Pass::OrderSums | Pass::OrderRanks => Dispatch::once(folded(triangles.div_ceil(ORDER_BLOCK as u32))),
-            Pass::OrderLimit | Pass::OrderCut | Pass::Args | Pass::AdvanceQueues { .. } | Pass::DotsArgs => Dispatch::once([1, 1]),
-            Pass::Clip | Pass::TileLarge | Pass::RasterMedium(_) | Pass::RasterLarge(_) if key.work.queue_groups > 0 => {
+            Pass::SampleSetup(TriangleSource::ClippedTriangles) => {
+                Dispatch::args(offset_of!(DispatchArgs, clipped_triangles))
+            }
+            Pass::OrderSums | Pass::OrderRanks => {
+                Dispatch::once(folded(triangles.div_ceil(ORDER_BLOCK as u32)))
+            }
+            Pass::OrderLimit
+            | Pass::OrderCut
+            | Pass::Args
+            | Pass::AdvanceQueues { .. }
+            | Pass::DotsArgs => Dispatch::once([1, 1]),
+            Pass::Clip | Pass::TileLarge | Pass::RasterMedium(_) | Pass::RasterLarge(_)
+                if key.work.queue_groups > 0 =>
+            {
                 Dispatch::once([self.queue_groups(key, pass, demand), 1])
             }
-            Pass::RasterAll(_) => Dispatch::once(folded(triangles.div_ceil(QUEUE_GROUP) + self.queue_groups(key, pass, demand))),
+            Pass::RasterAll(_) => Dispatch::once(folded(
+                triangles.div_ceil(QUEUE_GROUP) + self.queue_groups(key, pass, demand),
+            )),
             Pass::Clip => Dispatch::args(offset_of!(DispatchArgs, clip)),
             Pass::RasterMedium(_) => Dispatch::args(offset_of!(DispatchArgs, medium)),
             Pass::TileLarge => Dispatch::args(offset_of!(DispatchArgs, large)),
@@ -593,10 +790,17 @@ impl FrameLayout {
             Pass::DotsDraw | Pass::DotsProbe => match key.options.dot_culling {
                 DotCulling::Brute => over_dots(dots.dots),
                 DotCulling::Cpu => over_dots(dots.chosen),
-                DotCulling::Gpu => Dispatch::Indirect { buffer: BufferId::DotArgs, offset: 0 },
+                DotCulling::Gpu => Dispatch::Indirect {
+                    buffer: BufferId::DotArgs,
+                    offset: 0,
+                },
             },
-            Pass::ListTiles => Dispatch::once(folded((self.tile_count(RESOLVE_TILE) as u32).div_ceil(TILE_GROUP))),
-            Pass::Resolve if key.work.listed_tiles => Dispatch::args(offset_of!(DispatchArgs, resolve)),
+            Pass::ListTiles => Dispatch::once(folded(
+                (self.tile_count(RESOLVE_TILE) as u32).div_ceil(TILE_GROUP),
+            )),
+            Pass::Resolve if key.work.listed_tiles => {
+                Dispatch::args(offset_of!(DispatchArgs, resolve))
+            }
             Pass::Resolve => Dispatch::once(self.tiles(key.tile_side())),
             Pass::ResolveBackground => Dispatch::args(offset_of!(DispatchArgs, background)),
             Pass::Scale => Dispatch::once(self.shown.map(|side| side.div_ceil(RESOLVE_TILE))),
@@ -604,7 +808,8 @@ impl FrameLayout {
     }
 }
 
-/// Runs of dots that a workgroup culls at least, where there are so many. It lists their dots, up to 64 to a run, 64 at a time.
+/// Runs of dots that a workgroup culls at least, where there are so many. It lists their dots, up
+/// to 64 to a run, 64 at a time.
 const FEW_RUNS: u32 = 8;
 /// Invocations of a workgroup of the passes over dots.
 pub const DOT_GROUP: u32 = 64;
@@ -618,13 +823,21 @@ impl Dispatch {
 
     /// By a member of [`DispatchArgs`].
     fn args(offset: usize) -> Self {
-        Self::Indirect { buffer: BufferId::DispatchArgs, offset: offset as u64 }
+        Self::Indirect {
+            buffer: BufferId::DispatchArgs,
+            offset: offset as u64,
+        }
     }
 }
 
-/// Projected records: one per vertex of each draw, or three per triangle where effects move triangles apart.
+/// Projected records: one per vertex of each draw, or three per triangle where effects move
+/// triangles apart.
 fn vertex_records(key: &KernelKey, scene: &SceneCounts) -> u64 {
-    if key.unshares_vertices() { 3 * scene.triangles } else { scene.vertices }
+    if key.unshares_vertices() {
+        3 * scene.triangles
+    } else {
+        scene.vertices
+    }
 }
 
 /// Folds more than 65,535 workgroups into two dimensions; the kernel guards the tail.
@@ -638,14 +851,20 @@ impl FrameUniform {
         let is_perspective = view.linear_depth_m.is_none();
         let wide = |v: glam::DVec3, w: f32| [v.x as f32, v.y as f32, v.z as f32, w];
         Self {
-            background: view.background.row(0, view.height).map(|byte| f32::from(byte) / 255.0),
+            background: view
+                .background
+                .row(0, view.height)
+                .map(|byte| f32::from(byte) / 255.0),
             eye: wide(view.eye, f32::from(u8::from(is_perspective))),
             forward: wide(view.forward, 0.0),
             ndc_x: wide(view.ndc_axes[0], 0.0),
             ndc_y: wide(view.ndc_axes[1], 0.0),
             clip_from_world: rounded_columns(&view.clip_from_world),
-            picture_from_world: rounded_columns(&view.picture_from_world.unwrap_or(view.clip_from_world)),
-            center: [view.width, view.height].map(|pixels| (pixels as i32 * view.units_per_pixel() / 2) as f32),
+            picture_from_world: rounded_columns(
+                &view.picture_from_world.unwrap_or(view.clip_from_world),
+            ),
+            center: [view.width, view.height]
+                .map(|pixels| (pixels as i32 * view.units_per_pixel() / 2) as f32),
             depth_range_m: view.depth_range_m.map(|d| d as f32),
             linear_depth_m: view.linear_depth_m.unwrap_or_default().map(|d| d as f32),
             size: [view.width, view.height],

@@ -46,7 +46,8 @@ pub struct Pending {
 const FIRST_STAMP: u64 = size_of::<FrameStats>() as u64;
 
 impl Staged {
-    /// Records the copies that end a frame. `spare` is the buffer of an earlier frame, if there is one.
+    /// Records the copies that end a frame. `spare` is the buffer of an earlier frame, if there is
+    /// one.
     pub fn stage(
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
@@ -54,11 +55,25 @@ impl Staged {
         timer: Option<&Timer>,
         spare: Option<wgpu::Buffer>,
     ) -> Self {
-        let staging = spare.unwrap_or_else(|| buffers::new_staging(gpu, "frame stats", FIRST_STAMP + Timer::BYTES));
+        let staging = spare.unwrap_or_else(|| {
+            buffers::new_staging(gpu, "frame stats", FIRST_STAMP + Timer::BYTES)
+        });
         let copies = [
-            (sources.picture, offset_of!(FrameStats, picture), size_of::<CounterRecord>()),
-            (sources.shadow, offset_of!(FrameStats, shadow), size_of::<CounterRecord>()),
-            (sources.order, offset_of!(FrameStats, order), size_of::<OrderRecord>()),
+            (
+                sources.picture,
+                offset_of!(FrameStats, picture),
+                size_of::<CounterRecord>(),
+            ),
+            (
+                sources.shadow,
+                offset_of!(FrameStats, shadow),
+                size_of::<CounterRecord>(),
+            ),
+            (
+                sources.order,
+                offset_of!(FrameStats, order),
+                size_of::<OrderRecord>(),
+            ),
         ];
         for (source, offset, bytes) in copies {
             if let Some(source) = source {
@@ -68,13 +83,20 @@ impl Staged {
         if let Some(timer) = timer {
             timer.end(encoder, &staging, FIRST_STAMP);
         }
-        Self { staging, labels: timer.map(Timer::labels).unwrap_or_default() }
+        Self {
+            staging,
+            labels: timer.map(Timer::labels).unwrap_or_default(),
+        }
     }
 
     /// Asks for the bytes, after the frame was submitted.
     pub fn begin(self) -> Pending {
         let Self { staging, labels } = self;
-        Pending { mapping: Mapping::begin(&staging), staging, labels }
+        Pending {
+            mapping: Mapping::begin(&staging),
+            staging,
+            labels,
+        }
     }
 }
 
@@ -95,7 +117,9 @@ impl Pending {
     pub fn read(&self, timer: Option<&Timer>) -> Option<(FrameStats, Times)> {
         let bytes = self.staging.get_mapped_range(..).ok()?;
         let (stats, stamps) = bytes.split_at(FIRST_STAMP as usize);
-        let times = timer.map(|timer| timer.times(stamps, &self.labels)).unwrap_or_default();
+        let times = timer
+            .map(|timer| timer.times(stamps, &self.labels))
+            .unwrap_or_default();
         Some((bytemuck::pod_read_unaligned(stats), times))
     }
 
@@ -109,7 +133,18 @@ impl Pending {
 impl CounterRecord {
     /// Meshlets that were drawn, and why the others were not.
     pub fn culled(&self) -> CullingStats {
-        let Self { visible_meshlets: drawn, outside, backfacing, hidden, .. } = *self;
-        CullingStats { drawn, outside, backfacing, hidden }
+        let Self {
+            visible_meshlets: drawn,
+            outside,
+            backfacing,
+            hidden,
+            ..
+        } = *self;
+        CullingStats {
+            drawn,
+            outside,
+            backfacing,
+            hidden,
+        }
     }
 }

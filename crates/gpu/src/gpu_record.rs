@@ -1,5 +1,5 @@
-//! Structs shared with the kernels: each lists the name, offset and WGSL type of its members, so that `tests/house/layout.rs` can
-//! compare it with what naga reads from the shaders.
+//! Structs shared with the kernels: each lists the name, offset and WGSL type of its members, so
+//! that `tests/house/layout.rs` can compare it with what naga reads from the shaders.
 
 /// A Rust type that WGSL has too, by the name that naga gives it.
 pub trait WgslType {
@@ -46,7 +46,8 @@ pub trait GpuRecord: WgslType + bytemuck::Pod {
     const LAYOUT: RecordLayout;
 }
 
-/// Declares a struct of plain words together with its [`RecordLayout`]. The literal is its name in WGSL.
+/// Declares a struct of plain words together with its [`RecordLayout`]. The literal is its name in
+/// WGSL.
 macro_rules! gpu_record {
     ($(#[$meta:meta])* pub struct $name:ident = $wgsl:literal { $($(#[$member_meta:meta])* pub $member:ident : $ty:ty,)* }) => {
         $(#[$meta])*

@@ -1,4 +1,5 @@
-//! The hardware baseline: ordinary render pipelines that draw the same buffers, kept as a yardstick.
+//! The hardware baseline: ordinary render pipelines that draw the same buffers, kept as a
+//! yardstick.
 
 use std::{ops::Range, sync::Arc};
 
@@ -93,32 +94,74 @@ impl Hardware {
     ///
     /// # Errors
     /// When the scene does not fit the adapter, or a pipeline is refused.
-    pub async fn new(gpu: &Gpu, scene: &Scene, view: &View, stack: &Stack, key: &KernelKey) -> Result<Result<Self, String>, RenderError> {
+    pub async fn new(
+        gpu: &Gpu,
+        scene: &Scene,
+        view: &View,
+        stack: &Stack,
+        key: &KernelKey,
+    ) -> Result<Result<Self, String>, RenderError> {
         if let Some(reason) = obstacle(gpu, scene, stack) {
             return Ok(Err(reason));
         }
         let mut draws = stack.draws(scene, view)?;
         let attributes = AttributeLayout::new(scene, None);
-        let deforms = Deforms::of(scene, &attributes, draws.iter().filter(|draw| !is_outside(draw, scene)));
-        let deformable = deformed_ranges(scene, &draws).last().map_or(0, |range| range.end);
+        let deforms = Deforms::of(
+            scene,
+            &attributes,
+            draws.iter().filter(|draw| !is_outside(draw, scene)),
+        );
+        let deformable = deformed_ranges(scene, &draws)
+            .last()
+            .map_or(0, |range| range.end);
         let geometry = HardwareGeometry::new(scene, attributes);
         let recipes = sort(scene, &geometry, &mut draws);
-        let records: Vec<DrawRecord> = draws.iter().map(|draw| DrawRecord::new(draw, scene, &attributes)).collect();
-        let counts =
-            FrameUniform { draw_count: draws.len() as u32, deform_count: deforms.records.len() as u32, ..FrameUniform::of_view(view) };
+        let records: Vec<DrawRecord> = draws
+            .iter()
+            .map(|draw| DrawRecord::new(draw, scene, &attributes))
+            .collect();
+        let counts = FrameUniform {
+            draw_count: draws.len() as u32,
+            deform_count: deforms.records.len() as u32,
+            ..FrameUniform::of_view(view)
+        };
         let mut buffers = Buffers::default();
-        buffers.fill(gpu, BufferId::Frame, bytemuck::bytes_of(&counts)).await?;
-        buffers.fill(gpu, BufferId::Draws, bytemuck::cast_slice(&records)).await?;
-        buffers.fill(gpu, BufferId::Effects, &uniform_bytes(&stack.0)).await?;
+        buffers
+            .fill(gpu, BufferId::Frame, bytemuck::bytes_of(&counts))
+            .await?;
+        buffers
+            .fill(gpu, BufferId::Draws, bytemuck::cast_slice(&records))
+            .await?;
+        buffers
+            .fill(gpu, BufferId::Effects, &uniform_bytes(&stack.0))
+            .await?;
         upload(gpu, &mut buffers, scene, &geometry).await?;
-        let deform = if deformable > 0 { Some(DeformPass::new(gpu, key, &mut buffers, &deforms, deformable).await?) } else { None };
+        let deform = if deformable > 0 {
+            Some(DeformPass::new(gpu, key, &mut buffers, &deforms, deformable).await?)
+        } else {
+            None
+        };
         let is_painted = recipes.iter().any(|recipe| recipe.paint.is_some());
-        let materials = if is_painted { Some(HardwareMaterials::new(gpu, scene).await?) } else { None };
+        let materials = if is_painted {
+            Some(HardwareMaterials::new(gpu, scene).await?)
+        } else {
+            None
+        };
         let (pipelines, group) = pipelines(gpu, key, &buffers, materials.as_ref(), recipes)?;
         let calls = calls(scene, &geometry, &draws, &pipelines);
         let size = [view.width, view.height];
         let [color, depth] = hardware_pipeline::targets(gpu, size, wgpu::TextureFormat::Rgba8Unorm);
-        Ok(Ok(Self { size, buffers, deform, pipelines, group, materials, calls, color, depth }))
+        Ok(Ok(Self {
+            size,
+            buffers,
+            deform,
+            pipelines,
+            group,
+            materials,
+            calls,
+            color,
+            depth,
+        }))
     }
 
     /// Number of draw calls in a frame.
@@ -127,7 +170,11 @@ impl Hardware {
     }
 
     /// Records one frame.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, mut timer: Option<&mut Timer>) -> Result<(), RenderError> {
+    pub fn record(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        mut timer: Option<&mut Timer>,
+    ) -> Result<(), RenderError> {
         if let Some(deform) = &self.deform {
             deform.record(encoder, timer.as_deref_mut());
         }
@@ -162,7 +209,10 @@ impl Hardware {
             match &call.fetched.indices {
                 None => pass.draw(0..call.vertices, call.instances.clone()),
                 Some((format, bytes, count)) => {
-                    pass.set_index_buffer(self.buffers.get(BufferId::IndexBytes)?.slice(bytes.clone()), *format);
+                    pass.set_index_buffer(
+                        self.buffers.get(BufferId::IndexBytes)?.slice(bytes.clone()),
+                        *format,
+                    );
                     pass.draw_indexed(0..*count, 0, call.instances.clone());
                 }
             }
@@ -177,12 +227,25 @@ impl Hardware {
     pub async fn picture(&self, gpu: &Gpu) -> Result<Vec<[u8; 4]>, RenderError> {
         let [width, height] = self.size;
         let mut held = Buffers::default();
-        held.ensure(gpu, BufferId::Color, 4 * u64::from(color_stride(width)) * u64::from(height)).await?;
+        held.ensure(
+            gpu,
+            BufferId::Color,
+            4 * u64::from(color_stride(width)) * u64::from(height),
+        )
+        .await?;
         let buffer = held.get(BufferId::Color)?;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.record(&mut encoder, None)?;
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * color_stride(width)), rows_per_image: None };
-        encoder.copy_texture_to_buffer(self.color.as_image_copy(), wgpu::TexelCopyBufferInfo { buffer, layout }, self.color.size());
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(4 * color_stride(width)),
+            rows_per_image: None,
+        };
+        encoder.copy_texture_to_buffer(
+            self.color.as_image_copy(),
+            wgpu::TexelCopyBufferInfo { buffer, layout },
+            self.color.size(),
+        );
         gpu.queue.submit([encoder.finish()]);
         buffers::read_picture(gpu, buffer, self.size).await
     }
@@ -198,23 +261,55 @@ fn obstacle(gpu: &Gpu, scene: &Scene, stack: &Stack) -> Option<String> {
         () if stack.light().is_some() => "an effect asks for shadows, which it does not draw",
         () if scene.primitives.is_empty() => "the scene is empty",
         () => {
-            let image = scene.images.iter().find(|image| image.size().iter().any(is_wide))?;
-            return Some(format!("{} has {:?} texels, and textures of this adapter end at {limit} a side", image.name, image.size()));
+            let image = scene
+                .images
+                .iter()
+                .find(|image| image.size().iter().any(is_wide))?;
+            return Some(format!(
+                "{} has {:?} texels, and textures of this adapter end at {limit} a side",
+                image.name,
+                image.size()
+            ));
         }
     };
     Some(reason.into())
 }
 
 /// Uploads attributes and index lists, with copies of those that cannot be fetched as they are.
-async fn upload(gpu: &Gpu, buffers: &mut Buffers, scene: &Scene, geometry: &HardwareGeometry) -> Result<(), RenderError> {
+async fn upload(
+    gpu: &Gpu,
+    buffers: &mut Buffers,
+    scene: &Scene,
+    geometry: &HardwareGeometry,
+) -> Result<(), RenderError> {
     let copies: &[u8] = bytemuck::cast_slice(&geometry.vertex_copies);
-    buffers.ensure(gpu, BufferId::VertexBytes, geometry.first_copy() + copies.len() as u64).await?;
-    buffers.write_at(gpu, BufferId::VertexBytes, 0, &scene.vertex_bytes).await?;
-    buffers.write_at(gpu, BufferId::VertexBytes, geometry.first_copy(), copies).await?;
+    buffers
+        .ensure(
+            gpu,
+            BufferId::VertexBytes,
+            geometry.first_copy() + copies.len() as u64,
+        )
+        .await?;
+    buffers
+        .write_at(gpu, BufferId::VertexBytes, 0, &scene.vertex_bytes)
+        .await?;
+    buffers
+        .write_at(gpu, BufferId::VertexBytes, geometry.first_copy(), copies)
+        .await?;
     let copies: &[u8] = bytemuck::cast_slice(&geometry.index_copies);
-    buffers.ensure(gpu, BufferId::IndexBytes, geometry.first_index_copy + copies.len() as u64).await?;
-    buffers.write_at(gpu, BufferId::IndexBytes, 0, &scene.index_bytes).await?;
-    buffers.write_at(gpu, BufferId::IndexBytes, geometry.first_index_copy, copies).await
+    buffers
+        .ensure(
+            gpu,
+            BufferId::IndexBytes,
+            geometry.first_index_copy + copies.len() as u64,
+        )
+        .await?;
+    buffers
+        .write_at(gpu, BufferId::IndexBytes, 0, &scene.index_bytes)
+        .await?;
+    buffers
+        .write_at(gpu, BufferId::IndexBytes, geometry.first_index_copy, copies)
+        .await
 }
 
 impl Recipe {
@@ -228,7 +323,12 @@ impl Recipe {
             masked: material.alpha_threshold().is_some(),
         });
         let mut strides = geometry.of_draw(draw).streams.map(|stream| stream.stride);
-        let recipe = Self { strides, double_sided: draw.double_sided, mirrored: draw.mirrored, paint };
+        let recipe = Self {
+            strides,
+            double_sided: draw.double_sided,
+            mirrored: draw.mirrored,
+            paint,
+        };
         // What is not bound makes no difference.
         strides[recipe.streams()..].fill(0);
         Self { strides, ..recipe }
@@ -236,12 +336,17 @@ impl Recipe {
 
     /// Vertex buffers that it reads.
     const fn streams(&self) -> usize {
-        if self.paint.is_some() { STREAMS } else { PLAIN_STREAMS }
+        if self.paint.is_some() {
+            STREAMS
+        } else {
+            PLAIN_STREAMS
+        }
     }
 
     /// The material that a draw binds. A base color alone is read from its record.
     fn material(&self, draw: &Draw, scene: &Scene) -> Option<usize> {
-        self.paint.map(|_| scene.primitives[draw.primitive].material)
+        self.paint
+            .map(|_| scene.primitives[draw.primitive].material)
     }
 
     fn is_masked(&self) -> bool {
@@ -249,8 +354,8 @@ impl Recipe {
     }
 }
 
-/// Finds the pipelines that a scene takes, and brings its draws into the order in which an engine draws them: opaque ones first, then
-/// by pipeline, material and mesh; else as they were.
+/// Finds the pipelines that a scene takes, and brings its draws into the order in which an engine
+/// draws them: opaque ones first, then by pipeline, material and mesh; else as they were.
 fn sort(scene: &Scene, geometry: &HardwareGeometry, draws: &mut [Draw]) -> Vec<Recipe> {
     let mut recipes: Vec<Recipe> = Vec::new();
     for draw in draws.iter() {
@@ -262,46 +367,105 @@ fn sort(scene: &Scene, geometry: &HardwareGeometry, draws: &mut [Draw]) -> Vec<R
     recipes.sort_by_key(Recipe::is_masked);
     draws.sort_by_cached_key(|draw| {
         let recipe = Recipe::of(draw, scene, geometry);
-        (recipes.iter().position(|other| *other == recipe), recipe.material(draw, scene), draw.primitive)
+        (
+            recipes.iter().position(|other| *other == recipe),
+            recipe.material(draw, scene),
+            draw.primitive,
+        )
     });
     recipes
 }
 
 /// One call for neighbors that differ only in their records.
-fn calls(scene: &Scene, geometry: &HardwareGeometry, draws: &[Draw], pipelines: &[(wgpu::RenderPipeline, Recipe)]) -> Vec<Call> {
+fn calls(
+    scene: &Scene,
+    geometry: &HardwareGeometry,
+    draws: &[Draw],
+    pipelines: &[(wgpu::RenderPipeline, Recipe)],
+) -> Vec<Call> {
     let mut calls: Vec<Call> = Vec::new();
     for (draw, instance) in draws.iter().zip(0..) {
         let primitive = &scene.primitives[draw.primitive];
         let recipe = Recipe::of(draw, scene, geometry);
-        let pipeline = pipelines.iter().position(|(_, other)| *other == recipe).expect("every draw has a pipeline");
+        let pipeline = pipelines
+            .iter()
+            .position(|(_, other)| *other == recipe)
+            .expect("every draw has a pipeline");
         let fetched = geometry.of_draw(draw);
-        let (material, vertices, instances) = (recipe.material(draw, scene), primitive.vertex_count(), instance..instance + 1);
+        let (material, vertices, instances) = (
+            recipe.material(draw, scene),
+            primitive.vertex_count(),
+            instance..instance + 1,
+        );
         match calls.last_mut() {
             Some(last)
-                if last.pipeline == pipeline && last.material == material && last.vertices == vertices && last.fetched == fetched =>
+                if last.pipeline == pipeline
+                    && last.material == material
+                    && last.vertices == vertices
+                    && last.fetched == fetched =>
             {
                 last.instances.end += 1;
             }
-            _ => calls.push(Call { pipeline, material, fetched, vertices, instances }),
+            _ => calls.push(Call {
+                pipeline,
+                material,
+                fetched,
+                vertices,
+                instances,
+            }),
         }
     }
     calls
 }
 
 impl DeformPass {
-    async fn new(gpu: &Gpu, key: &KernelKey, buffers: &mut Buffers, deforms: &Deforms, deformable: u32) -> Result<Self, RenderError> {
-        buffers.fill(gpu, BufferId::Deforms, bytemuck::cast_slice(&deforms.records)).await?;
-        buffers.fill(gpu, BufferId::Joints, bytemuck::cast_slice(&deforms.joints)).await?;
-        buffers.fill(gpu, BufferId::MorphTargets, bytemuck::cast_slice(&deforms.morph_targets)).await?;
-        let pipeline = Pipelines::new(Library::of_process()).get(gpu, key, Pass::Skin).await?;
-        let group = Resources { buffers: vec![buffers], textures: Vec::new(), light: None }.bind_group(gpu, &pipeline)?;
-        Ok(Self { pipeline, group, groups: folded(deformable.div_ceil(key.work.group_size)) })
+    async fn new(
+        gpu: &Gpu,
+        key: &KernelKey,
+        buffers: &mut Buffers,
+        deforms: &Deforms,
+        deformable: u32,
+    ) -> Result<Self, RenderError> {
+        buffers
+            .fill(
+                gpu,
+                BufferId::Deforms,
+                bytemuck::cast_slice(&deforms.records),
+            )
+            .await?;
+        buffers
+            .fill(gpu, BufferId::Joints, bytemuck::cast_slice(&deforms.joints))
+            .await?;
+        buffers
+            .fill(
+                gpu,
+                BufferId::MorphTargets,
+                bytemuck::cast_slice(&deforms.morph_targets),
+            )
+            .await?;
+        let pipeline = Pipelines::new(Library::of_process())
+            .get(gpu, key, Pass::Skin)
+            .await?;
+        let group = Resources {
+            buffers: vec![buffers],
+            textures: Vec::new(),
+            light: None,
+        }
+        .bind_group(gpu, &pipeline)?;
+        Ok(Self {
+            pipeline,
+            group,
+            groups: folded(deformable.div_ceil(key.work.group_size)),
+        })
     }
 
     fn record(&self, encoder: &mut wgpu::CommandEncoder, timer: Option<&mut Timer>) {
         let label = &self.pipeline.label;
         let timestamp_writes = timer.and_then(|timer| timer.compute(label, false));
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes });
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some(label),
+            timestamp_writes,
+        });
         pass.set_pipeline(&self.pipeline.pipeline);
         pass.set_bind_group(0, &self.group, &[]);
         let [x, y] = self.groups;
@@ -310,7 +474,10 @@ impl DeformPass {
 }
 
 /// The pipelines of all recipes, and what all of them bind.
-#[allow(clippy::type_complexity, reason = "two results, named in the line above")]
+#[allow(
+    clippy::type_complexity,
+    reason = "two results, named in the line above"
+)]
 fn pipelines(
     gpu: &Gpu,
     key: &KernelKey,
@@ -319,62 +486,128 @@ fn pipelines(
     recipes: Vec<Recipe>,
 ) -> Result<(Vec<(wgpu::RenderPipeline, Recipe)>, wgpu::BindGroup), RenderError> {
     // Every draw is an instance of a storage buffer here.
-    let vertices = VertexInputs { is_single_draw: false, ..key.vertices.clone() };
-    let key = KernelKey { vertices, ..key.clone() };
-    let linked = link::link(&Library::of_process(), "baselines/hardware", &key, &key.variants(Pass::Resolve))?;
+    let vertices = VertexInputs {
+        is_single_draw: false,
+        ..key.vertices.clone()
+    };
+    let key = KernelKey {
+        vertices,
+        ..key.clone()
+    };
+    let linked = link::link(
+        &Library::of_process(),
+        "baselines/hardware",
+        &key,
+        &key.variants(Pass::Resolve),
+    )?;
     let reflected = reflect::reflect(&linked, gpu.caps.int64_atomics)?;
     let mut bindings = reflected.bindings("hardware_vertex");
     bindings.extend(reflected.bindings("hardware_fragment"));
     bindings.sort_by_key(|binding| binding.index);
     bindings.dedup();
     let label = Some("hardware");
-    let entries: Vec<_> = bindings.iter().map(|binding| layout_entry(binding, wgpu::ShaderStages::VERTEX_FRAGMENT)).collect();
-    let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries });
+    let entries: Vec<_> = bindings
+        .iter()
+        .map(|binding| layout_entry(binding, wgpu::ShaderStages::VERTEX_FRAGMENT))
+        .collect();
+    let layout = gpu
+        .device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label,
+            entries: &entries,
+        });
     let resource = |name: &str| match ResourceId::of_binding(name) {
         Some(ResourceId::Buffer(id)) => buffers.get(id),
-        _ => Err(RenderError::Pipeline { label: "hardware".into(), reason: format!("it binds {name}, which is no buffer") }),
+        _ => Err(RenderError::Pipeline {
+            label: "hardware".into(),
+            reason: format!("it binds {name}, which is no buffer"),
+        }),
     };
-    let entries = bindings
-        .iter()
-        .map(|binding| Ok(wgpu::BindGroupEntry { binding: binding.index, resource: resource(&binding.name)?.as_entire_binding() }));
+    let entries = bindings.iter().map(|binding| {
+        Ok(wgpu::BindGroupEntry {
+            binding: binding.index,
+            resource: resource(&binding.name)?.as_entire_binding(),
+        })
+    });
     let entries: Vec<_> = entries.collect::<Result<_, RenderError>>()?;
-    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout: &layout, entries: &entries });
+    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label,
+        layout: &layout,
+        entries: &entries,
+    });
     let pipeline_layout = |material: Option<&wgpu::BindGroupLayout>| {
         let groups: Vec<_> = std::iter::once(&layout).chain(material).map(Some).collect();
-        gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor { label, bind_group_layouts: &groups, ..Default::default() })
+        gpu.device
+            .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label,
+                bind_group_layouts: &groups,
+                ..Default::default()
+            })
     };
-    let (plain, painted) = (pipeline_layout(None), pipeline_layout(materials.map(|materials| &materials.layout)));
+    let (plain, painted) = (
+        pipeline_layout(None),
+        pipeline_layout(materials.map(|materials| &materials.layout)),
+    );
     let module = hardware_pipeline::module(gpu, "hardware", &linked.text);
     let build = |recipe: Recipe| {
-        let layout = if recipe.paint.is_some() { &painted } else { &plain };
+        let layout = if recipe.paint.is_some() {
+            &painted
+        } else {
+            &plain
+        };
         (recipe.pipeline(gpu, &module, layout), recipe)
     };
     Ok((recipes.into_iter().map(build).collect(), group))
 }
 
 impl Recipe {
-    fn pipeline(&self, gpu: &Gpu, module: &wgpu::ShaderModule, layout: &wgpu::PipelineLayout) -> wgpu::RenderPipeline {
+    fn pipeline(
+        &self,
+        gpu: &Gpu,
+        module: &wgpu::ShaderModule,
+        layout: &wgpu::PipelineLayout,
+    ) -> wgpu::RenderPipeline {
         let attribute = |slot: usize| {
             let format = match COMPONENTS[slot] {
                 2 => wgpu::VertexFormat::Float32x2,
                 3 => wgpu::VertexFormat::Float32x3,
                 _ => wgpu::VertexFormat::Float32x4,
             };
-            [wgpu::VertexAttribute { format, offset: 0, shader_location: slot as u32 }]
+            [wgpu::VertexAttribute {
+                format,
+                offset: 0,
+                shader_location: slot as u32,
+            }]
         };
         let attributes: [_; STREAMS] = std::array::from_fn(attribute);
         let buffer = |slot: usize| {
             let step_mode = wgpu::VertexStepMode::Vertex;
-            Some(wgpu::VertexBufferLayout { array_stride: self.strides[slot], step_mode, attributes: &attributes[slot] })
+            Some(wgpu::VertexBufferLayout {
+                array_stride: self.strides[slot],
+                step_mode,
+                attributes: &attributes[slot],
+            })
         };
         let buffers: Vec<_> = (0..self.streams()).map(buffer).collect();
         let (entries, constants) = match self.paint {
             None => (["hardware_vertex", "hardware_fragment"], Vec::new()),
             Some(paint) => {
-                let fragment = if paint.masked { "hardware_masked" } else { "hardware_painted" };
-                let flags =
-                    [("HAS_BASE_IMAGE", paint.has_base_image), ("HAS_EMISSION_IMAGE", paint.has_emission_image), ("IS_UNLIT", paint.unlit)];
-                (["hardware_painted_vertex", fragment], flags.map(|(name, is_set)| (name, f64::from(u8::from(is_set)))).to_vec())
+                let fragment = if paint.masked {
+                    "hardware_masked"
+                } else {
+                    "hardware_painted"
+                };
+                let flags = [
+                    ("HAS_BASE_IMAGE", paint.has_base_image),
+                    ("HAS_EMISSION_IMAGE", paint.has_emission_image),
+                    ("IS_UNLIT", paint.unlit),
+                ];
+                (
+                    ["hardware_painted_vertex", fragment],
+                    flags
+                        .map(|(name, is_set)| (name, f64::from(u8::from(is_set))))
+                        .to_vec(),
+                )
             }
         };
         let pipeline = HardwarePipeline {
@@ -385,7 +618,11 @@ impl Recipe {
             layout: Some(layout),
             buffers: &buffers,
             cull_mode: (!self.double_sided).then_some(wgpu::Face::Back),
-            front_face: if self.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
+            front_face: if self.mirrored {
+                wgpu::FrontFace::Cw
+            } else {
+                wgpu::FrontFace::Ccw
+            },
             format: wgpu::TextureFormat::Rgba8Unorm,
         };
         pipeline.build(gpu)

@@ -1,12 +1,14 @@
-//! What the hardware baseline fetches: attributes and index lists where the file has them, and copies of those that a fixed-function
-//! pipeline cannot read, made once, as an engine makes them when it loads a model.
+//! What the hardware baseline fetches: attributes and index lists where the file has them, and
+//! copies of those that a fixed-function pipeline cannot read, made once, as an engine makes them
+//! when it loads a model.
 
 use std::ops::Range;
 
 use super::attributes::{AttributeLayout, DEFORMED_BYTES};
 use crate::scene::{Accessor, ComponentType, Primitive, Scene, Topology, draw::Draw};
 
-/// Vertex buffers, each with one attribute: position, normal, texture coordinates of base color and emission, color.
+/// Vertex buffers, each with one attribute: position, normal, texture coordinates of base color and
+/// emission, color.
 pub const STREAMS: usize = 5;
 
 /// Components of each, all f32.
@@ -34,7 +36,8 @@ pub struct Fetched {
 pub struct HardwareGeometry {
     attributes: AttributeLayout,
     pub primitives: Vec<Fetched>,
-    /// Behind the attributes and the deformed vertices in `vertex_bytes`: four ones, then copied attributes.
+    /// Behind the attributes and the deformed vertices in `vertex_bytes`: four ones, then copied
+    /// attributes.
     pub vertex_copies: Vec<f32>,
     /// From byte [`Self::first_index_copy`] of `index_bytes` on.
     pub index_copies: Vec<u32>,
@@ -44,15 +47,29 @@ pub struct HardwareGeometry {
 impl HardwareGeometry {
     pub fn new(scene: &Scene, attributes: AttributeLayout) -> Self {
         let first_index_copy = scene.index_bytes.len().next_multiple_of(4) as u64;
-        let mut geometry =
-            Self { attributes, primitives: Vec::new(), vertex_copies: vec![1.0; 4], index_copies: Vec::new(), first_index_copy };
+        let mut geometry = Self {
+            attributes,
+            primitives: Vec::new(),
+            vertex_copies: vec![1.0; 4],
+            index_copies: Vec::new(),
+            first_index_copy,
+        };
         for primitive in &scene.primitives {
             let [base, emission] = primitive.texcoords;
-            let accessors = [Some(primitive.positions), Some(primitive.normals), base, emission, primitive.colors];
+            let accessors = [
+                Some(primitive.positions),
+                Some(primitive.normals),
+                base,
+                emission,
+                primitive.colors,
+            ];
             let mut streams = [geometry.ones(); STREAMS];
-            for ((stream, accessor), components) in streams.iter_mut().zip(accessors).zip(COMPONENTS) {
+            for ((stream, accessor), components) in
+                streams.iter_mut().zip(accessors).zip(COMPONENTS)
+            {
                 let Some(accessor) = accessor else { continue };
-                *stream = in_place(&accessor, components).unwrap_or_else(|| geometry.copy(scene, &accessor, components));
+                *stream = in_place(&accessor, components)
+                    .unwrap_or_else(|| geometry.copy(scene, &accessor, components));
             }
             let indices = geometry.indices(scene, primitive);
             geometry.primitives.push(Fetched { streams, indices });
@@ -70,8 +87,15 @@ impl HardwareGeometry {
         let mut fetched = self.primitives[draw.primitive].clone();
         if draw.deform.is_some() {
             let first = self.attributes.deformed_vertex(draw.first_deformable);
-            for (stream, offset) in fetched.streams.iter_mut().zip([first, first + u64::from(DEFORMED_BYTES / 2)]) {
-                *stream = Stream { offset, stride: DEFORMED_BYTES.into() };
+            for (stream, offset) in fetched
+                .streams
+                .iter_mut()
+                .zip([first, first + u64::from(DEFORMED_BYTES / 2)])
+            {
+                *stream = Stream {
+                    offset,
+                    stride: DEFORMED_BYTES.into(),
+                };
             }
         }
         fetched
@@ -79,7 +103,10 @@ impl HardwareGeometry {
 
     /// An attribute that a primitive lacks: every vertex reads the same four ones.
     const fn ones(&self) -> Stream {
-        Stream { offset: self.first_copy(), stride: 0 }
+        Stream {
+            offset: self.first_copy(),
+            stride: 0,
+        }
     }
 
     /// Copies an attribute as f32, with ones for components that it lacks.
@@ -90,9 +117,14 @@ impl HardwareGeometry {
             false => 1.0,
         };
         self.vertex_copies.extend(
-            (0..accessor.count).flat_map(|vertex| (0..components).map(move |component| (vertex, component))).map(|(v, c)| value(v, c)),
+            (0..accessor.count)
+                .flat_map(|vertex| (0..components).map(move |component| (vertex, component)))
+                .map(|(v, c)| value(v, c)),
         );
-        Stream { offset, stride: u64::from(4 * components) }
+        Stream {
+            offset,
+            stride: u64::from(4 * components),
+        }
     }
 
     /// The index list of a primitive. Lists of u8, strips and fans become triangle lists of u32.
@@ -107,15 +139,25 @@ impl HardwareGeometry {
             let bytes = indices.component_type.bytes();
             if let Some(format) = format.filter(|_| indices.offset.is_multiple_of(bytes)) {
                 let first = u64::from(indices.offset);
-                return Some((format, first..first + u64::from(indices.count) * u64::from(bytes), indices.count));
+                return Some((
+                    format,
+                    first..first + u64::from(indices.count) * u64::from(bytes),
+                    indices.count,
+                ));
             }
         }
         let first = self.first_index_copy + 4 * self.index_copies.len() as u64;
         let last = primitive.vertex_count().saturating_sub(1);
-        let corners = (0..primitive.triangle_count()).flat_map(|t| primitive.corners(scene, t)).map(|corner| corner.min(last));
+        let corners = (0..primitive.triangle_count())
+            .flat_map(|t| primitive.corners(scene, t))
+            .map(|corner| corner.min(last));
         self.index_copies.extend(corners);
         let end = self.first_index_copy + 4 * self.index_copies.len() as u64;
-        Some((wgpu::IndexFormat::Uint32, first..end, ((end - first) / 4) as u32))
+        Some((
+            wgpu::IndexFormat::Uint32,
+            first..end,
+            ((end - first) / 4) as u32,
+        ))
     }
 }
 
@@ -128,5 +170,8 @@ fn in_place(accessor: &Accessor, components: u32) -> Option<Stream> {
         && (4 * components..=MAX_STRIDE).contains(&accessor.stride)
         && accessor.stride.is_multiple_of(4)
         && accessor.offset.is_multiple_of(4);
-    is_fetched.then(|| Stream { offset: accessor.offset.into(), stride: accessor.stride.into() })
+    is_fetched.then(|| Stream {
+        offset: accessor.offset.into(),
+        stride: accessor.stride.into(),
+    })
 }

@@ -23,9 +23,11 @@ pub struct History {
     occluders: Option<([u32; 2], Stack)>,
     /// The last picture.
     last: Option<(View, Stack)>,
-    /// The last picture whose sums of layers overflowed, and the bits per channel that it gets instead.
+    /// The last picture whose sums of layers overflowed, and the bits per channel that it gets
+    /// instead.
     full_sums: Option<(View, Stack, u32)>,
-    /// Pictures of this scene have had more layers on a pixel than sums in one 64-bit integer hold.
+    /// Pictures of this scene have had more layers on a pixel than sums in one 64-bit integer
+    /// hold.
     is_deep: bool,
 }
 
@@ -48,12 +50,18 @@ impl History {
 
     /// What the x-ray's sums need on this picture, as far as earlier ones have shown.
     pub fn room_for_layers(&self, view: &View, stack: &Stack) -> RoomForLayers {
-        let full = self.full_sums.as_ref().filter(|(of, with, _)| (of, with) == (view, stack));
-        RoomForLayers { fewer_bits: full.map(|(.., bits)| *bits), is_deep: self.is_deep }
+        let full = self
+            .full_sums
+            .as_ref()
+            .filter(|(of, with, _)| (of, with) == (view, stack));
+        RoomForLayers {
+            fewer_bits: full.map(|(.., bits)| *bits),
+            is_deep: self.is_deep,
+        }
     }
 
-    /// Makes room for the layers of the last picture, whose sums overflowed: a word for each sum, else fewer bits per channel; false where
-    /// it has the fewest.
+    /// Makes room for the layers of the last picture, whose sums overflowed: a word for each sum,
+    /// else fewer bits per channel; false where it has the fewest.
     pub fn make_room_for_layers(&mut self, key: &KernelKey) -> bool {
         if key.framebuffer.has_one64_sums {
             self.is_deep = true;
@@ -63,12 +71,15 @@ impl History {
             Some(Layers::Xray { bits }) => xray::fewer(bits),
             _ => None,
         };
-        let Some((bits, (view, stack))) = bits.zip(self.last.clone()) else { return false };
+        let Some((bits, (view, stack))) = bits.zip(self.last.clone()) else {
+            return false;
+        };
         self.full_sums = Some((view, stack, bits));
         true
     }
 
-    /// Clears the depths and meshlets that culling starts from, unless they are of a picture like this one.
+    /// Clears the depths and meshlets that culling starts from, unless they are of a picture like
+    /// this one.
     ///
     /// # Errors
     /// When a buffer is missing.
@@ -83,12 +94,20 @@ impl History {
         if self.occluders.as_ref() != Some(&now) {
             resources.clear(encoder, |occasion| occasion == ClearedBy::History)?;
         }
-        self.occluders = resources.frame()?.plan.key.options.culling.occludes().then_some(now);
+        self.occluders = resources
+            .frame()?
+            .plan
+            .key
+            .options
+            .culling
+            .occludes()
+            .then_some(now);
         Ok(())
     }
 
-    /// Makes the color buffer hold the previous picture where an effect reads it, and a copy that the resolve does not overwrite.
-    /// A picture that is drawn again starts from the same one as before.
+    /// Makes the color buffer hold the previous picture where an effect reads it, and a copy that
+    /// the resolve does not overwrite. A picture that is drawn again starts from the same one
+    /// as before.
     ///
     /// # Errors
     /// When a buffer is missing.
@@ -106,12 +125,22 @@ impl History {
         }
         let now = (view.clone(), stack.clone());
         let buffers = &resources.buffers;
-        let (previous, color) = (buffers.get(BufferId::Previous)?, buffers.get(BufferId::Color)?);
-        let bytes = frame.layout.region(Region::Pixels).map_or(0, |span| span.bytes.end);
+        let (previous, color) = (
+            buffers.get(BufferId::Previous)?,
+            buffers.get(BufferId::Color)?,
+        );
+        let bytes = frame
+            .layout
+            .region(Region::Pixels)
+            .map_or(0, |span| span.bytes.end);
         match &self.previous {
-            Some(previous_picture) if *previous_picture == now => encoder.copy_buffer_to_buffer(previous, 0, color, 0, bytes),
+            Some(previous_picture) if *previous_picture == now => {
+                encoder.copy_buffer_to_buffer(previous, 0, color, 0, bytes)
+            }
             other => {
-                if other.as_ref().is_none_or(|(other, _)| [other.width, other.height] != [view.width, view.height]) {
+                if other.as_ref().is_none_or(|(other, _)| {
+                    [other.width, other.height] != [view.width, view.height]
+                }) {
                     fill_background(encoder, buffers, &frame.layout)?;
                 }
                 encoder.copy_buffer_to_buffer(color, 0, previous, 0, bytes);
@@ -122,13 +151,23 @@ impl History {
     }
 }
 
-/// Copies rows of background over the picture, for resolves that leave empty tiles alone, and for what a first picture starts from.
+/// Copies rows of background over the picture, for resolves that leave empty tiles alone, and for
+/// what a first picture starts from.
 ///
 /// # Errors
 /// When a buffer is missing.
-pub fn fill_background(encoder: &mut wgpu::CommandEncoder, buffers: &Buffers, layout: &FrameLayout) -> Result<(), RenderError> {
-    let (from, to) = (buffers.get(BufferId::Background)?, buffers.get(BufferId::Color)?);
-    let bytes = layout.region(Region::Pixels).map_or(0, |span| span.bytes.end);
+pub fn fill_background(
+    encoder: &mut wgpu::CommandEncoder,
+    buffers: &Buffers,
+    layout: &FrameLayout,
+) -> Result<(), RenderError> {
+    let (from, to) = (
+        buffers.get(BufferId::Background)?,
+        buffers.get(BufferId::Color)?,
+    );
+    let bytes = layout
+        .region(Region::Pixels)
+        .map_or(0, |span| span.bytes.end);
     let height = u64::from(layout.size[1].max(1));
     let step = bytes / height * u64::from(layout.background_rows());
     for first in (0..bytes).step_by(step.max(1) as usize) {

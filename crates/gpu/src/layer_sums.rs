@@ -14,7 +14,9 @@ pub struct RoomForLayers {
 impl RoomForLayers {
     /// Changes a key whose sums would overflow.
     pub fn make(self, key: &mut KernelKey) {
-        if let (Some(Layers::Xray { bits }), Some(fewer)) = (&mut key.framebuffer.layers, self.fewer_bits) {
+        if let (Some(Layers::Xray { bits }), Some(fewer)) =
+            (&mut key.framebuffer.layers, self.fewer_bits)
+        {
             *bits = fewer.min(*bits);
         }
         key.framebuffer.has_one64_sums &= !self.is_deep;

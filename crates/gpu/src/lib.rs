@@ -1,5 +1,5 @@
-//! The kernels on a device: [`Renderer`] draws pictures, [`Capture`] is one with everything that decided it. The modules are listed so
-//! that each uses only those above it.
+//! The kernels on a device: [`Renderer`] draws pictures, [`Capture`] is one with everything that
+//! decided it. The modules are listed so that each uses only those above it.
 
 // One place opts out, with its reason: the option `trusted` of pipelines.rs.
 #![deny(unsafe_code)]

@@ -1,8 +1,10 @@
-//! Texels: what the resolve knows of materials that are more than a base color, in one texture that costs no storage buffer.
+//! Texels: what the resolve knows of materials that are more than a base color, in one texture that
+//! costs no storage buffer.
 //!
-//! The texture is used as a row of words, folded to [`WIDTH`] words a line and as many lines a layer: sRGB decoded, a word per
-//! byte; a record per primitive; where the vertices of masked ones lie in their images; then where the
-//! levels of each image begin, and the levels of all images, a texel a word. Mirrors of `shaders/lib/material_atlas.wgsl`.
+//! The texture is used as a row of words, folded to [`WIDTH`] words a line and as many lines a
+//! layer: sRGB decoded, a word per byte; a record per primitive; where the vertices of masked ones
+//! lie in their images; then where the levels of each image begin, and the levels of all images, a
+//! texel a word. Mirrors of `shaders/lib/material_atlas.wgsl`.
 
 use std::mem::size_of;
 
@@ -44,67 +46,113 @@ pub async fn upload(gpu: &Gpu, scene: &Scene) -> Result<WordTexture, RenderError
     let line = WIDTH as usize;
     words.resize(words.len().next_multiple_of(line), 0);
     let lines = (words.len() / line) as u32;
-    let size = wgpu::Extent3d { width: WIDTH, height: lines.min(WIDTH), depth_or_array_layers: lines.div_ceil(WIDTH) };
+    let size = wgpu::Extent3d {
+        width: WIDTH,
+        height: lines.min(WIDTH),
+        depth_or_array_layers: lines.div_ceil(WIDTH),
+    };
     let most = gpu.device.limits().max_texture_array_layers;
     if size.depth_or_array_layers > most {
-        let limit = textures::bytes_of(wgpu::Extent3d { width: WIDTH, height: WIDTH, depth_or_array_layers: most });
-        return Err(RenderError::TooLarge { buffer: id.name(), bytes: textures::bytes_of(size), limit });
+        let limit = textures::bytes_of(wgpu::Extent3d {
+            width: WIDTH,
+            height: WIDTH,
+            depth_or_array_layers: most,
+        });
+        return Err(RenderError::TooLarge {
+            buffer: id.name(),
+            bytes: textures::bytes_of(size),
+            limit,
+        });
     }
     let atlas = WordTexture::new(gpu, id, size, wgpu::TextureViewDimension::D2Array).await?;
     for (layer, words) in words.chunks(line * WIDTH as usize).enumerate() {
         let rows = (words.len() / line) as u32;
-        let origin = wgpu::Origin3d { x: 0, y: 0, z: layer as u32 };
-        let target = wgpu::TexelCopyTextureInfo { origin, ..atlas.texture.as_image_copy() };
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * WIDTH), rows_per_image: None };
-        let size = wgpu::Extent3d { width: WIDTH, height: rows, depth_or_array_layers: 1 };
-        gpu.queue.write_texture(target, bytemuck::cast_slice(words), layout, size);
+        let origin = wgpu::Origin3d {
+            x: 0,
+            y: 0,
+            z: layer as u32,
+        };
+        let target = wgpu::TexelCopyTextureInfo {
+            origin,
+            ..atlas.texture.as_image_copy()
+        };
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(4 * WIDTH),
+            rows_per_image: None,
+        };
+        let size = wgpu::Extent3d {
+            width: WIDTH,
+            height: rows,
+            depth_or_array_layers: 1,
+        };
+        gpu.queue
+            .write_texture(target, bytemuck::cast_slice(words), layout, size);
     }
     Ok(atlas)
 }
 
 /// Everything, word after word.
 fn words(scene: &Scene) -> Vec<u32> {
-    let mut words: Vec<u32> = (0..256).map(|byte| (linear_light(f64::from(byte) / 255.0) as f32).to_bits()).collect();
+    let mut words: Vec<u32> = (0..256)
+        .map(|byte| (linear_light(f64::from(byte) / 255.0) as f32).to_bits())
+        .collect();
     // A record at least, even where nothing is to be drawn.
     let records = scene.primitives.len().max(1);
     let mut first = words.len() + RECORD_WORDS * records;
     let corners = corners(scene, &mut first);
     let lists = Lists::of(scene, first as u32);
-    let lookup = |texture: Option<&Texture>, texcoords: Option<&Accessor>| match (texture, texcoords) {
-        (Some(texture), Some(texcoords)) => {
-            let image = &scene.images[texture.image];
-            let [width, height] = image.size();
-            let [across, down] = texture.wrap.map(|wrap| wrap as u32);
-            let filters = (texture.mag_filter as u32) << 4 | (texture.min_filter as u32) << 5;
-            let mip_filter = (texture.mip_filter as u32) << 6 | (image.levels.len() as u32) << 8;
-            let [[u_per_u, u_per_v, u_offset], [v_per_u, v_per_v, v_offset]] = texture.image_from_texcoord;
-            LookupRecord {
-                levels: lists.places[texture.image],
-                size: width | height << 16,
-                sampling: across | down << 2 | filters | mip_filter,
-                format: format_word(texcoords),
-                offset: texcoords.offset,
-                stride: texcoords.stride,
-                u_per_u,
-                u_per_v,
-                u_offset,
-                v_per_u,
-                v_per_v,
-                v_offset,
+    let lookup =
+        |texture: Option<&Texture>, texcoords: Option<&Accessor>| match (texture, texcoords) {
+            (Some(texture), Some(texcoords)) => {
+                let image = &scene.images[texture.image];
+                let [width, height] = image.size();
+                let [across, down] = texture.wrap.map(|wrap| wrap as u32);
+                let filters = (texture.mag_filter as u32) << 4 | (texture.min_filter as u32) << 5;
+                let mip_filter =
+                    (texture.mip_filter as u32) << 6 | (image.levels.len() as u32) << 8;
+                let [[u_per_u, u_per_v, u_offset], [v_per_u, v_per_v, v_offset]] =
+                    texture.image_from_texcoord;
+                LookupRecord {
+                    levels: lists.places[texture.image],
+                    size: width | height << 16,
+                    sampling: across | down << 2 | filters | mip_filter,
+                    format: format_word(texcoords),
+                    offset: texcoords.offset,
+                    stride: texcoords.stride,
+                    u_per_u,
+                    u_per_v,
+                    u_offset,
+                    v_per_u,
+                    v_per_v,
+                    v_offset,
+                }
             }
-        }
-        _ => LookupRecord::default(),
-    };
+            _ => LookupRecord::default(),
+        };
     for (primitive, corners) in scene.primitives.iter().zip(&corners) {
         let material = &scene.materials[primitive.material];
         let [base, glow] = material.textures();
         let flag = |is_there: bool, bit: u32| if is_there { bit } else { 0 };
         let textures = flag(base.is_some(), BASE_TEXTURE) | flag(glow.is_some(), EMISSION_TEXTURE);
-        let flags = textures | flag(material.unlit, UNLIT) | flag(material.alpha_threshold().is_some(), MASKED);
+        let flags = textures
+            | flag(material.unlit, UNLIT)
+            | flag(material.alpha_threshold().is_some(), MASKED);
         let [red, green, blue] = material.emission;
-        let (alpha_threshold, first_corner) = (material.alpha_threshold().unwrap_or(0), corners.first);
-        words.extend_from_slice(bytemuck::cast_slice(&[MaterialRecord { flags, red, green, blue, alpha_threshold, first_corner }]));
-        let lookups = [lookup(base, primitive.texcoords[0].as_ref()), lookup(glow, primitive.texcoords[1].as_ref())];
+        let (alpha_threshold, first_corner) =
+            (material.alpha_threshold().unwrap_or(0), corners.first);
+        words.extend_from_slice(bytemuck::cast_slice(&[MaterialRecord {
+            flags,
+            red,
+            green,
+            blue,
+            alpha_threshold,
+            first_corner,
+        }]));
+        let lookups = [
+            lookup(base, primitive.texcoords[0].as_ref()),
+            lookup(glow, primitive.texcoords[1].as_ref()),
+        ];
         words.extend_from_slice(bytemuck::cast_slice(&lookups));
     }
     words.resize(256 + RECORD_WORDS * records, 0);
@@ -126,7 +174,12 @@ struct Lists {
 impl Lists {
     /// From word `first` on, with the levels right behind.
     fn of(scene: &Scene, first: u32) -> Self {
-        let mut level_word = first + scene.images.iter().map(|image| image.levels.len() as u32).sum::<u32>();
+        let mut level_word = first
+            + scene
+                .images
+                .iter()
+                .map(|image| image.levels.len() as u32)
+                .sum::<u32>();
         let (mut places, mut words) = (Vec::new(), Vec::new());
         for image in &scene.images {
             places.push(first + words.len() as u32);
@@ -149,13 +202,24 @@ struct Corners {
 fn corners(scene: &Scene, first: &mut usize) -> Vec<Corners> {
     let of_primitive = |primitive: &Primitive| {
         let material = &scene.materials[primitive.material];
-        let masked = material.base_texture.as_ref().filter(|_| material.alpha_threshold().is_some()).zip(primitive.texcoords[0]);
+        let masked = material
+            .base_texture
+            .as_ref()
+            .filter(|_| material.alpha_threshold().is_some())
+            .zip(primitive.texcoords[0]);
         let words = masked.map_or(Vec::new(), |(texture, texcoords)| {
             let size = scene.images[texture.image].size();
-            let units = |vertex| texture.units(size, texcoord(&texcoords, &scene.vertex_bytes, vertex)).map(|v| v as u32);
+            let units = |vertex| {
+                texture
+                    .units(size, texcoord(&texcoords, &scene.vertex_bytes, vertex))
+                    .map(|v| v as u32)
+            };
             (0..primitive.vertex_count()).flat_map(units).collect()
         });
-        let corners = Corners { first: *first as u32, words };
+        let corners = Corners {
+            first: *first as u32,
+            words,
+        };
         *first += corners.words.len();
         corners
     };

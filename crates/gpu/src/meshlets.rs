@@ -1,4 +1,5 @@
-//! Meshlets of the scene's meshes as the culling pass reads them, and the record that it reads of every instance.
+//! Meshlets of the scene's meshes as the culling pass reads them, and the record that it reads of
+//! every instance.
 
 use std::collections::BTreeSet;
 
@@ -35,27 +36,50 @@ pub struct MeshletBuffers {
 impl MeshletBuffers {
     /// Divides every primitive that has an instance.
     pub fn of(scene: &Scene) -> Self {
-        let shown: BTreeSet<usize> = scene.instances.iter().map(|instance| instance.primitive).collect();
-        let divided: Vec<(usize, Meshlets)> =
-            shown.into_par_iter().map(|primitive| (primitive, Meshlets::of(scene, &scene.primitives[primitive]))).collect();
-        let mut meshlet_buffers = Self { spans: vec![(0, 0); scene.primitives.len()], ..Self::default() };
+        let shown: BTreeSet<usize> = scene
+            .instances
+            .iter()
+            .map(|instance| instance.primitive)
+            .collect();
+        let divided: Vec<(usize, Meshlets)> = shown
+            .into_par_iter()
+            .map(|primitive| (primitive, Meshlets::of(scene, &scene.primitives[primitive])))
+            .collect();
+        let mut meshlet_buffers = Self {
+            spans: vec![(0, 0); scene.primitives.len()],
+            ..Self::default()
+        };
         for (primitive, meshlets) in divided {
             let first_triangle = meshlet_buffers.lists.len() as u32;
             meshlet_buffers.lists.extend(&meshlets.triangles);
             let first_vertex = meshlet_buffers.lists.len() as u32;
             meshlet_buffers.lists.extend(&meshlets.vertices);
-            meshlet_buffers.spans[primitive] = (meshlet_buffers.records.len() as u32, meshlets.list.len() as u32);
-            meshlet_buffers.records.extend(meshlets.list.iter().map(|meshlet| record(meshlet, first_triangle, first_vertex)));
+            meshlet_buffers.spans[primitive] = (
+                meshlet_buffers.records.len() as u32,
+                meshlets.list.len() as u32,
+            );
+            meshlet_buffers.records.extend(
+                meshlets
+                    .list
+                    .iter()
+                    .map(|meshlet| record(meshlet, first_triangle, first_vertex)),
+            );
         }
-        meshlet_buffers.count =
-            scene.instances.iter().fold(0, |sum: u32, instance| sum.saturating_add(meshlet_buffers.spans[instance.primitive].1));
+        meshlet_buffers.count = scene.instances.iter().fold(0, |sum: u32, instance| {
+            sum.saturating_add(meshlet_buffers.spans[instance.primitive].1)
+        });
         meshlet_buffers
     }
 
     /// How many meshlets there are.
     pub fn counts(&self) -> SceneCounts {
         let (meshlet_records, meshlet_words) = (self.records.len() as u64, self.lists.len() as u32);
-        SceneCounts { meshlets: self.count, meshlet_records, meshlet_words, ..SceneCounts::default() }
+        SceneCounts {
+            meshlets: self.count,
+            meshlet_records,
+            meshlet_words,
+            ..SceneCounts::default()
+        }
     }
 
     /// A record of every draw as `view` sees it; one at least.
@@ -65,7 +89,11 @@ impl MeshletBuffers {
             .iter()
             .map(|draw| {
                 let (first_meshlet, count) = self.spans[draw.primitive];
-                let instance = InstanceRecord { first, first_meshlet, ..instance(scene, draw, view) };
+                let instance = InstanceRecord {
+                    first,
+                    first_meshlet,
+                    ..instance(scene, draw, view)
+                };
                 first += count;
                 instance
             })
@@ -93,7 +121,11 @@ fn instance(scene: &Scene, draw: &Draw, view: &View) -> InstanceRecord {
     // In floats, joints take a vertex to within 2^-18 of its exact position; the box holds both.
     let (center, half) = center_and_half(&draw.object_bounds(primitive), 1.0 / f64::from(1 << 16));
     let deforms = draw.deform.is_some();
-    let sight = if deforms || draw.double_sided { None } else { Sight::of(draw, view) };
+    let sight = if deforms || draw.double_sided {
+        None
+    } else {
+        Sight::of(draw, view)
+    };
     let Sight { eye, area, length } = sight.unwrap_or_default();
     InstanceRecord {
         eye,
@@ -107,14 +139,32 @@ fn instance(scene: &Scene, draw: &Draw, view: &View) -> InstanceRecord {
 /// Does a draw lie outside the picture, with ten times as much to spare as the kernels leave?
 pub fn is_outside(draw: &Draw, scene: &Scene) -> bool {
     const SLACK: f64 = 1e-4;
-    let columns = draw.clip_from_object.map(|column| DVec4::from(column.map(f64::from)));
-    let corners = draw.object_bounds(&scene.primitives[draw.primitive]).corners();
+    let columns = draw
+        .clip_from_object
+        .map(|column| DVec4::from(column.map(f64::from)));
+    let corners = draw
+        .object_bounds(&scene.primitives[draw.primitive])
+        .corners();
     let ends = corners.map(|corner| {
         let p = corner - draw.origin();
-        let terms = [columns[0] * p.x, columns[1] * p.y, columns[2] * p.z, columns[3]];
-        let (c, sums) = (terms.iter().sum::<DVec4>(), terms.iter().map(|term| term.abs()).sum::<DVec4>() * SLACK);
+        let terms = [
+            columns[0] * p.x,
+            columns[1] * p.y,
+            columns[2] * p.z,
+            columns[3],
+        ];
+        let (c, sums) = (
+            terms.iter().sum::<DVec4>(),
+            terms.iter().map(|term| term.abs()).sum::<DVec4>() * SLACK,
+        );
         let least = |beyond: f64, sum: f64| beyond + sum + sums.w;
-        [least(c.w + c.x, sums.x), least(c.w - c.x, sums.x), least(c.w + c.y, sums.y), least(c.w - c.y, sums.y), least(c.w - c.z, sums.z)]
+        [
+            least(c.w + c.x, sums.x),
+            least(c.w - c.x, sums.x),
+            least(c.w + c.y, sums.y),
+            least(c.w - c.y, sums.y),
+            least(c.w - c.z, sums.z),
+        ]
     });
     (0..5).any(|side| ends.iter().all(|end| end[side] < 0.0))
 }
@@ -130,24 +180,40 @@ struct Sight {
 impl Sight {
     /// None where the numbers run out of range.
     fn of(draw: &Draw, view: &View) -> Option<Self> {
-        let clip_from_object = DMat4::from_cols_array_2d(&draw.clip_from_object.map(|column| column.map(f64::from)));
+        let clip_from_object =
+            DMat4::from_cols_array_2d(&draw.clip_from_object.map(|column| column.map(f64::from)));
         let [x, y, w] = [0, 1, 3].map(|row| clip_from_object.row(row));
-        let size = [view.width, view.height].map(|pixels| f64::from(pixels) * f64::from(view.units_per_pixel()) * 0.5);
+        let size = [view.width, view.height]
+            .map(|pixels| f64::from(pixels) * f64::from(view.units_per_pixel()) * 0.5);
         // Where front faces turn clockwise on screen, sides are exchanged.
         let hand = if draw.mirrored { -1.0 } else { 1.0 };
         let (eye, area) = if w.truncate() == DVec3::ZERO {
             let along = x.truncate().cross(y.truncate());
-            ((along.normalize_or_zero() * -hand).extend(0.0), if w.w == 1.0 { along.length() } else { 0.0 })
+            (
+                (along.normalize_or_zero() * -hand).extend(0.0),
+                if w.w == 1.0 { along.length() } else { 0.0 },
+            )
         } else {
             // The columns of the transpose are the rows; x, y and w vanish at the eye.
             let rows = DMat3::from_cols(x.truncate(), y.truncate(), w.truncate()).transpose();
             let eye = rows.inverse() * -DVec3::new(x.w, y.w, w.w);
-            (eye.extend(-(rows.determinant() * hand).signum()), rows.determinant().abs())
+            (
+                eye.extend(-(rows.determinant() * hand).signum()),
+                rows.determinant().abs(),
+            )
         };
         let area = area * size[0] * size[1] * (1.0 - 1e-5);
-        let lengths = [(x, size[0]), (y, size[1])].map(|(row, size)| (row.truncate().length() + 2.0 * w.truncate().length()) * size);
+        let lengths = [(x, size[0]), (y, size[1])]
+            .map(|(row, size)| (row.truncate().length() + 2.0 * w.truncate().length()) * size);
         let length = (lengths[0] * lengths[0] + lengths[1] * lengths[1]).sqrt() * (1.0 + 1e-5);
-        let is_usable = eye.is_finite() && eye.abs().max_element() < 1e12 && (1e-24..1e24).contains(&area) && length < 1e24;
-        is_usable.then(|| Self { eye: eye.as_vec4().into(), area: area as f32, length: rounded_up(length) })
+        let is_usable = eye.is_finite()
+            && eye.abs().max_element() < 1e12
+            && (1e-24..1e24).contains(&area)
+            && length < 1e24;
+        is_usable.then(|| Self {
+            eye: eye.as_vec4().into(),
+            area: area as f32,
+            length: rounded_up(length),
+        })
     }
 }

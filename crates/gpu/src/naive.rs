@@ -1,4 +1,5 @@
-//! The naive baseline: the beginner's compute rasterizer that many start from, kept as a yardstick with its defects.
+//! The naive baseline: the beginner's compute rasterizer that many start from, kept as a yardstick
+//! with its defects.
 
 use std::sync::Arc;
 
@@ -39,12 +40,20 @@ pub struct Naive {
 
 impl Naive {
     /// De-indexes the whole scene into world space, as the original does with its one mesh.
-    pub async fn new(gpu: &Gpu, scene: &Scene, view: &View, key: &KernelKey, viewport: Viewport) -> Result<Self, RenderError> {
+    pub async fn new(
+        gpu: &Gpu,
+        scene: &Scene,
+        view: &View,
+        key: &KernelKey,
+        viewport: Viewport,
+    ) -> Result<Self, RenderError> {
         let corners = world_corners(scene, view)?;
         let half = match viewport {
             Viewport::AsWritten => DMat4::IDENTITY,
             // x' = (x + w) / 2 and y' = (w - y) / 2, so that x'/w runs from 0 to 1, downwards.
-            Viewport::Folded => DMat4::from_cols_array(&[0.5, 0., 0., 0., 0., -0.5, 0., 0., 0., 0., 1., 0., 0.5, 0.5, 0., 1.]),
+            Viewport::Folded => DMat4::from_cols_array(&[
+                0.5, 0., 0., 0., 0., -0.5, 0., 0., 0., 0., 1., 0., 0.5, 0.5, 0., 1.,
+            ]),
         };
         let uniform = NaiveUniform {
             clip_from_object: rounded_columns(&(half * view.clip_from_world)),
@@ -54,31 +63,68 @@ impl Naive {
         };
         let pixels = view.pixels() as u64;
         let mut buffers = Buffers::default();
-        buffers.fill(gpu, BufferId::NaiveFrame, bytemuck::bytes_of(&uniform)).await?;
-        buffers.fill(gpu, BufferId::Corners, bytemuck::cast_slice(&corners)).await?;
+        buffers
+            .fill(gpu, BufferId::NaiveFrame, bytemuck::bytes_of(&uniform))
+            .await?;
+        buffers
+            .fill(gpu, BufferId::Corners, bytemuck::cast_slice(&corners))
+            .await?;
         buffers.ensure(gpu, BufferId::Channels, 12 * pixels).await?;
-        buffers.ensure(gpu, BufferId::Color, 4 * u64::from(uniform.stride) * u64::from(view.height)).await?;
+        buffers
+            .ensure(
+                gpu,
+                BufferId::Color,
+                4 * u64::from(uniform.stride) * u64::from(view.height),
+            )
+            .await?;
         let mut pipelines = Pipelines::new(Library::of_process());
         let mut build = async |entry: &str, groups: [u32; 2]| {
-            let pipeline = pipelines.build(gpu, "baselines/naive", entry, entry, key, &[], &[]).await?;
-            let resources = Resources { buffers: vec![&buffers], textures: Vec::new(), light: None };
+            let pipeline = pipelines
+                .build(gpu, "baselines/naive", entry, entry, key, &[], &[])
+                .await?;
+            let resources = Resources {
+                buffers: vec![&buffers],
+                textures: Vec::new(),
+                light: None,
+            };
             let group = resources.bind_group(gpu, &pipeline)?;
             Ok::<_, RenderError>((pipeline, group, groups))
         };
         let passes = vec![
-            build("naive_clear", folded((3 * view.width * view.height).div_ceil(256))).await?,
-            build("naive_raster", folded((uniform.corner_count / 3).div_ceil(256))).await?,
-            build("naive_resolve", [view.width.div_ceil(8), view.height.div_ceil(8)]).await?,
+            build(
+                "naive_clear",
+                folded((3 * view.width * view.height).div_ceil(256)),
+            )
+            .await?,
+            build(
+                "naive_raster",
+                folded((uniform.corner_count / 3).div_ceil(256)),
+            )
+            .await?,
+            build(
+                "naive_resolve",
+                [view.width.div_ceil(8), view.height.div_ceil(8)],
+            )
+            .await?,
         ];
-        Ok(Self { size: uniform.size, buffers, passes })
+        Ok(Self {
+            size: uniform.size,
+            buffers,
+            passes,
+        })
     }
 
     /// Records one frame.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, mut timer: Option<&mut Timer>) {
         for (i, (pipeline, group, [x, y])) in self.passes.iter().enumerate() {
             let is_last = i + 1 == self.passes.len();
-            let timestamp_writes = timer.as_mut().and_then(|timer| timer.compute(&pipeline.label, is_last));
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(&pipeline.label), timestamp_writes });
+            let timestamp_writes = timer
+                .as_mut()
+                .and_then(|timer| timer.compute(&pipeline.label, is_last));
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some(&pipeline.label),
+                timestamp_writes,
+            });
             pass.set_pipeline(&pipeline.pipeline);
             pass.set_bind_group(0, group, &[]);
             pass.dispatch_workgroups(*x, *y, 1);
@@ -104,7 +150,12 @@ fn world_corners(scene: &Scene, view: &View) -> Result<Vec<f32>, RenderError> {
                     Some(deform) => deform.position(scene, primitive, vertex),
                     None => glam::Vec3::from(primitive.position(scene, vertex)).as_dvec3(),
                 };
-                corners.extend(draw.world_from_object.transform_point3(position).as_vec3().to_array());
+                corners.extend(
+                    draw.world_from_object
+                        .transform_point3(position)
+                        .as_vec3()
+                        .to_array(),
+                );
             }
         }
     }

@@ -1,4 +1,5 @@
-//! Packing: positions in fewer bits, evenly spaced in the box of each primitive. Read by `shaders/lib/attributes.wgsl`.
+//! Packing: positions in fewer bits, evenly spaced in the box of each primitive. Read by
+//! `shaders/lib/attributes.wgsl`.
 
 use rayon::prelude::*;
 
@@ -30,7 +31,11 @@ pub const fn words_of(bits: u32) -> u32 {
 
 /// Bytes that a scene's packed positions take.
 pub fn bytes_of(scene: &Scene, bits: u32) -> u64 {
-    scene.primitives.iter().map(|primitive| 4 * u64::from(words_of(bits)) * u64::from(primitive.vertex_count())).sum()
+    scene
+        .primitives
+        .iter()
+        .map(|primitive| 4 * u64::from(words_of(bits)) * u64::from(primitive.vertex_count()))
+        .sum()
 }
 
 impl Packing {
@@ -40,25 +45,54 @@ impl Packing {
         for primitive in &scene.primitives {
             let bounds = primitive.drawable_box(scene);
             let most = f64::from((1u32 << bits) - 1);
-            let extent = if bounds.is_empty() { glam::DVec3::ZERO } else { bounds.max - bounds.min };
-            let origin = if bounds.is_empty() { [0.0; 3] } else { bounds.min.as_vec3().to_array() };
+            let extent = if bounds.is_empty() {
+                glam::DVec3::ZERO
+            } else {
+                bounds.max - bounds.min
+            };
+            let origin = if bounds.is_empty() {
+                [0.0; 3]
+            } else {
+                bounds.min.as_vec3().to_array()
+            };
             let step = (extent / most).as_vec3().to_array();
-            packing.boxes.push(PackedBox { first_word: packing.words.len() as u32, origin, step });
+            packing.boxes.push(PackedBox {
+                first_word: packing.words.len() as u32,
+                origin,
+                step,
+            });
             // Rounded to what the shader will have, so that the nearest step is the nearest place.
             let lane = |value: f32, axis: usize| {
                 let step = f64::from(step[axis]);
-                let steps = if step > 0.0 { (f64::from(value) - f64::from(origin[axis])) / step } else { 0.0 };
+                let steps = if step > 0.0 {
+                    (f64::from(value) - f64::from(origin[axis])) / step
+                } else {
+                    0.0
+                };
                 steps.round_ties_even().clamp(0.0, most) as u32
             };
             let packed = |vertex: u32| {
                 let place = primitive.position(scene, vertex);
                 let refusal = refusal(place);
-                let [x, y, z] = if refusal == 0 { [0, 1, 2].map(|axis| lane(place[axis], axis)) } else { [0; 3] };
-                if bits == 10 { [x | y << 10 | z << 20 | refusal << 30, 0] } else { [x | y << 16, z | refusal << 16] }
+                let [x, y, z] = if refusal == 0 {
+                    [0, 1, 2].map(|axis| lane(place[axis], axis))
+                } else {
+                    [0; 3]
+                };
+                if bits == 10 {
+                    [x | y << 10 | z << 20 | refusal << 30, 0]
+                } else {
+                    [x | y << 16, z | refusal << 16]
+                }
             };
             let words = words_of(bits) as usize;
-            let of_primitive: Vec<[u32; 2]> = (0..primitive.vertex_count()).into_par_iter().map(packed).collect();
-            packing.words.extend(of_primitive.iter().flat_map(|packed| &packed[..words]));
+            let of_primitive: Vec<[u32; 2]> = (0..primitive.vertex_count())
+                .into_par_iter()
+                .map(packed)
+                .collect();
+            packing
+                .words
+                .extend(of_primitive.iter().flat_map(|packed| &packed[..words]));
         }
         packing
     }
@@ -86,15 +120,19 @@ mod tests {
                 assert_eq!(4 * packing.words.len() as u64, bytes_of(&scene, bits));
                 for (primitive, packed) in scene.primitives.iter().zip(&packing.boxes) {
                     for vertex in 0..primitive.vertex_count() {
-                        let words = &packing.words[(packed.first_word + words_of(bits) * vertex) as usize..];
+                        let words = &packing.words
+                            [(packed.first_word + words_of(bits) * vertex) as usize..];
                         let steps = match bits {
                             10 => [words[0] & 1023, words[0] >> 10 & 1023, words[0] >> 20],
                             _ => [words[0] & 0xffff, words[0] >> 16, words[1]],
                         };
                         let place = primitive.position(&scene, vertex);
                         for axis in 0..3 {
-                            let [origin, step] = [packed.origin[axis], packed.step[axis]].map(f64::from);
-                            let off = (origin + step * f64::from(steps[axis]) - f64::from(place[axis])).abs();
+                            let [origin, step] =
+                                [packed.origin[axis], packed.step[axis]].map(f64::from);
+                            let off = (origin + step * f64::from(steps[axis])
+                                - f64::from(place[axis]))
+                            .abs();
                             // The step itself is rounded to a float.
                             assert!(
                                 off <= 0.5 * step + 1e-6 * (step * 65_535.0).max(origin.abs()),
@@ -109,6 +147,15 @@ mod tests {
 
     #[test]
     fn what_is_refused_stays_refused() {
-        assert_eq!([[0.0; 3], [f32::NAN, 0.0, 0.0], [0.0, f32::MAX, 0.0], [f32::MAX, 0.0, f32::INFINITY]].map(refusal), [0, 1, 2, 1]);
+        assert_eq!(
+            [
+                [0.0; 3],
+                [f32::NAN, 0.0, 0.0],
+                [0.0, f32::MAX, 0.0],
+                [f32::MAX, 0.0, f32::INFINITY]
+            ]
+            .map(refusal),
+            [0, 1, 2, 1]
+        );
     }
 }

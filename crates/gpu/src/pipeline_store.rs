@@ -39,13 +39,15 @@ pub struct Identity {
     pub is_trusted: bool,
 }
 
-/// What a pipeline needs to know of its text: the names of its overrides, and what its entry point binds.
+/// What a pipeline needs to know of its text: the names of its overrides, and what its entry point
+/// binds.
 pub struct Interface {
     pub overrides: Vec<String>,
     pub bindings: Vec<Binding>,
 }
 
-/// The compiled pipelines of a device. All renderers on it share them, so that one with other shaders compiles only what differs.
+/// The compiled pipelines of a device. All renderers on it share them, so that one with other
+/// shaders compiles only what differs.
 #[derive(Default)]
 pub struct PipelineStore {
     state: Mutex<StoreState>,
@@ -62,15 +64,17 @@ struct StoreState {
 
 impl PipelineStore {
     fn state(&self) -> MutexGuard<'_, StoreState> {
-        self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+        self.state
+            .lock()
+            .unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
     pub fn find(&self, identity: &Identity) -> Option<Arc<Pipeline>> {
         self.state().built.get(identity).cloned()
     }
 
-    /// Stores a compiled pipeline, or returns the one that another renderer stored in the meantime. Above `most` pipelines, the half
-    /// that was not asked for longest is dropped.
+    /// Stores a compiled pipeline, or returns the one that another renderer stored in the meantime.
+    /// Above `most` pipelines, the half that was not asked for longest is dropped.
     pub fn keep(&self, identity: Identity, pipeline: Pipeline, most: usize) -> Arc<Pipeline> {
         let mut state = self.state();
         if state.built.len() >= most {
@@ -79,18 +83,35 @@ impl PipelineStore {
             let (_, &mut median, _) = times.select_nth_unstable(most / 2);
             state.built.retain(|_, pipeline| used(pipeline) >= median);
         }
-        state.built.entry(identity).or_insert_with(|| Arc::new(pipeline)).clone()
+        state
+            .built
+            .entry(identity)
+            .or_insert_with(|| Arc::new(pipeline))
+            .clone()
     }
 
     /// The interface of an entry point.
-    pub fn interface(&self, linked: &Linked, entry: &str, has_int64: bool) -> Result<Arc<Interface>, RenderError> {
+    pub fn interface(
+        &self,
+        linked: &Linked,
+        entry: &str,
+        has_int64: bool,
+    ) -> Result<Arc<Interface>, RenderError> {
         let name = (linked.text.clone(), entry.to_owned());
         if let Some(interface) = self.state().interfaces.get(&name) {
             return Ok(interface.clone());
         }
         let reflected = reflect::reflect(linked, has_int64)?;
-        let overrides = reflected.module.overrides.iter().filter_map(|(_, one)| one.name.clone()).collect();
-        let interface = Arc::new(Interface { overrides, bindings: reflected.bindings(entry) });
+        let overrides = reflected
+            .module
+            .overrides
+            .iter()
+            .filter_map(|(_, one)| one.name.clone())
+            .collect();
+        let interface = Arc::new(Interface {
+            overrides,
+            bindings: reflected.bindings(entry),
+        });
         let mut state = self.state();
         if state.interfaces.len() >= MOST_INTERFACES {
             state.interfaces.clear();
@@ -100,6 +121,9 @@ impl PipelineStore {
 
     /// Notes that a pipeline is in use, so that others are dropped before it.
     pub fn mark(&self, pipeline: &Pipeline) {
-        pipeline.used.store(self.clock.fetch_add(1, Ordering::Relaxed) + 1, Ordering::Relaxed);
+        pipeline.used.store(
+            self.clock.fetch_add(1, Ordering::Relaxed) + 1,
+            Ordering::Relaxed,
+        );
     }
 }

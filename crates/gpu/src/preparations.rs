@@ -1,5 +1,5 @@
-//! Preparations: what pictures made the program prepare on a device. A picture that differs from the one before in parameters of effects
-//! alone prepares nothing.
+//! Preparations: what pictures made the program prepare on a device. A picture that differs from
+//! the one before in parameters of effects alone prepares nothing.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 

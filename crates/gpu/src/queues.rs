@@ -1,5 +1,5 @@
-//! The queues of triangles that wait for the clip, medium, large and tile kernels: the capacity of each, and what a
-//! frame demanded.
+//! The queues of triangles that wait for the clip, medium, large and tile kernels: the capacity of
+//! each, and what a frame demanded.
 
 use super::records::CounterRecord;
 use crate::{frame::Counters, scene::Scene, shader::key::KernelKey};
@@ -17,10 +17,22 @@ pub struct Capacities {
 impl Capacities {
     /// Room for an entry everywhere: no binding may be empty.
     pub fn at_least_one(self) -> Self {
-        let Self { clip, clipped_triangles, medium, large, tiles } = self;
+        let Self {
+            clip,
+            clipped_triangles,
+            medium,
+            large,
+            tiles,
+        } = self;
         let [clip, clipped_triangles, medium, large, tiles] =
             [clip, clipped_triangles, medium, large, tiles].map(|capacity| capacity.max(1));
-        Self { clip, clipped_triangles, medium, large, tiles }
+        Self {
+            clip,
+            clipped_triangles,
+            medium,
+            large,
+            tiles,
+        }
     }
 
     /// Grows every queue that the demand exceeded, by powers of two; true if anything grew.
@@ -59,7 +71,13 @@ pub fn recorded_capacities(key: &KernelKey, all: &Capacities) -> Capacities {
 pub fn first_capacities(scene: &Scene) -> Capacities {
     let triangles = scene.triangle_count().min(u64::from(u32::MAX)) as u32;
     let room = |most: u32| triangles.clamp(16, most).next_power_of_two();
-    Capacities { clip: room(4096), clipped_triangles: 2 * room(4096), medium: room(65_536), large: room(16_384), tiles: 16 * room(4096) }
+    Capacities {
+        clip: room(4096),
+        clipped_triangles: 2 * room(4096),
+        medium: room(65_536),
+        large: room(16_384),
+        tiles: 16 * room(4096),
+    }
 }
 
 impl CounterRecord {
@@ -67,7 +85,8 @@ impl CounterRecord {
     pub fn counters(&self, capacities: &Capacities) -> Counters {
         let beyond = [
             self.clip.saturating_sub(capacities.clip),
-            self.clipped_triangles.saturating_sub(capacities.clipped_triangles),
+            self.clipped_triangles
+                .saturating_sub(capacities.clipped_triangles),
             self.medium.saturating_sub(capacities.medium),
             self.large.saturating_sub(capacities.large),
             self.tiles.saturating_sub(capacities.tiles),

@@ -37,16 +37,34 @@ impl Readback<'_> {
     }
 
     /// Elements of a buffer from the beginning.
-    async fn elements<T: bytemuck::Pod>(&self, id: BufferId, count: u64) -> Result<Vec<T>, RenderError> {
-        let bytes = buffers::read(self.gpu, self.view.buffers.get(id)?, count * size_of::<T>() as u64).await?;
+    async fn elements<T: bytemuck::Pod>(
+        &self,
+        id: BufferId,
+        count: u64,
+    ) -> Result<Vec<T>, RenderError> {
+        let bytes = buffers::read(
+            self.gpu,
+            self.view.buffers.get(id)?,
+            count * size_of::<T>() as u64,
+        )
+        .await?;
         Ok(bytemuck::pod_collect_to_vec(&bytes))
     }
 
     /// Elements of a region; none where the frame has no such region.
     async fn region<T: bytemuck::Pod>(&self, region: Region) -> Result<Vec<T>, RenderError> {
-        let Some(span) = self.frame()?.layout.region(region) else { return Ok(Vec::new()) };
-        let bytes = buffers::read(self.gpu, self.view.buffers.get(span.buffer)?, span.bytes.end).await?;
-        Ok(bytemuck::pod_collect_to_vec(&bytes[span.bytes.start as usize..]))
+        let Some(span) = self.frame()?.layout.region(region) else {
+            return Ok(Vec::new());
+        };
+        let bytes = buffers::read(
+            self.gpu,
+            self.view.buffers.get(span.buffer)?,
+            span.bytes.end,
+        )
+        .await?;
+        Ok(bytemuck::pod_collect_to_vec(
+            &bytes[span.bytes.start as usize..],
+        ))
     }
 
     fn pixels(&self) -> Result<u64, RenderError> {
@@ -58,24 +76,40 @@ impl Readback<'_> {
         let key = &self.frame()?.plan.key;
         Ok(match key.framebuffer_layout() {
             FramebufferLayout::Split32 => {
-                let complemented: Vec<u32> = self.elements(BufferId::TriangleIds, self.pixels()?).await?;
-                (complemented.into_iter().map(|id| !id).collect(), self.region(Region::Nearest).await?)
+                let complemented: Vec<u32> =
+                    self.elements(BufferId::TriangleIds, self.pixels()?).await?;
+                (
+                    complemented.into_iter().map(|id| !id).collect(),
+                    self.region(Region::Nearest).await?,
+                )
             }
-            FramebufferLayout::Packed32 => self.region::<u32>(Region::Nearest).await?.into_iter().map(|word| key.unpack(word)).unzip(),
+            FramebufferLayout::Packed32 => self
+                .region::<u32>(Region::Nearest)
+                .await?
+                .into_iter()
+                .map(|word| key.unpack(word))
+                .unzip(),
             FramebufferLayout::Packed64 => {
                 let pairs: Vec<DepthAndId> = self.region(Region::Nearest).await?;
-                pairs.into_iter().map(|pair| (!pair.complemented_id, pair.depth_key)).unzip()
+                pairs
+                    .into_iter()
+                    .map(|pair| (!pair.complemented_id, pair.depth_key))
+                    .unzip()
             }
         })
     }
 
-    /// Weights or number of layers per pixel, as the effect in the visibility slot has them; empty without one.
+    /// Weights or number of layers per pixel, as the effect in the visibility slot has them; empty
+    /// without one.
     pub async fn layer_sums(&self) -> Result<Vec<u32>, RenderError> {
         let key = &self.frame()?.plan.key;
         match key.framebuffer.layers {
             Some(Layers::Xray { .. }) => {
                 let words: Vec<u32> = self.region(Region::XraySums).await?;
-                Ok(words.chunks_exact(key.sum_words() as usize).map(|words| xray_weight(key, words)).collect())
+                Ok(words
+                    .chunks_exact(key.sum_words() as usize)
+                    .map(|words| xray_weight(key, words))
+                    .collect())
             }
             Some(Layers::Overdraw) => self.elements(BufferId::LayerCounts, self.pixels()?).await,
             Some(Layers::Race) | None => Ok(Vec::new()),
@@ -92,24 +126,31 @@ impl Readback<'_> {
         buffers::read_picture(self.gpu, self.view.buffers.get(id)?, size).await
     }
 
-    /// The triangles that clipping made, each with its slot in the buffer; by parent and position in its fan, since the order of the
-    /// slots is left to the hardware.
+    /// The triangles that clipping made, each with its slot in the buffer; by parent and position
+    /// in its fan, since the order of the slots is left to the hardware.
     async fn clipped_triangles(&self) -> Result<Vec<(usize, ClippedTriangleRecord)>, RenderError> {
         let frame = self.frame()?;
         if !frame.plan.key.paths.has_clipping {
             return Ok(Vec::new());
         }
         let counters: Vec<CounterRecord> = self.elements(BufferId::Counters, 1).await?;
-        let demand = counters.first().map_or(0, |counters| counters.clipped_triangles);
+        let demand = counters
+            .first()
+            .map_or(0, |counters| counters.clipped_triangles);
         let room = frame.layout.capacities.clipped_triangles;
-        let records: Vec<ClippedTriangleRecord> = self.elements(BufferId::ClippedTriangles, demand.min(room).into()).await?;
+        let records: Vec<ClippedTriangleRecord> = self
+            .elements(BufferId::ClippedTriangles, demand.min(room).into())
+            .await?;
         let mut records: Vec<_> = records.into_iter().enumerate().collect();
         records.sort_by_key(|(_, record)| record.fan());
         Ok(records)
     }
 
     /// Snapped vertices, clipped triangles and setups of the frame.
-    pub async fn geometry(&self, particles: Option<&ParticleSimulation>) -> Result<Geometry, RenderError> {
+    pub async fn geometry(
+        &self,
+        particles: Option<&ParticleSimulation>,
+    ) -> Result<Geometry, RenderError> {
         let frame = self.frame()?;
         let (key, scene) = (&frame.plan.key, self.scene.scene());
         let clipped = self.clipped_triangles().await?;
@@ -126,8 +167,14 @@ impl Readback<'_> {
         let options = &key.options;
         Ok(Geometry {
             vertices: vertices.into_iter().map(VertexRecord::snapped).collect(),
-            sample_setups: entries.flat_map(|entry| &setups[entry * per_triangle..][..per_triangle]).copied().collect(),
-            clipped_triangles: clipped.iter().map(|(_, record)| record.triangle()).collect(),
+            sample_setups: entries
+                .flat_map(|entry| &setups[entry * per_triangle..][..per_triangle])
+                .copied()
+                .collect(),
+            clipped_triangles: clipped
+                .iter()
+                .map(|(_, record)| record.triangle())
+                .collect(),
             has_unshared_vertices: key.unshares_vertices(),
             subpixel_bits: options.coverage.subpixel_bits(),
             scale: options.render_scale.factor(),
@@ -148,40 +195,111 @@ impl Readback<'_> {
     /// Position and normal of every vertex that the skin pass deformed.
     async fn deformed(&self) -> Result<Vec<[f32; 6]>, RenderError> {
         let ranges = self.view.deformed();
-        let (Some(end), attributes) = (ranges.last().map(|range| range.end), self.scene.attributes()) else { return Ok(Vec::new()) };
-        let bytes = buffers::read(self.gpu, self.scene.buffers.get(BufferId::VertexBytes)?, attributes.deformed_vertex(end)).await?;
-        let all: Vec<[f32; 6]> = bytemuck::pod_collect_to_vec(&bytes[attributes.deformed_vertex(0) as usize..]);
-        Ok(ranges.iter().flat_map(|range| &all[range.start as usize..range.end as usize]).copied().collect())
+        let (Some(end), attributes) = (
+            ranges.last().map(|range| range.end),
+            self.scene.attributes(),
+        ) else {
+            return Ok(Vec::new());
+        };
+        let bytes = buffers::read(
+            self.gpu,
+            self.scene.buffers.get(BufferId::VertexBytes)?,
+            attributes.deformed_vertex(end),
+        )
+        .await?;
+        let all: Vec<[f32; 6]> =
+            bytemuck::pod_collect_to_vec(&bytes[attributes.deformed_vertex(0) as usize..]);
+        Ok(ranges
+            .iter()
+            .flat_map(|range| &all[range.start as usize..range.end as usize])
+            .copied()
+            .collect())
     }
 }
 
 /// The shadow map, and the scene as the light sees it.
-pub async fn shadow_map(gpu: &Gpu, scene: &SceneResources, shadow: &ShadowPass) -> Result<ShadowMap, RenderError> {
-    let readback = Readback { gpu, scene, view: &shadow.resources };
-    Ok(ShadowMap { depth_keys: readback.region(Region::Nearest).await?, geometry: readback.geometry(None).await? })
+pub async fn shadow_map(
+    gpu: &Gpu,
+    scene: &SceneResources,
+    shadow: &ShadowPass,
+) -> Result<ShadowMap, RenderError> {
+    let readback = Readback {
+        gpu,
+        scene,
+        view: &shadow.resources,
+    };
+    Ok(ShadowMap {
+        depth_keys: readback.region(Region::Nearest).await?,
+        geometry: readback.geometry(None).await?,
+    })
 }
 
-/// Runs the raster passes of a view once more into a counter per pixel; returns layers per pixel. None where a queue overflowed, which a
-/// view drawn from lists of tiles does not have until now: it has grown, draw the view again.
-pub async fn count_layers(device: &mut Device, view: &mut ViewResources, others: &Resources<'_>) -> Result<Option<Vec<u32>>, RenderError> {
+/// Runs the raster passes of a view once more into a counter per pixel; returns layers per pixel.
+/// None where a queue overflowed, which a view drawn from lists of tiles does not have until now:
+/// it has grown, draw the view again.
+pub async fn count_layers(
+    device: &mut Device,
+    view: &mut ViewResources,
+    others: &Resources<'_>,
+) -> Result<Option<Vec<u32>>, RenderError> {
     let PreparedFrame { plan, view: of, .. } = view.frame()?;
     let (key, pixels): (KernelKey, _) = (plan.key.clone(), of.pixels() as u64);
     let bytes = pixels * size_of::<u32>() as u64;
-    view.buffers.ensure_for(&device.gpu, BufferId::LayerCounts, bytes, "layers per pixel, only while verifying").await?;
+    view.buffers
+        .ensure_for(
+            &device.gpu,
+            BufferId::LayerCounts,
+            bytes,
+            "layers per pixel, only while verifying",
+        )
+        .await?;
     let passes = key.passes(&[key.order_phases(), &[RasterPhase::Count]].concat());
     let commands = CommandList::new(device, &key, passes, "", &others.with(&view.buffers)).await?;
-    let mut encoder = device.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("count layers") });
-    view.clear(&mut encoder, |occasion| occasion == ClearedBy::PictureAndCount)?;
-    encoder.clear_buffer(view.buffers.get(BufferId::LayerCounts)?, 0, Some(bytes.next_multiple_of(4)));
+    let mut encoder = device
+        .gpu
+        .device
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor {
+            label: Some("count layers"),
+        });
+    view.clear(&mut encoder, |occasion| {
+        occasion == ClearedBy::PictureAndCount
+    })?;
+    encoder.clear_buffer(
+        view.buffers.get(BufferId::LayerCounts)?,
+        0,
+        Some(bytes.next_multiple_of(4)),
+    );
     let layout = &view.frame()?.layout;
-    let sizes = DispatchSizes { layout, demand: view.demand.as_ref(), buffers: &view.buffers };
-    commands.record(0..commands.len(), &mut encoder, &sizes, Timing { timer: None, ends_frame: true })?;
+    let sizes = DispatchSizes {
+        layout,
+        demand: view.demand.as_ref(),
+        buffers: &view.buffers,
+    };
+    commands.record(
+        0..commands.len(),
+        &mut encoder,
+        &sizes,
+        Timing {
+            timer: None,
+            ends_frame: true,
+        },
+    )?;
     device.gpu.queue.submit([encoder.finish()]);
-    let layers = buffers::read(&device.gpu, view.buffers.get(BufferId::LayerCounts)?, bytes).await?;
-    let counters = buffers::read(&device.gpu, view.buffers.get(BufferId::Counters)?, size_of::<CounterRecord>() as u64).await?;
+    let layers =
+        buffers::read(&device.gpu, view.buffers.get(BufferId::LayerCounts)?, bytes).await?;
+    let counters = buffers::read(
+        &device.gpu,
+        view.buffers.get(BufferId::Counters)?,
+        size_of::<CounterRecord>() as u64,
+    )
+    .await?;
     view.buffers.keep(|id| id != BufferId::LayerCounts);
     let demand: CounterRecord = bytemuck::pod_read_unaligned(&counters);
-    let is_complete = demand.counters(&recorded_capacities(&key, &view.capacities)).overflow == 0 || !view.grow_queues(&demand);
+    let is_complete = demand
+        .counters(&recorded_capacities(&key, &view.capacities))
+        .overflow
+        == 0
+        || !view.grow_queues(&demand);
     Ok(is_complete.then(|| bytemuck::pod_collect_to_vec(&layers)))
 }
 

@@ -1,5 +1,5 @@
-//! Recording: the passes of a view with their pipelines, bindings and dispatch sizes, recorded one after another. What does not
-//! change from frame to frame is kept in a [`CommandList`].
+//! Recording: the passes of a view with their pipelines, bindings and dispatch sizes, recorded one
+//! after another. What does not change from frame to frame is kept in a [`CommandList`].
 
 use std::{ops::Range, sync::Arc};
 
@@ -43,12 +43,16 @@ pub struct Resources<'a> {
 impl<'a> Resources<'a> {
     fn get(&self, id: ResourceId) -> Result<wgpu::BindingResource<'a>, RenderError> {
         let found = match id {
-            ResourceId::Buffer(BufferId::ShadowMapKeys) => {
-                self.light.map(|light| light.get(BufferId::DepthKeys).map(wgpu::Buffer::as_entire_binding))
-            }
-            ResourceId::Buffer(id) => {
-                self.buffers.iter().find(|buffers| buffers.has(id)).map(|buffers| buffers.get(id).map(wgpu::Buffer::as_entire_binding))
-            }
+            ResourceId::Buffer(BufferId::ShadowMapKeys) => self.light.map(|light| {
+                light
+                    .get(BufferId::DepthKeys)
+                    .map(wgpu::Buffer::as_entire_binding)
+            }),
+            ResourceId::Buffer(id) => self
+                .buffers
+                .iter()
+                .find(|buffers| buffers.has(id))
+                .map(|buffers| buffers.get(id).map(wgpu::Buffer::as_entire_binding)),
             ResourceId::Texture(id) => {
                 let texture = self.textures.iter().find(|(other, _)| *other == id);
                 texture.map(|(_, texture)| Ok(wgpu::BindingResource::TextureView(&texture.view)))
@@ -59,8 +63,15 @@ impl<'a> Resources<'a> {
 
     /// What every view of a scene shares.
     pub fn of_scene(scene: &'a SceneResources) -> Self {
-        let atlas = scene.material_atlas.iter().map(|atlas| (TextureId::MaterialAtlas, atlas));
-        Self { buffers: vec![&scene.buffers], textures: atlas.collect(), light: None }
+        let atlas = scene
+            .material_atlas
+            .iter()
+            .map(|atlas| (TextureId::MaterialAtlas, atlas));
+        Self {
+            buffers: vec![&scene.buffers],
+            textures: atlas.collect(),
+            light: None,
+        }
     }
 
     /// The same, with `first` before all others.
@@ -68,8 +79,14 @@ impl<'a> Resources<'a> {
     where
         'a: 'b,
     {
-        let buffers = std::iter::once(first).chain(self.buffers.iter().copied()).collect();
-        Resources { buffers, textures: self.textures.clone(), light: self.light }
+        let buffers = std::iter::once(first)
+            .chain(self.buffers.iter().copied())
+            .collect();
+        Resources {
+            buffers,
+            textures: self.textures.clone(),
+            light: self.light,
+        }
     }
 
     /// Every buffer and texture, for `explain`.
@@ -79,24 +96,52 @@ impl<'a> Resources<'a> {
             bytes: texture.bytes(),
             why: id.purpose().into(),
         };
-        self.buffers.iter().flat_map(|buffers| buffers.notes()).chain(self.textures.iter().map(texture)).collect()
+        self.buffers
+            .iter()
+            .flat_map(|buffers| buffers.notes())
+            .chain(self.textures.iter().map(texture))
+            .collect()
     }
 
     /// A bind group for a pipeline.
     ///
     /// # Errors
     /// When something that the kernel binds is not here.
-    pub fn bind_group(&self, gpu: &Gpu, pipeline: &Pipeline) -> Result<wgpu::BindGroup, RenderError> {
-        let entry = |&(binding, id): &(u32, ResourceId)| Ok(wgpu::BindGroupEntry { binding, resource: self.get(id)? });
-        let entries: Vec<_> = pipeline.bindings.iter().map(entry).collect::<Result<_, RenderError>>()?;
-        let descriptor = wgpu::BindGroupDescriptor { label: Some(&pipeline.label), layout: &pipeline.layout, entries: &entries };
+    pub fn bind_group(
+        &self,
+        gpu: &Gpu,
+        pipeline: &Pipeline,
+    ) -> Result<wgpu::BindGroup, RenderError> {
+        let entry = |&(binding, id): &(u32, ResourceId)| {
+            Ok(wgpu::BindGroupEntry {
+                binding,
+                resource: self.get(id)?,
+            })
+        };
+        let entries: Vec<_> = pipeline
+            .bindings
+            .iter()
+            .map(entry)
+            .collect::<Result<_, RenderError>>()?;
+        let descriptor = wgpu::BindGroupDescriptor {
+            label: Some(&pipeline.label),
+            layout: &pipeline.layout,
+            entries: &entries,
+        };
         gpu.prepared.count(Preparation::BindGroup);
         Ok(gpu.device.create_bind_group(&descriptor))
     }
 
     fn revisions(&self) -> Vec<u64> {
-        let buffers = self.buffers.iter().copied().chain(self.light).map(|buffers| buffers.revision());
-        buffers.chain(self.textures.iter().map(|(_, texture)| texture.revision)).collect()
+        let buffers = self
+            .buffers
+            .iter()
+            .copied()
+            .chain(self.light)
+            .map(|buffers| buffers.revision());
+        buffers
+            .chain(self.textures.iter().map(|(_, texture)| texture.revision))
+            .collect()
     }
 }
 
@@ -109,18 +154,26 @@ struct Command {
 }
 
 impl Command {
-    fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, dispatch: Dispatch, buffers: &Buffers) -> Result<(), RenderError> {
+    fn dispatch(
+        &self,
+        pass: &mut wgpu::ComputePass<'_>,
+        dispatch: Dispatch,
+        buffers: &Buffers,
+    ) -> Result<(), RenderError> {
         pass.set_pipeline(&self.pipeline.pipeline);
         pass.set_bind_group(0, &self.group, &[]);
         match dispatch {
             Dispatch::Direct { groups: [x, y] } => pass.dispatch_workgroups(x, y, 1),
-            Dispatch::Indirect { buffer, offset } => pass.dispatch_workgroups_indirect(buffers.get(buffer)?, offset),
+            Dispatch::Indirect { buffer, offset } => {
+                pass.dispatch_workgroups_indirect(buffers.get(buffer)?, offset)
+            }
         }
         Ok(())
     }
 }
 
-/// Passes with their pipelines and bind groups, for as long as neither the key nor a resource changes.
+/// Passes with their pipelines and bind groups, for as long as neither the key nor a resource
+/// changes.
 pub struct CommandList {
     key: KernelKey,
     passes: Vec<Pass>,
@@ -153,7 +206,8 @@ impl DispatchSizes<'_> {
 }
 
 impl CommandList {
-    /// Compiles pipelines that are missing, and binds what each pass reads and writes. `prefix` begins the label of every pass.
+    /// Compiles pipelines that are missing, and binds what each pass reads and writes. `prefix`
+    /// begins the label of every pass.
     ///
     /// # Errors
     /// When a kernel cannot be compiled, or binds what is not there.
@@ -170,9 +224,20 @@ impl CommandList {
         for &pass in &passes {
             let pipeline = pipelines.get(gpu, key, pass).await?;
             let group = resources.bind_group(gpu, &pipeline)?;
-            commands.push(Command { pass, label: format!("{prefix}{}", pass.label()), pipeline, group });
+            commands.push(Command {
+                pass,
+                label: format!("{prefix}{}", pass.label()),
+                pipeline,
+                group,
+            });
         }
-        Ok(Self { key: key.clone(), passes, revisions: resources.revisions(), commands, revision: next_revision() })
+        Ok(Self {
+            key: key.clone(),
+            passes,
+            revisions: resources.revisions(),
+            commands,
+            revision: next_revision(),
+        })
     }
 
     /// Is it still the list for these passes and resources?
@@ -187,7 +252,9 @@ impl CommandList {
 
     /// Notes that its pipelines are in use.
     pub fn mark(&self, store: &PipelineStore) {
-        self.commands.iter().for_each(|command| store.mark(&command.pipeline));
+        self.commands
+            .iter()
+            .for_each(|command| store.mark(&command.pipeline));
     }
 
     /// Records a part of the list. `sizes` says how many workgroups each takes.
@@ -208,14 +275,21 @@ impl CommandList {
         for (i, command) in part.clone().zip(&self.commands[part]) {
             let is_last = timing.ends_frame && i + 1 == last;
             let label = Some(command.label.as_str());
-            let timestamp_writes = timing.timer.as_mut().and_then(|timer| timer.compute(&command.label, is_last));
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes });
+            let timestamp_writes = timing
+                .timer
+                .as_mut()
+                .and_then(|timer| timer.compute(&command.label, is_last));
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label,
+                timestamp_writes,
+            });
             command.dispatch(&mut pass, sizes.of(&self.key, command.pass), sizes.buffers)?;
         }
         Ok(())
     }
 
-    /// The same as a single compute pass of wgpu, which costs less; its dispatches cannot be timed one by one.
+    /// The same as a single compute pass of wgpu, which costs less; its dispatches cannot be timed
+    /// one by one.
     fn record_in_one(
         &self,
         part: Range<usize>,
@@ -226,8 +300,14 @@ impl CommandList {
         if part.is_empty() {
             return Ok(());
         }
-        let timestamp_writes = timing.timer.as_mut().and_then(|timer| timer.compute("passes", timing.ends_frame));
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("passes"), timestamp_writes });
+        let timestamp_writes = timing
+            .timer
+            .as_mut()
+            .and_then(|timer| timer.compute("passes", timing.ends_frame));
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("passes"),
+            timestamp_writes,
+        });
         for command in &self.commands[part] {
             pass.push_debug_group(&command.label);
             command.dispatch(&mut pass, sizes.of(&self.key, command.pass), sizes.buffers)?;

@@ -1,6 +1,7 @@
-//! Every struct that Rust and the kernels share, with the same members in the same order on both sides. `tests/house/layout.rs`
-//! compares all of [`RECORDS`] with what naga reads from the shaders: names, offsets, types and sizes. What a member means is explained
-//! beside the WGSL struct of the name in quotes.
+//! Every struct that Rust and the kernels share, with the same members in the same order on both
+//! sides. `tests/house/layout.rs` compares all of [`RECORDS`] with what naga reads from the
+//! shaders: names, offsets, types and sizes. What a member means is explained beside the WGSL
+//! struct of the name in quotes.
 
 use super::gpu_record::{GpuRecord, RecordLayout, WgslType, gpu_record};
 use crate::{
@@ -418,8 +419,19 @@ pub struct VertexRecord {
 
 impl VertexRecord {
     pub fn snapped(self) -> SnappedVertex {
-        let Self { x_and_flags, y, depth, inv_w } = self;
-        SnappedVertex { x: x_and_flags as i32 >> 8, y: y as i32 >> 8, depth, inv_w, flags: x_and_flags & 255 }
+        let Self {
+            x_and_flags,
+            y,
+            depth,
+            inv_w,
+        } = self;
+        SnappedVertex {
+            x: x_and_flags as i32 >> 8,
+            y: y as i32 >> 8,
+            depth,
+            inv_w,
+            flags: x_and_flags & 255,
+        }
     }
 }
 
@@ -432,8 +444,13 @@ impl ClippedTriangleRecord {
 
     pub fn triangle(&self) -> ClippedTriangle {
         let [parent, _, _, outline] = self.parent;
-        let corners = [self.a, self.b, self.c].map(|corner| bytemuck::cast::<_, VertexRecord>(corner).snapped());
-        ClippedTriangle { parent, corners, outline }
+        let corners = [self.a, self.b, self.c]
+            .map(|corner| bytemuck::cast::<_, VertexRecord>(corner).snapped());
+        ClippedTriangle {
+            parent,
+            corners,
+            outline,
+        }
     }
 }
 
@@ -447,11 +464,21 @@ pub struct DepthAndId {
 }
 
 impl OrderRecord {
-    /// As statistics; `next_sample_index` is how many samples were numbered where the hardware chose.
+    /// As statistics; `next_sample_index` is how many samples were numbered where the hardware
+    /// chose.
     pub fn stats(&self, is_chosen: bool, next_sample_index: u32) -> OrderStats {
         let wide = |hi: u32, lo: u32| u64::from(hi) << 32 | u64::from(lo);
         let limit = wide(self.limit_hi, self.limit_lo);
-        let drawn = if is_chosen { limit.min(next_sample_index.into()) } else { wide(self.drawn_hi, self.drawn_lo) };
-        OrderStats { drawn, limit, covered: wide(self.total_hi, self.total_lo), is_scheduler_order: is_chosen }
+        let drawn = if is_chosen {
+            limit.min(next_sample_index.into())
+        } else {
+            wide(self.drawn_hi, self.drawn_lo)
+        };
+        OrderStats {
+            drawn,
+            limit,
+            covered: wide(self.total_hi, self.total_lo),
+            is_scheduler_order: is_chosen,
+        }
     }
 }

@@ -1,4 +1,5 @@
-//! The renderer: draws pictures of one scene on one device, and hands back what they show and what they cost.
+//! The renderer: draws pictures of one scene on one device, and hands back what they show and what
+//! they cost.
 
 use std::{collections::VecDeque, sync::Arc};
 
@@ -37,7 +38,8 @@ use crate::{
 pub struct Report {
     /// Whole frame, clears included, milliseconds; none where the adapter has no timestamps.
     pub gpu_ms: Option<f64>,
-    /// Milliseconds in which the CPU chose and uploaded dots for the newest frame while the GPU waited.
+    /// Milliseconds in which the CPU chose and uploaded dots for the newest frame while the GPU
+    /// waited.
     pub cpu_ms: Option<f64>,
     pub passes: Vec<(String, f64)>,
     pub counters: Counters,
@@ -78,14 +80,20 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// A renderer whose shaders come from the library of the process, as a rule from inside this program.
+    /// A renderer whose shaders come from the library of the process, as a rule from inside this
+    /// program.
     pub fn new(gpu: Arc<Gpu>) -> Self {
         Self::with_library(gpu, Library::of_process())
     }
 
     /// A renderer whose shaders come from `library`.
     pub fn with_library(gpu: Arc<Gpu>, library: Library) -> Self {
-        let device = Device { timer: Timer::new(&gpu), tuning: gpu.caps.tuning(), pipelines: Pipelines::new(library), gpu };
+        let device = Device {
+            timer: Timer::new(&gpu),
+            tuning: gpu.caps.tuning(),
+            pipelines: Pipelines::new(library),
+            gpu,
+        };
         Self {
             device,
             scene: None,
@@ -116,8 +124,8 @@ impl Renderer {
         self.device.tuning = tuning;
     }
 
-    /// Sets the capacity of the queues, at least 1 entry each, for the next picture of the current scene; queues that overflow grow and the
-    /// picture is drawn again.
+    /// Sets the capacity of the queues, at least 1 entry each, for the next picture of the current
+    /// scene; queues that overflow grow and the picture is drawn again.
     pub fn set_capacities(&mut self, capacities: Capacities) {
         self.picture.capacities = capacities.at_least_one();
     }
@@ -147,12 +155,17 @@ impl Renderer {
         self.device.pipelines.compiled()
     }
 
-    /// Uploads a scene's bytes as they are. The current scene stays when the new one is too large for the adapter.
+    /// Uploads a scene's bytes as they are. The current scene stays when the new one is too large
+    /// for the adapter.
     ///
     /// # Errors
     /// When the scene does not fit.
     pub async fn set_scene(&mut self, scene: &Arc<Scene>) -> Result<(), RenderError> {
-        if self.scene.as_ref().is_some_and(|current| current.is_of(scene)) {
+        if self
+            .scene
+            .as_ref()
+            .is_some_and(|current| current.is_of(scene))
+        {
             return Ok(());
         }
         SceneResources::check(&self.device.gpu, scene)?;
@@ -174,8 +187,14 @@ impl Renderer {
     ///
     /// # Errors
     /// When the picture cannot be drawn on this adapter, or the device is lost.
-    pub async fn draw(&mut self, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<(), RenderError> {
-        self.draw_timed(view, stack, accuracy, Detail::Passes, Wait::None).await
+    pub async fn draw(
+        &mut self,
+        view: &View,
+        stack: &Stack,
+        accuracy: &AccuracyRequest,
+    ) -> Result<(), RenderError> {
+        self.draw_timed(view, stack, accuracy, Detail::Passes, Wait::None)
+            .await
     }
 
     /// [`Self::draw`] with a choice of what is timed and what is waited for.
@@ -190,10 +209,14 @@ impl Renderer {
         let shown = [view.width, view.height];
         let scale = accuracy.scale();
         if scale == RenderScale::Full {
-            return self.draw_pixels(view, stack, accuracy, shown, detail, wait).await;
+            return self
+                .draw_pixels(view, stack, accuracy, shown, detail, wait)
+                .await;
         }
         let (drawn, stack) = (view.scaled(scale.factor()), stack.scaled(scale.factor()));
-        self.draw_pixels(&drawn, &stack, accuracy, shown, detail, wait).await.map_err(|error| error.at_scale(scale, view, &drawn))
+        self.draw_pixels(&drawn, &stack, accuracy, shown, detail, wait)
+            .await
+            .map_err(|error| error.at_scale(scale, view, &drawn))
     }
 
     /// Draws as many pixels as `view` has, independent of the size at which they are shown.
@@ -211,22 +234,50 @@ impl Renderer {
         }
         self.attach_particles(stack).await?;
         let room = self.history.room_for_layers(view, stack);
-        self.prepare(&Request { view, stack, accuracy, shown, room }, wait).await?;
+        self.prepare(
+            &Request {
+                view,
+                stack,
+                accuracy,
+                shown,
+                room,
+            },
+            wait,
+        )
+        .await?;
         if view.pixels() == 0 {
             self.presentation = None;
             return Ok(());
         }
         let gpu = self.device.gpu.clone();
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
+        let mut encoder = gpu
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor {
+                label: Some("frame"),
+            });
         if let Some(timer) = &mut self.device.timer {
             timer.begin(&mut encoder, detail);
         }
         self.record(&mut encoder, view, stack)?;
         self.present(&mut encoder, shown)?;
-        let shadow = self.shadow.as_ref().map(|shadow| shadow.resources.buffers.get(BufferId::Counters)).transpose()?;
+        let shadow = self
+            .shadow
+            .as_ref()
+            .map(|shadow| shadow.resources.buffers.get(BufferId::Counters))
+            .transpose()?;
         let buffers = &self.picture.buffers;
-        let sources = StatSources { picture: Some(buffers.get(BufferId::Counters)?), shadow, order: buffers.get(BufferId::DrawOrder).ok() };
-        let staged = Staged::stage(&gpu, &mut encoder, sources, self.device.timer.as_ref(), self.spare_stats.pop());
+        let sources = StatSources {
+            picture: Some(buffers.get(BufferId::Counters)?),
+            shadow,
+            order: buffers.get(BufferId::DrawOrder).ok(),
+        };
+        let staged = Staged::stage(
+            &gpu,
+            &mut encoder,
+            sources,
+            self.device.timer.as_ref(),
+            self.spare_stats.pop(),
+        );
         gpu.queue.submit([encoder.finish()]);
         self.picture.shows_background = self.picture.frame()?.plan.key.keeps_background();
         self.pending.push_back(staged.begin());
@@ -241,7 +292,9 @@ impl Renderer {
             return Ok(());
         }
         self.picture.release_commands();
-        self.shadow.iter_mut().for_each(|shadow| shadow.resources.release_commands());
+        self.shadow
+            .iter_mut()
+            .for_each(|shadow| shadow.resources.release_commands());
         if scene.attach_particles(&self.device.gpu, stack).await? {
             let scene = scene.scene().clone();
             self.change_scene(&scene);
@@ -249,9 +302,17 @@ impl Renderer {
         Ok(())
     }
 
-    /// Makes everything ready for the passes of a picture: plan and buffers, the particles before their last step, the shadow pass.
+    /// Makes everything ready for the passes of a picture: plan and buffers, the particles before
+    /// their last step, the shadow pass.
     async fn prepare(&mut self, request: &Request<'_>, wait: Wait) -> Result<(), RenderError> {
-        let Self { device, scene, picture, shadow, particles, .. } = self;
+        let Self {
+            device,
+            scene,
+            picture,
+            shadow,
+            particles,
+            ..
+        } = self;
         let scene = scene.as_mut().ok_or(RenderError::NoScene)?;
         let Request { view, stack, .. } = *request;
         picture.prepare(device, scene, request).await?;
@@ -259,15 +320,30 @@ impl Renderer {
             return Ok(());
         }
         let key = &picture.frame()?.plan.key;
-        particles.simulate(device, scene, &picture.buffers, (key, view, stack), wait).await?;
+        particles
+            .simulate(device, scene, &picture.buffers, (key, view, stack), wait)
+            .await?;
         let passes = key.frame();
         *shadow = ShadowPass::prepare(shadow.take(), device, scene, view, stack).await?;
-        picture.prepare_passes(device, passes, &shared(scene, particles, shadow.as_ref())).await
+        picture
+            .prepare_passes(device, passes, &shared(scene, particles, shadow.as_ref()))
+            .await
     }
 
     /// Records the clears and passes of a picture and its shadow map.
-    fn record(&mut self, encoder: &mut wgpu::CommandEncoder, view: &View, stack: &Stack) -> Result<(), RenderError> {
-        let Self { device, picture, shadow, history, .. } = self;
+    fn record(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        view: &View,
+        stack: &Stack,
+    ) -> Result<(), RenderError> {
+        let Self {
+            device,
+            picture,
+            shadow,
+            history,
+            ..
+        } = self;
         // If recording fails, nothing is drawn, and the next picture copies the background again.
         let shows_background = std::mem::take(&mut picture.shows_background);
         picture.clear(encoder, |occasion| occasion != ClearedBy::History)?;
@@ -279,60 +355,115 @@ impl Renderer {
         history.keep_occluders(encoder, picture, view, stack)?;
         let passes = frame.plan.key.frame();
         // The shadow map comes after the passes that deform the scene for both.
-        let deforming = passes.iter().take_while(|pass| matches!(pass, Pass::Particles | Pass::Skin)).count();
+        let deforming = passes
+            .iter()
+            .take_while(|pass| matches!(pass, Pass::Particles | Pass::Skin))
+            .count();
         let first = if shadow.is_some() { deforming } else { 0 };
-        picture.record(0..first, encoder, Timing { timer: device.timer.as_mut(), ends_frame: false })?;
+        picture.record(
+            0..first,
+            encoder,
+            Timing {
+                timer: device.timer.as_mut(),
+                ends_frame: false,
+            },
+        )?;
         if let Some(shadow) = shadow {
             shadow.record(encoder, device.timer.as_mut())?;
         }
-        picture.record(first..passes.len(), encoder, Timing { timer: device.timer.as_mut(), ends_frame: true })
+        picture.record(
+            first..passes.len(),
+            encoder,
+            Timing {
+                timer: device.timer.as_mut(),
+                ends_frame: true,
+            },
+        )
     }
 
     /// Copies the picture into the texture that a window shows.
-    fn present(&mut self, encoder: &mut wgpu::CommandEncoder, [width, height]: [u32; 2]) -> Result<(), RenderError> {
-        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
-        let known = self.presentation.take().filter(|presentation| presentation.texture.size() == size);
+    fn present(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        [width, height]: [u32; 2],
+    ) -> Result<(), RenderError> {
+        let size = wgpu::Extent3d {
+            width,
+            height,
+            depth_or_array_layers: 1,
+        };
+        let known = self
+            .presentation
+            .take()
+            .filter(|presentation| presentation.texture.size() == size);
         let presentation = known.unwrap_or_else(|| {
-            let texture = self.device.gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("picture"),
-                size,
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: wgpu::TextureFormat::Rgba8Unorm,
-                usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            });
+            let texture = self
+                .device
+                .gpu
+                .device
+                .create_texture(&wgpu::TextureDescriptor {
+                    label: Some("picture"),
+                    size,
+                    mip_level_count: 1,
+                    sample_count: 1,
+                    dimension: wgpu::TextureDimension::D2,
+                    format: wgpu::TextureFormat::Rgba8Unorm,
+                    usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING,
+                    view_formats: &[],
+                });
             self.device.gpu.prepared.count(Preparation::Texture);
             let view = texture.create_view(&Default::default());
             Presentation { texture, view }
         });
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * color_stride(width)), rows_per_image: None };
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(4 * color_stride(width)),
+            rows_per_image: None,
+        };
         let picture = self.picture.buffers.get(self.shown_buffer())?;
-        encoder.copy_buffer_to_texture(wgpu::TexelCopyBufferInfo { buffer: picture, layout }, presentation.texture.as_image_copy(), size);
+        encoder.copy_buffer_to_texture(
+            wgpu::TexelCopyBufferInfo {
+                buffer: picture,
+                layout,
+            },
+            presentation.texture.as_image_copy(),
+            size,
+        );
         self.presentation = Some(presentation);
         Ok(())
     }
 
     /// The buffer that holds what is shown.
     fn shown_buffer(&self) -> BufferId {
-        if self.picture.buffers.has(BufferId::ScaledColor) { BufferId::ScaledColor } else { BufferId::Color }
+        if self.picture.buffers.has(BufferId::ScaledColor) {
+            BufferId::ScaledColor
+        } else {
+            BufferId::Color
+        }
     }
 
-    /// The finished picture: Rgba8Unorm with gamma-encoded bytes; none before the first draw and for 0 pixels.
+    /// The finished picture: Rgba8Unorm with gamma-encoded bytes; none before the first draw and
+    /// for 0 pixels.
     pub fn texture_view(&self) -> Option<&wgpu::TextureView> {
-        self.presentation.as_ref().map(|presentation| &presentation.view)
+        self.presentation
+            .as_ref()
+            .map(|presentation| &presentation.view)
     }
 
-    /// The pixels of the finished picture, row by row, as many as the view had. None before the first draw and for 0 pixels.
+    /// The pixels of the finished picture, row by row, as many as the view had. None before the
+    /// first draw and for 0 pixels.
     ///
     /// # Errors
     /// When the device is lost.
     pub async fn read_shown(&mut self) -> Result<Option<Vec<[u8; 4]>>, RenderError> {
-        let Some(presentation) = &self.presentation else { return Ok(None) };
+        let Some(presentation) = &self.presentation else {
+            return Ok(None);
+        };
         let size = [presentation.texture.width(), presentation.texture.height()];
         let shown = self.picture.buffers.get(self.shown_buffer())?;
-        buffers::read_picture_through(&self.device.gpu, shown, size, &mut self.shown_staging).await.map(Some)
+        buffers::read_picture_through(&self.device.gpu, shown, size, &mut self.shown_staging)
+            .await
+            .map(Some)
     }
 
     /// Statistics of the newest finished frame, or none yet; does not wait.
@@ -340,7 +471,11 @@ impl Renderer {
         let _ = self.device.gpu.device.poll(wgpu::PollType::Poll);
         let mut newest = None;
         while self.pending.front().is_some_and(Pending::is_ready) {
-            self.spare_stats.extend(newest.replace(self.pending.pop_front()?).map(Pending::into_spare));
+            self.spare_stats.extend(
+                newest
+                    .replace(self.pending.pop_front()?)
+                    .map(Pending::into_spare),
+            );
         }
         self.collect_stats(newest?)
     }
@@ -357,7 +492,8 @@ impl Renderer {
     pub async fn finish(&mut self) -> Result<Report, RenderError> {
         let finished = self.pending.pop_back().ok_or(RenderError::NoScene)?;
         finished.ready(&self.device.gpu).await?;
-        self.spare_stats.extend(self.pending.drain(..).map(Pending::into_spare));
+        self.spare_stats
+            .extend(self.pending.drain(..).map(Pending::into_spare));
         self.collect_stats(finished).ok_or(RenderError::Lost)
     }
 
@@ -369,10 +505,15 @@ impl Renderer {
         let key = self.picture.frame().ok()?.plan.key.clone();
         let mut counters = record.counters(&recorded_capacities(&key, &self.picture.capacities));
         let mut redraw = counters.overflow > 0 && self.picture.grow_queues(record);
-        let lost_shadow = self.shadow.as_mut().map_or(0, |shadow| shadow.collect_stats(&stats.shadow));
+        let lost_shadow = self
+            .shadow
+            .as_mut()
+            .map_or(0, |shadow| shadow.collect_stats(&stats.shadow));
         counters.overflow = counters.overflow.saturating_add(lost_shadow);
         redraw |= lost_shadow > 0;
-        redraw |= counters.full_pixels > 0 && self.pending.is_empty() && self.history.make_room_for_layers(&key);
+        redraw |= counters.full_pixels > 0
+            && self.pending.is_empty()
+            && self.history.make_room_for_layers(&key);
         let is_chosen = key.samples.draw_order == Some(Mode::Scheduler);
         self.culled = key.culls().then(|| record.culled());
         Some(Report {
@@ -380,7 +521,8 @@ impl Renderer {
             cpu_ms: self.picture.dots.as_ref().and_then(|dots| dots.chosen_ms),
             passes: times.passes,
             counters,
-            order: (key.samples.draw_order.is_some()).then(|| stats.order.stats(is_chosen, record.next_sample_index)),
+            order: (key.samples.draw_order.is_some())
+                .then(|| stats.order.stats(is_chosen, record.next_sample_index)),
             culled: self.culled,
             redraw,
             simulation_pending: self.particles.is_pending,
@@ -394,7 +536,15 @@ impl Renderer {
 
     /// [`Self::explain`], kept while nothing that it says has changed.
     pub fn explained(&mut self) -> Arc<Explanation> {
-        let Self { device, scene, picture, shadow, particles, explained, .. } = self;
+        let Self {
+            device,
+            scene,
+            picture,
+            shadow,
+            particles,
+            explained,
+            ..
+        } = self;
         explained.of(&device.gpu, picture, shadow.as_ref(), || match scene {
             Some(scene) => shared(scene, particles, shadow.as_ref()),
             None => Resources::default(),
@@ -403,7 +553,11 @@ impl Renderer {
 
     /// Passes and buffers of the last picture, what it does without, and why.
     pub fn explain(&self) -> Explanation {
-        let others = self.scene.as_ref().map(|scene| shared(scene, &self.particles, self.shadow.as_ref())).unwrap_or_default();
+        let others = self
+            .scene
+            .as_ref()
+            .map(|scene| shared(scene, &self.particles, self.shadow.as_ref()))
+            .unwrap_or_default();
         Explanation::new(&self.picture, &others, self.shadow.as_ref())
     }
 
@@ -411,18 +565,34 @@ impl Renderer {
     ///
     /// # Errors
     /// When the corners take more than a buffer holds, or the device is lost.
-    pub async fn hardware_ids(&self, size: [u32; 2], corners: &[[f32; 3]]) -> Result<Vec<u32>, RenderError> {
-        hardware_ids::triangle_ids(&self.device.gpu, self.device.pipelines.library(), size, corners).await
+    pub async fn hardware_ids(
+        &self,
+        size: [u32; 2],
+        corners: &[[f32; 3]],
+    ) -> Result<Vec<u32>, RenderError> {
+        hardware_ids::triangle_ids(
+            &self.device.gpu,
+            self.device.pipelines.library(),
+            size,
+            corners,
+        )
+        .await
     }
 }
 
 /// What the picture reads of other views and stages.
-pub(super) fn shared<'a>(scene: &'a SceneResources, particles: &'a ParticleSimulation, shadow: Option<&'a ShadowPass>) -> Resources<'a> {
+pub(super) fn shared<'a>(
+    scene: &'a SceneResources,
+    particles: &'a ParticleSimulation,
+    shadow: Option<&'a ShadowPass>,
+) -> Resources<'a> {
     let mut resources = Resources::of_scene(scene);
     resources.buffers.push(&particles.buffers);
     if let Some(shadow) = shadow {
         resources.buffers.push(&shadow.uniform);
-        resources.textures.extend(shadow.map.iter().map(|map| (TextureId::ShadowMap, map)));
+        resources
+            .textures
+            .extend(shadow.map.iter().map(|map| (TextureId::ShadowMap, map)));
         resources.light = Some(&shadow.resources.buffers);
     }
     resources

@@ -1,5 +1,5 @@
-//! The resources that kernels bind: one table of every buffer and texture with its name in WGSL, its usage, what it holds, and who
-//! clears it.
+//! The resources that kernels bind: one table of every buffer and texture with its name in WGSL,
+//! its usage, what it holds, and who clears it.
 
 use wgpu::BufferUsages;
 
@@ -131,7 +131,9 @@ impl TextureId {
     /// What it holds, for `explain`.
     pub const fn purpose(self) -> &'static str {
         match self {
-            Self::MaterialAtlas => "a texture of words: materials of primitives, and the levels of their images",
+            Self::MaterialAtlas => {
+                "a texture of words: materials of primitives, and the levels of their images"
+            }
             Self::ShadowMap => "nearest depth key to the light per texel, 4 bytes",
         }
     }
@@ -152,7 +154,11 @@ impl ResourceId {
 
     /// Every resource.
     pub fn all() -> impl Iterator<Item = Self> {
-        BufferId::ALL.iter().copied().map(Self::Buffer).chain(TextureId::ALL.iter().copied().map(Self::Texture))
+        BufferId::ALL
+            .iter()
+            .copied()
+            .map(Self::Buffer)
+            .chain(TextureId::ALL.iter().copied().map(Self::Texture))
     }
 
     /// Name of the variable in WGSL.
@@ -175,7 +181,10 @@ mod tests {
         let all: Vec<ResourceId> = ResourceId::all().collect();
         let names: BTreeSet<&str> = all.iter().map(|id| id.name()).collect();
         assert_eq!(names.len(), all.len(), "two resources share a name");
-        assert!(all.iter().all(|id| ResourceId::of_binding(id.name()) == Some(*id)));
+        assert!(
+            all.iter()
+                .all(|id| ResourceId::of_binding(id.name()) == Some(*id))
+        );
         assert_eq!(ResourceId::of_binding("no such variable"), None);
     }
 }

@@ -1,5 +1,5 @@
-//! A scene on the device: attributes and index lists as the file has them, with space behind them for what passes write, and its
-//! materials. Every view of the scene reads the same.
+//! A scene on the device: attributes and index lists as the file has them, with space behind them
+//! for what passes write, and its materials. Every view of the scene reads the same.
 
 use std::{borrow::Cow, sync::Arc};
 
@@ -20,7 +20,8 @@ use crate::{
     scene::{Scene, particle_discs::ParticleSettings},
 };
 
-/// A scene on the device: its attributes, index lists and materials. Every view of the scene reads the same.
+/// A scene on the device: its attributes, index lists and materials. Every view of the scene reads
+/// the same.
 pub struct SceneResources {
     /// The scene as it was set.
     base: Arc<Scene>,
@@ -29,7 +30,8 @@ pub struct SceneResources {
     particle_settings: Option<ParticleSettings>,
     pub buffers: Buffers,
     attributes: AttributeLayout,
-    /// Boxes of packed positions, one per primitive; empty where positions are stored as the file has them.
+    /// Boxes of packed positions, one per primitive; empty where positions are stored as the file
+    /// has them.
     packed_boxes: Vec<PackedBox>,
     pub material_atlas: Option<WordTexture>,
     /// Meshlets of all primitives, once a view culls.
@@ -56,19 +58,33 @@ impl SceneResources {
         Ok(resources)
     }
 
-    /// Checks that the buffers of a scene, and the projected vertices of a picture of it, are no larger than the adapter binds.
+    /// Checks that the buffers of a scene, and the projected vertices of a picture of it, are no
+    /// larger than the adapter binds.
     ///
     /// # Errors
     /// Names the first buffer that is.
     pub fn check(gpu: &Gpu, scene: &Scene) -> Result<(), RenderError> {
-        let limit = gpu.caps.max_storage_binding_bytes.min(gpu.caps.max_buffer_bytes);
+        let limit = gpu
+            .caps
+            .max_storage_binding_bytes
+            .min(gpu.caps.max_buffer_bytes);
         let sizes = [
-            (BufferId::VertexBytes, AttributeLayout::new(scene, None).bytes()),
+            (
+                BufferId::VertexBytes,
+                AttributeLayout::new(scene, None).bytes(),
+            ),
             (BufferId::IndexBytes, scene.index_bytes.len() as u64),
-            (BufferId::Vertices, size_of::<VertexRecord>() as u64 * scene.vertex_count()),
+            (
+                BufferId::Vertices,
+                size_of::<VertexRecord>() as u64 * scene.vertex_count(),
+            ),
         ];
         match sizes.into_iter().find(|(_, bytes)| *bytes > limit) {
-            Some((buffer, bytes)) => Err(RenderError::TooLarge { buffer: buffer.name(), bytes, limit }),
+            Some((buffer, bytes)) => Err(RenderError::TooLarge {
+                buffer: buffer.name(),
+                bytes,
+                limit,
+            }),
             None => Ok(()),
         }
     }
@@ -99,7 +115,9 @@ impl SceneResources {
 
     /// The meshlets of the scene, which are found at the first call.
     pub fn meshlets(&mut self) -> Arc<MeshletBuffers> {
-        self.meshlets.get_or_insert_with(|| Arc::new(MeshletBuffers::of(&self.scene))).clone()
+        self.meshlets
+            .get_or_insert_with(|| Arc::new(MeshletBuffers::of(&self.scene)))
+            .clone()
     }
 
     /// Are the particle discs of a stack in the scene already?
@@ -107,11 +125,16 @@ impl SceneResources {
         stack.particle_settings() == self.particle_settings
     }
 
-    /// Puts the particle discs of a stack beside the scene, or takes them away; true if that changed the vertices.
+    /// Puts the particle discs of a stack beside the scene, or takes them away; true if that
+    /// changed the vertices.
     ///
     /// # Errors
     /// When the scene with its particles does not fit.
-    pub async fn attach_particles(&mut self, gpu: &Gpu, stack: &Stack) -> Result<bool, RenderError> {
+    pub async fn attach_particles(
+        &mut self,
+        gpu: &Gpu,
+        stack: &Stack,
+    ) -> Result<bool, RenderError> {
         let settings = stack.particle_settings();
         if settings == self.particle_settings {
             return Ok(false);
@@ -121,7 +144,8 @@ impl SceneResources {
             Cow::Owned(scene) => Arc::new(scene),
         };
         // As many particles in another box have the same bytes.
-        let is_other = settings.map(|settings| settings.count) != self.particle_settings.map(|settings| settings.count);
+        let is_other = settings.map(|settings| settings.count)
+            != self.particle_settings.map(|settings| settings.count);
         if is_other {
             Self::check(gpu, &scene)?;
         }
@@ -136,7 +160,11 @@ impl SceneResources {
     ///
     /// # Errors
     /// When they do not fit.
-    pub async fn pack_positions(&mut self, gpu: &Gpu, bits: Option<u32>) -> Result<(), RenderError> {
+    pub async fn pack_positions(
+        &mut self,
+        gpu: &Gpu,
+        bits: Option<u32>,
+    ) -> Result<(), RenderError> {
         if self.attributes.packed_bits == bits && self.buffers.has(BufferId::VertexBytes) {
             Ok(())
         } else {
@@ -150,7 +178,9 @@ impl SceneResources {
     /// When they do not fit.
     pub async fn keep_materials(&mut self, gpu: &Gpu, are_needed: bool) -> Result<(), RenderError> {
         match (are_needed, &self.material_atlas) {
-            (true, None) => self.material_atlas = Some(material_atlas::upload(gpu, &self.scene).await?),
+            (true, None) => {
+                self.material_atlas = Some(material_atlas::upload(gpu, &self.scene).await?)
+            }
             (false, Some(_)) => self.material_atlas = None,
             _ => {}
         }
@@ -158,25 +188,51 @@ impl SceneResources {
     }
 
     async fn upload(&mut self, gpu: &Gpu) -> Result<(), RenderError> {
-        self.buffers.keep(|id| !matches!(id, BufferId::VertexBytes | BufferId::IndexBytes));
+        self.buffers
+            .keep(|id| !matches!(id, BufferId::VertexBytes | BufferId::IndexBytes));
         (self.material_atlas, self.meshlets) = (None, None);
         self.upload_attributes(gpu, None).await?;
         if !self.scene.index_bytes.is_empty() {
-            self.buffers.fill(gpu, BufferId::IndexBytes, &self.scene.index_bytes).await?;
+            self.buffers
+                .fill(gpu, BufferId::IndexBytes, &self.scene.index_bytes)
+                .await?;
         }
         Ok(())
     }
 
-    /// Uploads the bytes of all attributes, with space for deformed vertices, and positions in `packed_bits` per axis if any.
-    async fn upload_attributes(&mut self, gpu: &Gpu, packed_bits: Option<u32>) -> Result<(), RenderError> {
-        let packing = packed_bits.map(|bits| Packing::new(&self.scene, bits)).unwrap_or_default();
+    /// Uploads the bytes of all attributes, with space for deformed vertices, and positions in
+    /// `packed_bits` per axis if any.
+    async fn upload_attributes(
+        &mut self,
+        gpu: &Gpu,
+        packed_bits: Option<u32>,
+    ) -> Result<(), RenderError> {
+        let packing = packed_bits
+            .map(|bits| Packing::new(&self.scene, bits))
+            .unwrap_or_default();
         // Until all is there, nothing is.
         self.attributes = AttributeLayout::default();
         self.buffers.keep(|id| id != BufferId::VertexBytes);
         let attributes = AttributeLayout::new(&self.scene, packed_bits);
-        self.buffers.ensure_for(gpu, BufferId::VertexBytes, attributes.bytes(), attributes.purpose()).await?;
-        self.buffers.write_at(gpu, BufferId::VertexBytes, 0, &self.scene.vertex_bytes).await?;
-        self.buffers.write_at(gpu, BufferId::VertexBytes, attributes.first_packed(), bytemuck::cast_slice(&packing.words)).await?;
+        self.buffers
+            .ensure_for(
+                gpu,
+                BufferId::VertexBytes,
+                attributes.bytes(),
+                attributes.purpose(),
+            )
+            .await?;
+        self.buffers
+            .write_at(gpu, BufferId::VertexBytes, 0, &self.scene.vertex_bytes)
+            .await?;
+        self.buffers
+            .write_at(
+                gpu,
+                BufferId::VertexBytes,
+                attributes.first_packed(),
+                bytemuck::cast_slice(&packing.words),
+            )
+            .await?;
         (self.attributes, self.packed_boxes) = (attributes, packing.boxes);
         Ok(())
     }

@@ -1,5 +1,6 @@
-//! The shadow pass: a second view of the scene, as a directional light sees it. Depths alone are drawn, into the map by which the
-//! picture is shaded. The scene's buffers are read as the picture's passes deformed them.
+//! The shadow pass: a second view of the scene, as a directional light sees it. Depths alone are
+//! drawn, into the map by which the picture is shaded. The scene's buffers are read as the
+//! picture's passes deformed them.
 
 use super::{
     buffers::{BufferNote, Buffers},
@@ -25,20 +26,22 @@ use crate::{
     shader::pass::Pass,
 };
 
-/// A second view of the scene, as a directional light sees it. Depths alone are drawn, into the shadow map.
+/// A second view of the scene, as a directional light sees it. Depths alone are drawn, into the
+/// shadow map.
 pub struct ShadowPass {
     pub resources: ViewResources,
     /// The scene as the light sees it.
     pub view: View,
     /// The uniform that maps positions to the shadow map.
     pub uniform: Buffers,
-    /// A copy of the map for kernels that may bind no further storage buffer; see [`crate::plan::Tuning::buffered_shadow_map`].
+    /// A copy of the map for kernels that may bind no further storage buffer; see
+    /// [`crate::plan::Tuning::buffered_shadow_map`].
     pub map: Option<WordTexture>,
 }
 
 impl ShadowPass {
-    /// Plans what the light of the stack sees and allocates its buffers, with the resources of the pass before it; none where no effect
-    /// asks for shadows.
+    /// Plans what the light of the stack sees and allocates its buffers, with the resources of the
+    /// pass before it; none where no effect asks for shadows.
     ///
     /// # Errors
     /// When the map or the scene does not fit.
@@ -49,37 +52,88 @@ impl ShadowPass {
         view: &View,
         stack: &Stack,
     ) -> Result<Option<Self>, RenderError> {
-        let Some(view) = stack.light_view(scene.scene(), view) else { return Ok(None) };
-        let (mut resources, mut uniform, map) = match previous {
-            Some(Self { resources, uniform, map, .. }) => (resources, uniform, map),
-            None => (ViewResources::new(Target::ShadowMap, Some(scene.scene())), Buffers::default(), None),
+        let Some(view) = stack.light_view(scene.scene(), view) else {
+            return Ok(None);
         };
-        let accuracy = AccuracyRequest { pins: pins(), ..AccuracyRequest::default() };
+        let (mut resources, mut uniform, map) = match previous {
+            Some(Self {
+                resources,
+                uniform,
+                map,
+                ..
+            }) => (resources, uniform, map),
+            None => (
+                ViewResources::new(Target::ShadowMap, Some(scene.scene())),
+                Buffers::default(),
+                None,
+            ),
+        };
+        let accuracy = AccuracyRequest {
+            pins: pins(),
+            ..AccuracyRequest::default()
+        };
         let shown = [view.width, view.height];
-        let request = Request { view: &view, stack: &stack.shadow_casters(), accuracy: &accuracy, shown, room: RoomForLayers::default() };
+        let request = Request {
+            view: &view,
+            stack: &stack.shadow_casters(),
+            accuracy: &accuracy,
+            shown,
+            room: RoomForLayers::default(),
+        };
         resources.prepare(device, scene, &request).await?;
-        uniform.fill(&device.gpu, BufferId::ShadowMapView, bytemuck::bytes_of(&ShadowMapUniform::new(&view))).await?;
+        uniform
+            .fill(
+                &device.gpu,
+                BufferId::ShadowMapView,
+                bytemuck::bytes_of(&ShadowMapUniform::new(&view)),
+            )
+            .await?;
         let map = match map.filter(|map| map.texture.width() == view.width) {
             _ if device.tuning.buffered_shadow_map => None,
             Some(map) => Some(map),
             None => Some(new_map(&device.gpu, view.width).await?),
         };
         let passes = resources.frame()?.plan.key.light_frame();
-        resources.prepare_passes(device, passes, &Resources::of_scene(scene)).await?;
-        Ok(Some(Self { resources, view, uniform, map }))
+        resources
+            .prepare_passes(device, passes, &Resources::of_scene(scene))
+            .await?;
+        Ok(Some(Self {
+            resources,
+            view,
+            uniform,
+            map,
+        }))
     }
 
     /// Draws what the light sees, and copies it to the texture if there is one.
     ///
     /// # Errors
     /// When a buffer is missing.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, timer: Option<&mut Timer>) -> Result<(), RenderError> {
-        self.resources.clear(encoder, |occasion| occasion != ClearedBy::History)?;
-        self.resources.record_all(encoder, Timing { timer, ends_frame: false })?;
+    pub fn record(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        timer: Option<&mut Timer>,
+    ) -> Result<(), RenderError> {
+        self.resources
+            .clear(encoder, |occasion| occasion != ClearedBy::History)?;
+        self.resources.record_all(
+            encoder,
+            Timing {
+                timer,
+                ends_frame: false,
+            },
+        )?;
         let Some(map) = &self.map else { return Ok(()) };
         // Rows of the map are multiples of 256 bytes.
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * self.view.width), rows_per_image: None };
-        let source = wgpu::TexelCopyBufferInfo { buffer: self.resources.buffers.get(BufferId::DepthKeys)?, layout };
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(4 * self.view.width),
+            rows_per_image: None,
+        };
+        let source = wgpu::TexelCopyBufferInfo {
+            buffer: self.resources.buffers.get(BufferId::DepthKeys)?,
+            layout,
+        };
         encoder.copy_buffer_to_texture(source, map.texture.as_image_copy(), map.texture.size());
         Ok(())
     }
@@ -87,8 +141,15 @@ impl ShadowPass {
     /// How many entries the queues lost; they grow, so that the next picture is complete.
     pub fn collect_stats(&mut self, record: &CounterRecord) -> u32 {
         self.resources.demand = Some(*record);
-        let Ok(frame) = self.resources.frame() else { return 0 };
-        let lost = record.counters(&recorded_capacities(&frame.plan.key, &self.resources.capacities)).overflow;
+        let Ok(frame) = self.resources.frame() else {
+            return 0;
+        };
+        let lost = record
+            .counters(&recorded_capacities(
+                &frame.plan.key,
+                &self.resources.capacities,
+            ))
+            .overflow;
         if lost > 0 {
             self.resources.grow_queues(record);
         }
@@ -97,20 +158,33 @@ impl ShadowPass {
 
     /// Its passes with their purposes.
     pub fn passes(&self) -> Vec<Note> {
-        let passes = self.resources.frame().map(|frame| frame.plan.key.light_frame()).unwrap_or_default();
-        let note = |pass: Pass| Note { name: format!("light {}", pass.label()), why: format!("for the light: {}", pass_purpose(pass)) };
+        let passes = self
+            .resources
+            .frame()
+            .map(|frame| frame.plan.key.light_frame())
+            .unwrap_or_default();
+        let note = |pass: Pass| Note {
+            name: format!("light {}", pass.label()),
+            why: format!("for the light: {}", pass_purpose(pass)),
+        };
         passes.into_iter().map(note).collect()
     }
 
     /// What it holds for itself.
     pub fn notes(&self) -> Vec<BufferNote> {
         let own = self.resources.buffers.notes().into_iter();
-        own.map(|note| BufferNote { name: format!("light {}", note.name), why: format!("for the light: {}", note.why), ..note }).collect()
+        own.map(|note| BufferNote {
+            name: format!("light {}", note.name),
+            why: format!("for the light: {}", note.why),
+            ..note
+        })
+        .collect()
     }
 }
 
-/// The options that every shadow map is drawn with, as the oracle takes for granted. A planner would choose cheaper ones where a light sees its
-/// scene edge-on: nothing is covered then, and nothing can be wrong.
+/// The options that every shadow map is drawn with, as the oracle takes for granted. A planner
+/// would choose cheaper ones where a light sees its scene edge-on: nothing is covered then, and
+/// nothing can be wrong.
 fn pins() -> PinnedOptions {
     PinnedOptions::of(Visibility::Split32)
         .with(Culling::None)
@@ -120,8 +194,18 @@ fn pins() -> PinnedOptions {
 }
 
 async fn new_map(gpu: &Gpu, side: u32) -> Result<WordTexture, RenderError> {
-    let size = wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 };
-    WordTexture::new(gpu, TextureId::ShadowMap, size, wgpu::TextureViewDimension::D2).await
+    let size = wgpu::Extent3d {
+        width: side,
+        height: side,
+        depth_or_array_layers: 1,
+    };
+    WordTexture::new(
+        gpu,
+        TextureId::ShadowMap,
+        size,
+        wgpu::TextureViewDimension::D2,
+    )
+    .await
 }
 
 impl ShadowMapUniform {
@@ -160,13 +244,31 @@ mod tests {
     #[test]
     fn a_scene_seen_edge_on_is_drawn_with_the_options_of_every_shadow_map() {
         let scene = builtin::build("slivers").unwrap();
-        let picture = View::new(&Camera::default(), 64, 64, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
+        let picture = View::new(
+            &Camera::default(),
+            64,
+            64,
+            &scene.bounds(),
+            DMat4::IDENTITY,
+            [0.0; 4],
+        );
         let light = light_view(DVec3::Y, &scene, &picture, 0.0);
         let stack = Stack::default();
-        let needs = Arc::new(Needs::of(&scene, &stack.draws(&scene, &light).unwrap(), &light));
+        let needs = Arc::new(Needs::of(
+            &scene,
+            &stack.draws(&scene, &light).unwrap(),
+            &light,
+        ));
         let options = |pins: PinnedOptions| -> AccuracyOptions {
-            let request = AccuracyRequest { pins, ..AccuracyRequest::default() };
-            Planner::default().plan(&needs, &stack, &Caps::ALL, &Caps::ALL.tuning(), &request).unwrap().key.options
+            let request = AccuracyRequest {
+                pins,
+                ..AccuracyRequest::default()
+            };
+            Planner::default()
+                .plan(&needs, &stack, &Caps::ALL, &Caps::ALL.tuning(), &request)
+                .unwrap()
+                .key
+                .options
         };
         assert_eq!(
             options(PinnedOptions::of(Visibility::Split32)).coverage,
@@ -176,7 +278,11 @@ mod tests {
         let drawn = options(pins());
         assert_eq!(
             (drawn.coverage, drawn.vertex_transform, drawn.depth),
-            (Coverage::Fixed8, VertexTransform::Snapped, DepthFormat::Reversed)
+            (
+                Coverage::Fixed8,
+                VertexTransform::Snapped,
+                DepthFormat::Reversed
+            )
         );
     }
 }

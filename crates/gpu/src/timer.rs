@@ -1,11 +1,13 @@
-//! GPU timestamps: one span per pass, and the whole frame from before the clears to the end of the last pass.
+//! GPU timestamps: one span per pass, and the whole frame from before the clears to the end of the
+//! last pass.
 
 use super::device::Gpu;
 
 /// Most spans in one frame.
 const MAX_SPANS: u32 = 64;
 
-/// Milliseconds of a finished frame; spans whose stamps were not written, or run backwards, are left out.
+/// Milliseconds of a finished frame; spans whose stamps were not written, or run backwards, are
+/// left out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Times {
     pub total_ms: Option<f64>,
@@ -62,7 +64,10 @@ impl Timer {
             beginning_of_pass_write_index: Some(0),
             end_of_pass_write_index: Some(1),
         });
-        encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("begin"), timestamp_writes });
+        encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("begin"),
+            timestamp_writes,
+        });
     }
 
     /// Is only the whole frame timed?
@@ -70,8 +75,9 @@ impl Timer {
         self.detail == Detail::Whole
     }
 
-    /// Indices of the stamps of the next span, labeled. A pass's two stamps must be neighbors: wgpu resets the whole
-    /// range between them, and a stamp that was reset makes some drivers wait for ever.
+    /// Indices of the stamps of the next span, labeled. A pass's two stamps must be neighbors: wgpu
+    /// resets the whole range between them, and a stamp that was reset makes some drivers wait
+    /// for ever.
     fn span(&mut self, label: &str, is_last: bool) -> Option<(Option<u32>, Option<u32>)> {
         let slot = self.labels.len() as u32;
         if self.detail == Detail::Whole {
@@ -85,7 +91,11 @@ impl Timer {
     }
 
     /// Stamps for a compute pass.
-    pub fn compute(&mut self, label: &str, is_last: bool) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
+    pub fn compute(
+        &mut self,
+        label: &str,
+        is_last: bool,
+    ) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
         let (begin, end) = self.span(label, is_last)?;
         Some(wgpu::ComputePassTimestampWrites {
             query_set: &self.queries,
@@ -95,7 +105,11 @@ impl Timer {
     }
 
     /// Stamps for a render pass.
-    pub fn render(&mut self, label: &str, is_last: bool) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
+    pub fn render(
+        &mut self,
+        label: &str,
+        is_last: bool,
+    ) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
         let (begin, end) = self.span(label, is_last)?;
         Some(wgpu::RenderPassTimestampWrites {
             query_set: &self.queries,
@@ -107,19 +121,30 @@ impl Timer {
     /// Ends the frame: the stamps go to `staging` at `offset`.
     pub fn end(&self, encoder: &mut wgpu::CommandEncoder, staging: &wgpu::Buffer, offset: u64) {
         // Only stamps that were written: some drivers wait for the others for ever.
-        let written = if self.detail == Detail::Whole { 3 } else { 2 * self.labels.len() as u32 };
+        let written = if self.detail == Detail::Whole {
+            3
+        } else {
+            2 * self.labels.len() as u32
+        };
         encoder.resolve_query_set(&self.queries, 0..written, &self.resolved, 0);
         encoder.copy_buffer_to_buffer(&self.resolved, 0, staging, offset, u64::from(written) * 8);
     }
 
     /// Labels of the spans recorded since [`Self::begin`], for [`Self::times`].
     pub fn labels(&self) -> Vec<String> {
-        if self.detail == Detail::Whole { Vec::new() } else { self.labels.clone() }
+        if self.detail == Detail::Whole {
+            Vec::new()
+        } else {
+            self.labels.clone()
+        }
     }
 
     /// Reads what [`Self::end`] stored.
     pub fn times(&self, bytes: &[u8], labels: &[String]) -> Times {
-        let stamps: Vec<u64> = bytes.chunks_exact(8).map(bytemuck::pod_read_unaligned).collect();
+        let stamps: Vec<u64> = bytes
+            .chunks_exact(8)
+            .map(bytemuck::pod_read_unaligned)
+            .collect();
         let span = |from: usize, to: usize| {
             let (begin, end) = (stamps[from], stamps[to]);
             (begin != 0 && end >= begin).then(|| (end - begin) as f64 * self.period_ns * 1e-6)
@@ -129,7 +154,14 @@ impl Timer {
             let (from, to) = if i == 0 { (0, 2) } else { (2 * i, 2 * i + 1) };
             Some((label.clone(), span(from, to)?))
         });
-        let end = if labels.is_empty() { 2 } else { 2 * labels.len() - 1 };
-        Times { total_ms: span(0, end), passes: passes.collect() }
+        let end = if labels.is_empty() {
+            2
+        } else {
+            2 * labels.len() - 1
+        };
+        Times {
+            total_ms: span(0, end),
+            passes: passes.collect(),
+        }
     }
 }

@@ -1,5 +1,6 @@
-//! A view on the device: the plan and the layout of its frames, its buffers, and the passes that draw it. The picture, a shadow map
-//! and the judge's redraw of a culled picture are views of the same scene.
+//! A view on the device: the plan and the layout of its frames, its buffers, and the passes that
+//! draw it. The picture, a shadow map and the judge's redraw of a culled picture are views of the
+//! same scene.
 
 use std::{ops::Range, sync::Arc};
 
@@ -72,14 +73,17 @@ pub struct ViewResources {
     pub demand: Option<CounterRecord>,
     /// The size estimate was wrong once: queues and clipping are kept for this scene.
     pub force_all_paths: bool,
-    /// Requirements of the last views: one for the default grid, one for the grid that the plan then took.
+    /// Requirements of the last views: one for the default grid, one for the grid that the plan
+    /// then took.
     seen: Vec<Seen>,
     planner: Planner,
     draw_data: Option<DrawData>,
     pub dots: Option<DotStore>,
-    /// The background whose rows the buffers hold, the size of the picture, and where the rows lie that the resolve reads.
+    /// The background whose rows the buffers hold, the size of the picture, and where the rows lie
+    /// that the resolve reads.
     background: Option<(Background, [u32; 2], Option<Span>)>,
-    /// The picture shows the background in every tile that the tile mask does not name: the last picture was resolved by listed tiles.
+    /// The picture shows the background in every tile that the tile mask does not name: the last
+    /// picture was resolved by listed tiles.
     pub shows_background: bool,
     frame: Option<PreparedFrame>,
     commands: Option<CommandList>,
@@ -123,7 +127,13 @@ impl ViewResources {
 
     /// Begins with another scene: what depends on the old one is dropped.
     pub fn change_scene(&mut self, scene: &Scene) {
-        let of_scene = [BufferId::Vertices, BufferId::Meshlets, BufferId::MeshletLists, BufferId::MeshletVisibility, BufferId::Hiz];
+        let of_scene = [
+            BufferId::Vertices,
+            BufferId::Meshlets,
+            BufferId::MeshletLists,
+            BufferId::MeshletVisibility,
+            BufferId::Hiz,
+        ];
         self.release_commands();
         self.buffers.keep(|id| !of_scene.contains(&id));
         (self.capacities, self.force_all_paths) = (first_capacities(scene), false);
@@ -131,7 +141,8 @@ impl ViewResources {
         self.seen.clear();
     }
 
-    /// Changes whenever passes, pipelines or bound buffers do; none before the passes were prepared.
+    /// Changes whenever passes, pipelines or bound buffers do; none before the passes were
+    /// prepared.
     pub fn commands_revision(&self) -> Option<u64> {
         self.commands.as_ref().map(|commands| commands.revision)
     }
@@ -141,21 +152,31 @@ impl ViewResources {
         self.commands = None;
     }
 
-    /// Plans a frame and makes the buffers hold what its passes will read. Nothing but uniforms is written where only parameters
-    /// of effects changed.
+    /// Plans a frame and makes the buffers hold what its passes will read. Nothing but uniforms is
+    /// written where only parameters of effects changed.
     ///
     /// # Errors
     /// When the adapter cannot draw what is asked for, or has no memory for it.
-    pub async fn prepare(&mut self, device: &Device, scene: &mut SceneResources, request: &Request<'_>) -> Result<(), RenderError> {
+    pub async fn prepare(
+        &mut self,
+        device: &Device,
+        scene: &mut SceneResources,
+        request: &Request<'_>,
+    ) -> Result<(), RenderError> {
         let gpu = &*device.gpu;
         let (View { width, height, .. }, limit) = (request.view, gpu.caps.max_texture_side);
         if *width.max(height) > limit {
-            return Err(RenderError::TooWide { width: *width, height: *height, limit });
+            return Err(RenderError::TooWide {
+                width: *width,
+                height: *height,
+                limit,
+            });
         }
         if !std::mem::take(&mut self.is_prepared) {
             // A frame that could not be prepared may have left buffers unwritten.
             (self.draw_data, self.dots, self.background) = (None, None, None);
-            self.buffers.keep(|id| !matches!(id, BufferId::Meshlets | BufferId::MeshletLists));
+            self.buffers
+                .keep(|id| !matches!(id, BufferId::Meshlets | BufferId::MeshletLists));
         }
         let (plan, view, draws) = self.plan(device, scene.scene(), request)?;
         let key = &plan.key;
@@ -165,11 +186,14 @@ impl ViewResources {
                 self.release_commands();
             }
             scene.pack_positions(gpu, packed_bits).await?;
-            scene.keep_materials(gpu, key.surface.has_material_atlas).await?;
+            scene
+                .keep_materials(gpu, key.surface.has_material_atlas)
+                .await?;
         }
         let is_changed = self.update_draw_data(scene, key, &view, &draws, request.stack);
         if self.target == Target::Picture {
-            self.dots = DotStore::update(self.dots.take(), scene.scene(), &view, request.stack, key)?;
+            self.dots =
+                DotStore::update(self.dots.take(), scene.scene(), &view, request.stack, key)?;
         }
         let parameters = uniform_bytes(&request.stack.0);
         let has_parameters = !parameters.is_empty() && key.effects.baked.is_empty();
@@ -179,17 +203,35 @@ impl ViewResources {
             size: [view.width, view.height],
             shown: request.shown,
             has_gradient: view.background.is_gradient(),
-            scene: self.draw_data.as_ref().map(|data| data.counts).unwrap_or_default(),
+            scene: self
+                .draw_data
+                .as_ref()
+                .map(|data| data.counts)
+                .unwrap_or_default(),
             dots: self.dots.as_ref().map(DotStore::counts),
-            effect_bytes: if has_parameters { parameters.len() as u64 } else { 0 },
+            effect_bytes: if has_parameters {
+                parameters.len() as u64
+            } else {
+                0
+            },
             capacities: recorded_capacities(key, &self.capacities),
         });
         let new = self.allocate(gpu, &layout).await?;
-        self.write_draw_data(gpu, scene, &layout, &new, is_changed).await?;
-        self.write_uniforms(gpu, &layout, &view, request.stack.point_radius(), &parameters).await?;
-        self.write_background(gpu, &layout, &view, |id| new.contains(&id)).await?;
+        self.write_draw_data(gpu, scene, &layout, &new, is_changed)
+            .await?;
+        self.write_uniforms(
+            gpu,
+            &layout,
+            &view,
+            request.stack.point_radius(),
+            &parameters,
+        )
+        .await?;
+        self.write_background(gpu, &layout, &view, |id| new.contains(&id))
+            .await?;
         if let Some(dots) = &mut self.dots {
-            dots.write(gpu, &self.buffers, |id| new.contains(&id)).await?;
+            dots.write(gpu, &self.buffers, |id| new.contains(&id))
+                .await?;
         }
         self.frame = Some(PreparedFrame { plan, view, layout });
         self.is_prepared = true;
@@ -197,13 +239,22 @@ impl ViewResources {
     }
 
     /// The plan of a frame, with the view on its grid and that view's draws.
-    fn plan(&mut self, device: &Device, scene: &Arc<Scene>, request: &Request<'_>) -> Result<PlannedView, RenderError> {
+    fn plan(
+        &mut self,
+        device: &Device,
+        scene: &Arc<Scene>,
+        request: &Request<'_>,
+    ) -> Result<PlannedView, RenderError> {
         let mut view = request.view.clone();
         let mut seen = self.see(&device.gpu, scene, &view, request.stack)?;
         let mut plan = self.plan_of(device, seen, request)?;
-        // Another grid has its guard band elsewhere, and another origin its matrices, so their needs are their own.
+        // Another grid has its guard band elsewhere, and another origin its matrices, so their
+        // needs are their own.
         let options = &plan.key.options;
-        let (subpixel_bits, is_relative) = (options.coverage.subpixel_bits(), options.position_format == PositionFormat::Relative);
+        let (subpixel_bits, is_relative) = (
+            options.coverage.subpixel_bits(),
+            options.position_format == PositionFormat::Relative,
+        );
         view = view.with_grid(subpixel_bits, is_relative);
         if is_relative || subpixel_bits != SUBPIXEL_BITS {
             seen = self.see(&device.gpu, scene, &view, request.stack)?;
@@ -216,30 +267,70 @@ impl ViewResources {
     }
 
     /// Position in `seen` of a scene as a view sees it, with the scopes of a stack.
-    fn see(&mut self, gpu: &Gpu, scene: &Arc<Scene>, view: &View, stack: &Stack) -> Result<usize, RenderError> {
+    fn see(
+        &mut self,
+        gpu: &Gpu,
+        scene: &Arc<Scene>,
+        view: &View,
+        stack: &Stack,
+    ) -> Result<usize, RenderError> {
         let scopes = stack.scopes();
-        let is_known = |seen: &Seen| Arc::ptr_eq(&seen.scene, scene) && seen.view == *view && seen.scopes == scopes;
+        let is_known = |seen: &Seen| {
+            Arc::ptr_eq(&seen.scene, scene) && seen.view == *view && seen.scopes == scopes
+        };
         if let Some(known) = self.seen.iter().position(is_known) {
             return Ok(known);
         }
         gpu.prepared.count(Preparation::View);
         let draws: Arc<[Draw]> = stack.draws(scene, view)?.into();
         let needs = Needs::of(scene, &draws, view);
-        let needs_all_paths = Arc::new(Needs { clipping: true, largest_px: f64::INFINITY, ..needs.clone() });
+        let needs_all_paths = Arc::new(Needs {
+            clipping: true,
+            largest_px: f64::INFINITY,
+            ..needs.clone()
+        });
         self.seen.truncate(1);
-        self.seen.insert(0, Seen { scene: scene.clone(), view: view.clone(), scopes, draws, needs: Arc::new(needs), needs_all_paths });
+        self.seen.insert(
+            0,
+            Seen {
+                scene: scene.clone(),
+                view: view.clone(),
+                scopes,
+                draws,
+                needs: Arc::new(needs),
+                needs_all_paths,
+            },
+        );
         Ok(0)
     }
 
     /// The plan for a view in `seen`; the same as before where nothing that it depends on changed.
-    fn plan_of(&mut self, device: &Device, seen: usize, request: &Request<'_>) -> Result<Arc<Plan>, RenderError> {
+    fn plan_of(
+        &mut self,
+        device: &Device,
+        seen: usize,
+        request: &Request<'_>,
+    ) -> Result<Arc<Plan>, RenderError> {
         let seen = &self.seen[seen];
-        let needs = if self.force_all_paths { &seen.needs_all_paths } else { &seen.needs };
+        let needs = if self.force_all_paths {
+            &seen.needs_all_paths
+        } else {
+            &seen.needs
+        };
         // A shadow map has no picture whose tiles could be listed.
         let listed_tiles = device.tuning.listed_tiles && self.target != Target::ShadowMap;
-        let tuning = Tuning { listed_tiles, ..device.tuning };
+        let tuning = Tuning {
+            listed_tiles,
+            ..device.tuning
+        };
         let made = self.planner.made();
-        let plan = self.planner.plan(needs, request.stack, &device.gpu.caps, &tuning, request.accuracy)?;
+        let plan = self.planner.plan(
+            needs,
+            request.stack,
+            &device.gpu.caps,
+            &tuning,
+            request.accuracy,
+        )?;
         if self.planner.made() > made {
             device.gpu.prepared.count(Preparation::Plan);
         }
@@ -247,7 +338,14 @@ impl ViewResources {
     }
 
     /// Computes what the passes read about every instance, unless it is known; true if it changed.
-    fn update_draw_data(&mut self, scene: &mut SceneResources, key: &KernelKey, view: &View, draws: &[Draw], stack: &Stack) -> bool {
+    fn update_draw_data(
+        &mut self,
+        scene: &mut SceneResources,
+        key: &KernelKey,
+        view: &View,
+        draws: &[Draw],
+        stack: &Stack,
+    ) -> bool {
         let inputs = DrawInputs {
             view: view.clone(),
             attributes: scene.attributes(),
@@ -255,11 +353,19 @@ impl ViewResources {
             deforms_offscreen: !key.culls() || stack.light().is_some(),
             scopes: stack.scopes(),
         };
-        if self.draw_data.as_ref().is_some_and(|data| data.is_of(scene.scene(), &inputs)) {
+        if self
+            .draw_data
+            .as_ref()
+            .is_some_and(|data| data.is_of(scene.scene(), &inputs))
+        {
             return false;
         }
         let meshlets = key.culls().then(|| scene.meshlets());
-        let boxes = if key.options.position_format.packed_bits().is_some() { scene.packed_boxes() } else { &[] };
+        let boxes = if key.options.position_format.packed_bits().is_some() {
+            scene.packed_boxes()
+        } else {
+            &[]
+        };
         let mut data = DrawData::new(scene.scene(), draws, inputs, boxes, meshlets.as_deref());
         data.counts.particles = scene.particle_count();
         self.draw_data = Some(data);
@@ -267,14 +373,26 @@ impl ViewResources {
     }
 
     /// Makes and drops buffers so that those of the layout are there; returns the new ones.
-    async fn allocate(&mut self, gpu: &Gpu, layout: &FrameLayout) -> Result<Vec<BufferId>, RenderError> {
-        if self.frame.as_ref().is_none_or(|frame| frame.layout != *layout) {
+    async fn allocate(
+        &mut self,
+        gpu: &Gpu,
+        layout: &FrameLayout,
+    ) -> Result<Vec<BufferId>, RenderError> {
+        if self
+            .frame
+            .as_ref()
+            .is_none_or(|frame| frame.layout != *layout)
+        {
             self.release_commands();
         }
         self.buffers.keep(|id| layout.has(id));
         let mut new = Vec::new();
         for (id, spec) in layout.buffers() {
-            if self.buffers.ensure_for(gpu, id, spec.bytes, spec.purpose).await? {
+            if self
+                .buffers
+                .ensure_for(gpu, id, spec.bytes, spec.purpose)
+                .await?
+            {
                 new.push(id);
             }
         }
@@ -290,21 +408,46 @@ impl ViewResources {
         new: &[BufferId],
         is_changed: bool,
     ) -> Result<(), RenderError> {
-        let Some(data) = &self.draw_data else { return Ok(()) };
+        let Some(data) = &self.draw_data else {
+            return Ok(());
+        };
         let contents: [(BufferId, &[u8]); 5] = [
             (BufferId::Draws, bytemuck::cast_slice(&data.records)),
-            (BufferId::Deforms, bytemuck::cast_slice(&data.deforms.records)),
+            (
+                BufferId::Deforms,
+                bytemuck::cast_slice(&data.deforms.records),
+            ),
             (BufferId::Joints, bytemuck::cast_slice(&data.deforms.joints)),
-            (BufferId::MorphTargets, bytemuck::cast_slice(&data.deforms.morph_targets)),
+            (
+                BufferId::MorphTargets,
+                bytemuck::cast_slice(&data.deforms.morph_targets),
+            ),
             (BufferId::Instances, bytemuck::cast_slice(&data.instances)),
         ];
-        for (id, bytes) in contents.into_iter().filter(|(id, _)| layout.has(*id) && (is_changed || new.contains(id))) {
+        for (id, bytes) in contents
+            .into_iter()
+            .filter(|(id, _)| layout.has(*id) && (is_changed || new.contains(id)))
+        {
             self.buffers.write_at(gpu, id, 0, bytes).await?;
         }
         if new.contains(&BufferId::Meshlets) || new.contains(&BufferId::MeshletLists) {
             let meshlets = scene.meshlets();
-            self.buffers.write_at(gpu, BufferId::Meshlets, 0, bytemuck::cast_slice(&meshlets.records)).await?;
-            self.buffers.write_at(gpu, BufferId::MeshletLists, 0, bytemuck::cast_slice(&meshlets.lists)).await?;
+            self.buffers
+                .write_at(
+                    gpu,
+                    BufferId::Meshlets,
+                    0,
+                    bytemuck::cast_slice(&meshlets.records),
+                )
+                .await?;
+            self.buffers
+                .write_at(
+                    gpu,
+                    BufferId::MeshletLists,
+                    0,
+                    bytemuck::cast_slice(&meshlets.lists),
+                )
+                .await?;
         }
         Ok(())
     }
@@ -317,8 +460,15 @@ impl ViewResources {
         point_radius: u32,
         parameters: &[u8],
     ) -> Result<(), RenderError> {
-        let scaling = ScalingUniform { size: layout.shown, stride: color_stride(layout.shown[0]), spare: 0 };
-        let (frame, culling) = (layout.frame_uniform(view, point_radius), layout.culling_uniform());
+        let scaling = ScalingUniform {
+            size: layout.shown,
+            stride: color_stride(layout.shown[0]),
+            spare: 0,
+        };
+        let (frame, culling) = (
+            layout.frame_uniform(view, point_radius),
+            layout.culling_uniform(),
+        );
         let uniforms: [(BufferId, &[u8]); 4] = [
             (BufferId::Frame, bytemuck::bytes_of(&frame)),
             (BufferId::Effects, parameters),
@@ -331,8 +481,8 @@ impl ViewResources {
         Ok(())
     }
 
-    /// Writes the rows of background that are copied over the picture, and those that the resolve reads, where they changed. The picture does
-    /// not show them then.
+    /// Writes the rows of background that are copied over the picture, and those that the resolve
+    /// reads, where they changed. The picture does not show them then.
     async fn write_background(
         &mut self,
         gpu: &Gpu,
@@ -340,21 +490,40 @@ impl ViewResources {
         view: &View,
         is_new: impl Fn(BufferId) -> bool,
     ) -> Result<(), RenderError> {
-        let background = Some((view.background, layout.size, layout.region(Region::BackgroundRows).cloned()));
+        let background = Some((
+            view.background,
+            layout.size,
+            layout.region(Region::BackgroundRows).cloned(),
+        ));
         let is_changed = self.background != background;
         if layout.has(BufferId::Background) && (is_changed || is_new(BufferId::Background)) {
             let stride = color_stride(view.width) as usize;
-            let words: Vec<u8> = view.background.rows(layout.background_rows()).iter().flat_map(|row| row.repeat(stride)).collect();
-            self.buffers.write_at(gpu, BufferId::Background, 0, &words).await?;
+            let words: Vec<u8> = view
+                .background
+                .rows(layout.background_rows())
+                .iter()
+                .flat_map(|row| row.repeat(stride))
+                .collect();
+            self.buffers
+                .write_at(gpu, BufferId::Background, 0, &words)
+                .await?;
         }
         if let Some(span) = layout.region(Region::BackgroundRows)
             && (is_changed || is_new(span.buffer))
         {
             let rows = view.background.rows(view.height);
-            self.buffers.write_at(gpu, span.buffer, span.bytes.start, bytemuck::cast_slice(&rows)).await?;
+            self.buffers
+                .write_at(
+                    gpu,
+                    span.buffer,
+                    span.bytes.start,
+                    bytemuck::cast_slice(&rows),
+                )
+                .await?;
         }
         self.background = background;
-        self.shows_background &= !is_changed && !is_new(BufferId::Color) && !is_new(BufferId::TileMask);
+        self.shows_background &=
+            !is_changed && !is_new(BufferId::Color) && !is_new(BufferId::TileMask);
         Ok(())
     }
 
@@ -362,24 +531,44 @@ impl ViewResources {
     ///
     /// # Errors
     /// When a buffer is missing.
-    pub fn clear(&self, encoder: &mut wgpu::CommandEncoder, occasion: impl Fn(ClearedBy) -> bool) -> Result<(), RenderError> {
+    pub fn clear(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        occasion: impl Fn(ClearedBy) -> bool,
+    ) -> Result<(), RenderError> {
         for (id, bytes) in self.frame()?.layout.cleared(occasion) {
-            encoder.clear_buffer(self.buffers.get(id)?, bytes.start, Some(bytes.end - bytes.start));
+            encoder.clear_buffer(
+                self.buffers.get(id)?,
+                bytes.start,
+                Some(bytes.end - bytes.start),
+            );
         }
         Ok(())
     }
 
-    /// Makes the passes of the frame ready to be recorded, unless they are. `others` are resources that the view shares.
+    /// Makes the passes of the frame ready to be recorded, unless they are. `others` are resources
+    /// that the view shares.
     ///
     /// # Errors
     /// When a kernel cannot be compiled, or binds what is not there.
-    pub async fn prepare_passes(&mut self, device: &mut Device, passes: Vec<Pass>, others: &Resources<'_>) -> Result<(), RenderError> {
+    pub async fn prepare_passes(
+        &mut self,
+        device: &mut Device,
+        passes: Vec<Pass>,
+        others: &Resources<'_>,
+    ) -> Result<(), RenderError> {
         let key = &self.frame.as_ref().ok_or(RenderError::NoScene)?.plan.key;
         let resources = others.with(&self.buffers);
         match &self.commands {
-            Some(commands) if commands.is_for(key, &passes, &resources) => commands.mark(&device.gpu.pipelines),
+            Some(commands) if commands.is_for(key, &passes, &resources) => {
+                commands.mark(&device.gpu.pipelines)
+            }
             _ => {
-                let prefix = if self.target == Target::ShadowMap { "light " } else { "" };
+                let prefix = if self.target == Target::ShadowMap {
+                    "light "
+                } else {
+                    ""
+                };
                 let commands = CommandList::new(device, key, passes, prefix, &resources).await?;
                 self.commands = Some(commands);
             }
@@ -391,9 +580,18 @@ impl ViewResources {
     ///
     /// # Errors
     /// When none were.
-    pub fn record(&self, part: Range<usize>, encoder: &mut wgpu::CommandEncoder, timing: Timing<'_>) -> Result<(), RenderError> {
+    pub fn record(
+        &self,
+        part: Range<usize>,
+        encoder: &mut wgpu::CommandEncoder,
+        timing: Timing<'_>,
+    ) -> Result<(), RenderError> {
         let commands = self.commands.as_ref().ok_or(RenderError::NoScene)?;
-        let sizes = DispatchSizes { layout: &self.frame()?.layout, demand: self.demand.as_ref(), buffers: &self.buffers };
+        let sizes = DispatchSizes {
+            layout: &self.frame()?.layout,
+            demand: self.demand.as_ref(),
+            buffers: &self.buffers,
+        };
         commands.record(part, encoder, &sizes, timing)
     }
 
@@ -401,11 +599,20 @@ impl ViewResources {
     ///
     /// # Errors
     /// When none were.
-    pub fn record_all(&self, encoder: &mut wgpu::CommandEncoder, timing: Timing<'_>) -> Result<(), RenderError> {
-        self.record(0..self.commands.as_ref().map_or(0, CommandList::len), encoder, timing)
+    pub fn record_all(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        timing: Timing<'_>,
+    ) -> Result<(), RenderError> {
+        self.record(
+            0..self.commands.as_ref().map_or(0, CommandList::len),
+            encoder,
+            timing,
+        )
     }
 
-    /// Makes room for what the queues lost, or gives up an estimate that was wrong; true if either may help.
+    /// Makes room for what the queues lost, or gives up an estimate that was wrong; true if either
+    /// may help.
     pub fn grow_queues(&mut self, record: &CounterRecord) -> bool {
         let is_estimate_wrong = self.frame.as_ref().is_some_and(|frame| {
             let key = &frame.plan.key;

@@ -1,5 +1,5 @@
-//! Which compute kernels draw a picture, as text: [`plan`] chooses them from scene, stack, adapter and tolerance, [`shader`] links
-//! them. Names no GPU.
+//! Which compute kernels draw a picture, as text: [`plan`] chooses them from scene, stack, adapter
+//! and tolerance, [`shader`] links them. Names no GPU.
 
 pub mod plan;
 pub mod shader;

@@ -1,5 +1,5 @@
-//! What a renderer produces and the oracle judges: integer images, snapped geometry and counters. The oracle and the GPU renderer
-//! both fill these plain types and never import each other.
+//! What a renderer produces and the oracle judges: integer images, snapped geometry and counters.
+//! The oracle and the GPU renderer both fill these plain types and never import each other.
 
 use crate::math::SUBPIXEL_BITS;
 
@@ -25,8 +25,8 @@ pub mod vertex_flags {
 /// A vertex after projection and the one snap, as every later stage reads it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SnappedVertex {
-    /// Right from the top left corner of the picture, in units of 2^-[`Geometry::subpixel_bits`] px. Without meaning unless `flags`
-    /// is 0; so are the next three.
+    /// Right from the top left corner of the picture, in units of 2^-[`Geometry::subpixel_bits`]
+    /// px. Without meaning unless `flags` is 0; so are the next three.
     pub x: i32,
     /// Down, in the same units.
     pub y: i32,
@@ -44,7 +44,8 @@ pub struct ClippedTriangle {
     /// Global id of the triangle that was clipped.
     pub parent: u32,
     pub corners: [SnappedVertex; 3],
-    /// Bit k is set if the edge opposite corner k lies on an edge of the parent, not on a clipping plane or inside.
+    /// Bit k is set if the edge opposite corner k lies on an edge of the parent, not on a clipping
+    /// plane or inside.
     pub outline: u32,
 }
 
@@ -76,7 +77,8 @@ pub struct ParticleReadback {
     /// Empty in the first frame, which no step leads to.
     pub before: Vec<ParticleState>,
     pub after: Vec<ParticleState>,
-    /// The discs that were drawn: corners with color and normal, as they lie in the scene's vertex bytes.
+    /// The discs that were drawn: corners with color and normal, as they lie in the scene's vertex
+    /// bytes.
     pub words: Vec<u32>,
     /// States are stored in 16 bits per number.
     pub has_half_precision: bool,
@@ -87,12 +89,13 @@ pub struct ParticleReadback {
 /// The input of integer coverage: what the float vertex stage leaves behind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Geometry {
-    /// One per vertex of each draw, in draw order, beginning at `Draw::first_vertex`; with `has_unshared_vertices` three per
-    /// triangle, by rising id.
+    /// One per vertex of each draw, in draw order, beginning at `Draw::first_vertex`; with
+    /// `has_unshared_vertices` three per triangle, by rising id.
     pub vertices: Vec<SnappedVertex>,
     /// Effects move triangles apart, so triangles share no vertices.
     pub has_unshared_vertices: bool,
-    /// Position and normal, in object space, of every vertex of the draws that deform, in draw order.
+    /// Position and normal, in object space, of every vertex of the draws that deform, in draw
+    /// order.
     pub deformed: Vec<[f32; 6]>,
     /// The particles of the picture and their last step; none without particles.
     pub particle_readback: Option<ParticleReadback>,
@@ -100,19 +103,20 @@ pub struct Geometry {
     pub particle_discs: std::ops::Range<u32>,
     /// What clipping made; those of one parent are in fan order.
     pub clipped_triangles: Vec<ClippedTriangle>,
-    /// The integers that sample effects and masks test against: for every triangle by id, then for every clipped triangle, one
-    /// entry per effect with a setup, then those of masks.
+    /// The integers that sample effects and masks test against: for every triangle by id, then for
+    /// every clipped triangle, one entry per effect with a setup, then those of masks.
     pub sample_setups: Vec<[u32; 4]>,
     /// One record per dot of all lines, always in units of 1/256 px.
     pub dots: Vec<SnappedVertex>,
     /// Bits of the fraction of snapped positions.
     pub subpixel_bits: u32,
-    /// Render scale: drawn pixels per shown pixel along a side. Lengths of effects in pixels are scaled alike.
+    /// Render scale: drawn pixels per shown pixel along a side. Lengths of effects in pixels are
+    /// scaled alike.
     pub scale: f64,
     /// Positions were taken relative to the eye before they met a matrix.
     pub is_relative: bool,
-    /// Bits of each coordinate, where positions were stored as steps in the box of their primitive; none where they were stored as the
-    /// scene has them.
+    /// Bits of each coordinate, where positions were stored as steps in the box of their
+    /// primitive; none where they were stored as the scene has them.
     pub packed_bits: Option<u32>,
     /// Which of these buffers, and of the frame drawn from them, are bit-exact.
     pub bit_exact: BitExact,
@@ -123,8 +127,8 @@ pub struct Geometry {
 /// A shadow map with the geometry that it was drawn from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShadowMap {
-    /// Depth key of every texel, row-major, top row first: bits of the reversed depth, larger is nearer to the light, 0 is
-    /// empty.
+    /// Depth key of every texel, row-major, top row first: bits of the reversed depth, larger is
+    /// nearer to the light, 0 is empty.
     pub depth_keys: Vec<u32>,
     /// The scene as the light sees it.
     pub geometry: Geometry,
@@ -194,7 +198,8 @@ pub struct OrderStats {
 }
 
 impl OrderStats {
-    /// Returns true if there are more samples than the counter holds, so that the number of drawn samples is unknown.
+    /// Returns true if there are more samples than the counter holds, so that the number of drawn
+    /// samples is unknown.
     pub const fn exceeds_sample_counter(&self) -> bool {
         self.is_scheduler_order && self.covered > u32::MAX as u64
     }
@@ -220,12 +225,15 @@ impl CullingStats {
 
     /// How many were removed and why, as text.
     pub fn reasons(&self) -> String {
-        format!("{} outside, {} turned away, {} hidden", self.outside, self.backfacing, self.hidden)
+        format!(
+            "{} outside, {} turned away, {} hidden",
+            self.outside, self.backfacing, self.hidden
+        )
     }
 }
 
-/// Which depths a depth key stands for: those from `down` below its own to `up + relative_up * depth` above. The default is the
-/// key's own depth alone.
+/// Which depths a depth key stands for: those from `down` below its own to `up + relative_up *
+/// depth` above. The default is the key's own depth alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DepthRounding {
     pub down: f64,
@@ -236,16 +244,29 @@ pub struct DepthRounding {
 }
 
 impl DepthRounding {
-    /// The range of depths that `key` stands for, the farthest first. A depth too small for a normal f32 has the key 1.
+    /// The range of depths that `key` stands for, the farthest first. A depth too small for a
+    /// normal f32 has the key 1.
     pub fn depths(&self, key: u32) -> [f64; 2] {
         let depth = f64::from(f32::from_bits(key));
-        let low = if key <= self.least_key.max(1) { 0.0 } else { depth - self.down };
+        let low = if key <= self.least_key.max(1) {
+            0.0
+        } else {
+            depth - self.down
+        };
         let high = depth * (1.0 + self.relative_up) + self.up;
-        [low, if key == 1 { high.max(f64::from(f32::MIN_POSITIVE)) } else { high }]
+        [
+            low,
+            if key == 1 {
+                high.max(f64::from(f32::MIN_POSITIVE))
+            } else {
+                high
+            },
+        ]
     }
 }
 
-/// A finished picture with its integer images. Images are row-major, top row first, `width * height` long.
+/// A finished picture with its integer images. Images are row-major, top row first, `width *
+/// height` long.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frame {
     pub width: u32,
@@ -260,7 +281,8 @@ pub struct Frame {
     pub depth_keys_are_approximate: bool,
     /// Gamma-encoded sRGB and alpha.
     pub color: Vec<[u8; 4]>,
-    /// Sum of the weights of all layers of a pixel, or their number, if an effect fills the visibility slot; otherwise empty.
+    /// Sum of the weights of all layers of a pixel, or their number, if an effect fills the
+    /// visibility slot; otherwise empty.
     pub layer_sums: Vec<u32>,
     /// Strength of the strongest dot per pixel, 0 to 256. Empty without dots.
     pub dots: Vec<u32>,
@@ -268,20 +290,46 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The picture at another size with these colors; each pixel has the integers of the drawn pixel under its center.
+    /// The picture at another size with these colors; each pixel has the integers of the drawn
+    /// pixel under its center.
     pub fn shown(&self, [width, height]: [u32; 2], color: Vec<[u8; 4]>) -> Self {
-        let under = |at: u32, shown: u32, drawn: u32| ((2 * u64::from(at) + 1) * u64::from(drawn) / (2 * u64::from(shown))) as usize;
+        let under = |at: u32, shown: u32, drawn: u32| {
+            ((2 * u64::from(at) + 1) * u64::from(drawn) / (2 * u64::from(shown))) as usize
+        };
         let drawn: Vec<usize> = (0..height)
-            .flat_map(|y| (0..width).map(move |x| under(y, height, self.height) * self.width as usize + under(x, width, self.width)))
+            .flat_map(|y| {
+                (0..width).map(move |x| {
+                    under(y, height, self.height) * self.width as usize
+                        + under(x, width, self.width)
+                })
+            })
             .collect();
-        let of = |words: &[u32]| if words.is_empty() { Vec::new() } else { drawn.iter().map(|&at| words[at]).collect() };
+        let of = |words: &[u32]| {
+            if words.is_empty() {
+                Vec::new()
+            } else {
+                drawn.iter().map(|&at| words[at]).collect()
+            }
+        };
         let (triangle_id, depth_key) = (of(&self.triangle_id), of(&self.depth_key));
-        Self { width, height, triangle_id, depth_key, color, layer_sums: of(&self.layer_sums), dots: of(&self.dots), ..*self }
+        Self {
+            width,
+            height,
+            triangle_id,
+            depth_key,
+            color,
+            layer_sums: of(&self.layer_sums),
+            dots: of(&self.dots),
+            ..*self
+        }
     }
 
     /// Number of pixels with a triangle.
     pub fn covered(&self) -> usize {
-        self.triangle_id.iter().filter(|&&id| id != NO_TRIANGLE).count()
+        self.triangle_id
+            .iter()
+            .filter(|&&id| id != NO_TRIANGLE)
+            .count()
     }
 }
 
@@ -300,6 +348,11 @@ pub struct AdapterPicture<'a> {
 impl<'a> AdapterPicture<'a> {
     /// A first picture without counted layers.
     pub const fn new(frame: &'a Frame, geometry: &'a Geometry) -> Self {
-        Self { frame, geometry, layers: None, previous: None }
+        Self {
+            frame,
+            geometry,
+            layers: None,
+            previous: None,
+        }
     }
 }

@@ -1,4 +1,5 @@
-//! Constants of the sub-pixel grid, distances between floats, f64 matrices rounded once to f32, gamma encoding and hashes.
+//! Constants of the sub-pixel grid, distances between floats, f64 matrices rounded once to f32,
+//! gamma encoding and hashes.
 //!
 //! A matrix is named after the spaces it connects, so that adjacent names cancel:
 //! `clip_from_object = clip_from_world * world_from_object`.
@@ -15,18 +16,23 @@ pub const UNITS_PER_PIXEL: i32 = 1 << SUBPIXEL_BITS;
 /// (32,767.996 px; symmetric, and exact in an f32).
 pub const GUARD_BAND: i32 = 8_388_607;
 
-/// Side of a square in which every edge function fits an i32, in units of 1/256 px: 128 px, a whole number of blocks. The limit is
-/// 181 px; the difference allows for blocks that overhang.
+/// Side of a square in which every edge function fits an i32, in units of 1/256 px: 128 px, a whole
+/// number of blocks. The limit is 181 px; the difference allows for blocks that overhang.
 pub const SMALL_EXTENT: i32 = 128 * UNITS_PER_PIXEL;
 
-/// Distance between two floats in units in the last place: 0 for equal values and for +0 and -0, `u32::MAX` if one is NaN.
+/// Distance between two floats in units in the last place: 0 for equal values and for +0 and -0,
+/// `u32::MAX` if one is NaN.
 pub fn ulp_distance(a: f32, b: f32) -> u32 {
     if a.is_nan() || b.is_nan() {
         return u32::MAX;
     }
     let ordered = |v: f32| {
         let bits = v.to_bits() as i32;
-        i64::from(if bits < 0 { i32::MIN.wrapping_sub(bits) } else { bits })
+        i64::from(if bits < 0 {
+            i32::MIN.wrapping_sub(bits)
+        } else {
+            bits
+        })
     };
     ordered(a).abs_diff(ordered(b)).min(u64::from(u32::MAX)) as u32
 }
@@ -36,11 +42,15 @@ pub fn rounded_columns(m: &DMat4) -> [[f32; 4]; 4] {
     m.to_cols_array_2d().map(|column| column.map(|v| v as f32))
 }
 
-/// Rigid view matrix (right-handed, looking down -z). `eye` and `target` must differ and `up` must not be parallel
-/// to the view direction; otherwise another up axis is used, so the result is always finite.
+/// Rigid view matrix (right-handed, looking down -z). `eye` and `target` must differ and `up` must
+/// not be parallel to the view direction; otherwise another up axis is used, so the result is
+/// always finite.
 pub fn view_from_world(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
     let back = (eye - target).try_normalize().unwrap_or(DVec3::Z);
-    let right = [up, DVec3::Y, DVec3::X].into_iter().find_map(|up| up.cross(back).try_normalize()).unwrap_or(DVec3::X);
+    let right = [up, DVec3::Y, DVec3::X]
+        .into_iter()
+        .find_map(|up| up.cross(back).try_normalize())
+        .unwrap_or(DVec3::X);
     let up = back.cross(right);
     DMat4::from_cols(
         DVec3::new(right.x, up.x, back.x).extend(0.0),
@@ -50,7 +60,8 @@ pub fn view_from_world(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
     )
 }
 
-/// Rotation about +y by `radians`, computed by a pure-Rust maths library, so that every host gets the same bits.
+/// Rotation about +y by `radians`, computed by a pure-Rust maths library, so that every host gets
+/// the same bits.
 pub fn rotation_y(radians: f64) -> DMat4 {
     let (sin, cos) = libm::sincos(radians);
     DMat4::from_cols(
@@ -63,13 +74,21 @@ pub fn rotation_y(radians: f64) -> DMat4 {
 
 /// A gamma-encoded value from 0 to 1 as linear light (IEC 61966-2-1).
 pub fn linear_light(encoded: f64) -> f64 {
-    if encoded <= 0.040_45 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
+    if encoded <= 0.040_45 {
+        encoded / 12.92
+    } else {
+        libm::pow((encoded + 0.055) / 1.055, 2.4)
+    }
 }
 
 /// Linear light, clamped to [0, 1], gamma-encoded (IEC 61966-2-1).
 pub fn srgb(linear: f64) -> f64 {
     let c = linear.clamp(0.0, 1.0);
-    if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * libm::pow(c, 1.0 / 2.4) - 0.055 }
+    if c <= 0.003_130_8 {
+        12.92 * c
+    } else {
+        1.055 * libm::pow(c, 1.0 / 2.4) - 0.055
+    }
 }
 
 /// Linear light in [0, 1] to a gamma-encoded sRGB byte, ties away from zero.
@@ -77,7 +96,8 @@ pub fn srgb_byte(linear: f64) -> u8 {
     (srgb(linear) * 255.0 + 0.5).floor() as u8
 }
 
-/// 2^32 over the golden ratio: what seeds are multiplied by, so that neighboring ones differ in all their bits.
+/// 2^32 over the golden ratio: what seeds are multiplied by, so that neighboring ones differ in all
+/// their bits.
 pub const HASH_GOLDEN: u32 = 0x9e37_79b9;
 
 /// Integer hash with full avalanche (Ettinger and Wellons, "lowbias32"); a bijection of u32.
@@ -90,7 +110,9 @@ pub fn hash(x: u32) -> u32 {
 /// FNV-1a with 64 bits (Fowler, Noll and Vo) of the bytes of words, the lowest byte first.
 pub fn fnv1a(words: &[u32]) -> u64 {
     let bytes = words.iter().flat_map(|word| word.to_le_bytes());
-    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
 }
 
 /// A hash as a number in [0, 1) with 24 bits, exact in f32.
@@ -108,8 +130,8 @@ pub fn cos_turns(turns: f64) -> f64 {
     libm::cos((turns - turns.round()) * std::f64::consts::TAU)
 }
 
-/// Bound of the error of `shaders/lib/angle.wgsl`, given its argument: the polynomial's 3.4e-9 (Remez, degree 9 on a
-/// quarter turn) and ten roundings of terms whose magnitudes sum to 2.4.
+/// Bound of the error of `shaders/lib/angle.wgsl`, given its argument: the polynomial's 3.4e-9
+/// (Remez, degree 9 on a quarter turn) and ten roundings of terms whose magnitudes sum to 2.4.
 pub const SINE_ERROR: f64 = 24.0 / (1 << 23) as f64;
 
 #[cfg(test)]
@@ -135,11 +157,17 @@ mod tests {
     #[test]
     fn hash_gives_its_published_values() {
         assert_eq!((hash(1), hash(0xdead_beef)), (0x6889_90c0, 0xe628_c683));
-        assert_eq!((fnv1a(&[]), fnv1a(&[u32::from_le_bytes(*b"foob")])), (0xcbf2_9ce4_8422_2325, 0xdd12_0e79_0c25_12af));
+        assert_eq!(
+            (fnv1a(&[]), fnv1a(&[u32::from_le_bytes(*b"foob")])),
+            (0xcbf2_9ce4_8422_2325, 0xdd12_0e79_0c25_12af)
+        );
     }
 
     #[test]
     fn srgb_hits_both_ends() {
-        assert_eq!((srgb_byte(0.0), srgb_byte(1.0), srgb_byte(0.215_860_5)), (0, 255, 128));
+        assert_eq!(
+            (srgb_byte(0.0), srgb_byte(1.0), srgb_byte(0.215_860_5)),
+            (0, 255, 128)
+        );
     }
 }

@@ -1,7 +1,8 @@
 //! Work that can be canceled: it ends at the next row, triangle or stage.
 //!
-//! What takes long returns a `Result`, so that a picture which is half finished never looks like one that is finished. Its loops ask for a
-//! [`Checkpoint`] on the thread that begins them and pass it in every turn, on whatever thread.
+//! What takes long returns a `Result`, so that a picture which is half finished never looks like
+//! one that is finished. Its loops ask for a [`Checkpoint`] on the thread that begins them and pass
+//! it in every turn, on whatever thread.
 
 use std::{
     cell::RefCell,
@@ -62,10 +63,14 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// The time that the rest takes at the speed so far; none before a tenth of a second has passed.
+    /// The time that the rest takes at the speed so far; none before a tenth of a second has
+    /// passed.
     pub fn time_left(&self) -> Option<Duration> {
         let is_known = self.done > 0 && self.elapsed >= Duration::from_millis(100);
-        is_known.then(|| self.elapsed.mul_f64(self.expected.saturating_sub(self.done) as f64 / self.done as f64))
+        is_known.then(|| {
+            self.elapsed
+                .mul_f64(self.expected.saturating_sub(self.done) as f64 / self.done as f64)
+        })
     }
 }
 
@@ -73,7 +78,12 @@ impl fmt::Display for Progress {
     /// `120 of 580 MB, 2 s left`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let megabytes = |bytes: u64| bytes.div_ceil(1_000_000);
-        write!(f, "{} of {} MB", megabytes(self.done.min(self.expected)), megabytes(self.expected))?;
+        write!(
+            f,
+            "{} of {} MB",
+            megabytes(self.done.min(self.expected)),
+            megabytes(self.expected)
+        )?;
         match self.time_left() {
             Some(left) => write!(f, ", {:.0} s left", left.as_secs_f64().ceil()),
             None => Ok(()),
@@ -93,7 +103,10 @@ impl Work {
 
     /// What is being done, and how many stages have begun.
     pub fn stage(&self) -> (&'static str, u32) {
-        (*self.stage.lock().unwrap_or_else(PoisonError::into_inner), self.stages_begun.load(Ordering::Relaxed))
+        (
+            *self.stage.lock().unwrap_or_else(PoisonError::into_inner),
+            self.stages_begun.load(Ordering::Relaxed),
+        )
     }
 
     /// Says what is done next.
@@ -104,11 +117,17 @@ impl Work {
 
     /// How far work on bytes has come; none before any are expected.
     pub fn progress(&self) -> Option<Progress> {
-        let [done, expected] = [&self.done, &self.expected].map(|bytes| bytes.load(Ordering::Relaxed));
-        Some(Progress { done, expected, elapsed: self.begun.get()?.elapsed() })
+        let [done, expected] =
+            [&self.done, &self.expected].map(|bytes| bytes.load(Ordering::Relaxed));
+        Some(Progress {
+            done,
+            expected,
+            elapsed: self.begun.get()?.elapsed(),
+        })
     }
 
-    /// Does `work` on this thread; none if it was canceled, even if only its last checkpoint has passed.
+    /// Does `work` on this thread; none if it was canceled, even if only its last checkpoint has
+    /// passed.
     pub fn run<T>(self: &Arc<Self>, work: impl FnOnce() -> T) -> Option<T> {
         Some(self.run_to_its_end(work)).filter(|_| !self.is_canceled())
     }
@@ -129,7 +148,11 @@ impl Checkpoint {
     /// # Errors
     /// The work was canceled.
     pub fn pass(&self) -> Result<(), Canceled> {
-        if self.0.as_ref().is_some_and(|work| work.is_canceled()) { Err(Canceled) } else { Ok(()) }
+        if self.0.as_ref().is_some_and(|work| work.is_canceled()) {
+            Err(Canceled)
+        } else {
+            Ok(())
+        }
     }
 
     /// Says that so many more bytes are to be done.
@@ -172,15 +195,21 @@ pub fn stage(name: &'static str) -> Result<(), Canceled> {
 /// Elements that are handled between two checkpoints: some milliseconds of work.
 const PART: u32 = 1 << 16;
 
-/// What `of_part` gives for every part of `count` elements, in their order. Parts are handled on all threads.
+/// What `of_part` gives for every part of `count` elements, in their order. Parts are handled on
+/// all threads.
 ///
 /// # Errors
 /// The work was canceled between two parts.
-pub fn map_parts<T: Send>(count: u32, of_part: impl Fn(Range<u32>) -> T + Sync) -> Result<Vec<T>, Canceled> {
+pub fn map_parts<T: Send>(
+    count: u32,
+    of_part: impl Fn(Range<u32>) -> T + Sync,
+) -> Result<Vec<T>, Canceled> {
     let checkpoint = checkpoint();
     let part = |index: u32| {
         checkpoint.pass()?;
-        Ok(of_part(index * PART..count.min((index + 1).saturating_mul(PART))))
+        Ok(of_part(
+            index * PART..count.min((index + 1).saturating_mul(PART)),
+        ))
     };
     match count.div_ceil(PART) {
         // Waking other threads costs more than a part.
@@ -196,7 +225,10 @@ const MOST_ITEMS: usize = 128;
 ///
 /// # Errors
 /// The work was canceled.
-pub fn map_each<I: Send, T: Send>(items: impl IndexedParallelIterator<Item = I>, each: impl Fn(I) -> T + Sync) -> Result<Vec<T>, Canceled> {
+pub fn map_each<I: Send, T: Send>(
+    items: impl IndexedParallelIterator<Item = I>,
+    each: impl Fn(I) -> T + Sync,
+) -> Result<Vec<T>, Canceled> {
     let (checkpoint, count) = (checkpoint(), items.len());
     let run = |items: Vec<I>| {
         checkpoint.pass()?;
@@ -204,7 +236,10 @@ pub fn map_each<I: Send, T: Send>(items: impl IndexedParallelIterator<Item = I>,
     };
     // Few items are shared among the threads, too.
     let together = (count / (8 * rayon::current_num_threads())).clamp(1, MOST_ITEMS);
-    let runs = items.chunks(together).map(run).collect::<Result<Vec<_>, Canceled>>()?;
+    let runs = items
+        .chunks(together)
+        .map(run)
+        .collect::<Result<Vec<_>, Canceled>>()?;
     let mut mapped = Vec::with_capacity(count);
     runs.into_iter().for_each(|run| mapped.extend(run));
     Ok(mapped)
@@ -231,31 +266,47 @@ mod tests {
         });
         assert_eq!(result, None);
         assert!(visited.load(Ordering::Relaxed) < 1_000_000);
-        assert!(CURRENT.with_borrow(Option::is_none), "the thread is free for other work");
+        assert!(
+            CURRENT.with_borrow(Option::is_none),
+            "the thread is free for other work"
+        );
     }
 
     #[test]
     fn parts_are_all_elements_in_order() {
         for count in [0, 1, PART, PART + 1, 3 * PART + 7] {
             let parts = map_parts(count, |part| part).expect("nobody cancels it");
-            assert!(parts.iter().all(|part| part.len() <= PART as usize && !part.is_empty()));
+            assert!(
+                parts
+                    .iter()
+                    .all(|part| part.len() <= PART as usize && !part.is_empty())
+            );
             assert!(parts.into_iter().flatten().eq(0..count), "{count}");
         }
         let work = Arc::new(Work::default());
         work.cancel();
-        assert_eq!(work.run_to_its_end(|| map_parts(3 * PART, |_| panic!("canceled work goes on"))), Err::<Vec<()>, _>(Canceled));
+        assert_eq!(
+            work.run_to_its_end(|| map_parts(3 * PART, |_| panic!("canceled work goes on"))),
+            Err::<Vec<()>, _>(Canceled)
+        );
     }
 
     #[test]
     fn each_item_is_mapped_in_order_until_the_work_is_canceled() {
         for count in [0, 1, MOST_ITEMS, 99 * MOST_ITEMS + 3] {
-            let mapped = map_each((0..count).into_par_iter(), |item| 2 * item).expect("nobody cancels it");
-            assert!(mapped.into_iter().eq((0..count).map(|item| 2 * item)), "{count}");
+            let mapped =
+                map_each((0..count).into_par_iter(), |item| 2 * item).expect("nobody cancels it");
+            assert!(
+                mapped.into_iter().eq((0..count).map(|item| 2 * item)),
+                "{count}"
+            );
         }
         let work = Arc::new(Work::default());
         work.cancel();
         assert_eq!(
-            work.run_to_its_end(|| map_each((0..9).into_par_iter(), |_| panic!("canceled work goes on"))),
+            work.run_to_its_end(|| map_each((0..9).into_par_iter(), |_| panic!(
+                "canceled work goes on"
+            ))),
             Err::<Vec<()>, _>(Canceled)
         );
     }
@@ -266,14 +317,37 @@ mod tests {
         assert_eq!(work.progress(), None);
         work.run(|| {
             checkpoint().expect(580_000_000);
-            (0..4).into_par_iter().map(|_| 30_000_000).collect::<Vec<u64>>().into_iter().try_for_each(|bytes| checkpoint().advance(bytes))
+            (0..4)
+                .into_par_iter()
+                .map(|_| 30_000_000)
+                .collect::<Vec<u64>>()
+                .into_iter()
+                .try_for_each(|bytes| checkpoint().advance(bytes))
         });
-        let progress = Progress { elapsed: Duration::from_secs(2), ..work.progress().expect("bytes are expected") };
-        assert_eq!((progress.done, progress.expected), (120_000_000, 580_000_000));
+        let progress = Progress {
+            elapsed: Duration::from_secs(2),
+            ..work.progress().expect("bytes are expected")
+        };
+        assert_eq!(
+            (progress.done, progress.expected),
+            (120_000_000, 580_000_000)
+        );
         assert_eq!(progress.to_string(), "120 of 580 MB, 8 s left");
-        assert_eq!(Progress { elapsed: Duration::ZERO, ..progress }.to_string(), "120 of 580 MB", "no speed is known yet");
+        assert_eq!(
+            Progress {
+                elapsed: Duration::ZERO,
+                ..progress
+            }
+            .to_string(),
+            "120 of 580 MB",
+            "no speed is known yet"
+        );
         assert_eq!(checkpoint().advance(1), Ok(()));
-        assert_eq!(work.progress().map(|progress| progress.done), Some(120_000_000), "other work is not counted");
+        assert_eq!(
+            work.progress().map(|progress| progress.done),
+            Some(120_000_000),
+            "other work is not counted"
+        );
     }
 
     #[test]
@@ -285,7 +359,12 @@ mod tests {
             checkpoint().pass().map(|()| 7)
         });
         assert_eq!((result, work.stage()), (Some(Ok(7)), ("two", 2)));
-        let bug = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| work.run(|| panic!("a bug"))));
-        assert!(bug.is_err() && CURRENT.with_borrow(Option::is_none), "it is not hidden, and the thread is free");
+        let bug = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+            work.run(|| panic!("a bug"))
+        }));
+        assert!(
+            bug.is_err() && CURRENT.with_borrow(Option::is_none),
+            "it is not hidden, and the thread is free"
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! What a picture may cost the oracle, checked before anything is allocated: a small file can place a large mesh many times.
+//! What a picture may cost the oracle, checked before anything is allocated: a small file can place
+//! a large mesh many times.
 
 use std::sync::OnceLock;
 
@@ -11,7 +12,8 @@ const MEMORY_GIB: f64 = 4.0;
 /// The variable of the environment from which the program chooses it.
 pub const VARIABLE: &str = "RASTERLAB_ORACLE_GIB";
 
-/// Most positions that are computed: each vertex of each instance once, and once more for each of its morph targets.
+/// Most positions that are computed: each vertex of each instance once, and once more for each of
+/// its morph targets.
 const MAX_POSITIONS: u64 = 1 << 32;
 
 /// Bytes of each pixel: its sample, triangle id, depth key, color in f64 and in bytes.
@@ -39,14 +41,22 @@ pub enum Purpose {
 /// # Errors
 /// [`DrawError::OracleMemory`] or [`DrawError::OracleWork`].
 pub fn check(shot: &Shot, purpose: Purpose) -> Result<(), DrawError> {
-    let needed_gib = bytes(shot) as f64 * if purpose == Purpose::Judge { 2.0 } else { 1.0 } / f64::from(1 << 30);
+    let needed_gib =
+        bytes(shot) as f64 * if purpose == Purpose::Judge { 2.0 } else { 1.0 } / f64::from(1 << 30);
     let limit_gib = CHOSEN.get().copied().unwrap_or(MEMORY_GIB);
     if needed_gib > limit_gib {
-        return Err(DrawError::OracleMemory { needed_gib, limit_gib, variable: VARIABLE });
+        return Err(DrawError::OracleMemory {
+            needed_gib,
+            limit_gib,
+            variable: VARIABLE,
+        });
     }
     let positions = positions(shot);
     if positions > MAX_POSITIONS {
-        return Err(DrawError::OracleWork { positions, limit: MAX_POSITIONS });
+        return Err(DrawError::OracleWork {
+            positions,
+            limit: MAX_POSITIONS,
+        });
     }
     Ok(())
 }
@@ -54,11 +64,27 @@ pub fn check(shot: &Shot, purpose: Purpose) -> Result<(), DrawError> {
 /// Memory of the picture at its peak, bytes, if no triangle is turned away.
 fn bytes(shot: &Shot) -> u64 {
     let [vertices, triangles] = totals(shot.scene, shot.draws);
-    let records = if shot.stack.unshares_vertices() { 3 * triangles } else { vertices };
-    let pixel = PIXEL_BYTES + if shot.stack.layers(triangles).is_some() { LAYER_BYTES } else { 0 };
-    let deforming = shot.draws.iter().map(|draw| &shot.scene.primitives[draw.primitive]).filter(|mesh| !mesh.deformation.is_none());
+    let records = if shot.stack.unshares_vertices() {
+        3 * triangles
+    } else {
+        vertices
+    };
+    let pixel = PIXEL_BYTES
+        + if shot.stack.layers(triangles).is_some() {
+            LAYER_BYTES
+        } else {
+            0
+        };
+    let deforming = shot
+        .draws
+        .iter()
+        .map(|draw| &shot.scene.primitives[draw.primitive])
+        .filter(|mesh| !mesh.deformation.is_none());
     let deformed: u64 = deforming.map(|mesh| u64::from(mesh.vertex_count())).sum();
-    let texels = shot.stack.shadow_map_view(shot.scene, shot.view).map_or(0, |light| light.pixels() as u64);
+    let texels = shot
+        .stack
+        .shadow_map_view(shot.scene, shot.view)
+        .map_or(0, |light| light.pixels() as u64);
     shot.view.pixels() as u64 * pixel
         + texels * TEXEL_BYTES
         + records * VERTEX_BYTES

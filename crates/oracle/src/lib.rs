@@ -1,9 +1,10 @@
 //! The oracle: an exact CPU renderer that judges adapters and makes the golden images.
 //!
-//! Coverage and triangle ids are computed in i64 and i128, afresh at every pixel of a triangle's bounding box; projection,
-//! clipping, depth and shading are f64. The oracle runs no kernel text, planner or GPU layout, no SIMD math in a
-//! comparison that decides, and no math function of the platform; both sides use `math`, `scene` and effect parameters. Work is
-//! parallel by rows and triangles; no result depends on the order of threads.
+//! Coverage and triangle ids are computed in i64 and i128, afresh at every pixel of a triangle's
+//! bounding box; projection, clipping, depth and shading are f64. The oracle runs no kernel text,
+//! planner or GPU layout, no SIMD math in a comparison that decides, and no math function of the
+//! platform; both sides use `math`, `scene` and effect parameters. Work is parallel by rows and
+//! triangles; no result depends on the order of threads.
 //!
 //! Imports run one way, from each of these to those before it:
 //!
@@ -13,9 +14,10 @@
 //! * `bounds`: how far an f32 renderer may be from them
 //! * `judge`: compares an adapter's picture with both
 //!
-//! [`project`] deforms, moves, projects and snaps vertices and clips triangles; [`triangles`] assembles and orients them;
-//! [`sample_setups`] computes what sample effects test against; [`cover_with`] finds the nearest triangle of each sample; [`shade`]
-//! colors it; [`judge`] compares a frame that an adapter drew with all of that. The arithmetic is specified in
+//! [`project`] deforms, moves, projects and snaps vertices and clips triangles; [`triangles`]
+//! assembles and orients them; [`sample_setups`] computes what sample effects test against;
+//! [`cover_with`] finds the nearest triangle of each sample; [`shade`] colors it; [`judge`]
+//! compares a frame that an adapter drew with all of that. The arithmetic is specified in
 //! `docs/exactness.md`.
 
 mod arithmetic;
@@ -44,7 +46,9 @@ pub use render::{
     particles,
     picture::{render, render_next, render_sequence, strict_frame},
     project::project,
-    references::{finest_bits, project_finest, references, render_finest, render_reference, render_scaled},
+    references::{
+        finest_bits, project_finest, references, render_finest, render_reference, render_scaled,
+    },
     resample::resampled,
     resolve::{ResolveInput, shade},
     sample_setup::sample_setups,

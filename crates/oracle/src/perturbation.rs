@@ -1,13 +1,14 @@
 //! Perturbation: shading at the edge of what f32 may do.
 //!
-//! Where a color has a step, a value that f64 puts on one side may lie on the other in f32; where a texture or a shadow map is
-//! looked up, f32 may meet the neighboring texel. The oracle shades a picture again with every such quantity moved by its error
-//! bound; answers between those pictures are right (`docs/exactness.md` §9). The bounds themselves stand where the quantity is
-//! computed.
+//! Where a color has a step, a value that f64 puts on one side may lie on the other in f32; where a
+//! texture or a shadow map is looked up, f32 may meet the neighboring texel. The oracle shades a
+//! picture again with every such quantity moved by its error bound; answers between those pictures
+//! are right (`docs/exactness.md` §9). The bounds themselves stand where the quantity is computed.
 
 use glam::{DVec3, DVec4};
 
-/// By how much a picture differs from the straight one, in error bounds. Zero draws the picture itself.
+/// By how much a picture differs from the straight one, in error bounds. Zero draws the picture
+/// itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Perturbation {
     /// Added to every value that decides a step of color; its sign also moves shadow map lookups.
@@ -17,8 +18,8 @@ pub struct Perturbation {
     pub interpolated: InterpolatedPerturbation,
 }
 
-/// Offset of the place of a sample: in x, y and z of world space, and along the ray of its pixel, each in roundings of the distances
-/// from which the place is computed.
+/// Offset of the place of a sample: in x, y and z of world space, and along the ray of its pixel,
+/// each in roundings of the distances from which the place is computed.
 pub type PlacePerturbation = [f64; 4];
 
 /// Offsets of what is interpolated from corners.

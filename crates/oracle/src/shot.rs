@@ -17,8 +17,18 @@ pub struct Shot<'a> {
 }
 
 impl<'a> Shot<'a> {
-    pub const fn new(scene: &'a Scene, draws: &'a [Draw], view: &'a View, stack: &'a Stack) -> Self {
-        Self { scene, draws, view, stack }
+    pub const fn new(
+        scene: &'a Scene,
+        draws: &'a [Draw],
+        view: &'a View,
+        stack: &'a Stack,
+    ) -> Self {
+        Self {
+            scene,
+            draws,
+            view,
+            stack,
+        }
     }
 
     /// The draw with triangle `id`, a global id; none if there is no such triangle.
@@ -28,7 +38,8 @@ impl<'a> Shot<'a> {
 
     /// Corner records of triangle `id` of `draw`, in the order of the file.
     pub fn corner_records(&self, draw: &Draw, geometry: &Geometry, id: u32) -> [SnappedVertex; 3] {
-        self.corner_indices(draw, geometry, id).map(|index| geometry.vertices[index])
+        self.corner_indices(draw, geometry, id)
+            .map(|index| geometry.vertices[index])
     }
 
     /// Indices of those records in the geometry.
@@ -36,20 +47,23 @@ impl<'a> Shot<'a> {
         if geometry.has_unshared_vertices {
             return [0, 1, 2].map(|k| 3 * id as usize + k);
         }
-        let corners = self.scene.primitives[draw.primitive].corners(self.scene, id - draw.first_triangle);
+        let corners =
+            self.scene.primitives[draw.primitive].corners(self.scene, id - draw.first_triangle);
         corners.map(|corner| (draw.first_vertex + corner) as usize)
     }
 }
 
 /// As [`Shot::draw_of`].
 pub(super) fn draw_of<'a>(scene: &Scene, draws: &'a [Draw], id: u32) -> Option<&'a Draw> {
-    // Draws without triangles share their first id with the next draw, which is the last of the prefix.
+    // Draws without triangles share their first id with the next draw, which is the last of the
+    // prefix.
     let draw = &draws[..draws.partition_point(|draw| draw.first_triangle <= id)].last()?;
     (id - draw.first_triangle < scene.primitives[draw.primitive].triangle_count()).then_some(draw)
 }
 
-/// The view as an adapter drew it: the grid, the origin of positions and the render scale are promises of its accuracy options, so
-/// the oracle adopts them.
+/// The view as an adapter drew it: the grid, the origin of positions and the render scale are
+/// promises of its accuracy options, so the oracle adopts them.
 pub fn drawn_view(view: &View, geometry: &Geometry) -> View {
-    view.scaled(geometry.scale).with_grid(geometry.subpixel_bits, geometry.is_relative)
+    view.scaled(geometry.scale)
+        .with_grid(geometry.subpixel_bits, geometry.is_relative)
 }

@@ -1,5 +1,5 @@
-//! Writes the corpus anew: `cargo run --release -p rasterlab-fuzz --bin rasterlab-fuzz-seeds`. Files that libFuzzer or a person has added
-//! under other names stay.
+//! Writes the corpus anew: `cargo run --release -p rasterlab-fuzz --bin rasterlab-fuzz-seeds`.
+//! Files that libFuzzer or a person has added under other names stay.
 
 mod meshes;
 mod models;

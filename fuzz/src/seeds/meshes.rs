@@ -9,11 +9,27 @@ use crate::Seed;
 pub fn seeds() -> Vec<Seed> {
     let draco = entries(include_str!("../../../tests/house/loader/draco.json"));
     let meshopt = entries(include_str!("../../../tests/house/loader/meshopt.json"));
-    let of_draco = draco.iter().map(|entry| seed(entry, "draco", [0, indices(entry) as u8, 0], number(entry, "points")));
+    let of_draco = draco.iter().map(|entry| {
+        seed(
+            entry,
+            "draco",
+            [0, indices(entry) as u8, 0],
+            number(entry, "points"),
+        )
+    });
     let of_meshopt = meshopt.iter().map(|entry| {
         let kind = 1 + position(entry, "mode", &["ATTRIBUTES", "TRIANGLES", "INDICES"]);
-        let filter = position(entry, "filter", &["NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"]);
-        seed(entry, "meshopt", [kind, number(entry, "stride") as u8, filter], number(entry, "count"))
+        let filter = position(
+            entry,
+            "filter",
+            &["NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"],
+        );
+        seed(
+            entry,
+            "meshopt",
+            [kind, number(entry, "stride") as u8, filter],
+            number(entry, "count"),
+        )
     });
     of_draco.chain(of_meshopt).collect()
 }
@@ -27,7 +43,9 @@ fn number(entry: &Value, name: &str) -> usize {
 }
 
 fn position(entry: &Value, name: &str, of: &[&str]) -> u8 {
-    of.iter().position(|known| entry[name] == **known).unwrap_or_default() as u8
+    of.iter()
+        .position(|known| entry[name] == **known)
+        .unwrap_or_default() as u8
 }
 
 fn indices(entry: &Value) -> usize {
@@ -36,7 +54,15 @@ fn indices(entry: &Value) -> usize {
 
 fn seed(entry: &Value, codec: &str, [kind, stride, filter]: [u8; 3], count: usize) -> Seed {
     let [low, high] = (count as u16).to_le_bytes();
-    let stream = BASE64_STANDARD.decode(entry["encoded"].as_str().expect("a stream")).expect("base64");
-    let name = format!("{codec}-{}", entry["name"].as_str().expect("a name").replace(' ', "-"));
-    (name, [&[kind, stride, filter, low, high], &stream[..]].concat())
+    let stream = BASE64_STANDARD
+        .decode(entry["encoded"].as_str().expect("a stream"))
+        .expect("base64");
+    let name = format!(
+        "{codec}-{}",
+        entry["name"].as_str().expect("a name").replace(' ', "-")
+    );
+    (
+        name,
+        [&[kind, stride, filter, low, high], &stream[..]].concat(),
+    )
 }

@@ -11,7 +11,14 @@ use rasterlab::{
 use crate::{Seed, texts};
 
 fn gradient(width: u32, height: u32) -> RgbaImage {
-    RgbaImage::from_fn(width, height, |x, y| image::Rgba([(x * 37) as u8, (y * 51) as u8, (x ^ y) as u8, 255 - (x * y) as u8]))
+    RgbaImage::from_fn(width, height, |x, y| {
+        image::Rgba([
+            (x * 37) as u8,
+            (y * 51) as u8,
+            (x ^ y) as u8,
+            255 - (x * y) as u8,
+        ])
+    })
 }
 
 pub fn images() -> Vec<Seed> {
@@ -28,13 +35,21 @@ pub fn images() -> Vec<Seed> {
         picture.write_to(&mut bytes, format).expect("it is encoded");
         bytes.into_inner()
     };
-    let mut seeds: Vec<Seed> = kinds.iter().map(|(name, picture)| (format!("{name}.png"), encoded(picture, ImageFormat::Png))).collect();
-    seeds.extend([("palette-1.png".into(), palette(png::BitDepth::One)), ("palette-4.png".into(), palette(png::BitDepth::Four))]);
+    let mut seeds: Vec<Seed> = kinds
+        .iter()
+        .map(|(name, picture)| (format!("{name}.png"), encoded(picture, ImageFormat::Png)))
+        .collect();
+    seeds.extend([
+        ("palette-1.png".into(), palette(png::BitDepth::One)),
+        ("palette-4.png".into(), palette(png::BitDepth::Four)),
+    ]);
     seeds.push(("rgba.webp".into(), encoded(&kinds[0].1, ImageFormat::WebP)));
     seeds.push(("rgb.webp".into(), encoded(&kinds[1].1, ImageFormat::WebP)));
     for (name, picture) in [("rgb", &kinds[1].1), ("gray", &kinds[2].1)] {
         let mut bytes = Vec::new();
-        JpegEncoder::new_with_quality(&mut bytes, 60).encode_image(picture).expect("it is encoded");
+        JpegEncoder::new_with_quality(&mut bytes, 60)
+            .encode_image(picture)
+            .expect("it is encoded");
         seeds.push((format!("{name}.jpg"), bytes));
     }
     seeds.push(("huge.png".into(), of_size(300_000, 300_000)));
@@ -51,7 +66,10 @@ fn palette(depth: png::BitDepth) -> Vec<u8> {
     encoder.set_palette(vec![9, 200, 30, 250, 10, 90]);
     encoder.set_trns(vec![128]);
     let row = 16 * depth as usize / 8;
-    encoder.write_header().and_then(|mut writer| writer.write_image_data(&vec![0x10; 4 * row])).expect("it is encoded");
+    encoder
+        .write_header()
+        .and_then(|mut writer| writer.write_image_data(&vec![0x10; 4 * row]))
+        .expect("it is encoded");
     bytes
 }
 
@@ -69,16 +87,29 @@ fn with_checksums(png: &[u8]) -> Vec<u8> {
 /// Pictures of 8 x 6 pixels.
 pub fn saved() -> Vec<Seed> {
     let color: Vec<[u8; 4]> = gradient(8, 6).pixels().map(|pixel| pixel.0).collect();
-    let frame = Frame { width: 8, height: 6, color: color.clone(), ..Frame::default() };
-    let made_by = Provenance { adapter: "cpu".into(), driver: "oracle".into() };
+    let frame = Frame {
+        width: 8,
+        height: 6,
+        color: color.clone(),
+        ..Frame::default()
+    };
+    let made_by = Provenance {
+        adapter: "cpu".into(),
+        driver: "oracle".into(),
+    };
     let mut seeds: Vec<Seed> = Vec::new();
-    for (name, text) in texts::PRESETS.iter().filter(|(name, _)| !name.starts_with("not-")) {
-        let preset_file = preset_file::parse(text, "seed").unwrap_or_else(|error| panic!("{name}: {error}"));
+    for (name, text) in texts::PRESETS
+        .iter()
+        .filter(|(name, _)| !name.starts_with("not-"))
+    {
+        let preset_file =
+            preset_file::parse(text, "seed").unwrap_or_else(|error| panic!("{name}: {error}"));
         let png = preset_file::png_with_preset(&frame, &preset_file, &made_by);
         seeds.extend(png.ok().map(|png| (format!("{name}.png"), png)));
     }
     let plain = preset_file::parse("schema = 2\n", "seed").expect("a preset");
-    let of_film = preset_file::png_of_frame(&frame, &plain, &made_by, "cafe").expect("it is encoded");
+    let of_film =
+        preset_file::png_of_frame(&frame, &plain, &made_by, "cafe").expect("it is encoded");
     let bare = preset_file::png_bytes(&color, [8, 6]).expect("it is encoded");
     let mut wrong_checksum = of_film.clone();
     let last = wrong_checksum.len() - 1;
@@ -88,31 +119,60 @@ pub fn saved() -> Vec<Seed> {
         ("bare.png".into(), bare.clone()),
         ("cut.png".into(), of_film[..of_film.len() - 30].to_vec()),
         ("wrong-checksum.png".into(), wrong_checksum),
-        ("bytes-behind-the-end.png".into(), [&of_film[..], b"more"].concat()),
+        (
+            "bytes-behind-the-end.png".into(),
+            [&of_film[..], b"more"].concat(),
+        ),
         ("huge.png".into(), of_size(300_000, 300_000)),
-        ("many-unknown-keys.png".into(), with_text(&bare, &unknown_keys())),
-        ("packed.png".into(), with_packed_text(&bare, &"name = \"a\"\n# ".repeat(2000))),
-        ("path-elsewhere.png".into(), with_text(&bare, "schema = 2\n[scene]\npath = \"../../../../etc/passwd\"\n")),
+        (
+            "many-unknown-keys.png".into(),
+            with_text(&bare, &unknown_keys()),
+        ),
+        (
+            "packed.png".into(),
+            with_packed_text(&bare, &"name = \"a\"\n# ".repeat(2000)),
+        ),
+        (
+            "path-elsewhere.png".into(),
+            with_text(
+                &bare,
+                "schema = 2\n[scene]\npath = \"../../../../etc/passwd\"\n",
+            ),
+        ),
     ]);
     seeds
 }
 
 /// Each key is unknown and long: warnings were once made in quadratic time.
 fn unknown_keys() -> String {
-    let keys: String = (0..150).map(|number| format!("{}{number} = 1\n", "key".repeat(12))).collect();
+    let keys: String = (0..150)
+        .map(|number| format!("{}{number} = 1\n", "key".repeat(12)))
+        .collect();
     format!("schema = 2\n{keys}")
 }
 
 fn with_text(png: &[u8], text: &str) -> Vec<u8> {
-    with_chunk(png, &[b"rasterlab preset\0\0\0\0\0", text.as_bytes()].concat())
+    with_chunk(
+        png,
+        &[b"rasterlab preset\0\0\0\0\0", text.as_bytes()].concat(),
+    )
 }
 
 /// As [`with_text`], deflated.
 fn with_packed_text(png: &[u8], text: &str) -> Vec<u8> {
     use std::io::Write as _;
     let mut packed = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
-    packed.write_all(text.as_bytes()).expect("memory takes all bytes");
-    with_chunk(png, &[b"rasterlab preset\0\x01\0\0\0", &packed.finish().expect("memory takes all bytes")[..]].concat())
+    packed
+        .write_all(text.as_bytes())
+        .expect("memory takes all bytes");
+    with_chunk(
+        png,
+        &[
+            b"rasterlab preset\0\x01\0\0\0",
+            &packed.finish().expect("memory takes all bytes")[..],
+        ]
+        .concat(),
+    )
 }
 
 /// The picture with an iTXt chunk behind its header.

@@ -1,4 +1,5 @@
-//! Command lines: one argument a line. They are parsed, and what `--set`, `--unset` and `--vary` say is done.
+//! Command lines: one argument a line. They are parsed, and what `--set`, `--unset` and `--vary`
+//! say is done.
 
 use clap::Parser as _;
 use rasterlab::{
@@ -72,8 +73,11 @@ fn check(bytes: &[u8]) -> Outcome {
     let text = String::from_utf8_lossy(bytes);
     let words = std::iter::once("rasterlab").chain(text.lines().filter(|line| !line.is_empty()));
     // Usage takes several lines and repeats what was typed.
-    let cli = Cli::try_parse_from(words).map_err(|error| legible_line(error.to_string().lines().next().unwrap_or_default()))?;
-    let mut preset_file = preset_file::parse("schema = 2\n[effects.facet]\n[effects.lambert]\n", "fuzz").expect("a preset");
+    let cli = Cli::try_parse_from(words)
+        .map_err(|error| legible_line(error.to_string().lines().next().unwrap_or_default()))?;
+    let mut preset_file =
+        preset_file::parse("schema = 2\n[effects.facet]\n[effects.lambert]\n", "fuzz")
+            .expect("a preset");
     for path in &cli.common.unset {
         told(preset_file::unset(&mut preset_file, path));
     }
@@ -81,7 +85,11 @@ fn check(bytes: &[u8]) -> Outcome {
         let (path, value) = set.split_once('=').unwrap_or((set, ""));
         let before = preset_file.preset.clone();
         if !told(preset_file::set(&mut preset_file, path.trim(), value)) {
-            assert_eq!(format!("{:?}", preset_file.preset), format!("{before:?}"), "a refused --set changed something");
+            assert_eq!(
+                format!("{:?}", preset_file.preset),
+                format!("{before:?}"),
+                "a refused --set changed something"
+            );
         }
     }
     if told(preset_file.check_values()) {
@@ -94,7 +102,8 @@ fn check(bytes: &[u8]) -> Outcome {
 }
 
 fn vary(preset_file: &PresetFile, texts: &[String]) {
-    let variations: Result<Vec<Variation>, String> = texts.iter().map(|text| Variation::parse(text)).collect();
+    let variations: Result<Vec<Variation>, String> =
+        texts.iter().map(|text| Variation::parse(text)).collect();
     match variations.and_then(|variations| Sheet::new(preset_file, &variations)) {
         Ok(sheet) => sheet.cells.iter().for_each(|cell| drop(cell.caption())),
         // It repeats what was typed.
@@ -104,5 +113,7 @@ fn vary(preset_file: &PresetFile, texts: &[String]) {
 
 /// Was it done? A refusal is told in one line.
 fn told<E: std::fmt::Display>(result: Result<(), E>) -> bool {
-    result.map_err(|error| assert_told(&error.to_string())).is_ok()
+    result
+        .map_err(|error| assert_told(&error.to_string()))
+        .is_ok()
 }

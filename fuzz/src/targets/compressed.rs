@@ -1,7 +1,7 @@
 //! Compressed meshes: streams of Draco and of meshopt.
 //!
-//! Input begins with five bytes that choose the kind, the stride, the filter and the count, or of Draco the number of indices and of points; the
-//! stream follows.
+//! Input begins with five bytes that choose the kind, the stride, the filter and the count, or of
+//! Draco the number of indices and of points; the stream follows.
 
 use rasterlab::scene::gltf::LoadError;
 use serde_json::{Value, json};
@@ -18,22 +18,38 @@ pub const TARGET: Target = Target {
     check,
 };
 
-/// Bytes in front of the stream: kind (0 is Draco), stride, filter, and the count as little-endian u16; of Draco stride and filter are the
-/// number of indices, another u16.
+/// Bytes in front of the stream: kind (0 is Draco), stride, filter, and the count as little-endian
+/// u16; of Draco stride and filter are the number of indices, another u16.
 pub const HEAD: usize = 5;
 
 /// Bytes in front of the stream in the model's buffer.
 const ZEROS: usize = 16;
 
 fn check(input: &[u8]) -> Outcome {
-    let Some((&[kind, stride, filter, low, high], stream)) = input.split_first_chunk::<HEAD>() else { return Err("it has no head".into()) };
+    let Some((&[kind, stride, filter, low, high], stream)) = input.split_first_chunk::<HEAD>()
+    else {
+        return Err("it has no head".into());
+    };
     let count = usize::from(u16::from_le_bytes([low, high]));
     let json = match kind % 4 {
-        0 => draco(stream.len(), count, usize::from(u16::from_le_bytes([stride, filter]))),
-        mode => meshopt(stream.len(), count, usize::from(stride), usize::from(mode - 1), usize::from(filter)),
+        0 => draco(
+            stream.len(),
+            count,
+            usize::from(u16::from_le_bytes([stride, filter])),
+        ),
+        mode => meshopt(
+            stream.len(),
+            count,
+            usize::from(stride),
+            usize::from(mode - 1),
+            usize::from(filter),
+        ),
     };
-    let scene =
-        model::read(&views::joined(json.to_string().as_bytes(), &[&[0; ZEROS], stream].concat())).map_err(|LoadError(error)| error)?;
+    let scene = model::read(&views::joined(
+        json.to_string().as_bytes(),
+        &[&[0; ZEROS], stream].concat(),
+    ))
+    .map_err(|LoadError(error)| error)?;
     model::use_scene(&scene);
     Ok(())
 }
@@ -55,7 +71,10 @@ fn draco(stream: usize, count: usize, indices: usize) -> Value {
         "attributes": { "POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2, "COLOR_0": 3 }, "indices": 4,
         "extensions": { "KHR_draco_mesh_compression": { "bufferView": 0, "attributes": { "POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2, "COLOR_0": 3 } } },
     }] }]);
-    (json["extensionsUsed"], json["extensionsRequired"]) = (json!(["KHR_draco_mesh_compression"]), json!(["KHR_draco_mesh_compression"]));
+    (json["extensionsUsed"], json["extensionsRequired"]) = (
+        json!(["KHR_draco_mesh_compression"]),
+        json!(["KHR_draco_mesh_compression"]),
+    );
     json
 }
 
@@ -75,16 +94,18 @@ fn meshopt(stream: usize, count: usize, stride: usize, mode: usize, filter: usiz
             "buffer": 0, "byteOffset": ZEROS, "byteLength": stream, "byteStride": stride, "count": count, "mode": mode, "filter": filter,
         } },
     }));
-    let sparse =
-        json!({ "count": 1, "indices": { "bufferView": 1, "componentType": 5121 }, "values": { "bufferView": 1, "byteOffset": 4 } });
-    let positions =
-        json!({ "sparse": sparse, "componentType": 5126, "type": "VEC3", "count": vertices, "min": [0, 0, 0], "max": [1, 1, 1] });
+    let sparse = json!({ "count": 1, "indices": { "bufferView": 1, "componentType": 5121 }, "values": { "bufferView": 1, "byteOffset": 4 } });
+    let positions = json!({ "sparse": sparse, "componentType": 5126, "type": "VEC3", "count": vertices, "min": [0, 0, 0], "max": [1, 1, 1] });
     let decoded = match (mode, stride) {
         ("ATTRIBUTES", 12..) => {
             json!({ "bufferView": 2, "componentType": 5126, "type": "VEC3", "count": count, "min": [0, 0, 0], "max": [1, 1, 1] })
         }
-        ("ATTRIBUTES", _) => json!({ "bufferView": 2, "componentType": 5121, "normalized": true, "type": "VEC4", "count": count }),
-        (_, 2) => json!({ "bufferView": 2, "componentType": 5123, "type": "SCALAR", "count": count }),
+        ("ATTRIBUTES", _) => {
+            json!({ "bufferView": 2, "componentType": 5121, "normalized": true, "type": "VEC4", "count": count })
+        }
+        (_, 2) => {
+            json!({ "bufferView": 2, "componentType": 5123, "type": "SCALAR", "count": count })
+        }
         _ => json!({ "bufferView": 2, "componentType": 5125, "type": "SCALAR", "count": count }),
     };
     if mode == "ATTRIBUTES" {
@@ -97,6 +118,9 @@ fn meshopt(stream: usize, count: usize, stride: usize, mode: usize, filter: usiz
         _ => json!({ "attributes": { "POSITION": 0 }, "indices": 1 }),
     };
     json["meshes"] = json!([{ "primitives": [primitive] }]);
-    (json["extensionsUsed"], json["extensionsRequired"]) = (json!(["EXT_meshopt_compression"]), json!(["EXT_meshopt_compression"]));
+    (json["extensionsUsed"], json["extensionsRequired"]) = (
+        json!(["EXT_meshopt_compression"]),
+        json!(["EXT_meshopt_compression"]),
+    );
     json
 }

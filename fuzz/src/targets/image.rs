@@ -11,8 +11,8 @@ pub const TARGET: Target = Target {
     about: "PNG, JPEG and WebP images of models",
     views: &[views::PNG_CHUNKS],
     words: &[
-        "IHDR", "PLTE", "IDAT", "IEND", "tRNS", "gAMA", "iCCP", "acTL", "fcTL", "fdAT", "JFIF", "Exif", "RIFF", "WEBP", "VP8 ", "VP8L",
-        "VP8X", "ALPH", "ANIM",
+        "IHDR", "PLTE", "IDAT", "IEND", "tRNS", "gAMA", "iCCP", "acTL", "fcTL", "fdAT", "JFIF",
+        "Exif", "RIFF", "WEBP", "VP8 ", "VP8L", "VP8X", "ALPH", "ANIM",
     ],
     limit: Limit::new(20, 2048),
     check,
@@ -20,21 +20,42 @@ pub const TARGET: Target = Target {
 
 fn check(image: &[u8]) -> Outcome {
     let formats: [(&str, &[u8]); 2] = [("image/jpeg", b"\xff\xd8"), ("image/webp", b"RIFF")];
-    let format = formats.iter().find(|(_, begin)| image.starts_with(begin)).map_or("image/png", |(format, _)| format);
+    let format = formats
+        .iter()
+        .find(|(_, begin)| image.starts_with(begin))
+        .map_or("image/png", |(format, _)| format);
     let scene = model::read(&showing(image, format)).map_err(|LoadError(error)| error)?;
-    let is_whole = |level: &Level| level.texels.len() == level.size[0] as usize * level.size[1] as usize;
-    assert!(scene.images.iter().all(|image| image.levels.iter().all(is_whole)), "a level lacks texels");
+    let is_whole =
+        |level: &Level| level.texels.len() == level.size[0] as usize * level.size[1] as usize;
+    assert!(
+        scene
+            .images
+            .iter()
+            .all(|image| image.levels.iter().all(is_whole)),
+        "a level lacks texels"
+    );
     Ok(())
 }
 
 /// A model of one triangle with this image.
 fn showing(image: &[u8], format: &str) -> Vec<u8> {
-    let extension = if format == "image/webp" { json!(["EXT_texture_webp"]) } else { json!([]) };
-    let texture =
-        if format == "image/webp" { json!({ "extensions": { "EXT_texture_webp": { "source": 0 } } }) } else { json!({ "source": 0 }) };
+    let extension = if format == "image/webp" {
+        json!(["EXT_texture_webp"])
+    } else {
+        json!([])
+    };
+    let texture = if format == "image/webp" {
+        json!({ "extensions": { "EXT_texture_webp": { "source": 0 } } })
+    } else {
+        json!({ "source": 0 })
+    };
     let corners = [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     let coordinates = [0.0f32, 0.0, 1.0, 0.0, 0.0, 1.0];
-    let numbers: Vec<u8> = corners.iter().chain(&coordinates).flat_map(|value| value.to_le_bytes()).collect();
+    let numbers: Vec<u8> = corners
+        .iter()
+        .chain(&coordinates)
+        .flat_map(|value| value.to_le_bytes())
+        .collect();
     let json = json!({
         "asset": { "version": "2.0" }, "buffers": [{ "byteLength": numbers.len() + image.len() }], "extensionsUsed": extension,
         "bufferViews": [

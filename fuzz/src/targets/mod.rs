@@ -44,17 +44,35 @@ pub const TARGETS: [Target; 8] = [
 
 /// A refusal is one line, short enough to be read, and no panic that somebody caught.
 fn assert_told(error: &str) {
-    assert!(!error.is_empty() && !error.contains('\n'), "the refusal is not one line: {error:?}");
-    assert!(error.chars().count() < 1200, "the refusal has {} characters: {error:?}", error.chars().count());
+    assert!(
+        !error.is_empty() && !error.contains('\n'),
+        "the refusal is not one line: {error:?}"
+    );
+    assert!(
+        error.chars().count() < 1200,
+        "the refusal has {} characters: {error:?}",
+        error.chars().count()
+    );
     assert!(!error.contains("is a bug"), "a panic was caught: {error}");
-    assert!(!error.chars().any(is_hidden), "the refusal has characters that steer a terminal: {error:?}");
+    assert!(
+        !error.chars().any(is_hidden),
+        "the refusal has characters that steer a terminal: {error:?}"
+    );
 }
 
-/// As [`assert_told`]; the refusal of an effect that came along also shows its line, and a caret below that.
+/// As [`assert_told`]; the refusal of an effect that came along also shows its line, and a caret
+/// below that.
 pub fn assert_told_with_place(error: &str) {
-    let is_place = |line: &str| line.trim_start_matches(|c: char| c == ' ' || c.is_ascii_digit()).starts_with("| ");
+    let is_place = |line: &str| {
+        line.trim_start_matches(|c: char| c == ' ' || c.is_ascii_digit())
+            .starts_with("| ")
+    };
     match error.split('\n').collect::<Vec<_>>()[..] {
-        [sentence, line, caret] if sentence.contains("cannot be used: ") && is_place(line) && is_place(caret) => assert_told(sentence),
+        [sentence, line, caret]
+            if sentence.contains("cannot be used: ") && is_place(line) && is_place(caret) =>
+        {
+            assert_told(sentence)
+        }
         _ => assert_told(error),
     }
 }

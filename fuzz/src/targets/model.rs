@@ -106,7 +106,11 @@ pub fn read(bytes: &[u8]) -> Result<Scene, LoadError> {
 
 /// Everything that a model goes through until it is drawn.
 pub fn use_scene(scene: &Scene) {
-    scene.notes.iter().chain(&scene.faults).for_each(|note| assert_told(note));
+    scene
+        .notes
+        .iter()
+        .chain(&scene.faults)
+        .for_each(|note| assert_told(note));
     parts(scene);
     let mut preset = PresetFile::of_scene("fuzz", SceneSource::File("fuzz.glb".into())).preset;
     let clips = scene.rig.clips.iter().map(|clip| clip.name.clone()).take(2);
@@ -118,16 +122,26 @@ pub fn use_scene(scene: &Scene) {
             let Ok(all) = draws(scene, &view) else { return };
             let needs = Needs::of(scene, &all, &view).into();
             let caps = Caps::ALL;
-            let _ = Planner::default().plan(&needs, &preset.stack_on(scene), &caps, &caps.tuning(), &preset.accuracy);
+            let _ = Planner::default().plan(
+                &needs,
+                &preset.stack_on(scene),
+                &caps,
+                &caps.tuning(),
+                &preset.accuracy,
+            );
             let [vertices, triangles] = totals(scene, &all);
             if vertices + triangles < 3_000 && scene.instances.len() < 200 {
                 draw(&preset, scene);
             }
         }
     }
-    scene.primitives.iter().filter(|primitive| primitive.triangle_count() < 3_000).for_each(|primitive| {
-        Meshlets::of(scene, primitive);
-    });
+    scene
+        .primitives
+        .iter()
+        .filter(|primitive| primitive.triangle_count() < 3_000)
+        .for_each(|primitive| {
+            Meshlets::of(scene, primitive);
+        });
 }
 
 fn draw(preset: &Preset, scene: &Scene) {

@@ -21,7 +21,9 @@ fn check(bytes: &[u8]) -> Outcome {
     let path = path();
     fs::write(path, bytes).expect("the temporary folder can be written");
     match preset_file::png_pixels(path) {
-        Ok((pixels, [width, height])) => assert_eq!(pixels.len() as u64, u64::from(width) * u64::from(height)),
+        Ok((pixels, [width, height])) => {
+            assert_eq!(pixels.len() as u64, u64::from(width) * u64::from(height))
+        }
         Err(error) => assert_told(&error.to_string()),
     }
     if let Err(error) = preset_file::frame_status(path, [8, 6], "cafe") {
@@ -33,5 +35,7 @@ fn check(bytes: &[u8]) -> Outcome {
 /// A file of this process, which every input takes.
 fn path() -> &'static PathBuf {
     static PATH: OnceLock<PathBuf> = OnceLock::new();
-    PATH.get_or_init(|| std::env::temp_dir().join(format!("rasterlab-fuzz-{}.png", std::process::id())))
+    PATH.get_or_init(|| {
+        std::env::temp_dir().join(format!("rasterlab-fuzz-{}.png", std::process::id()))
+    })
 }

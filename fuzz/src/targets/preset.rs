@@ -80,7 +80,9 @@ pub const WORDS: &[&str] = &[
 ];
 
 fn check(bytes: &[u8]) -> Outcome {
-    let Ok(text) = std::str::from_utf8(bytes) else { return Err("it is no UTF-8".into()) };
+    let Ok(text) = std::str::from_utf8(bytes) else {
+        return Err("it is no UTF-8".into());
+    };
     let outcome = opens(preset_file::parse(text, "fuzz"));
     let catalog = Catalog::default();
     match EffectValues::parse(text, "fuzz", &catalog) {
@@ -103,22 +105,39 @@ pub fn opens(read: Result<PresetFile, PresetError>) -> Outcome {
 
 /// What was read is written, and read again as the same.
 pub fn comes_back(preset_file: &PresetFile) {
-    preset_file.remarks().iter().for_each(|remark| assert_told_with_place(remark));
+    preset_file
+        .remarks()
+        .iter()
+        .for_each(|remark| assert_told_with_place(remark));
     let preset = &preset_file.preset;
     for time_s in [-1e9, 0.0, 0.3, 1e300] {
         assert!(preset.stack_at(time_s).0.len() == preset.stack.0.len());
     }
     let text = preset_file::to_toml(preset_file);
-    let again = preset_file::parse(&text, &preset_file.id).unwrap_or_else(|error| panic!("the written preset is refused: {error}\n{text}"));
-    assert_eq!(format!("{:?}", again.preset), format!("{preset:?}"), "the written preset differs\n{text}");
-    assert_eq!(preset_file::to_toml(&again), text, "it is written differently the second time");
+    let again = preset_file::parse(&text, &preset_file.id)
+        .unwrap_or_else(|error| panic!("the written preset is refused: {error}\n{text}"));
+    assert_eq!(
+        format!("{:?}", again.preset),
+        format!("{preset:?}"),
+        "the written preset differs\n{text}"
+    );
+    assert_eq!(
+        preset_file::to_toml(&again),
+        text,
+        "it is written differently the second time"
+    );
     // The same state on a text of its own, without what the file had.
     let mut fresh = PresetFile::new("fuzz", preset.clone());
     fresh.effects = preset_file.effects.clone();
     if fresh.check_savable().is_ok() {
         let shared = preset_file::to_shared_toml(&fresh);
-        let again =
-            preset_file::parse(&shared, "fuzz").unwrap_or_else(|error| panic!("the preset written anew is refused: {error}\n{shared}"));
-        assert_eq!(format!("{:?}", again.preset), format!("{preset:?}"), "the preset written anew differs\n{shared}");
+        let again = preset_file::parse(&shared, "fuzz").unwrap_or_else(|error| {
+            panic!("the preset written anew is refused: {error}\n{shared}")
+        });
+        assert_eq!(
+            format!("{:?}", again.preset),
+            format!("{preset:?}"),
+            "the preset written anew differs\n{shared}"
+        );
     }
 }

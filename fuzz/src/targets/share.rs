@@ -20,8 +20,12 @@ fn check(bytes: &[u8]) -> Outcome {
     let read = preset_file::from_line(&line);
     if let Ok(preset_file) = &read {
         let line = preset_file::to_line(preset_file);
-        let again = preset_file::from_line(&line).unwrap_or_else(|error| panic!("the line made of it is refused: {error}"));
-        assert_eq!(format!("{:?}", again.preset), format!("{:?}", preset_file.preset));
+        let again = preset_file::from_line(&line)
+            .unwrap_or_else(|error| panic!("the line made of it is refused: {error}"));
+        assert_eq!(
+            format!("{:?}", again.preset),
+            format!("{:?}", preset_file.preset)
+        );
     }
     preset::opens(read)
 }

@@ -29,7 +29,10 @@ pub fn set_values(state: &mut State, values: &[(String, String)]) {
             return state.notify(Level::Error, error);
         }
     }
-    let said: Vec<String> = values.iter().map(|(path, value)| format!("{path} = {value}")).collect();
+    let said: Vec<String> = values
+        .iter()
+        .map(|(path, value)| format!("{path} = {value}"))
+        .collect();
     state.notify(Level::Info, said.join(", "));
 }
 

@@ -17,13 +17,26 @@ impl Session {
     ///
     /// # Errors
     /// In a sentence that names the parameter.
-    pub fn set_parameter(&mut self, (effect, field): Parameter, value: &Value) -> Result<(), String> {
-        if self.preset().animation.get(&effect.name, &field.name).is_some() {
+    pub fn set_parameter(
+        &mut self,
+        (effect, field): Parameter,
+        value: &Value,
+    ) -> Result<(), String> {
+        if self
+            .preset()
+            .animation
+            .get(&effect.name, &field.name)
+            .is_some()
+        {
             self.playback.playing = false; // Otherwise every frame would set a keyframe.
             return self.set_keyframe((effect, field), value.components());
         }
-        let Some(enabled) = self.preset_mut().stack.get_mut(&effect.name) else { return Ok(()) };
-        field.set_value(&mut enabled.words, value).map_err(|error| format!("{}.{}: {error}", effect.name, field.name))
+        let Some(enabled) = self.preset_mut().stack.get_mut(&effect.name) else {
+            return Ok(());
+        };
+        field
+            .set_value(&mut enabled.words, value)
+            .map_err(|error| format!("{}.{}: {error}", effect.name, field.name))
     }
 
     /// Changes the preset. A value that breaks its setting's rule is ignored.
@@ -35,7 +48,8 @@ impl Session {
         match edit {
             Edit::Setting(setting, value) => {
                 let before_s = preset.clock.time_s;
-                // While the user types, a value may break a rule; then the preset keeps the last valid one.
+                // While the user types, a value may break a rule; then the preset keeps the last
+                // valid one.
                 drop(setting.set(preset, &value));
                 if preset.clock.time_s != before_s {
                     self.playback.show_own();
@@ -44,7 +58,10 @@ impl Session {
             Edit::Parameter(parameter, value) => return self.set_parameter(parameter, &value),
             Edit::Enable(effect) => drop(preset.stack.enable(&effect)),
             Edit::Disable(effect) => self.disable(&effect.name),
-            Edit::Scope(effect, on) => preset.stack.limit(&effect, on).map_err(|conflict| conflict.to_string())?,
+            Edit::Scope(effect, on) => preset
+                .stack
+                .limit(&effect, on)
+                .map_err(|conflict| conflict.to_string())?,
             Edit::Replace(other, effect) => {
                 self.disable(&other);
                 self.preset_mut().stack.enable(&effect);
@@ -64,7 +81,12 @@ impl Session {
                 }
                 let before = preset.stack.0.len();
                 preset.stack.enable(&effect);
-                let from = preset.stack.0.iter().position(|enabled| enabled.effect == effect).unwrap_or(index);
+                let from = preset
+                    .stack
+                    .0
+                    .iter()
+                    .position(|enabled| enabled.effect == effect)
+                    .unwrap_or(index);
                 // A new effect in front of the index moves it by one.
                 let moved = usize::from(preset.stack.0.len() > before && from < index);
                 preset.stack.move_effect(from, index + moved);
@@ -82,7 +104,9 @@ impl Session {
                     self.preset_mut().camera = Some(camera);
                 }
             }
-            Edit::LookAlong(direction) => self.move_camera(|camera| orbit::look_along(camera, direction)),
+            Edit::LookAlong(direction) => {
+                self.move_camera(|camera| orbit::look_along(camera, direction))
+            }
             Edit::ToggleOrthographic => self.move_camera(orbit::toggle_orthographic),
         }
         Ok(())
@@ -112,29 +136,43 @@ impl Session {
 
     /// `camera` moved along its own direction so that the whole scene shows.
     pub fn framed(&self, camera: &Camera) -> Camera {
-        let Some(scene) = self.scene() else { return *camera };
+        let Some(scene) = self.scene() else {
+            return *camera;
+        };
         let preset = self.shown_preset();
         // The bounds turn with the scene's spin.
         let turn = preset.view(scene, [1, 1]).scene_state.world_from_scene;
         let mut bounds = Bounds::EMPTY;
-        let corners = if scene.bounds().is_empty() { None } else { Some(scene.bounds().corners()) };
-        corners.into_iter().flatten().for_each(|corner| bounds.include(turn.transform_point3(corner)));
+        let corners = if scene.bounds().is_empty() {
+            None
+        } else {
+            Some(scene.bounds().corners())
+        };
+        corners
+            .into_iter()
+            .flatten()
+            .for_each(|corner| bounds.include(turn.transform_point3(corner)));
         orbit::framing(camera, &bounds, super::session::aspect(preset.output.size))
     }
 
-    /// Gives every parameter of the enabled effects that is neither locked nor animated a random value. Returns the seed of the random
-    /// numbers; none if no effect is enabled.
+    /// Gives every parameter of the enabled effects that is neither locked nor animated a random
+    /// value. Returns the seed of the random numbers; none if no effect is enabled.
     pub fn randomize(&mut self) -> Option<u32> {
-        let Preset { stack, animation, .. } = &mut self.preset_file.preset;
+        let Preset {
+            stack, animation, ..
+        } = &mut self.preset_file.preset;
         if stack.0.is_empty() {
             return None;
         }
-        Some(self.randomizer.randomize(stack, |effect, field| animation.get(&effect.name, &field.name).is_some()))
+        Some(self.randomizer.randomize(stack, |effect, field| {
+            animation.get(&effect.name, &field.name).is_some()
+        }))
     }
 
     /// Goes back to the values that a seed gave. Returns false if they are not known any more.
     pub fn recall_seed(&mut self, seed: u32) -> bool {
-        self.randomizer.recall(&mut self.preset_file.preset.stack, seed)
+        self.randomizer
+            .recall(&mut self.preset_file.preset.stack, seed)
     }
 
     /// Resets all parameters of an effect, or all settings of a table, by its name.
@@ -145,7 +183,9 @@ impl Session {
         match self.preset_file.effects.find(group) {
             Ok(Some(effect)) => {
                 let defaults = effect.defaults.clone();
-                let Preset { animation, stack, .. } = self.preset_mut();
+                let Preset {
+                    animation, stack, ..
+                } = self.preset_mut();
                 animation.remove_effect(group);
                 if let Some(enabled) = stack.get_mut(group) {
                     enabled.words = defaults;
@@ -162,7 +202,8 @@ impl Session {
     /// In a sentence for people.
     pub fn reset(&mut self, path: &str) -> Result<(), String> {
         let before_s = self.preset().clock.time_s;
-        let outcome = preset_file::unset(&mut self.preset_file, path).map_err(|error| error.to_string());
+        let outcome =
+            preset_file::unset(&mut self.preset_file, path).map_err(|error| error.to_string());
         if self.preset().clock.time_s != before_s {
             self.playback.show_own();
         }

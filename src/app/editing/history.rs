@@ -1,7 +1,8 @@
 //! Undo and redo: a list of whole states, one per gesture.
 //!
-//! A change opens a step; the step closes after [`REST_S`] without further change, or when the next gesture begins.
-//! A pause in the middle of a drag keeps the step open. The caller passes the time in.
+//! A change opens a step; the step closes after [`REST_S`] without further change, or when the next
+//! gesture begins. A pause in the middle of a drag keeps the step open. The caller passes the time
+//! in.
 
 use std::collections::VecDeque;
 
@@ -11,7 +12,8 @@ pub const CAPACITY: usize = 100;
 /// Seconds without a change after which a step is finished.
 pub const REST_S: f64 = 0.3;
 
-/// The states of a `T` through time. `T` must equal itself (no NaN), or every frame would look like a change.
+/// The states of a `T` through time. `T` must equal itself (no NaN), or every frame would look like
+/// a change.
 #[derive(Clone, Debug)]
 pub struct History<T> {
     past: VecDeque<T>,
@@ -30,26 +32,45 @@ struct Open<T> {
 
 impl<T: Clone + PartialEq> History<T> {
     pub fn new(state: T) -> Self {
-        Self { past: VecDeque::new(), present: state, future: Vec::new(), open: None }
+        Self {
+            past: VecDeque::new(),
+            present: state,
+            future: Vec::new(),
+            open: None,
+        }
     }
 
     /// Takes the state of this frame at `now_s`; `is_held` while a pointer button is down.
     pub fn observe(&mut self, state: &T, now_s: f64, is_held: bool) {
-        let changed = *state != *self.open.as_ref().map_or(&self.present, |open| &open.latest);
+        let changed = *state
+            != *self
+                .open
+                .as_ref()
+                .map_or(&self.present, |open| &open.latest);
         if changed || (is_held && self.open.is_some()) {
-            self.open = Some(Open { latest: state.clone(), changed_at_s: now_s });
-        } else if self.open.as_ref().is_some_and(|open| now_s - open.changed_at_s >= REST_S) {
+            self.open = Some(Open {
+                latest: state.clone(),
+                changed_at_s: now_s,
+            });
+        } else if self
+            .open
+            .as_ref()
+            .is_some_and(|open| now_s - open.changed_at_s >= REST_S)
+        {
             self.close();
         }
     }
 
     /// Closes the open step, if any: the next change begins another.
     pub fn close(&mut self) {
-        let Some(Open { latest, .. }) = self.open.take() else { return };
+        let Some(Open { latest, .. }) = self.open.take() else {
+            return;
+        };
         if latest == self.present {
             return; // The drag ended where it began.
         }
-        self.past.push_back(std::mem::replace(&mut self.present, latest));
+        self.past
+            .push_back(std::mem::replace(&mut self.present, latest));
         self.future.clear();
         if self.past.len() > CAPACITY {
             self.past.pop_front();
@@ -60,7 +81,8 @@ impl<T: Clone + PartialEq> History<T> {
     pub fn undo(&mut self) -> Option<T> {
         self.close();
         let before = self.past.pop_back()?;
-        self.future.push(std::mem::replace(&mut self.present, before));
+        self.future
+            .push(std::mem::replace(&mut self.present, before));
         Some(self.present.clone())
     }
 
@@ -68,18 +90,28 @@ impl<T: Clone + PartialEq> History<T> {
     pub fn redo(&mut self) -> Option<T> {
         self.close();
         let after = self.future.pop()?;
-        self.past.push_back(std::mem::replace(&mut self.present, after));
+        self.past
+            .push_back(std::mem::replace(&mut self.present, after));
         Some(self.present.clone())
     }
 
     /// Changes every state, so that `change` itself is no step.
     pub fn change_all(&mut self, change: impl Fn(&mut T)) {
         let open = self.open.iter_mut().map(|open| &mut open.latest);
-        self.past.iter_mut().chain([&mut self.present]).chain(&mut self.future).chain(open).for_each(change);
+        self.past
+            .iter_mut()
+            .chain([&mut self.present])
+            .chain(&mut self.future)
+            .chain(open)
+            .for_each(change);
     }
 
     pub fn can_undo(&self) -> bool {
-        !self.past.is_empty() || self.open.as_ref().is_some_and(|open| open.latest != self.present)
+        !self.past.is_empty()
+            || self
+                .open
+                .as_ref()
+                .is_some_and(|open| open.latest != self.present)
     }
 
     /// Number of steps that can be taken back, without the open one.
@@ -89,7 +121,9 @@ impl<T: Clone + PartialEq> History<T> {
 
     /// Seconds until the open step closes if nothing changes; it must be observed again then.
     pub fn wake_in_s(&self, now_s: f64) -> Option<f64> {
-        self.open.as_ref().map(|open| (open.changed_at_s + REST_S - now_s).max(0.0))
+        self.open
+            .as_ref()
+            .map(|open| (open.changed_at_s + REST_S - now_s).max(0.0))
     }
 }
 

@@ -1,4 +1,5 @@
-//! New effects: writes a file for the user to change, a commented template or the duplicate of another effect.
+//! New effects: writes a file for the user to change, a commented template or the duplicate of
+//! another effect.
 
 use std::path::{Path, PathBuf};
 
@@ -18,7 +19,9 @@ pub fn create(state: &mut State, name: &str, origin: Origin) {
     state.jobs.write_effect(path, origin.clone(), move |path| {
         let text = match &origin {
             Origin::Template(hook) => template(&name, *hook),
-            Origin::Duplicate(effect) => duplicate(effect, &name).map_err(|reason| format!("{} {reason}", effect.name))?,
+            Origin::Duplicate(effect) => {
+                duplicate(effect, &name).map_err(|reason| format!("{} {reason}", effect.name))?
+            }
         };
         write(path, &text)
     });
@@ -28,13 +31,19 @@ fn write(path: &Path, text: &str) -> Result<(), String> {
     if path.exists() {
         return Err(format!("{} exists; choose another name", path.display()));
     }
-    let made = path.parent().map_or(Ok(()), std::fs::create_dir_all).map_err(|error| error.to_string());
-    let written =
-        made.and_then(|()| preset_file::write_atomically(path, text.as_bytes(), Existing::Keep).map_err(|error| error.to_string()));
+    let made = path
+        .parent()
+        .map_or(Ok(()), std::fs::create_dir_all)
+        .map_err(|error| error.to_string());
+    let written = made.and_then(|()| {
+        preset_file::write_atomically(path, text.as_bytes(), Existing::Keep)
+            .map_err(|error| error.to_string())
+    });
     written.map_err(|error| format!("{}: it cannot be written: {error}", path.display()))
 }
 
-/// Enables an effect that was written, in place of the one that it duplicates, and opens it in the user's editor.
+/// Enables an effect that was written, in place of the one that it duplicates, and opens it in the
+/// user's editor.
 pub fn written(state: &mut State, path: PathBuf, origin: Origin, outcome: Result<(), String>) {
     state.files.live.writing = state.files.live.writing.saturating_sub(1);
     if let Err(error) = outcome {
@@ -44,18 +53,34 @@ pub fn written(state: &mut State, path: PathBuf, origin: Origin, outcome: Result
     if let (Some(waiting), Origin::Duplicate(effect)) = (&mut state.files.live.enable, origin) {
         waiting.replaces = Some(effect);
     }
-    state.notify(Level::Info, format!("Wrote {}. Edit it, and the picture changes when you save it.", path.display()));
+    state.notify(
+        Level::Info,
+        format!(
+            "Wrote {}. Edit it, and the picture changes when you save it.",
+            path.display()
+        ),
+    );
     if state.files.live.opens_editor {
         state.jobs.open_editor(path);
     }
 }
 
-/// Where a new effect is written: beside the preset, in the folder of effects that is in use, or in the user's own.
+/// Where a new effect is written: beside the preset, in the folder of effects that is in use, or in
+/// the user's own.
 fn folder(state: &State) -> PathBuf {
     if let Some(beside) = state.files.live.watcher.targets().preset_effects() {
         return beside;
     }
     let user = user_effects_folder();
-    let in_use = state.files.folders.effect_folders.iter().rev().find(|folder| Some(*folder) != user.as_ref() && folder.is_dir());
-    in_use.cloned().or(user).unwrap_or_else(|| Path::new("effects").to_owned())
+    let in_use = state
+        .files
+        .folders
+        .effect_folders
+        .iter()
+        .rev()
+        .find(|folder| Some(*folder) != user.as_ref() && folder.is_dir());
+    in_use
+        .cloned()
+        .or(user)
+        .unwrap_or_else(|| Path::new("effects").to_owned())
 }

@@ -1,4 +1,5 @@
-//! Playback: the time that is shown while the preset plays. It is not part of the preset, so undo does not change it.
+//! Playback: the time that is shown while the preset plays. It is not part of the preset, so undo
+//! does not change it.
 
 use crate::preset::{Clock, animation::MAX_TIME_S};
 
@@ -37,7 +38,8 @@ impl Playback {
     /// Advances the time by a frame that took `passed_s` seconds, unless the pointer holds it.
     pub fn advance(&mut self, clock: &Clock, passed_s: f64) {
         if self.playing && !self.is_held {
-            let (time_s, goes_on) = clock.after(self.shown_time_s(clock), passed_s.min(MAX_FRAME_S));
+            let (time_s, goes_on) =
+                clock.after(self.shown_time_s(clock), passed_s.min(MAX_FRAME_S));
             self.show(time_s);
             self.playing = goes_on;
         }
@@ -57,8 +59,16 @@ impl Playback {
         let [from_s, _] = clock.range_s;
         let position = (self.shown_time_s(clock) - from_s) / STEP_S;
         // From between two frames, a step leads to the next one on that side.
-        let next = if frames < 0.0 { (position - 1e-6).floor() + frames + 1.0 } else { (position + 1e-6).ceil() + frames - 1.0 };
-        let next = if (position - position.round()).abs() < 1e-6 { position.round() + frames } else { next };
+        let next = if frames < 0.0 {
+            (position - 1e-6).floor() + frames + 1.0
+        } else {
+            (position + 1e-6).ceil() + frames - 1.0
+        };
+        let next = if (position - position.round()).abs() < 1e-6 {
+            position.round() + frames
+        } else {
+            next
+        };
         self.show(from_s + next * STEP_S);
     }
 }

@@ -29,7 +29,8 @@ pub enum Edit {
     Rebind(Arc<Effect>, Arc<Effect>),
     /// Swaps two positions of the stack.
     Swap(usize, usize),
-    /// Moves the effect at the first index of the stack in front of the one at the second; the length of the stack is its end.
+    /// Moves the effect at the first index of the stack in front of the one at the second; the
+    /// length of the stack is its end.
     Move(usize, usize),
     /// Enables an effect in front of the one at this index of the stack.
     EnableAt(Arc<Effect>, usize),

@@ -1,4 +1,5 @@
-//! Random values for the parameters of the enabled effects: how far they vary, which are locked, and the newest ones to go back to.
+//! Random values for the parameters of the enabled effects: how far they vary, which are locked,
+//! and the newest ones to go back to.
 
 use std::collections::{BTreeSet, VecDeque};
 
@@ -21,7 +22,8 @@ pub struct Seeded {
 /// Random values: their settings, which are no part of a preset, and the newest of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Randomizer {
-    /// How far a value may go from where it is, in percent of its soft range; at 100, anywhere in that range.
+    /// How far a value may go from where it is, in percent of its soft range; at 100, anywhere in
+    /// that range.
     pub vary_percent: f64,
     /// Effect and parameter.
     locked: BTreeSet<(String, String)>,
@@ -32,7 +34,12 @@ pub struct Randomizer {
 
 impl Default for Randomizer {
     fn default() -> Self {
-        Self { vary_percent: 100.0, locked: BTreeSet::new(), seeds: VecDeque::new(), seed: 0 }
+        Self {
+            vary_percent: 100.0,
+            locked: BTreeSet::new(),
+            seeds: VecDeque::new(),
+            seed: 0,
+        }
     }
 }
 
@@ -48,36 +55,66 @@ impl Randomizer {
     }
 
     pub fn is_locked(&self, effect: &Effect, field: &Field) -> bool {
-        self.locked.iter().any(|(of, name)| *of == effect.name && *name == field.name)
+        self.locked
+            .iter()
+            .any(|(of, name)| *of == effect.name && *name == field.name)
     }
 
     /// Keeps a parameter as it is, or lets it vary again.
     pub fn lock(&mut self, effect: &Effect, field: &Field, is_locked: bool) {
         let name = (effect.name.clone(), field.name.clone());
-        let _ = if is_locked { self.locked.insert(name) } else { self.locked.remove(&name) };
+        let _ = if is_locked {
+            self.locked.insert(name)
+        } else {
+            self.locked.remove(&name)
+        };
     }
 
-    /// Gives every parameter of `stack` that is neither locked nor `animated` a random value, and remembers them. Returns the seed.
-    pub fn randomize(&mut self, stack: &mut Stack, animated: impl Fn(&Effect, &Field) -> bool) -> u32 {
+    /// Gives every parameter of `stack` that is neither locked nor `animated` a random value, and
+    /// remembers them. Returns the seed.
+    pub fn randomize(
+        &mut self,
+        stack: &mut Stack,
+        animated: impl Fn(&Effect, &Field) -> bool,
+    ) -> u32 {
         self.seed = self.seed.wrapping_add(1);
         for EnabledEffect { effect, words, .. } in &mut stack.0 {
-            for field in effect.fields.iter().filter(|field| !self.is_locked(effect, field) && !animated(effect, field)) {
-                let values = random_values(effect, field, &field.get(words), self.seed, self.vary_percent / 100.0);
+            for field in effect
+                .fields
+                .iter()
+                .filter(|field| !self.is_locked(effect, field) && !animated(effect, field))
+            {
+                let values = random_values(
+                    effect,
+                    field,
+                    &field.get(words),
+                    self.seed,
+                    self.vary_percent / 100.0,
+                );
                 // The soft range lies within the hard one, so this is never refused.
                 let _ = field.set(words, &values);
             }
         }
-        self.seeds.push_front(Seeded { seed: self.seed, stack: stack.clone() });
+        self.seeds.push_front(Seeded {
+            seed: self.seed,
+            stack: stack.clone(),
+        });
         self.seeds.truncate(KEPT);
         self.seed
     }
 
-    /// Gives the effects of `stack` the values of a seed again; effects that are new since then keep theirs. Returns false if the seed is
-    /// not among the newest.
+    /// Gives the effects of `stack` the values of a seed again; effects that are new since then
+    /// keep theirs. Returns false if the seed is not among the newest.
     pub fn recall(&self, stack: &mut Stack, seed: u32) -> bool {
-        let Some(seeded) = self.seeds.iter().find(|seeded| seeded.seed == seed) else { return false };
+        let Some(seeded) = self.seeds.iter().find(|seeded| seeded.seed == seed) else {
+            return false;
+        };
         for enabled in &mut stack.0 {
-            let then = seeded.stack.0.iter().find(|then| then.effect == enabled.effect);
+            let then = seeded
+                .stack
+                .0
+                .iter()
+                .find(|then| then.effect == enabled.effect);
             if let Some(then) = then {
                 enabled.words.clone_from(&then.words);
             }
@@ -94,12 +131,29 @@ fn reach(now: f64, [low, high]: [f64; 2], fraction: f64) -> [f64; 2] {
     let far = fraction * (high - low);
     let reach = [(now - far).max(low), (now + far).min(high)];
     // From beyond the soft range a value goes no farther from it.
-    if reach[0] <= reach[1] { reach } else { [now, now] }
+    if reach[0] <= reach[1] {
+        reach
+    } else {
+        [now, now]
+    }
 }
 
-/// One random number per component, from the seed and the parameter's name, so that the order does not matter.
-fn random_values(effect: &Effect, field: &Field, now: &[f64], seed: u32, fraction: f64) -> Vec<f64> {
-    let salt = effect.name.bytes().chain(field.name.bytes()).fold(seed.wrapping_mul(0x9e37_79b9), |h, b| h.rotate_left(5) ^ u32::from(b));
+/// One random number per component, from the seed and the parameter's name, so that the order does
+/// not matter.
+fn random_values(
+    effect: &Effect,
+    field: &Field,
+    now: &[f64],
+    seed: u32,
+    fraction: f64,
+) -> Vec<f64> {
+    let salt = effect
+        .name
+        .bytes()
+        .chain(field.name.bytes())
+        .fold(seed.wrapping_mul(0x9e37_79b9), |h, b| {
+            h.rotate_left(5) ^ u32::from(b)
+        });
     let value = |(component, &now): (usize, &f64)| {
         let salt = salt.wrapping_add((component as u32).wrapping_mul(0x85eb_ca6b));
         let t = hash_unit(salt);
@@ -113,16 +167,28 @@ fn random_values(effect: &Effect, field: &Field, now: &[f64], seed: u32, fractio
                 }
             }
             // There is no way from one word to another: a part of the words changes.
-            ValueType::Bool | ValueType::Choice(_) if hash_unit(salt ^ 0x5bd1_e995) >= fraction => now,
-            ValueType::Bool | ValueType::Choice(_) => (from + t * (to - from + 1.0)).floor().min(to),
+            ValueType::Bool | ValueType::Choice(_) if hash_unit(salt ^ 0x5bd1_e995) >= fraction => {
+                now
+            }
+            ValueType::Bool | ValueType::Choice(_) => {
+                (from + t * (to - from + 1.0)).floor().min(to)
+            }
             ValueType::U32 | ValueType::I32 => {
                 let [from, to] = reach(now, [from, to], fraction);
-                let [from, to] = if from == to { [now, now] } else { [from.ceil(), to.floor()] };
-                (from + t * (to - from + 1.0)).floor().clamp(from, to.max(from))
+                let [from, to] = if from == to {
+                    [now, now]
+                } else {
+                    [from.ceil(), to.floor()]
+                };
+                (from + t * (to - from + 1.0))
+                    .floor()
+                    .clamp(from, to.max(from))
             }
             ValueType::F32 if field.log && from > 0.0 && now > 0.0 => {
                 let [from, to] = reach(now.ln(), [from.ln(), to.ln()], fraction);
-                (from + t * (to - from)).exp().clamp(field.soft[0].min(now), field.soft[1].max(now))
+                (from + t * (to - from))
+                    .exp()
+                    .clamp(field.soft[0].min(now), field.soft[1].max(now))
             }
             ValueType::F32 if field.log && from > 0.0 => from * (to / from).powf(t),
             _ => {
@@ -140,7 +206,10 @@ mod tests {
     use crate::effects::EFFECTS;
 
     fn everything() -> Vec<Stack> {
-        EFFECTS.iter().map(|effect| Stack(vec![EnabledEffect::new(effect)])).collect()
+        EFFECTS
+            .iter()
+            .map(|effect| Stack(vec![EnabledEffect::new(effect)]))
+            .collect()
     }
 
     fn drawn(stack: &Stack, randomizer: &mut Randomizer) -> Stack {
@@ -159,14 +228,23 @@ mod tests {
             let second = drawn(&first, &mut a);
             // One flag alone may well be the same twice.
             let mut further = Randomizer::default();
-            let is_varied = (0..24).map(|_| drawn(&stack, &mut further)).any(|other| other != first);
+            let is_varied = (0..24)
+                .map(|_| drawn(&stack, &mut further))
+                .any(|other| other != first);
             assert!(is_varied || stack.0[0].effect.fields.is_empty(), "{name}");
             // At 100 % it does not matter where a value was.
             assert_eq!(second, drawn(&stack, &mut b), "{name}");
             for enabled in &second.0 {
                 for field in &enabled.effect.fields {
                     let [from, to] = field.soft;
-                    assert!(field.get(&enabled.words).iter().all(|v| (from..=to).contains(v)), "{name}.{}", field.name);
+                    assert!(
+                        field
+                            .get(&enabled.words)
+                            .iter()
+                            .all(|v| (from..=to).contains(v)),
+                        "{name}.{}",
+                        field.name
+                    );
                 }
             }
         }
@@ -175,7 +253,10 @@ mod tests {
     #[test]
     fn values_vary_around_where_they_are() {
         for stack in everything() {
-            let mut randomizer = Randomizer { vary_percent: 5.0, ..Randomizer::default() };
+            let mut randomizer = Randomizer {
+                vary_percent: 5.0,
+                ..Randomizer::default()
+            };
             let mut from_words_changed = 0;
             for _ in 0..40 {
                 let after = drawn(&stack, &mut randomizer);
@@ -195,12 +276,26 @@ mod tests {
                         } else {
                             (is - was).abs() / (high - low)
                         };
-                        assert!(distance <= 0.0501, "{}.{}: {was} to {is}", before.effect.name, field.name);
+                        assert!(
+                            distance <= 0.0501,
+                            "{}.{}: {was} to {is}",
+                            before.effect.name,
+                            field.name
+                        );
                     }
                 }
             }
-            let words = stack.0[0].effect.fields.iter().filter(|f| matches!(f.value_type, ValueType::Bool | ValueType::Choice(_))).count();
-            assert!(from_words_changed <= 40 * words / 4, "{}: {from_words_changed} words changed", stack.0[0].effect.name);
+            let words = stack.0[0]
+                .effect
+                .fields
+                .iter()
+                .filter(|f| matches!(f.value_type, ValueType::Bool | ValueType::Choice(_)))
+                .count();
+            assert!(
+                from_words_changed <= 40 * words / 4,
+                "{}: {from_words_changed} words changed",
+                stack.0[0].effect.name
+            );
         }
     }
 
@@ -209,10 +304,13 @@ mod tests {
         let facet = Effect::find("facet").expect("an effect");
         let stack = Stack(vec![EnabledEffect::new(facet)]);
         let mut randomizer = Randomizer::default();
-        let [amount, width] = ["amount", "width"].map(|name| facet.field(name).expect("a parameter"));
+        let [amount, width] =
+            ["amount", "width"].map(|name| facet.field(name).expect("a parameter"));
         randomizer.lock(facet, amount, true);
         let mut after = stack.clone();
-        randomizer.randomize(&mut after, |effect, field| (effect.name.as_str(), field.name.as_str()) == ("facet", "width"));
+        randomizer.randomize(&mut after, |effect, field| {
+            (effect.name.as_str(), field.name.as_str()) == ("facet", "width")
+        });
         let same = |field: &Field| field.get(&stack.0[0].words) == field.get(&after.0[0].words);
         assert!(same(amount) && same(width) && after != stack);
         randomizer.lock(facet, amount, false);
@@ -222,7 +320,8 @@ mod tests {
 
     #[test]
     fn the_last_twelve_seeds_can_be_recalled() {
-        let [facet, fog] = ["facet", "fog"].map(|name| EnabledEffect::new(Effect::find(name).expect("an effect")));
+        let [facet, fog] =
+            ["facet", "fog"].map(|name| EnabledEffect::new(Effect::find(name).expect("an effect")));
         let mut randomizer = Randomizer::default();
         let mut stack = Stack(vec![facet]);
         let history: Vec<Stack> = (0..15)
@@ -231,11 +330,21 @@ mod tests {
                 stack.clone()
             })
             .collect();
-        assert_eq!(randomizer.seeds().map(|seeded| seeded.seed).collect::<Vec<_>>(), (4..=15).rev().collect::<Vec<_>>());
+        assert_eq!(
+            randomizer
+                .seeds()
+                .map(|seeded| seeded.seed)
+                .collect::<Vec<_>>(),
+            (4..=15).rev().collect::<Vec<_>>()
+        );
         assert!(randomizer.recall(&mut stack, 6) && stack == history[5]);
         assert!(!randomizer.recall(&mut stack, 3) && stack == history[5]);
         stack.0.push(fog.clone());
         assert!(randomizer.recall(&mut stack, 9));
-        assert_eq!((&stack.0[0], &stack.0[1]), (&history[8].0[0], &fog), "an effect that is new keeps its values");
+        assert_eq!(
+            (&stack.0[0], &stack.0[1]),
+            (&history[8].0[0], &fog),
+            "an effect that is new keeps its values"
+        );
     }
 }

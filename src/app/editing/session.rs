@@ -1,5 +1,5 @@
-//! The session: the open preset, its scene, the time that is shown, and the effects that are muted. Every panel can read it;
-//! only commands change it.
+//! The session: the open preset, its scene, the time that is shown, and the effects that are muted.
+//! Every panel can read it; only commands change it.
 
 use std::{
     collections::{BTreeSet, HashMap},
@@ -7,7 +7,9 @@ use std::{
     sync::Arc,
 };
 
-use super::{command::TimeCommand, particle_trail::Trail, playback::Playback, randomize::Randomizer};
+use super::{
+    command::TimeCommand, particle_trail::Trail, playback::Playback, randomize::Randomizer,
+};
 use crate::{
     app::files::scene_loader::SceneLoader,
     effect_files::Catalog,
@@ -31,7 +33,10 @@ pub struct FileId {
 
 impl FileId {
     pub fn of(preset_file: &PresetFile) -> Self {
-        Self { id: preset_file.id.clone(), path: preset_file.path.clone() }
+        Self {
+            id: preset_file.id.clone(),
+            path: preset_file.path.clone(),
+        }
     }
 }
 
@@ -89,13 +94,19 @@ impl Session {
 
     /// The open preset as its file has it.
     pub fn as_filed(&self) -> &PresetFile {
-        self.files.get(&FileId::of(&self.preset_file)).unwrap_or(&self.preset_file)
+        self.files
+            .get(&FileId::of(&self.preset_file))
+            .unwrap_or(&self.preset_file)
     }
 
-    /// The preset whose look has landed on the user's own scene; none where the preset shows its own scene.
+    /// The preset whose look has landed on the user's own scene; none where the preset shows its
+    /// own scene.
     pub fn look_file(&self) -> Option<&PresetFile> {
         let look = self.preset_file.look.as_ref()?;
-        self.files.get(&FileId { id: look.id.clone(), path: look.path.clone() })
+        self.files.get(&FileId {
+            id: look.id.clone(),
+            path: look.path.clone(),
+        })
     }
 
     /// Makes `preset_file` the open preset, with no effect muted and at the preset's own time.
@@ -106,24 +117,33 @@ impl Session {
         self.preset_file = preset_file;
     }
 
-    /// Makes `preset_file`, the open preset as its file is now, the open preset. The time that is shown stays.
+    /// Makes `preset_file`, the open preset as its file is now, the open preset. The time that is
+    /// shown stays.
     pub fn reload(&mut self, preset_file: PresetFile) {
         self.remember(preset_file.clone());
-        self.muted.retain(|name| preset_file.preset.stack.get(name).is_some());
+        self.muted
+            .retain(|name| preset_file.preset.stack.get(name).is_some());
         self.preset_file = preset_file;
     }
 
     /// The effects of every preset that was opened.
     pub fn catalogs(&self) -> impl Iterator<Item = &Catalog> {
-        self.files.values().map(|preset_file| &preset_file.effects).chain([&self.preset_file.effects])
+        self.files
+            .values()
+            .map(|preset_file| &preset_file.effects)
+            .chain([&self.preset_file.effects])
     }
 
-    /// Uses new effects in place of old ones in every preset that was opened; see [`Preset::rebind`]. `effects` are those that the open
-    /// preset may use from now on.
+    /// Uses new effects in place of old ones in every preset that was opened; see
+    /// [`Preset::rebind`]. `effects` are those that the open preset may use from now on.
     pub fn rebind(&mut self, replaced: &[Replaced], effects: &Catalog) {
         let open = FileId::of(&self.preset_file);
         for (file, preset_file) in &mut self.files {
-            let effects = if *file == open { effects.clone() } else { preset_file.effects.replaced(replaced) };
+            let effects = if *file == open {
+                effects.clone()
+            } else {
+                preset_file.effects.replaced(replaced)
+            };
             preset_file.rebind(replaced, effects);
         }
         self.preset_file.rebind(replaced, effects.clone());
@@ -144,12 +164,21 @@ impl Session {
         self.files.get(id)
     }
 
-    /// The preset that was `before` has another file, which is now as `after`. The changes of the open preset stay.
+    /// The preset that was `before` has another file, which is now as `after`. The changes of the
+    /// open preset stay.
     pub fn refile(&mut self, before: &FileId, after: PresetFile) {
         self.files.remove(before);
-        let landed = self.files.values_mut().chain([&mut self.preset_file]).filter_map(|landed| landed.look.as_mut());
+        let landed = self
+            .files
+            .values_mut()
+            .chain([&mut self.preset_file])
+            .filter_map(|landed| landed.look.as_mut());
         for look in landed.filter(|look| look.id == before.id && look.path == before.path) {
-            *look = Look { id: after.id.clone(), path: after.path.clone(), title: after.title().to_owned() };
+            *look = Look {
+                id: after.id.clone(),
+                path: after.path.clone(),
+                title: after.title().to_owned(),
+            };
         }
         if FileId::of(&self.preset_file) == *before {
             let mut preset = std::mem::take(&mut self.preset_file.preset);
@@ -160,13 +189,19 @@ impl Session {
         self.remember(after);
     }
 
-    /// True if the preset differs from its file. A preset without a file does not until it is edited.
+    /// True if the preset differs from its file. A preset without a file does not until it is
+    /// edited.
     pub fn is_modified(&self) -> bool {
-        self.files.get(&FileId::of(&self.preset_file)).is_none_or(|as_opened| as_opened.preset != self.preset_file.preset)
+        self.files
+            .get(&FileId::of(&self.preset_file))
+            .is_none_or(|as_opened| as_opened.preset != self.preset_file.preset)
     }
 
     pub fn undo_state(&self) -> UndoState {
-        UndoState { file: FileId::of(&self.preset_file), preset: self.preset_file.preset.clone() }
+        UndoState {
+            file: FileId::of(&self.preset_file),
+            preset: self.preset_file.preset.clone(),
+        }
     }
 
     /// Goes back to `state`. Returns the name of the preset if it is another one than before.
@@ -176,7 +211,11 @@ impl Session {
         if is_other && let Some(preset_file) = self.files.get(&file) {
             self.preset_file = preset_file.clone();
         }
-        let name = if preset.name.is_empty() { file.id } else { preset.name.clone() };
+        let name = if preset.name.is_empty() {
+            file.id
+        } else {
+            preset.name.clone()
+        };
         self.preset_file.preset = preset;
         is_other.then_some(name)
     }
@@ -201,7 +240,10 @@ impl Session {
     /// The preset at the time that is shown, with its lengths in meters.
     pub fn metric_preset(&self) -> Preset {
         let shown = self.shown_preset();
-        self.scene().map_or_else(|| shown.clone(), |scene| shown.in_meters(scene).into_owned())
+        self.scene().map_or_else(
+            || shown.clone(),
+            |scene| shown.in_meters(scene).into_owned(),
+        )
     }
 
     /// From the unit of the preset to meters; none where that changes nothing.
@@ -211,16 +253,23 @@ impl Session {
 
     /// The preset as it is drawn: at the time shown, without muted effects, in meters.
     pub fn visible_preset(&self) -> Preset {
-        Preset { stack: self.visible_stack(), ..self.metric_preset() }
+        Preset {
+            stack: self.visible_stack(),
+            ..self.metric_preset()
+        }
     }
 
     /// The stack as it is drawn: at the time shown, without muted effects, in meters.
     pub fn visible_stack(&self) -> Stack {
         let mut stack = match (self.preset().unit, self.scene()) {
-            (LengthUnit::Scene, Some(scene)) => self.preset().in_meters(scene).stack_at(self.shown_time_s()),
+            (LengthUnit::Scene, Some(scene)) => {
+                self.preset().in_meters(scene).stack_at(self.shown_time_s())
+            }
             _ => self.preset().stack_at(self.shown_time_s()),
         };
-        stack.0.retain(|enabled| !self.muted.contains(&enabled.effect.name));
+        stack
+            .0
+            .retain(|enabled| !self.muted.contains(&enabled.effect.name));
         stack
     }
 
@@ -228,7 +277,11 @@ impl Session {
     pub fn shown_words(&self, effect: &Effect) -> Option<Vec<u32>> {
         let preset = self.preset();
         let enabled = preset.stack.get(&effect.name)?;
-        Some(preset.animation.evaluate_words(&effect.name, &enabled.words, self.shown_time_s()))
+        Some(
+            preset
+                .animation
+                .evaluate_words(&effect.name, &enabled.words, self.shown_time_s()),
+        )
     }
 
     /// A parameter's value at the time shown.
@@ -236,17 +289,23 @@ impl Session {
         self.shown_words(effect).map(|words| field.get(&words))
     }
 
-    /// The camera that is used: the preset's own, the scene's, or the automatic one. None without a scene.
+    /// The camera that is used: the preset's own, the scene's, or the automatic one. None without a
+    /// scene.
     pub fn camera(&self) -> Option<Camera> {
-        Some(self.preset().camera_for(self.scene()?, aspect(self.preset().output.size)))
+        Some(
+            self.preset()
+                .camera_for(self.scene()?, aspect(self.preset().output.size)),
+        )
     }
 
-    /// How much taller than the preset's frame a picture of `size` pixels must be for the frame's width to fit; at least 1.
+    /// How much taller than the preset's frame a picture of `size` pixels must be for the frame's
+    /// width to fit; at least 1.
     pub fn widening(&self, size: [u32; 2]) -> f64 {
         (aspect(self.preset().output.size) / aspect(size)).max(1.0)
     }
 
-    /// The view that a picture of `size` pixels shows: all of the preset's own frame, and more where the aspect ratios differ.
+    /// The view that a picture of `size` pixels shows: all of the preset's own frame, and more
+    /// where the aspect ratios differ.
     pub fn view_at(&self, scene: &Scene, size: [u32; 2]) -> View {
         let mut view = self.view_of(self.shown_preset(), scene, size);
         if let Some(particle_timeline) = self.trail.particle_timeline(&view) {
@@ -263,7 +322,10 @@ impl Session {
         if widening > 1.0 {
             match &mut camera.projection {
                 Projection::Perspective { fov_y_deg } => {
-                    *fov_y_deg = 2.0 * ((fov_y_deg.to_radians() * 0.5).tan() * widening).atan().to_degrees();
+                    *fov_y_deg = 2.0
+                        * ((fov_y_deg.to_radians() * 0.5).tan() * widening)
+                            .atan()
+                            .to_degrees();
                 }
                 Projection::Orthographic { height_m } => *height_m *= widening,
             }
@@ -288,7 +350,9 @@ impl Session {
             TimeCommand::PlayOrPause => {
                 self.playback.toggle(&clock);
                 if self.playback.playing && !self.preset().is_moving() {
-                    return Some("Nothing in this preset moves. Set keys for a value at two times, or give the scene a spin.");
+                    return Some(
+                        "Nothing in this preset moves. Set keys for a value at two times, or give the scene a spin.",
+                    );
                 }
             }
             TimeCommand::Pause => self.playback.playing = false,
@@ -305,13 +369,19 @@ impl Session {
         self.playback.advance(&clock, passed_s);
     }
 
-    /// Records how the particles were led, up to the time shown. Keys of the particles' parameters take precedence.
+    /// Records how the particles were led, up to the time shown. Keys of the particles' parameters
+    /// take precedence.
     pub fn follow_particles(&mut self) {
-        let particle_timeline = self.metric_preset().particle_timeline().filter(|particle_timeline| particle_timeline.len() == 1);
+        let particle_timeline = self
+            .metric_preset()
+            .particle_timeline()
+            .filter(|particle_timeline| particle_timeline.len() == 1);
         match particle_timeline {
-            Some(particle_timeline) => {
-                self.trail.follow(particle_timeline.frame, particle_timeline.words(1).to_vec(), self.playback.playing)
-            }
+            Some(particle_timeline) => self.trail.follow(
+                particle_timeline.frame,
+                particle_timeline.words(1).to_vec(),
+                self.playback.playing,
+            ),
             None => self.trail = Trail::default(),
         }
     }

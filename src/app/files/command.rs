@@ -3,7 +3,10 @@
 use std::{path::PathBuf, sync::Arc};
 
 use super::favorites::Starred;
-use crate::{app::settings::last_session::Restored, effect_files::Hook, effects::Effect, preset_file::PresetFile};
+use crate::{
+    app::settings::last_session::Restored, effect_files::Hook, effects::Effect,
+    preset_file::PresetFile,
+};
 
 /// What a file dialog is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +59,8 @@ pub enum FileCommand {
     Ask(Purpose),
     /// Shows the system's file dialog, beginning at this path.
     Browse(Purpose, PathBuf),
-    /// Opens a preset, model or picture by path, id or `builtin:QUERY`, or enables the effect of a file.
+    /// Opens a preset, model or picture by path, id or `builtin:QUERY`, or enables the effect of a
+    /// file.
     Open(String),
     OpenPreset(Box<PresetFile>, Manner),
     /// Opens the preset whose look is shown on the user's own scene, with its scene.
@@ -86,8 +90,8 @@ pub enum FileCommand {
     },
     /// Opens a file in the user's editor.
     Edit(PathBuf),
-    /// Decides between the open preset and what another program has made of its file. The outcome is saved to `saving`, if that led to the
-    /// question.
+    /// Decides between the open preset and what another program has made of its file. The outcome
+    /// is saved to `saving`, if that led to the question.
     Resolve {
         theirs: Box<PresetFile>,
         side: Side,
@@ -122,7 +126,8 @@ pub enum Naming {
 
 /// Favorites, files of presets, and values of effects.
 pub enum LibraryCommand {
-    /// Makes the preset of this id, or the effect of this name, a favorite (true), or takes its star away.
+    /// Makes the preset of this id, or the effect of this name, a favorite (true), or takes its
+    /// star away.
     Star(Starred, String, bool),
     AskName(Naming),
     /// Uses the name that was asked for.

@@ -1,4 +1,5 @@
-//! Completion of paths that are typed: the folder that is listed, the names that match, and what Tab makes of them.
+//! Completion of paths that are typed: the folder that is listed, the names that match, and what
+//! Tab makes of them.
 
 use std::path::{Path, PathBuf, is_separator};
 
@@ -20,26 +21,37 @@ pub struct Listing {
 const MAX_ENTRIES: usize = 20_000;
 
 impl Listing {
-    /// Reads `folder`: folders first, each group by name. Names that are no Unicode cannot be typed and are left out.
+    /// Reads `folder`: folders first, each group by name. Names that are no Unicode cannot be typed
+    /// and are left out.
     pub fn read(folder: &Path) -> Self {
         let read = || -> std::io::Result<Vec<Entry>> {
             let files = std::fs::read_dir(folder)?.flatten().take(MAX_ENTRIES);
             // The kind of what a link leads to.
-            let entry =
-                |file: std::fs::DirEntry| Some(Entry { name: file.file_name().into_string().ok()?, is_folder: file.path().is_dir() });
+            let entry = |file: std::fs::DirEntry| {
+                Some(Entry {
+                    name: file.file_name().into_string().ok()?,
+                    is_folder: file.path().is_dir(),
+                })
+            };
             let mut entries: Vec<Entry> = files.filter_map(entry).collect();
             entries.sort_by_cached_key(|entry| (!entry.is_folder, entry.name.to_lowercase()));
             Ok(entries)
         };
-        Self { folder: folder.to_owned(), entries: read().map_err(|error| format!("{}: {error}", folder.display())) }
+        Self {
+            folder: folder.to_owned(),
+            entries: read().map_err(|error| format!("{}: {error}", folder.display())),
+        }
     }
 
-    /// The entries that begin like the name in `typed`: folders, and files of these extensions. Hidden ones only if a dot was typed.
+    /// The entries that begin like the name in `typed`: folders, and files of these extensions.
+    /// Hidden ones only if a dot was typed.
     pub fn matches(&self, typed: &str, extensions: &[&str]) -> Vec<&Entry> {
         let begins = name_of(typed).to_lowercase();
         let has_extension = |name: &str| {
             let extension = Path::new(name).extension().unwrap_or_default();
-            extensions.iter().any(|known| extension.eq_ignore_ascii_case(known))
+            extensions
+                .iter()
+                .any(|known| extension.eq_ignore_ascii_case(known))
         };
         let is_match = |entry: &&Entry| {
             (entry.is_folder || has_extension(&entry.name))
@@ -64,38 +76,62 @@ pub fn expanded(typed: &str) -> PathBuf {
 /// The folder whose entries can complete `typed`.
 pub fn folder_of(typed: &str) -> PathBuf {
     let folder = expanded(&typed[..typed.len() - name_of(typed).len()]);
-    let folder = if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder };
+    let folder = if folder.as_os_str().is_empty() {
+        PathBuf::from(".")
+    } else {
+        folder
+    };
     std::path::absolute(&folder).unwrap_or(folder)
 }
 
 /// The name at the end of `typed`, behind the last separator.
 pub fn name_of(typed: &str) -> &str {
-    typed.rfind(is_separator).map_or(typed, |at| &typed[at + 1..])
+    typed
+        .rfind(is_separator)
+        .map_or(typed, |at| &typed[at + 1..])
 }
 
 /// `typed` with `entry` in place of its name; a folder gets a separator at its end, to go on in it.
 pub fn with_entry(typed: &str, entry: &Entry) -> String {
     let folder = &typed[..typed.len() - name_of(typed).len()];
-    let end = if entry.is_folder { std::path::MAIN_SEPARATOR_STR } else { "" };
+    let end = if entry.is_folder {
+        std::path::MAIN_SEPARATOR_STR
+    } else {
+        ""
+    };
     format!("{folder}{}{end}", entry.name)
 }
 
-/// `typed` with as much of its name as all `matches` share; the whole entry if there is one match. None if that adds nothing.
+/// `typed` with as much of its name as all `matches` share; the whole entry if there is one match.
+/// None if that adds nothing.
 pub fn completed(typed: &str, matches: &[&Entry]) -> Option<String> {
     let completed = match matches {
         [] => return None,
         [entry] => with_entry(typed, entry),
         [first, others @ ..] => {
             let shared = |name: &str, other: &str| {
-                let same = name.chars().zip(other.chars()).take_while(|(a, b)| a.to_lowercase().eq(b.to_lowercase()));
-                name.char_indices().nth(same.count()).map_or(name.len(), |(at, _)| at)
+                let same = name
+                    .chars()
+                    .zip(other.chars())
+                    .take_while(|(a, b)| a.to_lowercase().eq(b.to_lowercase()));
+                name.char_indices()
+                    .nth(same.count())
+                    .map_or(name.len(), |(at, _)| at)
             };
-            let length = others.iter().map(|other| shared(&first.name, &other.name)).min().unwrap_or_default();
+            let length = others
+                .iter()
+                .map(|other| shared(&first.name, &other.name))
+                .min()
+                .unwrap_or_default();
             let name = name_of(typed);
             if first.name[..length].chars().count() <= name.chars().count() {
                 return None;
             }
-            format!("{}{}", &typed[..typed.len() - name.len()], &first.name[..length])
+            format!(
+                "{}{}",
+                &typed[..typed.len() - name.len()],
+                &first.name[..length]
+            )
         }
     };
     (completed != typed).then_some(completed)
@@ -107,7 +143,13 @@ mod tests {
 
     fn folder() -> (tempfile::TempDir, Listing) {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        for name in ["fox.glb", "Fog.toml", "forest.glb", "notes.txt", ".hidden.glb"] {
+        for name in [
+            "fox.glb",
+            "Fog.toml",
+            "forest.glb",
+            "notes.txt",
+            ".hidden.glb",
+        ] {
             std::fs::write(folder.path().join(name), "").expect("a file");
         }
         for name in ["zoo", "Foundry"] {
@@ -126,8 +168,14 @@ mod tests {
     #[test]
     fn folders_come_first_and_only_the_types_that_can_be_opened_are_listed() {
         let (_folder, listing) = folder();
-        assert_eq!(names(&listing.matches("", TYPES)), ["Foundry", "zoo", "Fog.toml", "forest.glb", "fox.glb"]);
-        assert_eq!(names(&listing.matches("/somewhere/FO", TYPES)), ["Foundry", "Fog.toml", "forest.glb", "fox.glb"]);
+        assert_eq!(
+            names(&listing.matches("", TYPES)),
+            ["Foundry", "zoo", "Fog.toml", "forest.glb", "fox.glb"]
+        );
+        assert_eq!(
+            names(&listing.matches("/somewhere/FO", TYPES)),
+            ["Foundry", "Fog.toml", "forest.glb", "fox.glb"]
+        );
         assert_eq!(names(&listing.matches(".", TYPES)), [".hidden.glb"]);
         assert_eq!(names(&listing.matches("notes", TYPES)), [""; 0]);
     }
@@ -137,7 +185,10 @@ mod tests {
         let (_folder, listing) = folder();
         let complete = |typed: &str| completed(typed, &listing.matches(typed, TYPES));
         assert_eq!(complete("/a/for"), Some("/a/forest.glb".into()));
-        assert_eq!(complete("z"), Some(format!("zoo{}", std::path::MAIN_SEPARATOR)));
+        assert_eq!(
+            complete("z"),
+            Some(format!("zoo{}", std::path::MAIN_SEPARATOR))
+        );
         assert_eq!(complete("/a/f"), Some("/a/Fo".into()));
         assert_eq!(complete("/a/fo"), None);
         assert_eq!(complete("/a/x"), None);
@@ -146,7 +197,10 @@ mod tests {
 
     #[test]
     fn names_beyond_ascii_are_cut_between_letters() {
-        let entry = |name: &str| Entry { name: name.into(), is_folder: false };
+        let entry = |name: &str| Entry {
+            name: name.into(),
+            is_folder: false,
+        };
         let [a, b] = [entry("Ärmel-é.glb"), entry("ärmel-è.glb")];
         assert_eq!(completed("ä", &[&a, &b]), Some("Ärmel-".into()));
     }
@@ -155,9 +209,15 @@ mod tests {
     fn the_folder_is_what_stands_before_the_name() {
         assert_eq!(folder_of("/a/b"), Path::new("/a"));
         assert_eq!(folder_of("/a/b/"), Path::new("/a/b"));
-        assert_eq!(folder_of("fox"), std::env::current_dir().expect("a current folder"));
+        assert_eq!(
+            folder_of("fox"),
+            std::env::current_dir().expect("a current folder")
+        );
         if let Some(home) = std::env::home_dir() {
-            assert_eq!((folder_of("~/mod"), expanded("~/x.glb"), expanded("~")), (home.clone(), home.join("x.glb"), home));
+            assert_eq!(
+                (folder_of("~/mod"), expanded("~/x.glb"), expanded("~")),
+                (home.clone(), home.join("x.glb"), home)
+            );
         }
         assert_eq!(expanded("~other/x"), Path::new("~other/x"));
     }
@@ -165,6 +225,10 @@ mod tests {
     #[test]
     fn a_folder_that_cannot_be_listed_says_why() {
         let listing = Listing::read(Path::new("/nowhere/at/all"));
-        assert!(listing.entries.is_err_and(|error| error.starts_with("/nowhere/at/all: ")));
+        assert!(
+            listing
+                .entries
+                .is_err_and(|error| error.starts_with("/nowhere/at/all: "))
+        );
     }
 }

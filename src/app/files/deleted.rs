@@ -1,4 +1,5 @@
-//! Deleted files: they go to the trash of the system, and their bytes are kept, so that Undo needs nothing from it.
+//! Deleted files: they go to the trash of the system, and their bytes are kept, so that Undo needs
+//! nothing from it.
 
 use std::path::{Path, PathBuf};
 
@@ -18,7 +19,12 @@ impl Deleted {
     /// The file cannot be read or moved, in a sentence; then it is where it was.
     pub fn delete(path: &Path) -> Result<Self, String> {
         let failed = |reason: String| format!("{}: it cannot be deleted: {reason}", path.display());
-        let read = || Ok(Self { path: std::path::absolute(path)?, bytes: std::fs::read(path)? });
+        let read = || {
+            Ok(Self {
+                path: std::path::absolute(path)?,
+                bytes: std::fs::read(path)?,
+            })
+        };
         let deleted = read().map_err(|error: std::io::Error| failed(error.to_string()))?;
         move_to_trash(path).map_err(failed)?;
         Ok(deleted)
@@ -26,10 +32,15 @@ impl Deleted {
 
     /// The name that it had, without its extension.
     pub fn name(&self) -> String {
-        self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+        self.path
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned()
     }
 
-    /// Writes the file again where it was; under a name with a number if another file has taken its name. Returns its path.
+    /// Writes the file again where it was; under a name with a number if another file has taken its
+    /// name. Returns its path.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -38,8 +49,13 @@ impl Deleted {
             // Where it cannot be created, the error of the file says so.
             drop(std::fs::create_dir_all(folder));
         }
-        let extension = self.path.extension().map_or_else(String::new, |extension| format!(".{}", extension.to_string_lossy()));
-        let numbered = (2..).map(|number| self.path.with_file_name(format!("{}-{number}{extension}", self.name())));
+        let extension = self.path.extension().map_or_else(String::new, |extension| {
+            format!(".{}", extension.to_string_lossy())
+        });
+        let numbered = (2..).map(|number| {
+            self.path
+                .with_file_name(format!("{}-{number}{extension}", self.name()))
+        });
         for path in std::iter::once(self.path.clone()).chain(numbered) {
             match write_atomically(&path, &self.bytes, Existing::Keep) {
                 Err(PresetError::Exists { .. }) => {}
@@ -54,7 +70,11 @@ impl Deleted {
 fn move_to_trash(path: &Path) -> Result<(), String> {
     use std::error::Error as _;
 
-    trash::delete(path).map_err(|error| error.source().map_or_else(|| error.to_string(), ToString::to_string))
+    trash::delete(path).map_err(|error| {
+        error
+            .source()
+            .map_or_else(|| error.to_string(), ToString::to_string)
+    })
 }
 
 #[cfg(target_arch = "wasm32")]
@@ -71,7 +91,10 @@ mod tests {
         #[cfg(any(windows, target_os = "linux"))]
         {
             let items = trash::os_limited::list().expect("a trash");
-            let own: Vec<_> = items.into_iter().filter(|item| item.original_parent == folder).collect();
+            let own: Vec<_> = items
+                .into_iter()
+                .filter(|item| item.original_parent == folder)
+                .collect();
             assert!(!own.is_empty(), "the deleted files are in the trash");
             trash::os_limited::purge_all(own).expect("a trash");
         }
@@ -90,15 +113,34 @@ mod tests {
         });
         empty_trash_of(&home);
         assert_eq!(deleted[0].restore().expect("written"), path);
-        assert_eq!(std::fs::read(&path).expect("a file"), b"schema = 2\r\n# \xff");
-        assert_eq!(deleted[1].restore().expect("written"), home.join("mine-2.toml"));
-        assert_eq!(deleted[1].restore().expect("written"), home.join("mine-3.toml"));
-        assert_eq!(std::fs::read(home.join("mine-3.toml")).expect("a file"), b"second");
+        assert_eq!(
+            std::fs::read(&path).expect("a file"),
+            b"schema = 2\r\n# \xff"
+        );
+        assert_eq!(
+            deleted[1].restore().expect("written"),
+            home.join("mine-2.toml")
+        );
+        assert_eq!(
+            deleted[1].restore().expect("written"),
+            home.join("mine-3.toml")
+        );
+        assert_eq!(
+            std::fs::read(home.join("mine-3.toml")).expect("a file"),
+            b"second"
+        );
     }
 
     #[test]
     fn a_file_that_is_not_there_is_an_error() {
-        let error = Deleted::delete(Path::new("/no/such/folder/none.toml")).err().expect("no file");
-        assert!(error.contains("none.toml") && error.contains("cannot be deleted") && error.lines().count() == 1, "{error}");
+        let error = Deleted::delete(Path::new("/no/such/folder/none.toml"))
+            .err()
+            .expect("no file");
+        assert!(
+            error.contains("none.toml")
+                && error.contains("cannot be deleted")
+                && error.lines().count() == 1,
+            "{error}"
+        );
     }
 }

@@ -13,8 +13,8 @@ mod native {
         sync::{Mutex, OnceLock, PoisonError},
     };
 
-    /// A dialog for files with these extensions, beginning at `start`. What it returns shows it, waits for its end, and gives the path that was
-    /// chosen, or why no dialog could be shown.
+    /// A dialog for files with these extensions, beginning at `start`. What it returns shows it,
+    /// waits for its end, and gives the path that was chosen, or why no dialog could be shown.
     pub fn prepare(
         types_name: &str,
         extensions: &[&str],
@@ -25,8 +25,12 @@ mod native {
         if let Some(folder) = start.parent().filter(|folder| folder.is_dir()) {
             dialog = dialog.set_directory(folder);
         }
-        let name = start.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        let chosen: Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match is_to_open {
+        let name = start
+            .file_name()
+            .map(|name| name.to_string_lossy().into_owned())
+            .unwrap_or_default();
+        let chosen: Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match is_to_open
+        {
             true => Box::pin(dialog.pick_file()),
             false => Box::pin(dialog.set_file_name(name).save_file()),
         };
@@ -37,7 +41,8 @@ mod native {
         }
     }
 
-    /// What the dialog's end means. Without a portal the `rfd` library tries `zenity`; only if that fails, too, no dialog was shown.
+    /// What the dialog's end means. Without a portal the `rfd` library tries `zenity`; only if that
+    /// fails, too, no dialog was shown.
     fn outcome(chosen: Option<PathBuf>, failures: Vec<String>) -> Result<Option<PathBuf>, String> {
         if chosen.is_none() && failures.iter().any(|failure| failure.contains("zenity")) {
             let reason = failures.into_iter().next().unwrap_or_default();
@@ -46,7 +51,8 @@ mod native {
         Ok(chosen)
     }
 
-    /// `rfd` gives no path both when the user cancels and when no dialog can be shown; why is only in what it logs.
+    /// `rfd` gives no path both when the user cancels and when no dialog can be shown; why is only
+    /// in what it logs.
     struct Failures(Mutex<Vec<String>>);
 
     static FAILURES: Failures = Failures(Mutex::new(Vec::new()));
@@ -74,7 +80,11 @@ mod native {
     fn listen() -> bool {
         static LISTENS: OnceLock<bool> = OnceLock::new();
         take_failures();
-        *LISTENS.get_or_init(|| log::set_logger(&FAILURES).map(|()| log::set_max_level(log::LevelFilter::Error)).is_ok())
+        *LISTENS.get_or_init(|| {
+            log::set_logger(&FAILURES)
+                .map(|()| log::set_max_level(log::LevelFilter::Error))
+                .is_ok()
+        })
     }
 
     fn take_failures() -> Vec<String> {
@@ -89,9 +99,16 @@ mod native {
         fn only_a_dialog_that_could_not_be_shown_is_unavailable() {
             let portal = "Failed to connect to session bus: not found".to_owned();
             let zenity = "Failed to pick file with zenity: No such file or directory".to_owned();
-            assert_eq!(outcome(Some("a.glb".into()), vec![portal.clone()]), Ok(Some("a.glb".into())));
+            assert_eq!(
+                outcome(Some("a.glb".into()), vec![portal.clone()]),
+                Ok(Some("a.glb".into()))
+            );
             assert_eq!(outcome(None, vec![]), Ok(None));
-            assert_eq!(outcome(None, vec![portal.clone()]), Ok(None), "zenity was shown and canceled");
+            assert_eq!(
+                outcome(None, vec![portal.clone()]),
+                Ok(None),
+                "zenity was shown and canceled"
+            );
             assert_eq!(outcome(None, vec![portal.clone(), zenity]), Err(portal));
         }
     }
@@ -101,7 +118,12 @@ mod native {
 mod page {
     use std::path::{Path, PathBuf};
 
-    pub fn prepare(_: &str, _: &[&str], _: &Path, _: bool) -> impl FnOnce() -> Result<Option<PathBuf>, String> + Send + use<> {
+    pub fn prepare(
+        _: &str,
+        _: &[&str],
+        _: &Path,
+        _: bool,
+    ) -> impl FnOnce() -> Result<Option<PathBuf>, String> + Send + use<> {
         || Err("a page has no folders".into())
     }
 }

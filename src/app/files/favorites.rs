@@ -1,6 +1,8 @@
-//! Favorites: presets and effects that the user has starred, kept in `favorites.toml` of the user's folder.
+//! Favorites: presets and effects that the user has starred, kept in `favorites.toml` of the user's
+//! folder.
 //!
-//! What has changed since the last write is put into the file as it is then. So two windows do not undo each other's stars.
+//! What has changed since the last write is put into the file as it is then. So two windows do not
+//! undo each other's stars.
 
 use std::{
     collections::BTreeSet,
@@ -42,8 +44,19 @@ impl Favorites {
     /// Those of the user's folder. Each remark is something that cannot be used.
     pub fn load(user: Option<&Path>) -> (Self, Vec<String>) {
         let (path, mut remarks) = (user.map(|user| user.join("favorites.toml")), Vec::new());
-        let names: Names = path.as_deref().map(|path| plain_file::read(path, &mut remarks).0).unwrap_or_default();
-        (Self { names: names.clone(), written: names, path, is_writing: false }, remarks)
+        let names: Names = path
+            .as_deref()
+            .map(|path| plain_file::read(path, &mut remarks).0)
+            .unwrap_or_default();
+        (
+            Self {
+                names: names.clone(),
+                written: names,
+                path,
+                is_writing: false,
+            },
+            remarks,
+        )
     }
 
     /// Is the preset of this id, or the effect of this name, a favorite?
@@ -67,9 +80,13 @@ impl Favorites {
         }
     }
 
-    /// The next write, to be done on another thread; none while something is being written or nothing has changed.
+    /// The next write, to be done on another thread; none while something is being written or
+    /// nothing has changed.
     pub fn next_write(&mut self) -> Option<impl FnOnce() -> Result<(), String> + Send + use<>> {
-        let path = self.path.clone().filter(|_| self.is_busy() && !self.is_writing)?;
+        let path = self
+            .path
+            .clone()
+            .filter(|_| self.is_busy() && !self.is_writing)?;
         let before = std::mem::replace(&mut self.written, self.names.clone());
         self.is_writing = true;
         let now = self.names.clone();
@@ -86,19 +103,30 @@ impl Favorites {
     }
 }
 
-/// Makes the changes from `before` to `now` in the file at `path`, which need not exist. Its comments stay.
+/// Makes the changes from `before` to `now` in the file at `path`, which need not exist. Its
+/// comments stay.
 fn update(path: &Path, before: &Names, now: &Names) -> Result<(), String> {
     let mut remarks = Vec::new();
     let (there, mut document) = plain_file::read::<Names>(path, &mut remarks);
-    let updated = |there: &BTreeSet<String>, before: &BTreeSet<String>, now: &BTreeSet<String>| -> BTreeSet<String> {
-        (there - &(before - now)).union(&(now - before)).cloned().collect()
+    let updated = |there: &BTreeSet<String>,
+                   before: &BTreeSet<String>,
+                   now: &BTreeSet<String>|
+     -> BTreeSet<String> {
+        (there - &(before - now))
+            .union(&(now - before))
+            .cloned()
+            .collect()
     };
     let names = Names {
         presets: updated(&there.presets, &before.presets, &now.presets),
         effects: updated(&there.effects, &before.effects, &now.effects),
     };
     plain_file::write(&names, &mut document, path)?;
-    if remarks.is_empty() { Ok(()) } else { Err(remarks.join("; ")) }
+    if remarks.is_empty() {
+        Ok(())
+    } else {
+        Err(remarks.join("; "))
+    }
 }
 
 #[cfg(test)]
@@ -116,18 +144,31 @@ mod tests {
     #[test]
     fn stars_are_kept_with_the_comments_of_the_file() {
         let folder = tempfile::tempdir().expect("a folder");
-        let (user, path) = (folder.path().join("user"), folder.path().join("user/favorites.toml"));
+        let (user, path) = (
+            folder.path().join("user"),
+            folder.path().join("user/favorites.toml"),
+        );
         let (mut favorites, remarks) = Favorites::load(Some(&user));
         assert_eq!(remarks, [""; 0]);
         favorites.change(Starred::Preset, "comic", true);
         favorites.change(Starred::Effect, "toon", true);
         write(&mut favorites);
-        std::fs::write(&path, format!("# mine\n{}", std::fs::read_to_string(&path).expect("a file"))).expect("a file");
+        std::fs::write(
+            &path,
+            format!(
+                "# mine\n{}",
+                std::fs::read_to_string(&path).expect("a file")
+            ),
+        )
+        .expect("a file");
         favorites.change(Starred::Preset, "teapot", true);
         favorites.change(Starred::Preset, "comic", false);
         favorites.change(Starred::Preset, "none", false);
         write(&mut favorites);
-        assert_eq!(std::fs::read_to_string(&path).expect("a file"), "# mine\npresets = [\"teapot\"]\neffects = [\"toon\"]\n");
+        assert_eq!(
+            std::fs::read_to_string(&path).expect("a file"),
+            "# mine\npresets = [\"teapot\"]\neffects = [\"toon\"]\n"
+        );
         let (read, remarks) = Favorites::load(Some(&user));
         assert_eq!((read.names, remarks), (favorites.names, vec![]));
     }
@@ -149,18 +190,33 @@ mod tests {
     #[test]
     fn a_faulty_file_is_named_with_its_line_and_put_aside() {
         let folder = tempfile::tempdir().expect("a folder");
-        std::fs::write(folder.path().join("favorites.toml"), "effects = []\npresets = [").expect("a file");
+        std::fs::write(
+            folder.path().join("favorites.toml"),
+            "effects = []\npresets = [",
+        )
+        .expect("a file");
         let (favorites, remarks) = Favorites::load(Some(folder.path()));
-        assert!(remarks.len() == 1 && remarks[0].contains("favorites.toml, line 2"), "{remarks:?}");
+        assert!(
+            remarks.len() == 1 && remarks[0].contains("favorites.toml, line 2"),
+            "{remarks:?}"
+        );
         assert!(!favorites.has(Starred::Preset, "a"));
         let aside = folder.path().join("favorites.toml.broken");
-        assert_eq!(std::fs::read_to_string(aside).expect("it is kept"), "effects = []\npresets = [");
+        assert_eq!(
+            std::fs::read_to_string(aside).expect("it is kept"),
+            "effects = []\npresets = ["
+        );
     }
 
     #[test]
     fn without_a_folder_nothing_is_written() {
         let (mut favorites, remarks) = Favorites::load(None);
         favorites.change(Starred::Effect, "toon", true);
-        assert!(favorites.has(Starred::Effect, "toon") && !favorites.is_busy() && favorites.next_write().is_none() && remarks.is_empty());
+        assert!(
+            favorites.has(Starred::Effect, "toon")
+                && !favorites.is_busy()
+                && favorites.next_write().is_none()
+                && remarks.is_empty()
+        );
     }
 }

@@ -1,10 +1,12 @@
-//! Live files: what is wrong with files on disk, and what is compiled before it replaces what is shown.
+//! Live files: what is wrong with files on disk, and what is compiled before it replaces what is
+//! shown.
 
 use std::{collections::BTreeMap, path::PathBuf, sync::Arc};
 
 use super::watch::Watcher;
 use crate::{
-    app::picture::golden_check::GoldenCheck, effect_files::Catalog, effects::Effect, preset::rebind::Replaced, preset_file::PresetFile,
+    app::picture::golden_check::GoldenCheck, effect_files::Catalog, effects::Effect,
+    preset::rebind::Replaced, preset_file::PresetFile,
 };
 
 /// What a fault is about.
@@ -60,7 +62,8 @@ pub struct Live {
     pub writing: u32,
     requests: u64,
     pub enable: Option<Waiting>,
-    /// A preset's file as it was when the user decided for the changes made here: saving may overwrite that.
+    /// A preset's file as it was when the user decided for the changes made here: saving may
+    /// overwrite that.
     pub overruled: Option<Box<PresetFile>>,
     /// Files may be opened in the user's editor.
     pub opens_editor: bool,
@@ -91,12 +94,17 @@ impl Live {
 
     /// True while something is compiled or written, or a golden is drawn.
     pub fn is_busy(&self) -> bool {
-        self.compiling_effects.is_some() || self.compiling_shaders.is_some() || self.checking_golden.is_some() || self.writing > 0
+        self.compiling_effects.is_some()
+            || self.compiling_shaders.is_some()
+            || self.checking_golden.is_some()
+            || self.writing > 0
     }
 
     /// Notes a fault. Returns false if it was known.
     pub fn set_fault(&mut self, subject: Subject, text: String) -> bool {
-        self.faults.insert(subject, text.clone()).is_none_or(|before| before != text)
+        self.faults
+            .insert(subject, text.clone())
+            .is_none_or(|before| before != text)
     }
 
     /// Forgets a fault. Returns true if there was one.
@@ -106,24 +114,37 @@ impl Live {
 
     /// Forgets the faults of effects for which `is_kept` is false.
     pub fn keep_effect_faults(&mut self, is_kept: impl Fn(&str) -> bool) {
-        self.faults.retain(|subject, _| !matches!(subject, Subject::Effect(name) if !is_kept(name)));
+        self.faults
+            .retain(|subject, _| !matches!(subject, Subject::Effect(name) if !is_kept(name)));
     }
 
     /// Effects with faulty files, by name, with what is wrong.
     pub fn effect_faults(&self) -> impl Iterator<Item = (&str, &str)> {
-        self.faults.iter().filter_map(|(subject, text)| match subject {
-            Subject::Effect(name) => Some((name.as_str(), text.as_str())),
-            _ => None,
-        })
+        self.faults
+            .iter()
+            .filter_map(|(subject, text)| match subject {
+                Subject::Effect(name) => Some((name.as_str(), text.as_str())),
+                _ => None,
+            })
     }
 
     /// What is wrong with files that the picture depends on; `is_used` tells it of effects.
-    pub fn shown_faults(&self, is_used: impl Fn(&str) -> bool) -> impl Iterator<Item = (&Subject, &str)> {
-        let waiting = self.enable.as_ref().and_then(|waiting| waiting.path.file_stem()).map(|stem| stem.to_string_lossy().into_owned());
+    pub fn shown_faults(
+        &self,
+        is_used: impl Fn(&str) -> bool,
+    ) -> impl Iterator<Item = (&Subject, &str)> {
+        let waiting = self
+            .enable
+            .as_ref()
+            .and_then(|waiting| waiting.path.file_stem())
+            .map(|stem| stem.to_string_lossy().into_owned());
         let is_shown = move |subject: &Subject| match subject {
             Subject::Effect(name) => is_used(name) || waiting.as_deref() == Some(name),
             _ => true,
         };
-        self.faults.iter().filter(move |(subject, _)| is_shown(subject)).map(|(subject, text)| (subject, text.as_str()))
+        self.faults
+            .iter()
+            .filter(move |(subject, _)| is_shown(subject))
+            .map(|(subject, text)| (subject, text.as_str()))
     }
 }

@@ -32,7 +32,10 @@ impl Opening {
 
     /// The box of a scene, if it was found; none in it for a scene that cannot be loaded.
     pub fn bounds(&self, source: &SceneSource) -> Option<Option<Bounds>> {
-        self.boxes.iter().find(|(known, _)| known == source).map(|(_, bounds)| *bounds)
+        self.boxes
+            .iter()
+            .find(|(known, _)| known == source)
+            .map(|(_, bounds)| *bounds)
     }
 
     /// Notes that the box of a scene is being found. Returns false if it is already.
@@ -52,6 +55,7 @@ impl Opening {
 
     /// Forgets the boxes of models, since a file has changed.
     pub fn forget_models(&mut self) {
-        self.boxes.retain(|(source, _)| matches!(source, SceneSource::Builtin(_)));
+        self.boxes
+            .retain(|(source, _)| matches!(source, SceneSource::Builtin(_)));
     }
 }

@@ -1,4 +1,5 @@
-//! The preset that the window opens with, and saving it when the device is lost. Settings and sessions: see `settings`.
+//! The preset that the window opens with, and saving it when the device is lost. Settings and
+//! sessions: see `settings`.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +18,8 @@ use crate::{
     preset_file::{self, Folders, PresetFile},
 };
 
-/// The preset of a window that was opened without one; it plays. A software driver draws it fast enough for that.
+/// The preset of a window that was opened without one; it plays. A software driver draws it fast
+/// enough for that.
 pub const FIRST_PRESET: &str = "facet-random";
 
 /// What the window begins with.
@@ -31,8 +33,9 @@ pub struct Start {
     pub crashed: Option<Box<Restored>>,
 }
 
-/// What the window begins with: what it was asked to open, or the last session if it was asked for nothing. After a crash, and until the user
-/// has decided about code that a preset brings, the first preset is shown.
+/// What the window begins with: what it was asked to open, or the last session if it was asked for
+/// nothing. After a crash, and until the user has decided about code that a preset brings, the
+/// first preset is shown.
 pub fn start(
     opened: Option<PresetFile>,
     open: Option<&str>,
@@ -40,11 +43,19 @@ pub fn start(
     (keeper, trust): (&Keeper, &Trust),
     log: &mut Log,
 ) -> Start {
-    let previous = if opened.is_none() && open.is_none() { keeper.previous_session(folders) } else { PreviousSession::None };
+    let previous = if opened.is_none() && open.is_none() {
+        keeper.previous_session(folders)
+    } else {
+        PreviousSession::None
+    };
     let (mut filed, mut crashed) = (None, None);
     let first = match previous {
         PreviousSession::Closed(restored) => {
-            restored.preset_file.remarks().into_iter().for_each(|remark| log.add(Level::Warning, remark));
+            restored
+                .preset_file
+                .remarks()
+                .into_iter()
+                .for_each(|remark| log.add(Level::Warning, remark));
             filed = Some(restored.filed);
             restored.preset_file
         }
@@ -53,30 +64,53 @@ pub fn start(
             first_preset(None, None, folders, log)
         }
         PreviousSession::Lost(reason) => {
-            log.notify(Level::Warning, format!("The last session cannot be opened again: {reason}"), 0.0);
+            log.notify(
+                Level::Warning,
+                format!("The last session cannot be opened again: {reason}"),
+                0.0,
+            );
             first_preset(None, None, folders, log)
         }
         PreviousSession::None => first_preset(opened, open, folders, log),
     };
     if !trust.allows(&first, &folders.effects) {
         let session = Session::new(first_preset(None, None, folders, log));
-        return Start { session, is_restored: false, brings_code: Some(first), crashed };
+        return Start {
+            session,
+            is_restored: false,
+            brings_code: Some(first),
+            crashed,
+        };
     }
     let is_restored = filed.is_some();
     let mut session = Session::new(filed.unwrap_or_else(|| first.clone()));
     session.preset_file = first;
-    Start { session, is_restored, brings_code: None, crashed }
+    Start {
+        session,
+        is_restored,
+        brings_code: None,
+        crashed,
+    }
 }
 
-/// The preset to begin with: one that is open already, or `open`. If it cannot be opened, the error is logged and the teapot is
-/// shown.
-fn first_preset(opened: Option<PresetFile>, open: Option<&str>, folders: &Folders, log: &mut Log) -> PresetFile {
+/// The preset to begin with: one that is open already, or `open`. If it cannot be opened, the error
+/// is logged and the teapot is shown.
+fn first_preset(
+    opened: Option<PresetFile>,
+    open: Option<&str>,
+    folders: &Folders,
+    log: &mut Log,
+) -> PresetFile {
     let what = open.unwrap_or(FIRST_PRESET);
     match opened.map_or_else(|| preset_file::open(what, folders), Ok) {
         Ok(mut preset_file) => {
-            preset_file.remarks().into_iter().for_each(|remark| log.add(Level::Warning, remark));
+            preset_file
+                .remarks()
+                .into_iter()
+                .for_each(|remark| log.add(Level::Warning, remark));
             // A recovered preset is not saved to the recovery file: Save asks for another.
-            preset_file.read_only |= preset_file.path.is_some() && preset_file.path == recovery_path();
+            preset_file.read_only |=
+                preset_file.path.is_some() && preset_file.path == recovery_path();
             preset_file
         }
         Err(error) => {
@@ -84,7 +118,8 @@ fn first_preset(opened: Option<PresetFile>, open: Option<&str>, folders: &Folder
                 log.notify(Level::Error, error.to_string(), 0.0);
             }
             // The user did not choose this scene, so presets bring their own.
-            let mut fallback = PresetFile::of_scene("teapot", SceneSource::Builtin("teapot".into()));
+            let mut fallback =
+                PresetFile::of_scene("teapot", SceneSource::Builtin("teapot".into()));
             fallback.chose_scene = false;
             fallback
         }

@@ -1,5 +1,5 @@
-//! Reloading what has changed on disk: effects, the open preset, the model and shaders. What cannot be used leaves the last good
-//! version in place, with a fault that is shown until it is mended.
+//! Reloading what has changed on disk: effects, the open preset, the model and shaders. What cannot
+//! be used leaves the last good version in place, with a fault that is shown until it is mended.
 
 use std::{
     path::{Path, PathBuf},
@@ -45,13 +45,27 @@ pub fn take_changes(state: &mut State, panels: &mut Panels) {
 /// What is watched for the open preset.
 fn targets(state: &State) -> Targets {
     let open = &state.session.preset_file;
-    let preset = open.path.clone().filter(|path| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")));
+    let preset = open.path.clone().filter(|path| {
+        path.extension()
+            .is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
+    });
     let model = match &open.preset.scene {
-        SceneSource::File(model) => Some(open.path.as_deref().and_then(Path::parent).unwrap_or(Path::new("")).join(model)),
+        SceneSource::File(model) => Some(
+            open.path
+                .as_deref()
+                .and_then(Path::parent)
+                .unwrap_or(Path::new(""))
+                .join(model),
+        ),
         SceneSource::Builtin(_) => None,
     };
     let shaders = host::shaders::choose(None).map(Path::to_owned);
-    Targets { effect_folders: state.files.folders.effect_folders.clone(), preset, model, shaders }
+    Targets {
+        effect_folders: state.files.folders.effect_folders.clone(),
+        preset,
+        model,
+        shaders,
+    }
 }
 
 /// Logs what is wrong with a file and shows it until it is mended.
@@ -62,13 +76,24 @@ fn fault(state: &mut State, subject: Subject, text: String) {
 }
 
 fn effects_changed(state: &mut State, panels: &mut Panels, effects: Effects) {
-    let Effects { shared, open, faults } = effects;
+    let Effects {
+        shared,
+        open,
+        faults,
+    } = effects;
     let before = &state.session.preset_file.effects;
     let stack = &state.session.preset().stack;
-    // Effects that came inside the preset stay, and so does one that is enabled and whose file is gone.
-    let kept =
-        before.only(|name, effect| effect.path.is_none() || open.custom().all(|(other, _)| other != name) && stack.get(name).is_some());
-    let gone: Vec<String> = kept.custom().filter(|(_, effect)| effect.path.is_some()).map(|(name, _)| name.to_owned()).collect();
+    // Effects that came inside the preset stay, and so does one that is enabled and whose file is
+    // gone.
+    let kept = before.only(|name, effect| {
+        effect.path.is_none()
+            || open.custom().all(|(other, _)| other != name) && stack.get(name).is_some()
+    });
+    let gone: Vec<String> = kept
+        .custom()
+        .filter(|(_, effect)| effect.path.is_some())
+        .map(|(name, _)| name.to_owned())
+        .collect();
     let open = kept.joined(&open);
     let good = |catalog: &Catalog, name: &str| catalog.find(name).ok().flatten().cloned();
     let mut replaced: Vec<Replaced> = Vec::new();
@@ -82,9 +107,17 @@ fn effects_changed(state: &mut State, panels: &mut Panels, effects: Effects) {
             }
         }
     }
-    let instances: Vec<Arc<Effect>> = state.session.catalogs().flat_map(Catalog::instances).cloned().collect();
+    let instances: Vec<Arc<Effect>> = state
+        .session
+        .catalogs()
+        .flat_map(Catalog::instances)
+        .cloned()
+        .collect();
     for instance in instances {
-        let of_base = replaced.iter().find(|(old, _)| instance.base.as_ref() == Some(old)).map(|(_, new)| new);
+        let of_base = replaced
+            .iter()
+            .find(|(old, _)| instance.base.as_ref() == Some(old))
+            .map(|(_, new)| new);
         if let Some(base) = of_base
             && !replaced.iter().any(|(known, _)| *known == instance)
         {
@@ -93,21 +126,34 @@ fn effects_changed(state: &mut State, panels: &mut Panels, effects: Effects) {
         }
     }
     let open = open.replaced(&replaced);
-    let is_faulty = |name: &str| faults.iter().any(|(faulty, _)| faulty == name) || gone.iter().any(|gone| gone == name);
+    let is_faulty = |name: &str| {
+        faults.iter().any(|(faulty, _)| faulty == name) || gone.iter().any(|gone| gone == name)
+    };
     state.files.live.keep_effect_faults(is_faulty);
     for (name, error) in faults {
         fault(state, Subject::Effect(name), error.to_string());
     }
     for name in gone {
-        let text = format!("{name}.wgsl: no folder of effects has this file any more; the picture keeps the effect as it was");
+        let text = format!(
+            "{name}.wgsl: no folder of effects has this file any more; the picture keeps the effect as it was"
+        );
         fault(state, Subject::Effect(name), text);
     }
     let number = state.files.live.request();
-    let reload = Box::new(EffectReload { number, shared, open, replaced });
+    let reload = Box::new(EffectReload {
+        number,
+        shared,
+        open,
+        replaced,
+    });
     match compiled_inputs(state, &reload.replaced) {
         Some(inputs) => {
             state.files.live.compiling_effects = Some(number);
-            state.jobs.compile(state.picture.screen.gpu.clone(), inputs, Reload::Effects(reload));
+            state.jobs.compile(
+                state.picture.screen.gpu.clone(),
+                inputs,
+                Reload::Effects(reload),
+            );
         }
         None => use_effects(state, panels, *reload),
     }
@@ -117,14 +163,23 @@ fn effects_changed(state: &mut State, panels: &mut Panels, effects: Effects) {
 fn compiled_inputs(state: &State, replaced: &[Replaced]) -> Option<Inputs> {
     let requested = state.picture.screen.requested()?;
     let is_replaced = |effect: &Effect| replaced.iter().any(|(old, _)| **old == *effect);
-    requested.stack.0.iter().find(|enabled| is_replaced(&enabled.effect))?;
+    requested
+        .stack
+        .0
+        .iter()
+        .find(|enabled| is_replaced(&enabled.effect))?;
     let mut inputs = requested.clone();
     rebind_stack(&mut inputs.stack, replaced);
     Some(inputs)
 }
 
 /// Takes in the result of compiling; an outdated one is dropped.
-pub fn compiled(state: &mut State, panels: &mut Panels, reload: Reload, outcome: Result<(), String>) {
+pub fn compiled(
+    state: &mut State,
+    panels: &mut Panels,
+    reload: Reload,
+    outcome: Result<(), String>,
+) {
     match (reload, outcome) {
         (Reload::Effects(reload), outcome) => {
             if state.files.live.compiling_effects != Some(reload.number) {
@@ -134,8 +189,16 @@ pub fn compiled(state: &mut State, panels: &mut Panels, reload: Reload, outcome:
             match outcome {
                 Ok(()) => use_effects(state, panels, *reload),
                 Err(error) => {
-                    let names: Vec<&str> = reload.replaced.iter().map(|(_, new)| new.name.as_str()).collect();
-                    fault(state, Subject::Pipelines, format!("{}: {error}", names.join(", ")));
+                    let names: Vec<&str> = reload
+                        .replaced
+                        .iter()
+                        .map(|(_, new)| new.name.as_str())
+                        .collect();
+                    fault(
+                        state,
+                        Subject::Pipelines,
+                        format!("{}: {error}", names.join(", ")),
+                    );
                 }
             }
         }
@@ -152,18 +215,36 @@ pub fn compiled(state: &mut State, panels: &mut Panels, reload: Reload, outcome:
     }
 }
 
-/// Uses effects as their files have them now, in every preset that was opened and in every step of undo.
+/// Uses effects as their files have them now, in every preset that was opened and in every step of
+/// undo.
 fn use_effects(state: &mut State, panels: &mut Panels, reload: EffectReload) {
-    let EffectReload { number: _, shared, open, replaced } = reload;
+    let EffectReload {
+        number: _,
+        shared,
+        open,
+        replaced,
+    } = reload;
     state.files.live.clear_fault(&Subject::Pipelines);
     state.files.folders.effects = shared;
     state.session.rebind(&replaced, &open);
-    state.history.change_all(|step| step.preset.rebind(&replaced));
+    state
+        .history
+        .change_all(|step| step.preset.rebind(&replaced));
     let is_replaced = |effect: &Effect| replaced.iter().any(|(old, _)| **old == *effect);
-    if state.picture.picking.as_ref().is_some_and(|picking| is_replaced(picking.effect())) {
+    if state
+        .picture
+        .picking
+        .as_ref()
+        .is_some_and(|picking| is_replaced(picking.effect()))
+    {
         state.picture.picking = None;
     }
-    if panels.timeline.selected.as_ref().is_some_and(|key| is_replaced(&key.effect)) {
+    if panels
+        .timeline
+        .selected
+        .as_ref()
+        .is_some_and(|key| is_replaced(&key.effect))
+    {
         panels.timeline.selected = None;
     }
     for (_, effect) in &replaced {
@@ -171,7 +252,15 @@ fn use_effects(state: &mut State, panels: &mut Panels, reload: EffectReload) {
             state.notify(Level::Info, format!("{} was reloaded", effect.name));
         }
     }
-    if replaced.iter().any(|(_, new)| state.session.as_filed().preset.stack.get(&new.name).is_some()) {
+    if replaced.iter().any(|(_, new)| {
+        state
+            .session
+            .as_filed()
+            .preset
+            .stack
+            .get(&new.name)
+            .is_some()
+    }) {
         recheck_golden(state);
     }
     warn_of_other_file(state);
@@ -192,22 +281,53 @@ fn recheck_golden(state: &mut State) {
 
 /// A file whose name another file has, in a folder that is searched later, cannot be enabled.
 fn warn_of_other_file(state: &mut State) {
-    let Some(Waiting { path, .. }) = state.files.live.enable.clone() else { return };
-    let Some(name) = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()) else { return };
-    let other = state.session.preset_file.effects.custom().find(|(known, _)| *known == name).map(|(_, effect)| effect.path.clone());
+    let Some(Waiting { path, .. }) = state.files.live.enable.clone() else {
+        return;
+    };
+    let Some(name) = path
+        .file_stem()
+        .map(|stem| stem.to_string_lossy().into_owned())
+    else {
+        return;
+    };
+    let other = state
+        .session
+        .preset_file
+        .effects
+        .custom()
+        .find(|(known, _)| *known == name)
+        .map(|(_, effect)| effect.path.clone());
     if let Some(other) = other.filter(|other| other.as_deref() != Some(&path)) {
         state.files.live.enable = None;
-        let place = other.map_or_else(|| "the one inside the preset".into(), |other| other.display().to_string());
-        state.notify(Level::Warning, format!("{}: {place} has the same name and is used instead", path.display()));
+        let place = other.map_or_else(
+            || "the one inside the preset".into(),
+            |other| other.display().to_string(),
+        );
+        state.notify(
+            Level::Warning,
+            format!(
+                "{}: {place} has the same name and is used instead",
+                path.display()
+            ),
+        );
     }
 }
 
 /// Enables the effect of a new or dropped file when it has been read.
 fn enable_waiting(state: &mut State) {
-    let Some(Waiting { path, replaces }) = &state.files.live.enable else { return };
+    let Some(Waiting { path, replaces }) = &state.files.live.enable else {
+        return;
+    };
     let (path, replaces) = (path.as_path(), replaces.clone());
-    let found = state.session.preset_file.effects.custom().find(|(_, effect)| effect.path.as_deref() == Some(path));
-    let Some(effect) = found.and_then(|(_, effect)| effect.read.as_ref().ok().cloned()) else { return };
+    let found = state
+        .session
+        .preset_file
+        .effects
+        .custom()
+        .find(|(_, effect)| effect.path.as_deref() == Some(path));
+    let Some(effect) = found.and_then(|(_, effect)| effect.read.as_ref().ok().cloned()) else {
+        return;
+    };
     state.files.live.enable = None;
     state.history.close();
     let edit = match replaces.filter(|old| state.session.preset().stack.get(&old.name).is_some()) {
@@ -221,22 +341,44 @@ fn enable_waiting(state: &mut State) {
 
 /// Adds the folder of an effect file to those that are watched, and enables the effect.
 pub fn add_effect_file(state: &mut State, path: &Path) {
-    let Ok(path) = std::path::absolute(path) else { return };
+    let Ok(path) = std::path::absolute(path) else {
+        return;
+    };
     if !path.is_file() {
-        return state.notify(Level::Error, format!("{}: there is no such file", path.display()));
+        return state.notify(
+            Level::Error,
+            format!("{}: there is no such file", path.display()),
+        );
     }
     let watched = state.files.live.watcher.targets();
-    let folders = watched.effect_folders.iter().cloned().chain(watched.preset_effects());
+    let folders = watched
+        .effect_folders
+        .iter()
+        .cloned()
+        .chain(watched.preset_effects());
     // A folder that is watched already may be written in another way.
-    let known = folders.into_iter().find(|folder| std::path::absolute(folder).ok().as_deref() == path.parent());
-    let folder = known.clone().or_else(|| path.parent().map(Path::to_owned)).unwrap_or_default();
+    let known = folders
+        .into_iter()
+        .find(|folder| std::path::absolute(folder).ok().as_deref() == path.parent());
+    let folder = known
+        .clone()
+        .or_else(|| path.parent().map(Path::to_owned))
+        .unwrap_or_default();
     if known.is_none() {
         state.files.folders.effect_folders.push(folder.clone());
     }
-    state.files.live.enable = path.file_name().map(|name| Waiting { path: folder.join(name), replaces: None });
+    state.files.live.enable = path.file_name().map(|name| Waiting {
+        path: folder.join(name),
+        replaces: None,
+    });
 }
 
-fn preset_changed(state: &mut State, panels: &mut Panels, path: &PathBuf, read: Result<Box<PresetFile>, String>) {
+fn preset_changed(
+    state: &mut State,
+    panels: &mut Panels,
+    path: &PathBuf,
+    read: Result<Box<PresetFile>, String>,
+) {
     if state.session.preset_file.path.as_ref() != Some(path) {
         return;
     }
@@ -256,21 +398,31 @@ fn preset_changed(state: &mut State, panels: &mut Panels, path: &PathBuf, read: 
     }
 }
 
-/// Makes the open preset what its file has now; asks first if that brings code that has not been allowed.
+/// Makes the open preset what its file has now; asks first if that brings code that has not been
+/// allowed.
 pub fn offer_preset(state: &mut State, panels: &mut Panels, theirs: Box<PresetFile>) {
-    if state.files.trust.allows(&theirs, &state.files.folders.effects) {
+    if state
+        .files
+        .trust
+        .allows(&theirs, &state.files.folders.effects)
+    {
         take_preset(state, panels, *theirs);
     } else {
         panels.dialogs.ask_code(theirs, CodeUse::Reload);
     }
 }
 
-/// Makes the open preset what it and `theirs`, its file as it is now, have both, as a separate undo step.
+/// Makes the open preset what it and `theirs`, its file as it is now, have both, as a separate undo
+/// step.
 pub fn merge_preset(state: &mut State, theirs: PresetFile) {
     state.observe(false);
     state.history.close();
     let title = theirs.title().to_owned();
-    let merged = preset_file::merge(&state.session.as_filed().preset, state.session.preset(), &theirs.preset);
+    let merged = preset_file::merge(
+        &state.session.as_filed().preset,
+        state.session.preset(),
+        &theirs.preset,
+    );
     let mut theirs = theirs;
     theirs.effects = theirs.effects.joined(&state.session.preset_file.effects);
     state.session.reload(theirs);
@@ -280,9 +432,15 @@ pub fn merge_preset(state: &mut State, theirs: PresetFile) {
     let kept = if merged.conflicts.is_empty() {
         String::new()
     } else {
-        format!("; both had changed {}, which keep your values", merged.conflicts.join(", "))
+        format!(
+            "; both had changed {}, which keep your values",
+            merged.conflicts.join(", ")
+        )
     };
-    state.notify(Level::Info, format!("Merged your changes of {title} with those of its file{kept}"));
+    state.notify(
+        Level::Info,
+        format!("Merged your changes of {title} with those of its file{kept}"),
+    );
 }
 
 /// Makes the open preset what its file has now, as a separate undo step.
@@ -330,10 +488,16 @@ pub fn model_reloaded(state: &mut State, key: &SceneKey, outcome: Result<(), &st
 }
 
 fn shaders_changed(state: &mut State, panels: &mut Panels) {
-    let Some(inputs) = state.picture.screen.requested().cloned() else { return use_shaders(state, panels) };
+    let Some(inputs) = state.picture.screen.requested().cloned() else {
+        return use_shaders(state, panels);
+    };
     let number = state.files.live.request();
     state.files.live.compiling_shaders = Some(number);
-    state.jobs.compile(state.picture.screen.gpu.clone(), inputs, Reload::Shaders(number));
+    state.jobs.compile(
+        state.picture.screen.gpu.clone(),
+        inputs,
+        Reload::Shaders(number),
+    );
 }
 
 fn use_shaders(state: &mut State, panels: &mut Panels) {

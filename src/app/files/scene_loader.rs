@@ -1,4 +1,5 @@
-//! Scene loader: the scene that is shown, the one that is loading, and recent ones that are kept in memory.
+//! Scene loader: the scene that is shown, the one that is loading, and recent ones that are kept in
+//! memory.
 
 use std::{collections::VecDeque, sync::Arc};
 
@@ -9,7 +10,8 @@ use crate::{
     work::{Progress, Work},
 };
 
-/// Identifies a scene: its source, with the path of a model as it is read, the room round it, and the ground under it.
+/// Identifies a scene: its source, with the path of a model as it is read, the room round it, and
+/// the ground under it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneKey {
     pub source: SceneSource,
@@ -20,7 +22,11 @@ pub struct SceneKey {
 
 impl SceneKey {
     pub fn of(preset_file: &PresetFile) -> Self {
-        Self { source: preset_file.scene_source(), room: preset_file.preset.room, ground: preset_file.preset.ground }
+        Self {
+            source: preset_file.scene_source(),
+            room: preset_file.preset.room,
+            ground: preset_file.preset.ground,
+        }
     }
 }
 
@@ -44,7 +50,10 @@ impl SceneLoader {
 
     /// The shown scene, if it is the one of `key`.
     pub fn shown_for(&self, key: &SceneKey) -> Option<&Arc<Scene>> {
-        self.shown.as_ref().filter(|(shown, _)| shown == key).map(|(_, scene)| scene)
+        self.shown
+            .as_ref()
+            .filter(|(shown, _)| shown == key)
+            .map(|(_, scene)| scene)
     }
 
     pub fn is_loading(&self) -> bool {
@@ -68,14 +77,20 @@ impl SceneLoader {
         self.failed.is_some()
     }
 
-    /// Shows the scene of `key` if it is in memory. Otherwise returns the work of loading it the first time, which the caller starts.
+    /// Shows the scene of `key` if it is in memory. Otherwise returns the work of loading it the
+    /// first time, which the caller starts.
     pub fn request(&mut self, key: &SceneKey) -> Option<Arc<Work>> {
         if self.shown_for(key).is_some() {
             self.failed = None;
         } else if let Some(found) = self.recent.iter().find(|(recent, _)| recent == key) {
             self.shown = Some(found.clone());
             self.failed = None;
-        } else if self.loading.as_ref().is_none_or(|(loading, _)| loading != key) && self.failed.as_ref() != Some(key) {
+        } else if self
+            .loading
+            .as_ref()
+            .is_none_or(|(loading, _)| loading != key)
+            && self.failed.as_ref() != Some(key)
+        {
             return Some(self.begin(key));
         }
         None
@@ -94,14 +109,21 @@ impl SceneLoader {
 
     /// The scene of `key`, if it is in memory.
     pub fn get(&self, key: &SceneKey) -> Option<&Arc<Scene>> {
-        let recent = || self.recent.iter().find(|(recent, _)| recent == key).map(|(_, scene)| scene);
+        let recent = || {
+            self.recent
+                .iter()
+                .find(|(recent, _)| recent == key)
+                .map(|(_, scene)| scene)
+        };
         self.shown_for(key).or_else(recent)
     }
 
     /// The box of a scene that is in memory, without ground and room.
     pub fn bounds(&self, source: &SceneSource) -> Option<Bounds> {
         let mut known = self.shown.iter().chain(&self.recent);
-        known.find(|(key, _)| key.source == *source).map(|(_, scene)| scene.content_bounds())
+        known
+            .find(|(key, _)| key.source == *source)
+            .map(|(_, scene)| scene.content_bounds())
     }
 
     /// True if the scene of `key` is shown or cannot be loaded.
@@ -114,7 +136,8 @@ impl SceneLoader {
         self.loading.take_if(|(loading, _)| loading == key);
     }
 
-    /// Loads the scene of `key` again, since its file has changed; the caller starts the work. What is shown stays until it has loaded.
+    /// Loads the scene of `key` again, since its file has changed; the caller starts the work. What
+    /// is shown stays until it has loaded.
     pub fn reload(&mut self, key: &SceneKey) -> Arc<Work> {
         self.recent.retain(|(recent, _)| recent != key);
         self.failed = None;
@@ -145,7 +168,12 @@ impl SceneLoader {
             bytes += scene.byte_count();
             bytes <= budget.decoded()
         };
-        let kept = self.recent.iter().take(MAX_RECENT).take_while(|recent| fits(recent)).count();
+        let kept = self
+            .recent
+            .iter()
+            .take(MAX_RECENT)
+            .take_while(|recent| fits(recent))
+            .count();
         self.recent.truncate(kept.max(1));
     }
 }
@@ -153,7 +181,11 @@ impl SceneLoader {
 /// What a preset calls a clip: its name, or its index where an earlier clip has the same name.
 pub fn clip_id(scene: &Scene, index: usize) -> String {
     let name = &scene.rig.clips[index].name;
-    if scene.rig.clip(name) == Some(index) { name.clone() } else { format!("#{index}") }
+    if scene.rig.clip(name) == Some(index) {
+        name.clone()
+    } else {
+        format!("#{index}")
+    }
 }
 
 #[cfg(test)]
@@ -161,22 +193,39 @@ mod tests {
     use super::*;
 
     fn key(query: &str) -> SceneKey {
-        SceneKey { source: SceneSource::Builtin(query.into()), room: 0.0, ground: None }
+        SceneKey {
+            source: SceneSource::Builtin(query.into()),
+            room: 0.0,
+            ground: None,
+        }
     }
 
     #[test]
     fn recent_scenes_stay_within_the_memory_budget() {
         let mib = 1 << 20;
-        let scene = |mib_of_vertices: usize| Some(Arc::new(Scene { vertex_bytes: vec![0; mib_of_vertices * mib], ..Scene::default() }));
+        let scene = |mib_of_vertices: usize| {
+            Some(Arc::new(Scene {
+                vertex_bytes: vec![0; mib_of_vertices * mib],
+                ..Scene::default()
+            }))
+        };
         let mut loader = SceneLoader::default();
         for (name, size) in [("a", 200), ("b", 0), ("c", 200), ("d", 200)] {
             loader.arrived(key(name), scene(size));
         }
         loader.forget(MemoryBudget::LEAST);
-        assert_eq!(["a", "b", "c", "d"].map(|name| loader.has(&key(name))), [false, true, true, true], "512 MiB of scenes are kept");
+        assert_eq!(
+            ["a", "b", "c", "d"].map(|name| loader.has(&key(name))),
+            [false, true, true, true],
+            "512 MiB of scenes are kept"
+        );
         loader.arrived(key("e"), scene(600));
         loader.forget(MemoryBudget::LEAST);
-        assert_eq!(["d", "e"].map(|name| loader.has(&key(name))), [false, true], "the newest is kept however large it is");
+        assert_eq!(
+            ["d", "e"].map(|name| loader.has(&key(name))),
+            [false, true],
+            "the newest is kept however large it is"
+        );
     }
 
     #[test]
@@ -188,6 +237,9 @@ mod tests {
         assert!(work.is_canceled() && !loader.is_loading() && loader.cancel().is_none());
         loader.arrived(key("a"), None);
         assert!(loader.has_failed() && loader.request(&key("a")).is_none());
-        assert!(!loader.reload(&key("a")).is_canceled(), "opening it again loads it");
+        assert!(
+            !loader.reload(&key("a")).is_canceled(),
+            "opening it again loads it"
+        );
     }
 }

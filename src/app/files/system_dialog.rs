@@ -1,4 +1,5 @@
-//! The system's file dialog. Some desktops have none: then it says so, and the dialog of the window serves.
+//! The system's file dialog. Some desktops have none: then it says so, and the dialog of the window
+//! serves.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +18,11 @@ pub enum Answer {
 /// File types that a dialog offers.
 pub fn extensions(purpose: Purpose) -> Vec<&'static str> {
     match purpose {
-        Purpose::Open => ["toml"].into_iter().chain(MODEL_FORMATS.iter().map(|format| format.extension)).chain(["png", "wgsl"]).collect(),
+        Purpose::Open => ["toml"]
+            .into_iter()
+            .chain(MODEL_FORMATS.iter().map(|format| format.extension))
+            .chain(["png", "wgsl"])
+            .collect(),
         Purpose::SaveAs => vec!["toml"],
         Purpose::Export => vec!["png"],
     }
@@ -38,13 +43,22 @@ pub fn may_exist() -> bool {
     }
     let variable = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
     let has_bus = variable("DBUS_SESSION_BUS_ADDRESS").is_some()
-        || variable("XDG_RUNTIME_DIR").is_some_and(|folder| Path::new(&folder).join("bus").exists());
-    has_bus || variable("PATH").is_some_and(|path| std::env::split_paths(&path).any(|folder| folder.join("zenity").is_file()))
+        || variable("XDG_RUNTIME_DIR")
+            .is_some_and(|folder| Path::new(&folder).join("bus").exists());
+    has_bus
+        || variable("PATH").is_some_and(|path| {
+            std::env::split_paths(&path).any(|folder| folder.join("zenity").is_file())
+        })
 }
 
 /// The dialog, beginning at `start`; what it returns shows it and waits for its end.
 pub fn prepare(purpose: Purpose, start: &Path) -> impl FnOnce() -> Answer + Send + 'static {
-    let show = desktop_dialog::prepare(types_name(purpose), &extensions(purpose), start, purpose == Purpose::Open);
+    let show = desktop_dialog::prepare(
+        types_name(purpose),
+        &extensions(purpose),
+        start,
+        purpose == Purpose::Open,
+    );
     move || match show() {
         Ok(Some(path)) => Answer::Chosen(path),
         Ok(None) => Answer::Canceled,

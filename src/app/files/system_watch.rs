@@ -15,20 +15,27 @@ mod native {
     pub struct SystemWatch(RecommendedWatcher);
 
     impl SystemWatch {
-        /// None where the system has no watches. `changed` is told which paths have changed, or none where that is not known.
+        /// None where the system has no watches. `changed` is told which paths have changed, or
+        /// none where that is not known.
         pub fn new(changed: impl Fn(Option<&[PathBuf]>) + Send + 'static) -> Option<Self> {
-            let watcher = notify::recommended_watcher(move |event: notify::Result<notify::Event>| match event {
-                // Reading a file is an event, too, and would never end.
-                Ok(event) if event.kind.is_access() => {}
-                Ok(event) => changed(Some(&event.paths)),
-                Err(_) => changed(None),
-            });
+            let watcher = notify::recommended_watcher(
+                move |event: notify::Result<notify::Event>| match event {
+                    // Reading a file is an event, too, and would never end.
+                    Ok(event) if event.kind.is_access() => {}
+                    Ok(event) => changed(Some(&event.paths)),
+                    Err(_) => changed(None),
+                },
+            );
             watcher.ok().map(Self)
         }
 
         /// Watches a folder, with those inside it or alone; true if it can.
         pub fn watch(&mut self, folder: &Path, is_deep: bool) -> bool {
-            let mode = if is_deep { RecursiveMode::Recursive } else { RecursiveMode::NonRecursive };
+            let mode = if is_deep {
+                RecursiveMode::Recursive
+            } else {
+                RecursiveMode::NonRecursive
+            };
             self.0.watch(folder, mode).is_ok()
         }
 

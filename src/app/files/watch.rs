@@ -1,5 +1,5 @@
-//! Watching files: a thread that reads effects, the open preset, the model and shaders again when they change on disk. It reads,
-//! checks and compares, so the window only takes results.
+//! Watching files: a thread that reads effects, the open preset, the model and shaders again when
+//! they change on disk. It reads, checks and compares, so the window only takes results.
 
 use std::{
     path::{Path, PathBuf},
@@ -15,7 +15,8 @@ use crate::{
     preset_file::{self, MODEL_FORMATS, ModelFormat, PresetFile},
 };
 
-/// Files are read when nothing has changed for this long: an editor may write a file in several steps.
+/// Files are read when nothing has changed for this long: an editor may write a file in several
+/// steps.
 const DEBOUNCE: Duration = Duration::from_millis(50);
 
 /// How often folders are looked at that the system does not watch, or that do not exist yet.
@@ -23,8 +24,13 @@ const POLL: Duration = Duration::from_secs(1);
 
 /// Do files of this extension matter?
 fn is_watched(extension: &str) -> bool {
-    let models = MODEL_FORMATS.iter().flat_map(|format| format.beside.iter().chain([&format.extension]));
-    ["wgsl", "toml"].iter().chain(models).any(|known| extension.eq_ignore_ascii_case(known))
+    let models = MODEL_FORMATS
+        .iter()
+        .flat_map(|format| format.beside.iter().chain([&format.extension]));
+    ["wgsl", "toml"]
+        .iter()
+        .chain(models)
+        .any(|known| extension.eq_ignore_ascii_case(known))
 }
 
 /// What is watched.
@@ -44,9 +50,13 @@ impl Targets {
     /// Folders that are watched, each with whether those inside it are too.
     fn folders(&self) -> Vec<(PathBuf, bool)> {
         let beside = self.preset_effects();
-        let files = [&self.preset, &self.model].into_iter().flatten().map(|file| folder_of(file).to_owned());
+        let files = [&self.preset, &self.model]
+            .into_iter()
+            .flatten()
+            .map(|file| folder_of(file).to_owned());
         let effects = self.effect_folders.iter().cloned().chain(beside);
-        let mut folders: Vec<(PathBuf, bool)> = effects.chain(files).map(|folder| (folder, false)).collect();
+        let mut folders: Vec<(PathBuf, bool)> =
+            effects.chain(files).map(|folder| (folder, false)).collect();
         folders.extend(self.shaders.iter().map(|folder| (folder.clone(), true)));
         folders.sort();
         folders.dedup_by(|later, earlier| {
@@ -60,7 +70,9 @@ impl Targets {
 
     /// The folder of effects beside the preset.
     pub fn preset_effects(&self) -> Option<PathBuf> {
-        self.preset.as_ref().map(|preset| preset.with_file_name("effects"))
+        self.preset
+            .as_ref()
+            .map(|preset| preset.with_file_name("effects"))
     }
 }
 
@@ -73,7 +85,8 @@ pub enum Change {
     Shaders,
 }
 
-/// The effects as their files have them now. In both catalogs a faulty file has its last good effect, if there was one.
+/// The effects as their files have them now. In both catalogs a faulty file has its last good
+/// effect, if there was one.
 #[derive(Clone, PartialEq)]
 pub struct Effects {
     /// For every preset.
@@ -112,7 +125,11 @@ impl Watcher {
         if let Err(error) = std::thread::Builder::new().name("watch".into()).spawn(work) {
             eprintln!("rasterlab: no thread could be started, so files are not watched: {error}");
         }
-        Self { sender, changes, targets: Targets::default() }
+        Self {
+            sender,
+            changes,
+            targets: Targets::default(),
+        }
     }
 
     /// Watches `targets` and nothing else.
@@ -158,7 +175,11 @@ impl Reader {
         Self {
             targets: Targets::default(),
             report,
-            effects: Effects { shared: known.clone(), open: known, faults: Vec::new() },
+            effects: Effects {
+                shared: known.clone(),
+                open: known,
+                faults: Vec::new(),
+            },
             preset: None,
             model: Vec::new(),
             shaders: Vec::new(),
@@ -172,7 +193,11 @@ impl Reader {
         let mut watched = Watched::new(events.clone());
         let mut is_stale = false;
         loop {
-            let wait = if is_stale { Some(DEBOUNCE) } else { watched.is_incomplete().then_some(POLL) };
+            let wait = if is_stale {
+                Some(DEBOUNCE)
+            } else {
+                watched.is_incomplete().then_some(POLL)
+            };
             let message = match wait {
                 Some(wait) => messages.recv_timeout(wait),
                 None => messages.recv().map_err(|_| RecvTimeoutError::Disconnected),
@@ -217,15 +242,27 @@ impl Reader {
     }
 
     fn read_effects(&mut self) -> bool {
-        let (folders, beside) = (self.targets.effect_folders.clone(), self.targets.preset_effects());
+        let (folders, beside) = (
+            self.targets.effect_folders.clone(),
+            self.targets.preset_effects(),
+        );
         let folders = || folders.iter().map(PathBuf::as_path);
         let known = self.effects.open.joined(&self.effects.shared);
         let shared = known.reread(folders());
-        let open = known.joined(&shared).reread(folders().chain(beside.as_deref()));
+        let open = known
+            .joined(&shared)
+            .reread(folders().chain(beside.as_deref()));
         let faults = |catalog: &Catalog| -> Vec<(String, EffectError)> {
-            catalog.custom().filter_map(|(name, effect)| Some((name.to_owned(), effect.read.clone().err()?))).collect()
+            catalog
+                .custom()
+                .filter_map(|(name, effect)| Some((name.to_owned(), effect.read.clone().err()?)))
+                .collect()
         };
-        let effects = Effects { faults: faults(&open), shared: shared.or_last_good(&known), open: open.or_last_good(&known) };
+        let effects = Effects {
+            faults: faults(&open),
+            shared: shared.or_last_good(&known),
+            open: open.or_last_good(&known),
+        };
         let is_new = std::mem::take(&mut self.is_new);
         if effects == self.effects && !is_new {
             return true;
@@ -235,9 +272,14 @@ impl Reader {
     }
 
     fn read_preset(&mut self) -> bool {
-        let Some(path) = self.targets.preset.clone() else { return true };
-        // A file that is gone for a moment is being written; one that is gone for good leaves the preset open.
-        let Ok(bytes) = std::fs::read(&path) else { return true };
+        let Some(path) = self.targets.preset.clone() else {
+            return true;
+        };
+        // A file that is gone for a moment is being written; one that is gone for good leaves the
+        // preset open.
+        let Ok(bytes) = std::fs::read(&path) else {
+            return true;
+        };
         match &self.preset {
             // As it was when it was opened.
             None => {
@@ -247,14 +289,23 @@ impl Reader {
             Some((read, false)) if *read == bytes => return true,
             Some(_) => {}
         }
-        let read = preset_file::load_with(&path, &self.effects.open).map(Box::new).map_err(|error| error.to_string());
+        let read = preset_file::load_with(&path, &self.effects.open)
+            .map(Box::new)
+            .map_err(|error| error.to_string());
         self.preset = Some((bytes, read.is_err()));
         (self.report)(Change::Preset(path, read))
     }
 
     fn read_model(&mut self) -> bool {
         let stamps = model_stamps(&self.targets);
-        let Some(path) = self.targets.model.clone().filter(|path| stamps != self.model && path.is_file()) else { return true };
+        let Some(path) = self
+            .targets
+            .model
+            .clone()
+            .filter(|path| stamps != self.model && path.is_file())
+        else {
+            return true;
+        };
         self.model = stamps;
         (self.report)(Change::Model(path))
     }
@@ -269,8 +320,15 @@ impl Reader {
     }
 
     fn all_stamps(&self) -> Vec<Stamp> {
-        let effects = self.targets.effect_folders.iter().cloned().chain(self.targets.preset_effects());
-        let mut stamps: Vec<Stamp> = effects.flat_map(|folder| stamps_in(&folder, &["wgsl"], false)).collect();
+        let effects = self
+            .targets
+            .effect_folders
+            .iter()
+            .cloned()
+            .chain(self.targets.preset_effects());
+        let mut stamps: Vec<Stamp> = effects
+            .flat_map(|folder| stamps_in(&folder, &["wgsl"], false))
+            .collect();
         stamps.extend(self.targets.preset.as_deref().and_then(stamp));
         stamps.extend(model_stamps(&self.targets));
         stamps.extend(shader_stamps(&self.targets));
@@ -297,20 +355,31 @@ impl Watched {
                 let _ = events.send(Message::Event);
             }
         });
-        Self { system, folders: Vec::new() }
+        Self {
+            system,
+            folders: Vec::new(),
+        }
     }
 
     fn set(&mut self, folders: Vec<(PathBuf, bool)>) {
         if let Some(system) = &mut self.system {
-            self.folders.iter().filter(|(_, _, is_watched)| *is_watched).for_each(|(folder, _, _)| system.unwatch(folder));
+            self.folders
+                .iter()
+                .filter(|(_, _, is_watched)| *is_watched)
+                .for_each(|(folder, _, _)| system.unwatch(folder));
         }
-        self.folders = folders.into_iter().map(|(folder, is_deep)| (folder, is_deep, false)).collect();
+        self.folders = folders
+            .into_iter()
+            .map(|(folder, is_deep)| (folder, is_deep, false))
+            .collect();
         self.retry();
     }
 
     /// Watches the folders that are not watched, where that is possible now.
     fn retry(&mut self) {
-        let Some(system) = &mut self.system else { return };
+        let Some(system) = &mut self.system else {
+            return;
+        };
         for (folder, is_deep, is_watched) in &mut self.folders {
             if *is_watched && !folder.is_dir() {
                 *is_watched = false; // The system forgets a folder that is removed.
@@ -327,21 +396,34 @@ impl Watched {
 }
 
 fn folder_of(file: &Path) -> &Path {
-    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+    file.parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."))
 }
 
 fn stamp(path: &Path) -> Option<Stamp> {
-    let about = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?;
+    let about = std::fs::metadata(path)
+        .ok()
+        .filter(std::fs::Metadata::is_file)?;
     Some((path.to_owned(), about.len(), about.modified().ok()))
 }
 
 /// Stamps of the files of a folder with one of these extensions, sorted by path.
 fn stamps_in(folder: &Path, extensions: &[&str], is_deep: bool) -> Vec<Stamp> {
     let mut stamps = Vec::new();
-    for path in std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
+    for path in std::fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|entry| entry.path())
+    {
         if is_deep && path.is_dir() {
             stamps.extend(stamps_in(&path, extensions, true));
-        } else if path.extension().is_some_and(|extension| extensions.iter().any(|known| extension.eq_ignore_ascii_case(known))) {
+        } else if path.extension().is_some_and(|extension| {
+            extensions
+                .iter()
+                .any(|known| extension.eq_ignore_ascii_case(known))
+        }) {
             stamps.extend(stamp(&path));
         }
     }
@@ -351,7 +433,9 @@ fn stamps_in(folder: &Path, extensions: &[&str], is_deep: bool) -> Vec<Stamp> {
 
 /// The model, and the files beside it that it may refer to.
 fn model_stamps(targets: &Targets) -> Vec<Stamp> {
-    let Some(model) = &targets.model else { return Vec::new() };
+    let Some(model) = &targets.model else {
+        return Vec::new();
+    };
     let mut stamps: Vec<Stamp> = stamp(model).into_iter().collect();
     if let Some(format) = ModelFormat::of(model).filter(|format| !format.beside.is_empty()) {
         stamps.extend(stamps_in(folder_of(model), format.beside, false));
@@ -360,5 +444,8 @@ fn model_stamps(targets: &Targets) -> Vec<Stamp> {
 }
 
 fn shader_stamps(targets: &Targets) -> Vec<Stamp> {
-    targets.shaders.as_ref().map_or(Vec::new(), |folder| stamps_in(folder, &["wgsl"], true))
+    targets
+        .shaders
+        .as_ref()
+        .map_or(Vec::new(), |folder| stamps_in(folder, &["wgsl"], true))
 }

@@ -1,12 +1,14 @@
-//! Background work: pools of their own for the oracle's pictures, and threads that leave the processor to all others.
+//! Background work: pools of their own for the oracle's pictures, and threads that leave the
+//! processor to all others.
 //!
-//! The window's thread uses the common pool for moments (a pick, the image of an overlay). A picture of the oracle there would keep it
-//! waiting, for seconds with a large one.
+//! The window's thread uses the common pool for moments (a pick, the image of an overlay). A
+//! picture of the oracle there would keep it waiting, for seconds with a large one.
 
 use rayon::ThreadPoolBuilder;
 
-/// From now on this thread, and every thread that it starts, leaves the processor to all others: for work that may take any time. Drivers
-/// start threads, too: a device that is opened afterwards is as patient. On Linux alone; other systems with a CPU adapter are rare.
+/// From now on this thread, and every thread that it starts, leaves the processor to all others:
+/// for work that may take any time. Drivers start threads, too: a device that is opened afterwards
+/// is as patient. On Linux alone; other systems with a CPU adapter are rare.
 pub fn yield_processor() {
     // Refused only by a sandbox; then it is as urgent as before.
     #[cfg(target_os = "linux")]
@@ -15,10 +17,13 @@ pub fn yield_processor() {
 
 /// Runs `work` in a pool of its own and waits for it; never on the thread of the window.
 ///
-/// In a pool that all work shares, a thread that waits for the parts of one picture takes up other work meanwhile; that work may wait for a
-/// lock which the same thread holds.
+/// In a pool that all work shares, a thread that waits for the parts of one picture takes up other
+/// work meanwhile; that work may wait for a lock which the same thread holds.
 pub fn compute<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    match ThreadPoolBuilder::new().thread_name(|i| format!("background {i}")).build() {
+    match ThreadPoolBuilder::new()
+        .thread_name(|i| format!("background {i}"))
+        .build()
+    {
         Ok(pool) => pool.install(work),
         Err(_) => work(),
     }
@@ -52,11 +57,20 @@ mod tests {
                 });
             }
             for _ in 0..2 * threads {
-                release.1.recv_timeout(Duration::from_secs(20)).expect("it begins");
+                release
+                    .1
+                    .recv_timeout(Duration::from_secs(20))
+                    .expect("it begins");
             }
             let begun = Instant::now();
-            let threads: Vec<ThreadId> = (0..1000).into_par_iter().map(|_| std::thread::current().id()).collect();
-            assert!(threads.len() == 1000 && begun.elapsed() < Duration::from_secs(10), "the common pool waits for the background");
+            let threads: Vec<ThreadId> = (0..1000)
+                .into_par_iter()
+                .map(|_| std::thread::current().id())
+                .collect();
+            assert!(
+                threads.len() == 1000 && begun.elapsed() < Duration::from_secs(10),
+                "the common pool waits for the background"
+            );
             drop(held);
         });
     }
@@ -70,14 +84,19 @@ mod tests {
             std::thread::spawn(move || {
                 for _ in 0..20 {
                     compute(|| {
-                        *lock.lock().expect("a lock") += (0..1000).into_par_iter().map(|i: u64| std::hint::black_box(i) % 2).sum::<u64>()
+                        *lock.lock().expect("a lock") += (0..1000)
+                            .into_par_iter()
+                            .map(|i: u64| std::hint::black_box(i) % 2)
+                            .sum::<u64>()
                     });
                 }
                 let _ = end.send(());
             });
         }
         for _ in 0..8 {
-            ended.recv_timeout(Duration::from_secs(60)).expect("the work ends");
+            ended
+                .recv_timeout(Duration::from_secs(60))
+                .expect("the work ends");
         }
         assert_eq!(*lock.lock().expect("a lock"), 8 * 20 * 500);
     }

@@ -1,4 +1,5 @@
-//! Computing: how much work keeps the processor busy beside the window. A picture that is measured meanwhile would seem slow.
+//! Computing: how much work keeps the processor busy beside the window. A picture that is measured
+//! meanwhile would seem slow.
 
 use std::sync::{
     Arc,

@@ -1,4 +1,5 @@
-//! Films that the window exports: what is asked for, how far it is, and the work of drawing it on a device of its own.
+//! Films that the window exports: what is asked for, how far it is, and the work of drawing it on a
+//! device of its own.
 
 use std::{
     path::{Path, PathBuf},
@@ -16,7 +17,8 @@ use web_time::Instant;
 use crate::{
     accuracy::RenderScale,
     film::{
-        Container, Film, FilmError, FrameJob, Observer, Outputs, Painter, Production, Schedule, Times, Turntable, VideoTarget, frame_paths,
+        Container, Film, FilmError, FrameJob, Observer, Outputs, Painter, Production, Schedule,
+        Times, Turntable, VideoTarget, frame_paths,
     },
     frame::Frame,
     gpu::{Gpu, RenderError, Renderer, device::AdapterChoice},
@@ -36,8 +38,13 @@ pub enum Format {
 }
 
 impl Format {
-    pub const ALL: [Self; 5] =
-        [Self::Frames, Self::Apng, Self::Video(Container::Mp4), Self::Video(Container::Webm), Self::Video(Container::Gif)];
+    pub const ALL: [Self; 5] = [
+        Self::Frames,
+        Self::Apng,
+        Self::Video(Container::Mp4),
+        Self::Video(Container::Webm),
+        Self::Video(Container::Gif),
+    ];
 
     pub const fn name(self) -> &'static str {
         match self {
@@ -71,7 +78,9 @@ impl Format {
 
     /// `path` with the extension of this format; one of another format is replaced.
     pub fn named(self, path: &Path) -> PathBuf {
-        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+        let extension = path
+            .extension()
+            .map(|extension| extension.to_string_lossy().to_lowercase());
         match extension.as_deref() {
             Some(there) if there == self.extension() => path.to_owned(),
             Some("png" | "apng" | "mp4" | "webm" | "gif") => path.with_extension(self.extension()),
@@ -109,13 +118,22 @@ impl Request {
     /// # Errors
     /// The times or the rate cannot be.
     pub fn schedule(&self, clock: &Clock) -> Result<Schedule, FilmError> {
-        let times = Times { from_s: Some(self.range_s[0]), to_s: Some(self.range_s[1]), fps: self.fps, frames: [None; 2] };
+        let times = Times {
+            from_s: Some(self.range_s[0]),
+            to_s: Some(self.range_s[1]),
+            fps: self.fps,
+            frames: [None; 2],
+        };
         Schedule::new(&times, clock, "")
     }
 
     /// The files of `schedule`'s frames; empty unless the film is written as frames.
     pub fn frame_paths(&self, schedule: &Schedule) -> Vec<PathBuf> {
-        if self.format == Format::Frames { frame_paths(&self.path, schedule.frames.clone(), schedule.total) } else { Vec::new() }
+        if self.format == Format::Frames {
+            frame_paths(&self.path, schedule.frames.clone(), schedule.total)
+        } else {
+            Vec::new()
+        }
     }
 }
 
@@ -172,7 +190,8 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Seconds until the film is done, from the time that its frames have taken; none before the first is drawn.
+    /// Seconds until the film is done, from the time that its frames have taken; none before the
+    /// first is drawn.
     pub fn left_s(&self) -> Option<f64> {
         let since = self.since.filter(|_| self.drawn > 0)?;
         Some(left_s(since.elapsed(), self.drawn, self.to_draw))
@@ -198,11 +217,14 @@ impl Progress {
     }
 
     fn counts(&self) -> MutexGuard<'_, Counts> {
-        self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+        self.state
+            .lock()
+            .unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 }
 
-/// Draws the frames of a film on a device of its own, so that the window's pictures do not wait behind them.
+/// Draws the frames of a film on a device of its own, so that the window's pictures do not wait
+/// behind them.
 struct Studio {
     renderer: Renderer,
     gpu: Arc<Gpu>,
@@ -214,12 +236,19 @@ impl Painter for Studio {
     fn provenance(&self) -> Provenance {
         let summary = &self.gpu.summary;
         // As the command line says it: both make the same frames.
-        Provenance { adapter: summary.name.clone(), driver: format!("{} ({})", summary.driver, summary.backend) }
+        Provenance {
+            adapter: summary.name.clone(),
+            driver: format!("{} ({})", summary.driver, summary.backend),
+        }
     }
 
     fn paint(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Frame, Failure> {
         self.renderer.set_scene(scene).block_on()?;
-        Ok(self.renderer.capture_last(&preset.moments(scene, preset.output.size), &preset.accuracy).block_on()?.into_shown())
+        Ok(self
+            .renderer
+            .capture_last(&preset.moments(scene, preset.output.size), &preset.accuracy)
+            .block_on()?
+            .into_shown())
     }
 }
 
@@ -264,20 +293,37 @@ pub fn export(
     }
     let schedule = request.schedule(&preset.clock)?;
     let frames = request.frame_paths(&schedule);
-    let mut outputs = Outputs { frames, ..Outputs::default() };
+    let mut outputs = Outputs {
+        frames,
+        ..Outputs::default()
+    };
     match request.format {
         Format::Frames => {}
         Format::Apng => outputs.apng = Some(request.path.clone()),
         Format::Video(_) => outputs.video = Some(VideoTarget::new(&request.path, request.size)?),
     }
-    let film = Film::new(preset_file, scene, schedule, request.turntable).map_err(FilmError::from)?;
-    let gpu = Gpu::open(&AdapterChoice::Named(adapter)).block_on().map_err(|error| Failure::Other(error.to_string()))?;
-    let mut studio = Studio { renderer: Renderer::new(gpu.clone()), gpu };
+    let film =
+        Film::new(preset_file, scene, schedule, request.turntable).map_err(FilmError::from)?;
+    let gpu = Gpu::open(&AdapterChoice::Named(adapter))
+        .block_on()
+        .map_err(|error| Failure::Other(error.to_string()))?;
+    let mut studio = Studio {
+        renderer: Renderer::new(gpu.clone()),
+        gpu,
+    };
     let mut production = Production::begin(film, outputs, studio.provenance(), request.replaces)?;
     let (all, kept) = (production.jobs.len(), production.kept());
-    *progress.counts() = Counts { all, to_draw: all - kept, since: Some(Instant::now()), ..Counts::default() };
+    *progress.counts() = Counts {
+        all,
+        to_draw: all - kept,
+        since: Some(Instant::now()),
+        ..Counts::default()
+    };
     production.draw(&mut studio, &Counter { progress, ctx })?;
-    Ok(Finished { drawn: all - kept, kept })
+    Ok(Finished {
+        drawn: all - kept,
+        kept,
+    })
 }
 
 /// `2 min 5 s left`.
@@ -296,7 +342,8 @@ mod tests {
 
     #[test]
     fn a_file_has_the_extension_of_its_format() {
-        let named = |format: Format, path: &str| format.named(Path::new(path)).display().to_string();
+        let named =
+            |format: Format, path: &str| format.named(Path::new(path)).display().to_string();
         let mp4 = Format::Video(Container::Mp4);
         assert_eq!(named(mp4, "a/walk"), "a/walk.mp4");
         assert_eq!(named(mp4, "a/walk.v2"), "a/walk.v2.mp4");
@@ -309,6 +356,14 @@ mod tests {
     fn the_time_left_is_that_of_the_frames_to_come() {
         assert!((left_s(Duration::from_secs(10), 5, 20) - 30.0).abs() < 1e-9);
         assert_eq!(left_s(Duration::from_secs(10), 5, 5), 0.0);
-        assert_eq!([0.2, 59.5, 125.0, 7300.0].map(time_left_text), ["1 s left", "1 min 0 s left", "2 min 5 s left", "2 h 1 min left"]);
+        assert_eq!(
+            [0.2, 59.5, 125.0, 7300.0].map(time_left_text),
+            [
+                "1 s left",
+                "1 min 0 s left",
+                "2 min 5 s left",
+                "2 h 1 min left"
+            ]
+        );
     }
 }

@@ -12,16 +12,27 @@ use crate::app::{
         reload::{compiled, model_reloaded},
     },
     panels::Panels,
-    picture::{cells::CellOf, findings::Findings, measured::error_text, screen::Inputs, tier_times, verification::Verdict},
+    picture::{
+        cells::CellOf, findings::Findings, measured::error_text, screen::Inputs, tier_times,
+        verification::Verdict,
+    },
     shell::{command::Commands, log::Level, state::State},
 };
 
 /// Takes in the result of a job.
-pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, commands: &Commands, done: Done) {
+pub fn finish(
+    ctx: &egui::Context,
+    state: &mut State,
+    panels: &mut Panels,
+    commands: &Commands,
+    done: Done,
+) {
     match done {
         Done::Scene(key, Ok(scene)) => {
             for note in &scene.notes {
-                state.log.add(Level::Warning, format!("{}: {note}", scene.name));
+                state
+                    .log
+                    .add(Level::Warning, format!("{}: {note}", scene.name));
             }
             model_reloaded(state, &key, Ok(()));
             state.session.scenes.arrived(key.clone(), Some(scene));
@@ -46,18 +57,30 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
             }
         }
         Done::Trade(points) => {
-            let timed = points.as_ref().map_or(0, |points| points.iter().filter(|point| point.ms.is_some()).count());
+            let timed = points.as_ref().map_or(0, |points| {
+                points.iter().filter(|point| point.ms.is_some()).count()
+            });
             match panels.trade.arrived(points) {
                 Some(error) => state.log.add(Level::Error, error),
-                None if timed > 0 => state.log.add(Level::Info, format!("Trade: combinations measured: {timed}")),
+                None if timed > 0 => state.log.add(
+                    Level::Info,
+                    format!("Trade: combinations measured: {timed}"),
+                ),
                 None => {}
             }
         }
-        Done::Cell(CellOf::Sweep { number, index }, picture) => panels.sweep.arrived(ctx, (number, index), picture),
+        Done::Cell(CellOf::Sweep { number, index }, picture) => {
+            panels.sweep.arrived(ctx, (number, index), picture)
+        }
         Done::Cell(CellOf::Seed(seed), picture) => panels.randomize.arrived(ctx, seed, picture),
         Done::Thumbnail(id, image) => panels.browser.pictures.arrived(ctx, &id, image),
-        Done::ThumbnailOn(key, id, image) => panels.browser.pictures.on_model_arrived(ctx, &key, &id, image),
-        Done::EffectPicture(effect, image) => panels.browser.effects.picture_arrived(ctx, &effect, image),
+        Done::ThumbnailOn(key, id, image) => panels
+            .browser
+            .pictures
+            .on_model_arrived(ctx, &key, &id, image),
+        Done::EffectPicture(effect, image) => {
+            panels.browser.effects.picture_arrived(ctx, &effect, image)
+        }
         Done::Favorites(outcome) => {
             state.files.favorites.write_ended();
             match outcome {
@@ -65,7 +88,9 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
                 Err(error) => state.notify(Level::Error, error),
             }
         }
-        Done::Export(path, Ok(())) => state.notify(Level::Info, format!("Saved {}", path.display())),
+        Done::Export(path, Ok(())) => {
+            state.notify(Level::Info, format!("Saved {}", path.display()))
+        }
         Done::Film(progress, ended) => {
             if let Some((level, text)) = panels.film.arrived(&progress, ended) {
                 state.notify(level, text);
@@ -85,27 +110,53 @@ pub fn finish(ctx: &egui::Context, state: &mut State, panels: &mut Panels, comma
                 state.files.live.golden = check;
             }
         }
-        Done::EffectWritten(path, origin, outcome) => new_effect::written(state, path, origin, outcome),
+        Done::EffectWritten(path, origin, outcome) => {
+            new_effect::written(state, path, origin, outcome)
+        }
         Done::NoEditor(path, reason) => {
-            let text = format!("{} could not be opened in an editor: {reason}", path.display());
+            let text = format!(
+                "{} could not be opened in an editor: {reason}",
+                path.display()
+            );
             state.notify(Level::Warning, text);
         }
-        Done::Path(purpose, answer) => panels.dialogs.path_arrived(purpose, answer, &state.session.preset_file, commands),
+        Done::Path(purpose, answer) => {
+            panels
+                .dialogs
+                .path_arrived(purpose, answer, &state.session.preset_file, commands)
+        }
         Done::Folder(listing) => panels.dialogs.folder_arrived(listing),
         Done::Missing(files) => state.files.missing_files = files,
     }
 }
 
 /// Keeps the verdict of the oracle on `of`: for A, for B, or for both if they are the same picture.
-fn verdict(state: &mut State, panels: &mut Panels, of: Inputs, findings: Result<Option<Box<Findings>>, String>) {
+fn verdict(
+    state: &mut State,
+    panels: &mut Panels,
+    of: Inputs,
+    findings: Result<Option<Box<Findings>>, String>,
+) {
     match findings {
         // Overlays do not begin it again.
         Ok(None) => state.picture.verification.fail(of),
         Ok(Some(findings)) => {
-            state.log.add(Level::Info, format!("verified {}: {}", state.session.title(), error_text(&findings)));
-            let verdict = Verdict { of, findings: findings.into() };
+            state.log.add(
+                Level::Info,
+                format!(
+                    "verified {}: {}",
+                    state.session.title(),
+                    error_text(&findings)
+                ),
+            );
+            let verdict = Verdict {
+                of,
+                findings: findings.into(),
+            };
             tier_times::judge(state, &verdict);
-            if !panels.viewport.compare.take_verdict(&verdict) || state.picture.screen.requested() == Some(&verdict.of) {
+            if !panels.viewport.compare.take_verdict(&verdict)
+                || state.picture.screen.requested() == Some(&verdict.of)
+            {
                 state.picture.verification.set(verdict);
             }
         }

@@ -1,8 +1,9 @@
 //! Memory that a long job leaves free inside the process.
 
-/// Gives the memory that is free back to the system. The allocator of glibc keeps what other threads than the first one freed: after a
-/// trade of nine combinations with lavapipe that were 85 MB of 285. Takes a few milliseconds, so it belongs to the end of a job, on the
-/// job's thread. Elsewhere than on Linux with glibc it does nothing.
+/// Gives the memory that is free back to the system. The allocator of glibc keeps what other
+/// threads than the first one freed: after a trade of nine combinations with lavapipe that were 85
+/// MB of 285. Takes a few milliseconds, so it belongs to the end of a job, on the job's thread.
+/// Elsewhere than on Linux with glibc it does nothing.
 pub fn give_back() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     #[allow(
@@ -22,8 +23,16 @@ mod tests {
     /// Memory of this process that does not come from files, in bytes.
     fn resident() -> u64 {
         let status = std::fs::read_to_string("/proc/self/status").expect("Linux tells");
-        let line = status.lines().find_map(|line| line.strip_prefix("RssAnon:")).expect("its anonymous memory");
-        line.trim().trim_end_matches("kB").trim().parse::<u64>().expect("a number") * 1024
+        let line = status
+            .lines()
+            .find_map(|line| line.strip_prefix("RssAnon:"))
+            .expect("its anonymous memory");
+        line.trim()
+            .trim_end_matches("kB")
+            .trim()
+            .parse::<u64>()
+            .expect("a number")
+            * 1024
     }
 
     #[test]
@@ -31,7 +40,9 @@ mod tests {
         const BLOCK: usize = 1 << 16;
         const FREED: u64 = 256 << 20;
         let job = || {
-            let blocks: Vec<Vec<u8>> = (0..FREED as usize / BLOCK).map(|_| vec![1; BLOCK]).collect();
+            let blocks: Vec<Vec<u8>> = (0..FREED as usize / BLOCK)
+                .map(|_| vec![1; BLOCK])
+                .collect();
             // One block in 256 stays, so that the allocator cannot simply shrink its heap.
             blocks.into_iter().step_by(256).collect::<Vec<_>>()
         };
@@ -43,8 +54,15 @@ mod tests {
         })
         .join()
         .expect("the job ends");
-        assert!(stays.iter().all(|block| block.iter().all(|&byte| byte == 1)));
+        assert!(
+            stays
+                .iter()
+                .all(|block| block.iter().all(|&byte| byte == 1))
+        );
         // Other tests of this process allocate meanwhile.
-        assert!(after + FREED / 2 < before, "{before} bytes before, {after} after");
+        assert!(
+            after + FREED / 2 < before,
+            "{before} bytes before, {after} after"
+        );
     }
 }

@@ -1,5 +1,5 @@
-//! Jobs: work that would make the window stutter, on other threads: loading scenes, judging pictures, drawing thumbnails,
-//! saving pictures, waiting for file dialogs.
+//! Jobs: work that would make the window stutter, on other threads: loading scenes, judging
+//! pictures, drawing thumbnails, saving pictures, waiting for file dialogs.
 
 pub mod background;
 pub mod computing;
@@ -65,7 +65,11 @@ pub enum Done {
     /// The box of a scene, without a room.
     SceneBox(SceneSource, Result<Bounds, String>),
     /// The verdict on a picture; none if the judgement was canceled.
-    Verdict(Box<Inputs>, Arc<Work>, Result<Option<Box<Findings>>, String>),
+    Verdict(
+        Box<Inputs>,
+        Arc<Work>,
+        Result<Option<Box<Findings>>, String>,
+    ),
     /// A small picture.
     Cell(CellOf, CellResult),
     /// Measured combinations of accuracy options.
@@ -91,7 +95,8 @@ pub enum Done {
     Precision(Box<Inputs>, Result<Option<Box<Measured>>, String>),
     /// A tier of the open picture was timed.
     TierTime(Box<Timed>),
-    /// The golden of a preset, compared again, by the number of its request; none if the preset has no golden.
+    /// The golden of a preset, compared again, by the number of its request; none if the preset has
+    /// no golden.
     Golden(u64, Option<GoldenCheck>),
     /// The file of a new effect.
     EffectWritten(PathBuf, Origin, Result<(), String>),
@@ -110,7 +115,12 @@ pub struct Jobs {
 impl Jobs {
     pub fn new(ctx: egui::Context) -> Self {
         let (sender, receiver) = mpsc::channel();
-        Self { ctx, sender, receiver, computing: Count::default() }
+        Self {
+            ctx,
+            sender,
+            receiver,
+            computing: Count::default(),
+        }
     }
 
     /// The next finished piece of work, if any.
@@ -118,7 +128,8 @@ impl Jobs {
         self.receiver.try_recv().ok()
     }
 
-    /// True while a job keeps the processor busy: times that are measured meanwhile are not those of a picture at rest.
+    /// True while a job keeps the processor busy: times that are measured meanwhile are not those
+    /// of a picture at rest.
     pub fn is_computing(&self) -> bool {
         self.computing.is_any()
     }
@@ -143,23 +154,42 @@ impl Jobs {
     }
 
     /// Starts work that mostly waits. None if no thread could be started.
-    fn spawn_idle(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) -> Option<JoinHandle<()>> {
+    fn spawn_idle(
+        &self,
+        name: &str,
+        work: impl FnOnce() -> Done + Send + 'static,
+    ) -> Option<JoinHandle<()>> {
         let (sender, ctx) = (self.sender.clone(), self.ctx.clone());
-        let started = std::thread::Builder::new().name(name.into()).spawn(move || {
-            // The window may be closed by now; then the result is dropped.
-            if sender.send(work()).is_ok() {
-                ctx.request_repaint();
-            }
-        });
-        started.inspect_err(|error| eprintln!("rasterlab: no thread could be started for {name}: {error}")).ok()
+        let started = std::thread::Builder::new()
+            .name(name.into())
+            .spawn(move || {
+                // The window may be closed by now; then the result is dropped.
+                if sender.send(work()).is_ok() {
+                    ctx.request_repaint();
+                }
+            });
+        started
+            .inspect_err(|error| {
+                eprintln!("rasterlab: no thread could be started for {name}: {error}")
+            })
+            .ok()
     }
 
     /// Loads a scene as `work`.
     pub fn load_scene(&self, key: SceneKey, work: Arc<Work>) {
         self.spawn("scene", move || {
-            let preset = Preset { scene: key.source.clone(), room: key.room, ground: key.ground, ..Preset::default() };
+            let preset = Preset {
+                scene: key.source.clone(),
+                room: key.room,
+                ground: key.ground,
+                ..Preset::default()
+            };
             let load = || preset_file::load_scene(&preset, None).map_err(|e| e.to_string());
-            let scene = giving_back(|| caught("loading the scene", || background::compute(|| work.run(load)).transpose()));
+            let scene = giving_back(|| {
+                caught("loading the scene", || {
+                    background::compute(|| work.run(load)).transpose()
+                })
+            });
             match scene.transpose() {
                 Some(scene) => Done::Scene(key, scene),
                 None => Done::Canceled,
@@ -170,7 +200,9 @@ impl Jobs {
     /// Finds the box of a scene.
     pub fn measure_scene(&self, source: SceneSource) {
         self.spawn("scene box", move || {
-            let bounds = caught("measuring a scene", || preset_file::scene_bounds(&source, None).map_err(|e| e.to_string()));
+            let bounds = caught("measuring a scene", || {
+                preset_file::scene_bounds(&source, None).map_err(|e| e.to_string())
+            });
             Done::SceneBox(source, bounds)
         });
     }
@@ -178,7 +210,9 @@ impl Jobs {
     /// Draws `inputs` with a second renderer, reads everything back and judges it with the oracle.
     pub fn verify(&self, gpu: Arc<Gpu>, inputs: Inputs, work: Arc<Work>) {
         self.spawn_large_oracle("verify", move || {
-            let verdict = caught("judging the picture", || work.run(|| verify(gpu, &inputs, &work)).transpose());
+            let verdict = caught("judging the picture", || {
+                work.run(|| verify(gpu, &inputs, &work)).transpose()
+            });
             Done::Verdict(Box::new(inputs), work, verdict)
         });
     }
@@ -194,13 +228,15 @@ impl Jobs {
     /// Measures the f32 errors of the user's effects with the oracle.
     pub fn measure_precision(&self, inputs: Inputs, cancelled: Arc<AtomicBool>) {
         self.spawn_large_oracle("precision", move || {
-            let measured =
-                caught("measuring the f32 error", || precision::measure(&inputs, &cancelled).map(|measured| measured.map(Box::new)));
+            let measured = caught("measuring the f32 error", || {
+                precision::measure(&inputs, &cancelled).map(|measured| measured.map(Box::new))
+            });
             Done::Precision(Box::new(inputs), measured)
         });
     }
 
-    /// Times a tier of the open picture. It does not count as work that would be measured: it stops before such work.
+    /// Times a tier of the open picture. It does not count as work that would be measured: it stops
+    /// before such work.
     pub fn time_tier(
         &self,
         gpu: Arc<Gpu>,
@@ -211,21 +247,35 @@ impl Jobs {
     ) -> Option<JoinHandle<()>> {
         self.spawn_idle("tier", move || {
             let (picture, mut drawing) = (inputs, drawing);
-            let outcome = caught("timing a tier", || tier_times::measure(&gpu, &picture, &mut drawing, &watch));
-            Done::TierTime(Box::new(Timed { picture, kernel, outcome, drawing }))
+            let outcome = caught("timing a tier", || {
+                tier_times::measure(&gpu, &picture, &mut drawing, &watch)
+            });
+            Done::TierTime(Box::new(Timed {
+                picture,
+                kernel,
+                outcome,
+                drawing,
+            }))
         })
     }
 
     /// Draws the golden of a preset again and compares.
     pub fn check_golden(&self, number: u64, preset_file: PresetFile) {
         self.spawn_oracle("golden", move || {
-            let checked = caught("drawing the golden", || Ok(golden_check::check(&preset_file)));
+            let checked = caught("drawing the golden", || {
+                Ok(golden_check::check(&preset_file))
+            });
             Done::Golden(number, checked.ok().flatten())
         });
     }
 
     /// Writes the file of a new effect.
-    pub fn write_effect(&self, path: PathBuf, origin: Origin, write: impl FnOnce(&Path) -> Result<(), String> + Send + 'static) {
+    pub fn write_effect(
+        &self,
+        path: PathBuf,
+        origin: Origin,
+        write: impl FnOnce(&Path) -> Result<(), String> + Send + 'static,
+    ) {
         self.spawn("new effect", move || {
             let outcome = caught("writing the effect", || write(&path));
             Done::EffectWritten(path, origin, outcome)
@@ -241,16 +291,27 @@ impl Jobs {
         } else {
             "xdg-open"
         };
-        let failed = match std::process::Command::new(opener).arg(&path).stdin(std::process::Stdio::null()).spawn() {
+        let failed = match std::process::Command::new(opener)
+            .arg(&path)
+            .stdin(std::process::Stdio::null())
+            .spawn()
+        {
             Ok(mut child) => {
                 let sender = (self.sender.clone(), self.ctx.clone());
                 std::thread::spawn(move || {
-                    // Some systems start the editor as a part of the opener, so this may take as long as it is open. The explorer of
-                    // Windows always reports a failure.
+                    // Some systems start the editor as a part of the opener, so this may take as
+                    // long as it is open. The explorer of Windows always
+                    // reports a failure.
                     if !cfg!(windows)
                         && let Ok(status) = child.wait()
                         && !status.success()
-                        && sender.0.send(Done::NoEditor(path, format!("{opener} ended with {status}"))).is_ok()
+                        && sender
+                            .0
+                            .send(Done::NoEditor(
+                                path,
+                                format!("{opener} ended with {status}"),
+                            ))
+                            .is_ok()
                     {
                         sender.1.request_repaint();
                     }
@@ -264,22 +325,36 @@ impl Jobs {
         self.ctx.request_repaint();
     }
 
-    /// Measures combinations of accuracy options on a second device, so that the window stays responsive.
-    pub fn measure(&self, adapter: String, scene: Arc<Scene>, request: Request, progress: Arc<Progress>) {
+    /// Measures combinations of accuracy options on a second device, so that the window stays
+    /// responsive.
+    pub fn measure(
+        &self,
+        adapter: String,
+        scene: Arc<Scene>,
+        request: Request,
+        progress: Arc<Progress>,
+    ) {
         let work = move || measure::measure(adapter, &scene, &request, &progress);
         // What it measures is time, so it yields to nothing.
-        self.spawn("trade", || giving_back(|| Done::Trade(caught("measuring the trade", work))));
+        self.spawn("trade", || {
+            giving_back(|| Done::Trade(caught("measuring the trade", work)))
+        });
     }
 
     /// Writes the favorites with this function.
     pub fn write_favorites(&self, write: impl FnOnce() -> Result<(), String> + Send + 'static) {
-        self.spawn("favorites", move || Done::Favorites(caught("writing the favorites", write)));
+        self.spawn("favorites", move || {
+            Done::Favorites(caught("writing the favorites", write))
+        });
     }
 
-    /// Draws the picture of a preset with the oracle, which needs no device. Width and height are in pixels.
+    /// Draws the picture of a preset with the oracle, which needs no device. Width and height are
+    /// in pixels.
     pub fn thumbnail(&self, preset_file: PresetFile, size: [u32; 2]) {
         self.spawn_oracle("thumbnail", move || {
-            let image = caught("drawing a thumbnail", || thumbnail(&preset_file, size).ok_or_else(String::new));
+            let image = caught("drawing a thumbnail", || {
+                thumbnail(&preset_file, size).ok_or_else(String::new)
+            });
             Done::Thumbnail(preset_file.id, image.ok())
         });
     }
@@ -309,15 +384,32 @@ impl Jobs {
     }
 
     /// Draws the picture of a preset on the scene of `own` with the oracle.
-    pub fn thumbnail_on(&self, look: PresetFile, own: PresetFile, scene: Arc<Scene>, size: [u32; 2]) {
+    pub fn thumbnail_on(
+        &self,
+        look: PresetFile,
+        own: PresetFile,
+        scene: Arc<Scene>,
+        size: [u32; 2],
+    ) {
         self.spawn_oracle("thumbnail", move || {
-            let image = caught("drawing a thumbnail", || thumbnail_on(&look, &own, &scene, size).ok_or_else(String::new));
+            let image = caught("drawing a thumbnail", || {
+                thumbnail_on(&look, &own, &scene, size).ok_or_else(String::new)
+            });
             Done::ThumbnailOn(SceneKey::of(&own), look.id, image.ok())
         });
     }
 
     /// Draws the picture of an effect on the open model with the oracle.
-    pub fn effect_picture(&self, EffectPicture { effect, preset, scene, size, cancelled }: EffectPicture) {
+    pub fn effect_picture(
+        &self,
+        EffectPicture {
+            effect,
+            preset,
+            scene,
+            size,
+            cancelled,
+        }: EffectPicture,
+    ) {
         self.spawn_oracle("effect picture", move || {
             let draw = || match cancelled.load(Ordering::Relaxed) {
                 true => Err(String::new()),
@@ -331,7 +423,9 @@ impl Jobs {
     /// Draws `inputs` and writes a PNG that contains the preset.
     pub fn export(&self, gpu: Arc<Gpu>, inputs: Inputs, preset_file: PresetFile, path: PathBuf) {
         self.spawn("export", move || {
-            let saved = caught("saving the picture", || export(gpu, &inputs, &preset_file, &path));
+            let saved = caught("saving the picture", || {
+                export(gpu, &inputs, &preset_file, &path)
+            });
             Done::Export(path, saved)
         });
     }
@@ -347,13 +441,24 @@ impl Jobs {
     ) {
         let ctx = self.ctx.clone();
         self.spawn("film", move || {
-            let work = || Ok(film::export(adapter, scene, preset_file, &request, &progress, &ctx));
-            let ended = giving_back(|| caught("drawing the film", work)).unwrap_or_else(|bug| Err(film::Failure::Other(bug)));
+            let work = || {
+                Ok(film::export(
+                    adapter,
+                    scene,
+                    preset_file,
+                    &request,
+                    &progress,
+                    &ctx,
+                ))
+            };
+            let ended = giving_back(|| caught("drawing the film", work))
+                .unwrap_or_else(|bug| Err(film::Failure::Other(bug)));
             Done::Film(progress, ended)
         });
     }
 
-    /// Counts work on another thread, which keeps the processor busy, for as long as what is returned exists.
+    /// Counts work on another thread, which keeps the processor busy, for as long as what is
+    /// returned exists.
     pub fn busy(&self) -> Computing {
         self.computing.add()
     }
@@ -371,7 +476,9 @@ impl Jobs {
 
     /// Looks which of these files are not there.
     pub fn find_missing(&self, files: Vec<PathBuf>) {
-        self.spawn_idle("recent files", move || Done::Missing(files.into_iter().filter(|file| !file.exists()).collect()));
+        self.spawn_idle("recent files", move || {
+            Done::Missing(files.into_iter().filter(|file| !file.exists()).collect())
+        });
     }
 }
 
@@ -382,35 +489,82 @@ fn giving_back<T>(work: impl FnOnce() -> T) -> T {
     done
 }
 
-/// Runs `work`. A panic becomes an error, so that the window does not wait for a result that never comes.
+/// Runs `work`. A panic becomes an error, so that the window does not wait for a result that never
+/// comes.
 fn caught<T>(what: &str, work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
-    std::panic::catch_unwind(std::panic::AssertUnwindSafe(work))
-        .unwrap_or_else(|_| Err(format!("{what} failed because of a bug; see the terminal for details")))
+    std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)).unwrap_or_else(|_| {
+        Err(format!(
+            "{what} failed because of a bug; see the terminal for details"
+        ))
+    })
 }
 
 /// Draws `inputs` with a second renderer; all renderers of a device share their pipelines.
-fn compile(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs) -> Result<(), String> {
+fn compile(
+    gpu: Arc<Gpu>,
+    Inputs {
+        scene,
+        view,
+        stack,
+        accuracy,
+    }: &Inputs,
+) -> Result<(), String> {
     let mut renderer = Renderer::new(gpu);
-    renderer.set_scene(scene).block_on().map_err(|e| e.to_string())?;
-    renderer.draw(view, stack, accuracy).block_on().map_err(|e| e.to_string())
+    renderer
+        .set_scene(scene)
+        .block_on()
+        .map_err(|e| e.to_string())?;
+    renderer
+        .draw(view, stack, accuracy)
+        .block_on()
+        .map_err(|e| e.to_string())
 }
 
-fn verify(gpu: Arc<Gpu>, Inputs { scene, view, stack, accuracy }: &Inputs, work: &Work) -> Result<Box<Findings>, String> {
+fn verify(
+    gpu: Arc<Gpu>,
+    Inputs {
+        scene,
+        view,
+        stack,
+        accuracy,
+    }: &Inputs,
+    work: &Work,
+) -> Result<Box<Findings>, String> {
     work.begin("drawing");
     let mut renderer = Renderer::new(gpu);
-    renderer.set_scene(scene).block_on().map_err(|e| e.to_string())?;
-    let capture = renderer.capture(view, stack, accuracy).block_on().map_err(|e| e.to_string())?;
-    let judged = effect_files::crossings(stack, |stack| oracle::judge(scene, view, stack, &capture.picture()));
+    renderer
+        .set_scene(scene)
+        .block_on()
+        .map_err(|e| e.to_string())?;
+    let capture = renderer
+        .capture(view, stack, accuracy)
+        .block_on()
+        .map_err(|e| e.to_string())?;
+    let judged = effect_files::crossings(stack, |stack| {
+        oracle::judge(scene, view, stack, &capture.picture())
+    });
     let (verdict, crossings) = judged.map_err(|e| e.to_string())?;
     work.begin("the reference picture");
-    let reference = if stack.is_repeatable() { Some(reference_ids(scene, view, stack, accuracy)?) } else { None };
-    verdict.map(|verdict| Box::new(Findings::new(capture, verdict, reference, crossings))).map_err(|e| e.to_string())
+    let reference = if stack.is_repeatable() {
+        Some(reference_ids(scene, view, stack, accuracy)?)
+    } else {
+        None
+    };
+    verdict
+        .map(|verdict| Box::new(Findings::new(capture, verdict, reference, crossings)))
+        .map_err(|e| e.to_string())
 }
 
 /// Triangle ids of all pixels in the exact picture on the finest grid.
-fn reference_ids(scene: &Scene, view: &View, stack: &Stack, accuracy: &AccuracyRequest) -> Result<Vec<u32>, String> {
+fn reference_ids(
+    scene: &Scene,
+    view: &View,
+    stack: &Stack,
+    accuracy: &AccuracyRequest,
+) -> Result<Vec<u32>, String> {
     let factor = accuracy.scale().factor();
-    let frame = oracle::render_finest(scene, &view.scaled(factor), &stack.scaled(factor)).map_err(|e| e.to_string())?;
+    let frame = oracle::render_finest(scene, &view.scaled(factor), &stack.scaled(factor))
+        .map_err(|e| e.to_string())?;
     Ok(frame.triangle_id)
 }
 
@@ -422,40 +576,82 @@ fn thumbnail(preset_file: &PresetFile, size: [u32; 2]) -> Option<egui::ColorImag
     thumbnail_of(&preset_file.preset, &scene, size)
 }
 
-fn thumbnail_on(look: &PresetFile, own: &PresetFile, scene: &Scene, size: [u32; 2]) -> Option<egui::ColorImage> {
+fn thumbnail_on(
+    look: &PresetFile,
+    own: &PresetFile,
+    scene: &Scene,
+    size: [u32; 2],
+) -> Option<egui::ColorImage> {
     let fit = match look.needs_fit() {
-        true => Fit::between(&preset_file::scene_bounds(&look.scene_source(), None).ok()?, &scene.content_bounds()),
+        true => Fit::between(
+            &preset_file::scene_bounds(&look.scene_source(), None).ok()?,
+            &scene.content_bounds(),
+        ),
         false => None,
     };
     // The whole model is shown, so that the picture stays right when the camera moves.
-    let preset = Preset { camera: None, ..look.landed_on(own, fit.as_ref()).preset };
+    let preset = Preset {
+        camera: None,
+        ..look.landed_on(own, fit.as_ref()).preset
+    };
     if preset.ground == own.preset.ground {
         return thumbnail_of(&preset, scene, size);
     }
-    thumbnail_of(&preset, &*preset_file::load_scene(&preset, None).ok()?, size)
+    thumbnail_of(
+        &preset,
+        &*preset_file::load_scene(&preset, None).ok()?,
+        size,
+    )
 }
 
-/// The picture of a preset on `scene`; none if the scene is too large or the preset cannot be drawn.
+/// The picture of a preset on `scene`; none if the scene is too large or the preset cannot be
+/// drawn.
 fn thumbnail_of(preset: &Preset, scene: &Scene, size: [u32; 2]) -> Option<egui::ColorImage> {
     if scene.triangle_count() > THUMBNAIL_TRIANGLES {
         return None;
     }
-    let frame = oracle::render_scaled(scene, &preset.moments(scene, size), preset.accuracy.scale().factor()).ok()?;
+    let frame = oracle::render_scaled(
+        scene,
+        &preset.moments(scene, size),
+        preset.accuracy.scale().factor(),
+    )
+    .ok()?;
     let bytes: Vec<u8> = frame.color.concat();
-    Some(egui::ColorImage::from_rgba_unmultiplied([frame.width as usize, frame.height as usize], &bytes))
+    Some(egui::ColorImage::from_rgba_unmultiplied(
+        [frame.width as usize, frame.height as usize],
+        &bytes,
+    ))
 }
 
 fn export(
     gpu: Arc<Gpu>,
-    Inputs { scene, view, stack, accuracy }: &Inputs,
+    Inputs {
+        scene,
+        view,
+        stack,
+        accuracy,
+    }: &Inputs,
     preset_file: &PresetFile,
     path: &std::path::Path,
 ) -> Result<(), String> {
-    let provenance = Provenance { adapter: gpu.summary.name.clone(), driver: gpu.summary.driver.clone() };
+    let provenance = Provenance {
+        adapter: gpu.summary.name.clone(),
+        driver: gpu.summary.driver.clone(),
+    };
     let mut renderer = Renderer::new(gpu);
-    renderer.set_scene(scene).block_on().map_err(|e| e.to_string())?;
-    let capture = renderer.capture(view, stack, accuracy).block_on().map_err(|e| e.to_string())?;
-    let png =
-        preset_file::png_with_preset(&capture.into_shown(), &preset_file.for_picture(path), &provenance).map_err(|e| e.to_string())?;
+    renderer
+        .set_scene(scene)
+        .block_on()
+        .map_err(|e| e.to_string())?;
+    let capture = renderer
+        .capture(view, stack, accuracy)
+        .block_on()
+        .map_err(|e| e.to_string())?;
+    let png = preset_file::png_with_preset(
+        &capture.into_shown(),
+        &preset_file.for_picture(path),
+        &provenance,
+    )
+    .map_err(|e| e.to_string())?;
     preset_file::write_atomically(path, &png, Existing::Replace).map_err(|e| e.to_string())
 }

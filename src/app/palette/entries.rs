@@ -1,4 +1,5 @@
-//! Everything that the palette offers, from the lists that menus, inspector and preset files use too.
+//! Everything that the palette offers, from the lists that menus, inspector and preset files use
+//! too.
 
 use std::sync::Arc;
 
@@ -25,8 +26,17 @@ const MAX_VALUE: usize = 40;
 
 /// Every entry, those of the open preset first.
 pub fn entries(session: &Session, presets: &[GalleryEntry]) -> Vec<Entry> {
-    let mut entries: Vec<Entry> = ACTIONS.iter().filter(|(action, ..)| *action != Action::Palette).map(|row| action(row.0)).collect();
-    let enabled = session.preset().stack.0.iter().map(|enabled| &enabled.effect);
+    let mut entries: Vec<Entry> = ACTIONS
+        .iter()
+        .filter(|(action, ..)| *action != Action::Palette)
+        .map(|row| action(row.0))
+        .collect();
+    let enabled = session
+        .preset()
+        .stack
+        .0
+        .iter()
+        .map(|enabled| &enabled.effect);
     let effects = session.preset_file.effects.effects_with(enabled);
     for effect in &effects {
         entries.extend(of_effect(session, effect));
@@ -35,7 +45,11 @@ pub fn entries(session: &Session, presets: &[GalleryEntry]) -> Vec<Entry> {
         entries.extend(parameters(session, effect));
     }
     let is_accuracy = |setting: &&Setting| setting.path().starts_with("accuracy.");
-    entries.extend(settings().filter(|setting| !is_accuracy(setting)).filter_map(|setting| of_setting(session, setting)));
+    entries.extend(
+        settings()
+            .filter(|setting| !is_accuracy(setting))
+            .filter_map(|setting| of_setting(session, setting)),
+    );
     entries.extend(accuracy(session));
     entries.extend(presets.iter().filter_map(preset));
     entries.extend(BUILTINS.iter().map(|builtin| Entry {
@@ -64,7 +78,10 @@ fn of_effect(session: &Session, effect: &Arc<Effect>) -> Option<Entry> {
     let stack = &session.preset().stack;
     let (verb, choice) = match (stack.get(&effect.name), stack.rival_of(effect)) {
         (Some(_), _) => ("Disable", Choice::Disable(effect.clone())),
-        (None, Some(rival)) => ("Enable", Choice::Replace(rival.name.clone(), effect.clone())),
+        (None, Some(rival)) => (
+            "Enable",
+            Choice::Replace(rival.name.clone(), effect.clone()),
+        ),
         (None, None) => ("Enable", Choice::Enable(effect.clone())),
     };
     let detail = match &choice {
@@ -81,29 +98,49 @@ fn of_effect(session: &Session, effect: &Arc<Effect>) -> Option<Entry> {
     })
 }
 
-/// The parameters of an effect. One of an effect that is not in the stack enables it; one that is hidden says why.
+/// The parameters of an effect. One of an effect that is not in the stack enables it; one that is
+/// hidden says why.
 fn parameters(session: &Session, effect: &Arc<Effect>) -> Vec<Entry> {
     let stack = &session.preset().stack;
     let words = session.shown_words(effect);
-    let conflict = stack.conflict_with(effect).map(|conflict| conflict.to_string()).filter(|_| words.is_none());
+    let conflict = stack
+        .conflict_with(effect)
+        .map(|conflict| conflict.to_string())
+        .filter(|_| words.is_none());
     let entry = |field: &Arc<Field>| {
         let path = format!("{}.{}", effect.name, field.name);
         let (detail, choice) = match (&words, &conflict) {
             (_, Some(conflict)) => (conflict.clone(), Choice::Refuse(conflict.clone())),
-            (None, None) => (format!("enables {}", effect.name), Choice::Reveal(path.clone(), Some(effect.clone()))),
-            (Some(words), None) if field.is_shown(&effect.fields, words) => {
-                (written(field, &field.value(words)), Choice::Reveal(path.clone(), None))
-            }
+            (None, None) => (
+                format!("enables {}", effect.name),
+                Choice::Reveal(path.clone(), Some(effect.clone())),
+            ),
+            (Some(words), None) if field.is_shown(&effect.fields, words) => (
+                written(field, &field.value(words)),
+                Choice::Reveal(path.clone(), None),
+            ),
             (Some(words), None) => {
                 let condition = field
                     .when
                     .as_ref()
-                    .map_or_else(String::new, |(choice, among)| format!("{}.{choice} is {}", effect.name, among.join(" or ")));
+                    .map_or_else(String::new, |(choice, among)| {
+                        format!("{}.{choice} is {}", effect.name, among.join(" or "))
+                    });
                 let reason = format!("{path} is shown while {condition}");
-                (format!("{}, hidden", written(field, &field.value(words))), Choice::Refuse(reason))
+                (
+                    format!("{}, hidden", written(field, &field.value(words))),
+                    Choice::Refuse(reason),
+                )
             }
         };
-        Entry { kind: Kind::Parameter, text: path, detail, about: field.doc.clone(), keys: String::new(), choice }
+        Entry {
+            kind: Kind::Parameter,
+            text: path,
+            detail,
+            about: field.doc.clone(),
+            keys: String::new(),
+            choice,
+        }
     };
     effect.fields.iter().map(entry).collect()
 }
@@ -111,13 +148,25 @@ fn parameters(session: &Session, effect: &Arc<Effect>) -> Vec<Entry> {
 fn of_setting(session: &Session, setting: &'static Setting) -> Option<Entry> {
     // A setting that does not apply to the preset has no value; a value sets it up.
     let value = setting.get(session.preset());
-    let detail = value.as_ref().map_or_else(String::new, |value| written(setting, value));
+    let detail = value
+        .as_ref()
+        .map_or_else(String::new, |value| written(setting, value));
     let path = setting.path();
     let choice = match value {
         Some(_) if has_row(&path) => Choice::Reveal(path.clone(), None),
-        _ => Choice::Refuse(format!("{path} has no row; type its value, {}", setting.allowed())),
+        _ => Choice::Refuse(format!(
+            "{path} has no row; type its value, {}",
+            setting.allowed()
+        )),
     };
-    Some(Entry { kind: Kind::Setting, text: path, detail, about: setting.doc.clone(), keys: String::new(), choice })
+    Some(Entry {
+        kind: Kind::Setting,
+        text: path,
+        detail,
+        about: setting.doc.clone(),
+        keys: String::new(),
+        choice,
+    })
 }
 
 /// The tiers, and every option of every axis.
@@ -126,25 +175,37 @@ fn accuracy(session: &Session) -> impl Iterator<Item = Entry> {
     let tier = move |tier: Tier| Entry {
         kind: Kind::Accuracy,
         text: format!("accuracy.tier = {}", tier.name()),
-        detail: if accuracy.tier == tier { "present".into() } else { String::new() },
+        detail: if accuracy.tier == tier {
+            "present".into()
+        } else {
+            String::new()
+        },
         about: "tolerance".into(),
         keys: String::new(),
         choice: Choice::Set("accuracy.tier".into(), tier.name().into()),
     };
     let options = AXES.iter().flat_map(move |axis| {
         let pinned = accuracy.pins.get(axis).map_or(0, |index| index + 1);
-        axis.choices.iter().enumerate().map(move |(index, option)| Entry {
-            kind: Kind::Accuracy,
-            text: format!("{} = {option}", axis_path(axis)),
-            detail: match (index == pinned, index.checked_sub(1).and_then(|index| axis.option_abouts.get(index))) {
-                (true, _) => "present".into(),
-                (false, Some(about)) => about.trim().to_owned(),
-                (false, None) => "the planner decides".into(),
-            },
-            about: axis.about.into(),
-            keys: String::new(),
-            choice: Choice::Set(axis_path(axis), (*option).to_owned()),
-        })
+        axis.choices
+            .iter()
+            .enumerate()
+            .map(move |(index, option)| Entry {
+                kind: Kind::Accuracy,
+                text: format!("{} = {option}", axis_path(axis)),
+                detail: match (
+                    index == pinned,
+                    index
+                        .checked_sub(1)
+                        .and_then(|index| axis.option_abouts.get(index)),
+                ) {
+                    (true, _) => "present".into(),
+                    (false, Some(about)) => about.trim().to_owned(),
+                    (false, None) => "the planner decides".into(),
+                },
+                about: axis.about.into(),
+                keys: String::new(),
+                choice: Choice::Set(axis_path(axis), (*option).to_owned()),
+            })
     });
     Tier::ALL.into_iter().map(tier).chain(options)
 }
@@ -152,7 +213,11 @@ fn accuracy(session: &Session) -> impl Iterator<Item = Entry> {
 fn preset(entry: &GalleryEntry) -> Option<Entry> {
     let found = entry.preset_file.as_ref().ok()?;
     let title = found.title();
-    let id = if title == entry.id { String::new() } else { format!(" ({})", entry.id) };
+    let id = if title == entry.id {
+        String::new()
+    } else {
+        format!(" ({})", entry.id)
+    };
     Some(Entry {
         kind: Kind::Preset,
         text: format!("Open {title}{id}"),
@@ -166,8 +231,16 @@ fn preset(entry: &GalleryEntry) -> Option<Entry> {
 /// A value with its unit, short enough for a row.
 fn written(param: &Param, value: &Value) -> String {
     let text = toml_value::write_text(&param.value_type, value);
-    let short: String = if text.chars().count() > MAX_VALUE { text.chars().take(MAX_VALUE).chain(['…']).collect() } else { text };
-    if param.unit.is_empty() { short } else { format!("{short} {}", param.unit) }
+    let short: String = if text.chars().count() > MAX_VALUE {
+        text.chars().take(MAX_VALUE).chain(['…']).collect()
+    } else {
+        text
+    };
+    if param.unit.is_empty() {
+        short
+    } else {
+        format!("{short} {}", param.unit)
+    }
 }
 
 #[cfg(test)]
@@ -180,7 +253,10 @@ mod tests {
 
     fn all() -> Vec<Entry> {
         let presets = gallery(&Folders::default());
-        let opened = presets.iter().find(|entry| entry.id == "xray").and_then(|entry| entry.preset_file.clone().ok());
+        let opened = presets
+            .iter()
+            .find(|entry| entry.id == "xray")
+            .and_then(|entry| entry.preset_file.clone().ok());
         entries(&Session::new(opened.expect("a built-in preset")), &presets)
     }
 
@@ -188,29 +264,64 @@ mod tests {
     fn every_action_effect_parameter_preset_and_option_is_there_once() {
         let all = all();
         let has = |text: &str| all.iter().filter(|entry| entry.text == text).count() == 1;
-        for (action, label, _) in ACTIONS.iter().filter(|(action, ..)| *action != Action::Palette) {
+        for (action, label, _) in ACTIONS
+            .iter()
+            .filter(|(action, ..)| *action != Action::Palette)
+        {
             assert!(has(label), "{action:?}");
         }
         for effect in EFFECTS.iter() {
-            let verb = if ["xray", "lambert"].contains(&effect.name.as_str()) { "Disable" } else { "Enable" };
+            let verb = if ["xray", "lambert"].contains(&effect.name.as_str()) {
+                "Disable"
+            } else {
+                "Enable"
+            };
             assert!(has(&format!("{verb} {}", effect.name)), "{}", effect.name);
-            effect.fields.iter().for_each(|field| assert!(has(&format!("{}.{}", effect.name, field.name)), "{}", field.name));
+            effect.fields.iter().for_each(|field| {
+                assert!(
+                    has(&format!("{}.{}", effect.name, field.name)),
+                    "{}",
+                    field.name
+                )
+            });
         }
         for axis in AXES {
-            axis.choices.iter().for_each(|option| assert!(has(&format!("accuracy.{} = {option}", axis.name)), "{option}"));
+            axis.choices.iter().for_each(|option| {
+                assert!(
+                    has(&format!("accuracy.{} = {option}", axis.name)),
+                    "{option}"
+                )
+            });
         }
         let opens = |entry: &&Entry| matches!(entry.choice, Choice::Open(_));
-        assert_eq!(all.iter().filter(opens).count(), gallery(&Folders::default()).len());
+        assert_eq!(
+            all.iter().filter(opens).count(),
+            gallery(&Folders::default()).len()
+        );
     }
 
     #[test]
     fn a_rival_of_the_stack_is_offered_instead_and_its_parameters_say_why_not() {
         let all = all();
-        let find = |text: &str| all.iter().find(|entry| entry.text == text).expect("an entry").choice.clone();
+        let find = |text: &str| {
+            all.iter()
+                .find(|entry| entry.text == text)
+                .expect("an entry")
+                .choice
+                .clone()
+        };
         let overdraw = Effect::find("overdraw").expect("a built-in effect");
-        assert_eq!(find("Enable overdraw"), Choice::Replace("xray".into(), overdraw.clone()));
-        assert!(matches!(find("overdraw.max_layers"), Choice::Refuse(reason) if reason.contains("slot of the rasterizer")));
+        assert_eq!(
+            find("Enable overdraw"),
+            Choice::Replace("xray".into(), overdraw.clone())
+        );
+        assert!(
+            matches!(find("overdraw.max_layers"), Choice::Refuse(reason) if reason.contains("slot of the rasterizer"))
+        );
         let facet = Effect::find("facet").expect("a built-in effect");
-        assert_eq!(find("facet.amount"), Choice::Reveal("facet.amount".into(), Some(facet.clone())));
+        assert_eq!(
+            find("facet.amount"),
+            Choice::Reveal("facet.amount".into(), Some(facet.clone()))
+        );
     }
 }

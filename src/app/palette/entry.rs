@@ -79,12 +79,20 @@ pub struct Entry {
 pub fn commands(choice: Choice) -> Vec<Command> {
     match choice {
         Choice::Perform(action) => vec![Command::Perform(action)],
-        Choice::Enable(effect) => vec![Command::Edit(Edit::Enable(effect.clone())), Command::Reveal(effect.name.clone())],
+        Choice::Enable(effect) => vec![
+            Command::Edit(Edit::Enable(effect.clone())),
+            Command::Reveal(effect.name.clone()),
+        ],
         Choice::Disable(effect) => vec![Command::Edit(Edit::Disable(effect))],
-        Choice::Replace(other, effect) => vec![Command::Edit(Edit::Replace(other, effect.clone())), Command::Reveal(effect.name.clone())],
-        Choice::Reveal(path, effect) => {
-            effect.map(|effect| Command::Edit(Edit::Enable(effect))).into_iter().chain([Command::Reveal(path)]).collect()
-        }
+        Choice::Replace(other, effect) => vec![
+            Command::Edit(Edit::Replace(other, effect.clone())),
+            Command::Reveal(effect.name.clone()),
+        ],
+        Choice::Reveal(path, effect) => effect
+            .map(|effect| Command::Edit(Edit::Enable(effect)))
+            .into_iter()
+            .chain([Command::Reveal(path)])
+            .collect(),
         Choice::Set(path, value) => vec![Command::SetText(path, value)],
         Choice::Open(id) => vec![Command::File(FileCommand::Open(id))],
         Choice::Builtin(name) => vec![Command::File(FileCommand::Open(format!("builtin:{name}")))],

@@ -1,4 +1,5 @@
-//! The command palette without its window: its entries, which of them answer what is typed, and what they do.
+//! The command palette without its window: its entries, which of them answer what is typed, and
+//! what they do.
 
 mod entries;
 mod entry;

@@ -1,4 +1,5 @@
-//! Which entries of the palette answer what is typed, best first; and values that are typed behind a path, as `facet.amount 0.5`.
+//! Which entries of the palette answer what is typed, best first; and values that are typed behind
+//! a path, as `facet.amount 0.5`.
 
 use super::entry::{Choice, Entry, Kind};
 use crate::app::widgets::fuzzy;
@@ -17,33 +18,72 @@ struct Assignment {
     is_exact: bool,
 }
 
-/// What `query` may set: `facet.amount 0.5`, `facet.amount = 0.5`, or `amount 0.5` with every parameter that answers the first word.
+/// What `query` may set: `facet.amount 0.5`, `facet.amount = 0.5`, or `amount 0.5` with every
+/// parameter that answers the first word.
 fn assignments(query: &str, entries: &[Entry]) -> Vec<Assignment> {
-    let paths = || entries.iter().filter(|entry| matches!(entry.kind, Kind::Parameter | Kind::Setting)).map(|entry| entry.text.as_str());
+    let paths = || {
+        entries
+            .iter()
+            .filter(|entry| matches!(entry.kind, Kind::Parameter | Kind::Setting))
+            .map(|entry| entry.text.as_str())
+    };
     let query = query.trim();
     let split = |at: usize| {
         let (path, value) = query.split_at(at);
-        (path.trim_end_matches([' ', '\t', '=']).trim(), value.trim_start_matches([' ', '\t', '=']).trim())
+        (
+            path.trim_end_matches([' ', '\t', '=']).trim(),
+            value.trim_start_matches([' ', '\t', '=']).trim(),
+        )
     };
-    let splits: Vec<(&str, &str)> =
-        query.match_indices([' ', '=']).map(|(at, _)| split(at)).filter(|(_, value)| !value.is_empty()).collect();
+    let splits: Vec<(&str, &str)> = query
+        .match_indices([' ', '='])
+        .map(|(at, _)| split(at))
+        .filter(|(_, value)| !value.is_empty())
+        .collect();
     for (path, value) in &splits {
         let short = path.strip_prefix("effects.").unwrap_or(path);
-        let axis = entries.iter().any(|entry| entry.kind == Kind::Accuracy && entry.text.split(" = ").next() == Some(short));
+        let axis = entries.iter().any(|entry| {
+            entry.kind == Kind::Accuracy && entry.text.split(" = ").next() == Some(short)
+        });
         if axis || paths().any(|known| known == short) {
-            return vec![Assignment { path: short.into(), value: (*value).into(), is_exact: true }];
+            return vec![Assignment {
+                path: short.into(),
+                value: (*value).into(),
+                is_exact: true,
+            }];
         }
     }
-    let Some((typed, value)) = splits.last() else { return Vec::new() };
-    let mut near: Vec<(i32, &str)> = paths().filter_map(|path| Some((fuzzy::score(typed, path, "")?, path))).collect();
+    let Some((typed, value)) = splits.last() else {
+        return Vec::new();
+    };
+    let mut near: Vec<(i32, &str)> = paths()
+        .filter_map(|path| Some((fuzzy::score(typed, path, "")?, path)))
+        .collect();
     near.sort_by_key(|(points, _)| -points);
-    near.into_iter().map(|(_, path)| Assignment { path: path.into(), value: (*value).into(), is_exact: false }).collect()
+    near.into_iter()
+        .map(|(_, path)| Assignment {
+            path: path.into(),
+            value: (*value).into(),
+            is_exact: false,
+        })
+        .collect()
 }
 
-/// The entries that answer `query`, best first: those whose whole text it is, values that it sets, then the others. `probe` tells whether a path takes the text of a value, and if not, says why in a sentence.
-pub fn rank(entries: &[Entry], query: &str, probe: impl Fn(&str, &str) -> Result<(), String>) -> Vec<Entry> {
+/// The entries that answer `query`, best first: those whose whole text it is, values that it sets,
+/// then the others. `probe` tells whether a path takes the text of a value, and if not, says why in
+/// a sentence.
+pub fn rank(
+    entries: &[Entry],
+    query: &str,
+    probe: impl Fn(&str, &str) -> Result<(), String>,
+) -> Vec<Entry> {
     let mut values = Vec::new();
-    for Assignment { path, value, is_exact } in assignments(query, entries) {
+    for Assignment {
+        path,
+        value,
+        is_exact,
+    } in assignments(query, entries)
+    {
         let known = entries.iter().find(|entry| entry.text == path);
         let entry = |choice: Choice, detail: String| Entry {
             kind: known.map_or(Kind::Accuracy, |known| known.kind),
@@ -58,19 +98,31 @@ pub fn rank(entries: &[Entry], query: &str, probe: impl Fn(&str, &str) -> Result
                 let now = known.map_or_else(String::new, |known| format!("now {}", known.detail));
                 values.push(entry(Choice::Set(path.clone(), value.clone()), now));
             }
-            Err(sentence) if is_exact => values.push(entry(Choice::Refuse(sentence.clone()), sentence)),
+            Err(sentence) if is_exact => {
+                values.push(entry(Choice::Refuse(sentence.clone()), sentence))
+            }
             Err(_) => {}
         }
         if values.len() == MAX_VALUES {
             break;
         }
     }
-    let mut found: Vec<(i32, &Entry)> =
-        entries.iter().filter_map(|entry| Some((fuzzy::score(query, &entry.text, &entry.about)? + preference(entry), entry))).collect();
+    let mut found: Vec<(i32, &Entry)> = entries
+        .iter()
+        .filter_map(|entry| {
+            Some((
+                fuzzy::score(query, &entry.text, &entry.about)? + preference(entry),
+                entry,
+            ))
+        })
+        .collect();
     found.sort_by_key(|(points, _)| -points);
     // "Scene sphere" is an entry, and could also set `scene.builtin`: the entry comes first.
-    let (whole, rest): (Vec<_>, Vec<_>) = found.into_iter().partition(|(_, entry)| entry.text.eq_ignore_ascii_case(query.trim()));
-    let [whole, rest] = [whole, rest].map(|found| found.into_iter().map(|(_, entry)| entry.clone()));
+    let (whole, rest): (Vec<_>, Vec<_>) = found
+        .into_iter()
+        .partition(|(_, entry)| entry.text.eq_ignore_ascii_case(query.trim()));
+    let [whole, rest] =
+        [whole, rest].map(|found| found.into_iter().map(|(_, entry)| entry.clone()));
     whole.chain(values).chain(rest).take(MAX_LISTED).collect()
 }
 
@@ -91,7 +143,14 @@ mod tests {
     use crate::effects::Effect;
 
     fn entry(kind: Kind, text: &str, choice: Choice) -> Entry {
-        Entry { kind, text: text.into(), detail: "0.25".into(), about: String::new(), keys: String::new(), choice }
+        Entry {
+            kind,
+            text: text.into(),
+            detail: "0.25".into(),
+            about: String::new(),
+            keys: String::new(),
+            choice,
+        }
     }
 
     fn entries() -> Vec<Entry> {
@@ -101,10 +160,26 @@ mod tests {
             reveal("facet.amount"),
             reveal("fog.amount"),
             reveal("facet.pattern"),
-            entry(Kind::Setting, "clock.speed", Choice::Reveal("clock.speed".into(), None)),
-            entry(Kind::Accuracy, "accuracy.depth = log16", Choice::Set("accuracy.depth".into(), "log16".into())),
-            entry(Kind::Effect, "Disable facet", Choice::Disable(facet.clone())),
-            entry(Kind::Preset, "Open Cut knot (facet-knot)", Choice::Open("facet-knot".into())),
+            entry(
+                Kind::Setting,
+                "clock.speed",
+                Choice::Reveal("clock.speed".into(), None),
+            ),
+            entry(
+                Kind::Accuracy,
+                "accuracy.depth = log16",
+                Choice::Set("accuracy.depth".into(), "log16".into()),
+            ),
+            entry(
+                Kind::Effect,
+                "Disable facet",
+                Choice::Disable(facet.clone()),
+            ),
+            entry(
+                Kind::Preset,
+                "Open Cut knot (facet-knot)",
+                Choice::Open("facet-knot".into()),
+            ),
         ]
     }
 
@@ -120,17 +195,36 @@ mod tests {
     }
 
     fn texts(query: &str) -> Vec<String> {
-        rank(&entries(), query, probe).into_iter().map(|entry| entry.text).collect()
+        rank(&entries(), query, probe)
+            .into_iter()
+            .map(|entry| entry.text)
+            .collect()
     }
 
     #[test]
     fn a_value_behind_a_path_is_set() {
-        for query in ["facet.amount 0.5", "facet.amount=0.5", "facet.amount = 0.5", "effects.facet.amount 0.5", " facet.amount  0.5 "] {
+        for query in [
+            "facet.amount 0.5",
+            "facet.amount=0.5",
+            "facet.amount = 0.5",
+            "effects.facet.amount 0.5",
+            " facet.amount  0.5 ",
+        ] {
             let first = rank(&entries(), query, probe).swap_remove(0);
-            assert_eq!(first.choice, Choice::Set("facet.amount".into(), "0.5".into()), "{query}");
-            assert_eq!((first.kind, first.detail.as_str()), (Kind::Parameter, "now 0.25"));
+            assert_eq!(
+                first.choice,
+                Choice::Set("facet.amount".into(), "0.5".into()),
+                "{query}"
+            );
+            assert_eq!(
+                (first.kind, first.detail.as_str()),
+                (Kind::Parameter, "now 0.25")
+            );
         }
-        assert_eq!(texts("facet.pattern sweep")[0], "Set facet.pattern to sweep");
+        assert_eq!(
+            texts("facet.pattern sweep")[0],
+            "Set facet.pattern to sweep"
+        );
         assert_eq!(
             texts("accuracy.depth log24")[0],
             "Set accuracy.depth to log24",
@@ -141,15 +235,25 @@ mod tests {
     #[test]
     fn a_value_that_is_refused_says_why() {
         let first = rank(&entries(), "facet.amount 7", probe).swap_remove(0);
-        assert_eq!(first.choice, Choice::Refuse("facet.amount 7 lies outside 0..=1".into()));
+        assert_eq!(
+            first.choice,
+            Choice::Refuse("facet.amount 7 lies outside 0..=1".into())
+        );
         assert_eq!(first.detail, "facet.amount 7 lies outside 0..=1");
     }
 
     #[test]
     fn part_of_a_path_offers_every_parameter_that_takes_the_value() {
-        assert_eq!(texts("amount 0.5"), ["Set facet.amount to 0.5", "Set fog.amount to 0.5"]);
+        assert_eq!(
+            texts("amount 0.5"),
+            ["Set facet.amount to 0.5", "Set fog.amount to 0.5"]
+        );
         assert!(texts("fctpat sweep").contains(&"Set facet.pattern to sweep".into()));
-        assert!(texts("amount seven").is_empty(), "{:?}", texts("amount seven"));
+        assert!(
+            texts("amount seven").is_empty(),
+            "{:?}",
+            texts("amount seven")
+        );
     }
 
     #[test]
@@ -157,7 +261,11 @@ mod tests {
         assert_eq!(texts("facet")[0], "facet.amount", "{:?}", texts("facet"));
         assert_eq!(texts("cut knot"), ["Open Cut knot (facet-knot)"]);
         assert_eq!(texts("log16"), ["accuracy.depth = log16"]);
-        assert_eq!(texts("").len(), entries().len(), "nothing typed lists everything");
+        assert_eq!(
+            texts("").len(),
+            entries().len(),
+            "nothing typed lists everything"
+        );
         assert!(texts("qqq").is_empty());
     }
 }

@@ -1,4 +1,5 @@
-//! Extreme cases: runs the table of the stress test on a second device, while the window stays responsive.
+//! Extreme cases: runs the table of the stress test on a second device, while the window stays
+//! responsive.
 
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
@@ -58,17 +59,31 @@ struct Progress {
 
 impl Run {
     fn progress(&self) -> MutexGuard<'_, Progress> {
-        self.progress.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+        self.progress
+            .lock()
+            .unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
-    /// Seconds that are left if the other cases take as long as those that are done; none before one is.
+    /// Seconds that are left if the other cases take as long as those that are done; none before
+    /// one is.
     fn left_s(&self, done: usize) -> Option<f64> {
-        (done > 0).then(|| self.began.elapsed().as_secs_f64() * (self.planned.saturating_sub(done)) as f64 / done as f64)
+        (done > 0).then(|| {
+            self.began.elapsed().as_secs_f64() * (self.planned.saturating_sub(done)) as f64
+                / done as f64
+        })
     }
 
     /// Draws the cases one after another on a device of their own.
-    fn draw(&self, cases: &[&Case], adapter: String, seed: u32, ctx: &egui::Context) -> Result<(), String> {
-        let gpu = Gpu::open(&AdapterChoice::Named(adapter)).block_on().map_err(|error| error.to_string())?;
+    fn draw(
+        &self,
+        cases: &[&Case],
+        adapter: String,
+        seed: u32,
+        ctx: &egui::Context,
+    ) -> Result<(), String> {
+        let gpu = Gpu::open(&AdapterChoice::Named(adapter))
+            .block_on()
+            .map_err(|error| error.to_string())?;
         let mut renderer = Renderer::new(gpu.clone());
         for case in cases {
             let run = || {
@@ -80,7 +95,10 @@ impl Run {
             };
             // A case that is canceled ends as stopped, with a report.
             let report = self.work.run_to_its_end(run);
-            let (is_failure, is_stopped) = (report.outcome.is_failure(), report.outcome == Outcome::Stopped);
+            let (is_failure, is_stopped) = (
+                report.outcome.is_failure(),
+                report.outcome == Outcome::Stopped,
+            );
             self.progress().reports.push(report);
             ctx.request_repaint();
             if gpu.is_lost() {
@@ -106,21 +124,36 @@ impl Extremes {
 
     fn start(&mut self, adapter: String, computing: Computing, ctx: &egui::Context) {
         let cases = stress::chosen(Some(&self.filter));
-        let run = Arc::new(Run { planned: cases.len(), work: Arc::default(), began: Instant::now(), progress: Mutex::default() });
+        let run = Arc::new(Run {
+            planned: cases.len(),
+            work: Arc::default(),
+            began: Instant::now(),
+            progress: Mutex::default(),
+        });
         let (seed, ctx, shared) = (self.seed, ctx.clone(), run.clone());
         let work = move || {
             let _computing = computing;
-            let result = catch_unwind(AssertUnwindSafe(|| shared.draw(&cases, adapter, seed, &ctx)))
-                .unwrap_or_else(|_| Err("the run failed because of a bug; see the terminal for details".into()));
+            let result = catch_unwind(AssertUnwindSafe(|| {
+                shared.draw(&cases, adapter, seed, &ctx)
+            }))
+            .unwrap_or_else(|_| {
+                Err("the run failed because of a bug; see the terminal for details".into())
+            });
             memory::give_back();
             let mut progress = shared.progress();
             progress.error = result.err();
             progress.is_over = true;
             ctx.request_repaint();
         };
-        if let Err(error) = std::thread::Builder::new().name("extremes".into()).spawn(work) {
-            *run.progress() =
-                Progress { error: Some(format!("no thread could be started: {error}")), is_over: true, ..Progress::default() };
+        if let Err(error) = std::thread::Builder::new()
+            .name("extremes".into())
+            .spawn(work)
+        {
+            *run.progress() = Progress {
+                error: Some(format!("no thread could be started: {error}")),
+                is_over: true,
+                ..Progress::default()
+            };
         }
         (self.run, self.is_reported) = (Some(run), false);
     }
@@ -148,8 +181,16 @@ fn summary(reports: &[Report]) -> String {
             None => words.push((word, 1)),
         }
     }
-    let counts: Vec<String> = words.iter().map(|(word, count)| format!("{count} {word}")).collect();
-    format!("{} {}: {}", reports.len(), if reports.len() == 1 { "case" } else { "cases" }, counts.join(", "))
+    let counts: Vec<String> = words
+        .iter()
+        .map(|(word, count)| format!("{count} {word}"))
+        .collect();
+    format!(
+        "{} {}: {}",
+        reports.len(),
+        if reports.len() == 1 { "case" } else { "cases" },
+        counts.join(", ")
+    )
 }
 
 impl Extremes {
@@ -164,20 +205,37 @@ impl Extremes {
 
     /// Reports in the log how a run ended, once.
     fn report(&mut self, commands: &Commands) {
-        let Some(run) = self.run.clone().filter(|_| !self.is_reported) else { return };
+        let Some(run) = self.run.clone().filter(|_| !self.is_reported) else {
+            return;
+        };
         let progress = run.progress();
         if !progress.is_over {
             return;
         }
         self.is_reported = true;
-        for report in progress.reports.iter().filter(|report| report.outcome.is_failure()) {
-            let seed = report.seed.map_or_else(String::new, |seed| format!(", seed {seed}"));
+        for report in progress
+            .reports
+            .iter()
+            .filter(|report| report.outcome.is_failure())
+        {
+            let seed = report
+                .seed
+                .map_or_else(String::new, |seed| format!(", seed {seed}"));
             let why = report.outcome.why().unwrap_or_default();
-            commands.send(Command::Log(Level::Error, format!("extreme case {}, {}{seed}: {why}", report.number, report.name)));
+            commands.send(Command::Log(
+                Level::Error,
+                format!(
+                    "extreme case {}, {}{seed}: {why}",
+                    report.number, report.name
+                ),
+            ));
         }
         commands.send(match &progress.error {
             Some(error) => Command::Notify(Level::Error, format!("Extreme cases: {error}")),
-            None => Command::Notify(Level::Info, format!("Extreme cases: {}", summary(&progress.reports))),
+            None => Command::Notify(
+                Level::Info,
+                format!("Extreme cases: {}", summary(&progress.reports)),
+            ),
         });
     }
 
@@ -193,16 +251,27 @@ impl Extremes {
                     self.stop();
                 }
             } else {
-                let text = if found == 1 { "Run 1 case".to_owned() } else { format!("Run {found} cases") };
+                let text = if found == 1 {
+                    "Run 1 case".to_owned()
+                } else {
+                    format!("Run {found} cases")
+                };
                 let button = egui::Button::new(text).fill(theme::accent_ground());
                 if ui.add_enabled(found > 0, button).clicked() {
-                    self.start(state.picture.screen.gpu.summary.name.clone(), state.jobs.busy(), ui.ctx());
+                    self.start(
+                        state.picture.screen.gpu.summary.name.clone(),
+                        state.jobs.busy(),
+                        ui.ctx(),
+                    );
                 }
             }
-            let filter = egui::TextEdit::singleline(&mut self.filter).hint_text("All; a number or part of a name");
-            ui.add_enabled(!is_running, filter.desired_width(220.0)).accessible_name("Cases");
+            let filter = egui::TextEdit::singleline(&mut self.filter)
+                .hint_text("All; a number or part of a name");
+            ui.add_enabled(!is_running, filter.desired_width(220.0))
+                .accessible_name("Cases");
             ui.label("Seed");
-            ui.add_enabled(!is_running, egui::DragValue::new(&mut self.seed)).accessible_name("Seed of the random cases");
+            ui.add_enabled(!is_running, egui::DragValue::new(&mut self.seed))
+                .accessible_name("Seed of the random cases");
         });
     }
 }
@@ -236,8 +305,15 @@ fn run_ui(ui: &mut Ui, run: &Run, height: f32) {
     let done = progress.reports.len();
     ui.add_space(theme::HALF);
     if progress.is_over {
-        let failed = progress.reports.iter().any(|report| report.outcome.is_failure());
-        let color = if failed || progress.error.is_some() { theme::red() } else { theme::green() };
+        let failed = progress
+            .reports
+            .iter()
+            .any(|report| report.outcome.is_failure());
+        let color = if failed || progress.error.is_some() {
+            theme::red()
+        } else {
+            theme::green()
+        };
         ui.label(RichText::new(summary(&progress.reports)).color(color));
     } else {
         let text = match run.left_s(done) {
@@ -251,12 +327,18 @@ fn run_ui(ui: &mut Ui, run: &Run, height: f32) {
     if let Some(error) = &progress.error {
         theme::notice(ui, theme::red(), error);
     }
-    egui::ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
-        let (failed, others): (Vec<_>, Vec<_>) = progress.reports.iter().partition(|report| report.outcome.is_failure());
-        for report in failed.into_iter().chain(others) {
-            report_ui(ui, report);
-        }
-    });
+    egui::ScrollArea::vertical()
+        .max_height(height)
+        .auto_shrink([false, true])
+        .show(ui, |ui| {
+            let (failed, others): (Vec<_>, Vec<_>) = progress
+                .reports
+                .iter()
+                .partition(|report| report.outcome.is_failure());
+            for report in failed.into_iter().chain(others) {
+                report_ui(ui, report);
+            }
+        });
 }
 
 fn report_ui(ui: &mut Ui, report: &Report) {
@@ -266,17 +348,30 @@ fn report_ui(ui: &mut Ui, report: &Report) {
         Outcome::Failed(_) => theme::red(),
     };
     ui.horizontal(|ui| {
-        ui.add_sized([24.0, 16.0], egui::Label::new(theme::weak(report.number.to_string())));
+        ui.add_sized(
+            [24.0, 16.0],
+            egui::Label::new(theme::weak(report.number.to_string())),
+        );
         ui.add(egui::Label::new(RichText::new(report.name).color(theme::text_strong())).truncate())
-            .on_hover_text(format!("{}\nExpected: {}", report.about, report.expectation));
+            .on_hover_text(format!(
+                "{}\nExpected: {}",
+                report.about, report.expectation
+            ));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.label(theme::weak(format!("{:.0} ms", report.ms)));
             ui.label(RichText::new(report.outcome.word().to_lowercase()).color(color));
         });
     });
-    let seed = report.seed.filter(|_| report.outcome.is_failure()).map(|seed| format!("Seed {seed}"));
+    let seed = report
+        .seed
+        .filter(|_| report.outcome.is_failure())
+        .map(|seed| format!("Seed {seed}"));
     let why = report.outcome.why().map(str::to_owned);
-    for text in why.into_iter().chain(seed).chain(report.notes.iter().cloned()) {
+    for text in why
+        .into_iter()
+        .chain(seed)
+        .chain(report.notes.iter().cloned())
+    {
         ui.label(theme::weak(text));
     }
 }

@@ -1,4 +1,5 @@
-//! Exporting a film: its format, size, rate and range, and how far it is. It is drawn on another thread and another device.
+//! Exporting a film: its format, size, rate and range, and how far it is. It is drawn on another
+//! thread and another device.
 
 use std::{path::Path, sync::Arc};
 
@@ -26,10 +27,18 @@ const MAX_SIDE: u32 = FilmSettings::MAX_SIDE;
 const WIDTH: f32 = 460.0;
 
 /// What anti-aliasing may be chosen; none: as the preset has it.
-const ANTI_ALIASING: [(Option<RenderScale>, &str); 4] =
-    [(None, "As the preset"), (Some(RenderScale::Full), "Off"), (Some(RenderScale::Double), "2×2"), (Some(RenderScale::Quadruple), "4×4")];
+const ANTI_ALIASING: [(Option<RenderScale>, &str); 4] = [
+    (None, "As the preset"),
+    (Some(RenderScale::Full), "Off"),
+    (Some(RenderScale::Double), "2×2"),
+    (Some(RenderScale::Quadruple), "4×4"),
+];
 
-const TURNTABLES: [(Option<Turntable>, &str); 3] = [(None, "None"), (Some(Turntable::Camera), "Camera"), (Some(Turntable::Scene), "Scene")];
+const TURNTABLES: [(Option<Turntable>, &str); 3] = [
+    (None, "None"),
+    (Some(Turntable::Camera), "Camera"),
+    (Some(Turntable::Scene), "Scene"),
+];
 
 /// The dialog that exports a film.
 #[derive(Default)]
@@ -64,17 +73,33 @@ struct Form {
 impl Form {
     fn new(state: &State, last: &FilmSettings) -> Self {
         let session = &state.session;
-        let id = if session.preset_file.id.is_empty() { "film" } else { &session.preset_file.id };
+        let id = if session.preset_file.id.is_empty() {
+            "film"
+        } else {
+            &session.preset_file.id
+        };
         let output = session.preset().output.size;
-        let shown = state.picture.screen.requested().map_or(output, |inputs| [inputs.view.width, inputs.view.height]);
-        let own_range_s = last.range_s.filter(|_| last.range_of.as_ref() == Some(&session.preset_file.id));
-        let path = last.format.named(&std::env::current_dir().unwrap_or_default().join(format!("{id}.png")));
+        let shown = state
+            .picture
+            .screen
+            .requested()
+            .map_or(output, |inputs| [inputs.view.width, inputs.view.height]);
+        let own_range_s = last
+            .range_s
+            .filter(|_| last.range_of.as_ref() == Some(&session.preset_file.id));
+        let path = last.format.named(
+            &std::env::current_dir()
+                .unwrap_or_default()
+                .join(format!("{id}.png")),
+        );
         Self {
             preset: session.preset_file.id.clone(),
             path: path.display().to_string(),
             format: last.format,
             // Even, as MP4 needs it.
-            size: last.size.unwrap_or_else(|| shown.map(|side| (side & !1).clamp(2, MAX_SIDE))),
+            size: last
+                .size
+                .unwrap_or_else(|| shown.map(|side| (side & !1).clamp(2, MAX_SIDE))),
             fps: last.fps,
             range_s: own_range_s.unwrap_or(session.preset().clock.range_s),
             turntable: None,
@@ -100,12 +125,22 @@ impl Form {
     fn settings(&self, clock: &Clock) -> FilmSettings {
         let range_s = Some(self.range_s).filter(|range_s| *range_s != clock.range_s);
         let range_of = range_s.map(|_| self.preset.clone());
-        FilmSettings { format: self.format, size: Some(self.size), fps: self.fps, scale: self.scale, range_s, range_of }
+        FilmSettings {
+            format: self.format,
+            size: Some(self.size),
+            fps: self.fps,
+            scale: self.scale,
+            range_s,
+            range_of,
+        }
     }
 
     fn choose(&mut self, format: Format) {
         self.format = format;
-        self.path = format.named(Path::new(self.path.trim())).display().to_string();
+        self.path = format
+            .named(Path::new(self.path.trim()))
+            .display()
+            .to_string();
     }
 
     /// Why the film cannot be exported, in a sentence.
@@ -117,7 +152,10 @@ impl Form {
         if self.path.trim().is_empty() {
             return Some("Type a path.".into());
         }
-        self.request(false).schedule(clock).err().map(|error| error.to_string())
+        self.request(false)
+            .schedule(clock)
+            .err()
+            .map(|error| error.to_string())
     }
 }
 
@@ -131,7 +169,9 @@ impl FilmPanel {
         }
         match &mut self.form {
             // What was chosen before stays.
-            Some(form) if form.preset == state.session.preset_file.id => form.has_ffmpeg = find_ffmpeg().is_some(),
+            Some(form) if form.preset == state.session.preset_file.id => {
+                form.has_ffmpeg = find_ffmpeg().is_some()
+            }
             form => (*form, self.failure) = (Some(Form::new(state, &self.last)), None),
         }
     }
@@ -155,21 +195,36 @@ impl FilmPanel {
     }
 
     /// Takes the end of the film of `progress`. Returns what to say about it.
-    pub fn arrived(&mut self, progress: &Arc<Progress>, ended: Result<Finished, Failure>) -> Option<(Level, String)> {
+    pub fn arrived(
+        &mut self,
+        progress: &Arc<Progress>,
+        ended: Result<Finished, Failure>,
+    ) -> Option<(Level, String)> {
         self.ending.take_if(|ending| Arc::ptr_eq(ending, progress));
-        let (request, _) = self.running.take_if(|(_, running)| Arc::ptr_eq(running, progress))?;
+        let (request, _) = self
+            .running
+            .take_if(|(_, running)| Arc::ptr_eq(running, progress))?;
         match ended {
             Ok(Finished { drawn, kept }) => {
                 (self.is_open, self.failure) = (false, None);
                 let path = request.path.display();
-                let kept = if kept > 0 { format!(", {kept} were there") } else { String::new() };
-                Some((Level::Info, format!("Saved {path}: {drawn} frames drawn{kept}")))
+                let kept = if kept > 0 {
+                    format!(", {kept} were there")
+                } else {
+                    String::new()
+                };
+                Some((
+                    Level::Info,
+                    format!("Saved {path}: {drawn} frames drawn{kept}"),
+                ))
             }
             Err(failure) => {
                 self.is_open = true;
                 let said = match &failure {
                     Failure::Stopped => None,
-                    Failure::Taken(reason) | Failure::Other(reason) => Some((Level::Error, format!("The film was not exported: {reason}"))),
+                    Failure::Taken(reason) | Failure::Other(reason) => {
+                        Some((Level::Error, format!("The film was not exported: {reason}")))
+                    }
                 };
                 self.failure = Some(failure);
                 said
@@ -189,17 +244,31 @@ impl FilmPanel {
         self.last = form.settings(clock);
         let (request, progress) = (form.request(replaces), Arc::<Progress>::default());
         self.failure = None;
-        commands.send(Command::ExportFilm(Box::new(request.clone()), progress.clone()));
+        commands.send(Command::ExportFilm(
+            Box::new(request.clone()),
+            progress.clone(),
+        ));
         self.running = Some((request, progress));
     }
 
     /// The buttons, and what stands in the way.
     fn end_ui(&mut self, ui: &mut Ui, state: &State, is_entered: bool, commands: &Commands) {
-        let fault = self.form.as_ref().and_then(|form| form.fault(&state.session.preset().clock));
+        let fault = self
+            .form
+            .as_ref()
+            .and_then(|form| form.fault(&state.session.preset().clock));
         match (&fault, &self.failure) {
             (Some(fault), _) => theme::notice(ui, theme::amber(), fault),
-            (None, Some(Failure::Stopped)) => theme::notice(ui, theme::amber(), "Stopped. Finished frames stay, and are not drawn again."),
-            (None, Some(Failure::Taken(reason))) => theme::notice(ui, theme::amber(), &format!("{reason}. Replace overwrites it.")),
+            (None, Some(Failure::Stopped)) => theme::notice(
+                ui,
+                theme::amber(),
+                "Stopped. Finished frames stay, and are not drawn again.",
+            ),
+            (None, Some(Failure::Taken(reason))) => theme::notice(
+                ui,
+                theme::amber(),
+                &format!("{reason}. Replace overwrites it."),
+            ),
             (None, Some(Failure::Other(reason))) => theme::notice(ui, theme::red(), reason),
             (None, None) => {}
         }
@@ -208,12 +277,20 @@ impl FilmPanel {
         let is_ready = fault.is_none() && self.ending.is_none() && state.session.scene().is_some();
         let (mut is_started, mut is_closed) = (is_entered && is_ready && !is_taken, false);
         let row = egui::vec2(ui.available_width(), theme::ROW);
-        ui.allocate_ui_with_layout(row, egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let verb = if is_taken { "Replace" } else { "Export film" };
-            let button = egui::Button::new(verb).fill(theme::accent_ground()).min_size(egui::vec2(96.0, theme::ROW));
-            is_started |= ui.add_enabled(is_ready, button).clicked();
-            is_closed = ui.add(egui::Button::new("Close").min_size(egui::vec2(72.0, theme::ROW))).clicked();
-        });
+        ui.allocate_ui_with_layout(
+            row,
+            egui::Layout::right_to_left(egui::Align::Center),
+            |ui| {
+                let verb = if is_taken { "Replace" } else { "Export film" };
+                let button = egui::Button::new(verb)
+                    .fill(theme::accent_ground())
+                    .min_size(egui::vec2(96.0, theme::ROW));
+                is_started |= ui.add_enabled(is_ready, button).clicked();
+                is_closed = ui
+                    .add(egui::Button::new("Close").min_size(egui::vec2(72.0, theme::ROW)))
+                    .clicked();
+            },
+        );
         if is_started {
             self.start(is_taken, &state.session.preset().clock, commands);
         }
@@ -254,7 +331,10 @@ impl Panel for FilmPanel {
                 let clock = state.session.preset().clock;
                 let before = self.form.as_ref().map(|form| form.request(false));
                 let takes_focus = std::mem::take(&mut self.takes_focus);
-                let is_entered = self.form.as_mut().is_some_and(|form| form_ui(ui, form, &clock, takes_focus));
+                let is_entered = self
+                    .form
+                    .as_mut()
+                    .is_some_and(|form| form_ui(ui, form, &clock, takes_focus));
                 if before != self.form.as_ref().map(|form| form.request(false)) {
                     // What was agreed to, or failed, was another film.
                     self.failure = None;
@@ -269,13 +349,18 @@ impl Panel for FilmPanel {
 fn form_ui(ui: &mut Ui, form: &mut Form, clock: &Clock, takes_focus: bool) -> bool {
     ui.horizontal(|ui| {
         for format in Format::ALL {
-            if ui.selectable_label(form.format == format, format.name()).clicked() {
+            if ui
+                .selectable_label(form.format == format, format.name())
+                .clicked()
+            {
                 form.choose(format);
             }
         }
     });
     ui.add_space(theme::HALF);
-    let path = egui::TextEdit::singleline(&mut form.path).hint_text("Path").desired_width(f32::INFINITY);
+    let path = egui::TextEdit::singleline(&mut form.path)
+        .hint_text("Path")
+        .desired_width(f32::INFINITY);
     let path = ui.add(path).accessible_name("Path of the film");
     let is_entered = path.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
     if takes_focus {
@@ -286,56 +371,89 @@ fn form_ui(ui: &mut Ui, form: &mut Form, clock: &Clock, takes_focus: bool) -> bo
         ui.add(egui::Label::new(theme::weak(about(form, schedule))).truncate());
     }
     ui.add_space(theme::HALF);
-    Grid::new("film").num_columns(2).spacing([theme::GAP, theme::HALF]).show(ui, |ui| {
-        ui.label("Size");
-        ui.horizontal(|ui| {
-            let step = if form.format.needs_ffmpeg() { 2 } else { 1 };
-            for (side, name) in form.size.iter_mut().zip(["Width of the film", "Height of the film"]) {
-                ui.add(DragValue::new(side).range(step..=MAX_SIDE).suffix(" px")).accessible_name(name);
-                *side -= *side % step;
-            }
-        });
-        ui.end_row();
-        ui.label("Frames per second");
-        ui.add(DragValue::new(&mut form.fps).range(1.0..=FilmSettings::MAX_FPS).max_decimals(3).speed(0.5))
-            .accessible_name("Frames per second");
-        ui.end_row();
-        ui.label("Range");
-        ui.horizontal(|ui| {
-            for (time_s, name) in form.range_s.iter_mut().zip(["Begin of the film", "End of the film"]) {
-                ui.add(DragValue::new(time_s).suffix(" s").speed(0.05).max_decimals(3)).accessible_name(name);
-            }
-            if form.range_s != clock.range_s && ui.small_button("Whole timeline").clicked() {
-                form.range_s = clock.range_s;
-            }
-        });
-        ui.end_row();
-        ui.label("Anti-aliasing");
-        let shown = ANTI_ALIASING.iter().find(|(scale, _)| *scale == form.scale).map_or("", |(_, name)| name);
-        let menu = ComboBox::from_id_salt("film anti-aliasing").selected_text(shown).show_ui(ui, |ui| {
-            for (scale, name) in ANTI_ALIASING {
-                ui.selectable_value(&mut form.scale, scale, name);
-            }
-        });
-        menu.response.accessible_name("Anti-aliasing of the film");
-        ui.end_row();
-        ui.label("Turntable").on_hover_text("One turn over the range. The preset is not changed.");
-        ui.horizontal(|ui| {
-            for (turntable, name) in TURNTABLES {
-                let hint = match turntable {
-                    None => "No turn beside that of the preset",
-                    Some(Turntable::Camera) => "The camera goes around the scene once",
-                    Some(Turntable::Scene) => "The scene turns once, in front of a still camera and light",
-                };
-                let label = ui.selectable_label(form.turntable == turntable, name).on_hover_text(hint);
-                if label.clicked() {
-                    form.turntable = turntable;
+    Grid::new("film")
+        .num_columns(2)
+        .spacing([theme::GAP, theme::HALF])
+        .show(ui, |ui| {
+            ui.label("Size");
+            ui.horizontal(|ui| {
+                let step = if form.format.needs_ffmpeg() { 2 } else { 1 };
+                for (side, name) in form
+                    .size
+                    .iter_mut()
+                    .zip(["Width of the film", "Height of the film"])
+                {
+                    ui.add(DragValue::new(side).range(step..=MAX_SIDE).suffix(" px"))
+                        .accessible_name(name);
+                    *side -= *side % step;
                 }
-                label.accessible_name(format!("Turntable {name}"));
-            }
+            });
+            ui.end_row();
+            ui.label("Frames per second");
+            ui.add(
+                DragValue::new(&mut form.fps)
+                    .range(1.0..=FilmSettings::MAX_FPS)
+                    .max_decimals(3)
+                    .speed(0.5),
+            )
+            .accessible_name("Frames per second");
+            ui.end_row();
+            ui.label("Range");
+            ui.horizontal(|ui| {
+                for (time_s, name) in form
+                    .range_s
+                    .iter_mut()
+                    .zip(["Begin of the film", "End of the film"])
+                {
+                    ui.add(
+                        DragValue::new(time_s)
+                            .suffix(" s")
+                            .speed(0.05)
+                            .max_decimals(3),
+                    )
+                    .accessible_name(name);
+                }
+                if form.range_s != clock.range_s && ui.small_button("Whole timeline").clicked() {
+                    form.range_s = clock.range_s;
+                }
+            });
+            ui.end_row();
+            ui.label("Anti-aliasing");
+            let shown = ANTI_ALIASING
+                .iter()
+                .find(|(scale, _)| *scale == form.scale)
+                .map_or("", |(_, name)| name);
+            let menu = ComboBox::from_id_salt("film anti-aliasing")
+                .selected_text(shown)
+                .show_ui(ui, |ui| {
+                    for (scale, name) in ANTI_ALIASING {
+                        ui.selectable_value(&mut form.scale, scale, name);
+                    }
+                });
+            menu.response.accessible_name("Anti-aliasing of the film");
+            ui.end_row();
+            ui.label("Turntable")
+                .on_hover_text("One turn over the range. The preset is not changed.");
+            ui.horizontal(|ui| {
+                for (turntable, name) in TURNTABLES {
+                    let hint = match turntable {
+                        None => "No turn beside that of the preset",
+                        Some(Turntable::Camera) => "The camera goes around the scene once",
+                        Some(Turntable::Scene) => {
+                            "The scene turns once, in front of a still camera and light"
+                        }
+                    };
+                    let label = ui
+                        .selectable_label(form.turntable == turntable, name)
+                        .on_hover_text(hint);
+                    if label.clicked() {
+                        form.turntable = turntable;
+                    }
+                    label.accessible_name(format!("Turntable {name}"));
+                }
+            });
+            ui.end_row();
         });
-        ui.end_row();
-    });
     ui.add_space(theme::HALF);
     is_entered
 }
@@ -343,9 +461,18 @@ fn form_ui(ui: &mut Ui, form: &mut Form, clock: &Clock, takes_focus: bool) -> bo
 /// `120 frames, 4 s`, and the names of the files.
 fn about(form: &Form, schedule: &crate::film::Schedule) -> String {
     let frames = schedule.frames.len();
-    let length = format!("{frames} {}, {:.2} s", if frames == 1 { "frame" } else { "frames" }, frames as f64 / form.fps);
+    let length = format!(
+        "{frames} {}, {:.2} s",
+        if frames == 1 { "frame" } else { "frames" },
+        frames as f64 / form.fps
+    );
     let paths = form.request(false).frame_paths(schedule);
-    let name = |path: &std::path::PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let name = |path: &std::path::PathBuf| {
+        path.file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned()
+    };
     match (paths.first(), paths.last()) {
         (Some(first), Some(last)) => format!("{length}: {} to {}", name(first), name(last)),
         _ => length,
@@ -357,8 +484,16 @@ fn progress_ui(ui: &mut Ui, request: &Request, progress: &Progress) -> bool {
     let counts = progress.read();
     ui.label(RichText::new(request.path.display().to_string()).color(theme::text_strong()));
     ui.add_space(theme::HALF);
-    let text = if counts.all == 0 { "Preparing".to_owned() } else { format!("{} of {} frames", counts.done, counts.all) };
-    ui.add(egui::ProgressBar::new(counts.done as f32 / counts.all.max(1) as f32).text(text).animate(true));
+    let text = if counts.all == 0 {
+        "Preparing".to_owned()
+    } else {
+        format!("{} of {} frames", counts.done, counts.all)
+    };
+    ui.add(
+        egui::ProgressBar::new(counts.done as f32 / counts.all.max(1) as f32)
+            .text(text)
+            .animate(true),
+    );
     let left = match counts.left_s() {
         Some(_) if counts.done == counts.all => "Finishing the file".into(),
         Some(left_s) => time_left_text(left_s),
@@ -369,7 +504,9 @@ fn progress_ui(ui: &mut Ui, request: &Request, progress: &Progress) -> bool {
     ui.horizontal(|ui| {
         ui.label(theme::weak(left));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            is_stopped = ui.add(egui::Button::new("Cancel").min_size(egui::vec2(72.0, theme::ROW))).clicked();
+            is_stopped = ui
+                .add(egui::Button::new("Cancel").min_size(egui::vec2(72.0, theme::ROW)))
+                .clicked();
         });
     });
     is_stopped

@@ -27,30 +27,42 @@ impl Panel for LogPanel {
                 if icon_button(ui, Icon::Cross, "Clear the log").clicked() {
                     commands.send(Command::ClearLog);
                 }
-                if ui.small_button("Copy").on_hover_text("Copy the whole log").clicked() {
+                if ui
+                    .small_button("Copy")
+                    .on_hover_text("Copy the whole log")
+                    .clicked()
+                {
                     ui.ctx().copy_text(log.to_text());
                 }
             });
         });
-        egui::ScrollArea::vertical().auto_shrink(false).stick_to_bottom(true).show(ui, |ui| {
-            if log.entries().len() == 0 {
-                ui.label(theme::weak("No messages yet. Loading, saving and every error are reported here."));
-            }
-            for Entry { level, text, count } in log.entries() {
-                ui.horizontal_wrapped(|ui| {
-                    ui.spacing_mut().item_spacing.x = 8.0;
-                    ui.label(RichText::new(level.word()).monospace().color(level.color()));
-                    ui.label(RichText::new(text).monospace().color(theme::text()));
-                    ui.label(theme::weak(times(*count)));
-                });
-            }
-        });
+        egui::ScrollArea::vertical()
+            .auto_shrink(false)
+            .stick_to_bottom(true)
+            .show(ui, |ui| {
+                if log.entries().len() == 0 {
+                    ui.label(theme::weak(
+                        "No messages yet. Loading, saving and every error are reported here.",
+                    ));
+                }
+                for Entry { level, text, count } in log.entries() {
+                    ui.horizontal_wrapped(|ui| {
+                        ui.spacing_mut().item_spacing.x = 8.0;
+                        ui.label(RichText::new(level.word()).monospace().color(level.color()));
+                        ui.label(RichText::new(text).monospace().color(theme::text()));
+                        ui.label(theme::weak(times(*count)));
+                    });
+                }
+            });
     }
 }
 
-/// Shows the toasts at the upper right of `area`, below the buttons there, and repaints when the next one ends.
+/// Shows the toasts at the upper right of `area`, below the buttons there, and repaints when the
+/// next one ends.
 pub fn toasts_ui(ctx: &egui::Context, log: &Log, area: Rect, now_s: f64) {
-    let Some(wait_s) = log.next_toast_ends_in_s(now_s) else { return };
+    let Some(wait_s) = log.next_toast_ends_in_s(now_s) else {
+        return;
+    };
     ctx.request_repaint_after_secs(wait_s as f32);
     egui::Area::new(egui::Id::unique("toasts"))
         .order(egui::Order::Foreground)
@@ -60,7 +72,9 @@ pub fn toasts_ui(ctx: &egui::Context, log: &Log, area: Rect, now_s: f64) {
         .show(ctx, |ui| {
             ui.set_max_width((area.width() - 20.0).clamp(160.0, 380.0));
             for toast in log.toasts(now_s) {
-                theme::toast_frame(toast.level.color()).show(ui, |ui| ui.label(RichText::new(&toast.text).color(theme::text_strong())));
+                theme::toast_frame(toast.level.color()).show(ui, |ui| {
+                    ui.label(RichText::new(&toast.text).color(theme::text_strong()))
+                });
             }
         });
 }

@@ -23,9 +23,11 @@ pub mod trade;
 pub mod viewport;
 
 use self::{
-    cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, film::FilmPanel, inspector::Inspector, log::LogPanel,
-    naming::NameDialog, palette::Palette, preset_browser::PresetBrowser, randomize::RandomizePanel, settings::SettingsWindow,
-    sweep::SweepPanel, timeline::Timeline, timing::TimingPanel, topbar::TopBar, trade::TradePanel, viewport::Viewport,
+    cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, film::FilmPanel,
+    inspector::Inspector, log::LogPanel, naming::NameDialog, palette::Palette,
+    preset_browser::PresetBrowser, randomize::RandomizePanel, settings::SettingsWindow,
+    sweep::SweepPanel, timeline::Timeline, timing::TimingPanel, topbar::TopBar, trade::TradePanel,
+    viewport::Viewport,
 };
 use crate::preset_file::Folders;
 

@@ -23,13 +23,26 @@ impl NewEffect {
     /// A new effect without a name, or a duplicate with a name that is free.
     pub fn new(duplicated: Option<Arc<Effect>>, catalog: &Catalog) -> Self {
         let Some(effect) = duplicated else {
-            return Self { name: String::new(), origin: Origin::Template(Hook::Surface), error: None, selects: false };
+            return Self {
+                name: String::new(),
+                origin: Origin::Template(Hook::Surface),
+                error: None,
+                selects: false,
+            };
         };
         let first = format!("my_{}", effect.name);
         let further = (2..).map(|number| format!("{first}_{number}"));
         let is_free = |name: &String| catalog.names().all(|known| known != name);
-        let name = std::iter::once(first.clone()).chain(further).find(is_free).unwrap_or(first);
-        Self { name, origin: Origin::Duplicate(effect), error: None, selects: true }
+        let name = std::iter::once(first.clone())
+            .chain(further)
+            .find(is_free)
+            .unwrap_or(first);
+        Self {
+            name,
+            origin: Origin::Duplicate(effect),
+            error: None,
+            selects: true,
+        }
     }
 }
 
@@ -52,7 +65,12 @@ impl NewEffect {
 
 /// Shows the fields. Returns true if Enter was pressed in the name.
 pub fn fields_ui(ui: &mut Ui, dialog: &mut NewEffect) -> bool {
-    let NewEffect { name, origin, error, selects } = dialog;
+    let NewEffect {
+        name,
+        origin,
+        error,
+        selects,
+    } = dialog;
     let (title, about) = match origin {
         Origin::Template(_) => (
             "New effect".to_owned(),
@@ -64,12 +82,23 @@ pub fn fields_ui(ui: &mut Ui, dialog: &mut NewEffect) -> bool {
                 .to_owned(),
         ),
     };
-    ui.label(RichText::new(title).size(15.0).color(theme::text_strong()).strong());
+    ui.label(
+        RichText::new(title)
+            .size(15.0)
+            .color(theme::text_strong())
+            .strong(),
+    );
     ui.label(theme::weak(about));
     ui.add_space(theme::HALF);
-    let mut shown = egui::TextEdit::singleline(name).hint_text("Name, for instance ink").desired_width(f32::INFINITY).show(ui);
+    let mut shown = egui::TextEdit::singleline(name)
+        .hint_text("Name, for instance ink")
+        .desired_width(f32::INFINITY)
+        .show(ui);
     if std::mem::take(selects) {
-        let all = egui::text::CCursorRange::two(egui::text::CCursor::new(0), egui::text::CCursor::new(name.chars().count()));
+        let all = egui::text::CCursorRange::two(
+            egui::text::CCursor::new(0),
+            egui::text::CCursor::new(name.chars().count()),
+        );
         shown.state.cursor.set_char_range(Some(all));
         shown.state.store(ui.ctx(), shown.response.id);
     }
@@ -80,7 +109,8 @@ pub fn fields_ui(ui: &mut Ui, dialog: &mut NewEffect) -> bool {
     }
     if let Origin::Template(hook) = origin {
         for option in Hook::ALL {
-            ui.radio_value(hook, option, self::about(option)).accessible_name(option.name());
+            ui.radio_value(hook, option, self::about(option))
+                .accessible_name(option.name());
         }
     }
     if let Some(error) = error {

@@ -1,6 +1,9 @@
 //! The command palette: a search over everything that the window can do, over the picture.
 
-use eframe::egui::{self, Align, Align2, FontId, Key, Modifiers, Rect, RichText, ScrollArea, Sense, TextEdit, Ui, pos2, vec2};
+use eframe::egui::{
+    self, Align, Align2, FontId, Key, Modifiers, Rect, RichText, ScrollArea, Sense, TextEdit, Ui,
+    pos2, vec2,
+};
 
 use crate::{
     app::{
@@ -72,13 +75,17 @@ impl Palette {
 
     /// Carries out the entry at `index` and closes the palette.
     fn choose(&mut self, index: usize, to: &Commands) {
-        let Some(entry) = self.open.take().and_then(|mut open| (index < open.listed.len()).then(|| open.listed.swap_remove(index))) else {
+        let Some(entry) = self.open.take().and_then(|mut open| {
+            (index < open.listed.len()).then(|| open.listed.swap_remove(index))
+        }) else {
             return;
         };
         self.recent.retain(|text| *text != entry.text);
         self.recent.insert(0, entry.text);
         self.recent.truncate(MAX_RECENT);
-        commands(entry.choice).into_iter().for_each(|command| to.send(command));
+        commands(entry.choice)
+            .into_iter()
+            .for_each(|command| to.send(command));
     }
 }
 
@@ -86,12 +93,18 @@ impl Open {
     /// Lists what answers the search; what was used last while nothing is typed.
     fn list(&mut self, recent: &[String]) {
         let probe = |path: &str, value: &str| {
-            let set = preset_file::set(&mut self.probe.clone(), path, value).map_err(|error| error.to_string());
+            let set = preset_file::set(&mut self.probe.clone(), path, value)
+                .map_err(|error| error.to_string());
             set.map_err(|sentence| sentence.trim_start_matches("--set: ").to_owned())
         };
         self.listed = rank(&self.entries, &self.search, probe);
         if self.search.trim().is_empty() {
-            let index = |entry: &Entry| recent.iter().position(|text| *text == entry.text).unwrap_or(recent.len());
+            let index = |entry: &Entry| {
+                recent
+                    .iter()
+                    .position(|text| *text == entry.text)
+                    .unwrap_or(recent.len())
+            };
             self.listed.sort_by_key(index);
         }
         (self.selected, self.follows) = (0, true);
@@ -99,14 +112,20 @@ impl Open {
 
     /// Takes the keys that move the selection. Returns true if the selected entry is chosen.
     fn take_keys(&mut self, ui: &Ui) -> bool {
-        let pressed = |key: Key| ui.input_mut(|i| i.count_and_consume_key(Modifiers::NONE, key)) as isize;
+        let pressed =
+            |key: Key| ui.input_mut(|i| i.count_and_consume_key(Modifiers::NONE, key)) as isize;
         let page = PAGE as isize;
-        let by = pressed(Key::ArrowDown) - pressed(Key::ArrowUp) + page * (pressed(Key::PageDown) - pressed(Key::PageUp));
+        let by = pressed(Key::ArrowDown) - pressed(Key::ArrowUp)
+            + page * (pressed(Key::PageDown) - pressed(Key::PageUp));
         if by != 0 && !self.listed.is_empty() {
             let last = self.listed.len() as isize - 1;
             // One step beyond an end leads to the other one; a page stops there.
             let to = self.selected as isize + by;
-            let to = if by.abs() == 1 { to.rem_euclid(last + 1) } else { to.clamp(0, last) };
+            let to = if by.abs() == 1 {
+                to.rem_euclid(last + 1)
+            } else {
+                to.clamp(0, last)
+            };
             (self.selected, self.follows) = (to as usize, true);
         }
         pressed(Key::Enter) > 0
@@ -118,15 +137,25 @@ impl Panel for Palette {
         let Some(open) = &mut self.open else { return };
         let area = ui.ctx().content_rect();
         let id = egui::Id::unique("command palette");
-        let anchored = egui::Modal::default_area(id).anchor(Align2::CENTER_TOP, vec2(0.0, (area.height() * 0.1).min(72.0)));
+        let anchored = egui::Modal::default_area(id).anchor(
+            Align2::CENTER_TOP,
+            vec2(0.0, (area.height() * 0.1).min(72.0)),
+        );
         let frame = egui::Frame::window(&ui.ctx().global_style()).inner_margin(10.0);
         let recent = &self.recent;
-        let modal = egui::Modal::new(id).area(anchored).backdrop_color(egui::Color32::from_black_alpha(60)).frame(frame);
+        let modal = egui::Modal::new(id)
+            .area(anchored)
+            .backdrop_color(egui::Color32::from_black_alpha(60))
+            .frame(frame);
         let shown = modal.show(ui.ctx(), |ui| {
             ui.set_width(WIDTH.min(area.width() - 40.0));
             let is_entered = open.take_keys(ui);
-            let hint = "Search actions, effects, parameters, presets; or set a value: facet.amount 0.5";
-            let field = TextEdit::singleline(&mut open.search).hint_text(hint).char_limit(MAX_CHARS).desired_width(f32::INFINITY);
+            let hint =
+                "Search actions, effects, parameters, presets; or set a value: facet.amount 0.5";
+            let field = TextEdit::singleline(&mut open.search)
+                .hint_text(hint)
+                .char_limit(MAX_CHARS)
+                .desired_width(f32::INFINITY);
             let field = ui.add(field.margin(vec2(8.0, 6.0))).accessible_name(NAME);
             if !field.has_focus() {
                 field.request_focus();
@@ -137,10 +166,15 @@ impl Panel for Palette {
             ui.add_space(theme::HALF);
             let clicked = list_ui(ui, open, area.height());
             footer_ui(ui, open);
-            if is_entered { Some(open.selected) } else { clicked }
+            if is_entered {
+                Some(open.selected)
+            } else {
+                clicked
+            }
         });
         let keys = state.settings.keys.of(Action::Palette);
-        let is_closed = shown.should_close() || ui.input_mut(|i| keys.iter().any(|shortcut| i.consume_shortcut(shortcut)));
+        let is_closed = shown.should_close()
+            || ui.input_mut(|i| keys.iter().any(|shortcut| i.consume_shortcut(shortcut)));
         match shown.inner {
             Some(index) => self.choose(index, commands),
             None if is_closed => self.open = None,
@@ -157,7 +191,9 @@ fn list_ui(ui: &mut Ui, open: &mut Open, height: f32) -> Option<usize> {
         return None;
     }
     let mut clicked = None;
-    let rows = ScrollArea::vertical().max_height((ROWS * ROW).min(height * 0.6)).auto_shrink([false, true]);
+    let rows = ScrollArea::vertical()
+        .max_height((ROWS * ROW).min(height * 0.6))
+        .auto_shrink([false, true]);
     rows.show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         for (index, entry) in open.listed.iter().enumerate() {
@@ -177,9 +213,13 @@ fn list_ui(ui: &mut Ui, open: &mut Open, height: f32) -> Option<usize> {
 
 fn row_ui(ui: &mut Ui, entry: &Entry, is_selected: bool) -> egui::Response {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
-    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_selected, &entry.text));
+    response.widget_info(|| {
+        egui::WidgetInfo::selected(egui::Role::Button, true, is_selected, &entry.text)
+    });
     if !entry.keys.is_empty() {
-        ui.ctx().accesskit_node_builder(response.id, |node| node.set_keyboard_shortcut(entry.keys.as_str()));
+        ui.ctx().accesskit_node_builder(response.id, |node| {
+            node.set_keyboard_shortcut(entry.keys.as_str())
+        });
     }
     if !ui.is_rect_visible(rect) {
         return response;
@@ -191,42 +231,102 @@ fn row_ui(ui: &mut Ui, entry: &Entry, is_selected: bool) -> egui::Response {
     }
     let (small, body) = (FontId::proportional(11.5), FontId::proportional(13.0));
     let middle = rect.center().y;
-    let weak = if is_selected { theme::text() } else { theme::text_weak() };
-    ui.painter().text(pos2(rect.left() + theme::GAP, middle), Align2::LEFT_CENTER, entry.kind.name(), small.clone(), weak);
-    let keys = ui.painter().layout_no_wrap(entry.keys.clone(), small.clone(), theme::text());
-    let keys_at = pos2(rect.right() - theme::GAP - keys.size().x, middle - keys.size().y / 2.0);
+    let weak = if is_selected {
+        theme::text()
+    } else {
+        theme::text_weak()
+    };
+    ui.painter().text(
+        pos2(rect.left() + theme::GAP, middle),
+        Align2::LEFT_CENTER,
+        entry.kind.name(),
+        small.clone(),
+        weak,
+    );
+    let keys = ui
+        .painter()
+        .layout_no_wrap(entry.keys.clone(), small.clone(), theme::text());
+    let keys_at = pos2(
+        rect.right() - theme::GAP - keys.size().x,
+        middle - keys.size().y / 2.0,
+    );
     ui.painter().galley(keys_at, keys.clone(), theme::text());
     let is_refused = matches!(entry.choice, Choice::Refuse(_));
-    let ink = if is_refused { theme::text() } else { theme::text_strong() };
-    let text_rect = Rect::from_min_max(pos2(rect.left() + KIND_WIDTH, rect.top()), pos2(keys_at.x - theme::GAP, rect.bottom()));
+    let ink = if is_refused {
+        theme::text()
+    } else {
+        theme::text_strong()
+    };
+    let text_rect = Rect::from_min_max(
+        pos2(rect.left() + KIND_WIDTH, rect.top()),
+        pos2(keys_at.x - theme::GAP, rect.bottom()),
+    );
     let text = one_line(ui, &entry.text, body, ink, text_rect.width());
     let detail_left = text_rect.left() + text.size().x + 12.0;
-    ui.painter().galley(pos2(text_rect.left(), middle - text.size().y / 2.0), text, ink);
+    ui.painter().galley(
+        pos2(text_rect.left(), middle - text.size().y / 2.0),
+        text,
+        ink,
+    );
     if detail_left < text_rect.right() - 24.0 {
         let ink = if is_refused { theme::amber() } else { weak };
-        let detail = one_line(ui, &entry.detail, small, ink, text_rect.right() - detail_left);
-        ui.painter().galley(pos2(detail_left, middle - detail.size().y / 2.0), detail, ink);
+        let detail = one_line(
+            ui,
+            &entry.detail,
+            small,
+            ink,
+            text_rect.right() - detail_left,
+        );
+        ui.painter().galley(
+            pos2(detail_left, middle - detail.size().y / 2.0),
+            detail,
+            ink,
+        );
     }
     response
 }
 
 /// Text that ends with … where it is longer than `width` points.
-fn one_line(ui: &Ui, text: &str, font: FontId, color: egui::Color32, width: f32) -> std::sync::Arc<egui::Galley> {
-    let mut job = egui::text::LayoutJob::single_section(text.replace('\n', " "), egui::TextFormat::simple(font, color));
-    job.wrap = egui::text::TextWrapping { max_width: width.max(8.0), max_rows: 1, break_anywhere: true, overflow_character: Some('…') };
+fn one_line(
+    ui: &Ui,
+    text: &str,
+    font: FontId,
+    color: egui::Color32,
+    width: f32,
+) -> std::sync::Arc<egui::Galley> {
+    let mut job = egui::text::LayoutJob::single_section(
+        text.replace('\n', " "),
+        egui::TextFormat::simple(font, color),
+    );
+    job.wrap = egui::text::TextWrapping {
+        max_width: width.max(8.0),
+        max_rows: 1,
+        break_anywhere: true,
+        overflow_character: Some('…'),
+    };
     ui.painter().layout_job(job)
 }
 
 /// What the selected entry is about, and the keys.
 fn footer_ui(ui: &mut Ui, open: &Open) {
     ui.add_space(theme::HALF);
-    let about = open.listed.get(open.selected).map_or("", |entry| &entry.about);
+    let about = open
+        .listed
+        .get(open.selected)
+        .map_or("", |entry| &entry.about);
     ui.horizontal(|ui| {
         ui.set_min_height(16.0);
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
-            ui.label(RichText::new("Arrow keys choose   Enter runs   Esc closes").size(11.0).color(theme::text_weak()));
+            ui.label(
+                RichText::new("Arrow keys choose   Enter runs   Esc closes")
+                    .size(11.0)
+                    .color(theme::text_weak()),
+            );
             ui.with_layout(egui::Layout::left_to_right(Align::Center), |ui| {
-                ui.add(egui::Label::new(RichText::new(about).size(11.5).color(theme::text())).truncate());
+                ui.add(
+                    egui::Label::new(RichText::new(about).size(11.5).color(theme::text()))
+                        .truncate(),
+                );
             });
         });
     });

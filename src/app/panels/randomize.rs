@@ -1,4 +1,5 @@
-//! The window Randomize: how far values vary, which are locked, and the newest seeds as pictures to go back to.
+//! The window Randomize: how far values vary, which are locked, and the newest seeds as pictures to
+//! go back to.
 
 use std::{collections::HashMap, sync::Arc};
 
@@ -53,33 +54,63 @@ impl RandomizePanel {
         if self.drawing == Some(seed) {
             self.drawing = None;
         }
-        let texture = picture.ok().map(|image| ctx.load_texture(format!("seed {seed}"), image, egui::TextureOptions::LINEAR));
+        let texture = picture.ok().map(|image| {
+            ctx.load_texture(format!("seed {seed}"), image, egui::TextureOptions::LINEAR)
+        });
         self.pictures.insert(seed, texture);
     }
 
-    /// Begins to draw the newest seed that has no picture, one at a time, when the picture is at rest.
+    /// Begins to draw the newest seed that has no picture, one at a time, when the picture is at
+    /// rest.
     fn request(&mut self, state: &State, commands: &Commands) {
-        let (Some(requested), false) =
-            (state.picture.screen.requested(), self.is_drawing() || state.picture.screen.is_awaited(state.session.playback.playing))
-        else {
+        let (Some(requested), false) = (
+            state.picture.screen.requested(),
+            self.is_drawing()
+                || state
+                    .picture
+                    .screen
+                    .is_awaited(state.session.playback.playing),
+        ) else {
             return;
         };
         let seeds = &state.session.randomizer;
-        self.pictures.retain(|seed, _| seeds.seeds().any(|seeded| seeded.seed == *seed));
-        let Some(next) = seeds.seeds().find(|seeded| !self.pictures.contains_key(&seeded.seed)) else { return };
+        self.pictures
+            .retain(|seed, _| seeds.seeds().any(|seeded| seeded.seed == *seed));
+        let Some(next) = seeds
+            .seeds()
+            .find(|seeded| !self.pictures.contains_key(&seeded.seed))
+        else {
+            return;
+        };
         self.drawing = Some(next.seed);
         let cells = vec![(CellOf::Seed(next.seed), inputs(state, requested, next))];
-        commands.send(Command::DrawCells(Cells { cells, is_canceled: Arc::default() }));
+        commands.send(Command::DrawCells(Cells {
+            cells,
+            is_canceled: Arc::default(),
+        }));
     }
 }
 
-/// What the picture of a seed shows: the scene and the camera as they are now, with the values of then.
+/// What the picture of a seed shows: the scene and the camera as they are now, with the values of
+/// then.
 fn inputs(state: &State, requested: &Inputs, seeded: &Seeded) -> Inputs {
     let size = cells::size(THUMBNAIL, [requested.view.width, requested.view.height]);
     let mut preset = state.session.visible_preset();
-    preset.stack = Stack(seeded.stack.0.iter().filter(|enabled| preset.stack.get(&enabled.effect.name).is_some()).cloned().collect());
+    preset.stack = Stack(
+        seeded
+            .stack
+            .0
+            .iter()
+            .filter(|enabled| preset.stack.get(&enabled.effect.name).is_some())
+            .cloned()
+            .collect(),
+    );
     let stack = preset.evaluated_stack();
-    Inputs { view: state.session.view_of(preset, &requested.scene, size), stack, ..requested.clone() }
+    Inputs {
+        view: state.session.view_of(preset, &requested.scene, size),
+        stack,
+        ..requested.clone()
+    }
 }
 
 impl Panel for RandomizePanel {
@@ -99,9 +130,18 @@ impl Panel for RandomizePanel {
             .show(ui.ctx(), |ui| {
                 ui.set_width(440.0);
                 controls_ui(ui, state, commands);
-                egui::ScrollArea::vertical().max_height((area.height() - 420.0).max(96.0)).auto_shrink([false, true]).show(ui, |ui| {
-                    state.session.preset().stack.0.iter().for_each(|enabled| locks_ui(ui, state, commands, enabled));
-                });
+                egui::ScrollArea::vertical()
+                    .max_height((area.height() - 420.0).max(96.0))
+                    .auto_shrink([false, true])
+                    .show(ui, |ui| {
+                        state
+                            .session
+                            .preset()
+                            .stack
+                            .0
+                            .iter()
+                            .for_each(|enabled| locks_ui(ui, state, commands, enabled));
+                    });
                 self.strip_ui(ui, state, commands);
             });
         self.is_open = is_open;
@@ -130,27 +170,56 @@ fn controls_ui(ui: &mut Ui, state: &State, commands: &Commands) {
 /// A box for each parameter of an effect: with a mark, it varies.
 fn locks_ui(ui: &mut Ui, state: &State, commands: &Commands, enabled: &EnabledEffect) {
     let (effect, seeds) = (&enabled.effect, &state.session.randomizer);
-    let shown: Vec<_> = effect.fields.iter().filter(|field| field.is_shown(&effect.fields, &enabled.words)).collect();
+    let shown: Vec<_> = effect
+        .fields
+        .iter()
+        .filter(|field| field.is_shown(&effect.fields, &enabled.words))
+        .collect();
     if shown.is_empty() {
         return;
     }
-    let locked = shown.iter().filter(|field| seeds.is_locked(effect, field)).count();
+    let locked = shown
+        .iter()
+        .filter(|field| seeds.is_locked(effect, field))
+        .count();
     let all_locked = locked == shown.len();
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 10.0;
         let mut varies = locked < shown.len();
-        let title = RichText::new(&effect.name).strong().color(theme::text_strong());
-        let all = ui.checkbox(&mut varies, title).on_hover_text("Let all of its parameters vary, or lock them all");
-        if all.accessible_name(format!("Vary {}", effect.name)).clicked() {
-            shown.iter().for_each(|field| commands.send(Command::Lock((effect.clone(), (*field).clone()), !all_locked)));
+        let title = RichText::new(&effect.name)
+            .strong()
+            .color(theme::text_strong());
+        let all = ui
+            .checkbox(&mut varies, title)
+            .on_hover_text("Let all of its parameters vary, or lock them all");
+        if all
+            .accessible_name(format!("Vary {}", effect.name))
+            .clicked()
+        {
+            shown.iter().for_each(|field| {
+                commands.send(Command::Lock(
+                    (effect.clone(), (*field).clone()),
+                    !all_locked,
+                ))
+            });
         }
         for field in shown {
-            let is_animated = state.session.preset().animation.get(&effect.name, &field.name).is_some();
+            let is_animated = state
+                .session
+                .preset()
+                .animation
+                .get(&effect.name, &field.name)
+                .is_some();
             let mut varies = !seeds.is_locked(effect, field) && !is_animated;
             let name = RichText::new(field.name.replace('_', " ")).size(12.0);
             let response = ui.add_enabled(!is_animated, egui::Checkbox::new(&mut varies, name));
-            let response = response.on_hover_text(&field.doc).on_disabled_hover_text("Its keyframes decide");
-            if response.accessible_name(format!("Vary {}.{}", effect.name, field.name)).clicked() {
+            let response = response
+                .on_hover_text(&field.doc)
+                .on_disabled_hover_text("Its keyframes decide");
+            if response
+                .accessible_name(format!("Vary {}.{}", effect.name, field.name))
+                .clicked()
+            {
                 commands.send(Command::Lock((effect.clone(), field.clone()), !varies));
             }
         }
@@ -162,7 +231,9 @@ impl RandomizePanel {
     fn strip_ui(&self, ui: &mut Ui, state: &State, commands: &Commands) {
         ui.add_space(theme::HALF);
         if state.session.randomizer.seeds().len() == 0 {
-            ui.label(theme::weak("The last twelve seeds appear here, to go back to."));
+            ui.label(theme::weak(
+                "The last twelve seeds appear here, to go back to.",
+            ));
             return;
         }
         ui.label(theme::weak("The last seeds; click one to go back to it."));
@@ -178,11 +249,18 @@ impl RandomizePanel {
     }
 }
 
-fn seed_ui(ui: &mut Ui, seed: u32, picture: Option<&Option<egui::TextureHandle>>, is_current: bool) -> egui::Response {
+fn seed_ui(
+    ui: &mut Ui,
+    seed: u32,
+    picture: Option<&Option<egui::TextureHandle>>,
+    is_current: bool,
+) -> egui::Response {
     let width = THUMBNAIL as f32;
     let (rect, response) = ui.allocate_exact_size(vec2(width, 0.625 * width), Sense::click());
     match picture {
-        Some(Some(texture)) => egui::Image::from_texture((texture.id(), rect.size())).corner_radius(4.0).paint_at(ui, rect),
+        Some(Some(texture)) => egui::Image::from_texture((texture.id(), rect.size()))
+            .corner_radius(4.0)
+            .paint_at(ui, rect),
         _ => drop(ui.painter().rect_filled(rect, 4.0, theme::well())),
     }
     let edge = match () {
@@ -190,11 +268,24 @@ fn seed_ui(ui: &mut Ui, seed: u32, picture: Option<&Option<egui::TextureHandle>>
         () if response.hovered() || response.has_focus() => theme::text_strong(),
         () => theme::line(),
     };
-    ui.painter().rect_stroke(rect, 4.0, (if is_current { 2.0 } else { 1.0 }, edge), egui::StrokeKind::Inside);
-    let note = ui.painter().layout_no_wrap(seed.to_string(), egui::FontId::proportional(11.0), theme::text_strong());
+    ui.painter().rect_stroke(
+        rect,
+        4.0,
+        (if is_current { 2.0 } else { 1.0 }, edge),
+        egui::StrokeKind::Inside,
+    );
+    let note = ui.painter().layout_no_wrap(
+        seed.to_string(),
+        egui::FontId::proportional(11.0),
+        theme::text_strong(),
+    );
     let plate = egui::Rect::from_min_size(rect.min + vec2(4.0, 4.0), note.size() + vec2(8.0, 2.0));
-    ui.painter().rect_filled(plate, 3.0, egui::Color32::from_black_alpha(150));
-    ui.painter().galley(plate.min + vec2(4.0, 1.0), note, theme::text_strong());
-    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_current, format!("Seed {seed}")));
+    ui.painter()
+        .rect_filled(plate, 3.0, egui::Color32::from_black_alpha(150));
+    ui.painter()
+        .galley(plate.min + vec2(4.0, 1.0), note, theme::text_strong());
+    response.widget_info(|| {
+        egui::WidgetInfo::selected(egui::Role::Button, true, is_current, format!("Seed {seed}"))
+    });
     response.on_hover_text(format!("Go back to seed {seed}"))
 }

@@ -39,16 +39,27 @@ impl SettingsWindow {
         let Some(action) = self.binding else { return };
         let pressed = ui.input_mut(|i| {
             let pressed = i.events.iter().find_map(|event| match event {
-                Event::Key { key, modifiers, pressed: true, .. } => Some((*key, *modifiers)),
+                Event::Key {
+                    key,
+                    modifiers,
+                    pressed: true,
+                    ..
+                } => Some((*key, *modifiers)),
                 _ => None,
             });
-            i.events.retain(|event| !matches!(event, Event::Key { .. } | Event::Text(_)));
+            i.events
+                .retain(|event| !matches!(event, Event::Key { .. } | Event::Text(_)));
             pressed
         });
-        let Some((key, modifiers)) = pressed else { return };
+        let Some((key, modifiers)) = pressed else {
+            return;
+        };
         self.binding = None;
         if key != Key::Escape {
-            Self::send(commands, SettingsCommand::Bind(action, Some(keymap::pressed(key, modifiers))));
+            Self::send(
+                commands,
+                SettingsCommand::Bind(action, Some(keymap::pressed(key, modifiers))),
+            );
         }
     }
 
@@ -56,59 +67,94 @@ impl SettingsWindow {
         ui.horizontal(|ui| {
             ui.label(theme::heading("Keys"));
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if ui.button("Reset all").on_hover_text("Give every action its own keys again").clicked() {
+                if ui
+                    .button("Reset all")
+                    .on_hover_text("Give every action its own keys again")
+                    .clicked()
+                {
                     Self::send(commands, SettingsCommand::ResetAllKeys);
                 }
-                let search = egui::TextEdit::singleline(&mut self.search).hint_text("Search").desired_width(160.0);
+                let search = egui::TextEdit::singleline(&mut self.search)
+                    .hint_text("Search")
+                    .desired_width(160.0);
                 ui.add(search).accessible_name("Search keys");
             });
         });
         let search = self.search.to_lowercase();
         let keys = &state.settings.keys;
-        egui::ScrollArea::vertical().max_height(height).auto_shrink([false, false]).show(ui, |ui| {
-            for (action, label, _) in ACTIONS {
-                let shortcuts = keys.of(*action).iter().map(shortcut_text).collect::<Vec<_>>().join("  ");
-                if !format!("{label} {shortcuts}").to_lowercase().contains(&search) {
-                    continue;
+        egui::ScrollArea::vertical()
+            .max_height(height)
+            .auto_shrink([false, false])
+            .show(ui, |ui| {
+                for (action, label, _) in ACTIONS {
+                    let shortcuts = keys
+                        .of(*action)
+                        .iter()
+                        .map(shortcut_text)
+                        .collect::<Vec<_>>()
+                        .join("  ");
+                    if !format!("{label} {shortcuts}")
+                        .to_lowercase()
+                        .contains(&search)
+                    {
+                        continue;
+                    }
+                    ui.horizontal(|ui| {
+                        ui.set_min_height(theme::ROW);
+                        label_ui(ui, 230.0, label);
+                        if matches!(action, Action::CopyPreset | Action::PastePreset) {
+                            // The system sends these as events of the clipboard, whatever their
+                            // keys are.
+                            ui.label(
+                                RichText::new(action.shortcut_text())
+                                    .monospace()
+                                    .color(theme::text_weak()),
+                            );
+                            return;
+                        }
+                        let is_waiting = self.binding == Some(*action);
+                        let text = if is_waiting {
+                            "Press a key"
+                        } else if shortcuts.is_empty() {
+                            "none"
+                        } else {
+                            &shortcuts
+                        };
+                        let color = if is_waiting {
+                            theme::accent()
+                        } else if shortcuts.is_empty() {
+                            theme::text_weak()
+                        } else {
+                            theme::text_strong()
+                        };
+                        let button =
+                            egui::Button::new(RichText::new(text).monospace().color(color))
+                                .min_size(vec2(150.0, theme::ROW - 2.0));
+                        let button = ui
+                            .add(button.selected(is_waiting))
+                            .on_hover_text("Press another key for this");
+                        if button.accessible_name(format!("Keys of {label}")).clicked() {
+                            self.binding = if is_waiting { None } else { Some(*action) };
+                        }
+                        let can_clear = !shortcuts.is_empty();
+                        if ui
+                            .add_enabled_ui(can_clear, |ui| {
+                                icon_button(ui, Icon::Cross, &format!("No key for {label}"))
+                            })
+                            .inner
+                            .clicked()
+                        {
+                            Self::send(commands, SettingsCommand::Bind(*action, None));
+                        }
+                        if keys.is_bound(*action)
+                            && icon_button(ui, Icon::Reset, &format!("Reset keys of {label}"))
+                                .clicked()
+                        {
+                            Self::send(commands, SettingsCommand::ResetKeys(*action));
+                        }
+                    });
                 }
-                ui.horizontal(|ui| {
-                    ui.set_min_height(theme::ROW);
-                    label_ui(ui, 230.0, label);
-                    if matches!(action, Action::CopyPreset | Action::PastePreset) {
-                        // The system sends these as events of the clipboard, whatever their keys are.
-                        ui.label(RichText::new(action.shortcut_text()).monospace().color(theme::text_weak()));
-                        return;
-                    }
-                    let is_waiting = self.binding == Some(*action);
-                    let text = if is_waiting {
-                        "Press a key"
-                    } else if shortcuts.is_empty() {
-                        "none"
-                    } else {
-                        &shortcuts
-                    };
-                    let color = if is_waiting {
-                        theme::accent()
-                    } else if shortcuts.is_empty() {
-                        theme::text_weak()
-                    } else {
-                        theme::text_strong()
-                    };
-                    let button = egui::Button::new(RichText::new(text).monospace().color(color)).min_size(vec2(150.0, theme::ROW - 2.0));
-                    let button = ui.add(button.selected(is_waiting)).on_hover_text("Press another key for this");
-                    if button.accessible_name(format!("Keys of {label}")).clicked() {
-                        self.binding = if is_waiting { None } else { Some(*action) };
-                    }
-                    let can_clear = !shortcuts.is_empty();
-                    if ui.add_enabled_ui(can_clear, |ui| icon_button(ui, Icon::Cross, &format!("No key for {label}"))).inner.clicked() {
-                        Self::send(commands, SettingsCommand::Bind(*action, None));
-                    }
-                    if keys.is_bound(*action) && icon_button(ui, Icon::Reset, &format!("Reset keys of {label}")).clicked() {
-                        Self::send(commands, SettingsCommand::ResetKeys(*action));
-                    }
-                });
-            }
-        });
+            });
     }
 }
 
@@ -132,14 +178,22 @@ impl Panel for SettingsWindow {
                 ui.horizontal(|ui| {
                     label_ui(ui, 150.0, "Theme");
                     for choice in ThemeChoice::ALL {
-                        if ui.selectable_label(state.settings.theme == choice, choice.label()).clicked() {
+                        if ui
+                            .selectable_label(state.settings.theme == choice, choice.label())
+                            .clicked()
+                        {
                             Self::send(commands, SettingsCommand::Theme(choice));
                         }
                     }
                 });
                 scale_ui(ui, state.settings.scale, commands);
                 ui.separator();
-                self.keys_ui(ui, state, commands, (area.height() - 260.0).clamp(120.0, 420.0));
+                self.keys_ui(
+                    ui,
+                    state,
+                    commands,
+                    (area.height() - 260.0).clamp(120.0, 420.0),
+                );
             });
         if !is_open {
             commands.send(Command::Toggle(Toggle::Settings));
@@ -166,10 +220,20 @@ fn scale_ui(ui: &mut Ui, scale: f32, commands: &Commands) {
             ("100 %", Action::ScaleReset, true),
         ] {
             if action == Action::ScaleUp {
-                ui.add_sized([52.0, theme::ROW], egui::Label::new(format!("{:.0} %", scale * 100.0)));
+                ui.add_sized(
+                    [52.0, theme::ROW],
+                    egui::Label::new(format!("{:.0} %", scale * 100.0)),
+                );
             }
-            let button = ui.add_enabled(is_enabled, egui::Button::new(text).min_size(vec2(28.0, theme::ROW - 2.0)));
-            if button.on_hover_text(action.hint()).accessible_name(action.label()).clicked() {
+            let button = ui.add_enabled(
+                is_enabled,
+                egui::Button::new(text).min_size(vec2(28.0, theme::ROW - 2.0)),
+            );
+            if button
+                .on_hover_text(action.hint())
+                .accessible_name(action.label())
+                .clicked()
+            {
                 commands.perform(action);
             }
         }

@@ -1,4 +1,5 @@
-//! The window Sweep: one or two parameters through several steps each, as a contact sheet; a click on a picture takes its values.
+//! The window Sweep: one or two parameters through several steps each, as a contact sheet; a click
+//! on a picture takes its values.
 
 use std::sync::{
     Arc,
@@ -71,29 +72,47 @@ pub struct SweepPanel {
 fn parameters(preset: &Preset) -> Vec<(String, Arc<Field>)> {
     let is_single = |field: &&Arc<Field>| field.value_type.components() == 1;
     let of_stack = preset.stack.0.iter().flat_map(|enabled| {
-        let fields = enabled.effect.fields.iter().filter(is_single).filter(|field| field.is_shown(&enabled.effect.fields, &enabled.words));
-        fields.map(|field| (format!("{}.{}", enabled.effect.name, field.name), field.clone()))
+        let fields = enabled
+            .effect
+            .fields
+            .iter()
+            .filter(is_single)
+            .filter(|field| field.is_shown(&enabled.effect.fields, &enabled.words));
+        fields.map(|field| {
+            (
+                format!("{}.{}", enabled.effect.name, field.name),
+                field.clone(),
+            )
+        })
     });
     of_stack.collect()
 }
 
 impl Varied {
     fn new(path: &str, field: &Field) -> Self {
-        Self { path: path.into(), ends: field.soft, steps: 5 }
+        Self {
+            path: path.into(),
+            ends: field.soft,
+            steps: 5,
+        }
     }
 
     /// Its values: every word of a choice, both of a flag, or the steps from end to end.
     fn variation(&self, field: &Field) -> Variation {
-        let words = |values: Vec<String>| Variation { path: self.path.clone(), values };
+        let words = |values: Vec<String>| Variation {
+            path: self.path.clone(),
+            values,
+        };
         match &field.value_type {
             ValueType::Bool => words(vec!["false".into(), "true".into()]),
             ValueType::Choice(choices) => words(choices.clone()),
             ValueType::U32 | ValueType::I32 => {
                 let mut variation = Variation::range(&self.path, self.ends, self.steps);
-                variation
-                    .values
-                    .iter_mut()
-                    .for_each(|value| *value = value.parse::<f64>().map_or_else(|_| value.clone(), |v| v.round().to_string()));
+                variation.values.iter_mut().for_each(|value| {
+                    *value = value
+                        .parse::<f64>()
+                        .map_or_else(|_| value.clone(), |v| v.round().to_string())
+                });
                 variation.values.dedup();
                 variation
             }
@@ -118,18 +137,40 @@ impl SweepPanel {
     /// True while pictures are still to come.
     pub fn is_drawing(&self) -> bool {
         let is_wanted = |drawn: &&Drawn| !drawn.is_canceled.load(Ordering::Relaxed);
-        self.drawn.as_ref().filter(is_wanted).is_some_and(|drawn| drawn.cells.iter().any(|cell| cell.picture.is_none()))
+        self.drawn
+            .as_ref()
+            .filter(is_wanted)
+            .is_some_and(|drawn| drawn.cells.iter().any(|cell| cell.picture.is_none()))
     }
 
     /// Number of pictures of the newest sheet that are drawn.
     pub fn pictures(&self) -> usize {
-        self.drawn.as_ref().map_or(0, |drawn| drawn.cells.iter().filter(|cell| matches!(cell.picture, Some(Ok(_)))).count())
+        self.drawn.as_ref().map_or(0, |drawn| {
+            drawn
+                .cells
+                .iter()
+                .filter(|cell| matches!(cell.picture, Some(Ok(_))))
+                .count()
+        })
     }
 
     /// Takes a picture.
-    pub fn arrived(&mut self, ctx: &egui::Context, (number, index): (u64, usize), picture: CellResult) {
-        let Some(drawn) = self.drawn.as_mut().filter(|drawn| drawn.number == number) else { return };
-        let texture = picture.map(|image| ctx.load_texture(format!("sweep {index}"), image, egui::TextureOptions::LINEAR));
+    pub fn arrived(
+        &mut self,
+        ctx: &egui::Context,
+        (number, index): (u64, usize),
+        picture: CellResult,
+    ) {
+        let Some(drawn) = self.drawn.as_mut().filter(|drawn| drawn.number == number) else {
+            return;
+        };
+        let texture = picture.map(|image| {
+            ctx.load_texture(
+                format!("sweep {index}"),
+                image,
+                egui::TextureOptions::LINEAR,
+            )
+        });
         if let Some(cell) = drawn.cells.get_mut(index) {
             cell.picture = Some(texture);
         }
@@ -138,8 +179,18 @@ impl SweepPanel {
     /// Begins to draw a sheet of the picture that is shown.
     fn start(&mut self, state: &State, commands: &Commands, requested: &Inputs) {
         let known = parameters(state.session.preset());
-        let field = |varied: &Varied| known.iter().find(|(path, _)| *path == varied.path).map(|(_, field)| field);
-        let variations: Vec<_> = self.varied.iter().flatten().filter_map(|varied| Some(varied.variation(field(varied)?))).collect();
+        let field = |varied: &Varied| {
+            known
+                .iter()
+                .find(|(path, _)| *path == varied.path)
+                .map(|(_, field)| field)
+        };
+        let variations: Vec<_> = self
+            .varied
+            .iter()
+            .flatten()
+            .filter_map(|varied| Some(varied.variation(field(varied)?)))
+            .collect();
         let mut base = state.session.preset_file.clone();
         base.preset = state.session.visible_preset();
         self.cancel();
@@ -155,14 +206,37 @@ impl SweepPanel {
             let preset = cell.preset_file.preset.clone();
             let stack = preset.evaluated_stack();
             let view = state.session.view_of(preset, &requested.scene, size);
-            (CellOf::Sweep { number: self.sheets, index }, Inputs { view, stack, ..requested.clone() })
+            (
+                CellOf::Sweep {
+                    number: self.sheets,
+                    index,
+                },
+                Inputs {
+                    view,
+                    stack,
+                    ..requested.clone()
+                },
+            )
         };
         let is_canceled = Arc::new(AtomicBool::new(false));
         let cells = sheet.cells.iter().enumerate().map(cell).collect();
-        commands.send(Command::DrawCells(Cells { cells, is_canceled: is_canceled.clone() }));
-        let captions = sheet.cells.iter().map(|cell| DrawnCell { caption: cell.caption(), values: cell.values.clone(), picture: None });
+        commands.send(Command::DrawCells(Cells {
+            cells,
+            is_canceled: is_canceled.clone(),
+        }));
+        let captions = sheet.cells.iter().map(|cell| DrawnCell {
+            caption: cell.caption(),
+            values: cell.values.clone(),
+            picture: None,
+        });
         let of = Box::new(base.preset);
-        self.drawn = Some(Drawn { number: self.sheets, columns: sheet.columns, cells: captions.collect(), of, is_canceled });
+        self.drawn = Some(Drawn {
+            number: self.sheets,
+            columns: sheet.columns,
+            cells: captions.collect(),
+            of,
+            is_canceled,
+        });
     }
 
     fn cancel(&mut self) {
@@ -175,12 +249,18 @@ impl SweepPanel {
     fn start_ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
         let known = parameters(state.session.preset());
         let is_known = |varied: &Varied| known.iter().any(|(path, _)| *path == varied.path);
-        self.varied.iter_mut().for_each(|varied| *varied = varied.take().filter(is_known));
+        self.varied
+            .iter_mut()
+            .for_each(|varied| *varied = varied.take().filter(is_known));
         if self.varied[0].is_none() {
-            self.varied[0] = self.varied[1].take().or_else(|| known.first().map(|(path, field)| Varied::new(path, field)));
+            self.varied[0] = self.varied[1]
+                .take()
+                .or_else(|| known.first().map(|(path, field)| Varied::new(path, field)));
         }
         if known.is_empty() {
-            ui.label(theme::weak("No effect with parameters is enabled, so there is nothing to vary."));
+            ui.label(theme::weak(
+                "No effect with parameters is enabled, so there is nothing to vary.",
+            ));
             return;
         }
         for (index, varied) in self.varied.iter_mut().enumerate() {
@@ -194,10 +274,18 @@ impl SweepPanel {
                 self.start(state, commands, requested);
             }
             if self.is_drawing() {
-                if ui.button("Stop").on_hover_text("Keep the pictures that are drawn").clicked() {
+                if ui
+                    .button("Stop")
+                    .on_hover_text("Keep the pictures that are drawn")
+                    .clicked()
+                {
                     self.cancel();
                 }
-                ui.label(theme::weak(format!("{} of {}", self.pictures(), self.drawn.as_ref().map_or(0, |drawn| drawn.cells.len()))));
+                ui.label(theme::weak(format!(
+                    "{} of {}",
+                    self.pictures(),
+                    self.drawn.as_ref().map_or(0, |drawn| drawn.cells.len())
+                )));
             }
         });
         if let Some(error) = &self.error {
@@ -207,23 +295,36 @@ impl SweepPanel {
 }
 
 /// The choice of a parameter, with its ends and the number of steps.
-fn varied_ui(ui: &mut Ui, index: usize, varied: &mut Option<Varied>, known: &[(String, Arc<Field>)]) {
+fn varied_ui(
+    ui: &mut Ui,
+    index: usize,
+    varied: &mut Option<Varied>,
+    known: &[(String, Arc<Field>)],
+) {
     let name = ["along the rows", "from row to row"][index];
     ui.add_sized([96.0, theme::ROW], egui::Label::new(theme::weak(name)));
-    let chosen = varied.as_ref().map_or("none", |varied| varied.path.as_str()).to_owned();
-    let menu = egui::ComboBox::from_id_salt(("sweep", index)).selected_text(&chosen).width(190.0).show_ui(ui, |ui| {
-        if index > 0 && ui.selectable_label(varied.is_none(), "none").clicked() {
-            *varied = None;
-        }
-        for (path, field) in known {
-            if ui.selectable_label(*path == chosen, path).clicked() {
-                *varied = Some(Varied::new(path, field));
+    let chosen = varied
+        .as_ref()
+        .map_or("none", |varied| varied.path.as_str())
+        .to_owned();
+    let menu = egui::ComboBox::from_id_salt(("sweep", index))
+        .selected_text(&chosen)
+        .width(190.0)
+        .show_ui(ui, |ui| {
+            if index > 0 && ui.selectable_label(varied.is_none(), "none").clicked() {
+                *varied = None;
             }
-        }
-    });
+            for (path, field) in known {
+                if ui.selectable_label(*path == chosen, path).clicked() {
+                    *varied = Some(Varied::new(path, field));
+                }
+            }
+        });
     menu.response.accessible_name(format!("Parameter {name}"));
     let Some(varied) = varied else { return };
-    let Some((_, field)) = known.iter().find(|(path, _)| *path == varied.path) else { return };
+    let Some((_, field)) = known.iter().find(|(path, _)| *path == varied.path) else {
+        return;
+    };
     if matches!(field.value_type, ValueType::Bool | ValueType::Choice(_)) {
         ui.label(theme::weak("every value"));
         return;
@@ -233,11 +334,19 @@ fn varied_ui(ui: &mut Ui, index: usize, varied: &mut Option<Varied>, known: &[(S
     for (end, name) in varied.ends.iter_mut().zip(["from", "to"]) {
         ui.label(theme::weak(name));
         let whole = !field.value_type.is_continuous();
-        let drag = egui::DragValue::new(end).range(low..=high).speed(speed).max_decimals(if whole { 0 } else { 3 });
-        ui.add(drag).accessible_name(format!("{name} of {}", varied.path));
+        let drag = egui::DragValue::new(end)
+            .range(low..=high)
+            .speed(speed)
+            .max_decimals(if whole { 0 } else { 3 });
+        ui.add(drag)
+            .accessible_name(format!("{name} of {}", varied.path));
     }
-    let steps = egui::DragValue::new(&mut varied.steps).range(2..=MAX_STEPS).suffix(" steps").speed(0.05);
-    ui.add(steps).accessible_name(format!("Steps of {}", varied.path));
+    let steps = egui::DragValue::new(&mut varied.steps)
+        .range(2..=MAX_STEPS)
+        .suffix(" steps")
+        .speed(0.05);
+    ui.add(steps)
+        .accessible_name(format!("Steps of {}", varied.path));
 }
 
 impl Panel for SweepPanel {
@@ -256,7 +365,13 @@ impl Panel for SweepPanel {
                 ui.set_width(WIDTH.min(area.width() - 48.0));
                 self.start_ui(ui, state, commands);
                 if let Some(drawn) = &self.drawn {
-                    sheet_ui(ui, drawn, state, commands, (area.height() - 260.0).max(160.0));
+                    sheet_ui(
+                        ui,
+                        drawn,
+                        state,
+                        commands,
+                        (area.height() - 260.0).max(160.0),
+                    );
                 }
             });
         self.is_open = is_open;
@@ -269,38 +384,60 @@ impl Panel for SweepPanel {
 fn sheet_ui(ui: &mut Ui, drawn: &Drawn, state: &State, commands: &Commands, height: f32) {
     ui.add_space(theme::HALF);
     if *drawn.of != state.session.visible_preset() {
-        ui.label(RichText::new("Drawn from an earlier picture, or a picture of the sheet was taken").size(11.0).color(theme::amber()));
+        ui.label(
+            RichText::new("Drawn from an earlier picture, or a picture of the sheet was taken")
+                .size(11.0)
+                .color(theme::amber()),
+        );
     }
-    let aspect =
-        drawn.cells.iter().find_map(|cell| cell.picture.as_ref()?.as_ref().ok()).map_or(0.625, |texture| texture.aspect_ratio().recip());
+    let aspect = drawn
+        .cells
+        .iter()
+        .find_map(|cell| cell.picture.as_ref()?.as_ref().ok())
+        .map_or(0.625, |texture| texture.aspect_ratio().recip());
     let width = (ui.available_width() / drawn.columns as f32 - theme::GAP).min(240.0);
-    egui::ScrollArea::both().id_salt("sheet").max_height(height).auto_shrink([false, true]).show(ui, |ui| {
-        egui::Grid::new("sheet").spacing([theme::GAP, theme::GAP]).show(ui, |ui| {
-            for (index, cell) in drawn.cells.iter().enumerate() {
-                if cell_ui(ui, cell, vec2(width, width * aspect)).clicked() {
-                    commands.send(Command::SetValues(cell.values.clone()));
-                }
-                if (index + 1) % drawn.columns == 0 {
-                    ui.end_row();
-                }
-            }
+    egui::ScrollArea::both()
+        .id_salt("sheet")
+        .max_height(height)
+        .auto_shrink([false, true])
+        .show(ui, |ui| {
+            egui::Grid::new("sheet")
+                .spacing([theme::GAP, theme::GAP])
+                .show(ui, |ui| {
+                    for (index, cell) in drawn.cells.iter().enumerate() {
+                        if cell_ui(ui, cell, vec2(width, width * aspect)).clicked() {
+                            commands.send(Command::SetValues(cell.values.clone()));
+                        }
+                        if (index + 1) % drawn.columns == 0 {
+                            ui.end_row();
+                        }
+                    }
+                });
         });
-    });
 }
 
 fn cell_ui(ui: &mut Ui, cell: &DrawnCell, size: egui::Vec2) -> egui::Response {
     ui.vertical(|ui| {
         let (rect, response) = ui.allocate_exact_size(size, Sense::click());
         match &cell.picture {
-            Some(Ok(texture)) => egui::Image::from_texture((texture.id(), size)).corner_radius(4.0).paint_at(ui, rect),
+            Some(Ok(texture)) => egui::Image::from_texture((texture.id(), size))
+                .corner_radius(4.0)
+                .paint_at(ui, rect),
             Some(Err(_)) | None => drop(ui.painter().rect_filled(rect, 4.0, theme::well())),
         }
         if response.hovered() || response.has_focus() {
-            ui.painter().rect_stroke(rect, 4.0, (2.0, theme::accent()), egui::StrokeKind::Inside);
+            ui.painter()
+                .rect_stroke(rect, 4.0, (2.0, theme::accent()), egui::StrokeKind::Inside);
             ui.set_cursor_icon(egui::CursorIcon::PointingHand);
         }
-        ui.add_sized([size.x, 14.0], egui::Label::new(RichText::new(&cell.caption).size(11.0).color(theme::text())).truncate());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Take {}", cell.caption)));
+        ui.add_sized(
+            [size.x, 14.0],
+            egui::Label::new(RichText::new(&cell.caption).size(11.0).color(theme::text()))
+                .truncate(),
+        );
+        response.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Take {}", cell.caption))
+        });
         match &cell.picture {
             Some(Err(error)) => response.on_hover_text(error),
             _ => response.on_hover_text(format!("Take {}", cell.caption)),

@@ -1,4 +1,5 @@
-//! The timing panel: the newest frames as a plot, and the median and spread of the frame and of its passes.
+//! The timing panel: the newest frames as a plot, and the median and spread of the frame and of its
+//! passes.
 
 use eframe::egui::{self, Color32, RichText, Sense, Ui, vec2};
 use egui_plot::{Bar, BarChart, HLine, LineStyle, Plot};
@@ -27,7 +28,11 @@ const TABLE_WIDTH: f32 = 372.0;
 const HEADROOM: f64 = 1.15;
 
 /// Each occasion with its name in the legend.
-const OCCASIONS: [(Occasion, &str); 3] = [(Occasion::Rest, "at rest"), (Occasion::Changed, "changed"), (Occasion::Compiled, "compiled")];
+const OCCASIONS: [(Occasion, &str); 3] = [
+    (Occasion::Rest, "at rest"),
+    (Occasion::Changed, "changed"),
+    (Occasion::Compiled, "compiled"),
+];
 
 fn color(occasion: Occasion) -> Color32 {
     match occasion {
@@ -46,13 +51,20 @@ impl Panel for TimingPanel {
         header_ui(ui, state, commands);
         ui.add_space(theme::HALF);
         if !state.picture.screen.gpu.caps.timestamps {
-            ui.label(theme::weak("This adapter has no timer, so frames cannot be timed."));
+            ui.label(theme::weak(
+                "This adapter has no timer, so frames cannot be timed.",
+            ));
             return;
         }
         let height = ui.available_height();
         ui.horizontal_top(|ui| {
-            let plot = vec2((ui.available_width() - TABLE_WIDTH - 2.0 * theme::GAP).max(160.0), height);
-            ui.allocate_ui_with_layout(plot, egui::Layout::top_down(egui::Align::Min), |ui| plot_ui(ui, timings));
+            let plot = vec2(
+                (ui.available_width() - TABLE_WIDTH - 2.0 * theme::GAP).max(160.0),
+                height,
+            );
+            ui.allocate_ui_with_layout(plot, egui::Layout::top_down(egui::Align::Min), |ui| {
+                plot_ui(ui, timings)
+            });
             ui.vertical(|ui| table_ui(ui, state));
         });
     }
@@ -78,7 +90,10 @@ fn header_ui(ui: &mut Ui, state: &State, commands: &Commands) {
 
 /// The newest frames, a bar each; a bar that compiled ends at the upper edge.
 fn plot_ui(ui: &mut Ui, timings: &Timings) {
-    let frames: Vec<(f64, Occasion)> = timings.history().map(|(sample, occasion)| (sample.ms, occasion)).collect();
+    let frames: Vec<(f64, Occasion)> = timings
+        .history()
+        .map(|(sample, occasion)| (sample.ms, occasion))
+        .collect();
     if frames.is_empty() {
         ui.centered_and_justified(|ui| ui.label(theme::weak("Frames appear when they are drawn.")));
         return;
@@ -86,8 +101,18 @@ fn plot_ui(ui: &mut Ui, timings: &Timings) {
     let top = top_ms(&frames);
     let charts = OCCASIONS.map(|(occasion, name)| {
         let color = color(occasion);
-        let of = frames.iter().enumerate().filter(|(_, (_, other))| *other == occasion);
-        let bars = of.map(|(i, (ms, _))| Bar::new(i as f64, ms.min(top)).width(0.9).fill(color).stroke((0.0, color))).collect();
+        let of = frames
+            .iter()
+            .enumerate()
+            .filter(|(_, (_, other))| *other == occasion);
+        let bars = of
+            .map(|(i, (ms, _))| {
+                Bar::new(i as f64, ms.min(top))
+                    .width(0.9)
+                    .fill(color)
+                    .stroke((0.0, color))
+            })
+            .collect();
         BarChart::new(name, bars).allow_hover(false)
     });
     let settled = match timings.cost() {
@@ -121,71 +146,124 @@ fn plot_ui(ui: &mut Ui, timings: &Timings) {
             plot.set_plot_bounds_y(0.0..=top);
             charts.into_iter().for_each(|chart| plot.bar_chart(chart));
             if let Some(median) = settled {
-                let line = HLine::new("median", median).color(theme::green()).width(1.0);
+                let line = HLine::new("median", median)
+                    .color(theme::green())
+                    .width(1.0);
                 plot.hline(line.style(LineStyle::dashed_dense()).allow_hover(false));
             }
         });
     let slowest = frames.iter().map(|(ms, _)| *ms).fold(0.0, f64::max);
     let text = format!("Times of {count} frames, the slowest {} ms", short(slowest));
-    response.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &text));
+    response
+        .response
+        .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &text));
     response.response.on_hover_text(text);
 }
 
 /// The upper end of the plot: nothing that compiles, nor one frame in twenty, sets it.
 fn top_ms(frames: &[(f64, Occasion)]) -> f64 {
-    let warm: Vec<f64> = frames.iter().filter(|(_, occasion)| *occasion != Occasion::Compiled).map(|(ms, _)| *ms).collect();
+    let warm: Vec<f64> = frames
+        .iter()
+        .filter(|(_, occasion)| *occasion != Occasion::Compiled)
+        .map(|(ms, _)| *ms)
+        .collect();
     let all: Vec<f64> = frames.iter().map(|(ms, _)| *ms).collect();
-    let slow = percentile(&warm, 0.95).or(percentile(&all, 1.0)).unwrap_or(1.0);
+    let slow = percentile(&warm, 0.95)
+        .or(percentile(&all, 1.0))
+        .unwrap_or(1.0);
     (HEADROOM * slow).max(1e-3)
 }
 
-/// Frame, passes and rest: median, spread and fraction of the frame; and how long an input takes to be seen.
+/// Frame, passes and rest: median, spread and fraction of the frame; and how long an input takes to
+/// be seen.
 fn table_ui(ui: &mut Ui, state: &State) {
     let timings = state.picture.screen.timings();
     if let Some((latency, count)) = timings.latency() {
-        let text = format!("input to picture: {:.0} ms, p95 {:.0} ms, {count} pictures", latency.median, latency.p95);
-        let hint =
-            "From the frame of the window that takes an input to the one that shows its picture, for pictures that compiled nothing.";
-        ui.label(RichText::new(text).size(12.0).color(theme::text())).on_hover_text(hint);
+        let text = format!(
+            "input to picture: {:.0} ms, p95 {:.0} ms, {count} pictures",
+            latency.median, latency.p95
+        );
+        let hint = "From the frame of the window that takes an input to the one that shows its picture, for pictures that compiled nothing.";
+        ui.label(RichText::new(text).size(12.0).color(theme::text()))
+            .on_hover_text(hint);
     }
     window_ui(ui);
     let Cost::Settled(summary) = timings.cost() else {
-        ui.label(theme::weak("Passes are listed when the picture is at rest and its times have settled."));
+        ui.label(theme::weak(
+            "Passes are listed when the picture is at rest and its times have settled.",
+        ));
         return;
     };
-    egui::ScrollArea::vertical().id_salt("passes").auto_shrink(false).show(ui, |ui| {
-        egui::Grid::new("passes").num_columns(4).spacing([14.0, 3.0]).show(ui, |ui| {
-            for title in ["", "median", "p5 – p95", "of frame"] {
-                ui.label(theme::weak(title).size(11.0));
-            }
-            ui.end_row();
-            for (name, spread, color) in rows(summary) {
-                ui.label(RichText::new(&name).color(color));
-                ui.label(RichText::new(format!("{:.3}", spread.median)).monospace().color(color));
-                ui.label(RichText::new(format!("{:.3} – {:.3}", spread.p5, spread.p95)).monospace().color(theme::text_weak()));
-                let percent = 100.0 * spread.median / summary.frame.median.max(f64::MIN_POSITIVE);
-                ui.label(RichText::new(format!("{percent:.0} %")).monospace().color(color));
-                ui.end_row();
-            }
+    egui::ScrollArea::vertical()
+        .id_salt("passes")
+        .auto_shrink(false)
+        .show(ui, |ui| {
+            egui::Grid::new("passes")
+                .num_columns(4)
+                .spacing([14.0, 3.0])
+                .show(ui, |ui| {
+                    for title in ["", "median", "p5 – p95", "of frame"] {
+                        ui.label(theme::weak(title).size(11.0));
+                    }
+                    ui.end_row();
+                    for (name, spread, color) in rows(summary) {
+                        ui.label(RichText::new(&name).color(color));
+                        ui.label(
+                            RichText::new(format!("{:.3}", spread.median))
+                                .monospace()
+                                .color(color),
+                        );
+                        ui.label(
+                            RichText::new(format!("{:.3} – {:.3}", spread.p5, spread.p95))
+                                .monospace()
+                                .color(theme::text_weak()),
+                        );
+                        let percent =
+                            100.0 * spread.median / summary.frame.median.max(f64::MIN_POSITIVE);
+                        ui.label(
+                            RichText::new(format!("{percent:.0} %"))
+                                .monospace()
+                                .color(color),
+                        );
+                        ui.end_row();
+                    }
+                });
         });
-    });
 }
 
 /// How long the window itself takes.
 fn window_ui(ui: &mut Ui) {
-    let frames = ui.ctx().with_plugin(|frames: &mut UiFrames| (frames.times_ms(), frames.longest_ms()));
-    let Some((times, Some(longest))) = frames else { return };
-    let Some(Spread { median, .. }) = Spread::of(&times) else { return };
+    let frames = ui
+        .ctx()
+        .with_plugin(|frames: &mut UiFrames| (frames.times_ms(), frames.longest_ms()));
+    let Some((times, Some(longest))) = frames else {
+        return;
+    };
+    let Some(Spread { median, .. }) = Spread::of(&times) else {
+        return;
+    };
     let count = times.len();
-    let text = format!("window: {} ms a frame, longest {} ms of {count}", short(median), short(longest));
+    let text = format!(
+        "window: {} ms a frame, longest {} ms of {count}",
+        short(median),
+        short(longest)
+    );
     let hint = "Time of the UI thread for the newest frames of the window, with painting; what you do is not seen meanwhile.";
-    ui.label(RichText::new(text).size(12.0).color(theme::text())).on_hover_text(hint);
+    ui.label(RichText::new(text).size(12.0).color(theme::text()))
+        .on_hover_text(hint);
 }
 
 fn rows(summary: &Summary) -> Vec<(String, Spread, Color32)> {
     let frame = [("frame".to_owned(), summary.frame, theme::text_strong())];
-    let passes = summary.passes.iter().map(|(name, spread)| (name.clone(), *spread, theme::text()));
-    frame.into_iter().chain(passes).chain([("rest".to_owned(), summary.rest, theme::text_weak())]).collect()
+    let passes = summary
+        .passes
+        .iter()
+        .map(|(name, spread)| (name.clone(), *spread, theme::text()));
+    frame
+        .into_iter()
+        .chain(passes)
+        .chain([("rest".to_owned(), summary.rest, theme::text_weak())])
+        .collect()
 }
 
 #[cfg(test)]
@@ -197,7 +275,10 @@ mod tests {
         let mut frames = vec![(10.0, Occasion::Rest); 20];
         frames.push((5000.0, Occasion::Compiled));
         assert!((top_ms(&frames) - 11.5).abs() < 1e-9);
-        assert!((top_ms(&[(5000.0, Occasion::Compiled)]) - 5750.0).abs() < 1e-9, "alone it is shown whole");
+        assert!(
+            (top_ms(&[(5000.0, Occasion::Compiled)]) - 5750.0).abs() < 1e-9,
+            "alone it is shown whole"
+        );
         assert!(top_ms(&[(0.0, Occasion::Rest)]) > 0.0);
     }
 }

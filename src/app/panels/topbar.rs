@@ -50,8 +50,28 @@ const MENUS: [(&str, &[Option<Action>]); 4] = [
             Some(Action::Quit),
         ],
     ),
-    ("Edit", &[Some(Action::Undo), Some(Action::Redo), None, Some(Action::Randomize), Some(Action::RandomizeWindow), Some(Action::Sweep)]),
-    ("Time", &[Some(Action::Play), Some(Action::StepBack), Some(Action::StepForward), Some(Action::Rewind), None, Some(Action::RemoveKey)]),
+    (
+        "Edit",
+        &[
+            Some(Action::Undo),
+            Some(Action::Redo),
+            None,
+            Some(Action::Randomize),
+            Some(Action::RandomizeWindow),
+            Some(Action::Sweep),
+        ],
+    ),
+    (
+        "Time",
+        &[
+            Some(Action::Play),
+            Some(Action::StepBack),
+            Some(Action::StepForward),
+            Some(Action::Rewind),
+            None,
+            Some(Action::RemoveKey),
+        ],
+    ),
     (
         "View",
         &[
@@ -94,7 +114,9 @@ impl Panel for TopBar {
                 anti_aliasing_ui(ui, state, commands);
                 cost_ui(ui, state, commands);
                 // What is left belongs to the name, which is cut if it is too long.
-                ui.with_layout(Layout::left_to_right(Align::Center), |ui| name_ui(ui, state));
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    name_ui(ui, state)
+                });
             });
         });
     }
@@ -117,18 +139,29 @@ fn menus_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     }
     ui.add_space(theme::HALF);
     let can_undo = state.history.can_undo();
-    for (icon, action, is_enabled) in
-        [(Icon::Left, Action::PreviousPreset, true), (Icon::Right, Action::NextPreset, true), (Icon::Reset, Action::Undo, can_undo)]
-    {
+    for (icon, action, is_enabled) in [
+        (Icon::Left, Action::PreviousPreset, true),
+        (Icon::Right, Action::NextPreset, true),
+        (Icon::Reset, Action::Undo, can_undo),
+    ] {
         let name = action.hint();
-        if ui.add_enabled_ui(is_enabled, |ui| icon_button(ui, icon, &name)).inner.clicked() {
+        if ui
+            .add_enabled_ui(is_enabled, |ui| icon_button(ui, icon, &name))
+            .inner
+            .clicked()
+        {
             commands.perform(action);
         }
     }
 }
 
 /// The entries of one menu.
-fn menu_ui(ui: &mut Ui, actions: &[Option<Action>], state: &State, commands: &Commands) -> Option<Action> {
+fn menu_ui(
+    ui: &mut Ui,
+    actions: &[Option<Action>],
+    state: &State,
+    commands: &Commands,
+) -> Option<Action> {
     let mut chosen = None;
     ui.set_min_width(220.0);
     for action in actions {
@@ -136,7 +169,9 @@ fn menu_ui(ui: &mut Ui, actions: &[Option<Action>], state: &State, commands: &Co
             ui.separator();
             continue;
         };
-        let button = egui::Button::new(action.label()).shortcut_text(action.shortcut_text()).min_size(vec2(208.0, theme::ROW));
+        let button = egui::Button::new(action.label())
+            .shortcut_text(action.shortcut_text())
+            .min_size(vec2(208.0, theme::ROW));
         if ui.add(button).accessible_name(action.label()).clicked() {
             chosen = Some(*action);
             ui.close();
@@ -159,12 +194,27 @@ fn recents_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     for path in recents.iter() {
         let is_missing = state.files.missing_files.contains(path);
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let folder = path.parent().and_then(Path::file_name).unwrap_or_default().to_string_lossy();
+        let folder = path
+            .parent()
+            .and_then(Path::file_name)
+            .unwrap_or_default()
+            .to_string_lossy();
         let detail = if is_missing { "missing" } else { &folder };
-        let button = egui::Button::new(&*name).shortcut_text(detail).truncate().min_size(vec2(280.0, theme::ROW));
-        let button = ui.add_enabled(!is_missing, button).on_hover_text(path.display().to_string());
-        if button.on_disabled_hover_text(format!("{} is gone", path.display())).accessible_name(format!("Recent {name}")).clicked() {
-            commands.send(Command::File(FileCommand::Open(path.to_string_lossy().into_owned())));
+        let button = egui::Button::new(&*name)
+            .shortcut_text(detail)
+            .truncate()
+            .min_size(vec2(280.0, theme::ROW));
+        let button = ui
+            .add_enabled(!is_missing, button)
+            .on_hover_text(path.display().to_string());
+        if button
+            .on_disabled_hover_text(format!("{} is gone", path.display()))
+            .accessible_name(format!("Recent {name}"))
+            .clicked()
+        {
+            commands.send(Command::File(FileCommand::Open(
+                path.to_string_lossy().into_owned(),
+            )));
             ui.close();
         }
     }
@@ -175,18 +225,24 @@ fn recents_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     }
 }
 
-/// Theme, and size of texts and controls. A menu of its own, so that its parent fits into a small window.
+/// Theme, and size of texts and controls. A menu of its own, so that its parent fits into a small
+/// window.
 fn looks_ui(ui: &mut Ui, chosen: ThemeChoice, commands: &Commands) {
     ui.menu_button("Theme and size", |ui| {
         for choice in ThemeChoice::ALL {
-            if ui.selectable_label(chosen == choice, choice.label()).clicked() {
+            if ui
+                .selectable_label(chosen == choice, choice.label())
+                .clicked()
+            {
                 commands.send(Command::Settings(SettingsCommand::Theme(choice)));
                 ui.close();
             }
         }
         ui.separator();
         for action in [Action::ScaleUp, Action::ScaleDown, Action::ScaleReset] {
-            let button = egui::Button::new(action.label()).shortcut_text(action.shortcut_text()).min_size(vec2(240.0, theme::ROW));
+            let button = egui::Button::new(action.label())
+                .shortcut_text(action.shortcut_text())
+                .min_size(vec2(240.0, theme::ROW));
             if ui.add(button).accessible_name(action.label()).clicked() {
                 commands.perform(action);
                 ui.close();
@@ -199,7 +255,9 @@ fn looks_ui(ui: &mut Ui, chosen: ThemeChoice, commands: &Commands) {
 fn name_ui(ui: &mut Ui, state: &State) {
     ui.spacing_mut().item_spacing.x = 6.0;
     let open = &state.session.preset_file;
-    let name = RichText::new(open.title()).color(theme::text_strong()).strong();
+    let name = RichText::new(open.title())
+        .color(theme::text_strong())
+        .strong();
     let file = match (&open.path, open.read_only) {
         (Some(path), _) => path.display().to_string(),
         (None, true) => format!("{}, built in. Save asks for a file name.", open.id),
@@ -216,7 +274,8 @@ fn name_ui(ui: &mut Ui, state: &State) {
     };
     ui.scope(|ui| {
         ui.set_max_width((width - rest).max(0.0));
-        ui.add(egui::Label::new(name).truncate().sense(Sense::hover())).on_hover_text(file);
+        ui.add(egui::Label::new(name).truncate().sense(Sense::hover()))
+            .on_hover_text(file);
     });
     if is_modified {
         dot(ui, theme::accent());
@@ -231,8 +290,16 @@ fn adapter_ui(ui: &mut Ui, state: &State, is_narrow: bool) {
     let gpu = &state.picture.screen.gpu;
     let summary = &gpu.summary;
     let name = summary.name.split('(').next().unwrap_or_default().trim();
-    let text = if summary.software { format!("{name} · software") } else { name.to_owned() };
-    let ink = if summary.software { theme::amber() } else { theme::text() };
+    let text = if summary.software {
+        format!("{name} · software")
+    } else {
+        name.to_owned()
+    };
+    let ink = if summary.software {
+        theme::amber()
+    } else {
+        theme::text()
+    };
     let hint = |ui: &mut Ui| {
         ui.label(RichText::new(&summary.name).color(theme::text_strong()));
         ui.label(format!("{} · {}", summary.backend, summary.driver));
@@ -243,42 +310,74 @@ fn adapter_ui(ui: &mut Ui, state: &State, is_narrow: bool) {
         }
     };
     if !is_narrow {
-        ui.add(egui::Label::new(RichText::new(text).color(ink)).truncate()).on_hover_ui(hint);
+        ui.add(egui::Label::new(RichText::new(text).color(ink)).truncate())
+            .on_hover_ui(hint);
     }
-    let place = ui.scope(|ui| dot(ui, if summary.software { theme::amber() } else { theme::green() })).response;
+    let place = ui
+        .scope(|ui| {
+            dot(
+                ui,
+                if summary.software {
+                    theme::amber()
+                } else {
+                    theme::green()
+                },
+            )
+        })
+        .response;
     place.on_hover_ui(hint);
 }
 
 /// Cost and error, always side by side.
 fn cost_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     ui.spacing_mut().item_spacing.x = 6.0;
-    let (color, error, hint) = error_line(state.picture.verification.verdict(), state.picture.screen.requested());
+    let (color, error, hint) = error_line(
+        state.picture.verification.verdict(),
+        state.picture.screen.requested(),
+    );
     match state.picture.verification.progress() {
         Some(progress) => verifying_ui(ui, &progress, commands),
         None => {
-            let verify = ui.add_enabled(state.picture.screen.requested().is_some(), egui::Button::new("Verify"));
-            if verify.on_hover_text(format!("Compare every pixel with the exact CPU oracle ({})", Action::Verify.shortcut_text())).clicked()
+            let verify = ui.add_enabled(
+                state.picture.screen.requested().is_some(),
+                egui::Button::new("Verify"),
+            );
+            if verify
+                .on_hover_text(format!(
+                    "Compare every pixel with the exact CPU oracle ({})",
+                    Action::Verify.shortcut_text()
+                ))
+                .clicked()
             {
                 commands.perform(Action::Verify);
             }
         }
     }
-    ui.label(RichText::new(error).color(color)).on_hover_text(hint);
+    ui.label(RichText::new(error).color(color))
+        .on_hover_text(hint);
     ui.label(theme::weak("·"));
     let (time, hint) = time_line(Some(&state.picture.screen));
-    ui.label(RichText::new(time).color(theme::text_strong())).on_hover_text(hint);
+    ui.label(RichText::new(time).color(theme::text_strong()))
+        .on_hover_text(hint);
     pins_ui(ui, &state.session.preset().accuracy.pins.words());
 }
 
 /// How far the oracle is, and a button that ends it.
 fn verifying_ui(ui: &mut Ui, progress: &Progress, commands: &Commands) {
-    let cancel = ui.button("Cancel").on_hover_text("Stop verifying").accessible_name("Cancel verifying");
+    let cancel = ui
+        .button("Cancel")
+        .on_hover_text("Stop verifying")
+        .accessible_name("Cancel verifying");
     if cancel.clicked() {
         commands.send(Command::CancelVerify);
     }
     let text = RichText::new(format!("{} left", about(progress.left_s))).size(11.0);
-    let bar = egui::ProgressBar::new(progress.fraction as f32).desired_width(96.0).text(text).fill(theme::accent_ground());
-    ui.add(bar).on_hover_text(format!("Verifying: {}", progress.stage));
+    let bar = egui::ProgressBar::new(progress.fraction as f32)
+        .desired_width(96.0)
+        .text(text)
+        .fill(theme::accent_ground());
+    ui.add(bar)
+        .on_hover_text(format!("Verifying: {}", progress.stage));
     ui.request_repaint_after_secs(0.1);
 }
 
@@ -290,5 +389,6 @@ fn pins_ui(ui: &mut Ui, words: &str) {
         count => format!("{count} options pinned"),
     };
     ui.label(theme::weak("·"));
-    ui.label(RichText::new(text).size(12.0).color(theme::accent())).on_hover_text(words.replace(' ', "\n"));
+    ui.label(RichText::new(text).size(12.0).color(theme::accent()))
+        .on_hover_text(words.replace(' ', "\n"));
 }

@@ -1,7 +1,8 @@
-//! Anti-aliasing: how many samples of a pixel are drawn and averaged in linear light. It is the accuracy axis `render_scale`.
+//! Anti-aliasing: how many samples of a pixel are drawn and averaged in linear light. It is the
+//! accuracy axis `render_scale`.
 //!
-//! A preset that does not pin the axis is drawn with [`AUTOMATIC`] samples where a graphics card can afford it. That is a viewing aid:
-//! it is not saved, and a CPU adapter never does it.
+//! A preset that does not pin the axis is drawn with [`AUTOMATIC`] samples where a graphics card
+//! can afford it. That is a viewing aid: it is not saved, and a CPU adapter never does it.
 
 use std::sync::{Arc, Weak};
 
@@ -15,12 +16,17 @@ use crate::{
 };
 
 /// The options that the top bar offers, with their names.
-pub const CHOICES: [(RenderScale, &str); 3] = [(RenderScale::Full, "off"), (RenderScale::Double, "2×2"), (RenderScale::Quadruple, "4×4")];
+pub const CHOICES: [(RenderScale, &str); 3] = [
+    (RenderScale::Full, "off"),
+    (RenderScale::Double, "2×2"),
+    (RenderScale::Quadruple, "4×4"),
+];
 
 /// What a preset that does not pin the axis is drawn with on a graphics card.
 pub const AUTOMATIC: RenderScale = RenderScale::Double;
 
-/// A picture with automatic anti-aliasing that takes longer is drawn without from then on, milliseconds.
+/// A picture with automatic anti-aliasing that takes longer is drawn without from then on,
+/// milliseconds.
 const AFFORDABLE_MS: f64 = 16.0;
 
 /// Bytes of a drawn pixel in the largest buffer: four words where an x-ray sums layers.
@@ -28,32 +34,51 @@ const PIXEL_BYTES: u64 = 16;
 
 /// `2×2`; fewer pixels than shown are no anti-aliasing and are named by their option.
 pub fn name(scale: RenderScale) -> &'static str {
-    CHOICES.iter().find(|(choice, _)| *choice == scale).map_or(scale.name(), |(_, name)| name)
+    CHOICES
+        .iter()
+        .find(|(choice, _)| *choice == scale)
+        .map_or(scale.name(), |(_, name)| name)
 }
 
-/// Returns true if an adapter may draw a picture of `size` pixels with [`AUTOMATIC`] samples without being asked to.
+/// Returns true if an adapter may draw a picture of `size` pixels with [`AUTOMATIC`] samples
+/// without being asked to.
 pub fn may_be_automatic(caps: &Caps, size: [u32; 2]) -> bool {
     let [width, height] = size.map(|side| AUTOMATIC.factor() * f64::from(side));
     let is_within_limits = width.max(height) <= f64::from(caps.max_texture_side)
-        && width * height * PIXEL_BYTES as f64 <= caps.max_storage_binding_bytes.min(caps.max_buffer_bytes) as f64;
+        && width * height * PIXEL_BYTES as f64
+            <= caps.max_storage_binding_bytes.min(caps.max_buffer_bytes) as f64;
     !caps.software && is_within_limits
 }
 
-/// Is this axis the one of anti-aliasing, and is the picture drawn with more samples than the preset says?
+/// Is this axis the one of anti-aliasing, and is the picture drawn with more samples than the
+/// preset says?
 pub fn is_automatic(axis: &Axis, preset: &Preset, drawn: Option<&Inputs>) -> bool {
     let is_pinned = preset.accuracy.pins.option::<RenderScale>().is_some();
-    axis.index() == RenderScale::AXIS && !is_pinned && drawn.is_some_and(|inputs| inputs.accuracy.scale() != RenderScale::Full)
+    axis.index() == RenderScale::AXIS
+        && !is_pinned
+        && drawn.is_some_and(|inputs| inputs.accuracy.scale() != RenderScale::Full)
 }
 
 /// `accuracy` with anti-aliasing for a picture that is drawn once, as large as `size`.
 pub fn for_export(accuracy: AccuracyRequest, caps: &Caps, size: [u32; 2]) -> AccuracyRequest {
-    if may_be_automatic(caps, size) { with_automatic(accuracy) } else { accuracy }
+    if may_be_automatic(caps, size) {
+        with_automatic(accuracy)
+    } else {
+        accuracy
+    }
 }
 
 /// `accuracy` with [`AUTOMATIC`] samples unless it pins the axis.
 fn with_automatic(accuracy: AccuracyRequest) -> AccuracyRequest {
     let is_pinned = accuracy.pins.option::<RenderScale>().is_some();
-    if is_pinned { accuracy } else { AccuracyRequest { pins: accuracy.pins.with(AUTOMATIC), ..accuracy } }
+    if is_pinned {
+        accuracy
+    } else {
+        AccuracyRequest {
+            pins: accuracy.pins.with(AUTOMATIC),
+            ..accuracy
+        }
+    }
 }
 
 /// What the time of a picture depends on, as far as automatic anti-aliasing looks at it.
@@ -70,7 +95,8 @@ impl PartialEq for Subject {
     }
 }
 
-/// A finished picture: its options, its cost as far as it is known (the time of its first frame is not), and whether it was drawn as large as it is shown.
+/// A finished picture: its options, its cost as far as it is known (the time of its first frame is
+/// not), and whether it was drawn as large as it is shown.
 #[derive(Clone, Copy, Debug)]
 pub struct Finished {
     pub options: AccuracyOptions,
@@ -80,7 +106,11 @@ pub struct Finished {
 
 impl Finished {
     pub fn new(options: AccuracyOptions, gpu_ms: Option<f64>, is_full_size: bool) -> Self {
-        Self { options, gpu_ms, is_full_size }
+        Self {
+            options,
+            gpu_ms,
+            is_full_size,
+        }
     }
 }
 
@@ -101,19 +131,35 @@ impl AutomaticAntiAliasing {
         caps: &Caps,
         finished: Option<Finished>,
     ) -> AccuracyRequest {
-        let subject =
-            Subject { scene: Arc::downgrade(scene), effects: stack.0.iter().map(|enabled| enabled.effect.name.clone()).collect(), size };
+        let subject = Subject {
+            scene: Arc::downgrade(scene),
+            effects: stack
+                .0
+                .iter()
+                .map(|enabled| enabled.effect.name.clone())
+                .collect(),
+            size,
+        };
         // The first report after a change may still be that of the picture before.
         let is_same = self.drawn.as_ref() == Some(&subject);
         let is_slow = |finished: &Finished| {
-            finished.is_full_size && finished.options.render_scale == AUTOMATIC && finished.gpu_ms.is_some_and(|ms| ms > AFFORDABLE_MS)
+            finished.is_full_size
+                && finished.options.render_scale == AUTOMATIC
+                && finished.gpu_ms.is_some_and(|ms| ms > AFFORDABLE_MS)
         };
-        if is_same && accuracy.pins.option::<RenderScale>().is_none() && finished.as_ref().is_some_and(is_slow) {
+        if is_same
+            && accuracy.pins.option::<RenderScale>().is_none()
+            && finished.as_ref().is_some_and(is_slow)
+        {
             self.too_slow = Some(subject.clone());
         }
         let is_too_slow = self.too_slow.as_ref() == Some(&subject);
         self.drawn = Some(subject);
-        if may_be_automatic(caps, size) && !is_too_slow { with_automatic(accuracy) } else { accuracy }
+        if may_be_automatic(caps, size) && !is_too_slow {
+            with_automatic(accuracy)
+        } else {
+            accuracy
+        }
     }
 }
 
@@ -122,7 +168,12 @@ mod tests {
     use super::*;
     use crate::{accuracy::PinnedOptions, scene::builtin};
 
-    const CARD: Caps = Caps { max_texture_side: 16_384, max_storage_binding_bytes: 1 << 30, max_buffer_bytes: 1 << 30, ..Caps::ALL };
+    const CARD: Caps = Caps {
+        max_texture_side: 16_384,
+        max_storage_binding_bytes: 1 << 30,
+        max_buffer_bytes: 1 << 30,
+        ..Caps::ALL
+    };
 
     fn scale(accuracy: &AccuracyRequest) -> Option<RenderScale> {
         accuracy.pins.option()
@@ -131,16 +182,40 @@ mod tests {
     #[test]
     fn a_card_is_asked_for_two_by_two_samples_and_a_cpu_adapter_never() {
         let plain = AccuracyRequest::default();
-        assert_eq!(scale(&for_export(plain, &CARD, [1280, 800])), Some(RenderScale::Double));
-        assert_eq!(scale(&for_export(plain, &Caps { software: true, ..CARD }, [1280, 800])), None);
-        assert_eq!(scale(&for_export(plain, &CARD, [9000, 100])), None, "wider than a texture");
-        assert_eq!(scale(&for_export(plain, &CARD, [8000, 8000])), None, "more than a buffer holds");
+        assert_eq!(
+            scale(&for_export(plain, &CARD, [1280, 800])),
+            Some(RenderScale::Double)
+        );
+        assert_eq!(
+            scale(&for_export(
+                plain,
+                &Caps {
+                    software: true,
+                    ..CARD
+                },
+                [1280, 800]
+            )),
+            None
+        );
+        assert_eq!(
+            scale(&for_export(plain, &CARD, [9000, 100])),
+            None,
+            "wider than a texture"
+        );
+        assert_eq!(
+            scale(&for_export(plain, &CARD, [8000, 8000])),
+            None,
+            "more than a buffer holds"
+        );
     }
 
     #[test]
     fn what_the_preset_pins_stays() {
         for option in RenderScale::ALL {
-            let pinned = AccuracyRequest { pins: PinnedOptions::of(*option), ..AccuracyRequest::default() };
+            let pinned = AccuracyRequest {
+                pins: PinnedOptions::of(*option),
+                ..AccuracyRequest::default()
+            };
             assert_eq!(for_export(pinned, &CARD, [64, 64]), pinned);
         }
     }
@@ -148,24 +223,55 @@ mod tests {
     #[test]
     fn a_picture_that_was_too_slow_is_drawn_without_until_it_is_another() {
         let mut automatic = AutomaticAntiAliasing::default();
-        let (scene, other) =
-            (Arc::new(builtin::build("cube-wall").expect("a scene")), Arc::new(builtin::build("cube-wall").expect("a scene")));
+        let (scene, other) = (
+            Arc::new(builtin::build("cube-wall").expect("a scene")),
+            Arc::new(builtin::build("cube-wall").expect("a scene")),
+        );
         let (plain, stack) = (AccuracyRequest::default(), Stack::default());
         let finished = |ms: f64, render_scale: RenderScale| {
-            Some(Finished { options: AccuracyOptions { render_scale, ..AccuracyOptions::default() }, gpu_ms: Some(ms), is_full_size: true })
+            Some(Finished {
+                options: AccuracyOptions {
+                    render_scale,
+                    ..AccuracyOptions::default()
+                },
+                gpu_ms: Some(ms),
+                is_full_size: true,
+            })
         };
-        let mut next = |scene: &Arc<Scene>, finished| scale(&automatic.applied(plain, (scene, &stack, [64, 64]), &CARD, finished));
-        assert_eq!(next(&scene, finished(99.0, RenderScale::Double)), Some(RenderScale::Double), "that was another picture");
-        assert_eq!(next(&scene, finished(15.0, RenderScale::Double)), Some(RenderScale::Double));
+        let mut next = |scene: &Arc<Scene>, finished| {
+            scale(&automatic.applied(plain, (scene, &stack, [64, 64]), &CARD, finished))
+        };
+        assert_eq!(
+            next(&scene, finished(99.0, RenderScale::Double)),
+            Some(RenderScale::Double),
+            "that was another picture"
+        );
+        assert_eq!(
+            next(&scene, finished(15.0, RenderScale::Double)),
+            Some(RenderScale::Double)
+        );
         assert_eq!(next(&scene, finished(17.0, RenderScale::Double)), None);
-        assert_eq!(next(&scene, finished(5.0, RenderScale::Full)), None, "it does not flicker");
-        assert_eq!(next(&other, finished(5.0, RenderScale::Full)), Some(RenderScale::Double));
+        assert_eq!(
+            next(&scene, finished(5.0, RenderScale::Full)),
+            None,
+            "it does not flicker"
+        );
+        assert_eq!(
+            next(&other, finished(5.0, RenderScale::Full)),
+            Some(RenderScale::Double)
+        );
     }
 
     #[test]
     fn the_names_are_those_of_the_samples() {
         assert_eq!(
-            [RenderScale::Full, RenderScale::Double, RenderScale::Quadruple, RenderScale::Half].map(name),
+            [
+                RenderScale::Full,
+                RenderScale::Double,
+                RenderScale::Quadruple,
+                RenderScale::Half
+            ]
+            .map(name),
             ["off", "2×2", "4×4", "half"]
         );
     }

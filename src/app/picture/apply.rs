@@ -15,14 +15,16 @@ pub fn view(state: &mut State, panels: &mut Panels, command: ViewCommand) {
     }
 }
 
-/// Starts the oracle on the picture that is shown, and on the one it is compared with. Nothing while it runs.
+/// Starts the oracle on the picture that is shown, and on the one it is compared with. Nothing
+/// while it runs.
 pub fn verify(state: &mut State, panels: &Panels) {
     if state.picture.verification.is_running() {
         return;
     }
     verify_shown(state);
     let compared = panels.viewport.compare.unjudged();
-    if let Some(inputs) = compared.filter(|inputs| Some(inputs) != state.picture.screen.requested()) {
+    if let Some(inputs) = compared.filter(|inputs| Some(inputs) != state.picture.screen.requested())
+    {
         judge(state, inputs);
     }
 }
@@ -35,6 +37,11 @@ pub fn verify_shown(state: &mut State) {
 }
 
 fn judge(state: &mut State, inputs: Inputs) {
-    let work = state.picture.verification.start(inputs.view.pixels() as f64);
-    state.jobs.verify(state.picture.screen.gpu.clone(), inputs, work);
+    let work = state
+        .picture
+        .verification
+        .start(inputs.view.pixels() as f64);
+    state
+        .jobs
+        .verify(state.picture.screen.gpu.clone(), inputs, work);
 }

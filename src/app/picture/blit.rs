@@ -1,6 +1,7 @@
 //! Blit: copies the renderer's texture to the window, texel by texel.
 //!
-//! egui can show a texture too, but on a software adapter its general shader takes longer than the whole rasterizer.
+//! egui can show a texture too, but on a software adapter its general shader takes longer than the
+//! whole rasterizer.
 
 use eframe::{egui, egui_wgpu, wgpu};
 
@@ -54,7 +55,10 @@ impl Blitter {
     pub fn new(window: &egui_wgpu::RenderState) -> Self {
         let device = &window.device;
         let source = wgpu::ShaderSource::Wgsl(format!("{SHADER}{DIFFERENCE}").into());
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("blit"), source });
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("blit"),
+            source,
+        });
         // The texture holds sRGB bytes, and an sRGB window would encode them again.
         let to_linear = f64::from(u8::from(window.target_format.is_srgb()));
         let made = |entry: &str| {
@@ -73,14 +77,20 @@ impl Blitter {
                 fragment: Some(wgpu::FragmentState {
                     module: &module,
                     entry_point: Some(entry),
-                    compilation_options: wgpu::PipelineCompilationOptions { constants: &[("TO_LINEAR", to_linear)], ..Default::default() },
+                    compilation_options: wgpu::PipelineCompilationOptions {
+                        constants: &[("TO_LINEAR", to_linear)],
+                        ..Default::default()
+                    },
                     targets: &[Some(window.target_format.into())],
                 }),
                 multiview_mask: None,
                 cache: None,
             })
         };
-        Self { pipeline: made("texel"), difference: made("differing") }
+        Self {
+            pipeline: made("texel"),
+            difference: made("differing"),
+        }
     }
 
     /// A blit of `view`.
@@ -88,22 +98,53 @@ impl Blitter {
         let binding = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("blit"),
             layout: &self.pipeline.get_bind_group_layout(0),
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(view) }],
+            entries: &[wgpu::BindGroupEntry {
+                binding: 0,
+                resource: wgpu::BindingResource::TextureView(view),
+            }],
         });
-        Blit { pipeline: self.pipeline.clone(), binding }
+        Blit {
+            pipeline: self.pipeline.clone(),
+            binding,
+        }
     }
 
     /// A blit of the difference of two views, times `gain`.
-    pub fn difference(&self, device: &wgpu::Device, [a, b]: [&wgpu::TextureView; 2], gain: u8) -> Blit {
+    pub fn difference(
+        &self,
+        device: &wgpu::Device,
+        [a, b]: [&wgpu::TextureView; 2],
+        gain: u8,
+    ) -> Blit {
         let contents = bytemuck::bytes_of(&[f32::from(gain), 0.0, 0.0, 0.0]).to_vec();
-        let uniform = wgpu::util::BufferInitDescriptor { label: Some("gain"), contents: &contents, usage: wgpu::BufferUsages::UNIFORM };
+        let uniform = wgpu::util::BufferInitDescriptor {
+            label: Some("gain"),
+            contents: &contents,
+            usage: wgpu::BufferUsages::UNIFORM,
+        };
         let gain = wgpu::util::DeviceExt::create_buffer_init(device, &uniform);
-        let view = |binding, view| wgpu::BindGroupEntry { binding, resource: wgpu::BindingResource::TextureView(view) };
-        let entries = [view(0, a), view(1, b), wgpu::BindGroupEntry { binding: 2, resource: gain.as_entire_binding() }];
+        let view = |binding, view| wgpu::BindGroupEntry {
+            binding,
+            resource: wgpu::BindingResource::TextureView(view),
+        };
+        let entries = [
+            view(0, a),
+            view(1, b),
+            wgpu::BindGroupEntry {
+                binding: 2,
+                resource: gain.as_entire_binding(),
+            },
+        ];
         let layout = self.difference.get_bind_group_layout(0);
-        let binding =
-            device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("difference"), layout: &layout, entries: &entries });
-        Blit { pipeline: self.difference.clone(), binding }
+        let binding = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("difference"),
+            layout: &layout,
+            entries: &entries,
+        });
+        Blit {
+            pipeline: self.difference.clone(),
+            binding,
+        }
     }
 }
 
@@ -122,7 +163,12 @@ impl Blit {
 }
 
 impl egui_wgpu::CallbackTrait for Blit {
-    fn paint(&self, _: egui::PaintCallbackInfo, pass: &mut wgpu::RenderPass<'static>, _: &egui_wgpu::CallbackResources) {
+    fn paint(
+        &self,
+        _: egui::PaintCallbackInfo,
+        pass: &mut wgpu::RenderPass<'static>,
+        _: &egui_wgpu::CallbackResources,
+    ) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.binding, &[]);
         pass.draw(0..3, 0..1);

@@ -1,4 +1,5 @@
-//! Cells: small pictures that are drawn on the window's device, in the background: a sweep's contact sheet, and the newest seeds.
+//! Cells: small pictures that are drawn on the window's device, in the background: a sweep's
+//! contact sheet, and the newest seeds.
 
 use std::sync::{
     Arc,
@@ -41,10 +42,28 @@ pub fn draw(gpu: &Arc<Gpu>, cells: &Cells, mut take: impl FnMut(CellOf, CellResu
     }
 }
 
-fn picture(renderer: &mut Renderer, Inputs { scene, view, stack, accuracy }: &Inputs) -> CellResult {
-    renderer.set_scene(scene).block_on().map_err(|error| error.to_string())?;
-    let frame = renderer.capture(view, stack, accuracy).block_on().map_err(|error| error.to_string())?.into_shown();
-    Ok(ColorImage::from_rgba_unmultiplied([frame.width as usize, frame.height as usize], &frame.color.concat()))
+fn picture(
+    renderer: &mut Renderer,
+    Inputs {
+        scene,
+        view,
+        stack,
+        accuracy,
+    }: &Inputs,
+) -> CellResult {
+    renderer
+        .set_scene(scene)
+        .block_on()
+        .map_err(|error| error.to_string())?;
+    let frame = renderer
+        .capture(view, stack, accuracy)
+        .block_on()
+        .map_err(|error| error.to_string())?
+        .into_shown();
+    Ok(ColorImage::from_rgba_unmultiplied(
+        [frame.width as usize, frame.height as usize],
+        &frame.color.concat(),
+    ))
 }
 
 /// The size of a cell `width` pixels wide with the aspect ratio of a picture.
@@ -60,6 +79,13 @@ mod tests {
     #[test]
     fn a_cell_has_the_aspect_of_its_picture_within_limits() {
         assert_eq!(size(160, [1280, 800]), [160, 100]);
-        assert_eq!([size(160, [10, 8000]), size(160, [8000, 10]), size(160, [0, 0])], [[160, 320], [160, 40], [160, 40]]);
+        assert_eq!(
+            [
+                size(160, [10, 8000]),
+                size(160, [8000, 10]),
+                size(160, [0, 0])
+            ],
+            [[160, 320], [160, 40], [160, 40]]
+        );
     }
 }

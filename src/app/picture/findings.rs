@@ -12,7 +12,8 @@ use crate::{
     },
 };
 
-/// The oracle's judgement of a picture, and the data that overlays are painted from. All lists have one entry per pixel.
+/// The oracle's judgement of a picture, and the data that overlays are painted from. All lists have
+/// one entry per pixel.
 pub struct Findings {
     pub accuracy: ErrorReport,
     /// Width and height, pixels.
@@ -20,7 +21,8 @@ pub struct Findings {
     pub faults: ErrorMap,
     pub triangle_ids: Vec<u32>,
     pub color: Vec<[u8; 4]>,
-    /// Triangle ids in the exact picture on the finest grid; none if the effects are not reproducible.
+    /// Triangle ids in the exact picture on the finest grid; none if the effects are not
+    /// reproducible.
     reference: Option<Vec<u32>>,
     /// Pixels at which an effect makes no color of a color, by row.
     crossings: Vec<Crossing>,
@@ -31,7 +33,12 @@ pub struct Findings {
 }
 
 impl Findings {
-    pub fn new(capture: Capture, verdict: Verdict, reference: Option<Vec<u32>>, crossings: Vec<Crossing>) -> Self {
+    pub fn new(
+        capture: Capture,
+        verdict: Verdict,
+        reference: Option<Vec<u32>>,
+        crossings: Vec<Crossing>,
+    ) -> Self {
         let pixels = capture.frame.triangle_id.len();
         let mut found = Self {
             accuracy: verdict.report,
@@ -48,18 +55,29 @@ impl Findings {
         found.counts = Overlay::ALL.map(|overlay| match (overlay, overlay.fault()) {
             (Overlay::Unsound, _) => (0..pixels).filter(|&i| found.is_unsound(i)).count() as u64,
             (_, Some(fault)) => found.faults.count(fault),
-            (Overlay::TriangleIds, _) => found.triangle_ids.iter().filter(|triangle_id| **triangle_id != NO_TRIANGLE).count() as u64,
-            (Overlay::Layers, _) => found.layers.iter().filter(|layers| **layers > 0).count() as u64,
+            (Overlay::TriangleIds, _) => found
+                .triangle_ids
+                .iter()
+                .filter(|triangle_id| **triangle_id != NO_TRIANGLE)
+                .count() as u64,
+            (Overlay::Layers, _) => {
+                found.layers.iter().filter(|layers| **layers > 0).count() as u64
+            }
             (Overlay::Color, _) => found.faults.differing(),
-            (Overlay::NotReference, _) => (0..pixels).filter(|&i| found.differs_from_reference(i)).count() as u64,
+            (Overlay::NotReference, _) => (0..pixels)
+                .filter(|&i| found.differs_from_reference(i))
+                .count() as u64,
             _ => (0..pixels).filter(|&i| found.is_edge(i)).count() as u64,
         });
         found
     }
 
-    /// Pixels that show another triangle than the exact picture of the true positions; none if the effects are not reproducible.
+    /// Pixels that show another triangle than the exact picture of the true positions; none if the
+    /// effects are not reproducible.
     pub fn wrong_against_true(&self) -> Option<u64> {
-        self.reference.as_ref().map(|_| self.count(Overlay::NotReference))
+        self.reference
+            .as_ref()
+            .map(|_| self.count(Overlay::NotReference))
     }
 
     /// Pixels that an overlay paints.
@@ -70,15 +88,21 @@ impl Findings {
     /// What an effect made of the color of pixel `i`, if that is no color.
     pub fn crossing(&self, i: usize) -> Option<&Crossing> {
         let width = self.size[0].max(1) as usize;
-        let at = self.crossings.binary_search_by_key(&i, |crossing| crossing.pixel[1] as usize * width + crossing.pixel[0] as usize);
+        let at = self.crossings.binary_search_by_key(&i, |crossing| {
+            crossing.pixel[1] as usize * width + crossing.pixel[0] as usize
+        });
         at.ok().map(|at| &self.crossings[at])
     }
 
-    /// The effects that make no color of a color, with a crossing that stands for all and their number; the most frequent first.
+    /// The effects that make no color of a color, with a crossing that stands for all and their
+    /// number; the most frequent first.
     pub fn crossed(&self) -> Vec<(&Crossing, u64)> {
         let mut crossed: Vec<(&Crossing, u64)> = Vec::new();
         for crossing in &self.crossings {
-            match crossed.iter_mut().find(|(known, _)| known.effect == crossing.effect) {
+            match crossed
+                .iter_mut()
+                .find(|(known, _)| known.effect == crossing.effect)
+            {
                 Some((known, count)) => {
                     *count += 1;
                     if known.parameter.is_none() {
@@ -99,17 +123,28 @@ impl Findings {
 
     /// True if the exact picture shows another triangle at pixel `i`.
     pub fn differs_from_reference(&self, i: usize) -> bool {
-        self.reference.as_ref().is_some_and(|reference| reference[i] != self.triangle_ids[i])
+        self.reference
+            .as_ref()
+            .is_some_and(|reference| reference[i] != self.triangle_ids[i])
     }
 
     /// Pixel `i` in words.
     pub fn pixel_text(&self, i: usize) -> String {
         let layers = self.layers[i];
         let name = |triangle_id: u32| {
-            if triangle_id == NO_TRIANGLE { "empty".into() } else { format!("triangle {}", grouped(triangle_id.into())) }
+            if triangle_id == NO_TRIANGLE {
+                "empty".into()
+            } else {
+                format!("triangle {}", grouped(triangle_id.into()))
+            }
         };
-        let reference = self.reference.as_ref().filter(|_| self.differs_from_reference(i));
-        let reference = reference.map_or(String::new(), |reference| format!(" (reference: {})", name(reference[i])));
+        let reference = self
+            .reference
+            .as_ref()
+            .filter(|_| self.differs_from_reference(i));
+        let reference = reference.map_or(String::new(), |reference| {
+            format!(" (reference: {})", name(reference[i]))
+        });
         format!(
             "{}{reference}, {layers} {}, Δ {}",
             name(self.triangle_ids[i]),
@@ -121,7 +156,11 @@ impl Findings {
     /// True if the next pixel to the right or below shows another triangle.
     pub fn is_edge(&self, i: usize) -> bool {
         let width = self.size[0].max(1) as usize;
-        let differs = |j: usize| self.triangle_ids.get(j).is_some_and(|triangle_id| *triangle_id != self.triangle_ids[i]);
+        let differs = |j: usize| {
+            self.triangle_ids
+                .get(j)
+                .is_some_and(|triangle_id| *triangle_id != self.triangle_ids[i])
+        };
         !(i + 1).is_multiple_of(width) && differs(i + 1) || differs(i + width)
     }
 }
@@ -132,15 +171,38 @@ mod tests {
 
     #[test]
     fn an_edge_is_where_the_triangle_changes_and_not_across_the_border_of_the_picture() {
-        let mut capture = Capture { frame: Default::default(), geometry: Default::default(), layers: None, previous: None, shown: None };
+        let mut capture = Capture {
+            frame: Default::default(),
+            geometry: Default::default(),
+            layers: None,
+            previous: None,
+            shown: None,
+        };
         (capture.frame.width, capture.frame.height) = (3, 2);
         capture.frame.triangle_id = vec![1, 1, 2, 1, 1, 1];
         capture.frame.color = vec![[0; 4]; 6];
         let faults = ErrorMap::new(&capture.frame.color, &capture.frame.color, |_| Vec::new());
-        let found = Findings::new(capture, Verdict { error_map: faults, ..Default::default() }, Some(vec![1, 1, 2, 1, 7, 1]), Vec::new());
+        let found = Findings::new(
+            capture,
+            Verdict {
+                error_map: faults,
+                ..Default::default()
+            },
+            Some(vec![1, 1, 2, 1, 7, 1]),
+            Vec::new(),
+        );
         let edges: Vec<_> = (0..6).filter(|&i| found.is_edge(i)).collect();
         assert_eq!(edges, [1, 2]);
-        assert_eq!((found.count(Overlay::Edges), found.count(Overlay::NotReference)), (2, 1));
-        assert_eq!(found.pixel_text(4), "triangle 1 (reference: triangle 7), 0 layers, Δ 0");
+        assert_eq!(
+            (
+                found.count(Overlay::Edges),
+                found.count(Overlay::NotReference)
+            ),
+            (2, 1)
+        );
+        assert_eq!(
+            found.pixel_text(4),
+            "triangle 1 (reference: triangle 7), 0 layers, Δ 0"
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! The golden of the open preset: whether the oracle still draws it after a file of the preset was reloaded.
+//! The golden of the open preset: whether the oracle still draws it after a file of the preset was
+//! reloaded.
 
 use std::path::{Path, PathBuf};
 
@@ -35,8 +36,12 @@ impl GoldenCheck {
     pub fn text(&self) -> String {
         match &self.outcome {
             Outcome::Same => "golden: same".into(),
-            Outcome::Differs { pixels: 1, largest } => format!("golden: 1 pixel differs, by {largest} of 255"),
-            Outcome::Differs { pixels, largest } => format!("golden: {pixels} pixels differ, largest {largest} of 255"),
+            Outcome::Differs { pixels: 1, largest } => {
+                format!("golden: 1 pixel differs, by {largest} of 255")
+            }
+            Outcome::Differs { pixels, largest } => {
+                format!("golden: {pixels} pixels differ, largest {largest} of 255")
+            }
             Outcome::Failed(_) => "golden: not compared".into(),
         }
     }
@@ -55,7 +60,8 @@ impl GoldenCheck {
     }
 }
 
-/// Draws the golden of a preset again and compares it with the stored one; none if the preset has no golden.
+/// Draws the golden of a preset again and compares it with the stored one; none if the preset has
+/// no golden.
 pub fn check(preset_file: &PresetFile) -> Option<GoldenCheck> {
     preset_file.preset.test.as_ref()?;
     let [golden, _] = golden_paths(&golden_folder(preset_file), &preset_file.id);
@@ -63,7 +69,11 @@ pub fn check(preset_file: &PresetFile) -> Option<GoldenCheck> {
         return None;
     }
     let outcome = compared(preset_file, &golden).unwrap_or_else(Outcome::Failed);
-    Some(GoldenCheck { file: FileId::of(preset_file), golden, outcome })
+    Some(GoldenCheck {
+        file: FileId::of(preset_file),
+        golden,
+        outcome,
+    })
 }
 
 fn compared(preset_file: &PresetFile, golden: &Path) -> Result<Outcome, String> {
@@ -71,14 +81,21 @@ fn compared(preset_file: &PresetFile, golden: &Path) -> Result<Outcome, String> 
     let preset = &preset_file.preset;
     if size != preset.output.size {
         let [[a, b], [c, d]] = [size, preset.output.size];
-        return Err(format!("the golden has {a}x{b} pixels and the preset {c}x{d}"));
+        return Err(format!(
+            "the golden has {a}x{b} pixels and the preset {c}x{d}"
+        ));
     }
-    let scene = preset_file::load_scene(preset, preset_file.path.as_deref()).map_err(|error| error.to_string())?;
+    let scene = preset_file::load_scene(preset, preset_file.path.as_deref())
+        .map_err(|error| error.to_string())?;
     let moments = preset.moments(&scene, size);
-    let frame = oracle::render_scaled(&scene, &moments, preset.accuracy.scale().factor()).map_err(|error| error.to_string())?;
+    let frame = oracle::render_scaled(&scene, &moments, preset.accuracy.scale().factor())
+        .map_err(|error| error.to_string())?;
     let delta = pictures(&expected, &frame.color, 0);
     Ok(match delta.pixels_over_tolerance {
         0 => Outcome::Same,
-        pixels => Outcome::Differs { pixels, largest: delta.max_delta },
+        pixels => Outcome::Differs {
+            pixels,
+            largest: delta.max_delta,
+        },
     })
 }

@@ -1,4 +1,5 @@
-//! Time and error of a picture in words and colors, as the top bar, the comparison and the inspector show them.
+//! Time and error of a picture in words and colors, as the top bar, the comparison and the
+//! inspector show them.
 
 use eframe::egui::Color32;
 
@@ -35,17 +36,28 @@ pub fn time_line(screen: Option<&Screen>) -> (String, String) {
 
 fn summary_text(summary: &Summary) -> String {
     let Summary { frame, frames, .. } = summary;
-    format!("Median of {frames} frames at rest; 90 % of them between {:.2} and {:.2} ms. Timing lists the passes.", frame.p5, frame.p95)
+    format!(
+        "Median of {frames} frames at rest; 90 % of them between {:.2} and {:.2} ms. Timing lists the passes.",
+        frame.p5, frame.p95
+    )
 }
 
 /// The error of the picture `shown`: its color, a few words, and the details.
 pub fn error_line(verdict: Option<&Verdict>, shown: Option<&Inputs>) -> (Color32, String, String) {
     let Some(Verdict { of, findings }) = verdict else {
-        return (theme::text_weak(), "error not measured".into(), "Verify compares every pixel with the oracle".into());
+        return (
+            theme::text_weak(),
+            "error not measured".into(),
+            "Verify compares every pixel with the oracle".into(),
+        );
     };
     let (text, detail) = (error_text(findings), details(findings));
     if shown != Some(of) {
-        return (theme::amber(), format!("{text} · stale"), format!("Measured on an earlier picture. {detail}"));
+        return (
+            theme::amber(),
+            format!("{text} · stale"),
+            format!("Measured on an earlier picture. {detail}"),
+        );
     }
     (error_color(findings), text, detail)
 }
@@ -53,7 +65,11 @@ pub fn error_line(verdict: Option<&Verdict>, shown: Option<&Inputs>) -> (Color32
 /// Green only if nothing at all is wrong, red for a fault of the rasterizer.
 fn error_color(findings: &Findings) -> Color32 {
     let report = &findings.accuracy;
-    let faults = report.wrong_triangles + report.holes + report.double_hits + report.depth_without_id + report.overflow;
+    let faults = report.wrong_triangles
+        + report.holes
+        + report.double_hits
+        + report.depth_without_id
+        + report.overflow;
     match (faults, findings.wrong_against_true()) {
         (0, Some(0)) => theme::green(),
         (0, _) => theme::text_strong(),
@@ -64,16 +80,28 @@ fn error_color(findings: &Findings) -> Color32 {
 /// `wrong: 0 snapped, 17 true, max Δ 1`.
 pub fn error_text(findings: &Findings) -> String {
     let report = &findings.accuracy;
-    let race = if report.race_pixels > 0 { format!(", {} lost to the race", grouped(report.race_pixels)) } else { String::new() };
-    let against_true = findings.wrong_against_true().map_or(String::new(), |count| format!(", {} true", grouped(count)));
-    format!("wrong: {} snapped{against_true}{race}, max Δ {}", grouped(report.wrong_triangles), report.max_color_delta)
+    let race = if report.race_pixels > 0 {
+        format!(", {} lost to the race", grouped(report.race_pixels))
+    } else {
+        String::new()
+    };
+    let against_true = findings
+        .wrong_against_true()
+        .map_or(String::new(), |count| format!(", {} true", grouped(count)));
+    format!(
+        "wrong: {} snapped{against_true}{race}, max Δ {}",
+        grouped(report.wrong_triangles),
+        report.max_color_delta
+    )
 }
 
 fn details(findings: &Findings) -> String {
     let report = &findings.accuracy;
     let against_true = match findings.wrong_against_true() {
         Some(count) => format!("{} against the true positions", grouped(count)),
-        None => "not compared with the true positions, because its effects are not reproducible".into(),
+        None => {
+            "not compared with the true positions, because its effects are not reproducible".into()
+        }
     };
     format!(
         "{} pixels compared with the oracle: {} wrong against the snapped corners, {against_true}; {} explained by a vertex one snap unit \
@@ -98,27 +126,75 @@ mod tests {
         measure::{self, ErrorReport, error_map::ErrorMap},
     };
 
-    /// Six pixels of which `wrong` are wrong against the snapped corners, and as many against the true positions as `reference` differs.
+    /// Six pixels of which `wrong` are wrong against the snapped corners, and as many against the
+    /// true positions as `reference` differs.
     fn findings(wrong: u64, reference: Option<Vec<u32>>) -> Findings {
         let picture = [[9; 4]; 6];
-        let frame = Frame { width: 3, height: 2, triangle_id: vec![0; 6], color: picture.to_vec(), ..Default::default() };
-        let capture = Capture { frame, geometry: Default::default(), layers: None, previous: None, shown: None };
+        let frame = Frame {
+            width: 3,
+            height: 2,
+            triangle_id: vec![0; 6],
+            color: picture.to_vec(),
+            ..Default::default()
+        };
+        let capture = Capture {
+            frame,
+            geometry: Default::default(),
+            layers: None,
+            previous: None,
+            shown: None,
+        };
         let error_map = ErrorMap::new(&picture, &picture, |_| Vec::new());
-        let report = ErrorReport { pixels: 6, wrong_triangles: wrong, ..Default::default() };
-        Findings::new(capture, measure::Verdict { report, error_map, ..Default::default() }, reference, Vec::new())
+        let report = ErrorReport {
+            pixels: 6,
+            wrong_triangles: wrong,
+            ..Default::default()
+        };
+        Findings::new(
+            capture,
+            measure::Verdict {
+                report,
+                error_map,
+                ..Default::default()
+            },
+            reference,
+            Vec::new(),
+        )
     }
 
     #[test]
     fn green_is_only_what_is_right_against_the_snapped_corners_and_the_true_positions() {
         let cases = [
-            (findings(0, Some(vec![0; 6])), theme::green(), "wrong: 0 snapped, 0 true, max Δ 0"),
-            (findings(0, Some(vec![0, 0, 7, 0, 7, 0])), theme::text_strong(), "wrong: 0 snapped, 2 true, max Δ 0"),
-            (findings(0, None), theme::text_strong(), "wrong: 0 snapped, max Δ 0"),
-            (findings(3, Some(vec![0; 6])), theme::red(), "wrong: 3 snapped, 0 true, max Δ 0"),
+            (
+                findings(0, Some(vec![0; 6])),
+                theme::green(),
+                "wrong: 0 snapped, 0 true, max Δ 0",
+            ),
+            (
+                findings(0, Some(vec![0, 0, 7, 0, 7, 0])),
+                theme::text_strong(),
+                "wrong: 0 snapped, 2 true, max Δ 0",
+            ),
+            (
+                findings(0, None),
+                theme::text_strong(),
+                "wrong: 0 snapped, max Δ 0",
+            ),
+            (
+                findings(3, Some(vec![0; 6])),
+                theme::red(),
+                "wrong: 3 snapped, 0 true, max Δ 0",
+            ),
         ];
         for (findings, color, text) in cases {
-            assert_eq!((error_color(&findings), error_text(&findings).as_str()), (color, text));
-            assert!(details(&findings).contains("against the snapped corners") && details(&findings).contains("true positions"));
+            assert_eq!(
+                (error_color(&findings), error_text(&findings).as_str()),
+                (color, text)
+            );
+            assert!(
+                details(&findings).contains("against the snapped corners")
+                    && details(&findings).contains("true positions")
+            );
         }
     }
 }

@@ -1,4 +1,5 @@
-//! The picture in the window: what it is drawn from, the thread that draws it, what it cost, and how far it is off the oracle's.
+//! The picture in the window: what it is drawn from, the thread that draws it, what it cost, and
+//! how far it is off the oracle's.
 
 pub mod anti_aliasing;
 pub mod apply;

@@ -7,13 +7,15 @@ use crate::scene::{
     camera::{Camera, MIN_NEAR_M, Projection},
 };
 
-/// Range of the distance between eye and target, meters: keeps poses below the 2^40 that the kernels' arithmetic allows.
+/// Range of the distance between eye and target, meters: keeps poses below the 2^40 that the
+/// kernels' arithmetic allows.
 const DISTANCE_M: [f64; 2] = [1e-5, 1e8];
 
 /// Largest coordinate of a target that is panned, meters.
 const MAX_COORDINATE_M: f64 = 1e8;
 
-/// Least angle between the direction of view and straight up or down, radians. Beyond the pole, left and right would swap.
+/// Least angle between the direction of view and straight up or down, radians. Beyond the pole,
+/// left and right would swap.
 const POLE_RAD: f64 = 1e-3;
 
 /// Directions of view of the numbered views.
@@ -23,7 +25,11 @@ pub const TOP: DVec3 = DVec3::NEG_Y;
 
 fn distance(camera: &Camera) -> f64 {
     let distance = (camera.eye - camera.target).length();
-    if distance.is_finite() { distance.clamp(DISTANCE_M[0], DISTANCE_M[1]) } else { 1.0 }
+    if distance.is_finite() {
+        distance.clamp(DISTANCE_M[0], DISTANCE_M[1])
+    } else {
+        1.0
+    }
 }
 
 /// True if every coordinate of the pose is finite.
@@ -34,16 +40,27 @@ pub fn is_finite(camera: &Camera) -> bool {
 /// Right and up of the picture, unit vectors.
 pub fn axes(camera: &Camera) -> (DVec3, DVec3) {
     let forward = camera.forward();
-    let right = [camera.up, DVec3::Y, DVec3::X].into_iter().find_map(|up| forward.cross(up).try_normalize()).unwrap_or(DVec3::X);
+    let right = [camera.up, DVec3::Y, DVec3::X]
+        .into_iter()
+        .find_map(|up| forward.cross(up).try_normalize())
+        .unwrap_or(DVec3::X);
     (right, right.cross(forward))
 }
 
 /// `forward` turned by angles about +y and up, kept off the poles.
 fn turned(forward: DVec3, yaw_rad: f64, pitch_rad: f64) -> DVec3 {
     let limit = std::f64::consts::FRAC_PI_2 - POLE_RAD;
-    let yaw = if forward.x == 0.0 && forward.z == 0.0 { yaw_rad } else { forward.x.atan2(-forward.z) + yaw_rad };
+    let yaw = if forward.x == 0.0 && forward.z == 0.0 {
+        yaw_rad
+    } else {
+        forward.x.atan2(-forward.z) + yaw_rad
+    };
     let pitch = (forward.y.clamp(-1.0, 1.0).asin() + pitch_rad).clamp(-limit, limit);
-    DVec3::new(yaw.sin() * pitch.cos(), pitch.sin(), -yaw.cos() * pitch.cos())
+    DVec3::new(
+        yaw.sin() * pitch.cos(),
+        pitch.sin(),
+        -yaw.cos() * pitch.cos(),
+    )
 }
 
 /// Turns the eye round the target; the picture moves right and down by these angles.
@@ -63,7 +80,9 @@ pub fn turn(camera: &mut Camera, right_rad: f64, down_rad: f64) {
 /// Shifts the picture by `right` and `down`, in heights of the picture.
 pub fn pan(camera: &mut Camera, right: f64, down: f64) {
     let height_m = match camera.projection {
-        Projection::Perspective { fov_y_deg } => 2.0 * distance(camera) * (fov_y_deg.to_radians() * 0.5).tan(),
+        Projection::Perspective { fov_y_deg } => {
+            2.0 * distance(camera) * (fov_y_deg.to_radians() * 0.5).tan()
+        }
         Projection::Orthographic { height_m } => height_m,
     };
     let (x, y) = axes(camera);
@@ -73,7 +92,10 @@ pub fn pan(camera: &mut Camera, right: f64, down: f64) {
 /// Moves eye and target together by meters right, up and forward.
 pub fn fly(camera: &mut Camera, right_m: f64, up_m: f64, forward_m: f64) {
     let (x, y) = axes(camera);
-    shift(camera, x * right_m + y * up_m + camera.forward() * forward_m);
+    shift(
+        camera,
+        x * right_m + y * up_m + camera.forward() * forward_m,
+    );
 }
 
 fn shift(camera: &mut Camera, by: DVec3) {
@@ -84,9 +106,14 @@ fn shift(camera: &mut Camera, by: DVec3) {
     }
 }
 
-/// Scales the distance to the target (and the height of an orthographic view); below 1 comes closer.
+/// Scales the distance to the target (and the height of an orthographic view); below 1 comes
+/// closer.
 pub fn zoom(camera: &mut Camera, factor: f64) {
-    let factor = if factor.is_finite() { factor.clamp(0.1, 10.0) } else { 1.0 };
+    let factor = if factor.is_finite() {
+        factor.clamp(0.1, 10.0)
+    } else {
+        1.0
+    };
     let to = (distance(camera) * factor).clamp(DISTANCE_M[0], DISTANCE_M[1]);
     camera.eye = camera.target - camera.forward() * to;
     // Otherwise the near plane would cut off what the eye comes close to.
@@ -99,7 +126,11 @@ pub fn zoom(camera: &mut Camera, factor: f64) {
 /// Looks at the target along `direction` from the same distance.
 pub fn look_along(camera: &mut Camera, direction: DVec3) {
     let distance = distance(camera);
-    camera.up = if direction.y.abs() > 0.999 { DVec3::NEG_Z } else { DVec3::Y };
+    camera.up = if direction.y.abs() > 0.999 {
+        DVec3::NEG_Z
+    } else {
+        DVec3::Y
+    };
     camera.eye = camera.target - direction * distance;
 }
 
@@ -107,13 +138,14 @@ pub fn look_along(camera: &mut Camera, direction: DVec3) {
 pub fn toggle_orthographic(camera: &mut Camera) {
     let distance = distance(camera);
     camera.projection = match camera.projection {
-        Projection::Perspective { fov_y_deg } => {
-            Projection::Orthographic { height_m: 2.0 * distance * (fov_y_deg.to_radians() * 0.5).tan() }
-        }
+        Projection::Perspective { fov_y_deg } => Projection::Orthographic {
+            height_m: 2.0 * distance * (fov_y_deg.to_radians() * 0.5).tan(),
+        },
         Projection::Orthographic { height_m } => {
             let fov_y_deg: f64 = 45.0;
             let away = height_m * 0.5 / (fov_y_deg.to_radians() * 0.5).tan();
-            camera.eye = camera.target - camera.forward() * away.clamp(DISTANCE_M[0], DISTANCE_M[1]);
+            camera.eye =
+                camera.target - camera.forward() * away.clamp(DISTANCE_M[0], DISTANCE_M[1]);
             camera.near_m = camera.near_m.min(away * 0.05).max(MIN_NEAR_M);
             Projection::Perspective { fov_y_deg }
         }
@@ -125,8 +157,14 @@ pub fn framing(camera: &Camera, bounds: &Bounds, aspect: f64) -> Camera {
     let mut framed = Camera::framing(bounds, camera.forward(), aspect);
     framed.up = camera.up;
     if matches!(camera.projection, Projection::Orthographic { .. }) {
-        let radius = if bounds.radius() > 0.0 { bounds.radius() } else { 1.0 };
-        framed.projection = Projection::Orthographic { height_m: 2.1 * radius / aspect.clamp(1e-3, 1.0) };
+        let radius = if bounds.radius() > 0.0 {
+            bounds.radius()
+        } else {
+            1.0
+        };
+        framed.projection = Projection::Orthographic {
+            height_m: 2.1 * radius / aspect.clamp(1e-3, 1.0),
+        };
     }
     framed
 }
@@ -136,7 +174,11 @@ mod tests {
     use super::*;
 
     fn camera() -> Camera {
-        Camera { eye: DVec3::new(1.0, 2.0, 5.0), target: DVec3::new(0.0, 0.5, 0.0), ..Camera::default() }
+        Camera {
+            eye: DVec3::new(1.0, 2.0, 5.0),
+            target: DVec3::new(0.0, 0.5, 0.0),
+            ..Camera::default()
+        }
     }
 
     #[test]
@@ -172,7 +214,10 @@ mod tests {
         let mut moved = camera();
         for factor in [9.0, 0.11] {
             (0..500).for_each(|_| zoom(&mut moved, factor));
-            assert!(moved.eye.is_finite() && moved.near_m >= MIN_NEAR_M && distance(&moved) > 0.0, "{moved:?}");
+            assert!(
+                moved.eye.is_finite() && moved.near_m >= MIN_NEAR_M && distance(&moved) > 0.0,
+                "{moved:?}"
+            );
         }
     }
 
@@ -181,7 +226,9 @@ mod tests {
         let mut moved = camera();
         toggle_orthographic(&mut moved);
         toggle_orthographic(&mut moved);
-        assert!((moved.eye - camera().eye).length() < 1e-9 && moved.projection == camera().projection);
+        assert!(
+            (moved.eye - camera().eye).length() < 1e-9 && moved.projection == camera().projection
+        );
     }
 
     #[test]

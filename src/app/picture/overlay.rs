@@ -1,4 +1,5 @@
-//! Overlays: images of where the picture is wrong and what it is made of, any of which can lie over it.
+//! Overlays: images of where the picture is wrong and what it is made of, any of which can lie over
+//! it.
 
 use eframe::egui::Color32;
 
@@ -22,15 +23,30 @@ pub enum Overlay {
 
 /// Each with its name, what it shows, and its color.
 const TABLE: [(Overlay, &str, &str, Color32); 11] = [
-    (Overlay::TriangleIds, "Triangle ids", "One color per triangle, at the pixels it covers", Color32::from_rgb(150, 120, 210)),
-    (Overlay::Layers, "Layers", "How many triangles cover each pixel, visible or hidden", Color32::from_rgb(214, 86, 60)),
+    (
+        Overlay::TriangleIds,
+        "Triangle ids",
+        "One color per triangle, at the pixels it covers",
+        Color32::from_rgb(150, 120, 210),
+    ),
+    (
+        Overlay::Layers,
+        "Layers",
+        "How many triangles cover each pixel, visible or hidden",
+        Color32::from_rgb(214, 86, 60),
+    ),
     (
         Overlay::Color,
         "Color difference",
         "The largest difference of a channel from the oracle's color, times the gain",
         Color32::from_rgb(126, 255, 142),
     ),
-    (Overlay::Edges, "Triangle edges", "Where neighboring pixels show different triangles", Color32::from_rgb(150, 154, 164)),
+    (
+        Overlay::Edges,
+        "Triangle edges",
+        "Where neighboring pixels show different triangles",
+        Color32::from_rgb(150, 154, 164),
+    ),
     (
         Overlay::Ties,
         "Depth ties",
@@ -44,8 +60,18 @@ const TABLE: [(Overlay, &str, &str, Color32); 11] = [
          it includes the error of snapping and of every other option",
         Color32::from_rgb(204, 156, 255),
     ),
-    (Overlay::Doubles, "Drawn twice", "A triangle was drawn more often than it covers the sample", Color32::from_rgb(255, 233, 74)),
-    (Overlay::Holes, "Holes", "A triangle covers the sample and was not drawn there", Color32::from_rgb(60, 225, 255)),
+    (
+        Overlay::Doubles,
+        "Drawn twice",
+        "A triangle was drawn more often than it covers the sample",
+        Color32::from_rgb(255, 233, 74),
+    ),
+    (
+        Overlay::Holes,
+        "Holes",
+        "A triangle covers the sample and was not drawn there",
+        Color32::from_rgb(60, 225, 255),
+    ),
     (
         Overlay::WrongTriangle,
         "Wrong (snapped)",
@@ -96,7 +122,12 @@ impl Overlay {
 
     /// In the order of lists: errors first, and each group from the topmost to the lowest.
     pub fn listed() -> impl Iterator<Item = Self> {
-        let of_kind = |is_error: bool| Self::ALL.into_iter().rev().filter(move |overlay| overlay.is_error() == is_error);
+        let of_kind = |is_error: bool| {
+            Self::ALL
+                .into_iter()
+                .rev()
+                .filter(move |overlay| overlay.is_error() == is_error)
+        };
         of_kind(true).chain(of_kind(false))
     }
 
@@ -121,13 +152,18 @@ impl Overlay {
             Self::Doubles => Some(PixelError::DoubleHit),
             Self::Ties => Some(PixelError::DepthBand),
             Self::Unsound => Some(PixelError::Unsound),
-            Self::TriangleIds | Self::Layers | Self::Color | Self::Edges | Self::NotReference => None,
+            Self::TriangleIds | Self::Layers | Self::Color | Self::Edges | Self::NotReference => {
+                None
+            }
         }
     }
 
     /// True if it shows errors. The others show what the picture is made of.
     pub const fn is_error(self) -> bool {
-        !matches!(self, Self::TriangleIds | Self::Layers | Self::Edges | Self::Ties)
+        !matches!(
+            self,
+            Self::TriangleIds | Self::Layers | Self::Edges | Self::Ties
+        )
     }
 }
 
@@ -143,7 +179,11 @@ pub struct OverlaySelection {
 
 impl Default for OverlaySelection {
     fn default() -> Self {
-        Self { shown: Vec::new(), last: FIRST.to_vec(), gain: 32 }
+        Self {
+            shown: Vec::new(),
+            last: FIRST.to_vec(),
+            gain: 32,
+        }
     }
 }
 

@@ -1,10 +1,13 @@
-//! The picture thread: owns a renderer, draws the newest picture that was asked for, compiles what it needs for that, and hands the
-//! finished picture to the window. The window never waits for it, and keeps the picture that it has.
+//! The picture thread: owns a renderer, draws the newest picture that was asked for, compiles what
+//! it needs for that, and hands the finished picture to the window. The window never waits for it,
+//! and keeps the picture that it has.
 //!
-//! On a graphics card the thread draws on the window's own device: its texture is what the window shows, and nothing is copied.
-//! A CPU adapter compiles a kernel when it is first submitted, and runs all submissions of a device one after another, so a window on the
-//! same device can present nothing until kernels are compiled and pictures are drawn (5 to 10 s with a new effect on lavapipe). There the thread
-//! draws on a device of its own, and writes the finished bytes to a texture of the window's device: the same memory, copied twice.
+//! On a graphics card the thread draws on the window's own device: its texture is what the window
+//! shows, and nothing is copied. A CPU adapter compiles a kernel when it is first submitted, and
+//! runs all submissions of a device one after another, so a window on the same device can present
+//! nothing until kernels are compiled and pictures are drawn (5 to 10 s with a new effect on
+//! lavapipe). There the thread draws on a device of its own, and writes the finished bytes to a
+//! texture of the window's device: the same memory, copied twice.
 
 use std::{
     panic::AssertUnwindSafe,
@@ -31,7 +34,9 @@ use crate::{
         device::{Devices, Painter},
         ending::EndingThreads,
     },
-    gpu::{CompileWatch, Explanation, Gpu, RenderError, Renderer, Report, preparations::Preparation},
+    gpu::{
+        CompileWatch, Explanation, Gpu, RenderError, Renderer, Report, preparations::Preparation,
+    },
     plan::Plan,
 };
 
@@ -102,7 +107,9 @@ struct Shared {
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    mutex
+        .lock()
+        .unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
 impl Shared {
@@ -113,7 +120,10 @@ impl Shared {
         }
         let mut is_held = lock(&self.is_held);
         while *is_held {
-            is_held = self.released.wait(is_held).unwrap_or_else(|poisoned| poisoned.into_inner());
+            is_held = self
+                .released
+                .wait(is_held)
+                .unwrap_or_else(|poisoned| poisoned.into_inner());
         }
     }
 
@@ -122,7 +132,8 @@ impl Shared {
         orders.next.is_some() || orders.reloads || orders.ends
     }
 
-    /// True if another picture was asked for that `inputs` is no step towards: showing it would show what the user has taken back.
+    /// True if another picture was asked for that `inputs` is no step towards: showing it would
+    /// show what the user has taken back.
     fn is_outdated(&self, inputs: &Inputs) -> bool {
         matches!(&lock(&self.orders).next, Some(Order::Draw(next, _)) if !next.shares_kernels(inputs))
     }
@@ -153,31 +164,64 @@ impl PictureThread {
         let watched = shared.clone();
         let watch = Arc::new(CompileWatch::new(move || watched.begin_compiling()));
         let (sender, finished) = mpsc::channel();
-        let Devices { picture: gpu, window, painter } = devices;
+        let Devices {
+            picture: gpu,
+            window,
+            painter,
+        } = devices;
         let (own, watching) = (shared.clone(), watch.clone());
-        let worker = Worker { shared: own, watch: watching, sender: sender.clone(), gpu, window, painter, texture: None, renderer: None };
-        let handle = std::thread::Builder::new().name("picture".into()).spawn(move || worker.run()).ok();
-        Self { shared, watch, sender, finished, handle, ending }
+        let worker = Worker {
+            shared: own,
+            watch: watching,
+            sender: sender.clone(),
+            gpu,
+            window,
+            painter,
+            texture: None,
+            renderer: None,
+        };
+        let handle = std::thread::Builder::new()
+            .name("picture".into())
+            .spawn(move || worker.run())
+            .ok();
+        Self {
+            shared,
+            watch,
+            sender,
+            finished,
+            handle,
+            ending,
+        }
     }
 
-    /// Draws this picture, which was asked for at `asked_at`, instead of any that was asked for and is not begun.
+    /// Draws this picture, which was asked for at `asked_at`, instead of any that was asked for and
+    /// is not begun.
     pub fn draw(&self, inputs: Inputs, asked_at: Instant) {
         if self.handle.is_none() {
-            let outcome = Outcome::Refused("no thread could be started for the picture; the system has no room for one".into());
+            let outcome = Outcome::Refused(
+                "no thread could be started for the picture; the system has no room for one".into(),
+            );
             // The receiver lives as long as `self`.
             return drop(self.sender.send(Finished { inputs, outcome }));
         }
         let mut orders = lock(&self.shared.orders);
-        if orders.current.as_ref().is_some_and(|current| !current.shares_kernels(&inputs)) {
+        if orders
+            .current
+            .as_ref()
+            .is_some_and(|current| !current.shares_kernels(&inputs))
+        {
             self.watch.stop();
         }
         orders.next = Some(Order::Draw(inputs, asked_at));
         self.shared.changed.notify_one();
     }
 
-    /// Draws the newest picture again, as often as it takes to know its cost, unless another is asked for.
+    /// Draws the newest picture again, as often as it takes to know its cost, unless another is
+    /// asked for.
     pub fn measure(&self, inputs: Inputs) {
-        lock(&self.shared.orders).next.get_or_insert(Order::Measure(inputs));
+        lock(&self.shared.orders)
+            .next
+            .get_or_insert(Order::Measure(inputs));
         self.shared.changed.notify_one();
     }
 
@@ -242,17 +286,27 @@ struct Worker {
     renderer: Option<Renderer>,
 }
 
-/// Waits until the device has finished the newest frame; none after a long time, or as soon as it `is_wanted` no more.
+/// Waits until the device has finished the newest frame; none after a long time, or as soon as it
+/// `is_wanted` no more.
 ///
 /// The device may be the window's, and a wait inside of it would hold the window's submissions up.
-pub fn wait_for_frame(renderer: &mut Renderer, is_wanted: impl Fn() -> bool) -> Result<Option<Report>, RenderError> {
+pub fn wait_for_frame(
+    renderer: &mut Renderer,
+    is_wanted: impl Fn() -> bool,
+) -> Result<Option<Report>, RenderError> {
     let begun = Instant::now();
     while renderer.is_pending() {
         match renderer.report() {
             Some(report) if !renderer.is_pending() => return Ok(Some(report)),
             _ if renderer.gpu().is_lost() => return Err(RenderError::Lost),
             _ if begun.elapsed() > PATIENCE || !is_wanted() => return Ok(None),
-            _ => std::thread::sleep(Duration::from_micros(if begun.elapsed() < Duration::from_millis(20) { 250 } else { 1000 })),
+            _ => std::thread::sleep(Duration::from_micros(
+                if begun.elapsed() < Duration::from_millis(20) {
+                    250
+                } else {
+                    1000
+                },
+            )),
         }
     }
     Ok(None)
@@ -268,10 +322,12 @@ impl Worker {
                 Order::Draw(inputs, asked_at) => self.draw(&inputs, asked_at),
                 Order::Measure(inputs) => self.measure(&inputs),
             });
-            // A panic becomes an error, so that the window does not wait for a picture that never comes.
+            // A panic becomes an error, so that the window does not wait for a picture that never
+            // comes.
             if std::panic::catch_unwind(work).is_err() {
                 self.renderer = None;
-                let text = "drawing the picture failed because of a bug; see the terminal for details";
+                let text =
+                    "drawing the picture failed because of a bug; see the terminal for details";
                 self.finish(&inputs, Outcome::Refused(text.into()));
             }
             self.shared.is_compiling.store(false, Ordering::Relaxed);
@@ -302,29 +358,47 @@ impl Worker {
                     shared.ctx.request_repaint();
                 }
             }
-            orders = shared.changed.wait(orders).unwrap_or_else(|poisoned| poisoned.into_inner());
+            orders = shared
+                .changed
+                .wait(orders)
+                .unwrap_or_else(|poisoned| poisoned.into_inner());
         }
     }
 
     /// Hands something to the window. The window may be closed by now; then it is dropped.
     fn finish(&self, inputs: &Inputs, outcome: Outcome) {
         self.shared.is_compiling.store(false, Ordering::Relaxed);
-        if self.sender.send(Finished { inputs: inputs.clone(), outcome }).is_ok() {
+        if self
+            .sender
+            .send(Finished {
+                inputs: inputs.clone(),
+                outcome,
+            })
+            .is_ok()
+        {
             self.shared.ctx.request_repaint();
         }
     }
 
-    /// Draws a picture, and again if a queue had overflowed and has grown, or while its particles lag behind.
+    /// Draws a picture, and again if a queue had overflowed and has grown, or while its particles
+    /// lag behind.
     fn draw(&mut self, inputs: &Inputs, asked_at: Instant) {
         for redraws in 0.. {
-            let drawn = match self.frame(inputs).and_then(|(report, is_compiled)| self.drawn(inputs, report, is_compiled)) {
+            let drawn = match self
+                .frame(inputs)
+                .and_then(|(report, is_compiled)| self.drawn(inputs, report, is_compiled))
+            {
                 Ok(drawn) => drawn,
                 Err(RenderError::Stopped) => return,
                 Err(error) => return self.finish(inputs, Outcome::Refused(error.to_string())),
             };
             let Some(mut drawn) = drawn else { return };
-            let is_pending = drawn.report.as_ref().is_some_and(|report| report.simulation_pending);
-            let is_incomplete = drawn.report.as_ref().is_some_and(|report| report.redraw) && redraws < MAX_REDRAWS;
+            let is_pending = drawn
+                .report
+                .as_ref()
+                .is_some_and(|report| report.simulation_pending);
+            let is_incomplete =
+                drawn.report.as_ref().is_some_and(|report| report.redraw) && redraws < MAX_REDRAWS;
             drawn.is_partial = is_pending || is_incomplete;
             let is_partial = drawn.is_partial;
             self.finish(inputs, Outcome::Drawn(drawn.into(), asked_at));
@@ -352,8 +426,17 @@ impl Worker {
         self.finish(inputs, Outcome::Measured(samples));
     }
 
-    /// Dispatches one frame and waits until the device has finished it; true if something was compiled for it.
-    fn frame(&mut self, Inputs { scene, view, stack, accuracy }: &Inputs) -> Result<(Option<Report>, bool), RenderError> {
+    /// Dispatches one frame and waits until the device has finished it; true if something was
+    /// compiled for it.
+    fn frame(
+        &mut self,
+        Inputs {
+            scene,
+            view,
+            stack,
+            accuracy,
+        }: &Inputs,
+    ) -> Result<(Option<Report>, bool), RenderError> {
         if self.painter == Painter::Plain {
             self.shared.draws.fetch_add(1, Ordering::Relaxed);
             return Ok((None, false));
@@ -373,48 +456,95 @@ impl Worker {
     }
 
     /// The picture of the newest frame, for the window; none if the user has taken it back.
-    fn drawn(&mut self, inputs: &Inputs, report: Option<Report>, is_compiled: bool) -> Result<Option<Drawn>, RenderError> {
+    fn drawn(
+        &mut self,
+        inputs: &Inputs,
+        report: Option<Report>,
+        is_compiled: bool,
+    ) -> Result<Option<Drawn>, RenderError> {
         if self.shared.is_outdated(inputs) {
             return Ok(None);
         }
         let size = [inputs.view.width, inputs.view.height];
         if self.painter == Painter::Plain {
-            let view = (inputs.view.pixels() > 0).then(|| self.upload(&vec![[90, 90, 90, 255]; inputs.view.pixels()], size));
+            let view = (inputs.view.pixels() > 0)
+                .then(|| self.upload(&vec![[90, 90, 90, 255]; inputs.view.pixels()], size));
             let explanation = Arc::default();
-            return Ok(Some(Drawn { view, size, report, options: None, plan: None, explanation, is_compiled, is_partial: false }));
+            return Ok(Some(Drawn {
+                view,
+                size,
+                report,
+                options: None,
+                plan: None,
+                explanation,
+                is_compiled,
+                is_partial: false,
+            }));
         }
-        let Some(renderer) = &mut self.renderer else { return Err(RenderError::NoScene) };
-        let (options, plan, explanation) = (renderer.key().map(|key| key.options), renderer.plan().cloned(), renderer.explained());
+        let Some(renderer) = &mut self.renderer else {
+            return Err(RenderError::NoScene);
+        };
+        let (options, plan, explanation) = (
+            renderer.key().map(|key| key.options),
+            renderer.plan().cloned(),
+            renderer.explained(),
+        );
         let view = if Arc::ptr_eq(&self.gpu, &self.window) {
             renderer.texture_view().cloned()
         } else {
             let shown = renderer.read_shown().block_on()?;
             shown.map(|pixels| self.upload(&pixels, size))
         };
-        Ok(Some(Drawn { view, size, report, options, plan, explanation, is_compiled, is_partial: false }))
+        Ok(Some(Drawn {
+            view,
+            size,
+            report,
+            options,
+            plan,
+            explanation,
+            is_compiled,
+            is_partial: false,
+        }))
     }
 
     /// Writes pixels to a texture of the window's device.
     fn upload(&mut self, pixels: &[[u8; 4]], [width, height]: [u32; 2]) -> wgpu::TextureView {
-        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+        let size = wgpu::Extent3d {
+            width,
+            height,
+            depth_or_array_layers: 1,
+        };
         let (device, drawing) = (&self.window.device, &self.gpu);
-        let (texture, view) = self.texture.take().filter(|(texture, _)| texture.size() == size).unwrap_or_else(|| {
-            drawing.prepared.count(Preparation::Texture);
-            let texture = device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("picture"),
-                size,
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: wgpu::TextureFormat::Rgba8Unorm,
-                usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
+        let (texture, view) = self
+            .texture
+            .take()
+            .filter(|(texture, _)| texture.size() == size)
+            .unwrap_or_else(|| {
+                drawing.prepared.count(Preparation::Texture);
+                let texture = device.create_texture(&wgpu::TextureDescriptor {
+                    label: Some("picture"),
+                    size,
+                    mip_level_count: 1,
+                    sample_count: 1,
+                    dimension: wgpu::TextureDimension::D2,
+                    format: wgpu::TextureFormat::Rgba8Unorm,
+                    usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING,
+                    view_formats: &[],
+                });
+                let view = texture.create_view(&Default::default());
+                (texture, view)
             });
-            let view = texture.create_view(&Default::default());
-            (texture, view)
-        });
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
-        self.window.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(pixels), layout, size);
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(4 * width),
+            rows_per_image: None,
+        };
+        self.window.queue.write_texture(
+            texture.as_image_copy(),
+            bytemuck::cast_slice(pixels),
+            layout,
+            size,
+        );
         self.texture = Some((texture, view.clone()));
         view
     }

@@ -1,4 +1,5 @@
-//! The largest f32 error of the user's effects in the picture that is shown: measured by the oracle while the picture is at rest.
+//! The largest f32 error of the user's effects in the picture that is shown: measured by the oracle
+//! while the picture is at rest.
 
 use std::sync::{
     Arc,
@@ -53,7 +54,9 @@ pub struct PrecisionState {
 impl PrecisionState {
     /// The errors in the picture `requested`, if they are known.
     pub fn of(&self, requested: Option<&Inputs>) -> Option<&Measured> {
-        self.measured.as_ref().filter(|measured| requested == Some(&measured.of))
+        self.measured
+            .as_ref()
+            .filter(|measured| requested == Some(&measured.of))
     }
 
     pub fn is_running(&self) -> bool {
@@ -66,10 +69,18 @@ impl PrecisionState {
 
     /// Seconds for which `requested` has not changed. A measurement of anything else is cancelled.
     pub fn rest_s(&mut self, requested: &Inputs, now_s: f64) -> f64 {
-        if let Some((_, cancelled)) = self.running.as_ref().filter(|(running, _)| running != requested) {
+        if let Some((_, cancelled)) = self
+            .running
+            .as_ref()
+            .filter(|(running, _)| running != requested)
+        {
             cancelled.store(true, Ordering::Relaxed);
         }
-        let seen = self.seen.take().filter(|(seen, _)| seen == requested).unwrap_or_else(|| (requested.clone(), now_s));
+        let seen = self
+            .seen
+            .take()
+            .filter(|(seen, _)| seen == requested)
+            .unwrap_or_else(|| (requested.clone(), now_s));
         let rest_s = now_s - seen.1;
         self.seen = Some(seen);
         rest_s
@@ -83,7 +94,11 @@ impl PrecisionState {
     }
 
     /// A measurement has ended; none if it was cancelled. Returns an error that is to be logged.
-    pub fn arrived(&mut self, of: Inputs, measured: Result<Option<Box<Measured>>, String>) -> Option<String> {
+    pub fn arrived(
+        &mut self,
+        of: Inputs,
+        measured: Result<Option<Box<Measured>>, String>,
+    ) -> Option<String> {
         self.running = None;
         match measured {
             Ok(Some(measured)) => self.measured = Some(*measured),
@@ -97,17 +112,31 @@ impl PrecisionState {
     }
 }
 
-/// Measures the effects of files in the picture of `of`, drawn by the oracle at no more than 76,800 pixels; none if it was cancelled.
+/// Measures the effects of files in the picture of `of`, drawn by the oracle at no more than 76,800
+/// pixels; none if it was cancelled.
 ///
 /// # Errors
 /// In a sentence for people.
 pub fn measure(of: &Inputs, cancelled: &Arc<AtomicBool>) -> Result<Option<Measured>, String> {
-    let factor = (MAX_PIXELS / (of.view.pixels() as f64).max(1.0)).sqrt().min(1.0);
-    let view = if factor < 1.0 { of.view.scaled(factor) } else { of.view.clone() };
+    let factor = (MAX_PIXELS / (of.view.pixels() as f64).max(1.0))
+        .sqrt()
+        .min(1.0);
+    let view = if factor < 1.0 {
+        of.view.scaled(factor)
+    } else {
+        of.view.clone()
+    };
     let mut drawn = Ok(());
-    let found = effect_files::precision(&of.stack.scaled(factor), Effect::is_of_file, cancelled, |stack| {
-        drawn = oracle::render(&of.scene, &view, stack).map(drop).map_err(|error| error.to_string());
-    });
+    let found = effect_files::precision(
+        &of.stack.scaled(factor),
+        Effect::is_of_file,
+        cancelled,
+        |stack| {
+            drawn = oracle::render(&of.scene, &view, stack)
+                .map(drop)
+                .map_err(|error| error.to_string());
+        },
+    );
     let found = found.map_err(|error| error.to_string())?;
     drawn?;
     if cancelled.load(Ordering::Relaxed) {
@@ -115,12 +144,25 @@ pub fn measure(of: &Inputs, cancelled: &Arc<AtomicBool>) -> Result<Option<Measur
     }
     let size = [view.width, view.height];
     let uv = |place: ErrorPlace| match place {
-        ErrorPlace::Pixel([x, y]) => Some([x / f64::from(size[0].max(1)), y / f64::from(size[1].max(1))]),
+        ErrorPlace::Pixel([x, y]) => {
+            Some([x / f64::from(size[0].max(1)), y / f64::from(size[1].max(1))])
+        }
         ErrorPlace::World(at) => on_screen(&view, at),
     };
-    let error = |found: effect_files::LargestError| Error { quantity: found.quantity, error: found.error, uv: uv(found.place) };
-    let effects = found.into_iter().map(|(effect, errors)| (effect, errors.into_iter().map(error).collect())).collect();
-    Ok(Some(Measured { of: of.clone(), size, effects }))
+    let error = |found: effect_files::LargestError| Error {
+        quantity: found.quantity,
+        error: found.error,
+        uv: uv(found.place),
+    };
+    let effects = found
+        .into_iter()
+        .map(|(effect, errors)| (effect, errors.into_iter().map(error).collect()))
+        .collect();
+    Ok(Some(Measured {
+        of: of.clone(),
+        size,
+        effects,
+    }))
 }
 
 /// Where a point of the world is in the picture; none outside of it.

@@ -1,5 +1,6 @@
-//! Screen: a picture in the window and the thread that draws it. It draws only when an input has changed, and a few frames more at rest
-//! to measure them; after a failure the last good picture stays.
+//! Screen: a picture in the window and the thread that draws it. It draws only when an input has
+//! changed, and a few frames more at rest to measure them; after a failure the last good picture
+//! stays.
 
 use std::{sync::Arc, thread::JoinHandle};
 
@@ -32,7 +33,8 @@ pub struct Screen {
     /// The inputs that were requested last, at full size.
     requested: Option<Inputs>,
     divisor: u32,
-    /// What the thread draws, or drew last; smaller than requested while it moves on a slow adapter.
+    /// What the thread draws, or drew last; smaller than requested while it moves on a slow
+    /// adapter.
     ordered: Option<Inputs>,
     /// The picture that was ordered is still to come.
     is_waiting: bool,
@@ -60,7 +62,12 @@ impl Screen {
         Self::with(devices, Blitter::new(window), ctx, Arc::default())
     }
 
-    fn with(devices: Devices, blitter: Blitter, ctx: egui::Context, ending: Arc<EndingThreads>) -> Self {
+    fn with(
+        devices: Devices,
+        blitter: Blitter,
+        ctx: egui::Context,
+        ending: Arc<EndingThreads>,
+    ) -> Self {
         Self {
             thread: PictureThread::start(devices.clone(), ctx.clone(), ending.clone()),
             ending,
@@ -86,10 +93,16 @@ impl Screen {
 
     /// A second screen on the same device, for another picture in the same window.
     pub fn sibling(&self) -> Self {
-        Self::with(self.devices.clone(), self.blitter.clone(), self.ctx.clone(), self.ending.clone())
+        Self::with(
+            self.devices.clone(),
+            self.blitter.clone(),
+            self.ctx.clone(),
+            self.ending.clone(),
+        )
     }
 
-    /// Draws the next picture with the shaders as they are now, and again if the last one could not be drawn.
+    /// Draws the next picture with the shaders as they are now, and again if the last one could not
+    /// be drawn.
     pub fn reload_shaders(&mut self) {
         self.thread.reload_shaders();
         self.ordered = None;
@@ -101,7 +114,8 @@ impl Screen {
         self.ending.add(thread);
     }
 
-    /// True if a device was lost. Asks the window's, since nothing else does while nothing is drawn.
+    /// True if a device was lost. Asks the window's, since nothing else does while nothing is
+    /// drawn.
     pub fn is_lost(&self) -> bool {
         let _ = self.devices.window.device.poll(wgpu::PollType::Poll);
         if !Arc::ptr_eq(&self.gpu, &self.devices.window) {
@@ -113,7 +127,9 @@ impl Screen {
 
     /// The first error of a device that no scope caught, since the last call.
     pub fn take_error(&self) -> Option<String> {
-        self.gpu.take_error().or_else(|| self.devices.window.take_error())
+        self.gpu
+            .take_error()
+            .or_else(|| self.devices.window.take_error())
     }
 
     /// Number of frames dispatched so far.
@@ -123,13 +139,18 @@ impl Screen {
 
     /// The newest picture and its size in pixels.
     pub fn picture(&self) -> Option<(&Blit, [u32; 2])> {
-        self.picture.as_ref().map(|picture| (&picture.blit, picture.size))
+        self.picture
+            .as_ref()
+            .map(|picture| (&picture.blit, picture.size))
     }
 
     /// How the newest picture differs from another screen's, times `gain`.
     pub fn difference(&self, other: &Self, gain: u8) -> Option<Blit> {
         let views = [&self.picture.as_ref()?.view, &other.picture.as_ref()?.view];
-        Some(self.blitter.difference(&self.devices.window.device, views, gain))
+        Some(
+            self.blitter
+                .difference(&self.devices.window.device, views, gain),
+        )
     }
 
     /// The inputs that were requested last, at full size; none before the first.
@@ -177,10 +198,15 @@ impl Screen {
         self.is_waiting
     }
 
-    /// True while a picture is still to come that differs by more than its moment from the one that is shown. While a preset plays, the
-    /// requested picture is always still to come.
+    /// True while a picture is still to come that differs by more than its moment from the one that
+    /// is shown. While a preset plays, the requested picture is always still to come.
     pub fn is_awaited(&self, is_playing: bool) -> bool {
-        let is_shown = || self.drawn.as_ref().zip(self.ordered.as_ref()).is_some_and(|(drawn, ordered)| drawn.shares_kernels(ordered));
+        let is_shown = || {
+            self.drawn
+                .as_ref()
+                .zip(self.ordered.as_ref())
+                .is_some_and(|(drawn, ordered)| drawn.shares_kernels(ordered))
+        };
         self.is_waiting && !(is_playing && is_shown())
     }
 
@@ -191,7 +217,10 @@ impl Screen {
 
     /// What is compiled for the requested picture, in words; none while nothing is.
     pub fn compiling(&self) -> Option<String> {
-        let ordered = self.ordered.as_ref().filter(|_| self.is_waiting && self.thread.is_compiling())?;
+        let ordered = self
+            .ordered
+            .as_ref()
+            .filter(|_| self.is_waiting && self.thread.is_compiling())?;
         let new = ordered.new_effects(self.drawn.as_ref());
         Some(match &new[..] {
             [] => "Compiling kernels…".into(),
@@ -205,9 +234,12 @@ impl Screen {
         self.thread.hold_compiling(is_held);
     }
 
-    /// Width and height in pixels of the picture that was asked for last, reduced while it moves; none before the first.
+    /// Width and height in pixels of the picture that was asked for last, reduced while it moves;
+    /// none before the first.
     pub fn ordered_size(&self) -> Option<[u32; 2]> {
-        self.ordered.as_ref().map(|inputs| [inputs.view.width, inputs.view.height])
+        self.ordered
+            .as_ref()
+            .map(|inputs| [inputs.view.width, inputs.view.height])
     }
 
     /// Full pixels per drawn pixel along a side; above 1 while the picture moves on a slow adapter.
@@ -215,7 +247,8 @@ impl Screen {
         self.divisor
     }
 
-    /// Has `requested` drawn at its size over `divisor`, unless that is what the picture shows or what could not be drawn.
+    /// Has `requested` drawn at its size over `divisor`, unless that is what the picture shows or
+    /// what could not be drawn.
     pub fn show(&mut self, requested: Inputs, divisor: u32) {
         let inputs = requested.reduced(divisor);
         (self.requested, self.divisor) = (Some(requested), divisor);
@@ -226,8 +259,12 @@ impl Screen {
         self.timings.change();
         self.ordered = Some(inputs.clone());
         // The input that asks for it was there when the frame of the window began.
-        let asked_at = self.ctx.with_plugin(|frames: &mut UiFrames| frames.begun()).flatten();
-        self.thread.draw(inputs, asked_at.unwrap_or_else(Instant::now));
+        let asked_at = self
+            .ctx
+            .with_plugin(|frames: &mut UiFrames| frames.begun())
+            .flatten();
+        self.thread
+            .draw(inputs, asked_at.unwrap_or_else(Instant::now));
     }
 
     /// Forgets what was measured of another preset, or at another size.
@@ -237,8 +274,13 @@ impl Screen {
 
     /// True if the picture shows what was requested, at full size, and its cost is not known.
     pub fn needs_measuring(&self) -> bool {
-        let is_drawn = self.requested.is_some() && self.drawn == self.requested && self.picture.is_some();
-        is_drawn && !self.is_waiting && !self.has_failed && self.gpu.caps.timestamps && !self.timings.is_settled()
+        let is_drawn =
+            self.requested.is_some() && self.drawn == self.requested && self.picture.is_some();
+        is_drawn
+            && !self.is_waiting
+            && !self.has_failed
+            && self.gpu.caps.timestamps
+            && !self.timings.is_settled()
     }
 
     /// Has the picture drawn again until its cost is known, if that is needed.
@@ -263,7 +305,9 @@ impl Screen {
             match outcome {
                 Outcome::Drawn(drawn, asked_at) => {
                     self.is_waiting &= !is_newest || drawn.is_partial;
-                    self.ctx.with_plugin(|frames: &mut UiFrames| frames.shows(asked_at, drawn.is_compiled));
+                    self.ctx.with_plugin(|frames: &mut UiFrames| {
+                        frames.shows(asked_at, drawn.is_compiled)
+                    });
                     self.take(inputs, *drawn, asked_at.elapsed().as_secs_f64() * 1e3);
                 }
                 Outcome::Refused(error) if is_newest => {
@@ -282,7 +326,16 @@ impl Screen {
 
     /// Shows a finished picture.
     fn take(&mut self, inputs: Inputs, drawn: Drawn, latency_ms: f64) {
-        let Drawn { view, size, report, options, plan, explanation, is_compiled, .. } = drawn;
+        let Drawn {
+            view,
+            size,
+            report,
+            options,
+            plan,
+            explanation,
+            is_compiled,
+            ..
+        } = drawn;
         if let Some(view) = view {
             match self.picture.as_mut().filter(|picture| picture.view == view) {
                 Some(picture) => picture.size = size,
@@ -293,8 +346,17 @@ impl Screen {
             }
         }
         let sample = report.as_ref().and_then(Sample::of);
-        self.timings.drawn(Subject { size, kernel: explanation.key.clone() }, sample, is_compiled, latency_ms);
+        self.timings.drawn(
+            Subject {
+                size,
+                kernel: explanation.key.clone(),
+            },
+            sample,
+            is_compiled,
+            latency_ms,
+        );
         self.report = report.or(self.report.take());
-        (self.drawn, self.options, self.plan, self.explanation) = (Some(inputs), options, plan, Some(explanation));
+        (self.drawn, self.options, self.plan, self.explanation) =
+            (Some(inputs), options, plan, Some(explanation));
     }
 }

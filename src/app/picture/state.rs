@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    findings::Findings, overlay::OverlaySelection, precision::PrecisionState, screen::Screen, tier_times::TierTimes,
-    verification::Verification,
+    findings::Findings, overlay::OverlaySelection, precision::PrecisionState, screen::Screen,
+    tier_times::TierTimes, verification::Verification,
 };
 use crate::{
     app::picture::command::{Marker, Picking},
@@ -41,16 +41,22 @@ impl PictureState {
 
     /// The verdict on the picture that is drawn, as numbers.
     pub fn accuracy(&self) -> Option<&ErrorReport> {
-        self.verification.verdict_on(self.screen.drawn()).map(|verdict| &verdict.findings.accuracy)
+        self.verification
+            .verdict_on(self.screen.drawn())
+            .map(|verdict| &verdict.findings.accuracy)
     }
 
     /// The verdict on the requested picture, pixel by pixel.
     pub fn findings(&self) -> Option<&Arc<Findings>> {
-        self.verification.verdict_on(self.screen.requested()).map(|verdict| &verdict.findings)
+        self.verification
+            .verdict_on(self.screen.requested())
+            .map(|verdict| &verdict.findings)
     }
 
     /// False while overlays are shown and the picture has not been judged.
     pub fn overlays_are_ready(&self) -> bool {
-        !self.overlays.is_any() || self.findings().is_some() || self.verification.has_failed(self.screen.requested())
+        !self.overlays.is_any()
+            || self.findings().is_some()
+            || self.verification.has_failed(self.screen.requested())
     }
 }

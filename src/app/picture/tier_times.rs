@@ -1,5 +1,6 @@
-//! What the accuracy tiers cost on the open picture: measured beside it while the window is at rest and somebody looks at the slider. Times
-//! hold for one kernel, size and adapter, and are dropped when the picture changes.
+//! What the accuracy tiers cost on the open picture: measured beside it while the window is at rest
+//! and somebody looks at the slider. Times hold for one kernel, size and adapter, and are dropped
+//! when the picture changes.
 
 use std::sync::Arc;
 
@@ -27,7 +28,8 @@ use crate::{
 /// How far a picture was judged to be off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judged {
-    /// Pixels with another triangle than the oracle draws from the same snapped corners, per million.
+    /// Pixels with another triangle than the oracle draws from the same snapped corners, per
+    /// million.
     pub wrong_ppm: f64,
     /// And than the exact picture of the true positions; none where that is not reproducible.
     pub true_ppm: Option<f64>,
@@ -96,8 +98,15 @@ impl Drop for TierTimes {
 impl TierTimes {
     /// The request, with what options cost on this adapter where the planner may ask for that.
     pub fn informed(&self, request: AccuracyRequest) -> AccuracyRequest {
-        let measured = if request.tolerance().wrong_ppm > 0.0 { self.costs } else { MeasuredCosts::default() };
-        AccuracyRequest { measured, ..request }
+        let measured = if request.tolerance().wrong_ppm > 0.0 {
+            self.costs
+        } else {
+            MeasuredCosts::default()
+        };
+        AccuracyRequest {
+            measured,
+            ..request
+        }
     }
 
     pub fn is_running(&self) -> bool {
@@ -129,13 +138,19 @@ impl TierTimes {
 
     /// Are these times of the same picture, perhaps in another tier?
     fn is_of(&self, inputs: &Inputs) -> bool {
-        self.picture.as_ref().is_some_and(|(picture, _)| picture.is_same_but_for_tier(inputs))
+        self.picture
+            .as_ref()
+            .is_some_and(|(picture, _)| picture.is_same_but_for_tier(inputs))
     }
 
     fn add(&mut self, kernel: KernelKey, ms: Option<f64>) {
         self.times.retain(|(known, _)| *known != kernel);
         self.times.push((kernel, ms));
-        let frames: Vec<_> = self.times.iter().filter_map(|(kernel, ms)| Some((kernel.options, (*ms).filter(|ms| *ms > 0.0)?))).collect();
+        let frames: Vec<_> = self
+            .times
+            .iter()
+            .filter_map(|(kernel, ms)| Some((kernel.options, (*ms).filter(|ms| *ms > 0.0)?)))
+            .collect();
         self.costs.learn(&frames);
     }
 
@@ -148,40 +163,90 @@ impl TierTimes {
     }
 }
 
-/// The plan of the open picture in `tier`, with the options that the preset pins; none before the first picture, and where no kernel can draw it.
+/// The plan of the open picture in `tier`, with the options that the preset pins; none before the
+/// first picture, and where no kernel can draw it.
 fn plan_in(state: &State, tier: Tier) -> Option<(Plan, AccuracyRequest)> {
     let (plan, drawn) = (state.picture.screen.plan()?, state.picture.screen.drawn()?);
-    let request = state.picture.tier_times.informed(AccuracyRequest { tier, ..drawn.accuracy });
-    Some((plan.under(&drawn.stack, &state.picture.screen.gpu.caps.tuning(), &request).ok()?, request))
+    let request = state.picture.tier_times.informed(AccuracyRequest {
+        tier,
+        ..drawn.accuracy
+    });
+    Some((
+        plan.under(
+            &drawn.stack,
+            &state.picture.screen.gpu.caps.tuning(),
+            &request,
+        )
+        .ok()?,
+        request,
+    ))
 }
 
-/// What is known of `tier` on the open picture; none before the first picture, and where no kernel can draw it.
+/// What is known of `tier` on the open picture; none before the first picture, and where no kernel
+/// can draw it.
 pub fn numbers(state: &State, tier: Tier) -> Option<TierNumbers> {
     let (plan, _) = plan_in(state, tier)?;
     let times = &state.picture.tier_times;
-    if !state.picture.screen.drawn().is_some_and(|drawn| times.is_of(drawn)) {
-        return Some(TierNumbers { time: TierTime::NotYet, judged: None, bound: plan.prediction });
+    if !state
+        .picture
+        .screen
+        .drawn()
+        .is_some_and(|drawn| times.is_of(drawn))
+    {
+        return Some(TierNumbers {
+            time: TierTime::NotYet,
+            judged: None,
+            bound: plan.prediction,
+        });
     }
-    let judged = times.judged.iter().find(|(kernel, _)| *kernel == plan.key).map(|(_, judged)| *judged);
-    Some(TierNumbers { time: times.time(&plan.key), judged, bound: plan.prediction })
+    let judged = times
+        .judged
+        .iter()
+        .find(|(kernel, _)| *kernel == plan.key)
+        .map(|(_, judged)| *judged);
+    Some(TierNumbers {
+        time: times.time(&plan.key),
+        judged,
+        bound: plan.prediction,
+    })
 }
 
-/// Follows the picture: drops what was measured of another one, and times the next tier when everything is at rest and the window not
-/// otherwise busy.
+/// Follows the picture: drops what was measured of another one, and times the next tier when
+/// everything is at rest and the window not otherwise busy.
 pub fn follow(ctx: &egui::Context, state: &mut State, is_busy: bool) {
     let is_looked_at = std::mem::take(&mut state.picture.tier_times.is_looked_at);
-    let Some(requested) = state.picture.screen.requested() else { return };
+    let Some(requested) = state.picture.screen.requested() else {
+        return;
+    };
     let rest_s = state.picture.tier_times.rest_s(requested, state.now_s);
     let screen = &state.picture.screen;
     // What else runs would be measured, too.
-    if state.session.playback.playing || state.jobs.is_computing() || screen.is_waiting() || !screen.timings().is_settled() {
+    if state.session.playback.playing
+        || state.jobs.is_computing()
+        || screen.is_waiting()
+        || !screen.timings().is_settled()
+    {
         return state.picture.tier_times.stop();
     }
-    let Some(drawn) = screen.drawn().filter(|drawn| Some(*drawn) == screen.requested()) else { return };
+    let Some(drawn) = screen
+        .drawn()
+        .filter(|drawn| Some(*drawn) == screen.requested())
+    else {
+        return;
+    };
     let next = || {
-        let of = |tier| plan_in(state, tier).filter(|(plan, _)| state.picture.tier_times.time(&plan.key) == TierTime::NotYet);
+        let of = |tier| {
+            plan_in(state, tier)
+                .filter(|(plan, _)| state.picture.tier_times.time(&plan.key) == TierTime::NotYet)
+        };
         let (plan, accuracy) = Tier::ALL.into_iter().find_map(of)?;
-        Some((plan.key, Inputs { accuracy, ..drawn.clone() }))
+        Some((
+            plan.key,
+            Inputs {
+                accuracy,
+                ..drawn.clone()
+            },
+        ))
     };
     if !is_looked_at || is_busy || state.picture.tier_times.is_running() {
         return;
@@ -203,8 +268,17 @@ pub fn follow(ctx: &egui::Context, state: &mut State, is_busy: bool) {
     }
 }
 
-/// Takes in what a measurement has found; it counts if the picture is still the same and nothing else ran.
-pub fn arrived(state: &mut State, Timed { picture, kernel, outcome, drawing }: Timed) {
+/// Takes in what a measurement has found; it counts if the picture is still the same and nothing
+/// else ran.
+pub fn arrived(
+    state: &mut State,
+    Timed {
+        picture,
+        kernel,
+        outcome,
+        drawing,
+    }: Timed,
+) {
     let times = &mut state.picture.tier_times;
     (times.running, times.drawing) = (None, drawing);
     if !times.is_of(&picture) {
@@ -216,7 +290,13 @@ pub fn arrived(state: &mut State, Timed { picture, kernel, outcome, drawing }: T
         Ok(_) => {}
         Err(error) => {
             times.add(kernel, None);
-            state.log.add(Level::Warning, format!("the tier {} was not measured: {error}", picture.accuracy.tier.name()));
+            state.log.add(
+                Level::Warning,
+                format!(
+                    "the tier {} was not measured: {error}",
+                    picture.accuracy.tier.name()
+                ),
+            );
         }
     }
 }
@@ -226,7 +306,9 @@ pub fn judge(state: &mut State, Verdict { of, findings }: &Verdict) {
     if !state.picture.tier_times.is_of(of) {
         return;
     }
-    let Some((plan, _)) = plan_in(state, of.accuracy.tier) else { return };
+    let Some((plan, _)) = plan_in(state, of.accuracy.tier) else {
+        return;
+    };
     let report = &findings.accuracy;
     let ppm = |count: u64| count as f64 * 1e6 / (report.pixels as f64).max(1.0);
     let judged = Judged {
@@ -234,22 +316,31 @@ pub fn judge(state: &mut State, Verdict { of, findings }: &Verdict) {
         true_ppm: findings.wrong_against_true().map(ppm),
         channel: report.max_color_delta,
     };
-    state.picture.tier_times.judged.retain(|(kernel, _)| *kernel != plan.key);
+    state
+        .picture
+        .tier_times
+        .judged
+        .retain(|(kernel, _)| *kernel != plan.key);
     state.picture.tier_times.judged.push((plan.key, judged));
 }
 
-/// Milliseconds of a frame of `inputs`, from a few frames, as the window measures its picture: on `gpu` unless that is a CPU adapter's. None if
-/// `watch` stopped it.
+/// Milliseconds of a frame of `inputs`, from a few frames, as the window measures its picture: on
+/// `gpu` unless that is a CPU adapter's. None if `watch` stopped it.
 ///
 /// # Errors
 /// In a sentence for people.
-pub fn measure(gpu: &Arc<Gpu>, inputs: &Inputs, drawing: &mut TierDrawing, watch: &Arc<CompileWatch>) -> Result<Option<f64>, String> {
+pub fn measure(
+    gpu: &Arc<Gpu>,
+    inputs: &Inputs,
+    drawing: &mut TierDrawing,
+    watch: &Arc<CompileWatch>,
+) -> Result<Option<f64>, String> {
     yield_processor(); // Before a device is opened, whose threads are then as patient.
     let gpu = match &drawing.gpu {
         Some(known) => known.clone(),
-        None if gpu.summary.software => {
-            Gpu::open(&AdapterChoice::Named(gpu.summary.name.clone())).block_on().map_err(|error| error.to_string())?
-        }
+        None if gpu.summary.software => Gpu::open(&AdapterChoice::Named(gpu.summary.name.clone()))
+            .block_on()
+            .map_err(|error| error.to_string())?,
         None => gpu.clone(),
     };
     drawing.gpu = Some(gpu.clone());
@@ -262,12 +353,20 @@ pub fn measure(gpu: &Arc<Gpu>, inputs: &Inputs, drawing: &mut TierDrawing, watch
 
 fn frame_ms(
     gpu: Arc<Gpu>,
-    Inputs { scene, view, stack, accuracy }: &Inputs,
+    Inputs {
+        scene,
+        view,
+        stack,
+        accuracy,
+    }: &Inputs,
     drawing: &mut TierDrawing,
     watch: &Arc<CompileWatch>,
 ) -> Result<Option<f64>, RenderError> {
     // A panic drops it.
-    let mut renderer = drawing.renderer.take().unwrap_or_else(|| Renderer::new(gpu));
+    let mut renderer = drawing
+        .renderer
+        .take()
+        .unwrap_or_else(|| Renderer::new(gpu));
     renderer.watch_compiling(watch.clone());
     renderer.set_scene(scene).block_on()?;
     let mut samples = Vec::new();
@@ -280,5 +379,7 @@ fn frame_ms(
         }
     }
     drawing.renderer = Some(renderer);
-    Ok(Summary::settled(&samples).filter(|_| has_settled(&samples)).map(|summary| summary.frame.median))
+    Ok(Summary::settled(&samples)
+        .filter(|_| has_settled(&samples))
+        .map(|summary| summary.frame.median))
 }

@@ -1,5 +1,6 @@
-//! Timings: what pictures cost. The first time of a picture is not its cost: kernels and caches are cold, and the processor is busy with
-//! what the user does. A few frames are drawn again at rest until their times agree, and their median is shown.
+//! Timings: what pictures cost. The first time of a picture is not its cost: kernels and caches are
+//! cold, and the processor is busy with what the user does. A few frames are drawn again at rest
+//! until their times agree, and their median is shown.
 
 use std::collections::VecDeque;
 
@@ -13,7 +14,8 @@ const MOST: usize = 15;
 const LONG_MS: f64 = 1500.0;
 const FEWEST_LONG: usize = 3;
 
-/// The times have settled when the middle half of the last five spans at most this fraction of their median.
+/// The times have settled when the middle half of the last five spans at most this fraction of
+/// their median.
 const SETTLED_SPREAD: f64 = 0.1;
 
 /// Frames whose median stands for a picture in motion.
@@ -34,7 +36,10 @@ pub struct Sample {
 impl Sample {
     /// None where the adapter has no timer.
     pub fn of(report: &Report) -> Option<Self> {
-        Some(Self { ms: report.gpu_ms?, passes: report.passes.clone() })
+        Some(Self {
+            ms: report.gpu_ms?,
+            passes: report.passes.clone(),
+        })
     }
 
     /// What the frame took beyond its passes: clears between them, copies, and gaps.
@@ -66,7 +71,11 @@ impl Spread {
     /// None without values.
     pub fn of(values: &[f64]) -> Option<Self> {
         let at = |p: f64| percentile(values, p);
-        Some(Self { median: at(0.5)?, p5: at(0.05)?, p95: at(0.95)? })
+        Some(Self {
+            median: at(0.5)?,
+            p5: at(0.05)?,
+            p95: at(0.95)?,
+        })
     }
 }
 
@@ -82,14 +91,17 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Of frames that were drawn one after another at rest until their times agreed; those before were still warming up. None without samples.
+    /// Of frames that were drawn one after another at rest until their times agreed; those before
+    /// were still warming up. None without samples.
     pub fn settled(samples: &[Sample]) -> Option<Self> {
         Self::of(&samples[samples.len().saturating_sub(2 * FEWEST)..])
     }
 
     /// None without samples.
     pub fn of(samples: &[Sample]) -> Option<Self> {
-        let of = |value: &dyn Fn(&Sample) -> Option<f64>| Spread::of(&samples.iter().filter_map(value).collect::<Vec<_>>());
+        let of = |value: &dyn Fn(&Sample) -> Option<f64>| {
+            Spread::of(&samples.iter().filter_map(value).collect::<Vec<_>>())
+        };
         let mut labels: Vec<&str> = Vec::new();
         for (label, _) in samples.iter().flat_map(|sample| &sample.passes) {
             if !labels.contains(&label.as_str()) {
@@ -98,7 +110,12 @@ impl Summary {
         }
         // A pass that runs several times has one row.
         let time = |sample: &Sample, label: &str| {
-            let times: Vec<f64> = sample.passes.iter().filter(|(other, _)| other == label).map(|(_, ms)| *ms).collect();
+            let times: Vec<f64> = sample
+                .passes
+                .iter()
+                .filter(|(other, _)| other == label)
+                .map(|(_, ms)| *ms)
+                .collect();
             (!times.is_empty()).then(|| times.iter().sum())
         };
         let pass = |label: &str| Some((label.to_owned(), of(&|sample| time(sample, label))?));
@@ -117,7 +134,13 @@ pub fn has_settled(samples: &[Sample]) -> bool {
     if samples.len() >= MOST || samples.len() >= FEWEST_LONG && total_ms >= LONG_MS {
         return true;
     }
-    let Some(last) = samples.len().checked_sub(FEWEST).map(|first| &samples[first..]) else { return false };
+    let Some(last) = samples
+        .len()
+        .checked_sub(FEWEST)
+        .map(|first| &samples[first..])
+    else {
+        return false;
+    };
     let times: Vec<f64> = last.iter().map(|sample| sample.ms).collect();
     let at = |p: f64| percentile(&times, p).unwrap_or(0.0);
     at(0.75) - at(0.25) <= SETTLED_SPREAD * at(0.5)
@@ -162,7 +185,8 @@ impl Timings {
         self.settled = None;
     }
 
-    /// A picture of another preset or size is shown: no time before counts for it. The history stays.
+    /// A picture of another preset or size is shown: no time before counts for it. The history
+    /// stays.
     pub fn reset(&mut self) {
         self.settled = None;
         self.moving_ms.clear();
@@ -170,24 +194,46 @@ impl Timings {
     }
 
     /// A changed picture was drawn in `sample`, and shown `latency_ms` after the input.
-    pub fn drawn(&mut self, subject: Subject, sample: Option<Sample>, is_compiled: bool, latency_ms: f64) {
+    pub fn drawn(
+        &mut self,
+        subject: Subject,
+        sample: Option<Sample>,
+        is_compiled: bool,
+        latency_ms: f64,
+    ) {
         if self.subject.as_ref() != Some(&subject) {
             self.moving_ms.clear();
             self.subject = Some(subject);
         }
         self.settled = None;
         if !is_compiled {
-            push(&mut self.moving_ms, sample.iter().map(|sample| sample.ms), MOVING);
+            push(
+                &mut self.moving_ms,
+                sample.iter().map(|sample| sample.ms),
+                MOVING,
+            );
             push(&mut self.latencies_ms, [latency_ms], LATENCIES);
         }
-        let occasion = if is_compiled { Occasion::Compiled } else { Occasion::Changed };
-        push(&mut self.history, sample.map(|sample| (sample, occasion)), HISTORY);
+        let occasion = if is_compiled {
+            Occasion::Compiled
+        } else {
+            Occasion::Changed
+        };
+        push(
+            &mut self.history,
+            sample.map(|sample| (sample, occasion)),
+            HISTORY,
+        );
     }
 
     /// The picture was drawn again at rest.
     pub fn settle(&mut self, samples: Vec<Sample>) {
         self.settled = Some(Summary::settled(&samples));
-        push(&mut self.history, samples.into_iter().map(|sample| (sample, Occasion::Rest)), HISTORY);
+        push(
+            &mut self.history,
+            samples.into_iter().map(|sample| (sample, Occasion::Rest)),
+            HISTORY,
+        );
     }
 
     pub fn cost(&self) -> Cost<'_> {
@@ -218,16 +264,23 @@ impl Timings {
 
     /// Time of the newest frame that compiled nothing, milliseconds.
     pub fn newest_ms(&self) -> Option<f64> {
-        let warm = self.history.iter().rev().find(|(_, occasion)| *occasion != Occasion::Compiled);
+        let warm = self
+            .history
+            .iter()
+            .rev()
+            .find(|(_, occasion)| *occasion != Occasion::Compiled);
         warm.map(|(sample, _)| sample.ms)
     }
 
     /// The newest frames, oldest first.
     pub fn history(&self) -> impl Iterator<Item = (&Sample, Occasion)> {
-        self.history.iter().map(|(sample, occasion)| (sample, *occasion))
+        self.history
+            .iter()
+            .map(|(sample, occasion)| (sample, *occasion))
     }
 
-    /// From an input to the picture that shows it, over the newest pictures that compiled nothing; with their number.
+    /// From an input to the picture that shows it, over the newest pictures that compiled nothing;
+    /// with their number.
     pub fn latency(&self) -> Option<(Spread, usize)> {
         let latencies: Vec<f64> = self.latencies_ms.iter().copied().collect();
         Some((Spread::of(&latencies)?, latencies.len()))
@@ -240,8 +293,8 @@ fn push<T>(list: &mut VecDeque<T>, new: impl IntoIterator<Item = T>, most: usize
     list.drain(..list.len().saturating_sub(most));
 }
 
-/// What a measurement in the header is of: the preset, by its file, its scene, and the size of the picture. When one of them changes,
-/// neither milliseconds nor a verdict of before is shown.
+/// What a measurement in the header is of: the preset, by its file, its scene, and the size of the
+/// picture. When one of them changes, neither milliseconds nor a verdict of before is shown.
 #[derive(Clone, Debug)]
 pub struct Measurable<File>(Option<(File, [u32; 2])>);
 
@@ -266,7 +319,14 @@ mod tests {
     use super::*;
 
     fn sample(ms: f64) -> Sample {
-        Sample { ms, passes: vec![("clear".into(), 0.25 * ms), ("bin".into(), 0.25 * ms), ("bin".into(), 0.25 * ms)] }
+        Sample {
+            ms,
+            passes: vec![
+                ("clear".into(), 0.25 * ms),
+                ("bin".into(), 0.25 * ms),
+                ("bin".into(), 0.25 * ms),
+            ],
+        }
     }
 
     fn samples(times: &[f64]) -> Vec<Sample> {
@@ -274,20 +334,38 @@ mod tests {
     }
 
     fn subject(width: u32) -> Subject {
-        Subject { size: [width, 10], kernel: "k".into() }
+        Subject {
+            size: [width, 10],
+            kernel: "k".into(),
+        }
     }
 
     #[test]
     fn times_settle_when_the_last_five_agree() {
         assert!(!has_settled(&samples(&[10.0; 4])), "four are too few");
         assert!(has_settled(&samples(&[10.0; 5])));
-        assert!(!has_settled(&samples(&[300.0, 15.0, 15.0, 12.0, 10.0])), "still warming up");
-        assert!(has_settled(&samples(&[300.0, 40.0, 15.0, 15.1, 15.0, 14.9, 15.0])));
-        assert!(has_settled(&samples(&[10.0, 10.0, 90.0, 10.0, 10.0])), "one frame that was disturbed does not matter");
+        assert!(
+            !has_settled(&samples(&[300.0, 15.0, 15.0, 12.0, 10.0])),
+            "still warming up"
+        );
+        assert!(has_settled(&samples(&[
+            300.0, 40.0, 15.0, 15.1, 15.0, 14.9, 15.0
+        ])));
+        assert!(
+            has_settled(&samples(&[10.0, 10.0, 90.0, 10.0, 10.0])),
+            "one frame that was disturbed does not matter"
+        );
         let unsteady: Vec<f64> = (0..15).map(|i| 10.0 + 5.0 * f64::from(i % 3)).collect();
         assert!(!has_settled(&samples(&unsteady[..14])));
-        assert!(has_settled(&samples(&unsteady)), "times that never agree end the measurement too");
-        assert!(!has_settled(&samples(&[700.0, 700.0])) && has_settled(&samples(&[700.0, 700.0, 700.0])), "three long frames suffice");
+        assert!(
+            has_settled(&samples(&unsteady)),
+            "times that never agree end the measurement too"
+        );
+        assert!(
+            !has_settled(&samples(&[700.0, 700.0]))
+                && has_settled(&samples(&[700.0, 700.0, 700.0])),
+            "three long frames suffice"
+        );
     }
 
     #[test]
@@ -295,14 +373,27 @@ mod tests {
         let mut timings = Timings::default();
         assert_eq!(timings.cost(), Cost::Pending);
         timings.drawn(subject(8), Some(sample(318.0)), true, 5000.0);
-        assert_eq!((timings.cost(), timings.newest_ms()), (Cost::Pending, None), "it compiled");
+        assert_eq!(
+            (timings.cost(), timings.newest_ms()),
+            (Cost::Pending, None),
+            "it compiled"
+        );
         timings.drawn(subject(8), Some(sample(40.0)), false, 50.0);
-        assert_eq!((timings.cost(), timings.newest_ms()), (Cost::Pending, Some(40.0)));
+        assert_eq!(
+            (timings.cost(), timings.newest_ms()),
+            (Cost::Pending, Some(40.0))
+        );
         timings.settle(samples(&[300.0, 15.0, 15.0, 15.0, 15.0, 15.0]));
-        let Cost::Settled(summary) = timings.cost() else { panic!("{:?}", timings.cost()) };
+        let Cost::Settled(summary) = timings.cost() else {
+            panic!("{:?}", timings.cost())
+        };
         assert_eq!((summary.frame.median, summary.frames), (15.0, 6));
         timings.change();
-        assert_eq!(timings.cost(), Cost::Pending, "a change makes it unknown again");
+        assert_eq!(
+            timings.cost(),
+            Cost::Pending,
+            "a change makes it unknown again"
+        );
         timings.settle(Vec::new());
         assert_eq!(timings.cost(), Cost::Unknown);
     }
@@ -315,7 +406,11 @@ mod tests {
         }
         assert_eq!(timings.cost(), Cost::Moving(22.0));
         timings.drawn(subject(16), Some(sample(50.0)), false, 1.0);
-        assert_eq!(timings.cost(), Cost::Pending, "another size has other times");
+        assert_eq!(
+            timings.cost(),
+            Cost::Pending,
+            "another size has other times"
+        );
         for _ in 0..3 {
             timings.drawn(subject(16), Some(sample(50.0)), false, 1.0);
         }
@@ -327,7 +422,11 @@ mod tests {
     #[test]
     fn passes_and_rest_add_up_to_the_frame() {
         let summary = Summary::of(&samples(&[8.0, 12.0, 16.0])).expect("a summary");
-        let rows: Vec<_> = summary.passes.iter().map(|(label, spread)| (label.as_str(), spread.median)).collect();
+        let rows: Vec<_> = summary
+            .passes
+            .iter()
+            .map(|(label, spread)| (label.as_str(), spread.median))
+            .collect();
         assert_eq!(rows, [("clear", 3.0), ("bin", 6.0)]);
         assert_eq!((summary.rest.median, summary.frame.median), (3.0, 12.0));
         assert!(summary.frame.p5 < 12.0 && summary.frame.p95 > 12.0);
@@ -351,6 +450,11 @@ mod tests {
         for latency_ms in [30.0, 40.0, 50.0] {
             timings.drawn(subject(8), None, false, latency_ms);
         }
-        assert_eq!(timings.latency().map(|(spread, count)| (spread.median, count)), Some((40.0, 3)));
+        assert_eq!(
+            timings
+                .latency()
+                .map(|(spread, count)| (spread.median, count)),
+            Some((40.0, 3))
+        );
     }
 }

@@ -22,7 +22,11 @@ pub struct FilmSettings {
     #[serde(deserialize_with = "fps")]
     pub fps: f64,
     /// Drawn per shown pixel; none: as the preset has it.
-    #[serde(rename = "anti_aliasing", serialize_with = "write_scale", deserialize_with = "scale")]
+    #[serde(
+        rename = "anti_aliasing",
+        serialize_with = "write_scale",
+        deserialize_with = "scale"
+    )]
     pub scale: Option<RenderScale>,
     /// Begin and end, seconds; none: the whole timeline.
     #[serde(deserialize_with = "range_s")]
@@ -33,7 +37,14 @@ pub struct FilmSettings {
 
 impl Default for FilmSettings {
     fn default() -> Self {
-        Self { format: Format::Apng, size: None, fps: 30.0, scale: None, range_s: None, range_of: None }
+        Self {
+            format: Format::Apng,
+            size: None,
+            fps: 30.0,
+            scale: None,
+            range_s: None,
+            range_of: None,
+        }
     }
 }
 
@@ -46,8 +57,12 @@ impl FilmSettings {
 }
 
 /// The names of anti-aliasing in the settings file.
-const SCALES: [(&str, Option<RenderScale>); 4] =
-    [("preset", None), ("off", Some(RenderScale::Full)), ("2x2", Some(RenderScale::Double)), ("4x4", Some(RenderScale::Quadruple))];
+const SCALES: [(&str, Option<RenderScale>); 4] = [
+    ("preset", None),
+    ("off", Some(RenderScale::Full)),
+    ("2x2", Some(RenderScale::Double)),
+    ("4x4", Some(RenderScale::Quadruple)),
+];
 
 fn format<'de, D: Deserializer<'de>>(from: D) -> Result<Format, D::Error> {
     word_of(from, &Format::ALL.map(|format| (format.word(), format)))
@@ -62,12 +77,25 @@ fn scale<'de, D: Deserializer<'de>>(from: D) -> Result<Option<RenderScale>, D::E
 }
 
 fn write_scale<S: Serializer>(scale: &Option<RenderScale>, to: S) -> Result<S::Ok, S::Error> {
-    to.serialize_str(SCALES.iter().find(|(_, known)| known == scale).map_or("preset", |(word, _)| word))
+    to.serialize_str(
+        SCALES
+            .iter()
+            .find(|(_, known)| known == scale)
+            .map_or("preset", |(word, _)| word),
+    )
 }
 
 fn size<'de, D: Deserializer<'de>>(from: D) -> Result<Option<[u32; 2]>, D::Error> {
-    let is_size = |size: &[u32; 2]| size.iter().all(|side| (1..=FilmSettings::MAX_SIDE).contains(side));
-    checked(from, is_size, "it takes [width, height] from 1 to 8192 pixels").map(Some)
+    let is_size = |size: &[u32; 2]| {
+        size.iter()
+            .all(|side| (1..=FilmSettings::MAX_SIDE).contains(side))
+    };
+    checked(
+        from,
+        is_size,
+        "it takes [width, height] from 1 to 8192 pixels",
+    )
+    .map(Some)
 }
 
 fn fps<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
@@ -75,5 +103,10 @@ fn fps<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
 }
 
 fn range_s<'de, D: Deserializer<'de>>(from: D) -> Result<Option<[f64; 2]>, D::Error> {
-    checked(from, |[begin, end]: &[f64; 2]| begin < end && end.is_finite(), "it takes [begin, end] in seconds").map(Some)
+    checked(
+        from,
+        |[begin, end]: &[f64; 2]| begin < end && end.is_finite(),
+        "it takes [begin, end] in seconds",
+    )
+    .map(Some)
 }

@@ -51,7 +51,10 @@ struct Resting<T> {
 
 impl<T: PartialEq + Clone> Resting<T> {
     fn new(latest: T) -> Self {
-        Self { latest, changed_at_s: None }
+        Self {
+            latest,
+            changed_at_s: None,
+        }
     }
 
     /// Takes the value of this frame. True if it must be written now.
@@ -59,11 +62,14 @@ impl<T: PartialEq + Clone> Resting<T> {
         if self.latest != *now {
             (self.latest, self.changed_at_s) = (now.clone(), Some(now_s));
         }
-        self.changed_at_s.take_if(|changed_at_s| now_s - *changed_at_s >= REST_S).is_some()
+        self.changed_at_s
+            .take_if(|changed_at_s| now_s - *changed_at_s >= REST_S)
+            .is_some()
     }
 
     fn wait_s(&self, now_s: f64) -> Option<f64> {
-        self.changed_at_s.map(|changed_at_s| (REST_S - (now_s - changed_at_s)).max(0.0))
+        self.changed_at_s
+            .map(|changed_at_s| (REST_S - (now_s - changed_at_s)).max(0.0))
     }
 }
 
@@ -83,19 +89,35 @@ impl Keeper {
     /// Reads the settings of `folder`. Each remark is something that could not be used.
     pub fn new(folder: Option<PathBuf>) -> (Self, Settings, Vec<String>) {
         let mut remarks = Vec::new();
-        let read = folder.as_deref().map(|folder| plain_file::read(&folder.join(SETTINGS), &mut remarks));
+        let read = folder
+            .as_deref()
+            .map(|folder| plain_file::read(&folder.join(SETTINGS), &mut remarks));
         let (settings, document): (Settings, _) = read.unwrap_or_default();
-        let lock = folder.as_deref().and_then(|folder| lock(folder, &mut remarks));
+        let lock = folder
+            .as_deref()
+            .and_then(|folder| lock(folder, &mut remarks));
         let kept = Resting::new(settings.clone());
-        let keeper = Self { folder, document, lock, replaces_session: false, settings: kept, open: Resting::new(None), writing: None };
+        let keeper = Self {
+            folder,
+            document,
+            lock,
+            replaces_session: false,
+            settings: kept,
+            open: Resting::new(None),
+            writing: None,
+        };
         (keeper, settings, remarks)
     }
 
     /// What the last session left.
     pub fn previous_session(&self, folders: &Folders) -> PreviousSession {
-        let Some(folder) = self.folder.as_ref().filter(|_| self.lock.is_some()) else { return PreviousSession::None };
+        let Some(folder) = self.folder.as_ref().filter(|_| self.lock.is_some()) else {
+            return PreviousSession::None;
+        };
         let path = folder.join(SESSION);
-        let Ok(text) = std::fs::read_to_string(&path) else { return PreviousSession::None };
+        let Ok(text) = std::fs::read_to_string(&path) else {
+            return PreviousSession::None;
+        };
         let session = LastSession::parse(&text, &path.display().to_string());
         let is_running = session.as_ref().is_ok_and(|session| session.is_running);
         match session.and_then(|session| session.restore(folders)) {
@@ -115,12 +137,22 @@ impl Keeper {
         self.replaces_session = true;
     }
 
-    /// Writes what has changed and come to rest. Returns an error of an earlier write, and after how many seconds to look again.
-    pub fn follow(&mut self, settings: &Settings, session: &Session, now_s: f64) -> (Option<String>, Option<f64>) {
+    /// Writes what has changed and come to rest. Returns an error of an earlier write, and after
+    /// how many seconds to look again.
+    pub fn follow(
+        &mut self,
+        settings: &Settings,
+        session: &Session,
+        now_s: f64,
+    ) -> (Option<String>, Option<f64>) {
         if self.folder.is_none() {
             return (None, None);
         }
-        if self.writing.as_ref().is_some_and(|writing| !writing.is_finished()) {
+        if self
+            .writing
+            .as_ref()
+            .is_some_and(|writing| !writing.is_finished())
+        {
             return (None, Some(REST_S));
         }
         let errors = self.finish_writing();
@@ -129,14 +161,27 @@ impl Keeper {
             writes.extend(self.write_settings(settings));
         }
         if self.keeps_session() && self.replaces_session {
-            let open = Some((FileId::of(&session.preset_file), session.preset_file.preset.clone()));
+            let open = Some((
+                FileId::of(&session.preset_file),
+                session.preset_file.preset.clone(),
+            ));
             if self.open.follow(&open, now_s) {
-                writes.extend(self.write_session(LastSession::of(&session.preset_file, session.as_filed())));
+                writes.extend(
+                    self.write_session(LastSession::of(&session.preset_file, session.as_filed())),
+                );
             }
         }
-        let mut wait_s = [self.settings.wait_s(now_s), self.open.wait_s(now_s)].into_iter().flatten().reduce(f64::min);
+        let mut wait_s = [self.settings.wait_s(now_s), self.open.wait_s(now_s)]
+            .into_iter()
+            .flatten()
+            .reduce(f64::min);
         if !writes.is_empty() {
-            self.writing = Some(std::thread::spawn(|| writes.into_iter().filter_map(|write| write().err()).collect()));
+            self.writing = Some(std::thread::spawn(|| {
+                writes
+                    .into_iter()
+                    .filter_map(|write| write().err())
+                    .collect()
+            }));
             wait_s = Some(wait_s.unwrap_or(REST_S));
         }
         ((!errors.is_empty()).then(|| errors.join("; ")), wait_s)
@@ -151,10 +196,16 @@ impl Keeper {
         }
         if self.keeps_session() && self.replaces_session {
             let last = LastSession::of(&session.preset_file, session.as_filed()).closed();
-            writes.extend(self.write_session(if keeps_edits { last } else { last.without_edits() }));
+            writes.extend(self.write_session(if keeps_edits {
+                last
+            } else {
+                last.without_edits()
+            }));
         }
         errors.extend(writes.into_iter().filter_map(|write| write().err()));
-        errors.iter().for_each(|error| eprintln!("rasterlab: settings or session could not be kept: {error}"));
+        errors.iter().for_each(|error| {
+            eprintln!("rasterlab: settings or session could not be kept: {error}")
+        });
     }
 
     /// Waits until everything is written. Returns the errors.
@@ -165,13 +216,21 @@ impl Keeper {
     }
 
     fn write_settings(&self, settings: &Settings) -> Option<Write> {
-        let (path, settings, mut document) = (self.folder.as_ref()?.join(SETTINGS), settings.clone(), self.document.clone());
-        Some(Box::new(move || plain_file::write(&settings, &mut document, &path)))
+        let (path, settings, mut document) = (
+            self.folder.as_ref()?.join(SETTINGS),
+            settings.clone(),
+            self.document.clone(),
+        );
+        Some(Box::new(move || {
+            plain_file::write(&settings, &mut document, &path)
+        }))
     }
 
     fn write_session(&self, session: LastSession) -> Option<Write> {
         let path = self.folder.as_ref()?.join(SESSION);
-        Some(Box::new(move || plain_file::write(&session, &mut LastSession::document(), &path)))
+        Some(Box::new(move || {
+            plain_file::write(&session, &mut LastSession::document(), &path)
+        }))
     }
 }
 
@@ -186,29 +245,42 @@ const SETTINGS: &str = "settings.toml";
 const SESSION: &str = "session.toml";
 const LOCK: &str = "session.lock";
 
-/// The size that the window had, by the settings of `folder`. What is wrong with them is said by [`Keeper::new`].
+/// The size that the window had, by the settings of `folder`. What is wrong with them is said by
+/// [`Keeper::new`].
 #[cfg(not(target_arch = "wasm32"))]
 pub fn window_size(folder: &Path) -> WindowSize {
     let text = std::fs::read_to_string(folder.join(SETTINGS)).unwrap_or_default();
-    plain_file::parse(&text, SETTINGS, &mut Vec::new())
-        .map_or_else(|_| WindowSize::default(), |(settings, _): (Settings, _)| settings.window)
+    plain_file::parse(&text, SETTINGS, &mut Vec::new()).map_or_else(
+        |_| WindowSize::default(),
+        |(settings, _): (Settings, _)| settings.window,
+    )
 }
 
 /// The lock of the session; none if another window has it.
 fn lock(folder: &Path, remarks: &mut Vec<String>) -> Option<File> {
-    let opened =
-        std::fs::create_dir_all(folder).and_then(|()| File::options().create(true).write(true).truncate(false).open(folder.join(LOCK)));
+    let opened = std::fs::create_dir_all(folder).and_then(|()| {
+        File::options()
+            .create(true)
+            .write(true)
+            .truncate(false)
+            .open(folder.join(LOCK))
+    });
     match opened {
-        Ok(file) => match file.try_lock() {
-            // A file system without locks: two windows at once replace each other's session.
-            Ok(()) | Err(TryLockError::Error(_)) => Some(file),
-            Err(TryLockError::WouldBlock) => {
-                remarks.push("another window of rasterlab is open, so the session of this one is not kept".into());
-                None
+        Ok(file) => {
+            match file.try_lock() {
+                // A file system without locks: two windows at once replace each other's session.
+                Ok(()) | Err(TryLockError::Error(_)) => Some(file),
+                Err(TryLockError::WouldBlock) => {
+                    remarks.push("another window of rasterlab is open, so the session of this one is not kept".into());
+                    None
+                }
             }
-        },
+        }
         Err(error) => {
-            remarks.push(format!("{}: it cannot be written, so the session is not kept: {error}", folder.join(LOCK).display()));
+            remarks.push(format!(
+                "{}: it cannot be written, so the session is not kept: {error}",
+                folder.join(LOCK).display()
+            ));
             None
         }
     }
@@ -252,24 +324,32 @@ mod tests {
         edit(&mut session);
         let folders = Folders::default();
         let (mut first, settings, _) = keeper(folder.path());
-        assert!(matches!(first.previous_session(&folders), PreviousSession::None));
+        assert!(matches!(
+            first.previous_session(&folders),
+            PreviousSession::None
+        ));
         first.begin_session();
         first.follow(&settings, &session, 0.0);
         first.follow(&settings, &session, REST_S);
         drop(first); // As if killed: the file says that the window runs.
         let (mut second, ..) = keeper(folder.path());
-        let PreviousSession::Crashed(restored) = second.previous_session(&folders) else { panic!("the crash was not noticed") };
+        let PreviousSession::Crashed(restored) = second.previous_session(&folders) else {
+            panic!("the crash was not noticed")
+        };
         assert_eq!(restored.preset_file.preset, session.preset_file.preset);
         second.begin_session();
         second.close(&settings, &session, true);
         drop(second);
         let (mut third, ..) = keeper(folder.path());
-        let PreviousSession::Closed(restored) = third.previous_session(&folders) else { panic!("the session was not closed") };
+        let PreviousSession::Closed(restored) = third.previous_session(&folders) else {
+            panic!("the session was not closed")
+        };
         assert!(restored.has_edits());
         third.begin_session();
         third.close(&settings, &session, false);
         drop(third);
-        let PreviousSession::Closed(restored) = keeper(folder.path()).0.previous_session(&folders) else {
+        let PreviousSession::Closed(restored) = keeper(folder.path()).0.previous_session(&folders)
+        else {
             panic!("the session was not closed")
         };
         assert!(!restored.has_edits());
@@ -281,14 +361,27 @@ mod tests {
         let (mut first, settings, _) = keeper(folder.path());
         first.begin_session();
         let (mut second, _, remarks) = keeper(folder.path());
-        assert!(remarks.iter().any(|remark| remark.contains("another window")), "{remarks:?}");
-        assert!(matches!(second.previous_session(&Folders::default()), PreviousSession::None));
+        assert!(
+            remarks
+                .iter()
+                .any(|remark| remark.contains("another window")),
+            "{remarks:?}"
+        );
+        assert!(matches!(
+            second.previous_session(&Folders::default()),
+            PreviousSession::None
+        ));
         second.begin_session();
         second.close(&settings, &session_of("lambert"), true);
         drop(second);
         first.close(&settings, &session_of("facet-sweep"), true);
         drop(first);
-        let PreviousSession::Closed(restored) = keeper(folder.path()).0.previous_session(&Folders::default()) else { panic!("no session") };
+        let PreviousSession::Closed(restored) = keeper(folder.path())
+            .0
+            .previous_session(&Folders::default())
+        else {
+            panic!("no session")
+        };
         assert_eq!(restored.preset_file.id, "facet-sweep");
     }
 
@@ -297,8 +390,16 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         std::fs::write(folder.path().join(SETTINGS), "theme = = 1").expect("a file");
         let (_, settings, remarks) = keeper(folder.path());
-        assert_eq!((settings, remarks.len()), (Settings::default(), 1), "{remarks:?}");
-        assert_eq!(std::fs::read_to_string(folder.path().join("settings.toml.broken")).expect("it is kept"), "theme = = 1");
+        assert_eq!(
+            (settings, remarks.len()),
+            (Settings::default(), 1),
+            "{remarks:?}"
+        );
+        assert_eq!(
+            std::fs::read_to_string(folder.path().join("settings.toml.broken"))
+                .expect("it is kept"),
+            "theme = = 1"
+        );
     }
 
     #[test]
@@ -310,6 +411,9 @@ mod tests {
         keeper.begin_session();
         assert_eq!(keeper.follow(&settings, &session, 5.0), (None, None));
         keeper.close(&settings, &session, true);
-        assert!(matches!(keeper.previous_session(&Folders::default()), PreviousSession::None));
+        assert!(matches!(
+            keeper.previous_session(&Folders::default()),
+            PreviousSession::None
+        ));
     }
 }

@@ -1,7 +1,7 @@
 //! The last session: which preset or model was open, with its unsaved edits, as `session.toml`.
 //!
-//! The window keeps the file while it runs, marked as running, and marks it as closed when it ends. A file that is still marked as running
-//! when no window runs was left by a crash.
+//! The window keeps the file while it runs, marked as running, and marks it as closed when it ends.
+//! A file that is still marked as running when no window runs was left by a crash.
 
 use std::path::{Path, PathBuf};
 
@@ -48,7 +48,8 @@ impl Restored {
 impl LastSession {
     /// What is open now: the preset, and how its file has it.
     pub fn of(open: &PresetFile, filed: &PresetFile) -> Self {
-        let edited = (open.preset != filed.preset).then(|| preset_file::to_shared_toml(&absolute(open)));
+        let edited =
+            (open.preset != filed.preset).then(|| preset_file::to_shared_toml(&absolute(open)));
         Self {
             is_running: true,
             id: open.id.clone(),
@@ -80,7 +81,9 @@ impl LastSession {
     /// The empty document of a session.
     pub fn document() -> DocumentMut {
         let mut document = DocumentMut::new();
-        document.decor_mut().set_prefix("# What was open in the window of rasterlab when it ran last.\n");
+        document
+            .decor_mut()
+            .set_prefix("# What was open in the window of rasterlab when it ran last.\n");
         document
     }
 
@@ -89,7 +92,8 @@ impl LastSession {
     /// # Errors
     /// It is no session: why, in one line.
     pub fn parse(text: &str, file: &str) -> Result<Self, String> {
-        toml_edit::de::from_str(text).map_err(|error| format!("{file}: {}", error.message().replace('\n', " ")))
+        toml_edit::de::from_str(text)
+            .map_err(|error| format!("{file}: {}", error.message().replace('\n', " ")))
     }
 
     /// The preset that was open, with its edits. Without edits its file is read again.
@@ -97,8 +101,14 @@ impl LastSession {
     /// # Errors
     /// The file or the model of the preset is gone, or the texts cannot be read: why, in one line.
     pub fn restore(&self, folders: &Folders) -> Result<Restored, String> {
-        let name = self.path.as_ref().map_or_else(|| self.id.clone(), |path| path.display().to_string());
-        let there = self.path.as_ref().map(|path| preset_file::open(&path.to_string_lossy(), folders));
+        let name = self
+            .path
+            .as_ref()
+            .map_or_else(|| self.id.clone(), |path| path.display().to_string());
+        let there = self
+            .path
+            .as_ref()
+            .map(|path| preset_file::open(&path.to_string_lossy(), folders));
         let reread = match (&self.edited, &there) {
             (None, Some(Ok(there))) => Some(there.clone()),
             (None, Some(Err(error))) => return Err(error.to_string()),
@@ -107,14 +117,21 @@ impl LastSession {
         };
         let filed = match reread {
             Some(reread) => reread,
-            // The text of then: if another program has changed the file since, saving asks what to do.
-            None => self.parsed(&self.filed, &name, there.and_then(Result::ok).as_ref(), folders)?,
+            // The text of then: if another program has changed the file since, saving asks what to
+            // do.
+            None => self.parsed(
+                &self.filed,
+                &name,
+                there.and_then(Result::ok).as_ref(),
+                folders,
+            )?,
         };
         let preset_file = match &self.edited {
             Some(edited) => {
                 let edited = self.parsed(edited, &name, Some(&filed), folders)?;
                 let mut open = filed.clone();
-                (open.preset, open.effects, open.brought_effects) = (edited.preset, edited.effects, edited.brought_effects);
+                (open.preset, open.effects, open.brought_effects) =
+                    (edited.preset, edited.effects, edited.brought_effects);
                 open
             }
             None => filed.clone(),
@@ -126,9 +143,16 @@ impl LastSession {
     }
 
     /// The preset of a text, with the effects of `known`.
-    fn parsed(&self, text: &str, name: &str, known: Option<&PresetFile>, folders: &Folders) -> Result<PresetFile, String> {
+    fn parsed(
+        &self,
+        text: &str,
+        name: &str,
+        known: Option<&PresetFile>,
+        folders: &Folders,
+    ) -> Result<PresetFile, String> {
         let effects = known.map_or(&folders.effects, |known| &known.effects);
-        let mut parsed = preset_file::parse_with(text, &self.id, name, effects).map_err(|error| error.to_string())?;
+        let mut parsed = preset_file::parse_with(text, &self.id, name, effects)
+            .map_err(|error| error.to_string())?;
         (parsed.path, parsed.read_only) = (self.path.clone(), self.is_read_only);
         Ok(parsed)
     }
@@ -148,8 +172,14 @@ fn absolute(preset_file: &PresetFile) -> PresetFile {
 
 /// The model of the preset, if it is not there.
 fn missing_model(preset_file: &PresetFile) -> Option<PathBuf> {
-    let SceneSource::File(model) = &preset_file.preset.scene else { return None };
-    let folder = preset_file.path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
+    let SceneSource::File(model) = &preset_file.preset.scene else {
+        return None;
+    };
+    let folder = preset_file
+        .path
+        .as_deref()
+        .and_then(Path::parent)
+        .unwrap_or(Path::new(""));
     Some(folder.join(model)).filter(|model| !model.is_file())
 }
 
@@ -176,11 +206,26 @@ mod tests {
         let folders = Folders::default();
         let filed = preset_file::open("facet-sweep", &folders).expect("a built-in preset");
         let open = edited(&filed);
-        let restored = read_back(&open, &filed).restore(&folders).expect("it is restored");
-        assert_eq!((&restored.preset_file.preset, &restored.filed.preset), (&open.preset, &filed.preset));
-        assert_eq!((restored.preset_file.id.as_str(), restored.preset_file.read_only, restored.has_edits()), ("facet-sweep", true, true));
+        let restored = read_back(&open, &filed)
+            .restore(&folders)
+            .expect("it is restored");
+        assert_eq!(
+            (&restored.preset_file.preset, &restored.filed.preset),
+            (&open.preset, &filed.preset)
+        );
+        assert_eq!(
+            (
+                restored.preset_file.id.as_str(),
+                restored.preset_file.read_only,
+                restored.has_edits()
+            ),
+            ("facet-sweep", true, true)
+        );
 
-        let discarded = read_back(&open, &filed).without_edits().restore(&folders).expect("it is restored");
+        let discarded = read_back(&open, &filed)
+            .without_edits()
+            .restore(&folders)
+            .expect("it is restored");
         assert!(!discarded.has_edits() && discarded.preset_file.preset == filed.preset);
     }
 
@@ -195,11 +240,28 @@ mod tests {
         let session = read_back(&open, &filed);
         std::fs::write(&path, "schema = 2\n[effects.facet]\namount = 0.75\n").expect("a file");
         let restored = session.restore(&folders).expect("it is restored");
-        assert_eq!((&restored.preset_file.preset, restored.preset_file.path.as_deref()), (&open.preset, Some(path.as_path())));
-        assert!(!preset_file::load(&path).expect("a preset").has_text_of(&restored.preset_file), "saving would not ask");
+        assert_eq!(
+            (
+                &restored.preset_file.preset,
+                restored.preset_file.path.as_deref()
+            ),
+            (&open.preset, Some(path.as_path()))
+        );
+        assert!(
+            !preset_file::load(&path)
+                .expect("a preset")
+                .has_text_of(&restored.preset_file),
+            "saving would not ask"
+        );
         // Without edits the file counts.
-        let reread = session.without_edits().restore(&folders).expect("it is restored");
-        assert_eq!(reread.preset_file.preset, preset_file::load(&path).expect("a preset").preset);
+        let reread = session
+            .without_edits()
+            .restore(&folders)
+            .expect("it is restored");
+        assert_eq!(
+            reread.preset_file.preset,
+            preset_file::load(&path).expect("a preset").preset
+        );
     }
 
     #[test]
@@ -212,7 +274,10 @@ mod tests {
         let open = edited(&filed);
         let session = read_back(&open, &filed);
         let restored = session.restore(&folders).expect("it is restored");
-        assert_eq!((&restored.preset_file.preset, &restored.preset_file.path), (&open.preset, &None));
+        assert_eq!(
+            (&restored.preset_file.preset, &restored.preset_file.path),
+            (&open.preset, &None)
+        );
         std::fs::remove_file(&model).expect("it is there");
         let error = session.restore(&folders).expect_err("the model is gone");
         assert!(error.contains("fox.glb is gone"), "{error}");
@@ -226,17 +291,37 @@ mod tests {
         let filed = preset_file::load(&path).expect("a preset");
         let folders = Folders::default();
         std::fs::remove_file(&path).expect("it is there");
-        let error = LastSession::of(&filed, &filed).restore(&folders).expect_err("the preset is gone");
-        assert!(error.contains("mine.toml") && error.lines().count() == 1, "{error}");
+        let error = LastSession::of(&filed, &filed)
+            .restore(&folders)
+            .expect_err("the preset is gone");
+        assert!(
+            error.contains("mine.toml") && error.lines().count() == 1,
+            "{error}"
+        );
         let open = edited(&filed);
-        assert_eq!(LastSession::of(&open, &filed).restore(&folders).expect("its edits are there").preset_file.preset, open.preset);
+        assert_eq!(
+            LastSession::of(&open, &filed)
+                .restore(&folders)
+                .expect("its edits are there")
+                .preset_file
+                .preset,
+            open.preset
+        );
     }
 
     #[test]
     fn a_broken_file_is_one_line() {
-        for text in ["running = ", "running = true\n", "", "running = 1\nid = \"a\"\nfiled = \"\"\n"] {
+        for text in [
+            "running = ",
+            "running = true\n",
+            "",
+            "running = 1\nid = \"a\"\nfiled = \"\"\n",
+        ] {
             let error = LastSession::parse(text, "session.toml").expect_err("it is broken");
-            assert!(error.starts_with("session.toml: ") && error.lines().count() == 1, "{error}");
+            assert!(
+                error.starts_with("session.toml: ") && error.lines().count() == 1,
+                "{error}"
+            );
         }
     }
 }

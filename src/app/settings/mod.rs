@@ -1,5 +1,5 @@
-//! What the window remembers between runs: its settings (`settings.toml`) and its last session (`session.toml`), both in the folder of the
-//! user's configuration.
+//! What the window remembers between runs: its settings (`settings.toml`) and its last session
+//! (`session.toml`), both in the folder of the user's configuration.
 
 pub mod browsing;
 mod change;
@@ -78,15 +78,30 @@ impl Settings {
 impl Settings {
     /// Widths of the left and the right panel in a window of this width, points.
     pub fn panel_widths(&self, window: f32) -> [f32; 2] {
-        let [left, right] = if window < NARROW { NARROW_WIDTHS } else { WIDTHS };
-        [self.widths.left.unwrap_or(left), self.widths.right.unwrap_or(right)]
+        let [left, right] = if window < NARROW {
+            NARROW_WIDTHS
+        } else {
+            WIDTHS
+        };
+        [
+            self.widths.left.unwrap_or(left),
+            self.widths.right.unwrap_or(right),
+        ]
     }
 
-    /// Remembers the width of the left (0) or right (1) panel that was and is open; one that opens or closes is narrower.
-    /// A width that nobody has changed is not remembered.
-    pub fn keep_width(&mut self, side: usize, is_open: bool, rect: Option<egui::Rect>, window: f32) {
+    /// Remembers the width of the left (0) or right (1) panel that was and is open; one that opens
+    /// or closes is narrower. A width that nobody has changed is not remembered.
+    pub fn keep_width(
+        &mut self,
+        side: usize,
+        is_open: bool,
+        rect: Option<egui::Rect>,
+        window: f32,
+    ) {
         let usual = self.panel_widths(window)[side];
-        if let Some(width) = rect.map(|rect| rect.width().round()).filter(|width| is_open && *width >= MIN_KEPT)
+        if let Some(width) = rect
+            .map(|rect| rect.width().round())
+            .filter(|width| is_open && *width >= MIN_KEPT)
             && (width - usual).abs() > 1.5
         {
             let widths = &mut self.widths;
@@ -95,7 +110,8 @@ impl Settings {
     }
 }
 
-/// Widths of the side panels unless the user has changed them, and the least that is remembered, points.
+/// Widths of the side panels unless the user has changed them, and the least that is remembered,
+/// points.
 const WIDTHS: [f32; 2] = [264.0, 344.0];
 const NARROW: f32 = 1080.0;
 const NARROW_WIDTHS: [f32; 2] = [216.0, 316.0];
@@ -158,7 +174,10 @@ pub struct WindowSize {
 
 impl Default for WindowSize {
     fn default() -> Self {
-        Self { size: [1280.0, 800.0], is_maximized: false }
+        Self {
+            size: [1280.0, 800.0],
+            is_maximized: false,
+        }
     }
 }
 
@@ -166,7 +185,9 @@ impl WindowSize {
     /// Takes the size of the window while it is neither maximized nor minimized.
     pub fn follow(&mut self, viewport: &egui::ViewportInfo, scale: f32) {
         self.is_maximized = viewport.maximized.unwrap_or(self.is_maximized);
-        let is_free = !self.is_maximized && viewport.fullscreen != Some(true) && viewport.minimized != Some(true);
+        let is_free = !self.is_maximized
+            && viewport.fullscreen != Some(true)
+            && viewport.minimized != Some(true);
         if let Some(rect) = viewport.inner_rect.filter(|_| is_free) {
             let size = [rect.width(), rect.height()].map(|side| (side * scale).round());
             if is_window_size(&size) {
@@ -177,11 +198,16 @@ impl WindowSize {
 }
 
 fn is_window_size(size: &[f32; 2]) -> bool {
-    size.iter().all(|side| (WINDOW_SIZES[0]..=WINDOW_SIZES[1]).contains(side))
+    size.iter()
+        .all(|side| (WINDOW_SIZES[0]..=WINDOW_SIZES[1]).contains(side))
 }
 
 fn window_size<'de, D: Deserializer<'de>>(from: D) -> Result<[f32; 2], D::Error> {
-    checked(from, is_window_size, "it takes [width, height] from 200 to 16384 points")
+    checked(
+        from,
+        is_window_size,
+        "it takes [width, height] from 200 to 16384 points",
+    )
 }
 
 fn scale<'de, D: Deserializer<'de>>(from: D) -> Result<f32, D::Error> {
@@ -208,16 +234,34 @@ mod tests {
 
     fn unusual() -> Settings {
         let mut keys = Keymap::default();
-        keys.bind(Action::Randomize, keymap::pressed(Key::J, Modifiers::COMMAND)).expect("it is free");
+        keys.bind(
+            Action::Randomize,
+            keymap::pressed(Key::J, Modifiers::COMMAND),
+        )
+        .expect("it is free");
         keys.clear(Action::Verify);
         Settings {
             theme: ThemeChoice::Light,
             scale: 1.3,
             recents: ["/models/a b.glb", "/presets/\"x\".toml"].iter().collect(),
-            window: WindowSize { size: [900.0, 600.0], is_maximized: true },
-            open: OpenPanels { left: false, log: true, ..OpenPanels::default() },
-            widths: PanelWidths { left: Some(212.0), right: None },
-            browsing: Browsing { tab: Tab::Effects, layout: Layout::Grid, sort: Sort::FavoritesFirst },
+            window: WindowSize {
+                size: [900.0, 600.0],
+                is_maximized: true,
+            },
+            open: OpenPanels {
+                left: false,
+                log: true,
+                ..OpenPanels::default()
+            },
+            widths: PanelWidths {
+                left: Some(212.0),
+                right: None,
+            },
+            browsing: Browsing {
+                tab: Tab::Effects,
+                layout: Layout::Grid,
+                sort: Sort::FavoritesFirst,
+            },
             film: FilmSettings {
                 format: Format::Video(Container::Webm),
                 size: Some([640, 360]),
@@ -230,14 +274,23 @@ mod tests {
         }
     }
 
-    /// Reads a file with this text, writes the settings that `change` makes of it, and returns them with the remarks and the text that is written.
-    fn rewritten(text: &str, change: impl FnOnce(Settings) -> Settings) -> (Settings, Vec<String>, String) {
+    /// Reads a file with this text, writes the settings that `change` makes of it, and returns them
+    /// with the remarks and the text that is written.
+    fn rewritten(
+        text: &str,
+        change: impl FnOnce(Settings) -> Settings,
+    ) -> (Settings, Vec<String>, String) {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let (path, mut remarks) = (folder.path().join("settings.toml"), Vec::new());
         std::fs::write(&path, text).expect("a file");
         let (read, mut document) = plain_file::read::<Settings>(&path, &mut remarks);
-        plain_file::write(&change(read.clone()), &mut document, &path).expect("a folder that can be written");
-        (read, remarks, std::fs::read_to_string(&path).expect("a file"))
+        plain_file::write(&change(read.clone()), &mut document, &path)
+            .expect("a folder that can be written");
+        (
+            read,
+            remarks,
+            std::fs::read_to_string(&path).expect("a file"),
+        )
     }
 
     #[test]
@@ -253,11 +306,21 @@ mod tests {
     fn comments_stay_and_what_is_at_its_default_again_goes() {
         let text = "# mine\ntheme = \"dark\" # at night\n[keys] # own\n# no verify\nverify = []\n";
         let (.., written) = rewritten(text, |read| Settings { scale: 2.0, ..read });
-        for kept in ["# mine", "theme = \"dark\" # at night", "[keys] # own", "# no verify", "verify = []", "scale = 2.0"] {
+        for kept in [
+            "# mine",
+            "theme = \"dark\" # at night",
+            "[keys] # own",
+            "# no verify",
+            "verify = []",
+            "scale = 2.0",
+        ] {
             assert!(written.contains(kept), "{kept}: {written}");
         }
         let (.., written) = rewritten(text, |_| Settings::default());
-        assert!(written.contains("# mine") && !written.contains("verify = []"), "{written}");
+        assert!(
+            written.contains("# mine") && !written.contains("verify = []"),
+            "{written}"
+        );
     }
 
     #[test]
@@ -266,7 +329,16 @@ mod tests {
             [browsing]\norder = \"size\"\n[film]\nformat = \"avi\"\nsize = [0, 5]\nfps = 1000\nrange_s = [2, 1]\nanti_aliasing = \"8x8\"\n\
             [keys]\nrandomize = [\"Ctrl+S\"]\nverify = [\"Nokey\"]\nfly = [\"F\"]\n";
         let (settings, remarks, _) = rewritten(text, |read| read);
-        assert_eq!(settings, Settings { open: OpenPanels { log: true, ..OpenPanels::default() }, ..Settings::default() });
+        assert_eq!(
+            settings,
+            Settings {
+                open: OpenPanels {
+                    log: true,
+                    ..OpenPanels::default()
+                },
+                ..Settings::default()
+            }
+        );
         let named = [
             ("theme = \"blue\"", "`system`, `light`, `dark`"),
             ("scale = 9", "it takes a number from 0.5 to 3"),
@@ -286,18 +358,37 @@ mod tests {
             ("keys.fly = [\"F\"]", "no action"),
         ];
         for (field, why) in named {
-            let is_named = |remark: &&String| remark.contains(&format!("settings.toml: {field}: ")) && remark.contains(why);
-            assert_eq!(remarks.iter().filter(is_named).count(), 1, "{field}: {remarks:#?}");
+            let is_named = |remark: &&String| {
+                remark.contains(&format!("settings.toml: {field}: ")) && remark.contains(why)
+            };
+            assert_eq!(
+                remarks.iter().filter(is_named).count(),
+                1,
+                "{field}: {remarks:#?}"
+            );
         }
-        assert!(remarks.len() == named.len() && remarks.iter().all(|remark| remark.lines().count() == 1), "{remarks:#?}");
+        assert!(
+            remarks.len() == named.len()
+                && remarks.iter().all(|remark| remark.lines().count() == 1),
+            "{remarks:#?}"
+        );
     }
 
     #[test]
     fn two_actions_can_exchange_their_keys() {
-        let (settings, remarks, _) = rewritten("[keys]\nrandomize = [\"V\"]\nverify = [\"R\"]\n", |read| read);
+        let (settings, remarks, _) =
+            rewritten("[keys]\nrandomize = [\"V\"]\nverify = [\"R\"]\n", |read| {
+                read
+            });
         assert_eq!(remarks, [""; 0]);
-        assert_eq!(settings.keys.action_of(Key::V, Modifiers::NONE, |_| true), Some(Action::Randomize));
-        assert_eq!(settings.keys.action_of(Key::R, Modifiers::NONE, |_| true), Some(Action::Verify));
+        assert_eq!(
+            settings.keys.action_of(Key::V, Modifiers::NONE, |_| true),
+            Some(Action::Randomize)
+        );
+        assert_eq!(
+            settings.keys.action_of(Key::R, Modifiers::NONE, |_| true),
+            Some(Action::Verify)
+        );
     }
 
     #[test]

@@ -53,7 +53,10 @@ pub enum Action {
 }
 
 const COMMAND: Modifiers = Modifiers::COMMAND;
-const COMMAND_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
+const COMMAND_SHIFT: Modifiers = Modifiers {
+    shift: true,
+    ..Modifiers::COMMAND
+};
 
 const fn plain(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::NONE, key)
@@ -70,51 +73,139 @@ const fn command(key: Key) -> KeyboardShortcut {
 /// An action, its label and its shortcuts.
 pub type Entry = (Action, &'static str, &'static [KeyboardShortcut]);
 
-/// Every action with the shortcuts that it has unless the user binds others, see [`Keymap`](crate::app::settings::keymap::Keymap).
+/// Every action with the shortcuts that it has unless the user binds others, see
+/// [`Keymap`](crate::app::settings::keymap::Keymap).
 pub const ACTIONS: &[Entry] = &[
-    (Action::Redo, "Redo", &[KeyboardShortcut::new(COMMAND_SHIFT, Key::Z), command(Key::Y)]),
+    (
+        Action::Redo,
+        "Redo",
+        &[
+            KeyboardShortcut::new(COMMAND_SHIFT, Key::Z),
+            command(Key::Y),
+        ],
+    ),
     (Action::Undo, "Undo", &[command(Key::Z)]),
-    (Action::SaveAs, "Save as…", &[KeyboardShortcut::new(COMMAND_SHIFT, Key::S)]),
+    (
+        Action::SaveAs,
+        "Save as…",
+        &[KeyboardShortcut::new(COMMAND_SHIFT, Key::S)],
+    ),
     (Action::Save, "Save", &[command(Key::S)]),
     (Action::Open, "Open…", &[command(Key::O)]),
-    (Action::Film, "Export film…", &[KeyboardShortcut::new(COMMAND_SHIFT, Key::E)]),
-    (Action::Export, "Export PNG…", &[plain(Key::F12), command(Key::E)]),
+    (
+        Action::Film,
+        "Export film…",
+        &[KeyboardShortcut::new(COMMAND_SHIFT, Key::E)],
+    ),
+    (
+        Action::Export,
+        "Export PNG…",
+        &[plain(Key::F12), command(Key::E)],
+    ),
     (Action::CopyPreset, "Copy preset", &[]),
     (Action::PastePreset, "Paste preset", &[]),
     (Action::Quit, "Quit", &[command(Key::Q)]),
     (Action::OpenWithScene, "Open with its scene", &[]),
-    (Action::PreviousPreset, "Previous preset", &[plain(Key::OpenBracket)]),
-    (Action::NextPreset, "Next preset", &[plain(Key::CloseBracket)]),
-    (Action::RandomizeWindow, "Randomize: locks and seeds…", &[shift(Key::R)]),
+    (
+        Action::PreviousPreset,
+        "Previous preset",
+        &[plain(Key::OpenBracket)],
+    ),
+    (
+        Action::NextPreset,
+        "Next preset",
+        &[plain(Key::CloseBracket)],
+    ),
+    (
+        Action::RandomizeWindow,
+        "Randomize: locks and seeds…",
+        &[shift(Key::R)],
+    ),
     (Action::Randomize, "Randomize effects", &[plain(Key::R)]),
     (Action::Sweep, "Sweep of parameters…", &[shift(Key::S)]),
     (Action::Frame, "Frame the scene", &[plain(Key::Home)]),
     (Action::Front, "Front view", &[plain(Key::Num1)]),
     (Action::Side, "Side view", &[plain(Key::Num3)]),
     (Action::Top, "Top view", &[plain(Key::Num7)]),
-    (Action::Orthographic, "Orthographic or perspective", &[plain(Key::Num5)]),
+    (
+        Action::Orthographic,
+        "Orthographic or perspective",
+        &[plain(Key::Num5)],
+    ),
     (Action::Play, "Play or pause", &[plain(Key::Space)]),
     (Action::StepBack, "Step back 1/30 s", &[plain(Key::Comma)]),
-    (Action::StepForward, "Step forward 1/30 s", &[plain(Key::Period)]),
+    (
+        Action::StepForward,
+        "Step forward 1/30 s",
+        &[plain(Key::Period)],
+    ),
     (Action::Rewind, "Go to the start", &[plain(Key::Num0)]),
-    (Action::RemoveKey, "Remove the selected key", &[plain(Key::Delete), plain(Key::Backspace)]),
-    (Action::Verify, "Verify against the oracle", &[plain(Key::V)]),
+    (
+        Action::RemoveKey,
+        "Remove the selected key",
+        &[plain(Key::Delete), plain(Key::Backspace)],
+    ),
+    (
+        Action::Verify,
+        "Verify against the oracle",
+        &[plain(Key::V)],
+    ),
     (Action::Extremes, "Run extreme cases…", &[]),
     (Action::Overlays, "Show or hide overlays", &[plain(Key::O)]),
-    (Action::Handles, "Show or hide handles of points and light", &[plain(Key::H)]),
-    (Action::Compare, "Compare: wipe, side by side, difference", &[shift(Key::Backslash), plain(Key::Pipe)]),
-    (Action::FlipAb, "Switch between the reference and this preset", &[plain(Key::Backslash)]),
-    (Action::Trade, "Show or hide Trade: time against error", &[plain(Key::M)]),
+    (
+        Action::Handles,
+        "Show or hide handles of points and light",
+        &[plain(Key::H)],
+    ),
+    (
+        Action::Compare,
+        "Compare: wipe, side by side, difference",
+        &[shift(Key::Backslash), plain(Key::Pipe)],
+    ),
+    (
+        Action::FlipAb,
+        "Switch between the reference and this preset",
+        &[plain(Key::Backslash)],
+    ),
+    (
+        Action::Trade,
+        "Show or hide Trade: time against error",
+        &[plain(Key::M)],
+    ),
     (Action::Timing, "Show or hide timing", &[plain(Key::G)]),
     (Action::Panels, "Show or hide panels", &[plain(Key::F11)]),
-    (Action::Timeline, "Show or hide the timeline", &[plain(Key::T)]),
+    (
+        Action::Timeline,
+        "Show or hide the timeline",
+        &[plain(Key::T)],
+    ),
     (Action::Log, "Show or hide the log", &[plain(Key::L)]),
     (Action::Palette, "Command palette…", &[command(Key::K)]),
-    (Action::CheatSheet, "Cheat sheet", &[plain(Key::F1), plain(Key::Questionmark)]),
-    (Action::Settings, "Settings and keys…", &[command(Key::Comma)]),
-    (Action::ScaleUp, "Larger texts and controls", &[command(Key::Plus), command(Key::Equals)]),
-    (Action::ScaleDown, "Smaller texts and controls", &[command(Key::Minus)]),
-    (Action::ScaleReset, "Texts and controls at 100 %", &[command(Key::Num0)]),
+    (
+        Action::CheatSheet,
+        "Cheat sheet",
+        &[plain(Key::F1), plain(Key::Questionmark)],
+    ),
+    (
+        Action::Settings,
+        "Settings and keys…",
+        &[command(Key::Comma)],
+    ),
+    (
+        Action::ScaleUp,
+        "Larger texts and controls",
+        &[command(Key::Plus), command(Key::Equals)],
+    ),
+    (
+        Action::ScaleDown,
+        "Smaller texts and controls",
+        &[command(Key::Minus)],
+    ),
+    (
+        Action::ScaleReset,
+        "Texts and controls at 100 %",
+        &[command(Key::Num0)],
+    ),
 ];
 
 /// What the pointer does, for the cheat sheet.
@@ -124,14 +215,29 @@ pub const POINTER: &[(&str, &str)] = &[
     ("Zoom", "wheel, pinch"),
     ("Look around and fly", "right drag, with W A S D Q E"),
     ("Frame the scene", "double click"),
-    ("Attract particles", "Ctrl + left drag, if the preset has particles"),
+    (
+        "Attract particles",
+        "Ctrl + left drag, if the preset has particles",
+    ),
     ("Turn the light", "drag the ball in the corner"),
-    ("Move a point of an effect", "drag its ring in the picture; with Shift onto the model"),
-    ("Open a preset with its scene", "Shift + click, where presets land on a model of yours"),
+    (
+        "Move a point of an effect",
+        "drag its ring in the picture; with Shift onto the model",
+    ),
+    (
+        "Open a preset with its scene",
+        "Shift + click, where presets land on a model of yours",
+    ),
     ("Reset a value", "double click its label"),
-    ("Animate a value", "click the diamond beside it, at two times"),
+    (
+        "Animate a value",
+        "click the diamond beside it, at two times",
+    ),
     ("Scrub", "drag on the timeline's ruler"),
-    ("Move a key", "drag its mark; hold Shift to leave the frame grid"),
+    (
+        "Move a key",
+        "drag its mark; hold Shift to leave the frame grid",
+    ),
     ("Fine slider", "Shift + drag"),
     ("Copy or paste a value", "Ctrl+C, Ctrl+V over its row"),
     ("Copy or paste the preset", "Ctrl+C, Ctrl+V elsewhere"),
@@ -149,7 +255,10 @@ pub fn show_shortcuts(bound: Vec<(Action, Option<KeyboardShortcut>)>) {
 
 impl Action {
     fn entry(self) -> &'static Entry {
-        ACTIONS.iter().find(|(action, ..)| *action == self).expect("every action is in the table")
+        ACTIONS
+            .iter()
+            .find(|(action, ..)| *action == self)
+            .expect("every action is in the table")
     }
 
     /// Label in menus and in the cheat sheet.
@@ -159,7 +268,15 @@ impl Action {
 
     /// Does it open a field for text?
     pub fn takes_text(self) -> bool {
-        matches!(self, Self::Open | Self::Save | Self::SaveAs | Self::Export | Self::Palette | Self::CheatSheet)
+        matches!(
+            self,
+            Self::Open
+                | Self::Save
+                | Self::SaveAs
+                | Self::Export
+                | Self::Palette
+                | Self::CheatSheet
+        )
     }
 
     /// Its first shortcut as text: `Ctrl+Shift+Z`; empty without one.
@@ -168,8 +285,13 @@ impl Action {
             Self::CopyPreset => "Ctrl+C".into(),
             Self::PastePreset => "Ctrl+V".into(),
             _ => SHOWN.with_borrow(|shown| {
-                let bound = shown.iter().find(|(action, _)| *action == self).map(|(_, shortcut)| *shortcut);
-                bound.unwrap_or(self.entry().2.first().copied()).map_or_else(String::new, |shortcut| shortcut_text(&shortcut))
+                let bound = shown
+                    .iter()
+                    .find(|(action, _)| *action == self)
+                    .map(|(_, shortcut)| *shortcut);
+                bound
+                    .unwrap_or(self.entry().2.first().copied())
+                    .map_or_else(String::new, |shortcut| shortcut_text(&shortcut))
             }),
         }
     }
@@ -201,20 +323,38 @@ impl Action {
 
     /// The action of this name in the settings file.
     pub fn of_id(id: &str) -> Option<Self> {
-        ACTIONS.iter().map(|(action, ..)| *action).find(|action| action.id() == id)
+        ACTIONS
+            .iter()
+            .map(|(action, ..)| *action)
+            .find(|action| action.id() == id)
     }
 }
 
 /// `Ctrl+Shift+Z`.
 pub fn shortcut_text(shortcut: &KeyboardShortcut) -> String {
-    format!("{}{}", modifiers_text(shortcut.modifiers), shortcut.logical_key.symbol_or_name())
+    format!(
+        "{}{}",
+        modifiers_text(shortcut.modifiers),
+        shortcut.logical_key.symbol_or_name()
+    )
 }
 
 /// `Ctrl+Shift+`.
 pub fn modifiers_text(modifiers: Modifiers) -> String {
-    let command = if cfg!(target_os = "macos") { "Cmd+" } else { "Ctrl+" };
-    let held = [(modifiers.command, command), (modifiers.alt, "Alt+"), (modifiers.shift, "Shift+")];
-    held.iter().filter(|(is_held, _)| *is_held).map(|(_, name)| *name).collect()
+    let command = if cfg!(target_os = "macos") {
+        "Cmd+"
+    } else {
+        "Ctrl+"
+    };
+    let held = [
+        (modifiers.command, command),
+        (modifiers.alt, "Alt+"),
+        (modifiers.shift, "Shift+"),
+    ];
+    held.iter()
+        .filter(|(is_held, _)| *is_held)
+        .map(|(_, name)| *name)
+        .collect()
 }
 
 #[cfg(test)]

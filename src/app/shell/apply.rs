@@ -53,26 +53,46 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
         Command::Edit(edit) => report(state, |state| state.session.edit(edit)),
         Command::Randomize => match state.session.randomize() {
             Some(seed) => state.notify(Level::Info, format!("Randomized with seed {seed}")),
-            None => state.notify(Level::Info, "No effect is enabled, so there is nothing to randomize"),
+            None => state.notify(
+                Level::Info,
+                "No effect is enabled, so there is nothing to randomize",
+            ),
         },
-        Command::VaryBy(percent) => state.session.randomizer.vary_percent = percent.clamp(1.0, 100.0),
-        Command::Lock((effect, field), is_locked) => state.session.randomizer.lock(&effect, &field, is_locked),
+        Command::VaryBy(percent) => {
+            state.session.randomizer.vary_percent = percent.clamp(1.0, 100.0)
+        }
+        Command::Lock((effect, field), is_locked) => {
+            state.session.randomizer.lock(&effect, &field, is_locked)
+        }
         Command::RecallSeed(seed) => recall_seed(state, seed),
         Command::SetValues(values) => set_values(state, &values),
-        Command::DrawCells(cells) => state.jobs.draw_cells(state.picture.screen.gpu.clone(), cells),
+        Command::DrawCells(cells) => state
+            .jobs
+            .draw_cells(state.picture.screen.gpu.clone(), cells),
         Command::PinOptions(pins, axes) => {
             let mut accuracy = state.session.preset().accuracy;
-            axes.iter().for_each(|axis| accuracy.pins.set(axis, pins.get(axis)));
+            axes.iter()
+                .for_each(|axis| accuracy.pins.set(axis, pins.get(axis)));
             state.session.preset_mut().accuracy = accuracy;
             state.observe(false);
             state.history.close();
             let words = pins.words();
-            state.notify(Level::Info, if words.is_empty() { "The planner chooses again".into() } else { format!("Switched to {words}") });
+            state.notify(
+                Level::Info,
+                if words.is_empty() {
+                    "The planner chooses again".into()
+                } else {
+                    format!("Switched to {words}")
+                },
+            );
         }
         Command::Keyframe(edit) => keyframe(state, &mut panels.timeline, edit),
         Command::RemoveSelectedKey => match panels.timeline.selected.take() {
             Some(key) => keyframe(state, &mut panels.timeline, KeyframeEdit::Remove(key)),
-            None => state.notify(Level::Info, "No key is selected. Click one on the timeline first."),
+            None => state.notify(
+                Level::Info,
+                "No key is selected. Click one on the timeline first.",
+            ),
         },
         Command::Time(command) => {
             if let Some(hint) = state.session.change_time(command) {
@@ -84,7 +104,12 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
         Command::View(command) => view(state, panels, command),
         Command::MeasureTrade(request, progress) => {
             if let Some(scene) = state.session.scene() {
-                state.jobs.measure(state.picture.screen.gpu.summary.name.clone(), scene.clone(), *request, progress);
+                state.jobs.measure(
+                    state.picture.screen.gpu.summary.name.clone(),
+                    scene.clone(),
+                    *request,
+                    progress,
+                );
             }
         }
         Command::MeasureTiers => state.picture.tier_times.is_looked_at = true,
@@ -122,7 +147,11 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
 /// Text from the clipboard: a preset, or a value for a row.
 fn paste(state: &mut State, panels: &mut Panels, text: &str) {
     state.history.close();
-    let hovered = state.clipboard.hovered_row.as_ref().map(|(path, _)| path.clone());
+    let hovered = state
+        .clipboard
+        .hovered_row
+        .as_ref()
+        .map(|(path, _)| path.clone());
     let row = state.clipboard.paste_into.take().or(hovered);
     let is_preset = text.trim_start().starts_with("rasterlab1:");
     if preset_file::is_effect_text(text) {
@@ -131,7 +160,13 @@ fn paste(state: &mut State, panels: &mut Panels, text: &str) {
     match row {
         Some(path) if !is_preset => set_text(state, &path, text.trim()),
         _ => match preset_file::from_line(text) {
-            Ok(pasted) => request_open(state, panels, pasted, Manner::WithScene, "Pasted a preset".into()),
+            Ok(pasted) => request_open(
+                state,
+                panels,
+                pasted,
+                Manner::WithScene,
+                "Pasted a preset".into(),
+            ),
             Err(error) => state.notify(Level::Error, error.to_string()),
         },
     }
@@ -151,7 +186,9 @@ fn toggle(state: &mut State, panels: &mut Panels, which: Toggle) {
         Toggle::Handles => open.handles = !open.handles,
         Toggle::CheatSheet => open.cheat_sheet = !open.cheat_sheet,
         Toggle::Settings => open.settings = !open.settings,
-        Toggle::Palette => panels.palette.toggle(&state.session, panels.browser.entries()),
+        Toggle::Palette => panels
+            .palette
+            .toggle(&state.session, panels.browser.entries()),
         Toggle::Extremes => panels.extremes.toggle(),
         Toggle::Randomize => panels.randomize.toggle(),
         Toggle::Sweep => panels.sweep.toggle(),

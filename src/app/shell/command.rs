@@ -1,8 +1,9 @@
-//! Commands: everything a panel can ask of the window. A panel reads the state and sends commands; `App` carries them
-//! out when the panel has been shown.
+//! Commands: everything a panel can ask of the window. A panel reads the state and sends commands;
+//! `App` carries them out when the panel has been shown.
 //!
-//! An [`Action`] is an entry of the table of shortcuts and menu entries; `Command::from` turns it into the command that carries it
-//! out. An [`Edit`] is a change of the preset, the payload of [`Command::Edit`].
+//! An [`Action`] is an entry of the table of shortcuts and menu entries; `Command::from` turns it
+//! into the command that carries it out. An [`Edit`] is a change of the preset, the payload of
+//! [`Command::Edit`].
 
 use std::{cell::RefCell, sync::Arc};
 

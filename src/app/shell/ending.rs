@@ -1,5 +1,5 @@
-//! Ending: threads that are told to end while the window goes on, and the wait for them when it closes. A driver must not be unloaded under
-//! a thread that compiles.
+//! Ending: threads that are told to end while the window goes on, and the wait for them when it
+//! closes. A driver must not be unloaded under a thread that compiles.
 
 use std::{
     sync::{Mutex, PoisonError},
@@ -12,7 +12,8 @@ use web_time::Instant;
 /// How long the window waits for its threads when it closes.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// Threads that were told to end. Dropping this waits for them, so the last owner does that when the window closes.
+/// Threads that were told to end. Dropping this waits for them, so the last owner does that when
+/// the window closes.
 #[derive(Debug, Default)]
 pub struct EndingThreads(Mutex<Vec<JoinHandle<()>>>);
 
@@ -47,7 +48,10 @@ mod tests {
 
     #[test]
     fn the_last_owner_waits_and_the_others_do_not() {
-        let (ending, has_ended) = (Arc::new(EndingThreads::default()), Arc::new(AtomicBool::new(false)));
+        let (ending, has_ended) = (
+            Arc::new(EndingThreads::default()),
+            Arc::new(AtomicBool::new(false)),
+        );
         let (release, held) = mpsc::channel::<()>();
         let flag = has_ended.clone();
         let thread = std::thread::spawn(move || {

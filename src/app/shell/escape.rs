@@ -1,4 +1,5 @@
-//! Escape closes what is open, the innermost first: a menu or dialog, a scene that is loading, the field that is typed into, a choice in the picture, a window, a panel.
+//! Escape closes what is open, the innermost first: a menu or dialog, a scene that is loading, the
+//! field that is typed into, a choice in the picture, a window, a panel.
 
 use eframe::egui::{self, Key, Modifiers};
 
@@ -26,18 +27,34 @@ enum Closing {
     Log,
 }
 
-/// Closes the innermost thing if Escape was pressed. `was_typing`: a text field had the focus in the frame before, and Escape has just taken
-/// it away.
-pub fn escape(ctx: &egui::Context, state: &State, panels: &mut Panels, was_typing: bool, commands: &Commands) {
+/// Closes the innermost thing if Escape was pressed. `was_typing`: a text field had the focus in
+/// the frame before, and Escape has just taken it away.
+pub fn escape(
+    ctx: &egui::Context,
+    state: &State,
+    panels: &mut Panels,
+    was_typing: bool,
+    commands: &Commands,
+) {
     // Dialogs and menus close themselves.
-    if panels.has_dialog() || egui::Popup::is_any_open(ctx) || !ctx.input(|i| i.key_pressed(Key::Escape)) {
+    if panels.has_dialog()
+        || egui::Popup::is_any_open(ctx)
+        || !ctx.input(|i| i.key_pressed(Key::Escape))
+    {
         return;
     }
-    let Some(closing) = innermost(state, panels) else { return };
+    let Some(closing) = innermost(state, panels) else {
+        return;
+    };
     // The search of a window is a part of it.
     let is_window = matches!(
         closing,
-        Closing::Film | Closing::Sweep | Closing::Randomize | Closing::Extremes | Closing::Settings | Closing::CheatSheet
+        Closing::Film
+            | Closing::Sweep
+            | Closing::Randomize
+            | Closing::Extremes
+            | Closing::Settings
+            | Closing::CheatSheet
     );
     if was_typing && !is_window {
         return;

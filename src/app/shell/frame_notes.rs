@@ -1,4 +1,5 @@
-//! Frame notes: lines in the file of the log that say how long the window took for its frames and how long a picture was waited for.
+//! Frame notes: lines in the file of the log that say how long the window took for its frames and
+//! how long a picture was waited for.
 
 use eframe::egui;
 
@@ -30,17 +31,31 @@ impl FrameNotes {
             return ctx.request_repaint_after_secs(left_s as f32 + 0.01);
         }
         self.since_s = None;
-        if let Some(noted) = ctx.with_plugin(UiFrames::take_noted).filter(|noted| noted.frames > 0) {
+        if let Some(noted) = ctx
+            .with_plugin(UiFrames::take_noted)
+            .filter(|noted| noted.frames > 0)
+        {
             state.log.note_timing(&line(&noted, now_s));
         }
     }
 }
 
-/// `12.3 s, 31 frames, longest 58 ms (panels 12, painting 40, waiting 6), 3 pictures after their inputs: median 50 ms, slowest 84 ms`.
-fn line(Noted { frames, longest, latencies_ms: [drawn, compiled] }: &Noted, now_s: f64) -> String {
+/// `12.3 s, 31 frames, longest 58 ms (panels 12, painting 40, waiting 6), 3 pictures after their
+/// inputs: median 50 ms, slowest 84 ms`.
+fn line(
+    Noted {
+        frames,
+        longest,
+        latencies_ms: [drawn, compiled],
+    }: &Noted,
+    now_s: f64,
+) -> String {
     let of = |latencies: &[f64], what: &str| match [0.5, 1.0].map(|p| percentile(latencies, p)) {
         [Some(median), Some(slowest)] => {
-            format!(", {} {what} after their inputs: median {median:.0} ms, slowest {slowest:.0} ms", latencies.len())
+            format!(
+                ", {} {what} after their inputs: median {median:.0} ms, slowest {slowest:.0} ms",
+                latencies.len()
+            )
         }
         _ => String::new(),
     };
@@ -62,11 +77,30 @@ mod tests {
 
     #[test]
     fn a_note_is_one_line_of_numbers() {
-        let longest = FrameTime { panels: 12.2, painting: 40.0, waiting: 5.6 };
-        let noted = Noted { frames: 31, longest, latencies_ms: [vec![30.0, 84.3, 50.0], vec![]] };
+        let longest = FrameTime {
+            panels: 12.2,
+            painting: 40.0,
+            waiting: 5.6,
+        };
+        let noted = Noted {
+            frames: 31,
+            longest,
+            latencies_ms: [vec![30.0, 84.3, 50.0], vec![]],
+        };
         let quiet = "12.3 s, 31 frames, longest 58 ms (panels 12, painting 40, waiting 6)";
-        assert_eq!(line(&noted, 12.34), format!("{quiet}, 3 pictures after their inputs: median 50 ms, slowest 84 ms"));
-        let noted = Noted { latencies_ms: [vec![], vec![900.0]], ..noted };
-        assert_eq!(line(&noted, 12.34), format!("{quiet}, 1 compiled pictures after their inputs: median 900 ms, slowest 900 ms"));
+        assert_eq!(
+            line(&noted, 12.34),
+            format!("{quiet}, 3 pictures after their inputs: median 50 ms, slowest 84 ms")
+        );
+        let noted = Noted {
+            latencies_ms: [vec![], vec![900.0]],
+            ..noted
+        };
+        assert_eq!(
+            line(&noted, 12.34),
+            format!(
+                "{quiet}, 1 compiled pictures after their inputs: median 900 ms, slowest 900 ms"
+            )
+        );
     }
 }

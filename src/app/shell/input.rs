@@ -19,19 +19,32 @@ use crate::app::{
     settings::keymap::Keymap,
 };
 
-/// Sends the actions whose shortcuts were pressed, in the order of the keys. Shortcuts without Ctrl do nothing while a widget has the focus
-/// or the camera flies; those with Ctrl, but for the palette's, do
-/// nothing while text is typed. What is typed after a key that opens a text field is held for it.
+/// Sends the actions whose shortcuts were pressed, in the order of the keys. Shortcuts without Ctrl
+/// do nothing while a widget has the focus or the camera flies; those with Ctrl, but for the
+/// palette's, do nothing while text is typed. What is typed after a key that opens a text field is
+/// held for it.
 pub fn shortcuts(ctx: &egui::Context, state: &State, held: &mut HeldTyping, commands: &Commands) {
     let is_typing = ctx.text_edit_focused();
     let is_focused = ctx.egui_wants_keyboard_input();
     let is_flying = ctx.input(|i| i.pointer.secondary_down());
-    let is_allowed = |k: &KeyboardShortcut| if k.modifiers.command { !is_typing } else { !is_focused && !is_flying };
+    let is_allowed = |k: &KeyboardShortcut| {
+        if k.modifiers.command {
+            !is_typing
+        } else {
+            !is_focused && !is_flying
+        }
+    };
     let mut index = 0;
     while let Some(event) = ctx.input(|i| i.events.get(index).cloned()) {
-        // The palette opens from anywhere, so that its key does not depend on what was typed before.
-        let opens_palette = || action_of(&event, &state.settings.keys, |k| k.modifiers.command).filter(|a| *a == Action::Palette);
-        let Some(action) = action_of(&event, &state.settings.keys, is_allowed).or_else(opens_palette) else {
+        // The palette opens from anywhere, so that its key does not depend on what was typed
+        // before.
+        let opens_palette = || {
+            action_of(&event, &state.settings.keys, |k| k.modifiers.command)
+                .filter(|a| *a == Action::Palette)
+        };
+        let Some(action) =
+            action_of(&event, &state.settings.keys, is_allowed).or_else(opens_palette)
+        else {
             index += 1;
             continue;
         };
@@ -47,8 +60,20 @@ pub fn shortcuts(ctx: &egui::Context, state: &State, held: &mut HeldTyping, comm
 }
 
 /// The action of a pressed key, if its shortcut is allowed.
-fn action_of(event: &Event, keys: &Keymap, is_allowed: impl Fn(&KeyboardShortcut) -> bool) -> Option<Action> {
-    let Event::Key { key, modifiers, pressed: true, .. } = event else { return None };
+fn action_of(
+    event: &Event,
+    keys: &Keymap,
+    is_allowed: impl Fn(&KeyboardShortcut) -> bool,
+) -> Option<Action> {
+    let Event::Key {
+        key,
+        modifiers,
+        pressed: true,
+        ..
+    } = event
+    else {
+        return None;
+    };
     keys.action_of(*key, *modifiers, is_allowed)
 }
 
@@ -66,21 +91,37 @@ fn clipboard(ctx: &egui::Context, state: &State, commands: &Commands) {
     }
 }
 
-/// Opens one of the files that were dropped on the window: a preset before a model before a picture before an effect, since a model may be
-/// dropped with the files that it needs.
+/// Opens one of the files that were dropped on the window: a preset before a model before a picture
+/// before an effect, since a model may be dropped with the files that it needs.
 pub fn dropped_files(ctx: &egui::Context, commands: &Commands) {
-    let mut dropped = ctx.input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect::<Vec<_>>());
+    let mut dropped = ctx.input(|i| {
+        i.raw
+            .dropped_files
+            .iter()
+            .map(|file| file.path().to_owned())
+            .collect::<Vec<_>>()
+    });
     let rank = |path: &PathBuf| {
-        let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
+        let extension = path
+            .extension()
+            .map(|extension| extension.to_ascii_lowercase());
         let order = system_dialog::extensions(Purpose::Open);
-        order.iter().position(|known| extension.as_ref().is_some_and(|e| e == known)).unwrap_or(usize::MAX)
+        order
+            .iter()
+            .position(|known| extension.as_ref().is_some_and(|e| e == known))
+            .unwrap_or(usize::MAX)
     };
     dropped.sort_by_key(rank);
     let Some(first) = dropped.first() else { return };
-    commands.send(Command::File(FileCommand::Open(first.to_string_lossy().into_owned())));
+    commands.send(Command::File(FileCommand::Open(
+        first.to_string_lossy().into_owned(),
+    )));
     if dropped.len() > 1 {
         let name = first.file_name().unwrap_or_default().to_string_lossy();
-        let text = format!("{} files were dropped. One is opened at a time: {name}", dropped.len());
+        let text = format!(
+            "{} files were dropped. One is opened at a time: {name}",
+            dropped.len()
+        );
         commands.send(Command::Notify(Level::Info, text));
     }
 }

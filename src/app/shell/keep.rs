@@ -10,8 +10,19 @@ use crate::app::settings::OpenPanels;
 impl App {
     /// Keeps settings and session, and looks for recent files that are gone.
     pub(super) fn keep(&mut self, ctx: &egui::Context) {
-        let State { settings, open, session, jobs, now_s, .. } = &mut self.state;
-        settings.open = OpenPanels { cheat_sheet: false, settings: false, ..*open };
+        let State {
+            settings,
+            open,
+            session,
+            jobs,
+            now_s,
+            ..
+        } = &mut self.state;
+        settings.open = OpenPanels {
+            cheat_sheet: false,
+            settings: false,
+            ..*open
+        };
         settings.browsing = self.panels.browser.browsing();
         if settings.film != *self.panels.film.last() {
             settings.film = self.panels.film.last().clone();
@@ -29,7 +40,10 @@ impl App {
         }
         let (error, wait_s) = self.keeper.follow(settings, session, *now_s);
         if let Some(error) = error {
-            self.state.log.add(Level::Warning, format!("settings or session could not be kept: {error}"));
+            self.state.log.add(
+                Level::Warning,
+                format!("settings or session could not be kept: {error}"),
+            );
         }
         if let Some(wait_s) = wait_s {
             ctx.request_repaint_after_secs(wait_s as f32 + 0.01);
@@ -38,11 +52,18 @@ impl App {
 }
 
 impl Drop for App {
-    /// Keeps settings and session. Not after a crash: then the session is marked as running, and the next start asks.
+    /// Keeps settings and session. Not after a crash: then the session is marked as running, and
+    /// the next start asks.
     fn drop(&mut self) {
         if !std::thread::panicking() && !self.loss.is_set() {
-            let State { settings, session, closing, .. } = &self.state;
-            self.keeper.close(settings, session, closing.keeps_edits || !closing.may_quit);
+            let State {
+                settings,
+                session,
+                closing,
+                ..
+            } = &self.state;
+            self.keeper
+                .close(settings, session, closing.keeps_edits || !closing.may_quit);
         }
     }
 }

@@ -70,14 +70,22 @@ pub struct Log {
 impl Log {
     /// An empty log whose messages are appended to `file`.
     pub fn kept_in(file: Option<Arc<File>>) -> Self {
-        Self { file, ..Self::default() }
+        Self {
+            file,
+            ..Self::default()
+        }
     }
 
     fn append(&mut self, line: &str) {
-        let Some(mut file) = self.file.as_deref() else { return };
+        let Some(mut file) = self.file.as_deref() else {
+            return;
+        };
         if let Err(error) = file.write_all(line.as_bytes()) {
             self.file = None;
-            self.add(Level::Error, format!("The log is no longer kept in its file: {error}"));
+            self.add(
+                Level::Error,
+                format!("The log is no longer kept in its file: {error}"),
+            );
         }
     }
 
@@ -95,8 +103,13 @@ impl Log {
     pub fn add(&mut self, level: Level, text: impl Into<String>) {
         let text = text.into();
         self.append(&format!("{}: {text}\n", level.word()));
-        let known = self.entries.iter().position(|entry| entry.level == level && entry.text == text);
-        let count = known.and_then(|at| self.entries.remove(at)).map_or(1, |entry| entry.count.saturating_add(1));
+        let known = self
+            .entries
+            .iter()
+            .position(|entry| entry.level == level && entry.text == text);
+        let count = known
+            .and_then(|at| self.entries.remove(at))
+            .map_or(1, |entry| entry.count.saturating_add(1));
         self.entries.push_back(Entry { level, text, count });
         if self.entries.len() > CAPACITY {
             self.entries.pop_front();
@@ -107,10 +120,20 @@ impl Log {
     pub fn notify(&mut self, level: Level, text: impl Into<String>, now_s: f64) {
         let text = text.into();
         let shown = first_line(&text);
-        self.toasts.retain(|toast| toast.text != shown && toast.until_s > now_s);
-        let stay_s = if level == Level::Error { ERROR_TOAST_S } else { TOAST_S };
-        self.toasts.push(Toast { level, text: shown, until_s: now_s + stay_s });
-        self.toasts.drain(..self.toasts.len().saturating_sub(MAX_TOASTS));
+        self.toasts
+            .retain(|toast| toast.text != shown && toast.until_s > now_s);
+        let stay_s = if level == Level::Error {
+            ERROR_TOAST_S
+        } else {
+            TOAST_S
+        };
+        self.toasts.push(Toast {
+            level,
+            text: shown,
+            until_s: now_s + stay_s,
+        });
+        self.toasts
+            .drain(..self.toasts.len().saturating_sub(MAX_TOASTS));
         self.add(level, text);
     }
 
@@ -124,23 +147,39 @@ impl Log {
 
     /// Toasts that are shown at `now_s`.
     pub fn toasts(&self, now_s: f64) -> Vec<&Toast> {
-        self.toasts.iter().filter(|toast| toast.until_s > now_s).collect()
+        self.toasts
+            .iter()
+            .filter(|toast| toast.until_s > now_s)
+            .collect()
     }
 
     /// Seconds from `now_s` until the next toast ends; none without toasts.
     pub fn next_toast_ends_in_s(&self, now_s: f64) -> Option<f64> {
-        self.toasts.iter().map(|toast| toast.until_s - now_s).filter(|left_s| *left_s > 0.0).reduce(f64::min)
+        self.toasts
+            .iter()
+            .map(|toast| toast.until_s - now_s)
+            .filter(|left_s| *left_s > 0.0)
+            .reduce(f64::min)
     }
 
     /// The whole log as lines of text.
     pub fn to_text(&self) -> String {
-        self.entries.iter().map(|Entry { level, text, count }| format!("{}: {text}{}\n", level.word(), times(*count))).collect()
+        self.entries
+            .iter()
+            .map(|Entry { level, text, count }| {
+                format!("{}: {text}{}\n", level.word(), times(*count))
+            })
+            .collect()
     }
 }
 
 /// ` ×3`, or nothing for a single time.
 pub fn times(count: u32) -> String {
-    if count > 1 { format!(" ×{count}") } else { String::new() }
+    if count > 1 {
+        format!(" ×{count}")
+    } else {
+        String::new()
+    }
 }
 
 #[cfg(test)]
@@ -152,22 +191,41 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let path = folder.path().join("window.log");
         for run in 0..2 {
-            let file = File::options().create(true).append(true).open(&path).expect("a file");
+            let file = File::options()
+                .create(true)
+                .append(true)
+                .open(&path)
+                .expect("a file");
             let mut log = Log::kept_in(Some(Arc::new(file)));
             log.add(Level::Info, "opened");
             log.notify(Level::Error, "no such file", 0.0);
             log.note_timing("1 frame");
             log.clear();
-            assert_eq!(std::fs::read_to_string(&path).expect("a file").lines().count(), 3 * (run + 1));
+            assert_eq!(
+                std::fs::read_to_string(&path)
+                    .expect("a file")
+                    .lines()
+                    .count(),
+                3 * (run + 1)
+            );
             assert_eq!(log.entries().len(), 0, "timings are in the file alone");
         }
-        assert!(std::fs::read_to_string(&path).expect("a file").ends_with("info: opened\nerror: no such file\ntiming: 1 frame\n"));
+        assert!(
+            std::fs::read_to_string(&path)
+                .expect("a file")
+                .ends_with("info: opened\nerror: no such file\ntiming: 1 frame\n")
+        );
         // A file that cannot be written is given up once, in words.
         let read_only = File::open(&path).expect("a file");
         let mut log = Log::kept_in(Some(Arc::new(read_only)));
         log.add(Level::Info, "opened");
         log.add(Level::Info, "closed");
-        assert_eq!(log.entries().filter(|entry| entry.text.contains("no longer kept")).count(), 1);
+        assert_eq!(
+            log.entries()
+                .filter(|entry| entry.text.contains("no longer kept"))
+                .count(),
+            1
+        );
     }
 
     #[test]
@@ -182,8 +240,15 @@ mod tests {
     #[test]
     fn a_toast_has_one_line_and_the_log_has_them_all() {
         let mut log = Log::default();
-        log.notify(Level::Error, "shader error: no such word\n  ┌─ fog.wgsl:3:9", 0.0);
-        assert_eq!(log.toasts[0].text, "shader error: no such word (more in the log)");
+        log.notify(
+            Level::Error,
+            "shader error: no such word\n  ┌─ fog.wgsl:3:9",
+            0.0,
+        );
+        assert_eq!(
+            log.toasts[0].text,
+            "shader error: no such word (more in the log)"
+        );
         assert!(log.to_text().contains("fog.wgsl:3:9"));
     }
 
@@ -191,7 +256,13 @@ mod tests {
     fn at_most_three_toasts_are_shown_and_the_newest_are() {
         let mut log = Log::default();
         (0..5).for_each(|i| log.notify(Level::Info, i.to_string(), 0.0));
-        assert_eq!(log.toasts(1.0).iter().map(|toast| toast.text.as_str()).collect::<Vec<_>>(), ["2", "3", "4"]);
+        assert_eq!(
+            log.toasts(1.0)
+                .iter()
+                .map(|toast| toast.text.as_str())
+                .collect::<Vec<_>>(),
+            ["2", "3", "4"]
+        );
         assert_eq!(log.entries().len(), 5);
     }
 

@@ -43,7 +43,10 @@ impl App {
 
     /// Triangles of the scene that is shown; 0 without one.
     pub fn scene_triangles(&self) -> u64 {
-        self.state.session.scene().map_or(0, |scene| scene.triangle_count())
+        self.state
+            .session
+            .scene()
+            .map_or(0, |scene| scene.triangle_count())
     }
 
     /// Number of steps that undo can take back.
@@ -53,13 +56,31 @@ impl App {
 
     /// True if the picture shows the preset and nothing is still to come.
     pub fn is_idle(&self) -> bool {
-        let State { session, picture: PictureState { screen, verification, .. }, .. } = &self.state;
-        let Panels { viewport, trade, browser, film, .. } = &self.panels;
+        let State {
+            session,
+            picture:
+                PictureState {
+                    screen,
+                    verification,
+                    ..
+                },
+            ..
+        } = &self.state;
+        let Panels {
+            viewport,
+            trade,
+            browser,
+            film,
+            ..
+        } = &self.panels;
         let is_playing = session.playback.playing;
-        let is_loaded = !self.state.files.opening.is_waiting() && !session.scenes.is_loading() && session.scene().is_some();
+        let is_loaded = !self.state.files.opening.is_waiting()
+            && !session.scenes.is_loading()
+            && session.scene().is_some();
         let is_shown = !screen.is_awaited(is_playing) && !viewport.compare.is_awaited(is_playing);
         let is_judged = !verification.is_running() && self.state.picture.overlays_are_ready();
-        let is_measured = is_playing || !(screen.needs_measuring() || viewport.compare.needs_measuring());
+        let is_measured =
+            is_playing || !(screen.needs_measuring() || viewport.compare.needs_measuring());
         is_loaded
             && is_shown
             && is_judged
@@ -96,7 +117,10 @@ impl App {
 
     /// The view that a picture of `size` pixels shows; none while there is no scene.
     pub fn view(&self, size: [u32; 2]) -> Option<View> {
-        self.state.session.scene().map(|scene| self.state.session.view_at(scene, size))
+        self.state
+            .session
+            .scene()
+            .map(|scene| self.state.session.view_at(scene, size))
     }
 
     /// Width and height in pixels of the picture that was asked for last; none before the first.
@@ -108,9 +132,14 @@ impl App {
         &self.state.picture.screen.gpu
     }
 
-    /// How many pixels are drawn for one that is shown, with automatic anti-aliasing; none before the first picture.
+    /// How many pixels are drawn for one that is shown, with automatic anti-aliasing; none before
+    /// the first picture.
     pub fn drawn_scale(&self) -> Option<RenderScale> {
-        self.state.picture.screen.requested().map(|inputs| inputs.accuracy.scale())
+        self.state
+            .picture
+            .screen
+            .requested()
+            .map(|inputs| inputs.accuracy.scale())
     }
 
     /// Measured milliseconds of the open picture in a tier; none while they are not measured.
@@ -126,7 +155,8 @@ impl App {
         self.state.picture.accuracy()
     }
 
-    /// Position of the comparison's divider, as a fraction of the picture's width; none unless the wipe is open.
+    /// Position of the comparison's divider, as a fraction of the picture's width; none unless the
+    /// wipe is open.
     pub fn wipe_split(&self) -> Option<f32> {
         self.panels.viewport.compare.wipe_split()
     }
@@ -148,6 +178,9 @@ impl App {
 
     /// True while a toast lies over the picture.
     pub fn shows_toasts(&self) -> bool {
-        self.state.log.next_toast_ends_in_s(self.state.now_s).is_some()
+        self.state
+            .log
+            .next_toast_ends_in_s(self.state.now_s)
+            .is_some()
     }
 }

@@ -30,7 +30,10 @@ fn native_options(adapter: &AdapterChoice, window: WindowSize) -> eframe::Native
             .with_maximized(window.is_maximized)
             .with_min_inner_size(MIN_SIZE)
             .with_drag_and_drop(true),
-        wgpu_options: egui_wgpu::WgpuConfiguration { wgpu_setup: wgpu_setup(adapter), ..Default::default() },
+        wgpu_options: egui_wgpu::WgpuConfiguration {
+            wgpu_setup: wgpu_setup(adapter),
+            ..Default::default()
+        },
         // Dithering would change the bytes that the kernels drew.
         dithering: false,
         ..Default::default()
@@ -40,33 +43,56 @@ fn native_options(adapter: &AdapterChoice, window: WindowSize) -> eframe::Native
 /// Lost devices after which the window is not opened again.
 const MAX_LOSSES: u32 = 2;
 
-/// Opens the window and returns when it is closed. If the device is lost, the window closes and opens again on a new device,
-/// with the preset as it was.
+/// Opens the window and returns when it is closed. If the device is lost, the window closes and
+/// opens again on a new device, with the preset as it was.
 ///
 /// # Errors
 /// If there is no suitable device or no display, or [`DeviceLost`].
 pub fn run(options: Options) -> anyhow::Result<()> {
     let mut options = options;
-    let window = options.config.as_deref().map_or_else(WindowSize::default, window_size);
+    let window = options
+        .config
+        .as_deref()
+        .map_or_else(WindowSize::default, window_size);
     for losses in 0..=MAX_LOSSES {
         let loss = LossFlag::default();
         let (flag, opened) = (loss.clone(), options.clone());
-        let create = move |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, Box<dyn std::error::Error + Send + Sync>> {
+        let create = move |cc: &eframe::CreationContext<'_>| -> Result<
+            Box<dyn eframe::App>,
+            Box<dyn std::error::Error + Send + Sync>,
+        > {
             let mut app = App::with_loss_flag(cc, opened, flag)?;
             if losses > 0 {
-                app.notify(Level::Warning, "The graphics device was lost. The window was opened again with your preset.");
+                app.notify(
+                    Level::Warning,
+                    "The graphics device was lost. The window was opened again with your preset.",
+                );
             }
             Ok(Box::new(app))
         };
-        let closed = eframe::run_native("rasterlab", native_options(&options.adapter, window), Box::new(create));
+        let closed = eframe::run_native(
+            "rasterlab",
+            native_options(&options.adapter, window),
+            Box::new(create),
+        );
         if !loss.is_set() {
-            return closed.map_err(|error| anyhow::anyhow!("{error}")).context("the window could not be opened");
+            return closed
+                .map_err(|error| anyhow::anyhow!("{error}"))
+                .context("the window could not be opened");
         }
         options.opened = None;
-        options.open = recovery_path().filter(|path| path.exists()).map(|path| path.to_string_lossy().into_owned());
+        options.open = recovery_path()
+            .filter(|path| path.exists())
+            .map(|path| path.to_string_lossy().into_owned());
     }
-    let recovered = recovery_path().map_or_else(String::new, |path| format!("; the preset is saved in {}", path.display()));
-    Err(DeviceLost { times: MAX_LOSSES + 1, recovered }.into())
+    let recovered = recovery_path().map_or_else(String::new, |path| {
+        format!("; the preset is saved in {}", path.display())
+    });
+    Err(DeviceLost {
+        times: MAX_LOSSES + 1,
+        recovered,
+    }
+    .into())
 }
 
 /// The device of the window was lost again and again (exit status 4 of the command line).

@@ -32,7 +32,8 @@ pub struct Closing {
     pub keeps_edits: bool,
 }
 
-/// The state of the window besides its panels: the session and its history, and what the subjects of the window keep.
+/// The state of the window besides its panels: the session and its history, and what the subjects
+/// of the window keep.
 pub struct State {
     pub session: Session,
     pub history: History<UndoState>,
@@ -56,6 +57,7 @@ impl State {
 
     /// Records the preset for undo; `is_held` while a pointer button is down.
     pub fn observe(&mut self, is_held: bool) {
-        self.history.observe(&self.session.undo_state(), self.now_s, is_held);
+        self.history
+            .observe(&self.session.undo_state(), self.now_s, is_held);
     }
 }

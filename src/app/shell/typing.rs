@@ -1,5 +1,5 @@
-//! Typing while a dialog opens: text that arrives before the text field of the dialog has the focus waits for it, so that it is neither lost
-//! nor taken for shortcuts.
+//! Typing while a dialog opens: text that arrives before the text field of the dialog has the focus
+//! waits for it, so that it is neither lost nor taken for shortcuts.
 
 use eframe::egui::{self, Event};
 
@@ -11,7 +11,8 @@ pub struct HeldTyping {
     since_s: f64,
 }
 
-/// The text field of a dialog has the focus after a frame or two; what waits longer is dropped, seconds.
+/// The text field of a dialog has the focus after a frame or two; what waits longer is dropped,
+/// seconds.
 const PATIENCE_S: f64 = 2.0;
 
 impl HeldTyping {
@@ -20,7 +21,10 @@ impl HeldTyping {
         let later = ctx.input_mut(|i| {
             let mut later = i.events.split_off((index + 1).min(i.events.len()));
             // The key that opened the dialog may be a character, too.
-            if later.first().is_some_and(|event| matches!(event, Event::Text(_))) {
+            if later
+                .first()
+                .is_some_and(|event| matches!(event, Event::Text(_)))
+            {
                 later.remove(0);
             }
             let (typed, others): (Vec<Event>, Vec<Event>) = later.into_iter().partition(is_typing);
@@ -30,7 +34,8 @@ impl HeldTyping {
         self.add(ctx, later, now_s);
     }
 
-    /// While a field for text is open: holds what is typed until the field has the focus, and hands it over then.
+    /// While a field for text is open: holds what is typed until the field has the focus, and hands
+    /// it over then.
     pub fn follow(&mut self, ctx: &egui::Context, is_awaited: bool, now_s: f64) {
         if !is_awaited || now_s - self.since_s > PATIENCE_S {
             self.held.clear();
@@ -43,7 +48,9 @@ impl HeldTyping {
             ctx.input_mut(|i| drop(i.events.splice(0..0, held)));
         } else if ctx.memory(|memory| memory.focused().is_none()) {
             let typed = ctx.input_mut(|i| {
-                let (typed, others) = std::mem::take(&mut i.events).into_iter().partition(is_typing);
+                let (typed, others) = std::mem::take(&mut i.events)
+                    .into_iter()
+                    .partition(is_typing);
                 i.events = others;
                 typed
             });
@@ -62,7 +69,8 @@ impl HeldTyping {
     }
 }
 
-/// Is it a character, or a key that edits text? Escape closes the dialog even before it has the focus.
+/// Is it a character, or a key that edits text? Escape closes the dialog even before it has the
+/// focus.
 fn is_typing(event: &Event) -> bool {
     match event {
         Event::Text(_) | Event::Paste(_) | Event::Ime(_) => true,

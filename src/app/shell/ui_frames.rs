@@ -1,4 +1,5 @@
-//! UI frames: how long the UI thread takes for the frames of the window. A long one is a stall: what the user does is not seen meanwhile.
+//! UI frames: how long the UI thread takes for the frames of the window. A long one is a stall:
+//! what the user does is not seen meanwhile.
 
 use std::{collections::VecDeque, time::Duration};
 
@@ -15,7 +16,8 @@ pub struct FrameTime {
     pub panels: f64,
     /// Handing it to the device, as far as the window system knows.
     pub painting: f64,
-    /// What the next frame waited for beside that although it was due: presenting, and what the driver makes wait.
+    /// What the next frame waited for beside that although it was due: presenting, and what the
+    /// driver makes wait.
     pub waiting: f64,
 }
 
@@ -31,12 +33,13 @@ pub struct Noted {
     /// Frames of the window.
     pub frames: usize,
     pub longest: FrameTime,
-    /// From the frame that took an input to the end of painting the one that shows its picture, milliseconds: pictures that compiled
-    /// nothing, and those that did.
+    /// From the frame that took an input to the end of painting the one that shows its picture,
+    /// milliseconds: pictures that compiled nothing, and those that did.
     pub latencies_ms: [Vec<f64>; 2],
 }
 
-/// The newest frames of the window. A plugin, because egui alone knows when a frame asks for the next one.
+/// The newest frames of the window. A plugin, because egui alone knows when a frame asks for the
+/// next one.
 #[derive(Debug, Default)]
 pub struct UiFrames {
     /// Oldest first.
@@ -53,7 +56,8 @@ struct Frame {
     ended: Instant,
     /// After this long the next frame is due.
     next_in: Duration,
-    /// Pictures that it shows first: when they were asked for, and whether something was compiled for them.
+    /// Pictures that it shows first: when they were asked for, and whether something was compiled
+    /// for them.
     shows: Vec<(Instant, bool)>,
 }
 
@@ -67,7 +71,10 @@ impl Plugin for UiFrames {
     }
 
     fn output_hook(&mut self, _: &egui::Context, output: &mut egui::FullOutput) {
-        let next_in = output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |viewport| viewport.repaint_delay);
+        let next_in = output
+            .viewport_output
+            .get(&ViewportId::ROOT)
+            .map_or(Duration::MAX, |viewport| viewport.repaint_delay);
         self.end(Instant::now(), next_in);
     }
 }
@@ -80,13 +87,23 @@ impl UiFrames {
     fn begin(&mut self, now: Instant) {
         self.close();
         if let Some(frame) = self.newest.take() {
-            // What a frame that is due waits for is work: painting, presenting, and what the driver makes wait.
+            // What a frame that is due waits for is work: painting, presenting, and what the driver
+            // makes wait.
             let late = (now - frame.ended).saturating_sub(frame.next_in);
-            self.times.push_back(FrameTime { panels: ms(frame.ended - frame.begun), painting: 0.0, waiting: ms(late) });
+            self.times.push_back(FrameTime {
+                panels: ms(frame.ended - frame.begun),
+                painting: 0.0,
+                waiting: ms(late),
+            });
             self.times.drain(..self.times.len().saturating_sub(HISTORY));
             self.painting = Some(frame);
         }
-        self.newest = Some(Frame { begun: now, ended: now, next_in: Duration::MAX, shows: Vec::new() });
+        self.newest = Some(Frame {
+            begun: now,
+            ended: now,
+            next_in: Duration::MAX,
+            shows: Vec::new(),
+        });
     }
 
     fn end(&mut self, now: Instant, next_in: Duration) {
@@ -113,7 +130,8 @@ impl UiFrames {
             }
             for (asked_at, is_compiled) in frame.shows {
                 let waited = frame.begun.saturating_duration_since(asked_at);
-                self.noted.latencies_ms[usize::from(is_compiled)].push(ms(waited) + time.panels + time.painting);
+                self.noted.latencies_ms[usize::from(is_compiled)]
+                    .push(ms(waited) + time.panels + time.painting);
             }
         }
     }
@@ -123,7 +141,8 @@ impl UiFrames {
         self.newest.as_ref().map(|frame| frame.begun)
     }
 
-    /// The frame that is being made is the first to show a picture that was asked for at `asked_at`.
+    /// The frame that is being made is the first to show a picture that was asked for at
+    /// `asked_at`.
     pub fn shows(&mut self, asked_at: Instant, is_compiled: bool) {
         if let Some(newest) = &mut self.newest {
             newest.shows.push((asked_at, is_compiled));
@@ -158,17 +177,29 @@ mod tests {
         frames.end(start + ms(4), Duration::MAX);
         assert_eq!(frames.longest_ms(), None);
         frames.begin(start + ms(1000));
-        assert_eq!(frames.longest_ms(), Some(4.0), "a window at rest does not stall");
+        assert_eq!(
+            frames.longest_ms(),
+            Some(4.0),
+            "a window at rest does not stall"
+        );
         frames.painted(ms(20));
         assert_eq!(frames.longest_ms(), Some(20.0), "painting counts");
         frames.end(start + ms(1003), Duration::ZERO);
         frames.begin(start + ms(1250));
-        assert_eq!(frames.times_ms(), [20.0, 250.0], "the next frame was due, and something kept it waiting");
+        assert_eq!(
+            frames.times_ms(),
+            [20.0, 250.0],
+            "the next frame was due, and something kept it waiting"
+        );
         frames.end(start + ms(1252), ms(120));
         frames.begin(start + ms(1300));
         frames.end(start + ms(1301), ms(120));
         frames.begin(start + ms(1451));
-        assert_eq!(frames.times_ms(), [20.0, 250.0, 2.0, 31.0], "one that comes early is not late");
+        assert_eq!(
+            frames.times_ms(),
+            [20.0, 250.0, 2.0, 31.0],
+            "one that comes early is not late"
+        );
     }
 
     #[test]
@@ -184,10 +215,25 @@ mod tests {
         frames.end(start + ms(49), Duration::MAX);
         frames.begin(start + ms(2000));
         frames.painted(ms(24));
-        let Noted { frames: count, longest, latencies_ms } = frames.take_noted();
+        let Noted {
+            frames: count,
+            longest,
+            latencies_ms,
+        } = frames.take_noted();
         assert_eq!((count, latencies_ms), (2, [vec![45.0 + 24.0], vec![]]));
-        assert_eq!(longest, FrameTime { panels: 5.0, painting: 10.0, waiting: 30.0 });
-        assert_eq!(frames.take_noted(), Noted::default(), "a frame is told once");
+        assert_eq!(
+            longest,
+            FrameTime {
+                panels: 5.0,
+                painting: 10.0,
+                waiting: 30.0
+            }
+        );
+        assert_eq!(
+            frames.take_noted(),
+            Noted::default(),
+            "a frame is told once"
+        );
         frames.shows(start + ms(1000), true);
         frames.end(start + ms(2003), Duration::MAX);
         // Where the window system does not say how long painting took, the frame counts without it.
@@ -204,8 +250,14 @@ mod tests {
         for i in 0..=2 * HISTORY as u64 {
             let begun = start + Duration::from_secs(i);
             frames.begin(begun);
-            frames.end(begun + Duration::from_millis(if i == 0 { 900 } else { 5 }), Duration::MAX);
+            frames.end(
+                begun + Duration::from_millis(if i == 0 { 900 } else { 5 }),
+                Duration::MAX,
+            );
         }
-        assert_eq!((frames.longest_ms(), frames.times_ms().len()), (Some(5.0), HISTORY));
+        assert_eq!(
+            (frames.longest_ms(), frames.times_ms().len()),
+            (Some(5.0), HISTORY)
+        );
     }
 }

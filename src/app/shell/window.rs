@@ -34,7 +34,9 @@ use crate::{
         },
         jobs::{Jobs, finished::finish},
         panels::{Panels, log::toasts_ui},
-        picture::{apply::verify_shown, precision::REST_S, screen::Screen, state::PictureState, tier_times},
+        picture::{
+            apply::verify_shown, precision::REST_S, screen::Screen, state::PictureState, tier_times,
+        },
         settings::{keeper::Keeper, recents::Recents},
         widgets::{panel::Panel, theme},
     },
@@ -51,7 +53,8 @@ pub struct Options {
     /// What `open` names, where it has been read, perhaps with changes.
     pub opened: Option<PresetFile>,
     pub adapter: AdapterChoice,
-    /// The window's devices with the pipelines that were compiled for them before; none before the first window.
+    /// The window's devices with the pipelines that were compiled for them before; none before the
+    /// first window.
     pub devices: Option<Devices>,
     /// Where presets and effects are, beside the user's own presets.
     pub folders: Folders,
@@ -86,7 +89,8 @@ pub struct App {
 }
 
 impl App {
-    /// The window's contents on a device that was opened with [`wgpu_setup`](crate::app::wgpu_setup).
+    /// The window's contents on a device that was opened with
+    /// [`wgpu_setup`](crate::app::wgpu_setup).
     ///
     /// # Errors
     /// If the window has no wgpu device.
@@ -98,7 +102,11 @@ impl App {
     ///
     /// # Errors
     /// If the window has no wgpu device.
-    pub fn with_loss_flag(cc: &eframe::CreationContext<'_>, options: Options, loss: LossFlag) -> anyhow::Result<Self> {
+    pub fn with_loss_flag(
+        cc: &eframe::CreationContext<'_>,
+        options: Options,
+        loss: LossFlag,
+    ) -> anyhow::Result<Self> {
         host::shaders::choose(None);
         let ctx = &cc.egui_ctx;
         theme::apply(ctx);
@@ -108,34 +116,59 @@ impl App {
         let (window, devices) = device::adopt(cc, options.devices)?;
         let mut log = Log::kept_in(options.log);
         let (keeper, settings, remarks) = Keeper::new(options.config);
-        remarks.into_iter().for_each(|remark| log.add(Level::Warning, remark));
+        remarks
+            .into_iter()
+            .for_each(|remark| log.add(Level::Warning, remark));
         settings.theme.choose(ctx);
         ctx.set_zoom_factor(settings.scale);
         let summary = &devices.picture.summary;
-        log.add(Level::Info, format!("adapter: {}, {}, {}", summary.name, summary.backend, summary.driver));
+        log.add(
+            Level::Info,
+            format!(
+                "adapter: {}, {}, {}",
+                summary.name, summary.backend, summary.driver
+            ),
+        );
         let mut panels = Panels::new(&options.folders);
         panels.browser.show(settings.browsing);
         panels.film.begin_with(settings.film.clone());
         let trust = Trust::default();
-        let start = recovery::start(options.opened, options.open.as_deref(), &options.folders, (&keeper, &trust), &mut log);
+        let start = recovery::start(
+            options.opened,
+            options.open.as_deref(),
+            &options.folders,
+            (&keeper, &trust),
+            &mut log,
+        );
         if let Some(brings) = start.brings_code {
             let said = format!("Opened {}", brings.title());
-            panels.dialogs.ask_code(brings.into(), CodeUse::Open(Manner::WithScene, said));
+            panels
+                .dialogs
+                .ask_code(brings.into(), CodeUse::Open(Manner::WithScene, said));
         }
         if let Some(crashed) = start.crashed {
             panels.dialogs.ask_restore(crashed);
         }
         let mut session = start.session;
         // The start preset plays; a preset that the user named does not.
-        session.playback.playing = options.open.is_none() && !start.is_restored && session.preset().is_moving();
+        session.playback.playing =
+            options.open.is_none() && !start.is_restored && session.preset().is_moving();
         let (favorites, remarks) = Favorites::load(options.folders.user.as_deref());
-        remarks.into_iter().for_each(|remark| log.notify(Level::Warning, remark, 0.0));
-        let values = options.folders.effect_values().map_or_else(Vec::new, |folder| preset_file::saved_values(&folder));
+        remarks
+            .into_iter()
+            .for_each(|remark| log.notify(Level::Warning, remark, 0.0));
+        let values = options
+            .folders
+            .effect_values()
+            .map_or_else(Vec::new, |folder| preset_file::saved_values(&folder));
         Ok(Self {
             panels,
             state: State {
                 files: FileState {
-                    live: Live::new(Watcher::new(cc.egui_ctx.clone(), session.preset_file.effects.clone()), options.opens_editor),
+                    live: Live::new(
+                        Watcher::new(cc.egui_ctx.clone(), session.preset_file.effects.clone()),
+                        options.opens_editor,
+                    ),
                     folders: options.folders,
                     trust,
                     favorites,
@@ -152,7 +185,11 @@ impl App {
                 log,
                 open: settings.open,
                 settings,
-                closing: Closing { keeps_session: keeper.keeps_session(), may_quit: false, keeps_edits: false },
+                closing: Closing {
+                    keeps_session: keeper.keeps_session(),
+                    may_quit: false,
+                    keeps_edits: false,
+                },
                 now_s: 0.0,
             },
             commands: Commands::default(),
@@ -197,7 +234,11 @@ impl App {
 
     fn update_title(&mut self, ctx: &egui::Context) {
         let session = &self.state.session;
-        let title = format!("{}{} - rasterlab", if session.is_modified() { "• " } else { "" }, session.title());
+        let title = format!(
+            "{}{} - rasterlab",
+            if session.is_modified() { "• " } else { "" },
+            session.title()
+        );
         if title != self.title {
             ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
             self.title = title;
@@ -206,7 +247,10 @@ impl App {
 
     /// Asks before the window closes with unsaved changes.
     fn guard_close(&mut self, ctx: &egui::Context) {
-        if ctx.input(|i| i.viewport().close_requested()) && self.state.session.is_modified() && !self.state.closing.may_quit {
+        if ctx.input(|i| i.viewport().close_requested())
+            && self.state.session.is_modified()
+            && !self.state.closing.may_quit
+        {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.panels.dialogs.ask_unsaved();
         }
@@ -214,15 +258,20 @@ impl App {
 
     /// Advances the time while the preset plays.
     fn play(&mut self, ctx: &egui::Context) {
-        let State { session, picture: PictureState { screen, .. }, now_s, .. } = &mut self.state;
+        let State {
+            session,
+            picture: PictureState { screen, .. },
+            now_s,
+            ..
+        } = &mut self.state;
         if !session.playback.playing {
             self.played_at_s = None;
             return;
         }
         let before_s = self.played_at_s.replace(*now_s);
         session.advance(before_s.map_or(0.0, |before_s| *now_s - before_s));
-        // A software adapter draws the window on the processor that draws the picture, so the window does not run ahead of it. A finished
-        // picture repaints.
+        // A software adapter draws the window on the processor that draws the picture, so the
+        // window does not run ahead of it. A finished picture repaints.
         if screen.gpu.summary.software && screen.is_waiting() {
             ctx.request_repaint_after_secs(PLAY_STEP_S);
         } else {
@@ -241,8 +290,14 @@ impl App {
 
     /// Starts drawing a thumbnail when nothing more urgent needs the processor.
     fn request_thumbnail(&mut self, ctx: &egui::Context) {
-        let (screen, is_playing) = (&self.state.picture.screen, self.state.session.playback.playing);
-        if self.state.session.scenes.is_loading() || screen.is_awaited(is_playing) || (!is_playing && screen.needs_measuring()) {
+        let (screen, is_playing) = (
+            &self.state.picture.screen,
+            self.state.session.playback.playing,
+        );
+        if self.state.session.scenes.is_loading()
+            || screen.is_awaited(is_playing)
+            || (!is_playing && screen.needs_measuring())
+        {
             return;
         }
         let browser = &mut self.panels.browser;
@@ -251,22 +306,52 @@ impl App {
         }
         let own = &self.state.session.preset_file;
         let key = SceneKey::of(own);
-        let Some(scene) = self.state.session.scenes.shown_for(&key) else { return };
+        let Some(scene) = self.state.session.scenes.shown_for(&key) else {
+            return;
+        };
         if let Some((next, size)) = browser.next_on_model(ctx, &key) {
-            self.state.jobs.thumbnail_on(next, own.clone(), scene.clone(), size);
+            self.state
+                .jobs
+                .thumbnail_on(next, own.clone(), scene.clone(), size);
         } else if let Some(next) = browser.effects.next_picture(ctx, &self.state.session) {
             self.state.jobs.effect_picture(next);
         }
     }
 
-    /// Starts to measure the f32 errors of the user's effects when the picture is at rest. They are shown in the inspector alone.
+    /// Starts to measure the f32 errors of the user's effects when the picture is at rest. They are
+    /// shown in the inspector alone.
     fn request_precision(&mut self, ctx: &egui::Context, is_held: bool) {
-        let State { picture: PictureState { precision, screen, verification, .. }, session, jobs, open, now_s, .. } = &mut self.state;
-        let Some(requested) = screen.requested() else { return };
+        let State {
+            picture:
+                PictureState {
+                    precision,
+                    screen,
+                    verification,
+                    ..
+                },
+            session,
+            jobs,
+            open,
+            now_s,
+            ..
+        } = &mut self.state;
+        let Some(requested) = screen.requested() else {
+            return;
+        };
         let rest_s = precision.rest_s(requested, *now_s);
-        let is_known = precision.is_running() || precision.of(Some(requested)).is_some() || precision.has_failed(Some(requested));
-        let is_busy = is_held || session.playback.playing || screen.is_waiting() || screen.is_measuring() || verification.is_running();
-        let is_used = requested.stack.0.iter().any(|enabled| enabled.effect.is_of_file());
+        let is_known = precision.is_running()
+            || precision.of(Some(requested)).is_some()
+            || precision.has_failed(Some(requested));
+        let is_busy = is_held
+            || session.playback.playing
+            || screen.is_waiting()
+            || screen.is_measuring()
+            || verification.is_running();
+        let is_used = requested
+            .stack
+            .0
+            .iter()
+            .any(|enabled| enabled.effect.is_of_file());
         if !is_used || is_known || is_busy || !open.right || screen.drawn() != Some(requested) {
             return;
         }
@@ -283,51 +368,105 @@ impl App {
             .show_separator_line(false)
             .show(ui, |ui| self.panel_ui(ui, |panels| &mut panels.topbar));
         let height = self.panels.timeline.height(&self.state.session);
-        let timeline = egui::Panel::bottom("timeline").frame(theme::bar_frame()).exact_size(height).resizable(false).drag_to_open(false);
+        let timeline = egui::Panel::bottom("timeline")
+            .frame(theme::bar_frame())
+            .exact_size(height)
+            .resizable(false)
+            .drag_to_open(false);
         let mut is_open = self.state.open.timeline;
-        timeline.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.timeline));
+        timeline.show_collapsible(ui, &mut is_open, |ui| {
+            self.panel_ui(ui, |panels| &mut panels.timeline)
+        });
         self.state.open.timeline = is_open;
-        let trade = egui::Panel::bottom("trade").frame(theme::panel_frame()).resizable(true).default_size(304.0).min_size(190.0);
+        let trade = egui::Panel::bottom("trade")
+            .frame(theme::panel_frame())
+            .resizable(true)
+            .default_size(304.0)
+            .min_size(190.0);
         let mut is_open = self.state.open.trade;
-        trade.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.trade));
+        trade.show_collapsible(ui, &mut is_open, |ui| {
+            self.panel_ui(ui, |panels| &mut panels.trade)
+        });
         // This panel and the next have a button that closes them, too.
         self.state.open.trade &= is_open;
-        let timing = egui::Panel::bottom("timing").frame(theme::panel_frame()).resizable(true).default_size(230.0).min_size(150.0);
+        let timing = egui::Panel::bottom("timing")
+            .frame(theme::panel_frame())
+            .resizable(true)
+            .default_size(230.0)
+            .min_size(150.0);
         let mut is_open = self.state.open.timing;
-        timing.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.timing));
+        timing.show_collapsible(ui, &mut is_open, |ui| {
+            self.panel_ui(ui, |panels| &mut panels.timing)
+        });
         self.state.open.timing &= is_open;
-        let log = egui::Panel::bottom("log").frame(theme::panel_frame()).resizable(true).default_size(150.0).min_size(72.0);
+        let log = egui::Panel::bottom("log")
+            .frame(theme::panel_frame())
+            .resizable(true)
+            .default_size(150.0)
+            .min_size(72.0);
         let mut is_open = self.state.open.log;
-        log.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.log));
+        log.show_collapsible(ui, &mut is_open, |ui| {
+            self.panel_ui(ui, |panels| &mut panels.log)
+        });
         self.state.open.log = is_open;
         let window = ui.ctx().content_rect().width();
         let [left_width, right_width] = self.state.settings.panel_widths(window);
-        let left = egui::Panel::left("left").frame(theme::panel_frame()).default_size(left_width).size_range(200.0..=420.0);
+        let left = egui::Panel::left("left")
+            .frame(theme::panel_frame())
+            .default_size(left_width)
+            .size_range(200.0..=420.0);
         let mut is_open = self.state.open.left;
-        let shown = left.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.browser));
-        self.state.settings.keep_width(0, self.state.open.left && is_open, shown.map(|shown| shown.response.rect), window);
+        let shown = left.show_collapsible(ui, &mut is_open, |ui| {
+            self.panel_ui(ui, |panels| &mut panels.browser)
+        });
+        self.state.settings.keep_width(
+            0,
+            self.state.open.left && is_open,
+            shown.map(|shown| shown.response.rect),
+            window,
+        );
         self.state.open.left = is_open;
         if !is_open {
             self.panels.browser.close();
         }
-        let right = egui::Panel::right("right").frame(theme::panel_frame()).default_size(right_width).size_range(272.0..=520.0);
+        let right = egui::Panel::right("right")
+            .frame(theme::panel_frame())
+            .default_size(right_width)
+            .size_range(272.0..=520.0);
         let mut is_open = self.state.open.right;
-        let shown = right.show_collapsible(ui, &mut is_open, |ui| self.panel_ui(ui, |panels| &mut panels.inspector));
-        self.state.settings.keep_width(1, self.state.open.right && is_open, shown.map(|shown| shown.response.rect), window);
+        let shown = right.show_collapsible(ui, &mut is_open, |ui| {
+            self.panel_ui(ui, |panels| &mut panels.inspector)
+        });
+        self.state.settings.keep_width(
+            1,
+            self.state.open.right && is_open,
+            shown.map(|shown| shown.response.rect),
+            window,
+        );
         self.state.open.right = is_open;
-        let rect = egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_ui(ui)).response.rect;
+        let rect = egui::CentralPanel::no_frame()
+            .show(ui, |ui| self.viewport_ui(ui))
+            .response
+            .rect;
         toasts_ui(ui.ctx(), &self.state.log, rect, self.state.now_s);
     }
 
     /// Takes input, draws the picture, and shows it.
     fn viewport_ui(&mut self, ui: &mut Ui) {
-        let interaction = self.panels.viewport.interact(ui, &self.state, &self.commands);
+        let interaction = self
+            .panels
+            .viewport
+            .interact(ui, &self.state, &self.commands);
         self.apply(ui.ctx());
-        self.panels.viewport.draw(ui.ctx(), &mut self.state, &interaction);
+        self.panels
+            .viewport
+            .draw(ui.ctx(), &mut self.state, &interaction);
         if self.panels.viewport.needs_verdict(ui.ctx(), &self.state) {
             verify_shown(&mut self.state);
         }
-        self.panels.viewport.show(ui, &self.state, &self.commands, interaction.response.rect);
+        self.panels
+            .viewport
+            .show(ui, &self.state, &self.commands, interaction.response.rect);
         self.apply(ui.ctx());
     }
 }
@@ -335,7 +474,9 @@ impl App {
 impl eframe::App for App {
     fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {
         if let Some(taken_s) = frame.info().cpu_usage {
-            ctx.with_plugin(|frames: &mut UiFrames| frames.painted(Duration::from_secs_f32(taken_s)));
+            ctx.with_plugin(|frames: &mut UiFrames| {
+                frames.painted(Duration::from_secs_f32(taken_s))
+            });
         }
         while let Some(done) = self.state.jobs.next() {
             finish(ctx, &mut self.state, &mut self.panels, &self.commands, done);
@@ -346,7 +487,12 @@ impl eframe::App for App {
             self.rescue(ctx);
         }
         if let Some(error) = self.state.picture.screen.take_error() {
-            self.state.log.add(Level::Error, format!("the graphics driver reports an error, which is a bug of rasterlab: {error}"));
+            self.state.log.add(
+                Level::Error,
+                format!(
+                    "the graphics driver reports an error, which is a bug of rasterlab: {error}"
+                ),
+            );
         }
     }
 
@@ -358,7 +504,8 @@ impl eframe::App for App {
         theme::follow(&ctx);
         self.state.settings.keys.show();
         device::tune(frame, &self.state.picture.screen.gpu);
-        let (now_s, is_pressed, is_held) = ctx.input(|i| (i.time, i.pointer.any_pressed(), i.pointer.any_down()));
+        let (now_s, is_pressed, is_held) =
+            ctx.input(|i| (i.time, i.pointer.any_pressed(), i.pointer.any_down()));
         self.state.now_s = now_s;
         if is_pressed {
             self.state.history.close(); // A press begins another gesture.
@@ -368,13 +515,20 @@ impl eframe::App for App {
         }
         input::dropped_files(&ctx, &self.commands);
         self.apply(&ctx);
-        escape(&ctx, &self.state, &mut self.panels, self.was_typing, &self.commands);
+        escape(
+            &ctx,
+            &self.state,
+            &mut self.panels,
+            self.was_typing,
+            &self.commands,
+        );
         self.apply(&ctx);
         if !self.panels.has_dialog() && !self.panels.settings.takes_key() {
             input::shortcuts(&ctx, &self.state, &mut self.typing, &self.commands);
             self.apply(&ctx);
         }
-        let is_awaited = self.panels.takes_text() || (self.state.open.cheat_sheet && !self.panels.has_dialog());
+        let is_awaited =
+            self.panels.takes_text() || (self.state.open.cheat_sheet && !self.panels.has_dialog());
         self.typing.follow(&ctx, is_awaited, now_s);
         self.state.clipboard.hovered_row = None;
         self.play(&ctx);
@@ -393,7 +547,11 @@ impl eframe::App for App {
         self.request_thumbnail(&ctx);
         self.request_precision(&ctx, is_held);
         let compare = &self.panels.viewport.compare;
-        tier_times::follow(&ctx, &mut self.state, is_held || compare.is_waiting() || compare.needs_measuring());
+        tier_times::follow(
+            &ctx,
+            &mut self.state,
+            is_held || compare.is_waiting() || compare.needs_measuring(),
+        );
         self.state.observe(is_held);
         if let Some(wait_s) = self.state.history.wake_in_s(now_s).filter(|_| !is_held) {
             ctx.request_repaint_after_secs(wait_s as f32 + 0.01);

@@ -26,29 +26,68 @@ const LOOK: Duration = Duration::from_millis(20);
 ///
 /// # Errors
 /// In a sentence for people.
-pub fn measure(adapter: String, scene: &Arc<Scene>, request: &Request, progress: &Progress) -> Result<Vec<Point>, String> {
-    let Request { preset, size, axes, title } = request;
-    let gpu = Gpu::open(&AdapterChoice::Named(adapter)).block_on().map_err(|e| e.to_string())?;
+pub fn measure(
+    adapter: String,
+    scene: &Arc<Scene>,
+    request: &Request,
+    progress: &Progress,
+) -> Result<Vec<Point>, String> {
+    let Request {
+        preset,
+        size,
+        axes,
+        title,
+    } = request;
+    let gpu = Gpu::open(&AdapterChoice::Named(adapter))
+        .block_on()
+        .map_err(|e| e.to_string())?;
     let view = preset.view(scene, *size);
     let began = Instant::now();
     let factors = factors(preset, axes);
-    factors.iter().try_for_each(|factor| oracle::can_judge(scene, &view, &preset.stack, *factor)).map_err(|e| e.to_string())?;
-    let references = progress.work.run(|| oracle::references(scene, &view, &preset.stack, &factors));
-    let Some(references) = references else { return Ok(Vec::new()) };
+    factors
+        .iter()
+        .try_for_each(|factor| oracle::can_judge(scene, &view, &preset.stack, *factor))
+        .map_err(|e| e.to_string())?;
+    let references = progress
+        .work
+        .run(|| oracle::references(scene, &view, &preset.stack, &factors));
+    let Some(references) = references else {
+        return Ok(Vec::new());
+    };
     let references = references.map_err(|e| e.to_string())?;
-    progress.report("", |pace| pace.add(Kind::Reference, began.elapsed().as_secs_f64()));
+    progress.report("", |pace| {
+        pace.add(Kind::Reference, began.elapsed().as_secs_f64())
+    });
     let judge = |view: &View, stack: &Stack, capture: &Capture| {
         let judged = progress.work.run(|| {
             let verdict = oracle::judge(scene, view, stack, &capture.picture())?;
-            let light = oracle::shadow_errors(scene, view, stack, &capture.frame.triangle_id, &capture.geometry)?;
+            let light = oracle::shadow_errors(
+                scene,
+                view,
+                stack,
+                &capture.frame.triangle_id,
+                &capture.geometry,
+            )?;
             Ok::<_, DrawError>(Judged { verdict, light })
         });
         judged.map(|judged| judged.expect("a scene that was drawn can be judged"))
     };
-    let options = TradeOptions { size: *size, samples: SAMPLES, axes: axes.clone(), is_one_option_at_a_time: false };
-    let reference = Reference { references: &references, judge: &judge };
-    let mut watch = Watched { progress, step: None };
-    let rows = trade(&gpu, preset, scene, title, &options, &reference, &mut watch).map_err(|e| e.to_string())?;
+    let options = TradeOptions {
+        size: *size,
+        samples: SAMPLES,
+        axes: axes.clone(),
+        is_one_option_at_a_time: false,
+    };
+    let reference = Reference {
+        references: &references,
+        judge: &judge,
+    };
+    let mut watch = Watched {
+        progress,
+        step: None,
+    };
+    let rows = trade(&gpu, preset, scene, title, &options, &reference, &mut watch)
+        .map_err(|e| e.to_string())?;
     Ok(rows.into_iter().map(|row| point(row, axes)).collect())
 }
 
@@ -62,7 +101,11 @@ struct Watched<'a> {
 impl Watch for Watched<'_> {
     fn goes_on(&mut self, step: &Step) -> bool {
         let done = self.step.take();
-        let kind = if step.phase == Phase::SetUp { Kind::SetUp } else { Kind::Time };
+        let kind = if step.phase == Phase::SetUp {
+            Kind::SetUp
+        } else {
+            Kind::Time
+        };
         self.progress.report(step.what, |pace| {
             if let Some((kind, began)) = done {
                 pace.add(kind, began.elapsed().as_secs_f64());
@@ -91,7 +134,8 @@ impl Watch for Watched<'_> {
 
 fn point(row: TradeRow, axes: &[&'static Axis]) -> Point {
     let mut pins = PinnedOptions::default();
-    axes.iter().for_each(|axis| pins.set(axis, row.pins.get(axis)));
+    axes.iter()
+        .for_each(|axis| pins.set(axis, row.pins.get(axis)));
     let errors = Metric::ALL.map(|metric| {
         let error = row.error.as_ref()?;
         Some(match metric {
@@ -105,7 +149,10 @@ fn point(row: TradeRow, axes: &[&'static Axis]) -> Point {
         [
             ("wrong depth winners ppm", error.wrong_depth_ppm),
             ("color RMS of 255", error.rms_color_delta),
-            ("pixels that change between equal frames", error.changed_pixels as f64),
+            (
+                "pixels that change between equal frames",
+                error.changed_pixels as f64,
+            ),
             ("corners moved px", error.moved_px),
             ("cracks per Mpx", error.cracks_per_mpx),
             ("queue entries lost", error.overflow as f64),
@@ -115,7 +162,14 @@ fn point(row: TradeRow, axes: &[&'static Axis]) -> Point {
         .into_iter()
         .chain(error.rms_light.map(|rms| ("light RMS, fraction", rms)))
     });
-    Point { pins, ms: row.spread, samples: row.samples, errors, more: more.collect(), note: row.note }
+    Point {
+        pins,
+        ms: row.spread,
+        samples: row.samples,
+        errors,
+        more: more.collect(),
+        note: row.note,
+    }
 }
 
 #[cfg(test)]
@@ -126,13 +180,24 @@ mod tests {
     #[test]
     fn a_sample_during_which_the_person_worked_does_not_count() {
         let progress = Progress::new(Pace::of(2, 3, 1e4, 1e4, 1.0, &Rates::default()));
-        let mut watch = Watched { progress: &progress, step: None };
-        let step = Step { what: "depth=log16", phase: Phase::Time, done: 0, all: 6 };
+        let mut watch = Watched {
+            progress: &progress,
+            step: None,
+        };
+        let step = Step {
+            what: "depth=log16",
+            phase: Phase::Time,
+            done: 0,
+            all: 6,
+        };
         assert!(watch.goes_on(&step) && watch.was_undisturbed());
         assert!(watch.goes_on(&step));
         progress.pause();
         assert!(!watch.was_undisturbed(), "the sample counts");
         progress.cancel();
-        assert!(!watch.goes_on(&step), "it waits for the person although it is canceled");
+        assert!(
+            !watch.goes_on(&step),
+            "it waits for the person although it is canceled"
+        );
     }
 }

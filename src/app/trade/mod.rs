@@ -1,4 +1,5 @@
-//! Trade: measures the time and the error of combinations of accuracy options on the scene that is shown.
+//! Trade: measures the time and the error of combinations of accuracy options on the scene that is
+//! shown.
 
 pub mod measure;
 pub mod pace;

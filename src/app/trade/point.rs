@@ -1,4 +1,5 @@
-//! The points of a measurement: time and error of each combination, and which combinations are on the Pareto front.
+//! The points of a measurement: time and error of each combination, and which combinations are on
+//! the Pareto front.
 
 use crate::{
     accuracy::{Axis, PinnedOptions},
@@ -24,7 +25,12 @@ impl Metric {
 
     /// The metrics that these points have: light only if the scene has one.
     pub fn of(points: &[Point]) -> Vec<Self> {
-        Self::ALL.into_iter().filter(|metric| *metric != Self::Light || points.iter().any(|point| point.error(*metric).is_some())).collect()
+        Self::ALL
+            .into_iter()
+            .filter(|metric| {
+                *metric != Self::Light || points.iter().any(|point| point.error(*metric).is_some())
+            })
+            .collect()
     }
 
     pub const fn name(self) -> &'static str {
@@ -77,7 +83,8 @@ impl Point {
 /// Where a point stands among all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standing {
-    /// On the Pareto front: every other that is at least as exact is slower, by more than the noise.
+    /// On the Pareto front: every other that is at least as exact is slower, by more than the
+    /// noise.
     Front,
     /// Noise decides whether another that is at least as exact is quicker.
     Tied,
@@ -90,8 +97,15 @@ pub fn standings(points: &[Point], metric: Metric) -> Vec<Option<Standing>> {
     let positions: Vec<_> = points.iter().map(|point| point.position(metric)).collect();
     let standing = |at: usize| {
         let (ms, error) = positions[at]?;
-        let others = positions.iter().enumerate().filter(|(other, _)| *other != at).filter_map(|(_, position)| *position);
-        let as_exact: Vec<Spread> = others.filter(|(_, other)| *other <= error).map(|(ms, _)| ms).collect();
+        let others = positions
+            .iter()
+            .enumerate()
+            .filter(|(other, _)| *other != at)
+            .filter_map(|(_, position)| *position);
+        let as_exact: Vec<Spread> = others
+            .filter(|(_, other)| *other <= error)
+            .map(|(ms, _)| ms)
+            .collect();
         Some(match () {
             () if as_exact.iter().any(|other| other.is_clearly_below(&ms)) => Standing::Dominated,
             () if as_exact.iter().all(|other| ms.is_clearly_below(other)) => Standing::Front,
@@ -103,22 +117,52 @@ pub fn standings(points: &[Point], metric: Metric) -> Vec<Option<Standing>> {
 
 /// The table as comma-separated values, a column for every measured axis.
 pub fn csv(points: &[Point], axes: &[&'static Axis]) -> String {
-    let cell = |text: &str| if text.contains([',', '"', '\n']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() };
+    let cell = |text: &str| {
+        if text.contains([',', '"', '\n']) {
+            format!("\"{}\"", text.replace('"', "\"\""))
+        } else {
+            text.to_owned()
+        }
+    };
     let mut head: Vec<String> = axes.iter().map(|axis| axis.name.to_owned()).collect();
     head.extend(["ms p5", "ms p50", "ms p95", "samples"].map(str::to_owned));
     let metrics = Metric::of(points);
-    head.extend(metrics.iter().map(|metric| format!("{} {}", metric.name(), metric.unit())));
-    let more = points.iter().map(|point| &point.more).max_by_key(|more| more.len());
-    head.extend(more.into_iter().flatten().map(|(name, _)| (*name).to_owned()));
+    head.extend(
+        metrics
+            .iter()
+            .map(|metric| format!("{} {}", metric.name(), metric.unit())),
+    );
+    let more = points
+        .iter()
+        .map(|point| &point.more)
+        .max_by_key(|more| more.len());
+    head.extend(
+        more.into_iter()
+            .flatten()
+            .map(|(name, _)| (*name).to_owned()),
+    );
     head.push("note".into());
     let mut text = head.join(",") + "\n";
     for point in points {
-        let mut line: Vec<String> =
-            axes.iter().map(|axis| point.pins.get(axis).map_or(String::new(), |option| axis.words[option].to_owned())).collect();
-        let number = |value: Option<f64>| value.map_or_else(|| "not measured".into(), |value| value.to_string());
+        let mut line: Vec<String> = axes
+            .iter()
+            .map(|axis| {
+                point
+                    .pins
+                    .get(axis)
+                    .map_or(String::new(), |option| axis.words[option].to_owned())
+            })
+            .collect();
+        let number = |value: Option<f64>| {
+            value.map_or_else(|| "not measured".into(), |value| value.to_string())
+        };
         line.extend([0, 1, 2].map(|i| number(point.ms.map(|ms| [ms.p5, ms.p50, ms.p95][i]))));
         line.push(point.samples.to_string());
-        line.extend(metrics.iter().map(|metric| number(point.errors[*metric as usize])));
+        line.extend(
+            metrics
+                .iter()
+                .map(|metric| number(point.errors[*metric as usize])),
+        );
         let further = |i: usize| point.more.get(i).map(|(_, value)| *value);
         line.extend((0..more.map_or(0, Vec::len)).map(|i| number(further(i))));
         line.push(cell(point.note.as_deref().unwrap_or_default()));
@@ -134,7 +178,9 @@ mod tests {
 
     /// Thirty samples, up to a tenth above `ms`.
     fn point(coverage: Coverage, depth: DepthFormat, ms: f64, wrong: f64) -> Point {
-        let samples: Vec<f64> = (0..30).map(|i| ms * (1.0 + 0.01 * f64::from(i % 11))).collect();
+        let samples: Vec<f64> = (0..30)
+            .map(|i| ms * (1.0 + 0.01 * f64::from(i % 11)))
+            .collect();
         Point {
             pins: PinnedOptions::of(coverage).with(depth),
             ms: Spread::of(&samples),
@@ -158,10 +204,21 @@ mod tests {
     #[test]
     fn the_front_holds_what_nothing_dominates() {
         use Standing::{Dominated, Front};
-        assert_eq!(standings(&points(), Metric::Wrong), [Front, Front, Dominated, Front, Dominated].map(Some));
+        assert_eq!(
+            standings(&points(), Metric::Wrong),
+            [Front, Front, Dominated, Front, Dominated].map(Some)
+        );
         let expected = [Front, Dominated, Dominated, Dominated, Dominated].map(Some);
-        assert_eq!(standings(&points(), Metric::Color), expected, "all are exact, so only the fastest is on the front");
-        assert_eq!(standings(&points(), Metric::Coverage), [None; 5], "not measured is no point");
+        assert_eq!(
+            standings(&points(), Metric::Color),
+            expected,
+            "all are exact, so only the fastest is on the front"
+        );
+        assert_eq!(
+            standings(&points(), Metric::Coverage),
+            [None; 5],
+            "not measured is no point"
+        );
     }
 
     #[test]
@@ -169,11 +226,24 @@ mod tests {
         use Standing::{Dominated, Front, Tied};
         let at = |ms: f64, wrong: f64| point(Coverage::Fixed8, DepthFormat::Reversed, ms, wrong);
         // The second seems to be quicker by 1 %, and the third is slower by far.
-        assert_eq!(standings(&[at(1.01, 0.0), at(1.0, 0.0), at(2.0, 0.0)], Metric::Wrong), [Tied, Tied, Dominated].map(Some));
+        assert_eq!(
+            standings(&[at(1.01, 0.0), at(1.0, 0.0), at(2.0, 0.0)], Metric::Wrong),
+            [Tied, Tied, Dominated].map(Some)
+        );
         // The times do not differ beyond the noise, so its error saves no time that was measured.
-        assert_eq!(standings(&[at(1.0, 9.0), at(1.01, 0.0)], Metric::Wrong), [Tied, Front].map(Some));
-        assert_eq!(standings(&[at(1.0, 9.0), at(2.0, 0.0)], Metric::Wrong), [Front, Front].map(Some));
-        assert_eq!(standings(&[at(1.0, 9.0)], Metric::Wrong), [Some(Front)], "alone");
+        assert_eq!(
+            standings(&[at(1.0, 9.0), at(1.01, 0.0)], Metric::Wrong),
+            [Tied, Front].map(Some)
+        );
+        assert_eq!(
+            standings(&[at(1.0, 9.0), at(2.0, 0.0)], Metric::Wrong),
+            [Front, Front].map(Some)
+        );
+        assert_eq!(
+            standings(&[at(1.0, 9.0)], Metric::Wrong),
+            [Some(Front)],
+            "alone"
+        );
     }
 
     #[test]
@@ -189,7 +259,10 @@ mod tests {
             "coverage,depth,ms p5,ms p50,ms p95,samples,wrong pixels ppm,color difference of 255,holes and doubles per Mpx,bytes,note"
         );
         let ms = points[0].ms.expect("it was timed");
-        let expected = format!("float,ndc16,{},{},{},30,500,0,not measured,7,\"a, b\"", ms.p5, ms.p50, ms.p95);
+        let expected = format!(
+            "float,ndc16,{},{},{},30,500,0,not measured,7,\"a, b\"",
+            ms.p5, ms.p50, ms.p95
+        );
         assert_eq!(lines[1], expected);
     }
 }

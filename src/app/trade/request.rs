@@ -52,7 +52,10 @@ impl Progress {
     pub fn new(pace: Pace) -> Self {
         Self {
             work: Arc::default(),
-            state: Mutex::new(State { pace, now: "the reference picture".into() }),
+            state: Mutex::new(State {
+                pace,
+                now: "the reference picture".into(),
+            }),
             paused_until_ms: AtomicU64::new(0),
             began: web_time::Instant::now(),
         }
@@ -80,7 +83,8 @@ impl Progress {
     /// The person works in the window: the measurement waits until they have rested.
     pub fn pause(&self) {
         let until_s = self.began.elapsed().as_secs_f64() + PAUSE_S;
-        self.paused_until_ms.store((1e3 * until_s) as u64, Ordering::Relaxed);
+        self.paused_until_ms
+            .store((1e3 * until_s) as u64, Ordering::Relaxed);
     }
 
     /// Returns true while the measurement waits for the person to rest.
@@ -91,7 +95,11 @@ impl Progress {
     /// The fraction that is done, the seconds that are left, and what is being done.
     pub fn read(&self) -> (f64, f64, String) {
         let state = self.state();
-        (state.pace.fraction(), state.pace.left_s(), state.now.clone())
+        (
+            state.pace.fraction(),
+            state.pace.left_s(),
+            state.now.clone(),
+        )
     }
 
     /// What has been learned about the speed of this machine.

@@ -1,7 +1,10 @@
-//! Rows: a label and the control for its type of value. One function serves every setting of a preset and every parameter of
-//! every effect.
+//! Rows: a label and the control for its type of value. One function serves every setting of a
+//! preset and every parameter of every effect.
 
-use eframe::egui::{self, Align, Align2, Color32, Rect, RichText, Sense, Slider, SliderClamping, Ui, UiBuilder, pos2, vec2};
+use eframe::egui::{
+    self, Align, Align2, Color32, Rect, RichText, Sense, Slider, SliderClamping, Ui, UiBuilder,
+    pos2, vec2,
+};
 
 use super::{
     icons::{Icon, icon_button, key_button},
@@ -44,8 +47,16 @@ enum Edited {
 impl Row {
     /// The row of an effect's parameter.
     pub fn of_parameter((effect, field): Parameter, words: &[u32]) -> Self {
-        let (path, modified) = (format!("{}.{}", effect.name, field.name), !field.same(words, &effect.defaults));
-        Self::new(path, field.param.clone(), modified, Edited::Parameter((effect, field)))
+        let (path, modified) = (
+            format!("{}.{}", effect.name, field.name),
+            !field.same(words, &effect.defaults),
+        );
+        Self::new(
+            path,
+            field.param.clone(),
+            modified,
+            Edited::Parameter((effect, field)),
+        )
     }
 
     /// The row of a parameter whose lengths are radii of the scene's box.
@@ -60,18 +71,35 @@ impl Row {
         self
     }
 
-    /// The row of a parameter that can be animated. Keyframes are a difference from the default, whatever their values.
+    /// The row of a parameter that can be animated. Keyframes are a difference from the default,
+    /// whatever their values.
     pub fn keyed(self, keying: Keying) -> Self {
-        Self { modified: self.modified || keying != Keying::Still, keying: Some(keying), ..self }
+        Self {
+            modified: self.modified || keying != Keying::Still,
+            keying: Some(keying),
+            ..self
+        }
     }
 
     /// The row of a setting of the preset.
     pub fn of_setting(setting: &'static Setting, preset: &Preset) -> Self {
-        Self::new(setting.path(), setting.param.clone(), setting.is_modified(preset), Edited::Setting(setting))
+        Self::new(
+            setting.path(),
+            setting.param.clone(),
+            setting.is_modified(preset),
+            Edited::Setting(setting),
+        )
     }
 
     fn new(path: String, param: Param, modified: bool, edited: Edited) -> Self {
-        Self { path, label: label(&param.name, &param.unit), param, modified, keying: None, edited }
+        Self {
+            path,
+            label: label(&param.name, &param.unit),
+            param,
+            modified,
+            keying: None,
+            edited,
+        }
     }
 
     /// The edit after which the row shows `value`.
@@ -97,10 +125,20 @@ impl Row {
     }
 }
 
-/// The name without its unit, as the unit is shown after the number: `radius_m` in meters is `radius`.
+/// The name without its unit, as the unit is shown after the number: `radius_m` in meters is
+/// `radius`.
 fn label(name: &str, unit: &str) -> String {
-    let stem = [("m", "_m"), ("°", "_deg"), ("°/s", "_deg_per_s"), ("s", "_s")].iter().find(|(u, _)| *u == unit);
-    stem.and_then(|(_, suffix)| name.strip_suffix(suffix)).unwrap_or(name).replace('_', " ")
+    let stem = [
+        ("m", "_m"),
+        ("°", "_deg"),
+        ("°/s", "_deg_per_s"),
+        ("s", "_s"),
+    ]
+    .iter()
+    .find(|(u, _)| *u == unit);
+    stem.and_then(|(_, suffix)| name.strip_suffix(suffix))
+        .unwrap_or(name)
+        .replace('_', " ")
 }
 
 const BAR_WIDTH: f32 = 3.0;
@@ -113,22 +151,44 @@ pub fn row_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) {
     let width = ui.available_width();
     let (rect, _) = ui.allocate_exact_size(vec2(width, theme::ROW), Sense::hover());
     let split = rect.left() + (width * 0.34).clamp(72.0, 140.0);
-    let label_rect = Rect::from_min_max(pos2(rect.left() + BAR_WIDTH + theme::HALF, rect.top()), pos2(split, rect.bottom()));
+    let label_rect = Rect::from_min_max(
+        pos2(rect.left() + BAR_WIDTH + theme::HALF, rect.top()),
+        pos2(split, rect.bottom()),
+    );
     let buttons = RESET_WIDTH + if row.keying.is_some() { KEY_WIDTH } else { 0.0 };
-    let control_rect = Rect::from_min_max(pos2(split + theme::HALF, rect.top()), pos2(rect.right() - buttons, rect.bottom()));
-    let key_rect = Rect::from_min_max(pos2(rect.right() - buttons, rect.top()), pos2(rect.right() - RESET_WIDTH, rect.bottom()));
+    let control_rect = Rect::from_min_max(
+        pos2(split + theme::HALF, rect.top()),
+        pos2(rect.right() - buttons, rect.bottom()),
+    );
+    let key_rect = Rect::from_min_max(
+        pos2(rect.right() - buttons, rect.top()),
+        pos2(rect.right() - RESET_WIDTH, rect.bottom()),
+    );
     let reset_rect = Rect::from_min_max(pos2(rect.right() - RESET_WIDTH, rect.top()), rect.max);
     if row.modified {
-        let bar = Rect::from_min_size(rect.min + vec2(0.0, 4.0), vec2(BAR_WIDTH, rect.height() - 8.0));
+        let bar = Rect::from_min_size(
+            rect.min + vec2(0.0, 4.0),
+            vec2(BAR_WIDTH, rect.height() - 8.0),
+        );
         ui.painter().rect_filled(bar, 1.5, theme::accent());
     }
     let mut command = label_ui(ui, row, value, label_rect);
     let layout = egui::Layout::left_to_right(Align::Center);
-    let mut control = ui.new_child(UiBuilder::new().id_salt(&row.path).max_rect(control_rect).layout(layout));
+    let mut control = ui.new_child(
+        UiBuilder::new()
+            .id_salt(&row.path)
+            .max_rect(control_rect)
+            .layout(layout),
+    );
     control.spacing_mut().item_spacing.x = 6.0;
     let changed = control_ui(&mut control, commands, row, value);
     if row.modified {
-        let mut reset = ui.new_child(UiBuilder::new().id_salt((&row.path, "reset")).max_rect(reset_rect).layout(layout));
+        let mut reset = ui.new_child(
+            UiBuilder::new()
+                .id_salt((&row.path, "reset"))
+                .max_rect(reset_rect)
+                .layout(layout),
+        );
         if icon_button(&mut reset, Icon::Reset, &format!("Reset {}", row.path)).clicked() {
             command = Some(RowCommand::Reset(row.path.clone()));
         }
@@ -140,7 +200,10 @@ pub fn row_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) {
     }
     reveal::row(ui, &row.path, rect);
     if ui.rect_contains_pointer(rect) {
-        commands.send(Command::HoverRow { path: row.path.clone(), value: row.written(value) });
+        commands.send(Command::HoverRow {
+            path: row.path.clone(),
+            value: row.written(value),
+        });
     }
     if let Some(command) = command {
         commands.send(Command::Row(command));
@@ -154,24 +217,45 @@ pub fn row_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) {
 /// The label: tooltip, double click to reset, menu.
 fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<RowCommand> {
     let response = ui.interact(rect, egui::Id::unique((&row.path, "label")), Sense::click());
-    let color = if row.modified || response.hovered() { theme::text_strong() } else { theme::text() };
+    let color = if row.modified || response.hovered() {
+        theme::text_strong()
+    } else {
+        theme::text()
+    };
     // The bundled fonts have no bold cut, so bold is the same text twice, half a pixel apart.
     let clipped = ui.painter_at(rect.expand(1.0));
     let font = egui::TextStyle::Body.resolve(ui.style());
     let at = pos2(rect.left(), rect.center().y);
     clipped.text(at, Align2::LEFT_CENTER, &row.label, font.clone(), color);
     if row.modified {
-        clipped.text(at + vec2(0.5, 0.0), Align2::LEFT_CENTER, &row.label, font, color);
+        clipped.text(
+            at + vec2(0.5, 0.0),
+            Align2::LEFT_CENTER,
+            &row.label,
+            font,
+            color,
+        );
     }
-    let mut command = response.double_clicked().then(|| RowCommand::Reset(row.path.clone()));
+    let mut command = response
+        .double_clicked()
+        .then(|| RowCommand::Reset(row.path.clone()));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &row.label));
     response.context_menu(|ui| {
         let group = row.path.split('.').next().unwrap_or_default();
         for (text, chosen) in [
             ("Reset".to_owned(), RowCommand::Reset(row.path.clone())),
-            (format!("Reset all of {group}"), RowCommand::ResetGroup(group.into())),
-            ("Copy value".to_owned(), RowCommand::Copy(row.written(value))),
-            ("Paste value".to_owned(), RowCommand::Paste(row.path.clone())),
+            (
+                format!("Reset all of {group}"),
+                RowCommand::ResetGroup(group.into()),
+            ),
+            (
+                "Copy value".to_owned(),
+                RowCommand::Copy(row.written(value)),
+            ),
+            (
+                "Paste value".to_owned(),
+                RowCommand::Paste(row.path.clone()),
+            ),
         ] {
             if ui.button(text).clicked() {
                 command = Some(chosen);
@@ -181,13 +265,22 @@ fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<RowComm
     });
     response.on_hover_ui(|ui| {
         ui.label(RichText::new(&row.param.doc).color(theme::text_strong()));
-        ui.label(theme::weak(format!("{}   {}{}", row.path, row.param.allowed(), spaced(&row.param.unit))));
+        ui.label(theme::weak(format!(
+            "{}   {}{}",
+            row.path,
+            row.param.allowed(),
+            spaced(&row.param.unit)
+        )));
     });
     command
 }
 
 fn spaced(unit: &str) -> String {
-    if unit.is_empty() { String::new() } else { format!(" {unit}") }
+    if unit.is_empty() {
+        String::new()
+    } else {
+        format!(" {unit}")
+    }
 }
 
 fn control_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) -> Option<Value> {
@@ -206,7 +299,9 @@ fn control_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) -> Opt
         },
         (ValueType::Text { max_chars }, Value::Text(text)) => {
             let mut text = text.clone();
-            let edit = egui::TextEdit::singleline(&mut text).char_limit(*max_chars).desired_width(ui.available_width());
+            let edit = egui::TextEdit::singleline(&mut text)
+                .char_limit(*max_chars)
+                .desired_width(ui.available_width());
             let shown = ui.add(edit).accessible_name(&row.path);
             reveal::focus(&row.path, &shown);
             shown.changed().then_some(Value::Text(text))
@@ -234,13 +329,37 @@ fn word_ui(ui: &mut Ui, row: &Row, words: &[String], chosen: usize) -> Option<Va
 fn color_ui(ui: &mut Ui, row: &Row, components: &[f64]) -> Option<Value> {
     let mut color: [f32; 4] = std::array::from_fn(|i| components[i] as f32);
     ui.spacing_mut().interact_size.x = 44.0;
-    let response = ui.color_edit_button_rgba_unmultiplied(&mut color).accessible_name(&row.path).on_hover_text("Choose the color");
+    let response = ui
+        .color_edit_button_rgba_unmultiplied(&mut color)
+        .accessible_name(&row.path)
+        .on_hover_text("Choose the color");
     reveal::focus(&row.path, &response);
-    let [r, g, b, a] = egui::Rgba::from_rgba_unmultiplied(color[0], color[1], color[2], color[3]).to_srgba_unmultiplied();
-    let alpha = if a == 255 { String::new() } else { format!(" {:.0}%", f64::from(a) / 2.55) };
-    ui.label(RichText::new(format!("#{r:02x}{g:02x}{b:02x}{alpha}")).monospace().color(theme::text_weak()));
+    let [r, g, b, a] = egui::Rgba::from_rgba_unmultiplied(color[0], color[1], color[2], color[3])
+        .to_srgba_unmultiplied();
+    let alpha = if a == 255 {
+        String::new()
+    } else {
+        format!(" {:.0}%", f64::from(a) / 2.55)
+    };
+    ui.label(
+        RichText::new(format!("#{r:02x}{g:02x}{b:02x}{alpha}"))
+            .monospace()
+            .color(theme::text_weak()),
+    );
     // The picker's arithmetic may leave the unit range by a bit.
-    response.changed().then(|| Value::Numbers(color.map(|c| f64::from(if c.is_finite() { c.clamp(0.0, 1.0) } else { 0.0 })).to_vec()))
+    response.changed().then(|| {
+        Value::Numbers(
+            color
+                .map(|c| {
+                    f64::from(if c.is_finite() {
+                        c.clamp(0.0, 1.0)
+                    } else {
+                        0.0
+                    })
+                })
+                .to_vec(),
+        )
+    })
 }
 
 /// One number: a slider over the soft range, and a field that takes the hard one.
@@ -251,11 +370,24 @@ fn number_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: f64) -> Option<
         ui.spacing_mut().slider_width = (ui.available_width() - NUMBER_WIDTH - 6.0).max(24.0);
         now = slider_ui(ui, row, value, [from, to], whole);
     }
-    let speed = soft.map_or_else(|| value.abs().max(1.0) * 0.01, |[from, to]| (to - from) / 300.0);
-    let width = if soft.is_some() { NUMBER_WIDTH } else { ui.available_width().min(120.0) };
+    let speed = soft.map_or_else(
+        || value.abs().max(1.0) * 0.01,
+        |[from, to]| (to - from) / 300.0,
+    );
+    let width = if soft.is_some() {
+        NUMBER_WIDTH
+    } else {
+        ui.available_width().min(120.0)
+    };
     let unit = spaced(&row.param.unit);
     let speed = if whole { speed.max(0.05) } else { speed };
-    let field = NumberField { range: [low, high], speed, is_whole: whole, decimals: decimals(soft), unit: &unit };
+    let field = NumberField {
+        range: [low, high],
+        speed,
+        is_whole: whole,
+        decimals: decimals(soft),
+        unit: &unit,
+    };
     let (response, said) = field.show(ui, width, &mut now);
     reveal::focus(&row.path, &response);
     response.accessible_name(format!("{} value", row.path));
@@ -267,7 +399,12 @@ fn number_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: f64) -> Option<
 /// Says that a typed number was not taken as it was.
 fn say(commands: &Commands, row: &Row, said: Option<String>) {
     if let Some(said) = said {
-        let text = format!("{} takes {}{}: {said}.", row.path, row.param.allowed(), spaced(&row.param.unit));
+        let text = format!(
+            "{} takes {}{}: {said}.",
+            row.path,
+            row.param.allowed(),
+            spaced(&row.param.unit)
+        );
         commands.send(Command::Notify(Level::Warning, text));
     }
 }
@@ -294,16 +431,32 @@ fn slider_ui(ui: &mut Ui, row: &Row, value: f64, [from, to]: [f64; 2], whole: bo
         }
         now
     };
-    let mut slider = Slider::from_get_set(from..=to, set).show_value(false).clamping(SliderClamping::Edits);
+    let mut slider = Slider::from_get_set(from..=to, set)
+        .show_value(false)
+        .clamping(SliderClamping::Edits);
     slider = if whole { slider.step_by(1.0) } else { slider };
-    slider = if row.param.log { slider.logarithmic(true).smallest_positive(from.abs().max(1e-6)) } else { slider };
+    slider = if row.param.log {
+        slider
+            .logarithmic(true)
+            .smallest_positive(from.abs().max(1e-6))
+    } else {
+        slider
+    };
     let response = ui.add(slider).accessible_name(&row.path);
     if !(fine && response.dragged()) {
         return now;
     }
     let part = f64::from(response.drag_delta().x / rail.max(1.0)) * 0.1;
-    let moved = if row.param.log && value > 0.0 && from > 0.0 { value * (to / from).powf(part) } else { value + (to - from) * part };
-    if whole { value } else { moved.clamp(from.min(value), to.max(value)) }
+    let moved = if row.param.log && value > 0.0 && from > 0.0 {
+        value * (to / from).powf(part)
+    } else {
+        value + (to - from) * part
+    };
+    if whole {
+        value
+    } else {
+        moved.clamp(from.min(value), to.max(value))
+    }
 }
 
 /// Two or three numbers side by side.
@@ -311,17 +464,39 @@ fn components_ui(ui: &mut Ui, commands: &Commands, row: &Row, components: &[f64]
     let ([low, high], whole, soft) = (row.param.hard, row.is_whole(), row.slider());
     let mut now = components.to_vec();
     ui.spacing_mut().item_spacing.x = 4.0;
-    let width = (ui.available_width() - 4.0 * (components.len() - 1) as f32) / components.len() as f32;
+    let width =
+        (ui.available_width() - 4.0 * (components.len() - 1) as f32) / components.len() as f32;
     for (component, name) in now.iter_mut().zip(row.param.value_type.component_names()) {
-        let speed = if whole { 1.0 } else { soft.map_or_else(|| component.abs().max(0.5) * 0.01, |[from, to]| (to - from) / 300.0) };
-        let field = NumberField { range: [low, high], speed, is_whole: whole, decimals: if whole { 0 } else { 3 }, unit: "" };
+        let speed = if whole {
+            1.0
+        } else {
+            soft.map_or_else(
+                || component.abs().max(0.5) * 0.01,
+                |[from, to]| (to - from) / 300.0,
+            )
+        };
+        let field = NumberField {
+            range: [low, high],
+            speed,
+            is_whole: whole,
+            decimals: if whole { 0 } else { 3 },
+            unit: "",
+        };
         let (response, said) = field.show(ui, width, component);
         reveal::focus(&row.path, &response);
-        response.accessible_name(format!("{}.{name}", row.path)).on_hover_text(*name);
+        response
+            .accessible_name(format!("{}.{name}", row.path))
+            .on_hover_text(*name);
         say(commands, row, said);
     }
     let changed = now != components && now.iter().all(|component| component.is_finite());
-    changed.then(|| Value::Numbers(now.iter().map(|component| if whole { component.round() } else { *component }).collect()))
+    changed.then(|| {
+        Value::Numbers(
+            now.iter()
+                .map(|component| if whole { component.round() } else { *component })
+                .collect(),
+        )
+    })
 }
 
 /// A dot of `color` in front of a line, for states.
@@ -347,7 +522,11 @@ mod tests {
         for effect in EFFECTS.iter() {
             let words = &effect.defaults;
             assert!(
-                effect.fields.iter().all(|field| !Row::of_parameter((effect.clone(), field.clone()), words).modified),
+                effect.fields.iter().all(|field| !Row::of_parameter(
+                    (effect.clone(), field.clone()),
+                    words
+                )
+                .modified),
                 "{}",
                 effect.name
             );

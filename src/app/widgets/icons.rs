@@ -43,19 +43,26 @@ pub enum Icon {
 
 /// A square button without a frame; `name` is its tooltip and its accessible name.
 pub fn icon_button(ui: &mut Ui, icon: Icon, name: &str) -> Response {
-    let response =
-        bare_button(
-            ui,
-            icon,
-            |ui, response| if ui.is_enabled() { ui.style().interact(response).fg_stroke.color } else { ui.visuals().weak_text_color() },
-        );
+    let response = bare_button(ui, icon, |ui, response| {
+        if ui.is_enabled() {
+            ui.style().interact(response).fg_stroke.color
+        } else {
+            ui.visuals().weak_text_color()
+        }
+    });
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), name));
     response.on_hover_text(name).on_disabled_hover_text(name)
 }
 
 /// A button that is on or off.
 pub fn toggle_button(ui: &mut Ui, icon: Icon, on: bool, name: &str) -> Response {
-    let response = bare_button(ui, icon, |_, _| if on { theme::accent() } else { theme::text_weak() });
+    let response = bare_button(ui, icon, |_, _| {
+        if on {
+            theme::accent()
+        } else {
+            theme::text_weak()
+        }
+    });
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, on, name));
     response
 }
@@ -66,20 +73,41 @@ fn bare_button(ui: &mut Ui, icon: Icon, color: impl FnOnce(&Ui, &Response) -> Co
     if ui.is_rect_visible(rect) {
         let visuals = ui.style().interact(&response);
         if response.hovered() || response.has_focus() {
-            ui.painter().rect(rect.shrink(1.0), 4.0, visuals.weak_bg_fill, visuals.bg_stroke, egui::StrokeKind::Inside);
+            ui.painter().rect(
+                rect.shrink(1.0),
+                4.0,
+                visuals.weak_bg_fill,
+                visuals.bg_stroke,
+                egui::StrokeKind::Inside,
+            );
         }
-        paint(ui.painter(), icon, rect.shrink(side * 0.27), color(ui, &response));
+        paint(
+            ui.painter(),
+            icon,
+            rect.shrink(side * 0.27),
+            color(ui, &response),
+        );
     }
     response
 }
 
-/// The diamond beside a value: a gray outline if it is not animated, an outline in the accent color if it is, filled at a keyframe.
+/// The diamond beside a value: a gray outline if it is not animated, an outline in the accent color
+/// if it is, filled at a keyframe.
 pub fn key_button(ui: &mut Ui, rect: Rect, keying: Keying, path: &str) -> Response {
     let response = ui.interact(rect, egui::Id::unique((path, "key")), Sense::click());
     let (name, hint) = match keying {
-        Keying::Still => (format!("Animate {path}"), "Animate this value: set its first key at the time shown"),
-        Keying::Between => (format!("Key {path}"), "Set a key at the time shown. Changing the value does the same."),
-        Keying::OnKey => (format!("Remove key of {path}"), "Remove the key at this time"),
+        Keying::Still => (
+            format!("Animate {path}"),
+            "Animate this value: set its first key at the time shown",
+        ),
+        Keying::Between => (
+            format!("Key {path}"),
+            "Set a key at the time shown. Changing the value does the same.",
+        ),
+        Keying::OnKey => (
+            format!("Remove key of {path}"),
+            "Remove the key at this time",
+        ),
     };
     let near = response.hovered() || response.has_focus();
     let color = match (keying, near && ui.is_enabled()) {
@@ -88,22 +116,39 @@ pub fn key_button(ui: &mut Ui, rect: Rect, keying: Keying, path: &str) -> Respon
         (_, false) => theme::accent(),
         (_, true) => theme::text_strong(),
     };
-    let fill = if keying == Keying::OnKey { color } else { Color32::TRANSPARENT };
-    paint_diamond(ui.painter(), rect.center(), if near { 5.5 } else { 4.5 }, fill, color);
+    let fill = if keying == Keying::OnKey {
+        color
+    } else {
+        Color32::TRANSPARENT
+    };
+    paint_diamond(
+        ui.painter(),
+        rect.center(),
+        if near { 5.5 } else { 4.5 },
+        fill,
+        color,
+    );
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), &name));
     response.on_hover_text(hint)
 }
 
 /// The mark of a keyframe: a diamond with corners `r` points from its center.
 pub fn paint_diamond(painter: &egui::Painter, at: Pos2, r: f32, fill: Color32, edge: Color32) {
-    let points = [(0.0, -r), (r, 0.0), (0.0, r), (-r, 0.0)].map(|(x, y)| at + vec2(x, y)).to_vec();
+    let points = [(0.0, -r), (r, 0.0), (0.0, r), (-r, 0.0)]
+        .map(|(x, y)| at + vec2(x, y))
+        .to_vec();
     painter.add(Shape::convex_polygon(points, fill, Stroke::new(1.3, edge)));
 }
 
 /// Draws `icon` into `rect`.
 pub fn paint(painter: &egui::Painter, icon: Icon, rect: Rect, color: Color32) {
     let stroke = Stroke::new(1.5, color);
-    let at = |x: f32, y: f32| pos2(rect.left() + x * rect.width(), rect.top() + y * rect.height());
+    let at = |x: f32, y: f32| {
+        pos2(
+            rect.left() + x * rect.width(),
+            rect.top() + y * rect.height(),
+        )
+    };
     let line = |points: &[Pos2]| {
         painter.line(points.to_vec(), stroke);
     };
@@ -137,7 +182,11 @@ pub fn paint(painter: &egui::Painter, icon: Icon, rect: Rect, color: Color32) {
             };
             let points: Vec<_> = (0..=11).map(arc).collect();
             line(&points);
-            line(&[points[0] + vec2(2.5, -3.5), points[0], points[0] + vec2(3.5, 2.5)]);
+            line(&[
+                points[0] + vec2(2.5, -3.5),
+                points[0],
+                points[0] + vec2(3.5, 2.5),
+            ]);
         }
         Icon::Cross => {
             line(&[at(0.1, 0.1), at(0.9, 0.9)]);
@@ -179,30 +228,61 @@ pub fn paint(painter: &egui::Painter, icon: Icon, rect: Rect, color: Color32) {
         }
         Icon::Star | Icon::StarFull => {
             let corner = |i: i32| {
-                let (angle, radius) = ((36.0 * i as f32 - 90.0).to_radians(), if i % 2 == 0 { 0.6 } else { 0.26 });
+                let (angle, radius) = (
+                    (36.0 * i as f32 - 90.0).to_radians(),
+                    if i % 2 == 0 { 0.6 } else { 0.26 },
+                );
                 rect.center() + vec2(angle.cos(), angle.sin()) * rect.width() * radius
             };
             let corners: Vec<Pos2> = (0..10).map(corner).collect();
             if icon == Icon::StarFull {
                 // A star is not convex: a pentagon and five triangles are.
-                fill(&corners.iter().skip(1).step_by(2).copied().collect::<Vec<_>>());
-                (0..5).for_each(|i| fill(&[corners[(2 * i + 9) % 10], corners[2 * i], corners[2 * i + 1]]));
+                fill(
+                    &corners
+                        .iter()
+                        .skip(1)
+                        .step_by(2)
+                        .copied()
+                        .collect::<Vec<_>>(),
+                );
+                (0..5).for_each(|i| {
+                    fill(&[
+                        corners[(2 * i + 9) % 10],
+                        corners[2 * i],
+                        corners[2 * i + 1],
+                    ])
+                });
             }
             painter.add(Shape::closed_line(corners, Stroke::new(1.2, color)));
         }
         Icon::Grid => {
             for (x, y) in [(0.0, 0.0), (0.58, 0.0), (0.0, 0.58), (0.58, 0.58)] {
-                painter.rect_filled(Rect::from_two_pos(at(x, y), at(x + 0.42, y + 0.42)), 1.0, color);
+                painter.rect_filled(
+                    Rect::from_two_pos(at(x, y), at(x + 0.42, y + 0.42)),
+                    1.0,
+                    color,
+                );
             }
         }
         Icon::List => {
             for y in [0.0, 0.4, 0.8] {
                 painter.rect_filled(Rect::from_two_pos(at(0.0, y), at(0.2, y + 0.2)), 0.5, color);
-                painter.rect_filled(Rect::from_two_pos(at(0.34, y), at(1.0, y + 0.2)), 0.5, color);
+                painter.rect_filled(
+                    Rect::from_two_pos(at(0.34, y), at(1.0, y + 0.2)),
+                    0.5,
+                    color,
+                );
             }
         }
         Icon::Grip => {
-            for (x, y) in [(0.3, 0.05), (0.3, 0.5), (0.3, 0.95), (0.7, 0.05), (0.7, 0.5), (0.7, 0.95)] {
+            for (x, y) in [
+                (0.3, 0.05),
+                (0.3, 0.5),
+                (0.3, 0.95),
+                (0.7, 0.05),
+                (0.7, 0.5),
+                (0.7, 0.95),
+            ] {
                 painter.circle_filled(at(x, y), rect.width() * 0.1, color);
             }
         }

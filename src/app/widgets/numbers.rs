@@ -1,4 +1,5 @@
-//! A field for a number: the number always fits into its box, and what is typed and cannot be taken is said in words.
+//! A field for a number: the number always fits into its box, and what is typed and cannot be taken
+//! is said in words.
 
 use std::cell::RefCell;
 
@@ -27,13 +28,21 @@ impl NumberField<'_> {
     pub fn show(&self, ui: &mut Ui, width: f32, value: &mut f64) -> (Response, Option<String>) {
         let shown = self.text(*value, self.max_chars(ui, width));
         let (before, typed) = (*value, RefCell::new(None));
-        let number = shown.strip_suffix(self.unit).filter(|_| !self.unit.is_empty());
+        let number = shown
+            .strip_suffix(self.unit)
+            .filter(|_| !self.unit.is_empty());
         let drag = DragValue::new(value)
             .range(self.range[0]..=self.range[1])
             .speed(self.speed)
             .update_while_editing(false)
             .suffix(if number.is_some() { self.unit } else { "" })
-            .custom_formatter(|now, _| if now == before { number.unwrap_or(&shown).to_owned() } else { rounded(now, self.decimals) })
+            .custom_formatter(|now, _| {
+                if now == before {
+                    number.unwrap_or(&shown).to_owned()
+                } else {
+                    rounded(now, self.decimals)
+                }
+            })
             .custom_parser(|text| {
                 let text = text.trim();
                 if text == number.unwrap_or(&shown) {
@@ -48,14 +57,19 @@ impl NumberField<'_> {
         if self.is_whole {
             *value = value.round();
         }
-        let said = typed.into_inner().and_then(|(text, parsed)| self.remark(&text, parsed, *value, before));
+        let said = typed
+            .into_inner()
+            .and_then(|(text, parsed)| self.remark(&text, parsed, *value, before));
         (response, said)
     }
 
     /// What to say about `text`, after which the value is `now`.
     fn remark(&self, text: &str, parsed: Option<f64>, now: f64, before: f64) -> Option<String> {
         match parsed {
-            None => Some(format!("{text:?} is no number, so it stays {}", fixed(before, 6))),
+            None => Some(format!(
+                "{text:?} is no number, so it stays {}",
+                fixed(before, 6)
+            )),
             Some(number) if number != now => Some(format!("{text} became {}", fixed(now, 6))),
             Some(_) => None,
         }
@@ -63,23 +77,43 @@ impl NumberField<'_> {
 
     fn max_chars(&self, ui: &Ui, width: f32) -> usize {
         let font = ui.style().drag_value_text_style.resolve(ui.style());
-        let ten = ui.painter().layout_no_wrap("0123456789".into(), font, egui::Color32::PLACEHOLDER).size().x;
+        let ten = ui
+            .painter()
+            .layout_no_wrap("0123456789".into(), font, egui::Color32::PLACEHOLDER)
+            .size()
+            .x;
         ((width - 2.0 * MARGIN) * 10.0 / ten.max(1.0)).max(1.0) as usize
     }
 
-    /// The number in at most `max_chars` characters: with fewer decimals, without its unit, as a power of ten.
+    /// The number in at most `max_chars` characters: with fewer decimals, without its unit, as a
+    /// power of ten.
     fn text(&self, number: f64, max_chars: usize) -> String {
         let decimals = if self.is_whole { 0 } else { self.decimals };
         let fits = |text: &String| text.chars().count() <= max_chars;
-        let with_unit = (0..=decimals).rev().map(|decimals| format!("{}{}", rounded(number, decimals), self.unit)).find(fits);
+        let with_unit = (0..=decimals)
+            .rev()
+            .map(|decimals| format!("{}{}", rounded(number, decimals), self.unit))
+            .find(fits);
         // A small number must not become 0.
-        let is_true = |text: &String| number == 0.0 || text.contains(|c: char| ('1'..='9').contains(&c));
+        let is_true =
+            |text: &String| number == 0.0 || text.contains(|c: char| ('1'..='9').contains(&c));
         if let Some(text) = with_unit.filter(is_true) {
             return text;
         }
-        let without = (0..=decimals).rev().map(|decimals| rounded(number, decimals)).find(fits).filter(is_true);
-        let power = || (0..4).rev().map(|digits| format!("{number:.digits$e}")).find(fits);
-        without.or_else(power).unwrap_or_else(|| format!("{number:.0e}"))
+        let without = (0..=decimals)
+            .rev()
+            .map(|decimals| rounded(number, decimals))
+            .find(fits)
+            .filter(is_true);
+        let power = || {
+            (0..4)
+                .rev()
+                .map(|digits| format!("{number:.digits$e}"))
+                .find(fits)
+        };
+        without
+            .or_else(power)
+            .unwrap_or_else(|| format!("{number:.0e}"))
     }
 }
 
@@ -95,14 +129,28 @@ fn rounded(number: f64, decimals: usize) -> String {
 /// `0.5`: at most so many decimals, no zeros at the end.
 fn fixed(number: f64, decimals: usize) -> String {
     let text = rounded(number, decimals);
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
 }
 
 /// The number that was typed, perhaps with its unit.
 fn parsed(text: &str, unit: &str) -> Option<f64> {
-    let text = text.trim().strip_suffix(unit.trim()).filter(|_| !unit.trim().is_empty()).unwrap_or(text);
-    let text: String = text.chars().filter(|c| !c.is_whitespace() && *c != '_').map(|c| if c == '\u{2212}' { '-' } else { c }).collect();
-    let number = text.parse::<f64>().or_else(|_| text.replace(',', ".").parse());
+    let text = text
+        .trim()
+        .strip_suffix(unit.trim())
+        .filter(|_| !unit.trim().is_empty())
+        .unwrap_or(text);
+    let text: String = text
+        .chars()
+        .filter(|c| !c.is_whitespace() && *c != '_')
+        .map(|c| if c == '\u{2212}' { '-' } else { c })
+        .collect();
+    let number = text
+        .parse::<f64>()
+        .or_else(|_| text.replace(',', ".").parse());
     number.ok().filter(|number| number.is_finite())
 }
 
@@ -110,17 +158,39 @@ fn parsed(text: &str, unit: &str) -> Option<f64> {
 mod tests {
     use super::*;
 
-    const FIELD: NumberField<'static> = NumberField { range: [-1e9, 1e9], speed: 1.0, is_whole: false, decimals: 3, unit: " °/s" };
+    const FIELD: NumberField<'static> = NumberField {
+        range: [-1e9, 1e9],
+        speed: 1.0,
+        is_whole: false,
+        decimals: 3,
+        unit: " °/s",
+    };
 
     #[test]
     fn a_number_fits_into_its_box() {
         let text = |number| FIELD.text(number, 8);
-        assert_eq!([0.5, 12.25, 123.456, -180.0].map(text), ["0.50 °/s", "12.2 °/s", "123 °/s", "-180 °/s"]);
-        assert_eq!([0.0, 0.001, -1234.5].map(text), ["0.00 °/s", "0.001", "-1234.50"]);
-        for number in [123_456_789.0, -987_654_321.5, 1e300, -1e-300, f64::MAX, 0.000_123] {
+        assert_eq!(
+            [0.5, 12.25, 123.456, -180.0].map(text),
+            ["0.50 °/s", "12.2 °/s", "123 °/s", "-180 °/s"]
+        );
+        assert_eq!(
+            [0.0, 0.001, -1234.5].map(text),
+            ["0.00 °/s", "0.001", "-1234.50"]
+        );
+        for number in [
+            123_456_789.0,
+            -987_654_321.5,
+            1e300,
+            -1e-300,
+            f64::MAX,
+            0.000_123,
+        ] {
             for max_chars in 7..12 {
                 let text = FIELD.text(number, max_chars);
-                assert!(text.chars().count() <= max_chars, "{number} in {max_chars}: {text}");
+                assert!(
+                    text.chars().count() <= max_chars,
+                    "{number} in {max_chars}: {text}"
+                );
             }
         }
     }
@@ -128,17 +198,30 @@ mod tests {
     #[test]
     fn numbers_are_read_with_units_commas_and_typographic_minus() {
         assert_eq!(
-            ["12", " -1.5 ", "12 °/s", "\u{2212}3", "1 000", "0,5", "1e3"].map(|text| parsed(text, " °/s").unwrap_or(f64::NAN)),
+            ["12", " -1.5 ", "12 °/s", "\u{2212}3", "1 000", "0,5", "1e3"]
+                .map(|text| parsed(text, " °/s").unwrap_or(f64::NAN)),
             [12.0, -1.5, 12.0, -3.0, 1000.0, 0.5, 1000.0]
         );
-        assert_eq!(["", "abc", "inf", "NaN", "1 m"].map(|text| parsed(text, " °/s")), [None; 5]);
+        assert_eq!(
+            ["", "abc", "inf", "NaN", "1 m"].map(|text| parsed(text, " °/s")),
+            [None; 5]
+        );
     }
 
     #[test]
     fn what_is_not_taken_as_typed_is_said() {
-        let field = NumberField { range: [0.0, 1.0], ..FIELD };
-        assert_eq!(field.remark("7", Some(7.0), 1.0, 0.5), Some("7 became 1".into()));
-        assert_eq!(field.remark("abc", None, 0.5, 0.5), Some("\"abc\" is no number, so it stays 0.5".into()));
+        let field = NumberField {
+            range: [0.0, 1.0],
+            ..FIELD
+        };
+        assert_eq!(
+            field.remark("7", Some(7.0), 1.0, 0.5),
+            Some("7 became 1".into())
+        );
+        assert_eq!(
+            field.remark("abc", None, 0.5, 0.5),
+            Some("\"abc\" is no number, so it stays 0.5".into())
+        );
         assert_eq!(field.remark("0.25", Some(0.25), 0.25, 0.5), None);
     }
 }

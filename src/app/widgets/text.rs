@@ -29,7 +29,11 @@ pub fn short(value: f64) -> String {
     }
     let digits = (2 - value.abs().log10().floor() as i32).clamp(0, 6) as usize;
     let text = format!("{value:.digits$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
 }
 
 /// The first line of a message, and that there is more.
@@ -46,11 +50,17 @@ mod tests {
 
     #[test]
     fn digits_are_grouped_by_three() {
-        assert_eq!([grouped(7), grouped(1000), grouped(1_234_567)], ["7", "1,000", "1,234,567"]);
+        assert_eq!(
+            [grouped(7), grouped(1000), grouped(1_234_567)],
+            ["7", "1,000", "1,234,567"]
+        );
     }
 
     #[test]
     fn numbers_have_three_digits() {
-        assert_eq!([0.0, 0.0512, 3.5, 12.0, 99.96, 1234.6].map(short), ["0", "0.0512", "3.5", "12", "100", "1235"]);
+        assert_eq!(
+            [0.0, 0.0512, 3.5, 12.0, 99.96, 1234.6].map(short),
+            ["0", "0.0512", "3.5", "12", "100", "1235"]
+        );
     }
 }

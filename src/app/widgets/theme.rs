@@ -1,8 +1,11 @@
-//! The visual style of the lab: neutral grays that leave the colors to the picture, in a dark and a light theme, one accent, an 8-point grid.
+//! The visual style of the lab: neutral grays that leave the colors to the picture, in a dark and a
+//! light theme, one accent, an 8-point grid.
 
 use std::cell::Cell;
 
-use eframe::egui::{self, Color32, CornerRadius, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, vec2};
+use eframe::egui::{
+    self, Color32, CornerRadius, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, vec2,
+};
 
 /// The colors of the window in one theme.
 struct Palette {
@@ -82,7 +85,23 @@ macro_rules! colors {
     };
 }
 
-colors!(view, panel, bar, well, raised, raised_hover, line, text_strong, text, text_weak, accent, accent_ground, amber, red, green);
+colors!(
+    view,
+    panel,
+    bar,
+    well,
+    raised,
+    raised_hover,
+    line,
+    text_strong,
+    text,
+    text_weak,
+    accent,
+    accent_ground,
+    amber,
+    red,
+    green
+);
 
 /// Half a grid step: between parts of a group.
 pub const HALF: f32 = 4.0;
@@ -123,9 +142,14 @@ impl ThemeChoice {
     }
 }
 
-/// Makes the functions of this module return the colors of the theme that `ctx` shows. Call it when a frame begins.
+/// Makes the functions of this module return the colors of the theme that `ctx` shows. Call it when
+/// a frame begins.
 pub fn follow(ctx: &egui::Context) {
-    SHOWN.set(if ctx.theme() == egui::Theme::Light { &LIGHT } else { &DARK });
+    SHOWN.set(if ctx.theme() == egui::Theme::Light {
+        &LIGHT
+    } else {
+        &DARK
+    });
 }
 
 /// Sets up egui's dark and light styles.
@@ -134,11 +158,23 @@ pub fn apply(ctx: &egui::Context) {
     ctx.set_visuals_of(egui::Theme::Light, visuals(egui::Visuals::light(), &LIGHT));
     ctx.all_styles_mut(|style| {
         style.text_styles = [
-            (TextStyle::Small, FontId::new(11.0, FontFamily::Proportional)),
+            (
+                TextStyle::Small,
+                FontId::new(11.0, FontFamily::Proportional),
+            ),
             (TextStyle::Body, FontId::new(13.0, FontFamily::Proportional)),
-            (TextStyle::Button, FontId::new(13.0, FontFamily::Proportional)),
-            (TextStyle::Heading, FontId::new(15.0, FontFamily::Proportional)),
-            (TextStyle::Monospace, FontId::new(12.0, FontFamily::Monospace)),
+            (
+                TextStyle::Button,
+                FontId::new(13.0, FontFamily::Proportional),
+            ),
+            (
+                TextStyle::Heading,
+                FontId::new(15.0, FontFamily::Proportional),
+            ),
+            (
+                TextStyle::Monospace,
+                FontId::new(12.0, FontFamily::Monospace),
+            ),
         ]
         .into();
         let spacing = &mut style.spacing;
@@ -179,19 +215,45 @@ fn visuals(mut v: egui::Visuals, colors: &Palette) -> egui::Visuals {
     v.handle_shape = egui::style::HandleShape::Circle;
     v.indent_has_left_vline = false;
     v.striped = false;
-    let ground = |widget: &mut egui::style::WidgetVisuals, fill: Color32, line: Color32, text: Color32| {
-        widget.bg_fill = fill;
-        widget.weak_bg_fill = fill;
-        widget.bg_stroke = Stroke::new(1.0, line);
-        widget.fg_stroke = Stroke::new(1.0, text);
-        widget.corner_radius = CornerRadius::same(4);
-        widget.expansion = 0.0;
-    };
-    ground(&mut v.widgets.noninteractive, colors.panel, colors.line, colors.text);
-    ground(&mut v.widgets.inactive, colors.raised, Color32::TRANSPARENT, colors.text);
-    ground(&mut v.widgets.hovered, colors.raised_hover, Color32::TRANSPARENT, colors.text_strong);
-    ground(&mut v.widgets.active, colors.raised_hover, colors.accent, colors.text_strong);
-    ground(&mut v.widgets.open, colors.raised, colors.line, colors.text_strong);
+    let ground =
+        |widget: &mut egui::style::WidgetVisuals, fill: Color32, line: Color32, text: Color32| {
+            widget.bg_fill = fill;
+            widget.weak_bg_fill = fill;
+            widget.bg_stroke = Stroke::new(1.0, line);
+            widget.fg_stroke = Stroke::new(1.0, text);
+            widget.corner_radius = CornerRadius::same(4);
+            widget.expansion = 0.0;
+        };
+    ground(
+        &mut v.widgets.noninteractive,
+        colors.panel,
+        colors.line,
+        colors.text,
+    );
+    ground(
+        &mut v.widgets.inactive,
+        colors.raised,
+        Color32::TRANSPARENT,
+        colors.text,
+    );
+    ground(
+        &mut v.widgets.hovered,
+        colors.raised_hover,
+        Color32::TRANSPARENT,
+        colors.text_strong,
+    );
+    ground(
+        &mut v.widgets.active,
+        colors.raised_hover,
+        colors.accent,
+        colors.text_strong,
+    );
+    ground(
+        &mut v.widgets.open,
+        colors.raised,
+        colors.line,
+        colors.text_strong,
+    );
     v
 }
 
@@ -205,15 +267,17 @@ pub fn weak(text: impl Into<String>) -> RichText {
     RichText::new(text).color(text_weak())
 }
 
-/// Frame of a side panel. It has no background: the window is cleared to the color of panels, and painting pixels twice is slow on a
-/// software adapter.
+/// Frame of a side panel. It has no background: the window is cleared to the color of panels, and
+/// painting pixels twice is slow on a software adapter.
 pub fn panel_frame() -> egui::Frame {
     egui::Frame::new().inner_margin(Margin::symmetric(12, 10))
 }
 
 /// Frame of the bars at the top and bottom.
 pub fn bar_frame() -> egui::Frame {
-    egui::Frame::new().fill(bar()).inner_margin(Margin::symmetric(12, 6))
+    egui::Frame::new()
+        .fill(bar())
+        .inner_margin(Margin::symmetric(12, 6))
 }
 
 /// Frame of a message over the picture.
@@ -227,20 +291,26 @@ pub fn toast_frame(edge: Color32) -> egui::Frame {
 
 /// A warning or an error in a panel.
 pub fn notice(ui: &mut egui::Ui, color: Color32, text: &str) {
-    egui::Frame::new().fill(color.gamma_multiply(0.12)).corner_radius(4.0).inner_margin(Margin::symmetric(8, 6)).show(ui, |ui| {
-        ui.set_min_width(ui.available_width());
-        ui.label(RichText::new(text).color(color));
-    });
+    egui::Frame::new()
+        .fill(color.gamma_multiply(0.12))
+        .corner_radius(4.0)
+        .inner_margin(Margin::symmetric(8, 6))
+        .show(ui, |ui| {
+            ui.set_min_width(ui.available_width());
+            ui.label(RichText::new(text).color(color));
+        });
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Contrast of two opaque colors, from 1 to 21, as the Web Content Accessibility Guidelines define it.
+    /// Contrast of two opaque colors, from 1 to 21, as the Web Content Accessibility Guidelines
+    /// define it.
     fn contrast(a: Color32, b: Color32) -> f32 {
         let luminance = |color: Color32| {
-            let [r, g, b] = [color.r(), color.g(), color.b()].map(egui::ecolor::linear_f32_from_gamma_u8);
+            let [r, g, b] =
+                [color.r(), color.g(), color.b()].map(egui::ecolor::linear_f32_from_gamma_u8);
             0.2126 * r + 0.7152 * g + 0.0722 * b
         };
         let (a, b) = (luminance(a), luminance(b));
@@ -261,11 +331,17 @@ mod tests {
                     ("green", p.green),
                 ] {
                     let contrast = contrast(text, ground);
-                    assert!(contrast >= 4.5, "{name}: {text_name} on {ground_name} has a contrast of {contrast:.2}");
+                    assert!(
+                        contrast >= 4.5,
+                        "{name}: {text_name} on {ground_name} has a contrast of {contrast:.2}"
+                    );
                 }
             }
             for ground in [p.accent_ground, p.raised, p.raised_hover, p.well] {
-                assert!(contrast(p.text_strong, ground) >= 7.0, "{name}: text on {ground:?}");
+                assert!(
+                    contrast(p.text_strong, ground) >= 7.0,
+                    "{name}: text on {ground:?}"
+                );
             }
         }
     }

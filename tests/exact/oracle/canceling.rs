@@ -14,8 +14,8 @@ use rasterlab::{
 
 use super::*;
 
-/// Runs work that takes minutes, cancels it, and holds that it ends. The limit is far above what is promised to a person, since tests share
-/// the machine.
+/// Runs work that takes minutes, cancels it, and holds that it ends. The limit is far above what is
+/// promised to a person, since tests share the machine.
 fn ends_when_canceled<T>(what: &str, after: Duration, work: impl FnOnce() -> T) {
     let shared = Arc::new(Work::default());
     let canceler = thread::spawn({
@@ -30,7 +30,10 @@ fn ends_when_canceled<T>(what: &str, after: Duration, work: impl FnOnce() -> T) 
     let canceled_at = canceler.join().expect("it only sleeps");
     assert!(result.is_none(), "{what}: canceled work gives a picture");
     let took = canceled_at.elapsed();
-    assert!(took < Duration::from_secs(5), "{what}: {took:?} from canceling to the end");
+    assert!(
+        took < Duration::from_secs(5),
+        "{what}: {took:?} from canceling to the end"
+    );
 }
 
 #[test]
@@ -53,7 +56,12 @@ fn a_canceled_picture_ends_at_its_next_row_or_triangle() {
 fn canceled_references_end() {
     let scene = scene(&[sphere(64)]);
     let view = Preset::default().view(&scene, [4000, 4000]);
-    ends_when_canceled("references at several sizes", Duration::from_millis(200), || {
-        oracle::references(&scene, &view, &Stack::default(), &[1.0, 2.0, 4.0]).map(|references| references.smooth.is_some())
-    });
+    ends_when_canceled(
+        "references at several sizes",
+        Duration::from_millis(200),
+        || {
+            oracle::references(&scene, &view, &Stack::default(), &[1.0, 2.0, 4.0])
+                .map(|references| references.smooth.is_some())
+        },
+    );
 }

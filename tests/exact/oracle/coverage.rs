@@ -1,4 +1,5 @@
-//! Coverage: triangles that share an edge hit each sample exactly once, and published cases of the fill rule hold.
+//! Coverage: triangles that share an edge hit each sample exactly once, and published cases of the
+//! fill rule hold.
 
 use super::*;
 
@@ -58,17 +59,29 @@ fn infinitesimal_step_is_the_top_left_rule() {
     for round in 0..2_000_000 {
         let size = [3, 50, 40_000, 16_000_000][round % 4];
         let (u, v) = (rng.between(-size, size + 1), rng.between(-size, size + 1));
-        // A direction with small multiples has exact lattice points on it; step off them by at most one unit.
-        let k = if size < 1_000_000 { rng.between(1, 300) } else { 1 };
+        // A direction with small multiples has exact lattice points on it; step off them by at most
+        // one unit.
+        let k = if size < 1_000_000 {
+            rng.between(1, 300)
+        } else {
+            1
+        };
         let (dx, dy) = (k * u, k * v);
         let j = i64::from(rng.between(-2, 400));
-        let (px, py) = (j * i64::from(u) + i64::from(rng.between(-1, 2)), j * i64::from(v) + i64::from(rng.between(-1, 2)));
+        let (px, py) = (
+            j * i64::from(u) + i64::from(rng.between(-1, 2)),
+            j * i64::from(v) + i64::from(rng.between(-1, 2)),
+        );
         let e = i64::from(dx) * py - i64::from(dy) * px;
         if (dx, dy) == (0, 0) {
             continue;
         }
         ties += u32::from(e == 0);
-        assert_eq!(owns(e, dx, dy), owns_by_bias(e, dx, dy), "e {e}, dx {dx}, dy {dy}");
+        assert_eq!(
+            owns(e, dx, dy),
+            owns_by_bias(e, dx, dy),
+            "e {e}, dx {dx}, dy {dy}"
+        );
     }
     assert!(ties > 100_000, "{ties} ties");
 }

@@ -10,12 +10,24 @@ fn an_honest_adapter_passes_every_stage() {
     let geometry = projected(&scene, &view);
     assert!(frame.covered() > 3000, "{}", frame.covered());
     assert!(frame.counters.clipped == 2 && !geometry.clipped_triangles.is_empty());
-    let verdict = judge(&scene, &view, &stack, &AdapterPicture::new(&frame, &geometry)).unwrap();
-    assert_eq!(verdict.report.within(&Budget::default()), Ok(()), "{:?}", verdict.report);
+    let verdict = judge(
+        &scene,
+        &view,
+        &stack,
+        &AdapterPicture::new(&frame, &geometry),
+    )
+    .unwrap();
+    assert_eq!(
+        verdict.report.within(&Budget::default()),
+        Ok(()),
+        "{:?}",
+        verdict.report
+    );
     assert_eq!(verdict.expected, frame);
 }
 
-/// A plain rasterizer that shares no coverage code with the oracle, with an option for every classic mistake.
+/// A plain rasterizer that shares no coverage code with the oracle, with an option for every
+/// classic mistake.
 #[derive(Clone)]
 struct Adapter {
     /// Bias of edges that are top or left, and of the others.
@@ -29,13 +41,24 @@ struct Adapter {
 
 impl Default for Adapter {
     fn default() -> Self {
-        Self { bias: [0, 1], sample: 128, larger_id_wins: false, lost: None }
+        Self {
+            bias: [0, 1],
+            sample: 128,
+            larger_id_wins: false,
+            lost: None,
+        }
     }
 }
 
 impl Adapter {
     /// Triangle ids, keys, layers and colors of `geometry`.
-    fn draw(&self, scene: &Scene, view: &View, stack: &Stack, geometry: &Geometry) -> (Frame, Vec<u32>) {
+    fn draw(
+        &self,
+        scene: &Scene,
+        view: &View,
+        stack: &Stack,
+        geometry: &Geometry,
+    ) -> (Frame, Vec<u32>) {
         let draws = draws(scene, view).unwrap();
         let (drawn, counters) = assembled(scene, view, geometry);
         let (width, pixels) = (view.width as usize, view.pixels());
@@ -47,18 +70,35 @@ impl Adapter {
             ..Default::default()
         };
         let mut layers = vec![0; pixels];
-        for triangle in drawn.iter().filter(|triangle| Some(triangle.id) != self.lost) {
+        for triangle in drawn
+            .iter()
+            .filter(|triangle| Some(triangle.id) != self.lost)
+        {
             for (pixel, layers) in layers.iter_mut().enumerate() {
-                let (x, y) = (256 * (pixel % width) as i64 + self.sample, 256 * (pixel / width) as i64 + self.sample);
-                let Some(key) = self.hit(triangle, x, y) else { continue };
+                let (x, y) = (
+                    256 * (pixel % width) as i64 + self.sample,
+                    256 * (pixel / width) as i64 + self.sample,
+                );
+                let Some(key) = self.hit(triangle, x, y) else {
+                    continue;
+                };
                 *layers += 1;
-                let tie = if self.larger_id_wins { triangle.id > frame.triangle_id[pixel] } else { triangle.id < frame.triangle_id[pixel] };
+                let tie = if self.larger_id_wins {
+                    triangle.id > frame.triangle_id[pixel]
+                } else {
+                    triangle.id < frame.triangle_id[pixel]
+                };
                 if key > frame.depth_key[pixel] || key == frame.depth_key[pixel] && tie {
                     (frame.depth_key[pixel], frame.triangle_id[pixel]) = (key, triangle.id);
                 }
             }
         }
-        frame.color = shade(&Shot::new(scene, &draws, view, stack), &seen(&frame), geometry).expect("nobody cancels it");
+        frame.color = shade(
+            &Shot::new(scene, &draws, view, stack),
+            &seen(&frame),
+            geometry,
+        )
+        .expect("nobody cancels it");
         frame.counters = counters;
         (frame, layers)
     }
@@ -76,12 +116,21 @@ impl Adapter {
         }
         // Single precision, as a device has it.
         let [u, v, w] = weights.map(|weight| weight as f32);
-        let (low, high) = (a.depth.min(b.depth).min(c.depth), a.depth.max(b.depth).max(c.depth));
-        Some(((u * a.depth + v * b.depth + w * c.depth) / (u + v + w)).clamp(low, high).to_bits().max(1))
+        let (low, high) = (
+            a.depth.min(b.depth).min(c.depth),
+            a.depth.max(b.depth).max(c.depth),
+        );
+        Some(
+            ((u * a.depth + v * b.depth + w * c.depth) / (u + v + w))
+                .clamp(low, high)
+                .to_bits()
+                .max(1),
+        )
     }
 }
 
-/// Draws with `adapter` and judges the result; `before` changes the geometry, `after` the frame and the layers.
+/// Draws with `adapter` and judges the result; `before` changes the geometry, `after` the frame and
+/// the layers.
 fn judged(
     (scene, view): &(Scene, View),
     adapter: &Adapter,
@@ -93,16 +142,36 @@ fn judged(
     before(&mut geometry);
     let (mut frame, mut layers) = adapter.draw(scene, view, &stack, &geometry);
     after(&mut frame, &mut layers);
-    judge(scene, view, &stack, &AdapterPicture { layers: Some(&layers), ..AdapterPicture::new(&frame, &geometry) }).unwrap().report
+    judge(
+        scene,
+        view,
+        &stack,
+        &AdapterPicture {
+            layers: Some(&layers),
+            ..AdapterPicture::new(&frame, &geometry)
+        },
+    )
+    .unwrap()
+    .report
 }
 
-/// Squares whose edges and diagonals run through samples, in layers one behind the other, some of them coplanar.
+/// Squares whose edges and diagonals run through samples, in layers one behind the other, some of
+/// them coplanar.
 fn lattice() -> (Scene, View) {
     let mut corners = Vec::new();
     for i in 0..3 {
         for (column, row) in (0..6).flat_map(|column| (0..6).map(move |row| (column, row))) {
-            let (x, y, z) = (0.5 + 2.0 * column as f32, 0.5 + 2.0 * row as f32, 0.625 - 0.125 * (i / 2) as f32);
-            let [a, b, c, d] = [[x, y, z], [x + 2.0, y, z], [x + 2.0, y + 2.0, z], [x, y + 2.0, z]];
+            let (x, y, z) = (
+                0.5 + 2.0 * column as f32,
+                0.5 + 2.0 * row as f32,
+                0.625 - 0.125 * (i / 2) as f32,
+            );
+            let [a, b, c, d] = [
+                [x, y, z],
+                [x + 2.0, y, z],
+                [x + 2.0, y + 2.0, z],
+                [x, y + 2.0, z],
+            ];
             corners.extend([a, b, c, a, c, d]);
         }
     }
@@ -114,7 +183,10 @@ fn single_precision_adapter_passes() {
     for fixture in [still_life([64, 48]), lattice()] {
         let accuracy = judged(&fixture, &Adapter::default(), |_| {}, |_, _| {});
         assert_eq!(accuracy.within(&Budget::default()), Ok(()), "{accuracy:?}");
-        assert_eq!((accuracy.explained_by_snap, accuracy.max_snap_delta), (0, 0));
+        assert_eq!(
+            (accuracy.explained_by_snap, accuracy.max_snap_delta),
+            (0, 0)
+        );
     }
 }
 
@@ -131,7 +203,10 @@ fn one_pixel_shift_is_caught() {
             layers.rotate_right(1);
         },
     );
-    assert!(accuracy.wrong_triangles > 50 && accuracy.holes > 10 && accuracy.double_hits > 10, "{accuracy:?}");
+    assert!(
+        accuracy.wrong_triangles > 50 && accuracy.holes > 10 && accuracy.double_hits > 10,
+        "{accuracy:?}"
+    );
     assert!(accuracy.within(&Budget::default()).is_err());
 }
 
@@ -146,21 +221,47 @@ fn two_steps_of_255_are_caught_and_one_passes() {
                 frame.color[777][1] = frame.color[777][1].checked_sub(steps).unwrap();
             },
         );
-        assert_eq!((accuracy.max_color_delta, accuracy.within(&Budget::default()).is_ok()), (steps, passes));
+        assert_eq!(
+            (
+                accuracy.max_color_delta,
+                accuracy.within(&Budget::default()).is_ok()
+            ),
+            (steps, passes)
+        );
     }
 }
 
 #[test]
 fn missing_triangle_is_caught() {
     let fixture = still_life([64, 48]);
-    let (frame, _) = Adapter::default().draw(&fixture.0, &fixture.1, &Stack::default(), &projected(&fixture.0, &fixture.1));
+    let (frame, _) = Adapter::default().draw(
+        &fixture.0,
+        &fixture.1,
+        &Stack::default(),
+        &projected(&fixture.0, &fixture.1),
+    );
     let mut triangle_ids = frame.triangle_id.clone();
     triangle_ids.sort_unstable();
     triangle_ids.dedup();
     assert!(triangle_ids.len() > 100);
-    for &lost in triangle_ids.iter().filter(|&&triangle_id| triangle_id != NO_TRIANGLE).step_by(7) {
-        let accuracy = judged(&fixture, &Adapter { lost: Some(lost), ..Default::default() }, |_| {}, |_, _| {});
-        assert!(accuracy.wrong_triangles > 0 && accuracy.holes > 0, "{lost}: {accuracy:?}");
+    for &lost in triangle_ids
+        .iter()
+        .filter(|&&triangle_id| triangle_id != NO_TRIANGLE)
+        .step_by(7)
+    {
+        let accuracy = judged(
+            &fixture,
+            &Adapter {
+                lost: Some(lost),
+                ..Default::default()
+            },
+            |_| {},
+            |_, _| {},
+        );
+        assert!(
+            accuracy.wrong_triangles > 0 && accuracy.holes > 0,
+            "{lost}: {accuracy:?}"
+        );
     }
 }
 
@@ -172,7 +273,11 @@ fn exchanged_triangle_ids_are_caught() {
         |_| {},
         |frame, _| {
             let a = frame.triangle_id[24 * 64 + 32];
-            let b = *frame.triangle_id.iter().find(|&&triangle_id| triangle_id != a && triangle_id != NO_TRIANGLE).unwrap();
+            let b = *frame
+                .triangle_id
+                .iter()
+                .find(|&&triangle_id| triangle_id != a && triangle_id != NO_TRIANGLE)
+                .unwrap();
             for triangle_id in &mut frame.triangle_id {
                 *triangle_id = if *triangle_id == a {
                     b
@@ -184,28 +289,70 @@ fn exchanged_triangle_ids_are_caught() {
             }
         },
     );
-    assert!(accuracy.wrong_triangles > 1 && accuracy.holes + accuracy.double_hits == 0, "{accuracy:?}");
+    assert!(
+        accuracy.wrong_triangles > 1 && accuracy.holes + accuracy.double_hits == 0,
+        "{accuracy:?}"
+    );
 }
 
 #[test]
 fn edge_rules_off_by_one_are_caught() {
     for (bias, doubled) in [([0, 0], true), ([1, 1], false)] {
-        let accuracy = judged(&lattice(), &Adapter { bias, ..Default::default() }, |_| {}, |_, _| {});
-        assert!(if doubled { accuracy.double_hits > 50 } else { accuracy.holes > 50 }, "{bias:?}: {accuracy:?}");
+        let accuracy = judged(
+            &lattice(),
+            &Adapter {
+                bias,
+                ..Default::default()
+            },
+            |_| {},
+            |_, _| {},
+        );
+        assert!(
+            if doubled {
+                accuracy.double_hits > 50
+            } else {
+                accuracy.holes > 50
+            },
+            "{bias:?}: {accuracy:?}"
+        );
     }
-    let corner = judged(&still_life([64, 48]), &Adapter { sample: 0, ..Default::default() }, |_| {}, |_, _| {});
+    let corner = judged(
+        &still_life([64, 48]),
+        &Adapter {
+            sample: 0,
+            ..Default::default()
+        },
+        |_| {},
+        |_, _| {},
+    );
     assert!(corner.wrong_triangles > 50, "{corner:?}");
 }
 
 #[test]
 fn larger_id_at_equal_depth_is_caught() {
-    let accuracy = judged(&lattice(), &Adapter { larger_id_wins: true, ..Default::default() }, |_| {}, |_, _| {});
-    assert!(accuracy.wrong_triangles > 50 && accuracy.depth_band_pixels == 0, "{accuracy:?}");
+    let accuracy = judged(
+        &lattice(),
+        &Adapter {
+            larger_id_wins: true,
+            ..Default::default()
+        },
+        |_| {},
+        |_, _| {},
+    );
+    assert!(
+        accuracy.wrong_triangles > 50 && accuracy.depth_band_pixels == 0,
+        "{accuracy:?}"
+    );
 }
 
 #[test]
 fn double_hit_behind_the_surface_is_caught() {
-    let accuracy = judged(&still_life([64, 48]), &Adapter::default(), |_| {}, |_, layers| layers[1000] += 1);
+    let accuracy = judged(
+        &still_life([64, 48]),
+        &Adapter::default(),
+        |_| {},
+        |_, layers| layers[1000] += 1,
+    );
     assert_eq!((accuracy.double_hits, accuracy.wrong_triangles), (1, 0));
 }
 
@@ -228,7 +375,11 @@ fn wrong_depth_key_is_caught() {
         &Adapter::default(),
         |_| {},
         |frame, _| {
-            let empty = frame.triangle_id.iter().position(|&triangle_id| triangle_id == NO_TRIANGLE).unwrap();
+            let empty = frame
+                .triangle_id
+                .iter()
+                .position(|&triangle_id| triangle_id == NO_TRIANGLE)
+                .unwrap();
             frame.depth_key[empty] = 7;
         },
     );
@@ -237,7 +388,14 @@ fn wrong_depth_key_is_caught() {
 
 #[test]
 fn either_triangle_is_right_in_the_depth_band_and_nowhere_else() {
-    let sheets = [[0.0, -70.0, 0.25], [0.0, 140.0, 0.25], [65.0, 0.0, 0.75], [0.0, -70.0, 0.75], [0.0, 140.0, 0.75], [65.0, 0.0, 0.25]];
+    let sheets = [
+        [0.0, -70.0, 0.25],
+        [0.0, 140.0, 0.25],
+        [65.0, 0.0, 0.75],
+        [0.0, -70.0, 0.75],
+        [0.0, 140.0, 0.75],
+        [65.0, 0.0, 0.25],
+    ];
     let fixture = (scene(&[triangle_soup(sheets)]), pixel_view(64, 16));
     let other = |x: usize| {
         judged(
@@ -250,14 +408,23 @@ fn either_triangle_is_right_in_the_depth_band_and_nowhere_else() {
                 }
                 let (scene, view) = &fixture;
                 let draws = draws(scene, view).unwrap();
-                frame.color = shade(&Shot::new(scene, &draws, view, &all_effects()), &seen(frame), &projected(scene, view))
-                    .expect("nobody cancels it");
+                frame.color = shade(
+                    &Shot::new(scene, &draws, view, &all_effects()),
+                    &seen(frame),
+                    &projected(scene, view),
+                )
+                .expect("nobody cancels it");
             },
         )
     };
     // The sheets cross at x = 32.5, on the samples of column 32.
     let columns: Vec<usize> = (0..64).filter(|&x| other(x).wrong_triangles == 0).collect();
-    let coverage = { bounded(&assembled(&fixture.0, &fixture.1, &projected(&fixture.0, &fixture.1)).0, &fixture.1) };
+    let coverage = {
+        bounded(
+            &assembled(&fixture.0, &fixture.1, &projected(&fixture.0, &fixture.1)).0,
+            &fixture.1,
+        )
+    };
     let band: Vec<usize> = (0..64).filter(|&x| coverage.samples[x].is_band()).collect();
     assert_eq!((columns, band), (vec![32], vec![32]));
 }
@@ -265,46 +432,113 @@ fn either_triangle_is_right_in_the_depth_band_and_nowhere_else() {
 #[test]
 fn affine_weights_are_caught() {
     let scene = scene(&[ground(2.0, -1.0)]);
-    let camera = Camera { eye: DVec3::new(0.0, -0.5, 2.5), target: DVec3::NEG_Y, ..Default::default() };
+    let camera = Camera {
+        eye: DVec3::new(0.0, -0.5, 2.5),
+        target: DVec3::NEG_Y,
+        ..Default::default()
+    };
     let view = View::new(&camera, 64, 48, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
     let stack = only("depth", &[]);
     let draws = draws(&scene, &view).unwrap();
     let geometry = projected(&scene, &view);
     let (mut frame, layers) = Adapter::default().draw(&scene, &view, &stack, &geometry);
     let mut affine = geometry.clone();
-    affine.vertices.iter_mut().for_each(|vertex| vertex.inv_w = 0.25);
-    frame.color = shade(&Shot::new(&scene, &draws, &view, &stack), &seen(&frame), &affine).expect("nobody cancels it");
-    let accuracy =
-        judge(&scene, &view, &stack, &AdapterPicture { layers: Some(&layers), ..AdapterPicture::new(&frame, &geometry) }).unwrap().report;
-    assert!(geometry.clipped_triangles.is_empty() && accuracy.wrong_triangles == 0 && accuracy.max_color_delta > 20, "{accuracy:?}");
+    affine
+        .vertices
+        .iter_mut()
+        .for_each(|vertex| vertex.inv_w = 0.25);
+    frame.color = shade(
+        &Shot::new(&scene, &draws, &view, &stack),
+        &seen(&frame),
+        &affine,
+    )
+    .expect("nobody cancels it");
+    let accuracy = judge(
+        &scene,
+        &view,
+        &stack,
+        &AdapterPicture {
+            layers: Some(&layers),
+            ..AdapterPicture::new(&frame, &geometry)
+        },
+    )
+    .unwrap()
+    .report;
+    assert!(
+        geometry.clipped_triangles.is_empty()
+            && accuracy.wrong_triangles == 0
+            && accuracy.max_color_delta > 20,
+        "{accuracy:?}"
+    );
 }
 
 #[test]
 fn vertices_one_unit_apart_are_explained_and_counted() {
     let mut rng = Rng(31);
     let jitter = |geometry: &mut Geometry| {
-        for vertex in geometry.vertices.iter_mut().filter(|vertex| vertex.flags == 0) {
+        for vertex in geometry
+            .vertices
+            .iter_mut()
+            .filter(|vertex| vertex.flags == 0)
+        {
             (vertex.x, vertex.y) = (vertex.x + rng.between(-1, 2), vertex.y + rng.between(-1, 2));
         }
     };
-    let accuracy = judged(&still_life([128, 96]), &Adapter::default(), jitter, |_, _| {});
+    let accuracy = judged(
+        &still_life([128, 96]),
+        &Adapter::default(),
+        jitter,
+        |_, _| {},
+    );
     assert_eq!(accuracy.within(&Budget::default()), Ok(()), "{accuracy:?}");
-    assert!(accuracy.explained_by_snap > 0 && accuracy.max_snap_delta == 1, "{accuracy:?}");
-    assert!(accuracy.within(&Budget { max_explained: 0, ..Default::default() }).is_err());
+    assert!(
+        accuracy.explained_by_snap > 0 && accuracy.max_snap_delta == 1,
+        "{accuracy:?}"
+    );
+    assert!(
+        accuracy
+            .within(&Budget {
+                max_explained: 0,
+                ..Default::default()
+            })
+            .is_err()
+    );
 }
 
 #[test]
 fn crossing_line_that_moves_with_the_snap_is_explained() {
     let right = 65.0 + 1.0 / 256.0;
-    let sheets = [[0.0, -70.0, 0.25], [0.0, 140.0, 0.25], [right, 0.0, 0.75], [0.0, -70.0, 0.75], [0.0, 140.0, 0.75], [right, 0.0, 0.25]];
+    let sheets = [
+        [0.0, -70.0, 0.25],
+        [0.0, 140.0, 0.25],
+        [right, 0.0, 0.75],
+        [0.0, -70.0, 0.75],
+        [0.0, 140.0, 0.75],
+        [right, 0.0, 0.25],
+    ];
     let fixture = (scene(&[triangle_soup(sheets)]), pixel_view(64, 16));
-    // The sheets cross half a unit to the right of the samples of column 32, then half a unit to the left.
-    let shift = |geometry: &mut Geometry| geometry.vertices.iter_mut().for_each(|vertex| vertex.x -= 1);
+    // The sheets cross half a unit to the right of the samples of column 32, then half a unit to
+    // the left.
+    let shift = |geometry: &mut Geometry| {
+        geometry
+            .vertices
+            .iter_mut()
+            .for_each(|vertex| vertex.x -= 1)
+    };
     let accuracy = judged(&fixture, &Adapter::default(), shift, |_, _| {});
-    assert_eq!((accuracy.explained_by_snap, accuracy.unexplained, accuracy.wrong_triangles), (16, 0, 0), "{accuracy:?}");
+    assert_eq!(
+        (
+            accuracy.explained_by_snap,
+            accuracy.unexplained,
+            accuracy.wrong_triangles
+        ),
+        (16, 0, 0),
+        "{accuracy:?}"
+    );
 }
 
-/// A vertex stage in f32, with fused and unfused sums and a division that is a little off, as WGSL allows.
+/// A vertex stage in f32, with fused and unfused sums and a division that is a little off, as WGSL
+/// allows.
 fn single_precision(scene: &Scene, view: &View, geometry: &mut Geometry, rng: &mut Rng) {
     for draw in draws(scene, view).unwrap() {
         let primitive = &scene.primitives[draw.primitive];
@@ -320,7 +554,11 @@ fn single_precision(scene: &Scene, view: &View, geometry: &mut Geometry, rng: &m
                 true => m[0][r].mul_add(x, m[1][r].mul_add(y, m[2][r].mul_add(z, m[3][r]))),
                 false => m[0][r] * x + m[1][r] * y + (m[2][r] * z + m[3][r]),
             };
-            let inv_w = f32::from_bits((1.0 / row(3)).to_bits().wrapping_add_signed(rng.between(-2, 3)));
+            let inv_w = f32::from_bits(
+                (1.0 / row(3))
+                    .to_bits()
+                    .wrapping_add_signed(rng.between(-2, 3)),
+            );
             let [half_x, half_y] = [view.width, view.height].map(|pixels| 128.0 * pixels as f32);
             record.x = half_x as i32 + (row(0) * inv_w * half_x).round_ties_even() as i32;
             record.y = half_y as i32 - (row(1) * inv_w * half_y).round_ties_even() as i32;
@@ -337,30 +575,87 @@ fn single_precision_vertices_stay_within_their_bounds() {
         let offset = DVec3::new(away, -0.5 * away, 0.25 * away);
         // Offset in the stored positions too, so that the sums cancel.
         let mut mesh = sphere(12);
-        mesh.positions.iter_mut().flatten().for_each(|v| *v += away as f32);
+        mesh.positions
+            .iter_mut()
+            .flatten()
+            .for_each(|v| *v += away as f32);
         let world_from_object = DMat4::from_translation(offset - DVec3::splat(away));
-        let scene = scene(&[mesh.at(world_from_object), ground(50.0, -1.0).at(DMat4::from_translation(offset))]);
-        let camera = Camera { eye: offset + DVec3::new(1.0, 1.5, 4.0), target: offset, ..Default::default() };
+        let scene = scene(&[
+            mesh.at(world_from_object),
+            ground(50.0, -1.0).at(DMat4::from_translation(offset)),
+        ]);
+        let camera = Camera {
+            eye: offset + DVec3::new(1.0, 1.5, 4.0),
+            target: offset,
+            ..Default::default()
+        };
         let view = View::new(&camera, 96, 72, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
         let fixture = (scene, view);
-        let accuracy = judged(&fixture, &Adapter::default(), |g| single_precision(&fixture.0, &fixture.1, g, &mut rng), |_, _| {});
-        assert_eq!(accuracy.within(&Budget::default()), Ok(()), "{away}: {accuracy:?}");
-        assert!(accuracy.ill_conditioned == 0 || away > 1e5, "{away}: {accuracy:?}");
+        let accuracy = judged(
+            &fixture,
+            &Adapter::default(),
+            |g| single_precision(&fixture.0, &fixture.1, g, &mut rng),
+            |_, _| {},
+        );
+        assert_eq!(
+            accuracy.within(&Budget::default()),
+            Ok(()),
+            "{away}: {accuracy:?}"
+        );
+        assert!(
+            accuracy.ill_conditioned == 0 || away > 1e5,
+            "{away}: {accuracy:?}"
+        );
         largest = largest.max(accuracy.max_snap_delta);
     }
-    assert!(largest > 1, "the far scenes are hard enough to need a bound");
+    assert!(
+        largest > 1,
+        "the far scenes are hard enough to need a bound"
+    );
 }
 
 #[test]
 fn vertex_outside_its_bound_is_caught() {
     let fixture = still_life([64, 48]);
-    let moved = judged(&fixture, &Adapter::default(), |geometry| geometry.vertices[60].x += 2, |_, _| {});
-    assert_eq!((moved.snap_outside_bound, moved.max_snap_delta, moved.snap_over_one_unit), (1, 2, 1), "{moved:?}");
-    let lifted = judged(&fixture, &Adapter::default(), |geometry| geometry.vertices[60].depth *= 1.0 + 1e-5, |_, _| {});
-    assert_eq!((lifted.attribute_outside_bound, lifted.snap_outside_bound), (1, 0), "{lifted:?}");
-    let stretched = judged(&fixture, &Adapter::default(), |geometry| geometry.vertices[60].inv_w *= 1.0 - 1e-5, |_, _| {});
+    let moved = judged(
+        &fixture,
+        &Adapter::default(),
+        |geometry| geometry.vertices[60].x += 2,
+        |_, _| {},
+    );
+    assert_eq!(
+        (
+            moved.snap_outside_bound,
+            moved.max_snap_delta,
+            moved.snap_over_one_unit
+        ),
+        (1, 2, 1),
+        "{moved:?}"
+    );
+    let lifted = judged(
+        &fixture,
+        &Adapter::default(),
+        |geometry| geometry.vertices[60].depth *= 1.0 + 1e-5,
+        |_, _| {},
+    );
+    assert_eq!(
+        (lifted.attribute_outside_bound, lifted.snap_outside_bound),
+        (1, 0),
+        "{lifted:?}"
+    );
+    let stretched = judged(
+        &fixture,
+        &Adapter::default(),
+        |geometry| geometry.vertices[60].inv_w *= 1.0 - 1e-5,
+        |_, _| {},
+    );
     assert_eq!(stretched.attribute_outside_bound, 1, "{stretched:?}");
-    let rejected = judged(&fixture, &Adapter::default(), |geometry| geometry.vertices[60].flags = vertex_flags::NONFINITE, |_, _| {});
+    let rejected = judged(
+        &fixture,
+        &Adapter::default(),
+        |geometry| geometry.vertices[60].flags = vertex_flags::NONFINITE,
+        |_, _| {},
+    );
     assert_eq!(rejected.snap_outside_bound, 1, "{rejected:?}");
 }
 
@@ -368,14 +663,25 @@ fn vertex_outside_its_bound_is_caught() {
 fn lost_clipped_triangle_is_caught() {
     let fixture = still_life([64, 48]);
     let count = projected(&fixture.0, &fixture.1).clipped_triangles.len();
-    let unexplained =
-        |lost: usize| judged(&fixture, &Adapter::default(), |geometry| _ = geometry.clipped_triangles.remove(lost), |_, _| {}).unexplained;
+    let unexplained = |lost: usize| {
+        judged(
+            &fixture,
+            &Adapter::default(),
+            |geometry| _ = geometry.clipped_triangles.remove(lost),
+            |_, _| {},
+        )
+        .unexplained
+    };
     assert!((0..count).any(|lost| unexplained(lost) > 50));
     // The clipped triangles of other parents may come in any order.
     let shuffled = judged(
         &fixture,
         &Adapter::default(),
-        |geometry| geometry.clipped_triangles.sort_by_key(|triangle: &ClippedTriangle| !triangle.parent),
+        |geometry| {
+            geometry
+                .clipped_triangles
+                .sort_by_key(|triangle: &ClippedTriangle| !triangle.parent)
+        },
         |_, _| {},
     );
     assert_eq!(shuffled.within(&Budget::default()), Ok(()));
@@ -384,8 +690,23 @@ fn lost_clipped_triangle_is_caught() {
 #[test]
 fn wrong_counters_and_overflow_are_caught() {
     let fixture = still_life([64, 48]);
-    let overflow = judged(&fixture, &Adapter::default(), |_| {}, |frame, _| frame.counters.overflow = 1);
-    assert!(overflow.within(&Budget::default()).unwrap_err().contains("queue"));
-    let miscounted = judged(&fixture, &Adapter::default(), |_| {}, |frame, _| frame.counters.rejected_range = 1);
+    let overflow = judged(
+        &fixture,
+        &Adapter::default(),
+        |_| {},
+        |frame, _| frame.counters.overflow = 1,
+    );
+    assert!(
+        overflow
+            .within(&Budget::default())
+            .unwrap_err()
+            .contains("queue")
+    );
+    let miscounted = judged(
+        &fixture,
+        &Adapter::default(),
+        |_| {},
+        |frame, _| frame.counters.rejected_range = 1,
+    );
     assert_eq!(miscounted.counters_wrong, 1);
 }

@@ -1,5 +1,5 @@
-//! Promise: no file is lost: what is not ours is never overwritten, drawing at once never takes a name twice, and pipes, devices and
-//! unfinished files are left alone or refused in words.
+//! Promise: no file is lost: what is not ours is never overwritten, drawing at once never takes a
+//! name twice, and pipes, devices and unfinished files are left alone or refused in words.
 
 use rasterlab::preset_file::{FrameStatus, frame_status};
 
@@ -23,7 +23,15 @@ fn with_chunk_at(png: &[u8], at: usize, name: &[u8; 4], data: &[u8]) -> Vec<u8> 
     let mut crc = flate2::Crc::new();
     crc.update(name);
     crc.update(data);
-    [body, &(data.len() as u32).to_be_bytes(), name, data, &crc.sum().to_be_bytes(), end].concat()
+    [
+        body,
+        &(data.len() as u32).to_be_bytes(),
+        name,
+        data,
+        &crc.sum().to_be_bytes(),
+        end,
+    ]
+    .concat()
 }
 
 #[test]
@@ -36,16 +44,28 @@ fn a_sequence_overwrites_no_picture_of_others() {
     let mut crc = flate2::Crc::new();
     crc.update(&huge[12..29]);
     huge[29..33].copy_from_slice(&crc.sum().to_be_bytes());
-    let cases = [("whole", whole.clone()), ("bytes after its end", [&whole[..], b"more"].concat()), ("cut off", cut), ("huge", huge)];
+    let cases = [
+        ("whole", whole.clone()),
+        ("bytes after its end", [&whole[..], b"more"].concat()),
+        ("cut off", cut),
+        ("huge", huge),
+    ];
     for (what, bytes) in cases {
-        for (args, name) in [(&["-o", "f_{frame:3}.png"][..], "f_003.png"), (&["--apng", "a.png"], "a.png")] {
+        for (args, name) in [
+            (&["-o", "f_{frame:3}.png"][..], "f_003.png"),
+            (&["--apng", "a.png"], "a.png"),
+        ] {
             let folder = studio();
             fs::write(folder.path().join(name), &bytes).unwrap();
             let base = ["sequence", "move.toml", "--fps", "8", "--adapter", "cpu"];
             let refused = run_in(folder.path(), &[&base[..], args].concat());
             assert_eq!(refused.code, 2, "{what}, {name}: {}", refused.err);
             assert!(refused.err.contains("--force"), "{what}: {}", refused.err);
-            assert_eq!(fs::read(folder.path().join(name)).unwrap(), bytes, "{what}, {name}");
+            assert_eq!(
+                fs::read(folder.path().join(name)).unwrap(),
+                bytes,
+                "{what}, {name}"
+            );
             let forced = run_in(folder.path(), &[&base[..], args, &["--force"]].concat());
             assert_eq!(forced.code, 0, "{what}, {name}: {}", forced.err);
             assert_ne!(fs::read(folder.path().join(name)).unwrap(), bytes);
@@ -56,26 +76,51 @@ fn a_sequence_overwrites_no_picture_of_others() {
 #[test]
 fn a_flipped_bit_anywhere_makes_a_frame_unfinished() {
     let folder = studio();
-    assert_eq!(sequence(folder.path(), &["--frames", "0..1", "--size", "8x6"]).code, 0);
+    assert_eq!(
+        sequence(folder.path(), &["--frames", "0..1", "--size", "8x6"]).code,
+        0
+    );
     let path = folder.path().join("f_000.png");
     let good = fs::read(&path).unwrap();
-    let at = |bytes: &[u8], what: &[u8]| bytes.windows(what.len()).position(|found| found == what).unwrap();
+    let at = |bytes: &[u8], what: &[u8]| {
+        bytes
+            .windows(what.len())
+            .position(|found| found == what)
+            .unwrap()
+    };
     let text = at(&good, b"rasterlab frame\0");
     let fingerprint = String::from_utf8(good[text + 20..text + 36].to_vec()).unwrap();
     let status = |bytes: &[u8]| {
         fs::write(&path, bytes).unwrap();
         frame_status(&path, [8, 6], &fingerprint).unwrap()
     };
-    assert_eq!(status(&good), FrameStatus::Finished { adapter: "cpu".into() });
-    assert_eq!(frame_status(&path, [8, 7], &fingerprint).unwrap(), FrameStatus::Other);
+    assert_eq!(
+        status(&good),
+        FrameStatus::Finished {
+            adapter: "cpu".into()
+        }
+    );
+    assert_eq!(
+        frame_status(&path, [8, 7], &fingerprint).unwrap(),
+        FrameStatus::Other
+    );
     // Every byte after the signature: lengths, names, texts, pixels and checksums.
     for byte in 8..good.len() {
         let mut flipped = good.clone();
         flipped[byte] ^= 1 << (byte % 8);
-        assert_eq!(status(&flipped), FrameStatus::Unfinished, "byte {byte} of {}", good.len());
+        assert_eq!(
+            status(&flipped),
+            FrameStatus::Unfinished,
+            "byte {byte} of {}",
+            good.len()
+        );
     }
     for length in [text + 40, good.len() / 2 + 200, good.len() - 1] {
-        assert_eq!(status(&good[..length.min(good.len() - 1)]), FrameStatus::Unfinished, "cut to {length}");
+        assert_eq!(
+            status(&good[..length.min(good.len() - 1)]),
+            FrameStatus::Unfinished,
+            "cut to {length}"
+        );
     }
     // Added by somebody, so not ours to throw away.
     assert_eq!(status(&[&good[..], b"note"].concat()), FrameStatus::Other);
@@ -84,7 +129,11 @@ fn a_flipped_bit_anywhere_makes_a_frame_unfinished() {
     damaged[flipped + 1] ^= 1;
     fs::write(&path, &damaged).unwrap();
     let again = sequence(folder.path(), &["--frames", "0..1", "--size", "8x6"]);
-    assert!(again.code == 0 && again.err.contains("1 frame drawn, 0 kept"), "{}", again.err);
+    assert!(
+        again.code == 0 && again.err.contains("1 frame drawn, 0 kept"),
+        "{}",
+        again.err
+    );
     assert_eq!(fs::read(&path).unwrap(), good);
 }
 
@@ -94,11 +143,26 @@ fn a_frame_is_judged_by_its_chunks_and_not_by_a_stated_size() {
     let path = folder.path().join("f.png");
     let marked = with_chunk(&foreign(), b"iTXt", b"rasterlab frame\0\0\0\0\x00cafe");
     fs::write(&path, &marked).unwrap();
-    assert_eq!(frame_status(&path, [2, 2], "cafe").unwrap(), FrameStatus::Finished { adapter: String::new() });
-    assert_eq!(frame_status(&path, [2, 2], "c0de").unwrap(), FrameStatus::Other);
+    assert_eq!(
+        frame_status(&path, [2, 2], "cafe").unwrap(),
+        FrameStatus::Finished {
+            adapter: String::new()
+        }
+    );
+    assert_eq!(
+        frame_status(&path, [2, 2], "c0de").unwrap(),
+        FrameStatus::Other
+    );
     // An animation that announces more frames than it has.
-    fs::write(&path, with_chunk(&marked, b"acTL", &[0, 0, 0, 5, 0, 0, 0, 0])).unwrap();
-    assert_eq!(frame_status(&path, [2, 2], "cafe").unwrap(), FrameStatus::Other);
+    fs::write(
+        &path,
+        with_chunk(&marked, b"acTL", &[0, 0, 0, 5, 0, 0, 0, 0]),
+    )
+    .unwrap();
+    assert_eq!(
+        frame_status(&path, [2, 2], "cafe").unwrap(),
+        FrameStatus::Other
+    );
 }
 
 #[test]
@@ -106,7 +170,14 @@ fn pictures_drawn_at_once_never_take_a_name_twice() {
     let folder = tempfile::tempdir().unwrap();
     let args = ["render", "facet", "--adapter", "cpu", "--size", "4x3", "-o"];
     for _ in 0..20 {
-        let draws = |output: &str| command(folder.path()).args(args).arg(output).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+        let draws = |output: &str| {
+            command(folder.path())
+                .args(args)
+                .arg(output)
+                .stdout(Stdio::piped())
+                .stderr(Stdio::piped())
+                .spawn()
+        };
         let at_once: Vec<_> = (0..3).map(|_| draws("{n:4}.png").unwrap()).collect();
         for child in at_once {
             let run = finished(child.wait_with_output().unwrap());
@@ -117,31 +188,89 @@ fn pictures_drawn_at_once_never_take_a_name_twice() {
     for round in 0..8 {
         let name = format!("fixed{round}.png");
         let at_once: Vec<_> = (0..3)
-            .map(|_| command(folder.path()).args(args).arg(&name).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap())
+            .map(|_| {
+                command(folder.path())
+                    .args(args)
+                    .arg(&name)
+                    .stdout(Stdio::piped())
+                    .stderr(Stdio::piped())
+                    .spawn()
+                    .unwrap()
+            })
             .collect();
-        let codes: Vec<i32> = at_once.into_iter().map(|child| finished(child.wait_with_output().unwrap()).code).collect();
-        assert_eq!(codes.iter().filter(|code| **code == 0).count(), 1, "{codes:?}");
-        assert_eq!(codes.iter().filter(|code| **code == 2).count(), 2, "{codes:?}");
+        let codes: Vec<i32> = at_once
+            .into_iter()
+            .map(|child| finished(child.wait_with_output().unwrap()).code)
+            .collect();
+        assert_eq!(
+            codes.iter().filter(|code| **code == 0).count(),
+            1,
+            "{codes:?}"
+        );
+        assert_eq!(
+            codes.iter().filter(|code| **code == 2).count(),
+            2,
+            "{codes:?}"
+        );
     }
 }
 
 #[test]
 fn saved_pictures_can_be_opened_or_are_not_saved() {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("newer.toml"), "schema = 99\nname = \"Later\"\n[effects.facet]\namount = 0.5\n").unwrap();
-    let render =
-        |args: &[&str]| run_in(folder.path(), &[&["render"], args, &["--adapter", "cpu", "--size", "8x6", "-o", "a.png"]].concat());
+    fs::write(
+        folder.path().join("newer.toml"),
+        "schema = 99\nname = \"Later\"\n[effects.facet]\namount = 0.5\n",
+    )
+    .unwrap();
+    let render = |args: &[&str]| {
+        run_in(
+            folder.path(),
+            &[
+                &["render"],
+                args,
+                &["--adapter", "cpu", "--size", "8x6", "-o", "a.png"],
+            ]
+            .concat(),
+        )
+    };
     let refused = render(&["facet", "--set", "test.max_pixels=5"]);
-    assert!(refused.code == 2 && refused.err.contains("test.why must say why the budget is above the default"), "{}", refused.err);
+    assert!(
+        refused.code == 2
+            && refused
+                .err
+                .contains("test.why must say why the budget is above the default"),
+        "{}",
+        refused.err
+    );
     let refused = render(&["newer.toml", "--set", "facet.amount=1"]);
-    assert!(refused.code == 2 && refused.err.contains("its schema is newer than this program"), "{}", refused.err);
+    assert!(
+        refused.code == 2
+            && refused
+                .err
+                .contains("its schema is newer than this program"),
+        "{}",
+        refused.err
+    );
     assert!(!folder.path().join("a.png").exists());
-    let changed = ["facet", "--set", "test.max_pixels=5", "--set", "test.why=broad", "--set", "facet.amount=0.25"];
+    let changed = [
+        "facet",
+        "--set",
+        "test.max_pixels=5",
+        "--set",
+        "test.why=broad",
+        "--set",
+        "facet.amount=0.25",
+    ];
     let saved = render(&changed);
     assert_eq!(saved.code, 0, "{}", saved.err);
-    let again = run_in(folder.path(), &["render", "a.png", "--adapter", "cpu", "-o", "b.png"]);
+    let again = run_in(
+        folder.path(),
+        &["render", "a.png", "--adapter", "cpu", "-o", "b.png"],
+    );
     assert_eq!(again.code, 0, "{}", again.err);
-    let [a, b] = ["a.png", "b.png"].map(|name| rasterlab::preset_file::png_pixels(&folder.path().join(name)).unwrap());
+    let [a, b] = ["a.png", "b.png"]
+        .map(|name| rasterlab::preset_file::png_pixels(&folder.path().join(name)).unwrap());
     assert_eq!(a, b);
 }
 
@@ -157,9 +286,27 @@ fn a_picture_of_a_model_opens_where_the_model_is_and_nowhere_else() {
         "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],"bufferViews":[{"buffer":0,"byteLength":36}],
         "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
     fs::write(make("models/t.gltf"), triangle).unwrap();
-    fs::write(make("p/mine.toml"), "schema = 2\n[scene]\npath = \"../models/t.gltf\"\n").unwrap();
+    fs::write(
+        make("p/mine.toml"),
+        "schema = 2\n[scene]\npath = \"../models/t.gltf\"\n",
+    )
+    .unwrap();
     make("elsewhere/x");
-    let render = |from: &str, to: &str| run_in(folder.path(), &["render", from, "--adapter", "cpu", "--size", "8x6", "-o", to]);
+    let render = |from: &str, to: &str| {
+        run_in(
+            folder.path(),
+            &[
+                "render",
+                from,
+                "--adapter",
+                "cpu",
+                "--size",
+                "8x6",
+                "-o",
+                to,
+            ],
+        )
+    };
     let beside = render("p/mine.toml", "models/a.png");
     assert_eq!(beside.code, 0, "{}", beside.err);
     let opened = render("models/a.png", "b.png");
@@ -168,31 +315,89 @@ fn a_picture_of_a_model_opens_where_the_model_is_and_nowhere_else() {
     assert_eq!(render("b.png", "elsewhere/c.png").code, 0);
     let refused = render("elsewhere/c.png", "d.png");
     assert_eq!(refused.code, 2);
-    assert!(refused.err.contains("t.gltf lies outside of the folder of the picture"), "{}", refused.err);
+    assert!(
+        refused
+            .err
+            .contains("t.gltf lies outside of the folder of the picture"),
+        "{}",
+        refused.err
+    );
     // Nor does a picture name a file of the system, or one on another machine.
-    for name in ["/etc/passwd", "/etc/t.gltf", "C:\\\\t.gltf", "\\\\\\\\host\\\\share\\\\t.gltf", "//host/share/t.gltf"] {
+    for name in [
+        "/etc/passwd",
+        "/etc/t.gltf",
+        "C:\\\\t.gltf",
+        "\\\\\\\\host\\\\share\\\\t.gltf",
+        "//host/share/t.gltf",
+    ] {
         let text = format!("schema = 2\n[scene]\npath = \"{name}\"\n");
         let chunk = format!("rasterlab preset\0\0\0\0\0{text}");
-        fs::write(folder.path().join("elsewhere/e.png"), with_chunk_at(&foreign(), AFTER_HEADER, b"iTXt", chunk.as_bytes())).unwrap();
+        fs::write(
+            folder.path().join("elsewhere/e.png"),
+            with_chunk_at(&foreign(), AFTER_HEADER, b"iTXt", chunk.as_bytes()),
+        )
+        .unwrap();
         let refused = render("elsewhere/e.png", "f.png");
-        assert!(refused.code == 2 && !folder.path().join("f.png").exists(), "{name}: {}", refused.err);
-        assert!(refused.err.contains("outside of the folder of the picture"), "{name}: {}", refused.err);
+        assert!(
+            refused.code == 2 && !folder.path().join("f.png").exists(),
+            "{name}: {}",
+            refused.err
+        );
+        assert!(
+            refused.err.contains("outside of the folder of the picture"),
+            "{name}: {}",
+            refused.err
+        );
     }
-    fs::copy(folder.path().join("models/t.gltf"), folder.path().join("elsewhere/t.gltf")).unwrap();
+    fs::copy(
+        folder.path().join("models/t.gltf"),
+        folder.path().join("elsewhere/t.gltf"),
+    )
+    .unwrap();
     let copied = render("elsewhere/c.png", "d.png");
-    assert!(copied.code == 0 && copied.err.contains("t.gltf beside the picture is used"), "{}", copied.err);
+    assert!(
+        copied.code == 0 && copied.err.contains("t.gltf beside the picture is used"),
+        "{}",
+        copied.err
+    );
 }
 
 #[test]
 fn a_damaged_picture_is_called_damaged() {
     let folder = tempfile::tempdir().unwrap();
-    assert_eq!(run_in(folder.path(), &["render", "facet", "--adapter", "cpu", "--size", "4x3", "-o", "a.png"]).code, 0);
+    assert_eq!(
+        run_in(
+            folder.path(),
+            &[
+                "render",
+                "facet",
+                "--adapter",
+                "cpu",
+                "--size",
+                "4x3",
+                "-o",
+                "a.png"
+            ]
+        )
+        .code,
+        0
+    );
     let mut bytes = fs::read(folder.path().join("a.png")).unwrap();
-    let text = bytes.windows(10).position(|window| window == b"schema = 2").unwrap();
+    let text = bytes
+        .windows(10)
+        .position(|window| window == b"schema = 2")
+        .unwrap();
     bytes[text] ^= 1;
     fs::write(folder.path().join("a.png"), bytes).unwrap();
-    let run = run_in(folder.path(), &["render", "a.png", "--adapter", "cpu", "-o", "b.png"]);
-    assert!(run.code == 2 && run.err.contains("the file is damaged"), "{}", run.err);
+    let run = run_in(
+        folder.path(),
+        &["render", "a.png", "--adapter", "cpu", "-o", "b.png"],
+    );
+    assert!(
+        run.code == 2 && run.err.contains("the file is damaged"),
+        "{}",
+        run.err
+    );
 }
 
 #[test]
@@ -205,17 +410,56 @@ fn files_that_cannot_be_what_they_are_called_are_refused_with_what_to_do() {
     fs::write(at("effects/mist.wgsl"), "fn mist(").unwrap();
     let refused = |args: &[&str], wanted: &str| {
         let run = run_in(folder.path(), args);
-        assert!(run.code == 2 && run.err.contains(wanted), "{args:?}: {} {}", run.code, run.err);
+        assert!(
+            run.code == 2 && run.err.contains(wanted),
+            "{args:?}: {} {}",
+            run.code,
+            run.err
+        );
     };
-    refused(&["render", "model.obj", "--adapter", "cpu"], "models in .glb and .gltf files");
-    refused(&["render", "folder", "--adapter", "cpu"], "models in .glb and .gltf files");
-    refused(&["render", "facet", "--adapter", "cpu", "-o", "a.jpg"], "a.jpg: pictures are written as PNG");
-    refused(&["explain", "facet", "--adapter", "cpu", "--measure"], "the built-in oracle, is not timed");
-    let missing = run_in(folder.path(), &["render", "facet", "--adapter", "cpu", "--size", "4x3", "-o", "no/a.png"]);
-    assert!(missing.code != 0 && missing.err.contains("there is no folder no") && !missing.err.contains(".tmp"), "{}", missing.err);
+    refused(
+        &["render", "model.obj", "--adapter", "cpu"],
+        "models in .glb and .gltf files",
+    );
+    refused(
+        &["render", "folder", "--adapter", "cpu"],
+        "models in .glb and .gltf files",
+    );
+    refused(
+        &["render", "facet", "--adapter", "cpu", "-o", "a.jpg"],
+        "a.jpg: pictures are written as PNG",
+    );
+    refused(
+        &["explain", "facet", "--adapter", "cpu", "--measure"],
+        "the built-in oracle, is not timed",
+    );
+    let missing = run_in(
+        folder.path(),
+        &[
+            "render",
+            "facet",
+            "--adapter",
+            "cpu",
+            "--size",
+            "4x3",
+            "-o",
+            "no/a.png",
+        ],
+    );
+    assert!(
+        missing.code != 0
+            && missing.err.contains("there is no folder no")
+            && !missing.err.contains(".tmp"),
+        "{}",
+        missing.err
+    );
     assert!(!at("a.jpg").exists());
     let listed = run_in(folder.path(), &["list", "effects"]);
-    assert!(listed.code == 0 && listed.err.contains("mist.wgsl"), "{}", listed.err);
+    assert!(
+        listed.code == 0 && listed.err.contains("mist.wgsl"),
+        "{}",
+        listed.err
+    );
 }
 
 #[cfg(unix)]
@@ -225,7 +469,13 @@ mod special {
     use super::*;
 
     fn pipe(path: &Path) {
-        assert!(Command::new("mkfifo").arg(path).status().expect("mkfifo is there").success());
+        assert!(
+            Command::new("mkfifo")
+                .arg(path)
+                .status()
+                .expect("mkfifo is there")
+                .success()
+        );
     }
 
     #[test]
@@ -237,24 +487,67 @@ mod special {
         pipe(&folder.path().join(".rasterlab-abcdefabcdef.tmp"));
         let refused = |args: &[&str], wanted: &str| {
             let run = run_in(folder.path(), args);
-            assert!(run.code == 2 && run.err.contains(wanted), "{args:?}: {} {}", run.code, run.err);
+            assert!(
+                run.code == 2 && run.err.contains(wanted),
+                "{args:?}: {} {}",
+                run.code,
+                run.err
+            );
         };
         let render = |name: &str, to: &str, wanted: &str| {
-            refused(&["render", name, "--adapter", "cpu", "--size", "4x3", "--force", "-o", to], wanted);
+            refused(
+                &[
+                    "render",
+                    name,
+                    "--adapter",
+                    "cpu",
+                    "--size",
+                    "4x3",
+                    "--force",
+                    "-o",
+                    to,
+                ],
+                wanted,
+            );
         };
-        render("facet", "out.png", "is a device, pipe or socket, not a regular file");
-        render("facet", "/dev/null", "is a device, pipe or socket, not a regular file");
+        render(
+            "facet",
+            "out.png",
+            "is a device, pipe or socket, not a regular file",
+        );
+        render(
+            "facet",
+            "/dev/null",
+            "is a device, pipe or socket, not a regular file",
+        );
         render("facet", ".", "is a folder, not a regular file");
         render("pipe.toml", "a.png", "it is not a regular file");
         render("pipe.png", "a.png", "it is not a regular file");
-        assert!(fs::metadata(folder.path().join("out.png")).unwrap().file_type().is_fifo());
+        assert!(
+            fs::metadata(folder.path().join("out.png"))
+                .unwrap()
+                .file_type()
+                .is_fifo()
+        );
         // A pipe beside the frames, and one in the place of a frame.
         assert_eq!(sequence(folder.path(), &[]).code, 0);
         fs::remove_file(folder.path().join("f_003.png")).unwrap();
         pipe(&folder.path().join("f_003.png"));
-        let output = ["sequence", "move.toml", "-o", "f_{frame:3}.png", "--fps", "8", "--adapter", "cpu"];
+        let output = [
+            "sequence",
+            "move.toml",
+            "-o",
+            "f_{frame:3}.png",
+            "--fps",
+            "8",
+            "--adapter",
+            "cpu",
+        ];
         refused(&output, "f_003.png exists and is no frame of this preset");
-        refused(&[&output[..], &["--force"]].concat(), "is a device, pipe or socket");
+        refused(
+            &[&output[..], &["--force"]].concat(),
+            "is a device, pipe or socket",
+        );
     }
 
     #[test]
@@ -264,17 +557,57 @@ mod special {
         fs::create_dir(at("deep")).unwrap();
         symlink("deep/target.png", at("link.png")).unwrap();
         let render = |extra: &[&str]| {
-            run_in(folder.path(), &[&["render", "facet", "--adapter", "cpu", "--size", "4x3", "-o", "link.png"], extra].concat())
+            run_in(
+                folder.path(),
+                &[
+                    &[
+                        "render",
+                        "facet",
+                        "--adapter",
+                        "cpu",
+                        "--size",
+                        "4x3",
+                        "-o",
+                        "link.png",
+                    ],
+                    extra,
+                ]
+                .concat(),
+            )
         };
         let refused = render(&[]);
-        assert!(refused.code == 2 && refused.err.contains("link.png exists"), "{}", refused.err);
+        assert!(
+            refused.code == 2 && refused.err.contains("link.png exists"),
+            "{}",
+            refused.err
+        );
         let written = render(&["--force"]);
         assert_eq!(written.code, 0, "{}", written.err);
-        assert!(fs::symlink_metadata(at("link.png")).unwrap().is_symlink() && at("deep/target.png").is_file());
+        assert!(
+            fs::symlink_metadata(at("link.png")).unwrap().is_symlink()
+                && at("deep/target.png").is_file()
+        );
         symlink("b.png", at("a.png")).unwrap();
         symlink("a.png", at("b.png")).unwrap();
-        let circle = run_in(folder.path(), &["render", "facet", "--adapter", "cpu", "--size", "4x3", "--force", "-o", "a.png"]);
-        assert!(circle.code == 2 && circle.err.contains("lead in a circle"), "{}", circle.err);
+        let circle = run_in(
+            folder.path(),
+            &[
+                "render",
+                "facet",
+                "--adapter",
+                "cpu",
+                "--size",
+                "4x3",
+                "--force",
+                "-o",
+                "a.png",
+            ],
+        );
+        assert!(
+            circle.code == 2 && circle.err.contains("lead in a circle"),
+            "{}",
+            circle.err
+        );
     }
 
     #[test]
@@ -290,12 +623,34 @@ mod special {
         for path in [&dead, &alive, &young, &not_ours] {
             let file = fs::File::create(path).unwrap();
             if *path != young {
-                file.set_modified(std::time::SystemTime::now() - std::time::Duration::from_secs(7200)).unwrap();
+                file.set_modified(
+                    std::time::SystemTime::now() - std::time::Duration::from_secs(7200),
+                )
+                .unwrap();
             }
         }
         let held = fs::File::open(&alive).unwrap();
         held.lock().unwrap();
-        assert_eq!(run_in(folder.path(), &["render", "facet", "--adapter", "cpu", "--size", "4x3", "-o", "a.png"]).code, 0);
-        assert_eq!([&dead, &alive, &young, &not_ours].map(|path| path.exists()), [false, true, true, true]);
+        assert_eq!(
+            run_in(
+                folder.path(),
+                &[
+                    "render",
+                    "facet",
+                    "--adapter",
+                    "cpu",
+                    "--size",
+                    "4x3",
+                    "-o",
+                    "a.png"
+                ]
+            )
+            .code,
+            0
+        );
+        assert_eq!(
+            [&dead, &alive, &young, &not_ours].map(|path| path.exists()),
+            [false, true, true, true]
+        );
     }
 }

@@ -1,18 +1,42 @@
-//! Promise: `parts` lists what scopes can name; a scope that matches nothing is a warning that names parts, and an error with `--strict`.
+//! Promise: `parts` lists what scopes can name; a scope that matches nothing is a warning that
+//! names parts, and an error with `--strict`.
 
 use super::*;
 
 #[test]
 fn parts_are_listed_as_the_patterns_that_name_them() {
-    let listed = run(&["parts", "builtin:walker?tess=1&instances=2", "--set", "scene.room=1.5"]);
+    let listed = run(&[
+        "parts",
+        "builtin:walker?tess=1&instances=2",
+        "--set",
+        "scene.room=1.5",
+    ]);
     assert_eq!((listed.code, listed.err.as_str()), (0, ""));
-    for line in ["material:hide", "material:plaster", "node:walker 0", "node:walker 1", "node:room", "mesh:walker", "mesh:room"] {
-        assert!(listed.out.lines().any(|found| found.starts_with(line)), "{line} is missing in\n{}", listed.out);
+    for line in [
+        "material:hide",
+        "material:plaster",
+        "node:walker 0",
+        "node:walker 1",
+        "node:room",
+        "mesh:walker",
+        "mesh:room",
+    ] {
+        assert!(
+            listed.out.lines().any(|found| found.starts_with(line)),
+            "{line} is missing in\n{}",
+            listed.out
+        );
     }
     let object = json(&run(&["parts", "cube-wall", "--json"]));
     let parts = object["results"].as_array().expect("a list");
-    let cube = parts.iter().find(|part| part["kind"] == "mesh").expect("the mesh");
-    assert_eq!((&cube["pattern"], &cube["draws"], &cube["triangles"]), (&"mesh:cube".into(), &160.into(), &1920.into()));
+    let cube = parts
+        .iter()
+        .find(|part| part["kind"] == "mesh")
+        .expect("the mesh");
+    assert_eq!(
+        (&cube["pattern"], &cube["draws"], &cube["triangles"]),
+        (&"mesh:cube".into(), &160.into(), &1920.into())
+    );
     let unknown = run(&["parts", "no-such-thing"]);
     assert_eq!((unknown.code, unknown.out.as_str()), (2, ""));
 }
@@ -26,26 +50,82 @@ fn a_part_that_is_not_there_is_a_warning_and_with_strict_an_error() {
     let in_folder = |args: &[&str]| run_in(folder.path(), args);
     let lenient = in_folder(&["check", "mine.toml"]);
     assert_eq!((lenient.code, lenient.out.as_str()), (0, "ok    mine\n"));
-    assert!(lenient.err.contains(&format!("warning: {wanted}")) && lenient.err.contains("did you mean \"coral\"?"), "{}", lenient.err);
-    assert_eq!(lenient.err.matches("effects.toon.on").count(), 1, "{}", lenient.err);
+    assert!(
+        lenient.err.contains(&format!("warning: {wanted}"))
+            && lenient.err.contains("did you mean \"coral\"?"),
+        "{}",
+        lenient.err
+    );
+    assert_eq!(
+        lenient.err.matches("effects.toon.on").count(),
+        1,
+        "{}",
+        lenient.err
+    );
     let strict = in_folder(&["check", "mine.toml", "--strict"]);
     assert_eq!(strict.code, 2);
     assert!(strict.out.contains(wanted), "{}", strict.out);
     let drawn = in_folder(&["render", "mine.toml", "--adapter", "cpu", "-o", "a.png"]);
-    assert!(drawn.code == 0 && drawn.err.contains(wanted), "{}", drawn.err);
-    let refused = in_folder(&["render", "mine.toml", "--adapter", "cpu", "-o", "b.png", "--strict"]);
-    assert!(refused.code == 2 && refused.err.contains(wanted) && !folder.path().join("b.png").exists(), "{}", refused.err);
-    let fixed = in_folder(&["check", "mine.toml", "--strict", "--set", "toon.on=[\"material:c*\"]"]);
+    assert!(
+        drawn.code == 0 && drawn.err.contains(wanted),
+        "{}",
+        drawn.err
+    );
+    let refused = in_folder(&[
+        "render",
+        "mine.toml",
+        "--adapter",
+        "cpu",
+        "-o",
+        "b.png",
+        "--strict",
+    ]);
+    assert!(
+        refused.code == 2 && refused.err.contains(wanted) && !folder.path().join("b.png").exists(),
+        "{}",
+        refused.err
+    );
+    let fixed = in_folder(&[
+        "check",
+        "mine.toml",
+        "--strict",
+        "--set",
+        "toon.on=[\"material:c*\"]",
+    ]);
     assert_eq!((fixed.code, fixed.err.as_str()), (0, ""));
 }
 
 #[test]
 fn explain_says_what_effects_act_on() {
-    let args = ["explain", "cube-wall", "--adapter", "cpu", "--set", "toon.on=[\"material:coral\", \"node:cube 1?\"]"];
+    let args = [
+        "explain",
+        "cube-wall",
+        "--adapter",
+        "cpu",
+        "--set",
+        "toon.on=[\"material:coral\", \"node:cube 1?\"]",
+    ];
     let explained = run(&args);
-    assert!(explained.out.contains("toon (surface) on material:coral, node:cube 1?"), "{}", explained.out);
+    assert!(
+        explained
+            .out
+            .contains("toon (surface) on material:coral, node:cube 1?"),
+        "{}",
+        explained.out
+    );
     let object = json(&run(&[&args[..], &["--json"]].concat()));
-    let effects = object["results"][0]["effects"].as_array().expect("a list").clone();
-    let on = |name: &str| effects.iter().find(|effect| effect["effect"] == name).map(|effect| effect["on"].clone());
-    assert_eq!(on("toon"), Some(serde_json::json!(["material:coral", "node:cube 1?"])));
+    let effects = object["results"][0]["effects"]
+        .as_array()
+        .expect("a list")
+        .clone();
+    let on = |name: &str| {
+        effects
+            .iter()
+            .find(|effect| effect["effect"] == name)
+            .map(|effect| effect["on"].clone())
+    };
+    assert_eq!(
+        on("toon"),
+        Some(serde_json::json!(["material:coral", "node:cube 1?"]))
+    );
 }

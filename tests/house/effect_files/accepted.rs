@@ -1,4 +1,5 @@
-//! Files that are read: what they say reaches the effect, and they link and validate beside anything else.
+//! Files that are read: what they say reaches the effect, and they link and validate beside
+//! anything else.
 
 use std::sync::Arc;
 
@@ -99,7 +100,10 @@ fn validates(effects: Vec<Arc<Effect>>) {
         let mut key = key(Fetch::Indexed, Visibility::Split32, true, effects.clone());
         if is_baked {
             key.options.parameters = Parameters::Baked;
-            key.effects.baked = effects.iter().map(|effect| effect.defaults.clone()).collect();
+            key.effects.baked = effects
+                .iter()
+                .map(|effect| effect.defaults.clone())
+                .collect();
         }
         for pass in all_passes(&key) {
             validate(&key, pass);
@@ -108,7 +112,10 @@ fn validates(effects: Vec<Arc<Effect>>) {
 }
 
 fn all_examples() -> Vec<String> {
-    let mut texts: Vec<String> = Hook::ALL.iter().map(|hook| template("ink", *hook)).collect();
+    let mut texts: Vec<String> = Hook::ALL
+        .iter()
+        .map(|hook| template("ink", *hook))
+        .collect();
     texts.extend(EXAMPLES.map(str::to_owned));
     texts
 }
@@ -121,7 +128,9 @@ fn templates_and_examples_link_alone_and_beside_all_others() {
         validates(vec![accepted(text)]);
         let stem = format!("ink{index}");
         let text = text.replace("INK_MODE", &format!("INK{index}_MODE"));
-        effects.push(read(&format!("{stem}.wgsl"), &stem, &text).unwrap_or_else(|error| panic!("{error}")));
+        effects.push(
+            read(&format!("{stem}.wgsl"), &stem, &text).unwrap_or_else(|error| panic!("{error}")),
+        );
     }
     validates(effects.clone());
     validates(EFFECTS.iter().cloned().chain(effects).collect());
@@ -130,10 +139,17 @@ fn templates_and_examples_link_alone_and_beside_all_others() {
 #[test]
 fn names_of_two_files_never_meet() {
     // Without a mark between the two parts these would both be custom_ink_a_b and INK_A_B_C.
-    let one = with_members("@choice(x, c) a_b: u32,") + "fn a_b() -> f32 { return 1.0; }\nfn b() -> f32 { return a_b(); }\n";
-    let other = one.replace("a_b: u32", "b: u32").replace("fn a_b()", "fn b_()").replace("a_b()", "b_()");
+    let one = with_members("@choice(x, c) a_b: u32,")
+        + "fn a_b() -> f32 { return 1.0; }\nfn b() -> f32 { return a_b(); }\n";
+    let other = one
+        .replace("a_b: u32", "b: u32")
+        .replace("fn a_b()", "fn b_()")
+        .replace("a_b()", "b_()");
     let effects = [("ink", &one), ("ink_a", &other)].map(|(stem, text)| {
-        let text = text.replace("return surface;", &format!("var s = surface; s.rank = f32({}); return s;", "1u"));
+        let text = text.replace(
+            "return surface;",
+            &format!("var s = surface; s.rank = f32({}); return s;", "1u"),
+        );
         read(&format!("{stem}.wgsl"), stem, &text).unwrap_or_else(|error| panic!("{error}\n{text}"))
     });
     validates(effects.to_vec());
@@ -141,7 +157,23 @@ fn names_of_two_files_never_meet() {
 
 #[test]
 fn templates_suit_every_name() {
-    for name in ["a", "s", "p", "v", "q", "rim", "a_1b", "type", "turns", "square", "center", "hook_surface", "x2", "dark", "wave"] {
+    for name in [
+        "a",
+        "s",
+        "p",
+        "v",
+        "q",
+        "rim",
+        "a_1b",
+        "type",
+        "turns",
+        "square",
+        "center",
+        "hook_surface",
+        "x2",
+        "dark",
+        "wave",
+    ] {
         if let Err(reason) = check_name(name) {
             assert!(reason.contains("word of WGSL"), "{name} {reason}");
             continue;
@@ -201,7 +233,9 @@ fn names_of_ones_own_are_ones_own() {
         let stem = format!("ink{}", effects.len());
         effects.push(read("x.wgsl", &stem, &text).unwrap_or_else(|error| panic!("{error}")));
     };
-    statements.iter().for_each(|statement| add(with_statements(statement)));
+    statements
+        .iter()
+        .for_each(|statement| add(with_statements(statement)));
     let declarations = [
         "fn amount(color: f32) -> f32 { return color; }",
         "fn color(amount: f32) -> vec4f { return vec4f(amount); }",
@@ -219,7 +253,9 @@ fn names_of_ones_own_are_ones_own() {
         "fn matrix(m: mat3x3f) -> vec3f { return m * vec3f(1.0) + m[0].zyx; }",
         "fn Helper(s: f32) -> f32 { return s; }",
     ];
-    declarations.iter().for_each(|declaration| add(with_declarations(declaration)));
+    declarations
+        .iter()
+        .for_each(|declaration| add(with_declarations(declaration)));
     add(with_declarations("").replace("Ink", "ink_values"));
     // All declare the same names.
     validates(effects);
@@ -246,8 +282,15 @@ fn loops_end() {
         let apply = effect.hooks.surface.as_ref().expect("a surface effect");
         let start = std::time::Instant::now();
         let result = apply(surface, &effect.defaults);
-        assert!(result.color != DVec4::NAN && !result.color.is_nan(), "{statement} did not end");
-        assert!(start.elapsed() < super::MOST_TIME, "{statement} took {:?}", start.elapsed());
+        assert!(
+            result.color != DVec4::NAN && !result.color.is_nan(),
+            "{statement} did not end"
+        );
+        assert!(
+            start.elapsed() < super::MOST_TIME,
+            "{statement} took {:?}",
+            start.elapsed()
+        );
     }
 }
 
@@ -257,17 +300,42 @@ fn what_the_file_says_reaches_the_effect() {
     assert_eq!(effect.about, "loops, helpers and every kind of parameter");
     let field = |name: &str| effect.field(name).unwrap_or_else(|| panic!("no {name}"));
     assert_eq!(field("mode").doc, "How.");
-    assert_eq!(field("mode").value_type, ValueType::choice(&["plain", "cross-hatch"]));
+    assert_eq!(
+        field("mode").value_type,
+        ValueType::choice(&["plain", "cross-hatch"])
+    );
     let words = &effect.defaults;
     assert_eq!(field("mode").get(words), [1.0]);
-    assert_eq!((field("amount").hard, field("amount").soft, field("amount").unit.as_str()), ([-4.0, 4.0], [0.0, 1.0], "m"));
-    assert_eq!(field("amount").when, Some(("mode".into(), vec!["plain".into()])));
+    assert_eq!(
+        (
+            field("amount").hard,
+            field("amount").soft,
+            field("amount").unit.as_str()
+        ),
+        ([-4.0, 4.0], [0.0, 1.0], "m")
+    );
+    assert_eq!(
+        field("amount").when,
+        Some(("mode".into(), vec!["plain".into()]))
+    );
     assert_eq!(field("offset").get(words), [-3.0]);
     assert_eq!(field("count").get(words), [3.0]);
     assert_eq!(field("helper").get(words), [1.0]);
     assert_eq!(field("tint").get(words), [1.0, 0.5, 0.25, 1.0]);
     assert_eq!(field("at").get(words), [1.0, -2.0, 3.5]);
-    let [one, other] = [accepted(EXAMPLES[2]).hooks.clone(), accepted(EXAMPLES[3]).hooks.clone()];
-    assert!(one.vertex.is_some() && one.surface.is_some() && one.sample.is_none() && one.image.is_none());
-    assert!(other.image.is_some_and(|image| image.reads_previous) && other.surface.is_none() && other.vertex.is_none());
+    let [one, other] = [
+        accepted(EXAMPLES[2]).hooks.clone(),
+        accepted(EXAMPLES[3]).hooks.clone(),
+    ];
+    assert!(
+        one.vertex.is_some()
+            && one.surface.is_some()
+            && one.sample.is_none()
+            && one.image.is_none()
+    );
+    assert!(
+        other.image.is_some_and(|image| image.reads_previous)
+            && other.surface.is_none()
+            && other.vertex.is_none()
+    );
 }

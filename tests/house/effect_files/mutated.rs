@@ -1,4 +1,5 @@
-//! Files made from good ones by changing one token: each is read or refused, and a refusal is told well.
+//! Files made from good ones by changing one token: each is read or refused, and a refusal is told
+//! well.
 
 use rasterlab::effect_files::{Hook, template};
 
@@ -26,13 +27,31 @@ fn tokens(text: &str) -> Vec<std::ops::Range<usize>> {
 
 #[test]
 fn a_changed_token_is_refused_in_one_sentence_or_read() {
-    let words = ["fn", "{", ")", "@", "0", "-1e39", "Surface", "\"", "é", "custom_ink__x", ";", "<", "loop"];
+    let words = [
+        "fn",
+        "{",
+        ")",
+        "@",
+        "0",
+        "-1e39",
+        "Surface",
+        "\"",
+        "é",
+        "custom_ink__x",
+        ";",
+        "<",
+        "loop",
+    ];
     let (mut refused, mut read, mut faults) = (0, 0, Vec::new());
     let templates = Hook::ALL.map(|hook| template("ink", hook));
     for text in templates.iter().map(String::as_str).chain(EXAMPLES) {
         let tokens = tokens(text);
         for (index, range) in tokens.iter().enumerate() {
-            let (before, token, after) = (&text[..range.start], &text[range.clone()], &text[range.end..]);
+            let (before, token, after) = (
+                &text[..range.start],
+                &text[range.clone()],
+                &text[range.end..],
+            );
             let other = words[index % words.len()];
             let next = tokens.get(index + 1).map_or("", |next| &text[next.clone()]);
             let changed = [
@@ -46,7 +65,9 @@ fn a_changed_token_is_refused_in_one_sentence_or_read() {
                 match std::panic::catch_unwind(|| read_ink(&text).is_ok()) {
                     Ok(true) => read += 1,
                     Ok(false) => refused += 1,
-                    Err(panic) => faults.push(panic.downcast_ref::<String>().cloned().unwrap_or_default()),
+                    Err(panic) => {
+                        faults.push(panic.downcast_ref::<String>().cloned().unwrap_or_default())
+                    }
                 }
             }
         }

@@ -1,4 +1,5 @@
-//! Promise: the error of the f32 side of an effect, and where an effect stops making colors, are found where they are.
+//! Promise: the error of the f32 side of an effect, and where an effect stops making colors, are
+//! found where they are.
 
 use std::sync::{Arc, atomic::AtomicBool};
 
@@ -19,13 +20,19 @@ fn effect(body: &str) -> Arc<Effect> {
 
 /// A picture of the teapot with one effect, whose parameters have these values.
 fn drawn(effect: &Arc<Effect>, values: [f64; 2]) -> (Scene, View, Stack) {
-    let preset = preset_file::open("builtin:teapot", &preset_file::Folders::default()).expect("a preset").preset;
+    let preset = preset_file::open("builtin:teapot", &preset_file::Folders::default())
+        .expect("a preset")
+        .preset;
     let scene = preset_file::load_scene(&preset, None).expect("a scene");
     let view = preset.view(&scene, [48, 36]);
     let mut stack = Stack::default();
     let words = &mut stack.enable(effect).words;
     for (name, value) in ["a", "b"].into_iter().zip(values) {
-        effect.field(name).expect("a parameter").set(words, &[value]).expect("a value");
+        effect
+            .field(name)
+            .expect("a parameter")
+            .set(words, &[value])
+            .expect("a value");
     }
     (Arc::unwrap_or_clone(scene), view, stack)
 }
@@ -33,41 +40,103 @@ fn drawn(effect: &Arc<Effect>, values: [f64; 2]) -> (Scene, View, Stack) {
 #[test]
 fn the_largest_error_is_where_f32_loses_digits() {
     // Only right of the middle is anything lost.
-    let effect = effect("s.color = vec4f(select(0.5, (p.a * 1.0e6 + 0.3) - p.a * 1.0e6, s.screen.x > 0.5), 0.0, 0.0, 1.0);");
+    let effect = effect(
+        "s.color = vec4f(select(0.5, (p.a * 1.0e6 + 0.3) - p.a * 1.0e6, s.screen.x > 0.5), 0.0, 0.0, 1.0);",
+    );
     let (scene, view, stack) = drawn(&effect, [1.0, 1.0]);
     let measure = |cancelled: bool| {
         let cancelled = Arc::new(AtomicBool::new(cancelled));
-        precision(&stack, |_| true, &cancelled, |stack| drop(oracle::render(&scene, &view, stack))).expect("it is evaluated")
+        precision(
+            &stack,
+            |_| true,
+            &cancelled,
+            |stack| drop(oracle::render(&scene, &view, stack)),
+        )
+        .expect("it is evaluated")
     };
     let found = measure(false);
-    let [(measured, errors)] = &found[..] else { panic!("{}", found.len()) };
+    let [(measured, errors)] = &found[..] else {
+        panic!("{}", found.len())
+    };
     assert_eq!(measured.name, "probed");
-    let [largest] = &errors[..] else { panic!("{errors:?}") };
+    let [largest] = &errors[..] else {
+        panic!("{errors:?}")
+    };
     // 0.3 becomes 0.3125.
-    assert!(largest.quantity == Quantity::Color && (1.0..4.0).contains(&largest.error), "{largest:?}");
-    assert!(matches!(largest.place, ErrorPlace::Pixel([x, _]) if x > 24.0), "{largest:?}");
-    assert!(measure(true).is_empty(), "a cancelled measurement has a result");
+    assert!(
+        largest.quantity == Quantity::Color && (1.0..4.0).contains(&largest.error),
+        "{largest:?}"
+    );
+    assert!(
+        matches!(largest.place, ErrorPlace::Pixel([x, _]) if x > 24.0),
+        "{largest:?}"
+    );
+    assert!(
+        measure(true).is_empty(),
+        "a cancelled measurement has a result"
+    );
     assert_eq!(measure(false), found, "a second measurement differs");
 }
 
 #[test]
 fn a_crossing_names_the_effect_the_kind_and_the_parameter() {
     let cases = [
-        ("s.color.x = sqrt(1.0 - p.b);", [1.0, 2.0], Unsound::NotANumber, Some("b"), false),
-        ("s.color.x = 1.0 / abs(p.a - 2.0);", [2.0, 1.5], Unsound::Infinite, Some("a"), false),
-        ("s.color.x = -p.a;", [1.0, 1.0], Unsound::Negative, None, false),
-        ("s.color.x = exp2(60.0 * p.a) * exp2(60.0 * p.b) * 1.0e-30;", [1.0, 3.0], Unsound::Infinite, Some("b"), true),
+        (
+            "s.color.x = sqrt(1.0 - p.b);",
+            [1.0, 2.0],
+            Unsound::NotANumber,
+            Some("b"),
+            false,
+        ),
+        (
+            "s.color.x = 1.0 / abs(p.a - 2.0);",
+            [2.0, 1.5],
+            Unsound::Infinite,
+            Some("a"),
+            false,
+        ),
+        (
+            "s.color.x = -p.a;",
+            [1.0, 1.0],
+            Unsound::Negative,
+            None,
+            false,
+        ),
+        (
+            "s.color.x = exp2(60.0 * p.a) * exp2(60.0 * p.b) * 1.0e-30;",
+            [1.0, 3.0],
+            Unsound::Infinite,
+            Some("b"),
+            true,
+        ),
     ];
     for (body, values, made, parameter, only_f32) in cases {
         let (scene, view, stack) = drawn(&effect(body), values);
-        let (frame, found) = crossings(&stack, |stack| oracle::render(&scene, &view, stack)).expect("it is evaluated");
+        let (frame, found) = crossings(&stack, |stack| oracle::render(&scene, &view, stack))
+            .expect("it is evaluated");
         let frame = frame.expect("a picture");
         assert_eq!(found.len(), frame.covered(), "{body}");
         let first = &found[0];
-        assert_eq!((first.effect.name.as_str(), first.made, first.only_f32), ("probed", made, only_f32), "{body}");
-        assert_eq!(first.parameter.as_ref().map(|field| field.name.as_str()), parameter, "{body}");
-        assert!(found.is_sorted_by_key(|crossing| [crossing.pixel[1], crossing.pixel[0]]), "{body}");
+        assert_eq!(
+            (first.effect.name.as_str(), first.made, first.only_f32),
+            ("probed", made, only_f32),
+            "{body}"
+        );
+        assert_eq!(
+            first.parameter.as_ref().map(|field| field.name.as_str()),
+            parameter,
+            "{body}"
+        );
+        assert!(
+            found.is_sorted_by_key(|crossing| [crossing.pixel[1], crossing.pixel[0]]),
+            "{body}"
+        );
     }
     let (scene, view, stack) = drawn(&effect("s.color = vec4f(p.a, p.b, 0.5, 1.0);"), [0.5, 0.5]);
-    assert!(crossings(&stack, |stack| drop(oracle::render(&scene, &view, stack))).expect("it is evaluated").1.is_empty());
+    assert!(
+        crossings(&stack, |stack| drop(oracle::render(&scene, &view, stack)))
+            .expect("it is evaluated")
+            .1
+            .is_empty()
+    );
 }

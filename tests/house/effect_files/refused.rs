@@ -25,9 +25,15 @@ fn try_refused(marked: &str, words: &str) -> Result<EffectError, String> {
         return Err(format!("{words:?} is not in:\n{error}"));
     }
     if let Some(offset) = offset {
-        let Some(place) = &error.place else { return Err(format!("no place: {error}\n{marked}")) };
+        let Some(place) = &error.place else {
+            return Err(format!("no place: {error}\n{marked}"));
+        };
         let line = text[..offset].matches('\n').count() + 1;
-        let column = text[..offset].rsplit('\n').next().map_or(0, |line| line.chars().count()) + 1;
+        let column = text[..offset]
+            .rsplit('\n')
+            .next()
+            .map_or(0, |line| line.chars().count())
+            + 1;
         if (place.line as usize, place.column as usize) != (line, column) {
             return Err(format!("{line}:{column} is meant:\n{error}"));
         }
@@ -39,7 +45,10 @@ fn try_refused(marked: &str, words: &str) -> Result<EffectError, String> {
 static COUNT: AtomicUsize = AtomicUsize::new(0);
 
 fn all(cases: &[(&str, &str)], wrap: impl Fn(&str) -> String) {
-    let faults: Vec<String> = cases.iter().filter_map(|(case, words)| try_refused(&wrap(case), words).err()).collect();
+    let faults: Vec<String> = cases
+        .iter()
+        .filter_map(|(case, words)| try_refused(&wrap(case), words).err())
+        .collect();
     assert!(faults.is_empty(), "{}", faults.join("\n\n"));
     println!("{} refused so far", COUNT.load(Ordering::Relaxed));
 }
@@ -156,16 +165,28 @@ fn what_only_kernels_may_do() {
     let declarations = [
         ("«var<private> x: u32;", "module scope"),
         ("«var<workgroup> x: u32;", "module scope"),
-        ("«var<storage, read_write> x: array<u32, 4>;", "module scope"),
+        (
+            "«var<storage, read_write> x: array<u32, 4>;",
+            "module scope",
+        ),
         ("«@group(0) @binding(0) var<uniform> x: u32;", "no binding"),
-        ("«@group(0) @binding(0) var x: texture_2d<f32>;", "no binding"),
+        (
+            "«@group(0) @binding(0) var x: texture_2d<f32>;",
+            "no binding",
+        ),
         ("«@compute @workgroup_size(1) fn main() { }", "entry point"),
-        ("«@fragment fn main() -> @location(0) vec4f { return vec4f(1.0); }", "entry point"),
+        (
+            "«@fragment fn main() -> @location(0) vec4f { return vec4f(1.0); }",
+            "entry point",
+        ),
         ("«@must_use fn more() -> f32 { return 1.0; }", "attributes"),
         ("«override SCALE: f32 = 1.0;", "override"),
         ("«@id(3) override SCALE: f32 = 1.0;", "attributes"),
         ("«enable f16;", "directives"),
-        ("«requires readonly_and_readwrite_storage_textures;", "directives"),
+        (
+            "«requires readonly_and_readwrite_storage_textures;",
+            "directives",
+        ),
         ("«diagnostic(off, derivative_uniformity);", "directives"),
         ("«import package::x;", "expected"),
         ("«#include \"x\"", "expected"),
@@ -179,7 +200,10 @@ fn what_only_kernels_may_do() {
 #[test]
 fn names_that_are_taken() {
     let declarations = [
-        ("fn «helper(x: u32) -> u32 { return x; }", "already declared"),
+        (
+            "fn «helper(x: u32) -> u32 { return x; }",
+            "already declared",
+        ),
         ("const «helper = 1.0;", "already declared"),
         ("struct «Ink { x: f32 }", "already declared"),
         ("fn «Surface() -> f32 { return 1.0; }", "hook"),
@@ -196,7 +220,10 @@ fn names_that_are_taken() {
         ("fn «loop() { }", "reserved"),
         ("struct «static { x: f32 }", "reserved"),
         ("fn «atomicAdd(x: f32) -> f32 { return x; }", "WGSL itself"),
-        ("struct Twice { x: f32, «x: f32 }\nfn twice(t: Twice) -> f32 { return t.x; }", ""),
+        (
+            "struct Twice { x: f32, «x: f32 }\nfn twice(t: Twice) -> f32 { return t.x; }",
+            "",
+        ),
         ("fn «more", "incomplete"),
         ("fn «more() -> f32;", "incomplete"),
         ("«fn (x: f32) { }", "name"),
@@ -219,10 +246,17 @@ fn names_that_are_taken() {
     all(&declarations, with_declarations);
     let choice = "@choice(a, b-c, b_c) mode: u32,";
     refused(&with_members(choice), "INK_MODE_B_C");
-    refused(&(with_members("@choice(a, b) mode: u32,") + "const «INK_MODE_A = 1u;"), "constant of a choice");
-    for name in ["toon", "stack", "fn", "array", "mix", "surface", "Ink", "ink__x", "ink_", "_ink", "9x", "", "in k", "é", "class"] {
+    refused(
+        &(with_members("@choice(a, b) mode: u32,") + "const «INK_MODE_A = 1u;"),
+        "constant of a choice",
+    );
+    for name in [
+        "toon", "stack", "fn", "array", "mix", "surface", "Ink", "ink__x", "ink_", "_ink", "9x",
+        "", "in k", "é", "class",
+    ] {
         assert!(check_name(name).is_err(), "{name}");
-        let error = read("x.wgsl", name, &with_declarations("")).expect_err("a name that no effect has");
+        let error =
+            read("x.wgsl", name, &with_declarations("")).expect_err("a name that no effect has");
         assert!(!error.to_string().contains('\n'), "{error}");
     }
     assert!(check_name(&"x".repeat(41)).is_err());
@@ -232,8 +266,14 @@ fn names_that_are_taken() {
 fn functions_that_call_themselves() {
     let declarations = [
         ("fn again(x: f32) -> f32 { return again(x); }", "again"),
-        ("fn a(x: f32) -> f32 { return b(x); }\nfn b(x: f32) -> f32 { return a(x); }", ""),
-        ("fn a(x: f32) -> f32 { return b(x); }\nfn b(x: f32) -> f32 { return c(x); }\nfn c(x: f32) -> f32 { return a(x); }", ""),
+        (
+            "fn a(x: f32) -> f32 { return b(x); }\nfn b(x: f32) -> f32 { return a(x); }",
+            "",
+        ),
+        (
+            "fn a(x: f32) -> f32 { return b(x); }\nfn b(x: f32) -> f32 { return c(x); }\nfn c(x: f32) -> f32 { return a(x); }",
+            "",
+        ),
     ];
     all(&declarations, with_declarations);
     refused(&with_statements("s = ink(s, p);"), "ink");
@@ -260,7 +300,10 @@ fn members_with_a_mistake() {
         ("«@range amount: f32,", "takes"),
         ("@range(0.0, 1.0, 0.5 amount: f32,", "must close"),
         ("«@range(0, 1, 0, 1, 2) amount: f32,", "takes"),
-        ("«@range(0, 1, 0, 0.1) amount: f32,", "takes min, max, default and nothing else"),
+        (
+            "«@range(0, 1, 0, 0.1) amount: f32,",
+            "takes min, max, default and nothing else",
+        ),
         ("«@range(0.5, 4, 1) count: u32,", "whole"),
         ("@range(0, 4, 1.5) «count: u32,", "whole"),
         ("«@range(-1, 4, 1) count: u32,", ""),
@@ -272,7 +315,10 @@ fn members_with_a_mistake() {
         ("@range(0, 4, 1) «@hard(0) count: u32,", "takes"),
         ("@range(0, 4, 9) @hard(0, 5) «count: u32,", "default"),
         ("«@rnge(0.0, 1.0, 0.5) amount: f32,", "range"),
-        ("@range(0.0, 1.0, 0.5) «@range(0.0, 1.0, 0.5) amount: f32,", "twice"),
+        (
+            "@range(0.0, 1.0, 0.5) «@range(0.0, 1.0, 0.5) amount: f32,",
+            "twice",
+        ),
         ("@range(0.0, 1.0, 0.5) «@toggle(0) amount: f32,", "exclude"),
         ("«@toggle(0) amount: f32,", "does not fit"),
         ("«@toggle(2) on_off: u32,", "0 or 1"),
@@ -296,8 +342,14 @@ fn members_with_a_mistake() {
         ("@range(0, 1, 0) «x", "needs a type"),
         ("@range(0, 1, 0)", "name: type"),
         ("@", "name after @"),
-        ("@range(0, 1, 0.5) x: f32 «@range(0, 1, 0.5) y: f32", "expected ,"),
-        ("@range(0, 1, 0.5) x: f32«; @range(0, 1, 0.5) y: f32", "expected ,"),
+        (
+            "@range(0, 1, 0.5) x: f32 «@range(0, 1, 0.5) y: f32",
+            "expected ,",
+        ),
+        (
+            "@range(0, 1, 0.5) x: f32«; @range(0, 1, 0.5) y: f32",
+            "expected ,",
+        ),
         ("«@choice(a) mode: u32,", "2 to 32"),
         ("«@choice(a, a) mode: u32,", "different"),
         ("«@choice(A, B) mode: u32,", "small letters"),
@@ -306,13 +358,34 @@ fn members_with_a_mistake() {
         ("«@choice(a, b) mode: f32,", "does not fit"),
         ("@choice(a, b) «@default(c) mode: u32,", "takes one of"),
         ("@choice(a, b) «@default mode: u32,", "takes one of"),
-        ("@range(0, 1, 0.5) «@default(0.5) x: f32,", "belongs to @choice"),
-        ("@range(0, 1, 0.5) «@when(mode, a) x: f32,", "no choice mode"),
-        ("@range(0, 1, 0.5) y: f32, @range(0, 1, 0.5) «@when(y, a) x: f32,", "no choice y"),
-        ("@choice(a, b) mode: u32, @range(0, 1, 0.5) «@when(mode, c) x: f32,", "no word c"),
-        ("@choice(a, b) mode: u32, @range(0, 1, 0.5) «@when(mode) x: f32,", "takes the name"),
-        ("@choice(a, b) mode: u32, @range(0, 1, 0.5) «@when x: f32,", "takes the name"),
-        ("@choice(a, b) mode: u32, @range(0, 1, 0.5) «@when(mode, a\nb) x: f32,", "no word"),
+        (
+            "@range(0, 1, 0.5) «@default(0.5) x: f32,",
+            "belongs to @choice",
+        ),
+        (
+            "@range(0, 1, 0.5) «@when(mode, a) x: f32,",
+            "no choice mode",
+        ),
+        (
+            "@range(0, 1, 0.5) y: f32, @range(0, 1, 0.5) «@when(y, a) x: f32,",
+            "no choice y",
+        ),
+        (
+            "@choice(a, b) mode: u32, @range(0, 1, 0.5) «@when(mode, c) x: f32,",
+            "no word c",
+        ),
+        (
+            "@choice(a, b) mode: u32, @range(0, 1, 0.5) «@when(mode) x: f32,",
+            "takes the name",
+        ),
+        (
+            "@choice(a, b) mode: u32, @range(0, 1, 0.5) «@when x: f32,",
+            "takes the name",
+        ),
+        (
+            "@choice(a, b) mode: u32, @range(0, 1, 0.5) «@when(mode, a\nb) x: f32,",
+            "no word",
+        ),
         ("@range(0, 1, 0.5) «@log x: f32,", "above 0"),
         ("@range(1, 2, 1) «@log(2) x: f32,", "@log"),
         ("@range(1, 2, 1) «@log x: u32,", "@log"),
@@ -322,7 +395,10 @@ fn members_with_a_mistake() {
         ("@range(1, 2, 1) «@unit(kilometers) x: f32,", "@unit"),
         ("@range(1, 2, 1) «@unit(a\nb) x: f32,", "@unit"),
         ("«@align(16) x: f32,", "no attribute"),
-        ("@range(0, 1, 0.5) x: f32, @range(0, 1, 0.5) «x: f32,", "twice"),
+        (
+            "@range(0, 1, 0.5) x: f32, @range(0, 1, 0.5) «x: f32,",
+            "twice",
+        ),
         ("@range(0, 1, 0.5) «effect: f32,", "preset"),
         ("@range(0, 1, 0.5) «on: f32,", "preset"),
         ("@range(0, 1, 0.5) «static: f32,", "reserved"),
@@ -330,9 +406,14 @@ fn members_with_a_mistake() {
         ("@range(0, 1, 0.5) «_x: f32,", "letters"),
     ];
     all(&cases, with_members);
-    let many: String = (0..65).map(|index| format!("@range(0, 1, 0.5) x{index}: f32,\n")).collect();
+    let many: String = (0..65)
+        .map(|index| format!("@range(0, 1, 0.5) x{index}: f32,\n"))
+        .collect();
     refused(&with_members(&many), "at most 64");
-    refused(&with_members(&format!("@range(0, 1, 0.5) «{}: f32,", "x".repeat(60))), "letters");
+    refused(
+        &with_members(&format!("@range(0, 1, 0.5) «{}: f32,", "x".repeat(60))),
+        "letters",
+    );
 }
 
 #[test]
@@ -342,31 +423,80 @@ fn hooks_with_a_mistake() {
         ("", "no function has the signature"),
         ("fn «f(s: Surface) -> Surface { return s; }", "signature"),
         ("fn «f(s: Surface, p: P) { }", "signature"),
-        ("fn «f(s: Surface, p: P) -> vec4f { return s.color; }", "signature"),
-        ("fn «f(s: Surface, p: f32) -> Surface { return s; }", "signature"),
-        ("fn «f(s: Surface, p: P, q: f32) -> Surface { return s; }", "signature"),
-        ("fn «f(s: Sample, p: P) -> Sample { return s; }", "signature"),
-        ("fn «f(s: Surface, p: Surface) -> Surface { return s; }", "signature"),
-        ("fn «f(s: Surface, p: array<f32, 4>) -> Surface { return s; }", "signature"),
+        (
+            "fn «f(s: Surface, p: P) -> vec4f { return s.color; }",
+            "signature",
+        ),
+        (
+            "fn «f(s: Surface, p: f32) -> Surface { return s; }",
+            "signature",
+        ),
+        (
+            "fn «f(s: Surface, p: P, q: f32) -> Surface { return s; }",
+            "signature",
+        ),
+        (
+            "fn «f(s: Sample, p: P) -> Sample { return s; }",
+            "signature",
+        ),
+        (
+            "fn «f(s: Surface, p: Surface) -> Surface { return s; }",
+            "signature",
+        ),
+        (
+            "fn «f(s: Surface, p: array<f32, 4>) -> Surface { return s; }",
+            "signature",
+        ),
         ("fn f(s: Surface, p: «R) -> Surface { return s; }", "R"),
-        ("fn f(s: Surface, p: P) -> Surface { return s; }\nfn «g(s: Surface, p: P) -> Surface { return s; }", "both"),
-        ("fn f(s: Surface, p: P) -> Surface { return s; }\nfn «g(x: Pixel, p: Q) -> Pixel { return x; }", "same struct"),
+        (
+            "fn f(s: Surface, p: P) -> Surface { return s; }\nfn «g(s: Surface, p: P) -> Surface { return s; }",
+            "both",
+        ),
+        (
+            "fn f(s: Surface, p: P) -> Surface { return s; }\nfn «g(x: Pixel, p: Q) -> Pixel { return x; }",
+            "same struct",
+        ),
         ("fn «f(v: Vertex, p: Q) -> Vertex { return v; }", "@unit(m)"),
-        ("fn f(s: Surface, p: Q) -> Surface { return s; }\nfn «g(x: Pixel, p: Q) -> Pixel { return x; }", "no other hook"),
-        ("//@ use lib/image\nfn f(s: Surface, p: Q) -> Surface { return s; }", "no other hook"),
+        (
+            "fn f(s: Surface, p: Q) -> Surface { return s; }\nfn «g(x: Pixel, p: Q) -> Pixel { return x; }",
+            "no other hook",
+        ),
+        (
+            "//@ use lib/image\nfn f(s: Surface, p: Q) -> Surface { return s; }",
+            "no other hook",
+        ),
     ];
     for (case, words) in cases {
         refused(&format!("{member}{case}\n"), words);
     }
-    for empty in ["", "\n\n", "// nothing", "/* nothing */", "\u{feff}", "struct P { @range(0, 1, 0) x: f32 }"] {
+    for empty in [
+        "",
+        "\n\n",
+        "// nothing",
+        "/* nothing */",
+        "\u{feff}",
+        "struct P { @range(0, 1, 0) x: f32 }",
+    ] {
         refused(empty, "no function has the signature");
     }
-    for (used, words) in
-        [("lib/nothing", "may use"), ("stages/shade/resolve", "may use"), ("lib/frame", "may use"), ("glue/draws", "may use")]
-    {
-        refused(&format!("«//@ use {used}\n{}", with_declarations("")), words);
+    for (used, words) in [
+        ("lib/nothing", "may use"),
+        ("stages/shade/resolve", "may use"),
+        ("lib/frame", "may use"),
+        ("glue/draws", "may use"),
+    ] {
+        refused(
+            &format!("«//@ use {used}\n{}", with_declarations("")),
+            words,
+        );
     }
-    refused(&format!("«//@ binding var<uniform> x: u32;\n{}", with_declarations("")), "may use");
+    refused(
+        &format!(
+            "«//@ binding var<uniform> x: u32;\n{}",
+            with_declarations("")
+        ),
+        "may use",
+    );
 }
 
 #[test]
@@ -391,27 +521,48 @@ fn brackets_and_characters() {
             continue;
         }
         // What is opened and not closed is the innermost bracket only where the file ends with it.
-        let text = if words == "not closed" { format!("fn f() {{ {}", case) } else { with_statements(case) };
-        let text = if words == "not closed" { text.replacen('«', "", 1) } else { text };
+        let text = if words == "not closed" {
+            format!("fn f() {{ {}", case)
+        } else {
+            with_statements(case)
+        };
+        let text = if words == "not closed" {
+            text.replacen('«', "", 1)
+        } else {
+            text
+        };
         refused(&text, words);
     }
     refused("fn f() «{ if true { }", "not closed");
-    refused(&with_declarations("}").replacen("}", "«}", 99).replace("«}", "}"), "closes nothing");
+    refused(
+        &with_declarations("}")
+            .replacen("}", "«}", 99)
+            .replace("«}", "}"),
+        "closes nothing",
+    );
     let long = format!("{}let «x: u32 = 1.5;{}", " ".repeat(3000), " ".repeat(3000));
     refused(&with_statements(&long), "");
-    refused(&with_statements(&format!("let x = {}«missing;", "1.0 + ".repeat(60))), "missing");
+    refused(
+        &with_statements(&format!("let x = {}«missing;", "1.0 + ".repeat(60))),
+        "missing",
+    );
 }
 
 #[test]
 fn what_is_too_large_or_too_deep() {
-    let nested = |open: &str, middle: &str, close: &str, count: usize| format!("{}{middle}{}", open.repeat(count), close.repeat(count));
+    let nested = |open: &str, middle: &str, close: &str, count: usize| {
+        format!("{}{middle}{}", open.repeat(count), close.repeat(count))
+    };
     for count in [100, 10_000] {
         let statements = [
             format!("let x = {};", nested("(", "1.0", ")", count)),
             nested("{", "", "}", count),
             format!("let x = {};", nested("vec3f(", "1.0", ")", count.min(9000))),
             format!("let x = {};", nested("a[", "0", "]", count)),
-            format!("if true {{ }}{}", " else if true { }".repeat(count.min(3000))),
+            format!(
+                "if true {{ }}{}",
+                " else if true { }".repeat(count.min(3000))
+            ),
             nested("if true {", "", "}", count.min(5000)),
             nested("loop {", "", "}", count.min(5000)),
         ];
@@ -446,25 +597,61 @@ fn what_is_too_large_or_too_deep() {
         ("let x = array<u32, «0xffffffff>()[7];", "length"),
         ("var a: «array<f32;", "not closed"),
         ("«var a: array<f32, 4096>;", "bytes"),
-        ("var a: array<array<array<array<array<f32, 2>, 2>, 2>, 2>, 2>;", "inside each other"),
-        ("var a: array<array<array<array<f32, 4096>, 4096>, 4096>, 4096>;", ""),
+        (
+            "var a: array<array<array<array<array<f32, 2>, 2>, 2>, 2>, 2>;",
+            "inside each other",
+        ),
+        (
+            "var a: array<array<array<array<f32, 4096>, 4096>, 4096>, 4096>;",
+            "",
+        ),
         ("let a = array<array<f32, 4096>, 4096>();", "bytes"),
     ];
-    all(&arrays, |statement| with_statements(statement) + "const MANY = 5000;");
-    let doubling: String = (1..30).map(|level| format!("struct S{level} {{ a: S{0}, b: S{0} }}\n", level - 1)).collect();
-    refused(&with_declarations(&format!("struct S0 {{ x: vec4f }}\n{doubling}fn large(s: S29) -> f32 {{ return 1.0; }}")), "");
-    let tree: String =
-        (1..40).map(|level| format!("fn t{level}(x: f32) -> f32 {{ return t{0}(x) + t{0}(x + 1.0); }}\n", level - 1)).collect();
-    let text = with_statements("s.rank = t39(s.rank);") + "fn t0(x: f32) -> f32 { return x * x; }\n" + &tree;
+    all(&arrays, |statement| {
+        with_statements(statement) + "const MANY = 5000;"
+    });
+    let doubling: String = (1..30)
+        .map(|level| format!("struct S{level} {{ a: S{0}, b: S{0} }}\n", level - 1))
+        .collect();
+    refused(
+        &with_declarations(&format!(
+            "struct S0 {{ x: vec4f }}\n{doubling}fn large(s: S29) -> f32 {{ return 1.0; }}"
+        )),
+        "",
+    );
+    let tree: String = (1..40)
+        .map(|level| {
+            format!(
+                "fn t{level}(x: f32) -> f32 {{ return t{0}(x) + t{0}(x + 1.0); }}\n",
+                level - 1
+            )
+        })
+        .collect();
+    let text = with_statements("s.rank = t39(s.rank);")
+        + "fn t0(x: f32) -> f32 { return x * x; }\n"
+        + &tree;
     refused(&text, "needs more than");
     // Long code may have no loops: together they would take too long on every pixel.
     let looped = "for (var i = 0; i < 9; i += 1) { s.rank += t12(s.rank); }";
     let text = with_statements(looped) + "fn t0(x: f32) -> f32 { return x * x; }\n" + &tree;
     refused(&text, "an effect with loops has at most");
-    read_ink(&(with_statements("s.rank = t12(s.rank);") + "fn t0(x: f32) -> f32 { return x * x; }\n" + &tree))
-        .expect("without a loop it is read");
-    let chain: String = (1..1200).map(|level| format!("fn t{level}(x: f32) -> f32 {{ return t{}(x); }}\n", level - 1)).collect();
-    let text = with_statements("s.rank = t1199(s.rank);") + "fn t0(x: f32) -> f32 { return x * x; }\n" + &chain;
+    read_ink(
+        &(with_statements("s.rank = t12(s.rank);")
+            + "fn t0(x: f32) -> f32 { return x * x; }\n"
+            + &tree),
+    )
+    .expect("without a loop it is read");
+    let chain: String = (1..1200)
+        .map(|level| {
+            format!(
+                "fn t{level}(x: f32) -> f32 {{ return t{}(x); }}\n",
+                level - 1
+            )
+        })
+        .collect();
+    let text = with_statements("s.rank = t1199(s.rank);")
+        + "fn t0(x: f32) -> f32 { return x * x; }\n"
+        + &chain;
     refused(&text, "deep");
     refused(&" ".repeat(MAX_BYTES + 1), "bytes");
     refused(&"x".repeat(1 << 20), "bytes");
@@ -481,7 +668,14 @@ fn files_that_are_no_text() {
     let mut catalog = Catalog::default();
     let cases: [(&str, Vec<u8>, &str); 6] = [
         ("latin", b"// caf\xe9\nfn f() { }\n".to_vec(), "UTF-8"),
-        ("wide", "fn f() { }".encode_utf16().flat_map(u16::to_le_bytes).collect(), "U+0000"),
+        (
+            "wide",
+            "fn f() { }"
+                .encode_utf16()
+                .flat_map(u16::to_le_bytes)
+                .collect(),
+            "U+0000",
+        ),
         ("binary", (0..=255).collect(), ""),
         ("huge", vec![b' '; 1 << 20], "bytes"),
         ("turned", "// \u{202e}hidden\n".into(), "U+202E"),
@@ -497,7 +691,12 @@ fn files_that_are_no_text() {
     }
     catalog.add_file(&folder.path().join("gone.wgsl"));
     assert!(catalog.find("gone").is_err());
-    let place = catalog.find("latin").expect_err("it is no effect").place.as_ref().expect("a place");
+    let place = catalog
+        .find("latin")
+        .expect_err("it is no effect")
+        .place
+        .as_ref()
+        .expect("a place");
     assert_eq!((place.line, place.column), (1, 7));
     assert_eq!(catalog.effects().count(), rasterlab::effects::EFFECTS.len());
 }

@@ -5,13 +5,20 @@ use rasterlab::evaluator::{Limits, Machine, NoHost, Options, Precision, Program,
 /// The text of a built-in effect with all that it uses.
 pub fn link(effect: &str) -> String {
     let effect = rasterlab::effects::Effect::find(effect).expect("a built-in effect");
-    rasterlab::shader::link::link_effect(&rasterlab::shader::library::Library::Embedded, effect).expect("it links").text
+    rasterlab::shader::link::link_effect(&rasterlab::shader::library::Library::Embedded, effect)
+        .expect("it links")
+        .text
 }
 
 /// A module that naga's validator accepts.
 pub fn parse(source: &str) -> naga::Module {
-    let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|error| panic!("{}", error.emit_to_string(source)));
-    let validated = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::all()).validate(&module);
+    let module = naga::front::wgsl::parse_str(source)
+        .unwrap_or_else(|error| panic!("{}", error.emit_to_string(source)));
+    let validated = naga::valid::Validator::new(
+        naga::valid::ValidationFlags::all(),
+        naga::valid::Capabilities::all(),
+    )
+    .validate(&module);
     if let Err(error) = validated {
         panic!("{}", error.emit_to_string(source));
     }
@@ -19,7 +26,8 @@ pub fn parse(source: &str) -> naga::Module {
 }
 
 pub fn program_with(source: &str, function: &str, options: &Options) -> Program {
-    Program::new(&parse(source), function, options).unwrap_or_else(|error| panic!("{error}\n{source}"))
+    Program::new(&parse(source), function, options)
+        .unwrap_or_else(|error| panic!("{error}\n{source}"))
 }
 
 pub fn program(source: &str, function: &str) -> Program {
@@ -27,12 +35,22 @@ pub fn program(source: &str, function: &str) -> Program {
 }
 
 pub fn single(source: &str, function: &str) -> Program {
-    program_with(source, function, &Options { precision: Precision::Single, ..Options::default() })
+    program_with(
+        source,
+        function,
+        &Options {
+            precision: Precision::Single,
+            ..Options::default()
+        },
+    )
 }
 
 pub fn call(program: &Program, arguments: &[Word]) -> Vec<Word> {
     let mut machine: Machine = program.machine();
-    machine.call(arguments, &mut NoHost).unwrap_or_else(|error| panic!("{error}")).to_vec()
+    machine
+        .call(arguments, &mut NoHost)
+        .unwrap_or_else(|error| panic!("{error}"))
+        .to_vec()
 }
 
 pub fn floats(values: &[f64]) -> Vec<Word> {
@@ -44,7 +62,10 @@ pub fn to_floats(words: &[Word]) -> Vec<f64> {
 }
 
 pub fn limits(steps: u64) -> Limits {
-    Limits { steps, ..Limits::default() }
+    Limits {
+        steps,
+        ..Limits::default()
+    }
 }
 
 /// Random numbers that are the same in every run.

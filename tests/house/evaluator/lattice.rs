@@ -26,13 +26,30 @@ impl Scalar for f64 {
     }
 
     fn same(self, other: f64) -> bool {
-        self == other || self.is_nan() && other.is_nan() || (self - other).abs() <= 1e-12 * other.abs()
+        self == other
+            || self.is_nan() && other.is_nan()
+            || (self - other).abs() <= 1e-12 * other.abs()
     }
 
     fn lattice() -> Vec<f64> {
         let smallest = f64::from(f32::from_bits(1));
-        let mut values =
-            vec![0.0, smallest, f64::from(f32::MIN_POSITIVE), 1e-30, 1e-4, 0.1, 0.25, 0.5, 0.75, 0.999, 1.0, 1.5, 2.0, 2.5, 3.0];
+        let mut values = vec![
+            0.0,
+            smallest,
+            f64::from(f32::MIN_POSITIVE),
+            1e-30,
+            1e-4,
+            0.1,
+            0.25,
+            0.5,
+            0.75,
+            0.999,
+            1.0,
+            1.5,
+            2.0,
+            2.5,
+            3.0,
+        ];
         values.extend([
             3.5,
             7.3,
@@ -69,7 +86,27 @@ impl Scalar for i32 {
     }
 
     fn lattice() -> Vec<i32> {
-        vec![0, 1, -1, 2, -2, 3, 7, -7, 31, 32, 33, 100, -100, 0x1234_5678, -0x1234_5678, i32::MAX, i32::MIN, i32::MIN + 1, 0x5555_5555]
+        vec![
+            0,
+            1,
+            -1,
+            2,
+            -2,
+            3,
+            7,
+            -7,
+            31,
+            32,
+            33,
+            100,
+            -100,
+            0x1234_5678,
+            -0x1234_5678,
+            i32::MAX,
+            i32::MIN,
+            i32::MIN + 1,
+            0x5555_5555,
+        ]
     }
 }
 
@@ -115,42 +152,75 @@ impl Scalar for bool {
 
 #[track_caller]
 pub fn check<R: Scalar>(expression: &str, at: &dyn std::fmt::Debug, given: R, expected: R) {
-    assert!(given.same(expected), "{expression} at {at:?} is {given:?} instead of {expected:?}");
+    assert!(
+        given.same(expected),
+        "{expression} at {at:?} is {given:?} instead of {expected:?}"
+    );
 }
 
 /// `expression` of `a`, for scalars and for a component of a vector.
 #[track_caller]
 pub fn one<A: Scalar, R: Scalar>(expression: &str, expected: impl Fn(A) -> R) {
-    let scalar = program(&format!("fn f(a: {}) -> {} {{ return {expression}; }}", A::NAME, R::NAME), "f");
+    let scalar = program(
+        &format!(
+            "fn f(a: {}) -> {} {{ return {expression}; }}",
+            A::NAME,
+            R::NAME
+        ),
+        "f",
+    );
     let mut machine = scalar.machine();
     for a in A::lattice() {
-        let given = machine.call(&[a.word()], &mut rasterlab::evaluator::NoHost).expect("no loops")[0];
+        let given = machine
+            .call(&[a.word()], &mut rasterlab::evaluator::NoHost)
+            .expect("no loops")[0];
         check(expression, &a, R::value(given), expected(a));
     }
 }
 
 #[track_caller]
 pub fn two<A: Scalar, B: Scalar, R: Scalar>(expression: &str, expected: impl Fn(A, B) -> R) {
-    let source = format!("fn f(a: {}, b: {}) -> {} {{ return {expression}; }}", A::NAME, B::NAME, R::NAME);
+    let source = format!(
+        "fn f(a: {}, b: {}) -> {} {{ return {expression}; }}",
+        A::NAME,
+        B::NAME,
+        R::NAME
+    );
     let scalar = program(&source, "f");
     let mut machine = scalar.machine();
     for a in A::lattice() {
         for b in B::lattice() {
-            let given = machine.call(&[a.word(), b.word()], &mut rasterlab::evaluator::NoHost).expect("no loops")[0];
+            let given = machine
+                .call(&[a.word(), b.word()], &mut rasterlab::evaluator::NoHost)
+                .expect("no loops")[0];
             check(expression, &(a, b), R::value(given), expected(a, b));
         }
     }
 }
 
 #[track_caller]
-pub fn three<A: Scalar, B: Scalar, C: Scalar, R: Scalar>(expression: &str, expected: impl Fn(A, B, C) -> R) {
-    let source = format!("fn f(a: {}, b: {}, c: {}) -> {} {{ return {expression}; }}", A::NAME, B::NAME, C::NAME, R::NAME);
+pub fn three<A: Scalar, B: Scalar, C: Scalar, R: Scalar>(
+    expression: &str,
+    expected: impl Fn(A, B, C) -> R,
+) {
+    let source = format!(
+        "fn f(a: {}, b: {}, c: {}) -> {} {{ return {expression}; }}",
+        A::NAME,
+        B::NAME,
+        C::NAME,
+        R::NAME
+    );
     let scalar = program(&source, "f");
     let mut machine = scalar.machine();
     for a in A::lattice() {
         for b in B::lattice() {
             for c in C::lattice() {
-                let given = machine.call(&[a.word(), b.word(), c.word()], &mut rasterlab::evaluator::NoHost).expect("no loops")[0];
+                let given = machine
+                    .call(
+                        &[a.word(), b.word(), c.word()],
+                        &mut rasterlab::evaluator::NoHost,
+                    )
+                    .expect("no loops")[0];
                 check(expression, &(a, b, c), R::value(given), expected(a, b, c));
             }
         }
@@ -171,7 +241,10 @@ pub fn vectors(signature: &str, expression: &str, arguments: &[f64], expected: &
     let given = to_floats(&call(&program, &floats(arguments)));
     assert_eq!(given.len(), expected.len());
     for (given, expected) in given.iter().zip(expected) {
-        assert!((given - expected).abs() <= 1e-12 * (1.0 + expected.abs()), "{expression}: {given} instead of {expected}");
+        assert!(
+            (given - expected).abs() <= 1e-12 * (1.0 + expected.abs()),
+            "{expression}: {given} instead of {expected}"
+        );
     }
 }
 

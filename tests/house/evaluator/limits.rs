@@ -20,22 +20,61 @@ fn endless_loops_stop() {
         fn inner(n: u32) -> u32 { var i = n; loop { i += 1u; if i == 0u && n == 1u { break; } } return i; }
         fn outer(n: u32) -> u32 { return inner(n) + 1u; }
         fn count(n: u32) -> u32 { var sum = 0u; for (var i = 0u; i < n; i++) { sum += i; } return sum; }";
-    let endless = program_with(source, "outer", &Options { limits: limits(100_000), ..Options::default() });
-    let stopped = endless.machine().call(&[Word::from_u32(2)], &mut NoHost).unwrap_err();
-    assert_eq!(stopped, EvalError::Steps { steps: 100_000, function: "inner".to_owned() });
-    let count = program_with(source, "count", &Options { limits: limits(10_000), ..Options::default() });
+    let endless = program_with(
+        source,
+        "outer",
+        &Options {
+            limits: limits(100_000),
+            ..Options::default()
+        },
+    );
+    let stopped = endless
+        .machine()
+        .call(&[Word::from_u32(2)], &mut NoHost)
+        .unwrap_err();
+    assert_eq!(
+        stopped,
+        EvalError::Steps {
+            steps: 100_000,
+            function: "inner".to_owned()
+        }
+    );
+    let count = program_with(
+        source,
+        "count",
+        &Options {
+            limits: limits(10_000),
+            ..Options::default()
+        },
+    );
     let mut machine = count.machine();
-    assert_eq!(machine.call(&[Word::from_u32(100)], &mut NoHost).unwrap(), [Word::from_u32(4950)]);
-    assert!(machine.call(&[Word::from_u32(100_000)], &mut NoHost).is_err());
+    assert_eq!(
+        machine.call(&[Word::from_u32(100)], &mut NoHost).unwrap(),
+        [Word::from_u32(4950)]
+    );
+    assert!(
+        machine
+            .call(&[Word::from_u32(100_000)], &mut NoHost)
+            .is_err()
+    );
     // A machine works after an error as before.
-    assert_eq!(machine.call(&[Word::from_u32(100)], &mut NoHost).unwrap(), [Word::from_u32(4950)]);
+    assert_eq!(
+        machine.call(&[Word::from_u32(100)], &mut NoHost).unwrap(),
+        [Word::from_u32(4950)]
+    );
 }
 
 #[test]
 fn large_arrays_are_refused() {
-    let error = refused("fn f(i: u32) -> f32 { var a: array<f32, 100000000>; a[i] = 1.0; return a[i / 2u]; }", "f");
+    let error = refused(
+        "fn f(i: u32) -> f32 { var a: array<f32, 100000000>; a[i] = 1.0; return a[i / 2u]; }",
+        "f",
+    );
     assert!(matches!(error, LowerError::Slots { .. }), "{error}");
-    let error = refused("fn f(i: u32) -> f32 { var a: array<array<array<vec4f, 300>, 300>, 400>; return a[i][i][i].x; }", "f");
+    let error = refused(
+        "fn f(i: u32) -> f32 { var a: array<array<array<vec4f, 300>, 300>, 400>; return a[i][i][i].x; }",
+        "f",
+    );
     assert!(matches!(error, LowerError::Slots { .. }), "{error}");
 }
 
@@ -44,16 +83,34 @@ fn trees_of_calls_are_refused() {
     let mut source = "fn tree0(x: f32) -> f32 { return x * x + 1.0; }\n".to_owned();
     let mut constant = "fn g0() -> u32 { return 1u; }\n".to_owned();
     for level in 1..60 {
-        source.push_str(&format!("fn tree{level}(x: f32) -> f32 {{ return tree{0}(x) + tree{0}(x + 1.0); }}\n", level - 1));
-        constant.push_str(&format!("fn g{level}() -> u32 {{ return g{0}() + g{0}(); }}\n", level - 1));
+        source.push_str(&format!(
+            "fn tree{level}(x: f32) -> f32 {{ return tree{0}(x) + tree{0}(x + 1.0); }}\n",
+            level - 1
+        ));
+        constant.push_str(&format!(
+            "fn g{level}() -> u32 {{ return g{0}() + g{0}(); }}\n",
+            level - 1
+        ));
     }
-    assert!(matches!(refused(&source, "tree59"), LowerError::Instructions { .. } | LowerError::Slots { .. }));
-    assert!(matches!(refused(&constant, "g59"), LowerError::Instructions { .. }));
+    assert!(matches!(
+        refused(&source, "tree59"),
+        LowerError::Instructions { .. } | LowerError::Slots { .. }
+    ));
+    assert!(matches!(
+        refused(&constant, "g59"),
+        LowerError::Instructions { .. }
+    ));
     let mut chain = "fn link0(x: f32) -> f32 { return x; }\n".to_owned();
     for level in 1..3000 {
-        chain.push_str(&format!("fn link{level}(x: f32) -> f32 {{ return link{}(x); }}\n", level - 1));
+        chain.push_str(&format!(
+            "fn link{level}(x: f32) -> f32 {{ return link{}(x); }}\n",
+            level - 1
+        ));
     }
-    assert!(matches!(refused(&chain, "link2999"), LowerError::Depth { .. }));
+    assert!(matches!(
+        refused(&chain, "link2999"),
+        LowerError::Depth { .. }
+    ));
 }
 
 #[test]
@@ -93,20 +150,41 @@ fn unsupported_code_is_named_with_its_line() {
         assert!(error.to_string().contains(word), "{error}");
         assert_eq!(line(&error), Some(at), "{error}");
     }
-    assert_eq!(refused(source, "nothing"), LowerError::NoFunction("nothing".to_owned()));
+    assert_eq!(
+        refused(source, "nothing"),
+        LowerError::NoFunction("nothing".to_owned())
+    );
     // A store to what the host supplies is no less refused.
-    let options = Options { globals: vec!["out".to_owned(), "counters".to_owned()], ..Options::default() };
+    let options = Options {
+        globals: vec!["out".to_owned(), "counters".to_owned()],
+        ..Options::default()
+    };
     for function in ["written", "atomics"] {
-        assert!(matches!(Program::new(&parse(source), function, &options), Err(LowerError::Unsupported { .. })));
+        assert!(matches!(
+            Program::new(&parse(source), function, &options),
+            Err(LowerError::Unsupported { .. })
+        ));
     }
 }
 
 #[test]
 fn arguments_are_counted() {
-    let program = program("fn f(a: vec3f, b: u32) -> f32 { return a.x * f32(b); }", "f");
+    let program = program(
+        "fn f(a: vec3f, b: u32) -> f32 { return a.x * f32(b); }",
+        "f",
+    );
     assert_eq!((program.argument_words(), program.result_words()), (4, 1));
-    let error = program.machine().call(&[Word::ZERO], &mut NoHost).unwrap_err();
-    assert_eq!(error, EvalError::Arguments { expected: 4, given: 1 });
+    let error = program
+        .machine()
+        .call(&[Word::ZERO], &mut NoHost)
+        .unwrap_err();
+    assert_eq!(
+        error,
+        EvalError::Arguments {
+            expected: 4,
+            given: 1
+        }
+    );
 }
 
 #[test]
@@ -116,14 +194,43 @@ fn overrides_take_their_values() {
         fn scaled(x: f32) -> f32 { if ON { return x; } return x * TWICE; }
         fn counted() -> u32 { return COUNT; }
         fn level() -> i32 { return LEVEL; }";
-    assert_eq!(call(&program(source, "scaled"), &[Word::from_f64(3.0)]), [Word::from_f64(12.0)]);
-    let with = |name: &str, value: f64| Options { overrides: [(name.to_owned(), value)].into(), ..Options::default() };
-    assert_eq!(call(&program_with(source, "scaled", &with("SCALE", 0.1)), &[Word::from_f64(3.0)]), [Word::from_f64(3.0 * 0.2)]);
-    assert_eq!(call(&program_with(source, "scaled", &with("ON", 1.0)), &[Word::from_f64(3.0)]), [Word::from_f64(3.0)]);
-    assert_eq!(call(&program_with(source, "counted", &with("COUNT", 5.0)), &[]), [Word::from_u32(5)]);
-    assert_eq!(call(&program_with(source, "level", &with("7", -9.0)), &[]), [Word::from_i32(-9)]);
+    assert_eq!(
+        call(&program(source, "scaled"), &[Word::from_f64(3.0)]),
+        [Word::from_f64(12.0)]
+    );
+    let with = |name: &str, value: f64| Options {
+        overrides: [(name.to_owned(), value)].into(),
+        ..Options::default()
+    };
+    assert_eq!(
+        call(
+            &program_with(source, "scaled", &with("SCALE", 0.1)),
+            &[Word::from_f64(3.0)]
+        ),
+        [Word::from_f64(3.0 * 0.2)]
+    );
+    assert_eq!(
+        call(
+            &program_with(source, "scaled", &with("ON", 1.0)),
+            &[Word::from_f64(3.0)]
+        ),
+        [Word::from_f64(3.0)]
+    );
+    assert_eq!(
+        call(&program_with(source, "counted", &with("COUNT", 5.0)), &[]),
+        [Word::from_u32(5)]
+    );
+    assert_eq!(
+        call(&program_with(source, "level", &with("7", -9.0)), &[]),
+        [Word::from_i32(-9)]
+    );
     assert_eq!(call(&program(source, "level"), &[]), [Word::from_i32(-3)]);
-    assert_eq!(refused(source, "counted"), LowerError::Override { name: "COUNT".to_owned() });
+    assert_eq!(
+        refused(source, "counted"),
+        LowerError::Override {
+            name: "COUNT".to_owned()
+        }
+    );
 }
 
 struct Square;
@@ -131,7 +238,11 @@ struct Square;
 impl Host for Square {
     fn external(&mut self, index: usize, arguments: &[Word], result: &mut [Word]) {
         assert_eq!((index, arguments.len(), result.len()), (1, 3, 2));
-        let (x, y, n) = (arguments[0].to_f64(), arguments[1].to_f64(), arguments[2].to_u32());
+        let (x, y, n) = (
+            arguments[0].to_f64(),
+            arguments[1].to_f64(),
+            arguments[2].to_u32(),
+        );
         result[0] = Word::from_f64(x * x * f64::from(n));
         result[1] = Word::from_f64(y * y * f64::from(n));
     }
@@ -156,15 +267,27 @@ fn the_host_computes_its_functions_and_supplies_variables() {
         }";
     let options = Options {
         externals: vec!["other".to_owned(), "square".to_owned()],
-        globals: vec!["frame".to_owned(), "absent".to_owned(), "table".to_owned(), "seed".to_owned()],
+        globals: vec![
+            "frame".to_owned(),
+            "absent".to_owned(),
+            "table".to_owned(),
+            "seed".to_owned(),
+        ],
         ..Options::default()
     };
     let program = program_with(source, "f", &options);
     assert_eq!(program.global_words(2), Some(6));
     assert_eq!(program.global_words(1), None);
     let mut machine = program.machine();
-    machine.set_global(0, &[Word::from_u32(8), Word::from_u32(3), Word::from_f64(10.0)]).unwrap();
-    machine.set_global(2, &common::floats(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0])).unwrap();
+    machine
+        .set_global(
+            0,
+            &[Word::from_u32(8), Word::from_u32(3), Word::from_f64(10.0)],
+        )
+        .unwrap();
+    machine
+        .set_global(2, &common::floats(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]))
+        .unwrap();
     machine.set_global(3, &[Word::from_u32(100)]).unwrap();
     assert!(machine.set_global(0, &[Word::ZERO]).is_err());
     for _ in 0..3 {
@@ -179,8 +302,12 @@ fn array_lengths_may_be_overridden() {
     let source = "override N: u32 = 4u; var<private> a: array<u32, N>;
         fn f(i: u32) -> u32 { for (var k = 0u; k < N; k++) { a[k] = k * k; } return a[i]; }";
     // naga allows such arrays only in workgroup memory, so the module is not validated.
-    let Ok(module) = naga::front::wgsl::parse_str(source) else { return };
-    let Ok(program) = Program::new(&module, "f", &Options::default()) else { return };
+    let Ok(module) = naga::front::wgsl::parse_str(source) else {
+        return;
+    };
+    let Ok(program) = Program::new(&module, "f", &Options::default()) else {
+        return;
+    };
     assert_eq!(call(&program, &[Word::from_u32(3)]), [Word::from_u32(9)]);
 }
 

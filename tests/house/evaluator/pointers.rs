@@ -9,13 +9,22 @@ use super::{
 
 fn evaluated(source: &str, arguments: &[i32]) -> Vec<i32> {
     let words: Vec<Word> = arguments.iter().map(|&x| Word::from_i32(x)).collect();
-    call(&program(source, "f"), &words).iter().map(|word| word.to_i32()).collect()
+    call(&program(source, "f"), &words)
+        .iter()
+        .map(|word| word.to_i32())
+        .collect()
 }
 
 #[test]
 fn values_read_through_pointers_stay_as_they_were() {
     let two = "fn both(p: ptr<function, i32>, q: ptr<function, i32>) -> i32 { let x = *p; *q += 1; return x * 100 + *p; }";
-    assert_eq!(evaluated(&format!("{two} fn f(a: i32) -> i32 {{ var x = a; var y = a; return both(&x, &y); }}"), &[3]), [303]);
+    assert_eq!(
+        evaluated(
+            &format!("{two} fn f(a: i32) -> i32 {{ var x = a; var y = a; return both(&x, &y); }}"),
+            &[3]
+        ),
+        [303]
+    );
     let passed_on = "fn inner(p: ptr<function, vec2i>, v: vec2i) -> vec2i { (*p).x = 9; return v; }
         fn outer(p: ptr<function, vec2i>) -> vec2i { let r = inner(p, *p); return r * 10 + *p; }
         fn f(a: i32) -> vec2i { var v = vec2i(a, a); let p = &v; let r = outer(p); v.y = 0; return r + v; }";
@@ -45,9 +54,14 @@ fn dynamic_places_nest() {
 
 #[test]
 fn long_functions_are_lowered_in_time() {
-    let mut source = "fn g(x: f32) -> f32 { return x * 0.5 + 1.0; }\nfn f(a: f32) -> f32 { var s = vec4f(a);\n".to_owned();
+    let mut source =
+        "fn g(x: f32) -> f32 { return x * 0.5 + 1.0; }\nfn f(a: f32) -> f32 { var s = vec4f(a);\n"
+            .to_owned();
     for at in 0..4000 {
-        source.push_str(&format!("let k{at} = g(s.x + s.y);\ns.{} = k{at};\n", ["x", "y", "z", "w"][at % 4]));
+        source.push_str(&format!(
+            "let k{at} = g(s.x + s.y);\ns.{} = k{at};\n",
+            ["x", "y", "z", "w"][at % 4]
+        ));
     }
     source.push_str("for (var i = 0; i < 3; i++) {\n".repeat(30).as_str());
     source.push_str("s.x += k0 + k1;\n");
@@ -55,6 +69,11 @@ fn long_functions_are_lowered_in_time() {
     source.push_str("return s.x; }");
     let module = common::parse(&source);
     let start = std::time::Instant::now();
-    let lowered = rasterlab::evaluator::Program::new(&module, "f", &rasterlab::evaluator::Options::default());
-    assert!(lowered.is_ok() && start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
+    let lowered =
+        rasterlab::evaluator::Program::new(&module, "f", &rasterlab::evaluator::Options::default());
+    assert!(
+        lowered.is_ok() && start.elapsed().as_secs() < 5,
+        "{:?}",
+        start.elapsed()
+    );
 }

@@ -16,7 +16,9 @@ enum Expr {
     Select(Box<Expr>, Box<Expr>, Box<Expr>),
 }
 
-const OPERATORS: [&str; 12] = ["+", "-", "*", "/", "%", "&", "|", "^", "<<", ">>", "min", "max"];
+const OPERATORS: [&str; 12] = [
+    "+", "-", "*", "/", "%", "&", "|", "^", "<<", ">>", "min", "max",
+];
 
 fn binary(operator: &str, a: i32, b: i32) -> i32 {
     match operator {
@@ -43,10 +45,16 @@ impl Expr {
             Expr::Argument(index) => ["a", "b", "c"][*index].to_owned(),
             Expr::Negate(x) => format!("(-{})", x.text()),
             Expr::Not(x) => format!("(~{})", x.text()),
-            Expr::Binary(operator @ ("min" | "max"), a, b) => format!("{operator}({}, {})", a.text(), b.text()),
-            Expr::Binary(operator @ ("<<" | ">>"), a, b) => format!("({} {operator} bitcast<u32>({}))", a.text(), b.text()),
+            Expr::Binary(operator @ ("min" | "max"), a, b) => {
+                format!("{operator}({}, {})", a.text(), b.text())
+            }
+            Expr::Binary(operator @ ("<<" | ">>"), a, b) => {
+                format!("({} {operator} bitcast<u32>({}))", a.text(), b.text())
+            }
             Expr::Binary(operator, a, b) => format!("({} {operator} {})", a.text(), b.text()),
-            Expr::Select(a, b, c) => format!("select({}, {}, {} < 0)", a.text(), b.text(), c.text()),
+            Expr::Select(a, b, c) => {
+                format!("select({}, {}, {} < 0)", a.text(), b.text(), c.text())
+            }
         }
     }
 
@@ -56,7 +64,9 @@ impl Expr {
             Expr::Argument(index) => arguments[*index],
             Expr::Negate(x) => x.value(arguments).wrapping_neg(),
             Expr::Not(x) => !x.value(arguments),
-            Expr::Binary(operator, a, b) => binary(operator, a.value(arguments), b.value(arguments)),
+            Expr::Binary(operator, a, b) => {
+                binary(operator, a.value(arguments), b.value(arguments))
+            }
             Expr::Select(a, b, c) => {
                 if c.value(arguments) < 0 {
                     b.value(arguments)
@@ -73,13 +83,21 @@ fn number() -> impl Strategy<Value = i32> {
 }
 
 fn tree() -> impl Strategy<Value = Expr> {
-    let leaf = prop_oneof![number().prop_map(Expr::Constant), (0..3usize).prop_map(Expr::Argument)];
+    let leaf = prop_oneof![
+        number().prop_map(Expr::Constant),
+        (0..3usize).prop_map(Expr::Argument)
+    ];
     leaf.prop_recursive(6, 60, 3, |inner| {
         let boxed = inner.prop_map(Box::new).boxed();
         prop_oneof![
             boxed.clone().prop_map(Expr::Negate),
             boxed.clone().prop_map(Expr::Not),
-            (prop::sample::select(OPERATORS.as_slice()), boxed.clone(), boxed.clone()).prop_map(|(op, a, b)| Expr::Binary(op, a, b)),
+            (
+                prop::sample::select(OPERATORS.as_slice()),
+                boxed.clone(),
+                boxed.clone()
+            )
+                .prop_map(|(op, a, b)| Expr::Binary(op, a, b)),
             (boxed.clone(), boxed.clone(), boxed).prop_map(|(a, b, c)| Expr::Select(a, b, c)),
         ]
     })

@@ -1,7 +1,9 @@
-//! Promise: compressed models decode as the reference encoders and decoders have them, and hostile streams are refused in a sentence.
+//! Promise: compressed models decode as the reference encoders and decoders have them, and hostile
+//! streams are refused in a sentence.
 //!
-//! `meshopt.json` was written by meshoptimizer 1.3.0 and `draco.json` by the encoder and decoder of the npm package draco3d: each entry holds a
-//! compressed stream and what the reference decoder makes of it.
+//! `meshopt.json` was written by meshoptimizer 1.3.0 and `draco.json` by the encoder and decoder of
+//! the npm package draco3d: each entry holds a compressed stream and what the reference decoder
+//! makes of it.
 
 use std::time::Instant;
 
@@ -27,14 +29,17 @@ fn draco() -> Vec<Value> {
 }
 
 fn bytes(entry: &Value, name: &str) -> Vec<u8> {
-    BASE64_STANDARD.decode(entry[name].as_str().unwrap()).unwrap()
+    BASE64_STANDARD
+        .decode(entry[name].as_str().unwrap())
+        .unwrap()
 }
 
 fn number(entry: &Value, name: &str) -> usize {
     entry[name].as_u64().unwrap() as usize
 }
 
-/// Adds a compressed view of `entry` to the model, in a fallback buffer without bytes; returns its index.
+/// Adds a compressed view of `entry` to the model, in a fallback buffer without bytes; returns its
+/// index.
 fn compressed_view(model: &mut Model, entry: &Value, encoded: &[u8]) -> usize {
     let raw = model.view(encoded);
     let offset = model.json["bufferViews"][raw]["byteOffset"].clone();
@@ -55,7 +60,8 @@ fn compressed_view(model: &mut Model, entry: &Value, encoded: &[u8]) -> usize {
     )
 }
 
-/// A model whose vertex colors are the first three bytes of every element of `entry`, or whose indices it is.
+/// A model whose vertex colors are the first three bytes of every element of `entry`, or whose
+/// indices it is.
 fn model_of(entry: &Value, encoded: &[u8]) -> Model {
     let (count, stride) = (number(entry, "count"), number(entry, "stride"));
     let mut model = Model::empty();
@@ -72,12 +78,24 @@ fn model_of(entry: &Value, encoded: &[u8]) -> Model {
         }
     } else {
         let decoded = bytes(entry, "decoded");
-        let index = |bytes: &[u8]| bytes.iter().rev().fold(0, |sum, &byte| 256 * sum + usize::from(byte));
-        let largest = if stride <= 4 { decoded.chunks(stride).map(index).max() } else { None };
+        let index = |bytes: &[u8]| {
+            bytes
+                .iter()
+                .rev()
+                .fold(0, |sum, &byte| 256 * sum + usize::from(byte))
+        };
+        let largest = if stride <= 4 {
+            decoded.chunks(stride).map(index).max()
+        } else {
+            None
+        };
         let positions = model.floats("VEC3", &vec![0.0; 3 * (1 + largest.unwrap_or(0))]);
         let view = compressed_view(&mut model, entry, encoded);
         let kind = if stride == 2 { U16 } else { U32 };
-        let indices = model.push("accessors", json!({ "bufferView": view, "componentType": kind, "type": "SCALAR", "count": count }));
+        let indices = model.push(
+            "accessors",
+            json!({ "bufferView": view, "componentType": kind, "type": "SCALAR", "count": count }),
+        );
         model.primitive(json!({ "attributes": { "POSITION": positions }, "indices": indices }));
     }
     model
@@ -95,7 +113,11 @@ fn meshopt_streams_decode_as_the_reference_has_them() {
     for entry in entries.iter().filter(|entry| is_small(entry)) {
         let decoded = bytes(entry, "decoded");
         let scene = model_of(entry, &bytes(entry, "encoded")).scene();
-        let stored = if entry["mode"] == "ATTRIBUTES" { &scene.vertex_bytes } else { &scene.index_bytes };
+        let stored = if entry["mode"] == "ATTRIBUTES" {
+            &scene.vertex_bytes
+        } else {
+            &scene.index_bytes
+        };
         let is_there = stored.windows(decoded.len()).any(|part| part == decoded);
         assert!(is_there, "{}", entry["name"]);
         assert_eq!(scene.notes.len(), 0, "{:?}", scene.notes);
@@ -109,10 +131,16 @@ fn hostile_meshopt_streams_are_refused_and_never_panic() {
         let load = |bytes: &[u8]| match model_of(entry, bytes).load() {
             Ok(scene) => assert_sound(&scene),
             Err(error) => {
-                assert!(!error.to_string().contains("is a bug") && !error.to_string().contains('\n'), "{}: {error}", entry["name"])
+                assert!(
+                    !error.to_string().contains("is a bug") && !error.to_string().contains('\n'),
+                    "{}: {error}",
+                    entry["name"]
+                )
             }
         };
-        (0..encoded.len()).step_by(7).for_each(|length| load(&encoded[..length]));
+        (0..encoded.len())
+            .step_by(7)
+            .for_each(|length| load(&encoded[..length]));
         for round in 0..60u32 {
             let mut flipped = encoded.clone();
             let at = hash(round) as usize;
@@ -120,9 +148,13 @@ fn hostile_meshopt_streams_are_refused_and_never_panic() {
             load(&flipped);
         }
     }
-    let entry = meshopt().into_iter().find(|entry| entry["name"] == "attributes 12 x 65").unwrap();
+    let entry = meshopt()
+        .into_iter()
+        .find(|entry| entry["name"] == "attributes 12 x 65")
+        .unwrap();
     let encoded = bytes(&entry, "encoded");
-    model_of(&entry, &encoded[..40]).refused("EXT_meshopt_compression: its compressed data is cut off");
+    model_of(&entry, &encoded[..40])
+        .refused("EXT_meshopt_compression: its compressed data is cut off");
     let with = |name: &str, value: Value| {
         let mut entry = entry.clone();
         entry[name] = value;
@@ -131,7 +163,8 @@ fn hostile_meshopt_streams_are_refused_and_never_panic() {
     with("count", json!(1_000_000_000)).refused("it unpacks to 12000000000 bytes");
     with("count", json!(9_000_000)).refused("its compressed data is cut off");
     with("mode", json!("TRIANGLES")).refused("byteStride is 12; Triangles allows 2 or 4");
-    with("filter", json!("OCTAHEDRAL")).refused("the filter Octahedral does not fit mode Attributes with byteStride 12");
+    with("filter", json!("OCTAHEDRAL"))
+        .refused("the filter Octahedral does not fit mode Attributes with byteStride 12");
     with("filter", json!("NEW")).refused("malformed compression extension");
     let mut other = encoded.clone();
     other[0] = 0xa1;
@@ -156,9 +189,15 @@ fn draco_model(entry: &Value, encoded: &[u8]) -> Model {
         ids[name] = attribute["id"].clone();
     }
     let count = entry["indices"].as_array().unwrap().len();
-    let indices = model.push("accessors", json!({ "componentType": U16, "type": "SCALAR", "count": count }));
-    let extension = json!({ "KHR_draco_mesh_compression": { "bufferView": view, "attributes": ids } });
-    model.primitive(json!({ "attributes": attributes, "indices": indices, "extensions": extension }));
+    let indices = model.push(
+        "accessors",
+        json!({ "componentType": U16, "type": "SCALAR", "count": count }),
+    );
+    let extension =
+        json!({ "KHR_draco_mesh_compression": { "bufferView": view, "attributes": ids } });
+    model.primitive(
+        json!({ "attributes": attributes, "indices": indices, "extensions": extension }),
+    );
     model.json["extensionsUsed"] = json!(["KHR_draco_mesh_compression"]);
     model.json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
     model
@@ -169,18 +208,41 @@ fn draco_streams_decode_as_the_reference_has_them() {
     for entry in draco() {
         let scene = draco_model(&entry, &bytes(&entry, "encoded")).scene();
         let primitive = &scene.primitives[0];
-        let list = |value: &Value| value.as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect::<Vec<_>>();
-        let indices: Vec<f64> = (0..primitive.triangle_count()).flat_map(|t| primitive.corners(&scene, t)).map(f64::from).collect();
+        let list = |value: &Value| {
+            value
+                .as_array()
+                .unwrap()
+                .iter()
+                .map(|v| v.as_f64().unwrap())
+                .collect::<Vec<_>>()
+        };
+        let indices: Vec<f64> = (0..primitive.triangle_count())
+            .flat_map(|t| primitive.corners(&scene, t))
+            .map(f64::from)
+            .collect();
         assert_eq!(indices, list(&entry["indices"]), "{}", entry["name"]);
-        for (name, accessor) in
-            [("POSITION", &primitive.positions), ("NORMAL", &primitive.normals), ("COLOR_0", primitive.colors.as_ref().unwrap())]
-        {
+        for (name, accessor) in [
+            ("POSITION", &primitive.positions),
+            ("NORMAL", &primitive.normals),
+            ("COLOR_0", primitive.colors.as_ref().unwrap()),
+        ] {
             let wanted = list(&entry["attributes"][name]["values"]);
             for (i, wanted) in wanted.iter().enumerate() {
-                let (vertex, lane) = (i as u32 / accessor.components, i as u32 % accessor.components);
+                let (vertex, lane) = (
+                    i as u32 / accessor.components,
+                    i as u32 % accessor.components,
+                );
                 let value = accessor.value(&scene.vertex_bytes, vertex, lane);
-                let value = if name == "COLOR_0" { 255.0 * value } else { value };
-                assert!((value - wanted).abs() < 1e-4, "{}: {name} {i}: {value} and {wanted}", entry["name"]);
+                let value = if name == "COLOR_0" {
+                    255.0 * value
+                } else {
+                    value
+                };
+                assert!(
+                    (value - wanted).abs() < 1e-4,
+                    "{}: {name} {i}: {value} and {wanted}",
+                    entry["name"]
+                );
             }
         }
         assert_eq!(scene.notes, [""; 0]);
@@ -194,9 +256,15 @@ fn hostile_draco_streams_are_refused_and_never_panic() {
         let encoded = bytes(&entry, "encoded");
         let load = |bytes: &[u8]| match draco_model(&entry, bytes).load() {
             Ok(scene) => assert_sound(&scene),
-            Err(LoadError(error)) => assert!(!error.contains("is a bug") && !error.contains('\n'), "{}: {error}", entry["name"]),
+            Err(LoadError(error)) => assert!(
+                !error.contains("is a bug") && !error.contains('\n'),
+                "{}: {error}",
+                entry["name"]
+            ),
         };
-        (0..encoded.len()).step_by(5).for_each(|length| load(&encoded[..length]));
+        (0..encoded.len())
+            .step_by(5)
+            .for_each(|length| load(&encoded[..length]));
         for round in 0..400u32 {
             let mut flipped = encoded.clone();
             let at = hash(round) as usize;
@@ -208,17 +276,26 @@ fn hostile_draco_streams_are_refused_and_never_panic() {
     let entry = &draco()[0];
     let encoded = bytes(entry, "encoded");
     let place = "mesh 0 primitive 0: KHR_draco_mesh_compression: ";
-    draco_model(entry, &encoded[..encoded.len() / 2]).refused(&format!("{place}its Draco data cannot be decoded"));
+    draco_model(entry, &encoded[..encoded.len() / 2])
+        .refused(&format!("{place}its Draco data cannot be decoded"));
     draco_model(entry, b"DRACO").refused(&format!("{place}its Draco data cannot be decoded"));
     let extension = "/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression";
-    draco_model(entry, &encoded).with(&format!("{extension}/bufferView"), json!(9)).refused(&format!("{place}bufferView 9 does not exist"));
+    draco_model(entry, &encoded)
+        .with(&format!("{extension}/bufferView"), json!(9))
+        .refused(&format!("{place}bufferView 9 does not exist"));
     draco_model(entry, &encoded)
         .with(&format!("{extension}/attributes/POSITION"), json!(7))
         .refused("POSITION: its Draco data has no attribute 7");
-    draco_model(entry, &encoded).with("/accessors/0/count", json!(35)).refused("accessor 0 has 35 elements, and the Draco data 36");
+    draco_model(entry, &encoded)
+        .with("/accessors/0/count", json!(35))
+        .refused("accessor 0 has 35 elements, and the Draco data 36");
     let mut many = draco_model(entry, &encoded);
     let first = many.json["meshes"][0]["primitives"][0].clone();
     many.json["meshes"][0]["primitives"] = vec![first; 3].into();
-    assert_eq!(many.scene().primitives.len(), 3, "primitives may share their data");
+    assert_eq!(
+        many.scene().primitives.len(),
+        3,
+        "primitives may share their data"
+    );
     assert!(gltf::load(b"{}", &mut |_, _| unreachable!()).is_err());
 }

@@ -51,7 +51,10 @@ fn never_panics(bytes: &[u8], about: &str) -> bool {
             true
         }
         Err(error) => {
-            assert!(!error.to_string().contains("is a bug"), "{about}: a panic was caught");
+            assert!(
+                !error.to_string().contains("is a bug"),
+                "{about}: a panic was caught"
+            );
             false
         }
     }
@@ -62,7 +65,10 @@ fn truncated_files_never_panic() {
     let good = everything().glb();
     assert!(never_panics(&good, "whole"));
     for length in 0..good.len() {
-        assert!(!never_panics(&good[..length], &format!("first {length} bytes")));
+        assert!(!never_panics(
+            &good[..length],
+            &format!("first {length} bytes")
+        ));
     }
 }
 
@@ -79,22 +85,45 @@ fn flipped_bits_never_panic() {
         }
         loaded += u32::from(never_panics(&bytes, &format!("seed {seed}")));
     }
-    assert!(loaded > 100, "only {loaded} files still load: the mutations are too rough to reach far");
+    assert!(
+        loaded > 100,
+        "only {loaded} files still load: the mutations are too rough to reach far"
+    );
 }
 
 /// Numbers of the JSON replaced by awkward ones: this reaches what lies behind the parser.
 #[test]
 fn awkward_numbers_never_panic() {
-    const AWKWARD: [&str; 12] = ["0", "1", "2", "3", "5", "-1", "255", "65536", "4294967295", "4294967296", "18446744073709551615", "1e39"];
+    const AWKWARD: [&str; 12] = [
+        "0",
+        "1",
+        "2",
+        "3",
+        "5",
+        "-1",
+        "255",
+        "65536",
+        "4294967295",
+        "4294967296",
+        "18446744073709551615",
+        "1e39",
+    ];
     let model = everything();
     let text = model.json.to_string();
-    let is_number =
-        |i: usize| text.as_bytes()[i].is_ascii_digit() && !text.as_bytes()[i - 1].is_ascii_alphanumeric() && text.as_bytes()[i - 1] != b'_';
-    let numbers: Vec<usize> = (1..text.len()).filter(|&i| is_number(i) && !b".\"".contains(&text.as_bytes()[i - 1])).collect();
+    let is_number = |i: usize| {
+        text.as_bytes()[i].is_ascii_digit()
+            && !text.as_bytes()[i - 1].is_ascii_alphanumeric()
+            && text.as_bytes()[i - 1] != b'_'
+    };
+    let numbers: Vec<usize> = (1..text.len())
+        .filter(|&i| is_number(i) && !b".\"".contains(&text.as_bytes()[i - 1]))
+        .collect();
     let mut loaded = 0;
     for seed in 0..6_000u32 {
         let start = numbers[hash(3 * seed) as usize % numbers.len()];
-        let end = (start..text.len()).find(|&i| !b"0123456789.e-".contains(&text.as_bytes()[i])).unwrap();
+        let end = (start..text.len())
+            .find(|&i| !b"0123456789.e-".contains(&text.as_bytes()[i]))
+            .unwrap();
         let value = AWKWARD[hash(3 * seed + 1) as usize % AWKWARD.len()];
         let json = format!("{}{value}{}", &text[..start], &text[end..]);
         loaded += u32::from(never_panics(&glb(json.as_bytes(), &model.bytes), &json));
@@ -107,15 +136,25 @@ fn broken_images_never_panic() {
     let (png, jpeg) = (encoded(ImageFormat::Png), encoded(ImageFormat::Jpeg));
     let mut loaded = 0;
     for seed in 0..600u32 {
-        let mut bytes = if seed % 2 == 0 { png.clone() } else { jpeg.clone() };
+        let mut bytes = if seed % 2 == 0 {
+            png.clone()
+        } else {
+            jpeg.clone()
+        };
         for flip in 0..1 + seed % 3 {
             let at = rasterlab::math::hash(8 * seed + flip) as usize % (8 * bytes.len());
             bytes[at / 8] ^= 1 << (at % 8);
         }
         match Model::textured().showing(&bytes).load() {
             Ok(_) => loaded += 1,
-            Err(error) => assert!(!error.to_string().contains("is a bug"), "seed {seed}: a panic was caught"),
+            Err(error) => assert!(
+                !error.to_string().contains("is a bug"),
+                "seed {seed}: a panic was caught"
+            ),
         }
     }
-    assert!(loaded > 20, "only {loaded} still load: the mutations are too rough");
+    assert!(
+        loaded > 20,
+        "only {loaded} still load: the mutations are too rough"
+    );
 }

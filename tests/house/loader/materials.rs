@@ -1,4 +1,5 @@
-//! Promise: textures, samplers, images and materials of a file load as the standard defines them, or are refused with a message.
+//! Promise: textures, samplers, images and materials of a file load as the standard defines them,
+//! or are refused with a message.
 
 use base64::{Engine, prelude::BASE64_STANDARD};
 use glam::DVec3;
@@ -22,22 +23,46 @@ pub const BASE: &str = "/materials/0/pbrMetallicRoughness/baseColorTexture";
 fn images_come_as_png_or_jpeg_from_bytes_uris_and_files() {
     let texels = vec![[255, 0, 0, 255], [0, 200, 0, 100]];
     let scene = Model::textured().scene();
-    assert_eq!((scene.images.len(), &scene.images[0].levels[0].texels), (1, &texels));
-    assert_eq!(scene.images[0].levels.len(), 2, "an open sampler mixes copies");
     assert_eq!(
-        Model::textured().with("/samplers/0/minFilter", json!(9729)).scene().images[0].levels.len(),
+        (scene.images.len(), &scene.images[0].levels[0].texels),
+        (1, &texels)
+    );
+    assert_eq!(
+        scene.images[0].levels.len(),
+        2,
+        "an open sampler mixes copies"
+    );
+    assert_eq!(
+        Model::textured()
+            .with("/samplers/0/minFilter", json!(9729))
+            .scene()
+            .images[0]
+            .levels
+            .len(),
         1,
         "no sampler asks for copies"
     );
 
-    let jpeg = Model::textured().showing(&encoded(ImageFormat::Jpeg)).with("/images/0/mimeType", json!("image/jpeg")).scene();
+    let jpeg = Model::textured()
+        .showing(&encoded(ImageFormat::Jpeg))
+        .with("/images/0/mimeType", json!("image/jpeg"))
+        .scene();
     assert_eq!(jpeg.images[0].size(), [2, 1]);
     assert!(jpeg.notes.is_empty(), "{:?}", jpeg.notes);
-    let misnamed = Model::textured().showing(&encoded(ImageFormat::Jpeg)).scene();
-    assert!(misnamed.notes.iter().any(|note| note.contains("image \"flag\" is image/jpeg, although the file declares \"image/png\"")));
+    let misnamed = Model::textured()
+        .showing(&encoded(ImageFormat::Jpeg))
+        .scene();
+    assert!(misnamed.notes.iter().any(|note| {
+        note.contains("image \"flag\" is image/jpeg, although the file declares \"image/png\"")
+    }));
 
-    let data = format!("data:image/png;base64,{}", BASE64_STANDARD.encode(encoded(ImageFormat::Png)));
-    let data = Model::textured().with("/images/0", json!({ "uri": data })).scene();
+    let data = format!(
+        "data:image/png;base64,{}",
+        BASE64_STANDARD.encode(encoded(ImageFormat::Png))
+    );
+    let data = Model::textured()
+        .with("/images/0", json!({ "uri": data }))
+        .scene();
     assert_eq!(data.images[0].levels[0].texels, texels);
 
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -50,9 +75,19 @@ fn images_come_as_png_or_jpeg_from_bytes_uris_and_files() {
         std::fs::write(folder.path().join("inside/model.glb"), model.glb()).expect("written");
         host::model::load(&folder.path().join("inside/model.glb"))
     };
-    assert_eq!(load("flag%20one.png").expect("it lies beside the model").images[0].levels[0].texels, texels);
+    assert_eq!(
+        load("flag%20one.png")
+            .expect("it lies beside the model")
+            .images[0]
+            .levels[0]
+            .texels,
+        texels
+    );
     for (uri, sentence) in [
-        ("../flag.png", "image 0: URI \"../flag.png\" leads out of the model's folder"),
+        (
+            "../flag.png",
+            "image 0: URI \"../flag.png\" leads out of the model's folder",
+        ),
         ("http://example.org/flag.png", "has a scheme"),
         ("none.png", "image 0: \"none.png\": cannot read the file"),
     ] {
@@ -65,23 +100,47 @@ fn images_come_as_png_or_jpeg_from_bytes_uris_and_files() {
 fn only_images_that_something_drawn_looks_up_are_read() {
     let broken = Model::textured().with("/images/0", json!({ "uri": "../../etc/passwd" }));
     broken.refused("leads out of the model's folder");
-    let unused = broken.with("/meshes/0/primitives/0", json!({ "attributes": { "POSITION": 0 }, "indices": 2 })).scene();
+    let unused = broken
+        .with(
+            "/meshes/0/primitives/0",
+            json!({ "attributes": { "POSITION": 0 }, "indices": 2 }),
+        )
+        .scene();
     assert_eq!((unused.images.len(), unused.triangle_count()), (0, 2));
-    let twice =
-        Model::textured().with("/materials/0/emissiveTexture", json!({ "index": 0 })).with("/materials/0/emissiveFactor", json!([1, 1, 1]));
+    let twice = Model::textured()
+        .with("/materials/0/emissiveTexture", json!({ "index": 0 }))
+        .with("/materials/0/emissiveFactor", json!([1, 1, 1]));
     assert_eq!(twice.scene().images.len(), 1, "an image is stored once");
-    let dark = Model::textured().with("/materials/0/emissiveTexture", json!({ "index": 0 })).material();
-    assert_eq!(dark.emission_texture, None, "what does not shine needs no image");
+    let dark = Model::textured()
+        .with("/materials/0/emissiveTexture", json!({ "index": 0 }))
+        .material();
+    assert_eq!(
+        dark.emission_texture, None,
+        "what does not shine needs no image"
+    );
 }
 
 #[test]
 fn samplers_keep_their_wraps_and_filters() {
     let plain = Model::textured().texture();
     assert_eq!(plain, Texture::plain(0));
-    let all =
-        Model::textured().with("/samplers/0", json!({ "wrapS": 33648, "wrapT": 33071, "magFilter": 9728, "minFilter": 9985 })).texture();
+    let all = Model::textured()
+        .with(
+            "/samplers/0",
+            json!({ "wrapS": 33648, "wrapT": 33071, "magFilter": 9728, "minFilter": 9985 }),
+        )
+        .texture();
     let wrap = [Wrap::Mirrored, Wrap::Clamp];
-    assert_eq!(all, Texture { wrap, mag_filter: Filter::Nearest, min_filter: Filter::Linear, mip_filter: MipFilter::Nearest, ..plain });
+    assert_eq!(
+        all,
+        Texture {
+            wrap,
+            mag_filter: Filter::Nearest,
+            min_filter: Filter::Linear,
+            mip_filter: MipFilter::Nearest,
+            ..plain
+        }
+    );
     for (filter, min_filter, mip_filter) in [
         (9728, Filter::Nearest, MipFilter::Unused),
         (9729, Filter::Linear, MipFilter::Unused),
@@ -89,28 +148,58 @@ fn samplers_keep_their_wraps_and_filters() {
         (9986, Filter::Nearest, MipFilter::Mixed),
         (9987, Filter::Linear, MipFilter::Mixed),
     ] {
-        let texture = Model::textured().with("/samplers/0/minFilter", json!(filter)).texture();
-        assert_eq!((texture.min_filter, texture.mip_filter), (min_filter, mip_filter), "{filter}");
+        let texture = Model::textured()
+            .with("/samplers/0/minFilter", json!(filter))
+            .texture();
+        assert_eq!(
+            (texture.min_filter, texture.mip_filter),
+            (min_filter, mip_filter),
+            "{filter}"
+        );
     }
-    assert_eq!(Model::textured().with("/textures/0", json!({ "source": 0 })).texture(), plain, "no sampler");
+    assert_eq!(
+        Model::textured()
+            .with("/textures/0", json!({ "source": 0 }))
+            .texture(),
+        plain,
+        "no sampler"
+    );
 }
 
 #[test]
 fn transforms_scale_turn_and_move_and_may_name_another_set() {
     let mut model = Model::textured();
-    let other = model.accessor(&le([0u16, 0, 65535, 0, 65535, 65535, 0, 65535].map(u16::to_le_bytes)), U16, "VEC2", 4);
+    let other = model.accessor(
+        &le([0u16, 0, 65535, 0, 65535, 65535, 0, 65535].map(u16::to_le_bytes)),
+        U16,
+        "VEC2",
+        4,
+    );
     model.json["accessors"][other]["normalized"] = json!(true);
     let model = model.with("/meshes/0/primitives/0/attributes/TEXCOORD_3", json!(other));
     let transform = json!({ "offset": [0.25, -1], "rotation": std::f64::consts::FRAC_PI_2, "scale": [2, 3], "texCoord": 3 });
-    let model = model.with(&format!("{BASE}/extensions"), json!({ "KHR_texture_transform": transform }));
+    let model = model.with(
+        &format!("{BASE}/extensions"),
+        json!({ "KHR_texture_transform": transform }),
+    );
     let texture = model.texture();
     assert_eq!(texture.set, 3);
     // A quarter turn, counterclockwise with v down, takes u to -v and v to u.
-    for (stored, placed) in [([0.0, 0.0], [0.25, -1.0]), ([1.0, 0.0], [0.25, -3.0]), ([0.0, 1.0], [3.25, -1.0])] {
+    for (stored, placed) in [
+        ([0.0, 0.0], [0.25, -1.0]),
+        ([1.0, 0.0], [0.25, -3.0]),
+        ([0.0, 1.0], [3.25, -1.0]),
+    ] {
         let place = texture.image_coordinates(stored.into());
-        assert!(place.abs_diff_eq(placed.into(), 1e-6), "{stored:?}: {place}");
+        assert!(
+            place.abs_diff_eq(placed.into(), 1e-6),
+            "{stored:?}: {place}"
+        );
     }
-    assert_eq!(model.scene().primitives[0].texcoords[0].map(|texcoords| texcoords.normalized), Some(true));
+    assert_eq!(
+        model.scene().primitives[0].texcoords[0].map(|texcoords| texcoords.normalized),
+        Some(true)
+    );
     let named = Model::textured().with(&format!("{BASE}/texCoord"), json!(0));
     assert_eq!(named.texture(), Texture::plain(0));
 }
@@ -119,14 +208,25 @@ fn transforms_scale_turn_and_move_and_may_name_another_set() {
 fn coordinates_come_in_every_width_of_the_standard_and_quantized_ones_where_the_file_says_so() {
     let sets = [
         (U8, true, vec![0, 0, 255, 0, 255, 255, 0, 255]),
-        (U16, true, le([0u16, 0, 65535, 0, 65535, 65535, 0, 65535].map(u16::to_le_bytes))),
-        (I16, false, le([0i16, 0, 1, 0, 1, 1, 0, 1].map(i16::to_le_bytes))),
+        (
+            U16,
+            true,
+            le([0u16, 0, 65535, 0, 65535, 65535, 0, 65535].map(u16::to_le_bytes)),
+        ),
+        (
+            I16,
+            false,
+            le([0i16, 0, 1, 0, 1, 1, 0, 1].map(i16::to_le_bytes)),
+        ),
     ];
     for (component, normalized, bytes) in sets {
         let mut model = Model::textured();
         let texcoords = model.accessor(&bytes, component, "VEC2", 4);
         model.json["accessors"][texcoords]["normalized"] = json!(normalized);
-        let mut model = model.with("/meshes/0/primitives/0/attributes/TEXCOORD_0", json!(texcoords));
+        let mut model = model.with(
+            "/meshes/0/primitives/0/attributes/TEXCOORD_0",
+            json!(texcoords),
+        );
         if component == I16 {
             model.refused("mesh \"X\" primitive 0 TEXCOORD_0: accessor 3 has the type 2 x I16, which glTF does not allow for it");
             model = model
@@ -135,8 +235,14 @@ fn coordinates_come_in_every_width_of_the_standard_and_quantized_ones_where_the_
         }
         let scene = model.scene();
         let texcoords = scene.primitives[0].texcoords[0].expect("coordinates");
-        let corner = |vertex| [0, 1].map(|component| texcoords.value(&scene.vertex_bytes, vertex, component));
-        assert_eq!([0, 1, 2, 3].map(corner), [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], "{component}");
+        let corner = |vertex| {
+            [0, 1].map(|component| texcoords.value(&scene.vertex_bytes, vertex, component))
+        };
+        assert_eq!(
+            [0, 1, 2, 3].map(corner),
+            [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
+            "{component}"
+        );
     }
 }
 
@@ -144,47 +250,106 @@ fn coordinates_come_in_every_width_of_the_standard_and_quantized_ones_where_the_
 fn materials_shine_and_stay_unlit_as_the_file_says() {
     let shining = Model::textured()
         .with("/materials/0/emissiveFactor", json!([1, 0.5, 0]))
-        .with("/materials/0/extensions", json!({ "KHR_materials_emissive_strength": { "emissiveStrength": 4 } }))
-        .with("/extensionsUsed", json!(["KHR_materials_emissive_strength"]));
+        .with(
+            "/materials/0/extensions",
+            json!({ "KHR_materials_emissive_strength": { "emissiveStrength": 4 } }),
+        )
+        .with(
+            "/extensionsUsed",
+            json!(["KHR_materials_emissive_strength"]),
+        );
     assert_eq!(shining.material().emission, [4.0, 2.0, 0.0]);
-    assert!(shining.scene().notes.is_empty(), "{:?}", shining.scene().notes);
-    let unlit = shining.with("/materials/0/extensions", json!({ "KHR_materials_unlit": {} })).material();
+    assert!(
+        shining.scene().notes.is_empty(),
+        "{:?}",
+        shining.scene().notes
+    );
+    let unlit = shining
+        .with(
+            "/materials/0/extensions",
+            json!({ "KHR_materials_unlit": {} }),
+        )
+        .material();
     assert!(unlit.unlit && unlit.emission == [0.0; 3] && unlit.base_texture.is_some());
 }
 
 #[test]
 fn alpha_modes_say_what_is_cut_out() {
     let with_mode = |mode: &str| Model::textured().with("/materials/0/alphaMode", json!(mode));
-    assert_eq!(Model::textured().material().alpha_cutoff, None, "an opaque material ignores alpha");
+    assert_eq!(
+        Model::textured().material().alpha_cutoff,
+        None,
+        "an opaque material ignores alpha"
+    );
     assert_eq!(with_mode("MASK").material().alpha_cutoff, Some(0.5));
     let faint = with_mode("MASK")
         .with("/materials/0/alphaCutoff", json!(0.25))
-        .with("/materials/0/pbrMetallicRoughness/baseColorFactor", json!([1, 1, 1, 0.5]));
+        .with(
+            "/materials/0/pbrMetallicRoughness/baseColorFactor",
+            json!([1, 1, 1, 0.5]),
+        );
     let faint = faint.material();
-    assert_eq!((faint.alpha_cutoff, faint.base_color[3]), (Some(0.5), 1.0), "what is left is opaque");
-    assert_eq!(with_mode("MASK").with("/materials/0/alphaCutoff", json!(0)).material().alpha_cutoff, None);
+    assert_eq!(
+        (faint.alpha_cutoff, faint.base_color[3]),
+        (Some(0.5), 1.0),
+        "what is left is opaque"
+    );
+    assert_eq!(
+        with_mode("MASK")
+            .with("/materials/0/alphaCutoff", json!(0))
+            .material()
+            .alpha_cutoff,
+        None
+    );
     with_mode("MASK")
         .with("/materials/0/alphaCutoff", json!(-0.1))
         .refused("material \"paper\": alphaCutoff is -0.1; it must be finite and at least 0");
     with_mode("TRANSLUCENT").refused("alphaMode");
 
     let blended = with_mode("BLEND").scene();
-    assert_eq!(blended.materials[0].alpha_cutoff, Some(0.5), "its image has a texel of 100 of 255");
+    assert_eq!(
+        blended.materials[0].alpha_cutoff,
+        Some(0.5),
+        "its image has a texel of 100 of 255"
+    );
     let note = "material \"paper\": blending is not supported; the material is masked where its alpha is below one half";
-    assert!(blended.notes.iter().any(|given| given == note), "{:?}", blended.notes);
-    let solid = with_mode("BLEND").showing(&encoded(ImageFormat::Jpeg)).scene();
+    assert!(
+        blended.notes.iter().any(|given| given == note),
+        "{:?}",
+        blended.notes
+    );
+    let solid = with_mode("BLEND")
+        .showing(&encoded(ImageFormat::Jpeg))
+        .scene();
     assert!(
         solid.materials[0].alpha_cutoff.is_none()
-            && solid.notes.iter().any(|note| note.ends_with("blending is not supported; the material is opaque"))
+            && solid
+                .notes
+                .iter()
+                .any(|note| note.ends_with("blending is not supported; the material is opaque"))
     );
 
     let plain = |alpha: f64| {
-        let model = with_mode("MASK").with("/materials/0/pbrMetallicRoughness", json!({ "baseColorFactor": [1, 1, 1, alpha] }));
+        let model = with_mode("MASK").with(
+            "/materials/0/pbrMetallicRoughness",
+            json!({ "baseColorFactor": [1, 1, 1, alpha] }),
+        );
         model.scene()
     };
-    assert_eq!((plain(0.6).triangle_count(), plain(0.6).materials[0].base_color[3]), (2, 1.0));
+    assert_eq!(
+        (
+            plain(0.6).triangle_count(),
+            plain(0.6).materials[0].base_color[3]
+        ),
+        (2, 1.0)
+    );
     let nothing = plain(0.4);
-    assert!(nothing.triangle_count() == 0 && nothing.notes[0].contains("is skipped: the alpha of its material"), "{:?}", nothing.notes);
+    assert!(
+        nothing.triangle_count() == 0
+            && nothing.notes[0].contains("is skipped: the alpha of its material"),
+        "{:?}",
+        nothing.notes
+    );
 }
 
 #[test]
@@ -197,12 +362,20 @@ fn textures_that_do_not_fit_are_refused_by_name() {
     at("/samplers/0/magFilter", json!(9985)).refused("magFilter");
     at("/samplers/0/minFilter", json!(1)).refused("minFilter");
     at("/images/0", json!({})).refused("image 0: it has neither a URI nor a bufferView");
-    at("/images/0/uri", json!("flag.png")).refused("image \"flag\": it has both a URI and a bufferView");
+    at("/images/0/uri", json!("flag.png"))
+        .refused("image \"flag\": it has both a URI and a bufferView");
     at("/images/0/bufferView", json!(99)).refused("bufferView");
     at("/bufferViews/3/byteLength", json!(100_000)).refused("image \"flag\": bufferView 3");
-    at(&format!("{BASE}/extensions"), json!({ "KHR_texture_transform": { "scale": [1e39, 1] } })).refused("KHR_texture_transform");
-    at("/materials/0/extensions", json!({ "KHR_materials_emissive_strength": { "emissiveStrength": -1 } }))
-        .refused("material \"paper\": emissiveStrength is -1; allowed: 0 to 65504");
+    at(
+        &format!("{BASE}/extensions"),
+        json!({ "KHR_texture_transform": { "scale": [1e39, 1] } }),
+    )
+    .refused("KHR_texture_transform");
+    at(
+        "/materials/0/extensions",
+        json!({ "KHR_materials_emissive_strength": { "emissiveStrength": -1 } }),
+    )
+    .refused("material \"paper\": emissiveStrength is -1; allowed: 0 to 65504");
     at("/extensionsRequired", json!(["KHR_texture_basisu"]))
         .refused("it requires the extension \"KHR_texture_basisu\", which is not supported");
 }
@@ -211,16 +384,26 @@ fn textures_that_do_not_fit_are_refused_by_name() {
 fn images_that_are_none_are_refused_by_name() {
     let place = "material \"paper\": baseColorTexture: image \"flag\": ";
     let png = encoded(ImageFormat::Png);
-    Model::textured().showing(b"RIFF....WEBP").refused(&format!("{place}cannot decode the image"));
-    Model::textured().showing(&[]).refused("it is neither PNG, JPEG nor WebP");
+    Model::textured()
+        .showing(b"RIFF....WEBP")
+        .refused(&format!("{place}cannot decode the image"));
+    Model::textured()
+        .showing(&[])
+        .refused("it is neither PNG, JPEG nor WebP");
     for length in [8, 20, 40, png.len() - 16] {
-        Model::textured().showing(&png[..length]).refused(&format!("{place}cannot decode the image"));
+        Model::textured()
+            .showing(&png[..length])
+            .refused(&format!("{place}cannot decode the image"));
     }
     let mut flipped = png.clone();
     flipped[20] ^= 64;
-    Model::textured().showing(&flipped).refused("image \"flag\": ");
+    Model::textured()
+        .showing(&flipped)
+        .refused("image \"flag\": ");
     let jpeg = encoded(ImageFormat::Jpeg);
-    Model::textured().showing(&jpeg[..60]).refused(&format!("{place}cannot decode the image"));
+    Model::textured()
+        .showing(&jpeg[..60])
+        .refused(&format!("{place}cannot decode the image"));
 }
 
 /// A PNG of one color: a few bytes for any size.
@@ -231,7 +414,9 @@ fn blank(width: u32, height: u32) -> Vec<u8> {
     encoder.set_depth(png::BitDepth::One);
     encoder.set_compression(png::Compression::High);
     let mut writer = encoder.write_header().expect("a header");
-    writer.write_image_data(&vec![0; width.div_ceil(8) as usize * height as usize]).expect("texels");
+    writer
+        .write_image_data(&vec![0; width.div_ceil(8) as usize * height as usize])
+        .expect("texels");
     writer.finish().expect("an end");
     bytes
 }
@@ -240,18 +425,34 @@ fn blank(width: u32, height: u32) -> Vec<u8> {
 fn an_image_cannot_ask_for_more_than_the_budget() {
     let bomb = blank(60_000, 60_000 / 50);
     assert!(bomb.len() < 100_000, "{} bytes", bomb.len());
-    Model::textured().showing(&bomb).refused("image \"flag\": it has 60000 x 1200 texels; allowed: 1 to 8192 along each side");
+    Model::textured()
+        .showing(&bomb)
+        .refused("image \"flag\": it has 60000 x 1200 texels; allowed: 1 to 8192 along each side");
     let side = limits::IMAGE_SIDE;
-    assert_eq!(Model::textured().showing(&blank(side, 16)).with("/samplers/0/minFilter", json!(9729)).scene().images[0].size(), [side, 16]);
+    assert_eq!(
+        Model::textured()
+            .showing(&blank(side, 16))
+            .with("/samplers/0/minFilter", json!(9729))
+            .scene()
+            .images[0]
+            .size(),
+        [side, 16]
+    );
     // Two of the largest fit, a third does not; its header is enough to know.
     let mut model = Model::textured();
     let largest = model.view(&blank(side, side));
     for place in 0..3 {
         let image = model.push("images", json!({ "bufferView": largest, "mimeType": "image/png", "name": format!("large {place}") }));
         let texture = model.push("textures", json!({ "source": image, "sampler": 0 }));
-        let material = model.push("materials", json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": texture } } }));
+        let material = model.push(
+            "materials",
+            json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": texture } } }),
+        );
         let primitive = json!({ "attributes": { "POSITION": 0, "TEXCOORD_0": 1 }, "indices": 2, "material": material });
-        model.json["meshes"][0]["primitives"].as_array_mut().expect("a list").push(primitive);
+        model.json["meshes"][0]["primitives"]
+            .as_array_mut()
+            .expect("a list")
+            .push(primitive);
     }
     let model = model.with("/samplers/0/minFilter", json!(9729));
     model.refused("image \"large 1\": with it the decoded images have 536870920 bytes; allowed: at most 536870912");
@@ -261,32 +462,66 @@ fn an_image_cannot_ask_for_more_than_the_budget() {
 fn coordinates_that_do_not_fit_are_refused_by_name() {
     let place = "mesh \"X\" primitive 0 TEXCOORD_0: ";
     Model::textured()
-        .with("/meshes/0/primitives/0/attributes", json!({ "POSITION": 0 }))
-        .refused(&format!("{place}it is missing, although a texture of the material uses it"));
-    Model::textured().with(&format!("{BASE}/texCoord"), json!(2)).refused("mesh \"X\" primitive 0 TEXCOORD_2: it is missing");
+        .with(
+            "/meshes/0/primitives/0/attributes",
+            json!({ "POSITION": 0 }),
+        )
+        .refused(&format!(
+            "{place}it is missing, although a texture of the material uses it"
+        ));
+    Model::textured()
+        .with(&format!("{BASE}/texCoord"), json!(2))
+        .refused("mesh \"X\" primitive 0 TEXCOORD_2: it is missing");
     for (values, sentence) in [
-        ([0.0, 0.0, f32::NAN, 0.0, 1.0, 1.0, 0.0, 1.0], "vertex 1 has a value that is not finite"),
-        ([0.0, 0.0, 1.0, 0.0, 1.0, f32::INFINITY, 0.0, 1.0], "vertex 2 has a value that is not finite"),
-        ([0.0, 0.0, 1e6, 0.0, 1.0, 1.0, 0.0, 1.0], "vertex 1 has the image coordinates 1000000 0; allowed: magnitudes up to 65536"),
+        (
+            [0.0, 0.0, f32::NAN, 0.0, 1.0, 1.0, 0.0, 1.0],
+            "vertex 1 has a value that is not finite",
+        ),
+        (
+            [0.0, 0.0, 1.0, 0.0, 1.0, f32::INFINITY, 0.0, 1.0],
+            "vertex 2 has a value that is not finite",
+        ),
+        (
+            [0.0, 0.0, 1e6, 0.0, 1.0, 1.0, 0.0, 1.0],
+            "vertex 1 has the image coordinates 1000000 0; allowed: magnitudes up to 65536",
+        ),
     ] {
         let mut model = Model::textured();
         let texcoords = model.accessor(&le_floats(&values), F32, "VEC2", 4);
-        model.with("/meshes/0/primitives/0/attributes/TEXCOORD_0", json!(texcoords)).refused(&format!("{place}{sentence}"));
+        model
+            .with(
+                "/meshes/0/primitives/0/attributes/TEXCOORD_0",
+                json!(texcoords),
+            )
+            .refused(&format!("{place}{sentence}"));
     }
     let mut short = Model::textured();
     let texcoords = short.accessor(&le_floats(&[0.0; 6]), F32, "VEC2", 3);
     short
-        .with("/meshes/0/primitives/0/attributes/TEXCOORD_0", json!(texcoords))
+        .with(
+            "/meshes/0/primitives/0/attributes/TEXCOORD_0",
+            json!(texcoords),
+        )
         .refused("accessor 3 has 3 elements, but the primitive has 4 vertices");
-    Model::textured().with("/accessors/1/type", json!("SCALAR")).refused(place);
-    Model::textured().with("/accessors/1/componentType", json!(U16)).refused(place);
+    Model::textured()
+        .with("/accessors/1/type", json!("SCALAR"))
+        .refused(place);
+    Model::textured()
+        .with("/accessors/1/componentType", json!(U16))
+        .refused(place);
 }
 
 #[test]
 fn cameras_of_a_file_are_chosen_by_name_and_go_with_their_nodes() {
     let mut model = Model::textured();
-    let (times, places) = (model.accessor(&le_floats(&[0.0, 2.0]), F32, "SCALAR", 2), le_floats(&[0.0, 0.0, 5.0, 4.0, 0.0, 5.0]));
-    (model.json["accessors"][times]["min"], model.json["accessors"][times]["max"]) = (json!([0]), json!([2]));
+    let (times, places) = (
+        model.accessor(&le_floats(&[0.0, 2.0]), F32, "SCALAR", 2),
+        le_floats(&[0.0, 0.0, 5.0, 4.0, 0.0, 5.0]),
+    );
+    (
+        model.json["accessors"][times]["min"],
+        model.json["accessors"][times]["max"],
+    ) = (json!([0]), json!([2]));
     let places = model.accessor(&places, F32, "VEC3", 2);
     let lens = json!({ "type": "perspective", "perspective": { "yfov": 0.8, "znear": 0.1 } });
     let model = model
@@ -298,24 +533,65 @@ fn cameras_of_a_file_are_chosen_by_name_and_go_with_their_nodes() {
             json!([{ "name": "Drive", "channels": [{ "sampler": 0, "target": { "node": 1, "path": "translation" } }], "samplers": [{ "input": times, "output": places }] }]),
         );
     let scene = model.scene();
-    let names: Vec<&str> = scene.cameras.iter().map(|camera| camera.name.as_str()).collect();
+    let names: Vec<&str> = scene
+        .cameras
+        .iter()
+        .map(|camera| camera.name.as_str())
+        .collect();
     assert_eq!(names, ["chase", "still"]);
     let eye = |camera: &str, clip: &str, time_s: f64| {
-        let play = ClipPlayback { clip: clip.into(), ..ClipPlayback::default() };
-        let preset =
-            Preset { scene_camera: camera.into(), playback: play, clock: Clock { time_s, ..Clock::default() }, ..Preset::default() };
-        preset.check(&scene).unwrap_or_else(|error| panic!("{error}"));
+        let play = ClipPlayback {
+            clip: clip.into(),
+            ..ClipPlayback::default()
+        };
+        let preset = Preset {
+            scene_camera: camera.into(),
+            playback: play,
+            clock: Clock {
+                time_s,
+                ..Clock::default()
+            },
+            ..Preset::default()
+        };
+        preset
+            .check(&scene)
+            .unwrap_or_else(|error| panic!("{error}"));
         let view = preset.view(&scene, [64, 48]);
         (view.eye, view.forward)
     };
-    assert_eq!(eye("", "", 0.5).0, DVec3::new(0.0, 1.0, 0.0), "at rest its node stands in its parent's place");
-    assert_eq!(eye("", "Drive", 0.5), (DVec3::new(1.0, 1.0, 5.0), DVec3::NEG_Z), "the first, unasked");
+    assert_eq!(
+        eye("", "", 0.5).0,
+        DVec3::new(0.0, 1.0, 0.0),
+        "at rest its node stands in its parent's place"
+    );
+    assert_eq!(
+        eye("", "Drive", 0.5),
+        (DVec3::new(1.0, 1.0, 5.0), DVec3::NEG_Z),
+        "the first, unasked"
+    );
     assert_eq!(eye("chase", "Drive", 1.5).0, DVec3::new(3.0, 1.0, 5.0));
     assert_eq!(eye("#1", "Drive", 1.5).0, DVec3::new(0.0, 0.0, 9.0));
     assert_eq!(eye("still", "", 0.0).0, DVec3::new(0.0, 0.0, 9.0));
-    let lost = Preset { scene_camera: "crane".into(), ..Preset::default() };
-    assert_eq!(lost.check(&scene).unwrap_err().to_string(), "scene.camera: the scene has no camera \"crane\"; it has \"chase\", \"still\"");
-    let own = Camera { eye: DVec3::splat(7.0), ..Camera::default() };
-    let own = Preset { scene_camera: "still".into(), camera: Some(own), ..Preset::default() };
-    assert_eq!(own.view(&scene, [64, 48]).eye, DVec3::splat(7.0), "a preset's own camera comes first");
+    let lost = Preset {
+        scene_camera: "crane".into(),
+        ..Preset::default()
+    };
+    assert_eq!(
+        lost.check(&scene).unwrap_err().to_string(),
+        "scene.camera: the scene has no camera \"crane\"; it has \"chase\", \"still\""
+    );
+    let own = Camera {
+        eye: DVec3::splat(7.0),
+        ..Camera::default()
+    };
+    let own = Preset {
+        scene_camera: "still".into(),
+        camera: Some(own),
+        ..Preset::default()
+    };
+    assert_eq!(
+        own.view(&scene, [64, 48]).eye,
+        DVec3::splat(7.0),
+        "a preset's own camera comes first"
+    );
 }

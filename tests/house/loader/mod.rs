@@ -1,6 +1,6 @@
-//! Promise: the glTF loader: what it accepts arrives exactly, what it refuses is refused with a message, and nothing panics,
-//! hangs, or is read outside the model's folder. One file for each part of the promise; all write their models with
-//! [`model::Model`].
+//! Promise: the glTF loader: what it accepts arrives exactly, what it refuses is refused with a
+//! message, and nothing panics, hangs, or is read outside the model's folder. One file for each
+//! part of the promise; all write their models with [`model::Model`].
 
 mod accepted;
 mod compressed;

@@ -29,10 +29,14 @@ impl Model {
             "asset": { "version": "2.0" }, "buffers": [{ "byteLength": 0 }], "bufferViews": [], "accessors": [],
             "meshes": [{ "name": "X", "primitives": [] }], "nodes": [{ "mesh": 0 }], "scenes": [{ "nodes": [0] }], "scene": 0,
         });
-        Self { json, bytes: Vec::new() }
+        Self {
+            json,
+            bytes: Vec::new(),
+        }
     }
 
-    /// Mesh "X" with one primitive: accessor 0 holds four positions, accessor 1 u16 indices 0 1 2 0 2 3.
+    /// Mesh "X" with one primitive: accessor 0 holds four positions, accessor 1 u16 indices 0 1 2 0
+    /// 2 3.
     pub fn square() -> Self {
         let mut model = Self::empty();
         let positions = model.floats("VEC3", &SQUARE.concat());
@@ -51,7 +55,10 @@ impl Model {
     }
 
     pub fn primitive(&mut self, value: Value) {
-        self.json["meshes"][0]["primitives"].as_array_mut().unwrap().push(value);
+        self.json["meshes"][0]["primitives"]
+            .as_array_mut()
+            .unwrap()
+            .push(value);
     }
 
     pub fn view(&mut self, bytes: &[u8]) -> usize {
@@ -59,12 +66,16 @@ impl Model {
         self.bytes.extend_from_slice(bytes);
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
         self.json["buffers"][0]["byteLength"] = json!(self.bytes.len());
-        self.push("bufferViews", json!({ "buffer": 0, "byteOffset": offset, "byteLength": bytes.len() }))
+        self.push(
+            "bufferViews",
+            json!({ "buffer": 0, "byteOffset": offset, "byteLength": bytes.len() }),
+        )
     }
 
     pub fn accessor(&mut self, bytes: &[u8], component: u32, kind: &str, count: usize) -> usize {
         let view = self.view(bytes);
-        let mut accessor = json!({ "bufferView": view, "componentType": component, "type": kind, "count": count });
+        let mut accessor =
+            json!({ "bufferView": view, "componentType": component, "type": kind, "count": count });
         if kind == "VEC3" {
             // The standard wants them with positions.
             (accessor["min"], accessor["max"]) = (json!([0, 0, 0]), json!([1, 1, 1]));
@@ -73,7 +84,12 @@ impl Model {
     }
 
     pub fn floats(&mut self, kind: &str, values: &[f32]) -> usize {
-        self.accessor(&le_floats(values), F32, kind, values.len() / components(kind))
+        self.accessor(
+            &le_floats(values),
+            F32,
+            kind,
+            values.len() / components(kind),
+        )
     }
 
     pub fn shorts(&mut self, kind: &str, values: &[u16]) -> usize {
@@ -84,7 +100,10 @@ impl Model {
     /// With one value of the JSON changed or added.
     pub fn with(mut self, pointer: &str, value: Value) -> Self {
         let (parent, key) = pointer.rsplit_once('/').unwrap();
-        let parent = self.json.pointer_mut(parent).unwrap_or_else(|| panic!("no {parent}"));
+        let parent = self
+            .json
+            .pointer_mut(parent)
+            .unwrap_or_else(|| panic!("no {parent}"));
         match parent {
             Value::Array(list) => list[key.parse::<usize>().unwrap()] = value,
             _ => parent[key] = value,
@@ -94,7 +113,13 @@ impl Model {
 
     pub fn without(mut self, pointer: &str) -> Self {
         let (parent, key) = pointer.rsplit_once('/').unwrap();
-        self.json.pointer_mut(parent).unwrap().as_object_mut().unwrap().remove(key).unwrap();
+        self.json
+            .pointer_mut(parent)
+            .unwrap()
+            .as_object_mut()
+            .unwrap()
+            .remove(key)
+            .unwrap();
         self
     }
 
@@ -103,11 +128,15 @@ impl Model {
     }
 
     pub fn load(&self) -> Result<Scene, LoadError> {
-        gltf::load(&self.glb(), &mut |path, _| panic!("{} was asked for", path.display()))
+        gltf::load(&self.glb(), &mut |path, _| {
+            panic!("{} was asked for", path.display())
+        })
     }
 
     pub fn scene(&self) -> Scene {
-        let scene = self.load().unwrap_or_else(|error| panic!("{error}\n{}", self.json));
+        let scene = self
+            .load()
+            .unwrap_or_else(|error| panic!("{error}\n{}", self.json));
         assert_sound(&scene);
         scene
     }
@@ -116,11 +145,14 @@ impl Model {
     pub fn refused(&self, sentence: &str) {
         let error = self.load().expect_err(sentence).to_string();
         assert!(error.contains(sentence), "said: {error}\nnot:  {sentence}");
-        assert!(!error.contains('\n') && !error.contains("is a bug"), "{error}");
+        assert!(
+            !error.contains('\n') && !error.contains("is a bug"),
+            "{error}"
+        );
     }
 
-    /// A square whose material "paper" shows the PNG "flag": accessor 0 holds positions, 1 texture coordinates, 2 indices;
-    /// buffer view 3 holds the image.
+    /// A square whose material "paper" shows the PNG "flag": accessor 0 holds positions, 1 texture
+    /// coordinates, 2 indices; buffer view 3 holds the image.
     pub fn textured() -> Self {
         let mut model = Self {
             json: json!({
@@ -135,9 +167,22 @@ impl Model {
         };
         let square = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0];
         let positions = model.accessor(&le_floats(&square), F32, "VEC3", 4);
-        (model.json["accessors"][positions]["min"], model.json["accessors"][positions]["max"]) = (json!([0, 0, 0]), json!([1, 1, 0]));
-        model.accessor(&le_floats(&[0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0]), F32, "VEC2", 4);
-        model.accessor(&le([0u16, 1, 2, 0, 2, 3].map(u16::to_le_bytes)), U16, "SCALAR", 6);
+        (
+            model.json["accessors"][positions]["min"],
+            model.json["accessors"][positions]["max"],
+        ) = (json!([0, 0, 0]), json!([1, 1, 0]));
+        model.accessor(
+            &le_floats(&[0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0]),
+            F32,
+            "VEC2",
+            4,
+        );
+        model.accessor(
+            &le([0u16, 1, 2, 0, 2, 3].map(u16::to_le_bytes)),
+            U16,
+            "SCALAR",
+            6,
+        );
         assert_eq!(model.view(&encoded(ImageFormat::Png)), 3);
         model
     }
@@ -158,7 +203,12 @@ impl Model {
     }
 }
 
-pub const SQUARE: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+pub const SQUARE: [[f32; 3]; 4] = [
+    [0.0, 0.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [1.0, 1.0, 0.0],
+    [0.0, 1.0, 0.0],
+];
 
 fn components(kind: &str) -> usize {
     match kind {
@@ -194,11 +244,17 @@ pub fn le<const N: usize>(values: impl IntoIterator<Item = [u8; N]>) -> Vec<u8> 
 
 /// 2 x 1 texels, red and translucent green.
 pub fn encoded(format: ImageFormat) -> Vec<u8> {
-    let picture = ImageBuffer::<Rgba<u8>, _>::from_raw(2, 1, vec![255, 0, 0, 255, 0, 200, 0, 100]).expect("eight bytes");
+    let picture = ImageBuffer::<Rgba<u8>, _>::from_raw(2, 1, vec![255, 0, 0, 255, 0, 200, 0, 100])
+        .expect("eight bytes");
     let mut bytes = std::io::Cursor::new(Vec::new());
     match format {
-        ImageFormat::Png | ImageFormat::WebP => picture.write_to(&mut bytes, format).expect("it is encoded"),
-        _ => image::DynamicImage::from(picture).into_rgb8().write_to(&mut bytes, format).expect("it is encoded"),
+        ImageFormat::Png | ImageFormat::WebP => {
+            picture.write_to(&mut bytes, format).expect("it is encoded")
+        }
+        _ => image::DynamicImage::from(picture)
+            .into_rgb8()
+            .write_to(&mut bytes, format)
+            .expect("it is encoded"),
     }
     bytes.into_inner()
 }
@@ -209,8 +265,16 @@ pub fn triangles(scene: &Scene) -> Vec<[[f64; 3]; 3]> {
     for instance in &scene.instances {
         let primitive = &scene.primitives[instance.primitive];
         for t in 0..primitive.triangle_count() {
-            let corner = |vertex| instance.world_from_object.transform_point3(primitive.position(scene, vertex).map(f64::from).into());
-            triangles.push(primitive.corners(scene, t).map(|vertex| corner(vertex).to_array()));
+            let corner = |vertex| {
+                instance
+                    .world_from_object
+                    .transform_point3(primitive.position(scene, vertex).map(f64::from).into())
+            };
+            triangles.push(
+                primitive
+                    .corners(scene, t)
+                    .map(|vertex| corner(vertex).to_array()),
+            );
         }
     }
     triangles
@@ -218,35 +282,80 @@ pub fn triangles(scene: &Scene) -> Vec<[[f64; 3]; 3]> {
 
 /// The square's two triangles, for comparison.
 pub fn square() -> Vec<[[f64; 3]; 3]> {
-    [[0, 1, 2], [0, 2, 3]].map(|t| t.map(|c: usize| SQUARE[c].map(f64::from))).into()
+    [[0, 1, 2], [0, 2, 3]]
+        .map(|t| t.map(|c: usize| SQUARE[c].map(f64::from)))
+        .into()
 }
 
-/// Everything that later stages take for granted: each accessor can be read to its end, and every pose is finite.
+/// Everything that later stages take for granted: each accessor can be read to its end, and every
+/// pose is finite.
 pub fn assert_sound(scene: &Scene) {
     if !scene.rig.is_empty() {
         let clips = (0..scene.rig.clips.len()).map(Some).chain([None]);
-        for (clip, time_s) in clips.flat_map(|clip| [0.0, 0.7, 1e9, -3.5].map(|time_s| (clip, time_s))) {
-            let pose = Pose::at(scene, &Motion { clip, time_s, ..Motion::default() });
-            assert!(
-                (0..scene.instances.len())
-                    .all(|i| !pose.instance_transform(i).is_nan() && pose.deform(i).is_none_or(|b| b.weights.iter().all(|w| w.is_finite())))
+        for (clip, time_s) in
+            clips.flat_map(|clip| [0.0, 0.7, 1e9, -3.5].map(|time_s| (clip, time_s)))
+        {
+            let pose = Pose::at(
+                scene,
+                &Motion {
+                    clip,
+                    time_s,
+                    ..Motion::default()
+                },
             );
+            assert!((0..scene.instances.len()).all(|i| {
+                !pose.instance_transform(i).is_nan()
+                    && pose
+                        .deform(i)
+                        .is_none_or(|b| b.weights.iter().all(|w| w.is_finite()))
+            }));
         }
-        assert!(scene.rig.nodes.iter().enumerate().all(|(i, node)| node.parent.is_none_or(|parent| parent < i)));
+        assert!(
+            scene
+                .rig
+                .nodes
+                .iter()
+                .enumerate()
+                .all(|(i, node)| node.parent.is_none_or(|parent| parent < i))
+        );
     }
-    assert!(scene.vertex_bytes.len().is_multiple_of(4) && scene.index_bytes.len().is_multiple_of(4));
-    assert!(scene.instances.iter().all(|i| i.primitive < scene.primitives.len() && i.world_from_object.is_finite()));
+    assert!(
+        scene.vertex_bytes.len().is_multiple_of(4) && scene.index_bytes.len().is_multiple_of(4)
+    );
+    assert!(
+        scene
+            .instances
+            .iter()
+            .all(|i| i.primitive < scene.primitives.len() && i.world_from_object.is_finite())
+    );
     for primitive in &scene.primitives {
         assert!(primitive.material < scene.materials.len());
         let deformation = &primitive.deformation;
-        let shapes = deformation.morph_targets.iter().flat_map(|shape| [shape.positions, shape.normals]);
-        let held = deformation.influences.iter().flat_map(|set| [Some(set.joints), Some(set.weights)]);
-        let attributes = [Some(primitive.positions), Some(primitive.normals), primitive.colors];
+        let shapes = deformation
+            .morph_targets
+            .iter()
+            .flat_map(|shape| [shape.positions, shape.normals]);
+        let held = deformation
+            .influences
+            .iter()
+            .flat_map(|set| [Some(set.joints), Some(set.weights)]);
+        let attributes = [
+            Some(primitive.positions),
+            Some(primitive.normals),
+            primitive.colors,
+        ];
         for accessor in attributes.into_iter().chain(shapes).chain(held).flatten() {
             assert_eq!(accessor.count, primitive.vertex_count());
-            assert!(accessor.offset % accessor.component_type.bytes() == 0 && accessor.stride % accessor.component_type.bytes() == 0);
+            assert!(
+                accessor.offset % accessor.component_type.bytes() == 0
+                    && accessor.stride % accessor.component_type.bytes() == 0
+            );
             for vertex in 0..accessor.count {
-                assert!((0..accessor.components).all(|component| accessor.value(&scene.vertex_bytes, vertex, component).is_finite()));
+                assert!((0..accessor.components).all(|component| {
+                    accessor
+                        .value(&scene.vertex_bytes, vertex, component)
+                        .is_finite()
+                }));
             }
         }
         for vertex in 0..primitive.vertex_count() {
@@ -256,15 +365,26 @@ pub fn assert_sound(scene: &Scene) {
         for t in 0..primitive.triangle_count() {
             let corners = primitive.corners(scene, t);
             assert!(corners.iter().all(|&c| c < primitive.vertex_count()));
-            let [a, b, c] = corners.map(|c| DVec3::from(primitive.position(scene, c).map(f64::from)));
-            assert!(a.distance(b).max(b.distance(c)).max(c.distance(a)) <= primitive.longest_edge * (1.0 + 1e-12));
+            let [a, b, c] =
+                corners.map(|c| DVec3::from(primitive.position(scene, c).map(f64::from)));
+            assert!(
+                a.distance(b).max(b.distance(c)).max(c.distance(a))
+                    <= primitive.longest_edge * (1.0 + 1e-12)
+            );
         }
     }
 }
 
 /// Corners of every triangle as a moment of a clip places and bends them.
 pub fn posed(scene: &Scene, clip: Option<usize>, time_s: f64) -> Vec<[[f64; 3]; 3]> {
-    let pose = Pose::at(scene, &Motion { clip, time_s, ..Motion::default() });
+    let pose = Pose::at(
+        scene,
+        &Motion {
+            clip,
+            time_s,
+            ..Motion::default()
+        },
+    );
     let mut triangles = Vec::new();
     for (index, instance) in scene.instances.iter().enumerate() {
         let primitive = &scene.primitives[instance.primitive];
@@ -273,9 +393,13 @@ pub fn posed(scene: &Scene, clip: Option<usize>, time_s: f64) -> Vec<[[f64; 3]; 
                 Some(deform) => deform.position(scene, primitive, vertex),
                 None => primitive.position(scene, vertex).map(f64::from).into(),
             };
-            pose.instance_transform(index).transform_point3(object).to_array()
+            pose.instance_transform(index)
+                .transform_point3(object)
+                .to_array()
         };
-        triangles.extend((0..primitive.triangle_count()).map(|t| primitive.corners(scene, t).map(corner)));
+        triangles.extend(
+            (0..primitive.triangle_count()).map(|t| primitive.corners(scene, t).map(corner)),
+        );
     }
     triangles
 }

@@ -1,4 +1,5 @@
-//! Promise: numbers that contradict each other are refused with a message that names the place, before anything is allocated.
+//! Promise: numbers that contradict each other are refused with a message that names the place,
+//! before anything is allocated.
 
 use rasterlab::scene::gltf::{self, limits};
 use serde_json::{Value, json};
@@ -14,19 +15,28 @@ fn counts_are_capped_before_anything_is_allocated() {
         let mut model = Model::square();
         let view = model.view(&[0, 0, 0, 0]);
         let overlay = json!({ "count": 1, "indices": { "bufferView": view, "componentType": U8 }, "values": { "bufferView": view } });
-        model.without("/accessors/0/bufferView").with("/accessors/0/sparse", overlay).with("/accessors/0/count", json!(count))
+        model
+            .without("/accessors/0/bufferView")
+            .with("/accessors/0/sparse", overlay)
+            .with("/accessors/0/count", json!(count))
     };
     sparse(1 << 40).refused(
         "mesh \"X\" primitive 0 POSITION: accessor 0: count is 1099511627776; allowed: at most 30000000, because its files have only",
     );
-    sparse(1_000_000_000).refused("POSITION: accessor 0: count is 1000000000; allowed: at most 30000000");
-    sparse(30_000_000).refused("POSITION: the model has 30000000 vertices or more; allowed: at most 4000000");
+    sparse(1_000_000_000)
+        .refused("POSITION: accessor 0: count is 1000000000; allowed: at most 30000000");
+    sparse(30_000_000)
+        .refused("POSITION: the model has 30000000 vertices or more; allowed: at most 4000000");
     sparse(0).refused("POSITION: accessor 0: count is 0; it must be at least 1");
     let zero = sparse(4).with("/accessors/0/sparse/count", json!(0));
     zero.refused("POSITION: accessor 0 sparse: count is 0; allowed: 1 to 4");
-    sparse(4).with("/accessors/0/sparse/count", json!(5)).refused("accessor 0 sparse: count is 5; allowed: 1 to 4");
+    sparse(4)
+        .with("/accessors/0/sparse/count", json!(5))
+        .refused("accessor 0 sparse: count is 5; allowed: 1 to 4");
     sparse(4).refused("accessor 0 sparse: its 1 values exceed bufferView 2, which has 4 bytes");
-    sparse(4).with("/accessors/0/sparse/indices/byteOffset", json!(u64::MAX)).refused("its 1 indices exceed");
+    sparse(4)
+        .with("/accessors/0/sparse/indices/byteOffset", json!(u64::MAX))
+        .refused("its 1 indices exceed");
 }
 
 #[test]
@@ -36,7 +46,9 @@ fn sparse_indices_must_rise_and_stay_inside() {
         let at = model.view(&indices);
         let values = model.view(&[0; 24]);
         let sparse = json!({ "count": 2, "indices": { "bufferView": at, "componentType": U8 }, "values": { "bufferView": values } });
-        model.with("/accessors/0/sparse", sparse).refused("indices must increase and stay below 4");
+        model
+            .with("/accessors/0/sparse", sparse)
+            .refused("indices must increase and stay below 4");
     }
 }
 
@@ -45,10 +57,18 @@ fn accessors_must_lie_in_their_views_and_views_in_their_buffers() {
     let place = "mesh \"X\" primitive 0 POSITION: accessor 0: ";
     Model::square()
         .with("/accessors/0/count", json!(5))
-        .refused(&format!("{place}5 elements of 12 bytes from byte 0 exceed bufferView 0, which has 48 bytes"));
-    Model::square().with("/accessors/0/byteOffset", json!(4)).refused(&format!("{place}4 elements of 12 bytes from byte 4 exceed"));
-    Model::square().with("/accessors/0/byteOffset", json!(u64::MAX - 3)).refused(place);
-    Model::square().with("/bufferViews/0/byteOffset", json!(u64::MAX - 3)).refused(place);
+        .refused(&format!(
+            "{place}5 elements of 12 bytes from byte 0 exceed bufferView 0, which has 48 bytes"
+        ));
+    Model::square()
+        .with("/accessors/0/byteOffset", json!(4))
+        .refused(&format!("{place}4 elements of 12 bytes from byte 4 exceed"));
+    Model::square()
+        .with("/accessors/0/byteOffset", json!(u64::MAX - 3))
+        .refused(place);
+    Model::square()
+        .with("/bufferViews/0/byteOffset", json!(u64::MAX - 3))
+        .refused(place);
     Model::square()
         .with("/bufferViews/0/byteLength", json!(1u64 << 60))
         .refused("bufferView 0 (1152921504606846976 bytes from byte 0) exceeds buffer 0, which has 60 bytes");
@@ -60,14 +80,22 @@ fn accessors_must_lie_in_their_views_and_views_in_their_buffers() {
         .refused("bufferView 0 (48 bytes from byte 0) exceeds buffer 0, which has 40 bytes");
     Model::square()
         .with("/accessors/1/count", json!(9))
-        .refused("mesh \"X\" primitive 0 indices: accessor 1: 9 elements of 2 bytes from byte 0 exceed");
-    Model::square().without("/accessors/0/bufferView").refused("bufferView");
+        .refused(
+            "mesh \"X\" primitive 0 indices: accessor 1: 9 elements of 2 bytes from byte 0 exceed",
+        );
+    Model::square()
+        .without("/accessors/0/bufferView")
+        .refused("bufferView");
 }
 
 #[test]
 fn strides_and_offsets_must_fit_their_components() {
-    Model::square().with("/bufferViews/0/byteStride", json!(8)).refused("byteStride is 8; it must be a multiple of 4 and at least 12");
-    Model::square().with("/bufferViews/0/byteStride", json!(14)).refused("byteStride is 14; it must be a multiple of 4");
+    Model::square()
+        .with("/bufferViews/0/byteStride", json!(8))
+        .refused("byteStride is 8; it must be a multiple of 4 and at least 12");
+    Model::square()
+        .with("/bufferViews/0/byteStride", json!(14))
+        .refused("byteStride is 14; it must be a multiple of 4");
     Model::square()
         .with("/accessors/0/byteOffset", json!(2))
         .refused("byteOffset 2, added to that of its bufferView, must be a multiple of the component size, 4");
@@ -77,21 +105,31 @@ fn strides_and_offsets_must_fit_their_components() {
     Model::square()
         .with("/accessors/1/byteOffset", json!(1))
         .refused("indices: accessor 1: byteOffset 1, added to that of its bufferView, must be a multiple");
-    Model::square().with("/bufferViews/1/byteStride", json!(4)).refused("indices: accessor 1: 6 elements of 4 bytes");
+    Model::square()
+        .with("/bufferViews/1/byteStride", json!(4))
+        .refused("indices: accessor 1: 6 elements of 4 bytes");
 }
 
 #[test]
 fn attributes_must_have_the_types_of_the_standard() {
     let place = "mesh \"X\" primitive 0 POSITION: accessor 0 has the type";
-    Model::square().with("/accessors/0/componentType", json!(U8)).refused(&format!("{place} 3 x U8, which glTF does not allow for it"));
-    Model::square().with("/accessors/0/type", json!("SCALAR")).refused(&format!("{place} 1 x F32"));
-    Model::square().with("/accessors/0/type", json!("VEC2")).refused(place);
+    Model::square()
+        .with("/accessors/0/componentType", json!(U8))
+        .refused(&format!("{place} 3 x U8, which glTF does not allow for it"));
+    Model::square()
+        .with("/accessors/0/type", json!("SCALAR"))
+        .refused(&format!("{place} 1 x F32"));
+    Model::square()
+        .with("/accessors/0/type", json!("VEC2"))
+        .refused(place);
     Model::square()
         .with("/accessors/1/componentType", json!(I16))
         .refused("indices: accessor 1 has the type 1 x I16, which glTF does not allow for it");
     let mut float = Model::square();
     let indices = float.floats("SCALAR", &[0.0; 6]);
-    float.with("/meshes/0/primitives/0/indices", json!(indices)).refused("indices: accessor 2 has the type");
+    float
+        .with("/meshes/0/primitives/0/indices", json!(indices))
+        .refused("indices: accessor 2 has the type");
     Model::square()
         .with("/accessors/1/type", json!("VEC3"))
         .with("/accessors/1/count", json!(2))
@@ -99,16 +137,23 @@ fn attributes_must_have_the_types_of_the_standard() {
     let attribute = |name: &str, make: &dyn Fn(&mut Model) -> usize| {
         let mut model = Model::square();
         let accessor = make(&mut model);
-        model.with(&format!("/meshes/0/primitives/0/attributes/{name}"), json!(accessor))
+        model.with(
+            &format!("/meshes/0/primitives/0/attributes/{name}"),
+            json!(accessor),
+        )
     };
-    attribute("NORMAL", &|m| m.floats("VEC4", &[0.0; 16])).refused("NORMAL: accessor 2 has the type");
-    attribute("NORMAL", &|m| m.floats("VEC3", &[0.0; 9])).refused("NORMAL: accessor 2 has 3 elements, but the primitive has 4 vertices");
+    attribute("NORMAL", &|m| m.floats("VEC4", &[0.0; 16]))
+        .refused("NORMAL: accessor 2 has the type");
+    attribute("NORMAL", &|m| m.floats("VEC3", &[0.0; 9]))
+        .refused("NORMAL: accessor 2 has 3 elements, but the primitive has 4 vertices");
     Model::square()
         .with("/meshes/0/primitives/0/attributes/POSITION", json!(9))
         .refused("mesh \"X\": POSITION refers to accessor 9, but there are only 2");
     attribute("COLOR_0", &|m| m.shorts("VEC4", &[0; 16]))
         .refused("COLOR_0: accessor 2 has the type 4 x U16, which glTF does not allow for it");
-    Model::square().without("/meshes/0/primitives/0/attributes/POSITION").refused("POSITION");
+    Model::square()
+        .without("/meshes/0/primitives/0/attributes/POSITION")
+        .refused("POSITION");
 }
 
 #[test]
@@ -126,12 +171,20 @@ fn indices_past_the_vertices_are_refused() {
 fn corners_must_make_whole_triangles() {
     Model::square()
         .with("/accessors/1/count", json!(5))
-        .refused("indices: 5 corners do not form whole triangles; their number must be a multiple of 3");
+        .refused(
+            "indices: 5 corners do not form whole triangles; their number must be a multiple of 3",
+        );
     for mode in [5, 6] {
-        let short = Model::square().with("/meshes/0/primitives/0/mode", json!(mode)).with("/accessors/1/count", json!(2));
-        short.refused("indices: 2 corners do not form whole triangles; their number must be at least 3");
+        let short = Model::square()
+            .with("/meshes/0/primitives/0/mode", json!(mode))
+            .with("/accessors/1/count", json!(2));
+        short.refused(
+            "indices: 2 corners do not form whole triangles; their number must be at least 3",
+        );
     }
-    Model::square().without("/meshes/0/primitives/0/indices").refused("POSITION: 4 corners do not form whole triangles");
+    Model::square()
+        .without("/meshes/0/primitives/0/indices")
+        .refused("POSITION: 4 corners do not form whole triangles");
 }
 
 #[test]
@@ -142,13 +195,27 @@ fn values_that_are_not_finite_are_refused() {
             let mut floats = vec![0.5; values];
             floats[values - 2] = bad;
             let accessor = model.floats(if values == 12 { "VEC3" } else { "VEC4" }, &floats);
-            let model = model.with(&format!("/meshes/0/primitives/0/attributes/{name}"), json!(accessor));
-            model.refused(&format!("mesh \"X\" primitive 0 {name}: vertex 3 has a value that is not finite"));
+            let model = model.with(
+                &format!("/meshes/0/primitives/0/attributes/{name}"),
+                json!(accessor),
+            );
+            model.refused(&format!(
+                "mesh \"X\" primitive 0 {name}: vertex 3 has a value that is not finite"
+            ));
         }
     }
-    Model::square().with("/nodes/0/translation", json!([1e39, 0, 0])).refused("node 0: its world transform is not finite");
-    Model::square().with("/nodes/0/rotation", json!([0, 0, 0, 0])).refused("node 0: its rotation is a quaternion of length 0e0");
-    Model::square().with("/nodes/0/matrix", json!([1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1])).refused("the last row of its matrix");
+    Model::square()
+        .with("/nodes/0/translation", json!([1e39, 0, 0]))
+        .refused("node 0: its world transform is not finite");
+    Model::square()
+        .with("/nodes/0/rotation", json!([0, 0, 0, 0]))
+        .refused("node 0: its rotation is a quaternion of length 0e0");
+    Model::square()
+        .with(
+            "/nodes/0/matrix",
+            json!([1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]),
+        )
+        .refused("the last row of its matrix");
 }
 
 #[test]
@@ -156,12 +223,26 @@ fn nodes_must_form_a_shallow_tree() {
     let nodes = |nodes: Value| Model::square().with("/nodes", nodes);
     nodes(json!([{ "children": [0], "mesh": 0 }])).refused("node 0: it is its own ancestor");
     nodes(json!([{ "children": [1] }, { "children": [0] }])).refused("it is its own ancestor");
-    nodes(json!([{ "mesh": 0 }, { "children": [2] }, { "name": "b", "children": [1] }])).refused("it is its own ancestor");
-    nodes(json!([{ "children": [2] }, { "children": [2] }, { "name": "child" }])).refused("node \"child\": it has more than one parent");
+    nodes(json!([{ "mesh": 0 }, { "children": [2] }, { "name": "b", "children": [1] }]))
+        .refused("it is its own ancestor");
+    nodes(json!([{ "children": [2] }, { "children": [2] }, { "name": "child" }]))
+        .refused("node \"child\": it has more than one parent");
     nodes(json!([{ "children": [1, 1] }, {}])).refused("node 1: it has more than one parent");
-    Model::square().with("/scenes/0/nodes", json!([0, 0])).refused("scene 0: node 0 is listed twice");
+    Model::square()
+        .with("/scenes/0/nodes", json!([0, 0]))
+        .refused("scene 0: node 0 is listed twice");
     let chain = |length: usize| {
-        nodes((0..length).map(|i| if i + 1 < length { json!({ "children": [i + 1] }) } else { json!({ "mesh": 0 }) }).collect())
+        nodes(
+            (0..length)
+                .map(|i| {
+                    if i + 1 < length {
+                        json!({ "children": [i + 1] })
+                    } else {
+                        json!({ "mesh": 0 })
+                    }
+                })
+                .collect(),
+        )
     };
     chain(limits::NODE_DEPTH).scene();
     chain(limits::NODE_DEPTH + 1).refused("node 256: it lies deeper than 256 levels");
@@ -170,11 +251,19 @@ fn nodes_must_form_a_shallow_tree() {
 
 #[test]
 fn images_must_exist_although_nothing_looks_them_up() {
-    Model::square().with("/images", json!([{}])).refused("image 0: it has neither a URI nor a bufferView");
+    Model::square()
+        .with("/images", json!([{}]))
+        .refused("image 0: it has neither a URI nor a bufferView");
     let mut beyond = Model::square();
-    let view = beyond.push("bufferViews", json!({ "buffer": 0, "byteOffset": 10, "byteLength": 1000 }));
+    let view = beyond.push(
+        "bufferViews",
+        json!({ "buffer": 0, "byteOffset": 10, "byteLength": 1000 }),
+    );
     beyond
-        .with("/images", json!([{ "bufferView": view, "mimeType": "image/png", "name": "skin" }]))
+        .with(
+            "/images",
+            json!([{ "bufferView": view, "mimeType": "image/png", "name": "skin" }]),
+        )
         .refused("image \"skin\": bufferView 2 (1000 bytes from byte 10) exceeds");
 }
 
@@ -189,20 +278,41 @@ fn a_small_file_cannot_ask_for_much() {
     placed.json["nodes"] = vec![json!({ "mesh": 0 }); limits::INSTANCES + 1].into();
     placed.json["scenes"] = json!([{ "nodes": (0..=limits::INSTANCES).collect::<Vec<_>>() }]);
     placed.refused("node 65536: the nodes show more than 65536 primitives");
-    let mut soft = morphed().with("/meshes/0/primitives/0/targets", json!(vec![json!({}); 256])).without("/meshes/0/weights");
+    let mut soft = morphed()
+        .with(
+            "/meshes/0/primitives/0/targets",
+            json!(vec![json!({}); 256]),
+        )
+        .without("/meshes/0/weights");
     soft.json["nodes"] = vec![json!({ "mesh": 0 }); 15_626].into();
-    soft.refused("node 15625: the nodes have 4000256 morph weights or more; allowed: at most 4000000");
+    soft.refused(
+        "node 15625: the nodes have 4000256 morph weights or more; allowed: at most 4000000",
+    );
     let mut jointed = skinned(0.0).without("/skins/0/inverseBindMatrices");
     jointed.json["skins"] = vec![json!({ "joints": vec![1; 256] }); 3_907].into();
     jointed.refused("the skins have 1000192 joints; allowed: at most 1000000");
-    let objects = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"nodes\":[{}{{}}]}}", "{},".repeat(limits::JSON_OBJECTS));
+    let objects = format!(
+        "{{\"asset\":{{\"version\":\"2.0\"}},\"nodes\":[{}{{}}]}}",
+        "{},".repeat(limits::JSON_OBJECTS)
+    );
     let error = gltf::load(objects.as_bytes(), &mut |_, _| unreachable!()).unwrap_err();
-    assert_eq!(error.to_string(), "the JSON has 1000003 objects; allowed: at most 1000000");
+    assert_eq!(
+        error.to_string(),
+        "the JSON has 1000003 objects; allowed: at most 1000000"
+    );
 }
 
 #[test]
 fn long_and_strange_names_stay_out_of_the_sentence() {
     let name = format!("line\nbreak \u{1b}[31m{}", "x".repeat(100_000));
-    let error = Model::square().with("/meshes/0/name", json!(name)).with("/accessors/0/count", json!(5)).load().unwrap_err().to_string();
-    assert!(error.len() < 300 && !error.contains(['\n', '\u{1b}']), "{error}");
+    let error = Model::square()
+        .with("/meshes/0/name", json!(name))
+        .with("/accessors/0/count", json!(5))
+        .load()
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.len() < 300 && !error.contains(['\n', '\u{1b}']),
+        "{error}"
+    );
 }

@@ -1,5 +1,5 @@
-//! Promise: models of any size load within the memory budget, with at most 2.5 times as much memory as they have decoded; loading tells its
-//! progress and ends within a moment when it is canceled.
+//! Promise: models of any size load within the memory budget, with at most 2.5 times as much memory
+//! as they have decoded; loading tells its progress and ends within a moment when it is canceled.
 
 use std::{
     fs,
@@ -25,16 +25,32 @@ use super::{
     motion::{morphed, skinned},
 };
 
-/// A wavy cloth of `side` x `side` vertices without normals: 12 bytes for each, and 24 for its two triangles.
+/// A wavy cloth of `side` x `side` vertices without normals: 12 bytes for each, and 24 for its two
+/// triangles.
 fn cloth(side: u32) -> Model {
     let mut model = Model::empty();
     let height = |x: u32, y: u32| ((x * 7 + y * 5) % 64) as f32 * 0.01;
-    let positions: Vec<f32> = (0..side * side).flat_map(|i| [(i % side) as f32, height(i % side, i / side), (i / side) as f32]).collect();
+    let positions: Vec<f32> = (0..side * side)
+        .flat_map(|i| {
+            [
+                (i % side) as f32,
+                height(i % side, i / side),
+                (i / side) as f32,
+            ]
+        })
+        .collect();
     let corner = |i: u32| i / (side - 1) * side + i % (side - 1);
     let cells = (0..(side - 1) * (side - 1)).map(corner);
-    let indices: Vec<u32> = cells.flat_map(|a| [a, a + side, a + 1, a + 1, a + side, a + side + 1]).collect();
+    let indices: Vec<u32> = cells
+        .flat_map(|a| [a, a + side, a + 1, a + 1, a + side, a + side + 1])
+        .collect();
     let positions = model.floats("VEC3", &positions);
-    let view = model.view(&indices.iter().flat_map(|index| index.to_le_bytes()).collect::<Vec<u8>>());
+    let view = model.view(
+        &indices
+            .iter()
+            .flat_map(|index| index.to_le_bytes())
+            .collect::<Vec<u8>>(),
+    );
     let indices = model.push("accessors", json!({ "bufferView": view, "componentType": U32, "count": indices.len(), "type": "SCALAR" }));
     model.primitive(json!({ "attributes": { "POSITION": positions }, "indices": indices }));
     model
@@ -46,7 +62,10 @@ fn a_large_file_may_have_more_than_a_small_one() {
     let count = 4_000_001u32;
     let mut model = Model::empty();
     let corners = [[0i8, 0, 0, 0], [100, 0, 0, 0], [0, 100, 0, 0]];
-    let bytes: Vec<u8> = (0..count).flat_map(|vertex| corners[vertex as usize % 3]).map(|value| value as u8).collect();
+    let bytes: Vec<u8> = (0..count)
+        .flat_map(|vertex| corners[vertex as usize % 3])
+        .map(|value| value as u8)
+        .collect();
     let view = model.view(&bytes);
     model.json["bufferViews"][view]["byteStride"] = json!(4);
     let about = json!({ "bufferView": view, "componentType": 5120, "normalized": true, "count": count, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0] });
@@ -61,13 +80,21 @@ fn a_large_file_may_have_more_than_a_small_one() {
     let mut claim = model.clone();
     claim.bytes.truncate(64);
     claim.json["buffers"][0]["byteLength"] = json!(64);
-    claim.json["bufferViews"] = json!([{ "buffer": 0, "byteLength": 16 }, { "buffer": 0, "byteLength": 8 }]);
+    claim.json["bufferViews"] =
+        json!([{ "buffer": 0, "byteLength": 16 }, { "buffer": 0, "byteLength": 8 }]);
     let overlay = json!({ "count": 1, "indices": { "bufferView": 0, "componentType": U8 }, "values": { "bufferView": 0 } });
-    claim.json["accessors"][positions] =
-        json!({ "sparse": overlay, "componentType": F32, "count": count, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0] });
-    let error = gltf::load_within(&claim.glb().as_slice(), MemoryBudget::of(1 << 50), &mut |_, _| unreachable!()).unwrap_err();
+    claim.json["accessors"][positions] = json!({ "sparse": overlay, "componentType": F32, "count": count, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0] });
+    let error = gltf::load_within(
+        &claim.glb().as_slice(),
+        MemoryBudget::of(1 << 50),
+        &mut |_, _| unreachable!(),
+    )
+    .unwrap_err();
     let wanted = "POSITION: the model has 4000001 vertices or more; allowed: at most 4000000, because its files have only ";
-    assert!(error.0.contains(wanted) && error.0.ends_with(" bytes"), "{error}");
+    assert!(
+        error.0.contains(wanted) && error.0.ends_with(" bytes"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -76,11 +103,17 @@ fn a_file_beyond_the_budget_is_refused_unread_and_the_remedy_named() {
     let path = folder.path().join("huge.glb");
     let budget = MemoryBudget::LEAST;
     // Sparse on disk.
-    fs::File::create(&path).unwrap().set_len(budget.decoded() + 1).unwrap();
-    let wanted =
-        "huge.glb: it has 536870913 bytes; allowed: at most 536870912 within the memory budget of 1280 MiB; raise it with --memory";
-    assert_eq!(host::model::load_within(&path, budget), Err(LoadError(wanted.into())));
-    // A budget of ten gigabytes has room for files of four, so a file of 600 MB would be read there; one of five would not.
+    fs::File::create(&path)
+        .unwrap()
+        .set_len(budget.decoded() + 1)
+        .unwrap();
+    let wanted = "huge.glb: it has 536870913 bytes; allowed: at most 536870912 within the memory budget of 1280 MiB; raise it with --memory";
+    assert_eq!(
+        host::model::load_within(&path, budget),
+        Err(LoadError(wanted.into()))
+    );
+    // A budget of ten gigabytes has room for files of four, so a file of 600 MB would be read
+    // there; one of five would not.
     fs::File::create(&path).unwrap().set_len(5 << 30).unwrap();
     let error = host::model::load_within(&path, MemoryBudget::of(10 << 30)).unwrap_err();
     assert_eq!(
@@ -91,13 +124,20 @@ fn a_file_beyond_the_budget_is_refused_unread_and_the_remedy_named() {
 
 #[test]
 fn a_file_that_is_cut_short_while_it_is_open_is_a_sentence() {
-    // The header still tells the old length, as when another program has begun to write the file again.
+    // The header still tells the old length, as when another program has begun to write the file
+    // again.
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("cut.glb");
     let glb = cloth(300).glb();
     fs::write(&path, &glb[..glb.len() / 2]).unwrap();
     let error = host::model::load(&path).unwrap_err();
-    assert!(error.0.starts_with(&format!("cut.glb: the GLB header states {} bytes, but the file has ", glb.len())), "{error}");
+    assert!(
+        error.0.starts_with(&format!(
+            "cut.glb: the GLB header states {} bytes, but the file has ",
+            glb.len()
+        )),
+        "{error}"
+    );
 }
 
 #[test]
@@ -108,12 +148,22 @@ fn a_model_is_the_same_from_its_file_as_from_memory() {
     let (at, values) = (sparse.view(&[1, 3]), sparse.view(&[0; 24]));
     let overlay = json!({ "count": 2, "indices": { "bufferView": at, "componentType": U8 }, "values": { "bufferView": values } });
     let sparse = sparse.with("/accessors/0/sparse", overlay);
-    for (what, model) in
-        [("cloth", cloth(40)), ("textured", Model::textured()), ("sparse", sparse), ("morphed", morphed()), ("skinned", skinned(0.3))]
-    {
+    for (what, model) in [
+        ("cloth", cloth(40)),
+        ("textured", Model::textured()),
+        ("sparse", sparse),
+        ("morphed", morphed()),
+        ("skinned", skinned(0.3)),
+    ] {
         fs::write(&path, model.glb()).unwrap();
         let from_file = host::model::load(&path).unwrap_or_else(|error| panic!("{what}: {error}"));
-        assert!(Scene { name: String::new(), ..from_file } == model.scene(), "{what}");
+        assert!(
+            Scene {
+                name: String::new(),
+                ..from_file
+            } == model.scene(),
+            "{what}"
+        );
     }
 }
 
@@ -124,11 +174,17 @@ fn progress_counts_every_byte_that_is_read_and_decoded() {
     let glb = cloth(200).glb();
     fs::write(&path, &glb).unwrap();
     let work = Arc::new(Work::default());
-    work.run(|| host::model::load(&path)).expect("nobody cancels it").expect("it is a good model");
+    work.run(|| host::model::load(&path))
+        .expect("nobody cancels it")
+        .expect("it is a good model");
     let progress = work.progress().expect("bytes were expected");
     assert_eq!(progress.done, progress.expected);
     let decoded = 12 * 200 * 200 + 24 * 199 * 199;
-    assert_eq!(progress.expected, (glb.len() + decoded) as u64, "each byte is read once, and decoded once");
+    assert_eq!(
+        progress.expected,
+        (glb.len() + decoded) as u64,
+        "each byte is read once, and decoded once"
+    );
 }
 
 #[test]
@@ -152,7 +208,11 @@ fn canceled_loading_ends_within_a_moment_wherever_it_is() {
             canceling.join().expect("it sleeps")
         });
         // What is promised is a tenth of a second; tests share the machine.
-        assert!(canceled.elapsed() < Duration::from_secs(1), "after {tenth} tenths: {:?}", canceled.elapsed());
+        assert!(
+            canceled.elapsed() < Duration::from_secs(1),
+            "after {tenth} tenths: {:?}",
+            canceled.elapsed()
+        );
     }
 }
 
@@ -160,12 +220,26 @@ fn canceled_loading_ends_within_a_moment_wherever_it_is() {
 #[cfg(target_os = "linux")]
 fn peak(model: &std::path::Path) -> u64 {
     let mut command = Command::new(env!("CARGO_BIN_EXE_rasterlab"));
-    let mut program = command.arg("parts").arg(model).stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the program starts");
+    let mut program = command
+        .arg("parts")
+        .arg(model)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts");
     let mut peak = 0;
     loop {
         // It only grows, and is gone when the program has ended.
-        let status = fs::read_to_string(format!("/proc/{}/status", program.id())).unwrap_or_default();
-        let kib = status.lines().find_map(|line| line.strip_prefix("VmHWM:")?.trim().strip_suffix(" kB")?.trim().parse::<u64>().ok());
+        let status =
+            fs::read_to_string(format!("/proc/{}/status", program.id())).unwrap_or_default();
+        let kib = status.lines().find_map(|line| {
+            line.strip_prefix("VmHWM:")?
+                .trim()
+                .strip_suffix(" kB")?
+                .trim()
+                .parse::<u64>()
+                .ok()
+        });
         peak = peak.max(1024 * kib.unwrap_or(0));
         if let Some(ended) = program.try_wait().expect("it can be waited for") {
             assert!(ended.success() && peak > 0);
@@ -185,34 +259,59 @@ fn loading_takes_at_most_two_and_a_half_times_what_is_loaded() {
         path
     });
     let (before, peak) = (peak(&small), peak(&large));
-    let decoded = host::model::load(&large).expect("a good model").byte_count();
+    let decoded = host::model::load(&large)
+        .expect("a good model")
+        .byte_count();
     assert!(decoded > 68_000_000, "{decoded}");
-    assert!(peak - before <= decoded * 5 / 2, "{} bytes for {decoded}, beside the {before} of the program", peak - before);
+    assert!(
+        peak - before <= decoded * 5 / 2,
+        "{} bytes for {decoded}, beside the {before} of the program",
+        peak - before
+    );
 }
 
 #[test]
 fn the_script_that_writes_large_models_writes_good_ones() {
     let folder = tempfile::tempdir().unwrap();
     let script = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/big_glb.py");
-    for (name, options, bytes_of_vertex) in [("bare.glb", &[][..], 12), ("normals.glb", &["--normals"], 24)] {
+    for (name, options, bytes_of_vertex) in [
+        ("bare.glb", &[][..], 12),
+        ("normals.glb", &["--normals"], 24),
+    ] {
         let path = folder.path().join(name);
-        let Ok(run) = Command::new("python3").arg(&script).arg("2000").arg(&path).args(options).output() else {
+        let Ok(run) = Command::new("python3")
+            .arg(&script)
+            .arg("2000")
+            .arg(&path)
+            .args(options)
+            .output()
+        else {
             eprintln!("skipped: scripts/big_glb.py needs python3, which is not here");
             return;
         };
-        assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+        assert!(
+            run.status.success(),
+            "{}",
+            String::from_utf8_lossy(&run.stderr)
+        );
         let scene = host::model::load(&path).expect("a good model");
         assert_sound(&scene);
         assert_eq!((scene.triangle_count(), scene.vertex_count()), (2000, 1000));
         assert!(fs::metadata(&path).unwrap().len() > 1000 * bytes_of_vertex + 2000 * 12);
-        // A closed surface seen from outside: the volume that its triangles enclose is positive, and every normal points out.
-        let corner = |vertex: u32| glam::DVec3::from(scene.primitives[0].position(&scene, vertex).map(f64::from));
+        // A closed surface seen from outside: the volume that its triangles enclose is positive,
+        // and every normal points out.
+        let corner = |vertex: u32| {
+            glam::DVec3::from(scene.primitives[0].position(&scene, vertex).map(f64::from))
+        };
         let volume = |t: u32| {
             let [a, b, c] = scene.primitives[0].corners(&scene, t).map(corner);
             a.dot(b.cross(c)) / 6.0
         };
         let volume: f64 = (0..2000).map(volume).sum();
-        assert!((2.5..3.5).contains(&volume), "{volume}: two pi squared times 0.4 squared is 3.2");
+        assert!(
+            (2.5..3.5).contains(&volume),
+            "{volume}: two pi squared times 0.4 squared is 3.2"
+        );
         assert!(scene.primitives[0].normals_agree);
     }
 }

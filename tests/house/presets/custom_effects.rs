@@ -1,4 +1,5 @@
-//! Promise: a preset may use effects of files, several instances of one effect, and bring the effects that it shares.
+//! Promise: a preset may use effects of files, several instances of one effect, and bring the
+//! effects that it shares.
 
 use rasterlab::{
     effect_files::{Catalog, Hook, template},
@@ -10,7 +11,9 @@ use super::*;
 /// A catalog with the effect `ink`.
 fn catalog() -> Catalog {
     let mut catalog = Catalog::default();
-    catalog.add_text("ink", &template("ink", Hook::Surface)).unwrap();
+    catalog
+        .add_text("ink", &template("ink", Hook::Surface))
+        .unwrap();
     catalog
 }
 
@@ -18,7 +21,11 @@ fn catalog() -> Catalog {
 fn an_effect_of_a_file_is_read_written_and_animated_by_its_name() {
     let text = "schema = 2\n\n[effects.ink]\namount = 0.25\ntint = [1.0, 0.0, 0.0, 1.0]\n\n[animation.ink]\nfalloff = [\n    { time_s = 0.0, value = 1.0 },\n    { time_s = 1.0, value = 4.0 },\n]\n";
     let mut preset_file = parse_with(text, "mine", "mine.toml", &catalog()).unwrap();
-    assert!(preset_file.warnings.is_empty(), "{:?}", preset_file.warnings);
+    assert!(
+        preset_file.warnings.is_empty(),
+        "{:?}",
+        preset_file.warnings
+    );
     assert_eq!(to_toml(&preset_file), text);
     preset_file::set(&mut preset_file, "ink.amount", "0.5").unwrap();
     assert!(to_toml(&preset_file).contains("amount = 0.5"));
@@ -26,35 +33,70 @@ fn an_effect_of_a_file_is_read_written_and_animated_by_its_name() {
     assert!(!to_toml(&preset_file).contains("ink"));
     // Without the catalog the tables are kept, with a warning.
     let unknown = parse(text);
-    assert!(unknown.warnings.iter().any(|warning| warning.contains("effects.ink")) && to_toml(&unknown) == text);
+    assert!(
+        unknown
+            .warnings
+            .iter()
+            .any(|warning| warning.contains("effects.ink"))
+            && to_toml(&unknown) == text
+    );
 }
 
 #[test]
 fn a_value_outside_the_range_of_a_file_is_refused_with_its_line() {
     let text = "schema = 2\n[effects.ink]\namount = 7.0\n";
-    let error = parse_with(text, "mine", "mine.toml", &catalog()).unwrap_err().to_string();
-    assert!(error.contains("mine.toml:3") && error.contains("effects.ink.amount") && error.contains("0..=1"), "{error}");
+    let error = parse_with(text, "mine", "mine.toml", &catalog())
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("mine.toml:3")
+            && error.contains("effects.ink.amount")
+            && error.contains("0..=1"),
+        "{error}"
+    );
 }
 
 #[test]
 fn one_effect_stands_in_the_stack_more_than_once() {
     let text = "schema = 2\nstack = [\"skin\", \"toon\", \"lens\"]\n\n[effects.skin]\neffect = \"toon\"\nsteps = 2\n\n[effects.toon]\n\n[effects.lens]\neffect = \"ink\"\n";
     let mut preset_file = parse_with(text, "mine", "mine.toml", &catalog()).unwrap();
-    assert!(preset_file.warnings.is_empty(), "{:?}", preset_file.warnings);
-    let names: Vec<&str> = preset_file.preset.stack.0.iter().map(|enabled| enabled.effect.name.as_str()).collect();
+    assert!(
+        preset_file.warnings.is_empty(),
+        "{:?}",
+        preset_file.warnings
+    );
+    let names: Vec<&str> = preset_file
+        .preset
+        .stack
+        .0
+        .iter()
+        .map(|enabled| enabled.effect.name.as_str())
+        .collect();
     assert_eq!(names, ["skin", "toon", "lens"]);
     assert_eq!(to_toml(&preset_file), text);
     preset_file::set(&mut preset_file, "skin.steps", "5").unwrap();
     preset_file::set(&mut preset_file, "coat.effect", "fog").unwrap();
     let written = to_toml(&preset_file);
-    assert!(written.contains("[effects.coat]\neffect = \"fog\"") && written.contains("steps = 5"), "{written}");
+    assert!(
+        written.contains("[effects.coat]\neffect = \"fog\"") && written.contains("steps = 5"),
+        "{written}"
+    );
     let again = parse_with(&written, "mine", "mine.toml", &catalog()).unwrap();
     assert_eq!(bits(&again.preset), bits(&preset_file.preset));
 }
 
 #[test]
 fn what_cannot_be_an_instance_is_refused() {
-    let wrong = |table: &str| parse_with(&format!("schema = 2\n{table}\n"), "mine", "mine.toml", &catalog()).unwrap_err().to_string();
+    let wrong = |table: &str| {
+        parse_with(
+            &format!("schema = 2\n{table}\n"),
+            "mine",
+            "mine.toml",
+            &catalog(),
+        )
+        .unwrap_err()
+        .to_string()
+    };
     for (table, reason) in [
         ("[effects.a]\neffect = \"toom\"", "did you mean"),
         ("[effects.a]\neffect = \"shadow\"", "only once"),
@@ -65,7 +107,10 @@ fn what_cannot_be_an_instance_is_refused() {
         ("[effects.A-b]\neffect = \"toon\"", "small letter"),
     ] {
         let error = wrong(table);
-        assert!(error.contains(reason) && error.contains("mine.toml:"), "{table}: {error}");
+        assert!(
+            error.contains(reason) && error.contains("mine.toml:"),
+            "{table}: {error}"
+        );
     }
 }
 
@@ -75,13 +120,25 @@ fn a_shared_preset_brings_its_effects_and_says_so() {
     let preset_file = parse_with(text, "mine", "mine.toml", &catalog()).unwrap();
     let back = from_line(&to_line(&preset_file)).unwrap();
     assert_eq!(back.brought_effects, ["ink"]);
-    assert!(back.remarks().iter().any(|remark| remark.contains("brings the effect ink")), "{:?}", back.remarks());
+    assert!(
+        back.remarks()
+            .iter()
+            .any(|remark| remark.contains("brings the effect ink")),
+        "{:?}",
+        back.remarks()
+    );
     let [before, after] = [&preset_file, &back].map(|file| &file.preset.stack.0[0]);
-    assert_eq!((&before.words, &before.effect.source), (&after.words, &after.effect.source));
+    assert_eq!(
+        (&before.words, &before.effect.source),
+        (&after.words, &after.effect.source)
+    );
     // One that is known with the same text is nothing new.
     let known = parse_with(&to_toml(&back), "mine", "mine.toml", &catalog()).unwrap();
     assert!(known.brought_effects.is_empty());
     let faulty = "schema = 2\n[effect_files]\nink = \"fn ink() {}\"\n";
     let error = refusal(faulty);
-    assert!(error.contains("effect_files.ink") && error.contains("hook"), "{error}");
+    assert!(
+        error.contains("effect_files.ink") && error.contains("hook"),
+        "{error}"
+    );
 }

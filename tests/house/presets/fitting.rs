@@ -1,5 +1,6 @@
-//! Promise: lengths and points of a preset are fitted to the scene: on a model of another size at another place it draws the same picture,
-//! up to the camera, whether it counts in meters or in the unit of the scene.
+//! Promise: lengths and points of a preset are fitted to the scene: on a model of another size at
+//! another place it draws the same picture, up to the camera, whether it counts in meters or in the
+//! unit of the scene.
 
 use glam::{DMat4, DVec3};
 use rasterlab::{
@@ -17,12 +18,27 @@ const SIZE: [u32; 2] = [64, 48];
 
 /// Effects with lengths and points, each with a camera of its own.
 const LOOKS: &[(&str, &str)] = &[
-    ("explode", "[effects.explode]\npattern = \"radial\"\ncenter = [0.3, 0.2, 0.5]\nradius_m = 1.25\nwidth_m = 0.5\namount_m = 0.4\n"),
+    (
+        "explode",
+        "[effects.explode]\npattern = \"radial\"\ncenter = [0.3, 0.2, 0.5]\nradius_m = 1.25\nwidth_m = 0.5\namount_m = 0.4\n",
+    ),
     ("inflate", "[effects.inflate]\namount_m = 0.12\n"),
-    ("wobble", "[effects.wobble]\namplitude_m = 0.2\nwavelength_m = 0.9\nphase_turns = 0.2\n"),
-    ("fog", "[effects.fog]\ndensity = 0.9\nstart_m = 4.1\nfalloff = 1.7\nlevel_m = -0.2\n"),
-    ("hatch", "[effects.hatch]\nspace = \"surface\"\nspacing_m = 0.5\n"),
-    ("dots", "[effects.dots]\nlines = \"polyline\"\nspacing_m = 0.07\nsize_px = 3.0\n"),
+    (
+        "wobble",
+        "[effects.wobble]\namplitude_m = 0.2\nwavelength_m = 0.9\nphase_turns = 0.2\n",
+    ),
+    (
+        "fog",
+        "[effects.fog]\ndensity = 0.9\nstart_m = 4.1\nfalloff = 1.7\nlevel_m = -0.2\n",
+    ),
+    (
+        "hatch",
+        "[effects.hatch]\nspace = \"surface\"\nspacing_m = 0.5\n",
+    ),
+    (
+        "dots",
+        "[effects.dots]\nlines = \"polyline\"\nspacing_m = 0.07\nsize_px = 3.0\n",
+    ),
     ("depth", "[effects.depth]\nfit = false\nscale = 0.15\n"),
     (
         "keyframes",
@@ -51,7 +67,10 @@ fn knot() -> Scene {
 fn placed(times: f64, moved: DVec3) -> Scene {
     let mut scene = knot();
     let matrix = DMat4::from_translation(moved) * DMat4::from_scale(DVec3::splat(times));
-    scene.instances.iter_mut().for_each(|instance| instance.world_from_object = matrix * instance.world_from_object);
+    scene
+        .instances
+        .iter_mut()
+        .for_each(|instance| instance.world_from_object = matrix * instance.world_from_object);
     scene
 }
 
@@ -62,7 +81,10 @@ fn with_camera(preset: &Preset, times: f64, moved: DVec3) -> Preset {
         camera.near_m *= times;
         camera
     });
-    Preset { camera, ..preset.clone() }
+    Preset {
+        camera,
+        ..preset.clone()
+    }
 }
 
 fn drawn(preset: &Preset, scene: &Scene) -> Frame {
@@ -71,7 +93,11 @@ fn drawn(preset: &Preset, scene: &Scene) -> Frame {
 
 /// Pixels whose colors differ by more than `channel` of 255.
 fn different(a: &Frame, b: &Frame, channel: u8) -> usize {
-    a.color.iter().zip(&b.color).filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > channel)).count()
+    a.color
+        .iter()
+        .zip(&b.color)
+        .filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > channel))
+        .count()
 }
 
 #[test]
@@ -88,7 +114,10 @@ fn a_preset_on_a_scaled_model_draws_the_same_picture() {
             assert_eq!(after.triangle_id, before.triangle_id, "{name} at {times}");
             assert_eq!(after.color, before.color, "{name} at {times}");
             let unfitted = drawn(&with_camera(&preset, times, DVec3::ZERO), &scene);
-            assert!(different(&unfitted, &before, 8) > 20, "{name} at {times}: the lengths do not matter, so this test shows nothing");
+            assert!(
+                different(&unfitted, &before, 8) > 20,
+                "{name} at {times}: the lengths do not matter, so this test shows nothing"
+            );
         }
     }
 }
@@ -96,7 +125,10 @@ fn a_preset_on_a_scaled_model_draws_the_same_picture() {
 #[test]
 fn a_preset_on_a_model_elsewhere_draws_the_same_picture_up_to_rounding() {
     // Waves, hatches and flows are patterns of the world; they fit in size and stay where they are.
-    for (name, effects) in LOOKS.iter().filter(|(name, _)| !["wobble", "hatch", "particles"].contains(name)) {
+    for (name, effects) in LOOKS
+        .iter()
+        .filter(|(name, _)| !["wobble", "hatch", "particles"].contains(name))
+    {
         let preset = look(effects);
         let (times, moved) = (3.7, DVec3::new(5.0, -2.0, 1.0));
         let scene = placed(times, moved);
@@ -104,7 +136,11 @@ fn a_preset_on_a_model_elsewhere_draws_the_same_picture_up_to_rounding() {
         let after = drawn(&with_camera(&preset.fitted(&fit).0, times, moved), &scene);
         let before = drawn(&preset, &knot());
         let wrong = different(&after, &before, 8);
-        assert!(wrong < 30, "{name}: {wrong} of {} pixels differ", before.color.len());
+        assert!(
+            wrong < 30,
+            "{name}: {wrong} of {} pixels differ",
+            before.color.len()
+        );
     }
 }
 
@@ -112,37 +148,65 @@ fn a_preset_on_a_model_elsewhere_draws_the_same_picture_up_to_rounding() {
 fn a_preset_in_the_unit_of_the_scene_fits_every_scene() {
     for (name, effects) in LOOKS {
         let preset = look(effects);
-        let to_unit = Fit::of_scene_unit(&knot().bounds()).expect("it has an extent").inverse();
-        let in_radii = Preset { unit: LengthUnit::Scene, ..preset.fitted(&to_unit).0 };
+        let to_unit = Fit::of_scene_unit(&knot().bounds())
+            .expect("it has an extent")
+            .inverse();
+        let in_radii = Preset {
+            unit: LengthUnit::Scene,
+            ..preset.fitted(&to_unit).0
+        };
         let before = drawn(&preset, &knot());
         let there = drawn(&in_radii, &knot());
         let wrong = different(&there, &before, 8);
-        assert!(wrong < 30, "{name}: {wrong} pixels differ where the unit alone is another");
+        assert!(
+            wrong < 30,
+            "{name}: {wrong} pixels differ where the unit alone is another"
+        );
         // The same values on a larger model, without any fitting.
-        let larger = drawn(&with_camera(&in_radii, 4.0, DVec3::ZERO), &placed(4.0, DVec3::ZERO));
+        let larger = drawn(
+            &with_camera(&in_radii, 4.0, DVec3::ZERO),
+            &placed(4.0, DVec3::ZERO),
+        );
         assert_eq!(larger.color, there.color, "{name}");
     }
 }
 
 #[test]
 fn a_room_does_not_count_for_the_unit_of_the_scene() {
-    let preset = Preset { unit: LengthUnit::Scene, ..look("[effects.inflate]\namount_m = 0.25\n") };
+    let preset = Preset {
+        unit: LengthUnit::Scene,
+        ..look("[effects.inflate]\namount_m = 0.25\n")
+    };
     let amount = |scene: &Scene| {
         let stack = preset.stack_on(scene);
         let inflate = stack.get("inflate").expect("it is enabled");
-        inflate.effect.field("amount_m").expect("a field").get(&inflate.words)[0]
+        inflate
+            .effect
+            .field("amount_m")
+            .expect("a field")
+            .get(&inflate.words)[0]
     };
     for query in ["knot?tess=4", "tentacle?tess=3"] {
         let scene = || builtin::build(query).expect("a built-in scene");
         assert_eq!(amount(&scene().in_room(3.0)), amount(&scene()), "{query}");
-        assert!((amount(&scene()) - 0.25 * scene().bounds().radius()).abs() < 1e-6, "{query}");
+        assert!(
+            (amount(&scene()) - 0.25 * scene().bounds().radius()).abs() < 1e-6,
+            "{query}"
+        );
     }
 }
 
 #[test]
 fn every_kind_of_length_is_fitted_by_its_unit() {
-    let bounds = |center: DVec3, half: f64| Bounds { min: center - half, max: center + half };
-    let fit = Fit::between(&bounds(DVec3::new(1.0, 2.0, 3.0), 1.0), &bounds(DVec3::new(10.0, 20.0, 30.0), 2.0)).expect("a fit");
+    let bounds = |center: DVec3, half: f64| Bounds {
+        min: center - half,
+        max: center + half,
+    };
+    let fit = Fit::between(
+        &bounds(DVec3::new(1.0, 2.0, 3.0), 1.0),
+        &bounds(DVec3::new(10.0, 20.0, 30.0), 2.0),
+    )
+    .expect("a fit");
     let preset = look(
         "[effects.fog]\ndensity = 1.0\nstart_m = 3.0\nlevel_m = 2.5\n[effects.particles]\nhalf_axes = [1.0, 2.0, 3.0]\ncenter = [2.0, 2.0, 3.0]\nspeed_mps = 0.5\n\
          attraction = 4.0\nlifetime_s = 2.0\n[effects.hatch]\nspacing_px = 5.0\nspacing_m = 0.5\n[animation.fog]\nstart_m = [{ time_s = 0, value = 1.0 }]\n",
@@ -150,7 +214,11 @@ fn every_kind_of_length_is_fitted_by_its_unit() {
     let fitted = preset.fitted(&fit).0;
     let value = |effect: &str, field: &str| {
         let enabled = fitted.stack.get(effect).expect("it is enabled");
-        enabled.effect.field(field).expect("a field").get(&enabled.words)
+        enabled
+            .effect
+            .field(field)
+            .expect("a field")
+            .get(&enabled.words)
     };
     for (effect, field, wanted) in [
         ("fog", "density", vec![0.5]),
@@ -167,32 +235,56 @@ fn every_kind_of_length_is_fitted_by_its_unit() {
     ] {
         assert_eq!(value(effect, field), wanted, "{effect}.{field}");
     }
-    assert_eq!(fitted.animation.get("fog", "start_m").map(Track::keys).map(|keys| keys[0].value.clone()), Some(vec![2.0]));
+    assert_eq!(
+        fitted
+            .animation
+            .get("fog", "start_m")
+            .map(Track::keys)
+            .map(|keys| keys[0].value.clone()),
+        Some(vec![2.0])
+    );
     assert_eq!(fitted.polyline[0], [11.0, 16.0, 27.0]);
     assert_eq!(fitted.fitted(&fit.inverse()).0, preset, "the way back");
 }
 
 #[test]
 fn a_length_that_its_range_does_not_allow_is_kept_inside_and_named() {
-    let bounds = |half: f64| Bounds { min: DVec3::splat(-half), max: DVec3::splat(half) };
+    let bounds = |half: f64| Bounds {
+        min: DVec3::splat(-half),
+        max: DVec3::splat(half),
+    };
     let fit = Fit::between(&bounds(1.0), &bounds(1e5)).expect("a fit");
     let preset = look(
         "[effects.explode]\namount_m = 0.5\n[effects.fog]\nstart_m = 2.0\n[animation.fog]\nlevel_m = [{ time_s = 0, value = 20.0 }, { time_s = 1, value = 30.0 }]\n",
     );
     let (fitted, warnings) = preset.fitted(&fit);
     assert_eq!(warnings.len(), 2, "{warnings:?}");
-    assert!(warnings[0].starts_with("explode.amount_m: ") && warnings[0].ends_with("-1e3..=1e3"), "{warnings:?}");
+    assert!(
+        warnings[0].starts_with("explode.amount_m: ") && warnings[0].ends_with("-1e3..=1e3"),
+        "{warnings:?}"
+    );
     assert!(warnings[1].starts_with("fog.level_m: "), "{warnings:?}");
     let file = preset_file::to_toml(&PresetFile::new("large", fitted.clone()));
-    assert_eq!(bits(&parse(&file).preset), bits(&fitted), "a file may have every value\n{file}");
-    assert_eq!(Fit::between(&bounds(0.0), &bounds(1.0)), None, "a point has no size to compare with");
+    assert_eq!(
+        bits(&parse(&file).preset),
+        bits(&fitted),
+        "a file may have every value\n{file}"
+    );
+    assert_eq!(
+        Fit::between(&bounds(0.0), &bounds(1.0)),
+        None,
+        "a point has no size to compare with"
+    );
 }
 
 #[test]
 fn parameters_of_the_built_in_effects_know_what_they_measure() {
     let of = |path: &str| {
         let (effect, field) = path.split_once('.').expect("a path");
-        rasterlab::effects::Effect::find(effect).and_then(|effect| effect.field(field)).expect("a field").measure()
+        rasterlab::effects::Effect::find(effect)
+            .and_then(|effect| effect.field(field))
+            .expect("a field")
+            .measure()
     };
     for (path, wanted) in [
         ("facet.center", Measure::Point),
@@ -215,8 +307,19 @@ fn the_unit_is_a_key_of_the_file_and_of_the_command_line() {
     let mut changed = preset_file.clone();
     set(&mut changed, "scene.unit", "m").expect("a unit");
     assert_eq!(changed.preset.unit, LengthUnit::Meter);
-    assert!(preset_file::to_toml(&changed).contains("unit = \"m\" # kept"), "{}", preset_file::to_toml(&changed));
-    assert_eq!(parse("schema = 2\n[effects.fog]\n").preset.unit, LengthUnit::Meter, "meters unless the file says otherwise");
+    assert!(
+        preset_file::to_toml(&changed).contains("unit = \"m\" # kept"),
+        "{}",
+        preset_file::to_toml(&changed)
+    );
+    assert_eq!(
+        parse("schema = 2\n[effects.fog]\n").preset.unit,
+        LengthUnit::Meter,
+        "meters unless the file says otherwise"
+    );
     let refused = refusal("schema = 2\n[scene]\nunit = \"feet\"\n");
-    assert!(refused.contains("scene.unit") && refused.contains("m, scene"), "{refused}");
+    assert!(
+        refused.contains("scene.unit") && refused.contains("m, scene"),
+        "{refused}"
+    );
 }

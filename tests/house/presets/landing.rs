@@ -1,5 +1,5 @@
-//! Promise: a preset that lands on another scene keeps all that belongs to that scene, brings all that belongs to its look, and becomes
-//! a new preset without a file.
+//! Promise: a preset that lands on another scene keeps all that belongs to that scene, brings all
+//! that belongs to its look, and becomes a new preset without a file.
 
 use proptest::prelude::*;
 use rasterlab::{
@@ -52,10 +52,23 @@ fn hatch_on_fox() -> (PresetFile, PresetFile) {
 fn what_has_landed_is_a_new_preset_that_reads_back() {
     let (look, own) = hatch_on_fox();
     let landed = look.landed_on(&own, None);
-    assert_eq!((landed.path.as_deref(), landed.read_only, landed.id.as_str()), (None, false, "hatch-fox"));
-    assert!(landed.title().contains(look.title()) && landed.title().contains("fox"), "{}", landed.title());
-    assert_eq!(landed.preset.scene, SceneSource::File("/somewhere/models/fox.glb".into()), "it does not lie beside the other preset");
-    assert!(landed.is_look_of("hatch", None) && landed.look_id() == "hatch" && landed.has_own_scene());
+    assert_eq!(
+        (landed.path.as_deref(), landed.read_only, landed.id.as_str()),
+        (None, false, "hatch-fox")
+    );
+    assert!(
+        landed.title().contains(look.title()) && landed.title().contains("fox"),
+        "{}",
+        landed.title()
+    );
+    assert_eq!(
+        landed.preset.scene,
+        SceneSource::File("/somewhere/models/fox.glb".into()),
+        "it does not lie beside the other preset"
+    );
+    assert!(
+        landed.is_look_of("hatch", None) && landed.look_id() == "hatch" && landed.has_own_scene()
+    );
 
     let text = preset_file::to_toml(&landed);
     let back = parse(&text);
@@ -63,37 +76,61 @@ fn what_has_landed_is_a_new_preset_that_reads_back() {
     let folder = tempfile::tempdir().unwrap();
     let mut saved = landed.clone();
     preset_file::save(&mut saved, &folder.path().join("mine.toml")).expect("it is saved");
-    assert!(!saved.is_look_of("hatch", None) && saved.id == "mine", "it is a preset of its own now");
+    assert!(
+        !saved.is_look_of("hatch", None) && saved.id == "mine",
+        "it is a preset of its own now"
+    );
 }
 
 #[test]
 fn the_look_keeps_its_name_from_scene_to_scene() {
     let (look, own) = hatch_on_fox();
     let on_fox = look.landed_on(&own, None);
-    let knot = preset_file::open("builtin:knot?tess=3", &Folders::default()).expect("a built-in scene");
+    let knot =
+        preset_file::open("builtin:knot?tess=3", &Folders::default()).expect("a built-in scene");
     let on_knot = on_fox.landed_on(&knot, None);
-    assert_eq!((on_knot.id.as_str(), on_knot.title()), ("hatch-knot", format!("{} on knot", look.title()).as_str()));
+    assert_eq!(
+        (on_knot.id.as_str(), on_knot.title()),
+        ("hatch-knot", format!("{} on knot", look.title()).as_str())
+    );
     // The default look of a scene has no name.
     let plain = own.landed_on(&knot, None);
-    assert_eq!((plain.look_id(), plain.title()), ("fox", "fox on knot"), "a preset of the person's own is a look");
-    let bare = PresetFile::of_scene("fox", SceneSource::File("fox.glb".into())).landed_on(&knot, None);
+    assert_eq!(
+        (plain.look_id(), plain.title()),
+        ("fox", "fox on knot"),
+        "a preset of the person's own is a look"
+    );
+    let bare =
+        PresetFile::of_scene("fox", SceneSource::File("fox.glb".into())).landed_on(&knot, None);
     assert_eq!((bare.title(), &bare.look), ("knot", &None));
 }
 
 #[test]
 fn only_models_and_chosen_scenes_are_the_persons_own() {
-    assert!(!preset_file::open("hatch", &Folders::default()).expect("a preset").has_own_scene());
-    assert!(preset_file::open("builtin:knot", &Folders::default()).expect("a scene").has_own_scene());
+    assert!(
+        !preset_file::open("hatch", &Folders::default())
+            .expect("a preset")
+            .has_own_scene()
+    );
+    assert!(
+        preset_file::open("builtin:knot", &Folders::default())
+            .expect("a scene")
+            .has_own_scene()
+    );
     assert!(parse("schema = 2\n[scene]\npath = \"fox.glb\"\n").has_own_scene());
 }
 
 #[test]
 fn a_clip_that_stays_behind_is_named_once() {
-    let look = parse("schema = 2\n[scene]\nbuiltin = \"walker\"\nclip = \"Walk\"\n[effects.hatch]\n");
+    let look =
+        parse("schema = 2\n[scene]\nbuiltin = \"walker\"\nclip = \"Walk\"\n[effects.hatch]\n");
     let (_, own) = hatch_on_fox();
     let landed = look.landed_on(&own, None);
     assert_eq!(landed.warnings.len(), 1, "{:?}", landed.warnings);
-    assert!(landed.warnings[0].contains("clip \"Walk\" was left out") && landed.preset.playback.clip.is_empty());
+    assert!(
+        landed.warnings[0].contains("clip \"Walk\" was left out")
+            && landed.preset.playback.clip.is_empty()
+    );
     let mut playing = own.clone();
     playing.preset.playback.clip = "Run".into();
     let landed = look.landed_on(&playing, None);

@@ -36,6 +36,10 @@ fn bits(preset: &Preset) -> String {
 
 fn preset_files() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets");
-    let files = std::fs::read_dir(folder).expect("presets/ is there").map(|entry| entry.unwrap().path());
-    files.filter(|path| path.extension().is_some_and(|e| e == "toml")).collect()
+    let files = std::fs::read_dir(folder)
+        .expect("presets/ is there")
+        .map(|entry| entry.unwrap().path());
+    files
+        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
+        .collect()
 }

@@ -1,4 +1,5 @@
-//! Promise: what cannot be is refused with its line, key, value and range; what is unknown warns and stays.
+//! Promise: what cannot be is refused with its line, key, value and range; what is unknown warns
+//! and stays.
 
 use rasterlab::{
     preset::animation::MAX_KEYFRAMES,
@@ -10,14 +11,26 @@ use super::*;
 #[test]
 fn errors_name_line_key_value_and_range() {
     let cases = [
-        ("schema = 2\n[effects.facet]\namount = -1\n", "preset.toml:3: effects.facet.amount -1 lies outside 0..=1"),
+        (
+            "schema = 2\n[effects.facet]\namount = -1\n",
+            "preset.toml:3: effects.facet.amount -1 lies outside 0..=1",
+        ),
         (
             "schema = 2\n[effects.facet]\namount = 1e39\n",
             "preset.toml:3: effects.facet.amount 1e39 is too large for a 32-bit float, which ends at 3.4028235e38",
         ),
-        ("schema = 2\n[effects.facet]\namount = nan\n", "preset.toml:3: effects.facet.amount nan is not a finite number"),
-        ("schema = 2\n[effects.facet]\nseed = 1.5\n", "preset.toml:3: effects.facet.seed 1.5 must be a whole number"),
-        ("schema = 2\n[effects.facet]\nseed = -1\n", "preset.toml:3: effects.facet.seed -1 lies outside 0..=4294967295"),
+        (
+            "schema = 2\n[effects.facet]\namount = nan\n",
+            "preset.toml:3: effects.facet.amount nan is not a finite number",
+        ),
+        (
+            "schema = 2\n[effects.facet]\nseed = 1.5\n",
+            "preset.toml:3: effects.facet.seed 1.5 must be a whole number",
+        ),
+        (
+            "schema = 2\n[effects.facet]\nseed = -1\n",
+            "preset.toml:3: effects.facet.seed -1 lies outside 0..=4294967295",
+        ),
         (
             "schema = 2\n[effects.facet]\npattern = \"radail\"\n",
             "preset.toml:3: effects.facet.pattern \"radail\" is not one of uniform, sweep, radial, random; did you mean \"radial\"?",
@@ -26,23 +39,50 @@ fn errors_name_line_key_value_and_range() {
             "schema = 2\n[effects.facet]\ncenter = [1, 2]\n",
             "preset.toml:3: effects.facet.center must be a list of 3 numbers, not a list of 2",
         ),
-        ("schema = 2\n[effects.depth]\nfit = 1\n", "preset.toml:3: effects.depth.fit must be true or false, not a number"),
-        ("schema = 2\n[output]\nsize = [16385, 1]\n", "preset.toml:3: output.size 16385 lies outside 0..=16384"),
-        ("schema = 2\n[ground]\nsize = 0\n", "preset.toml:3: ground.size 0 lies outside 0.1..=1e3"),
-        ("schema = 2\n[ground]\ncells = 129\n", "preset.toml:3: ground.cells 129 lies outside 1..=128"),
+        (
+            "schema = 2\n[effects.depth]\nfit = 1\n",
+            "preset.toml:3: effects.depth.fit must be true or false, not a number",
+        ),
+        (
+            "schema = 2\n[output]\nsize = [16385, 1]\n",
+            "preset.toml:3: output.size 16385 lies outside 0..=16384",
+        ),
+        (
+            "schema = 2\n[ground]\nsize = 0\n",
+            "preset.toml:3: ground.size 0 lies outside 0.1..=1e3",
+        ),
+        (
+            "schema = 2\n[ground]\ncells = 129\n",
+            "preset.toml:3: ground.cells 129 lies outside 1..=128",
+        ),
         (
             "schema = 2\n[ground]\nshape = \"dics\"\n",
             "preset.toml:3: ground.shape \"dics\" is not one of disc, square; did you mean \"disc\"?",
         ),
-        ("schema = 2\n[output]\nbackground_bottom = [0, 0, 2, 1]\n", "preset.toml:3: output.background_bottom 2 lies outside 0..=1"),
-        ("schema = 2\n[camera]\nfov_y_deg = 180\n", "preset.toml:3: camera.fov_y_deg 180 lies outside 1..=179"),
-        ("schema = 2\n[camera]\neye = [0, inf, 0]\n", "preset.toml:3: camera.eye inf is not a finite number"),
-        ("schema = 2\n[camera]\neye = [0, 1e10, 0]\n", "preset.toml:3: camera.eye 1e10 lies outside -1e9..=1e9"),
+        (
+            "schema = 2\n[output]\nbackground_bottom = [0, 0, 2, 1]\n",
+            "preset.toml:3: output.background_bottom 2 lies outside 0..=1",
+        ),
+        (
+            "schema = 2\n[camera]\nfov_y_deg = 180\n",
+            "preset.toml:3: camera.fov_y_deg 180 lies outside 1..=179",
+        ),
+        (
+            "schema = 2\n[camera]\neye = [0, inf, 0]\n",
+            "preset.toml:3: camera.eye inf is not a finite number",
+        ),
+        (
+            "schema = 2\n[camera]\neye = [0, 1e10, 0]\n",
+            "preset.toml:3: camera.eye 1e10 lies outside -1e9..=1e9",
+        ),
         (
             "schema = 2\n[accuracy]\ntier = 3\n",
             "preset.toml:3: accuracy.tier must be one of draft, fast, precise, reference, strict, not a number",
         ),
-        ("schema = 2\n[test]\nmax_pixels = 9\n", "preset.toml:2: test.why must say why the budget is above the default"),
+        (
+            "schema = 2\n[test]\nmax_pixels = 9\n",
+            "preset.toml:2: test.why must say why the budget is above the default",
+        ),
         (
             "schema = 2\n[test]\nmax_wrong_triangles = 9\nwhy = \"because\"\n",
             "preset.toml:2: test.max_wrong_triangles must be 0 here; it needs a pinned option that is not exact, or the tier draft or fast",
@@ -51,17 +91,38 @@ fn errors_name_line_key_value_and_range() {
             "schema = 2\n[accuracy]\nvisibility = \"race\"\n[test]\nmax_wrong_triangles = 9\n",
             "preset.toml:4: test.why must say why the budget is above the default",
         ),
-        ("schema = 2\nname = \"\\u001b[31m\"\n", "preset.toml:2: name contains the control character '\\u{1b}'"),
-        ("schema = 2\neffects = 3\n", "preset.toml:2: effects must be a table, written [effects]"),
-        ("schema = 2\neffects.facet = true\n", "preset.toml:2: effects.facet must be a table, written [effects.facet]"),
-        ("schema = 2\n[[camera]]\n", "preset.toml:2: camera must be a table, written [camera]"),
+        (
+            "schema = 2\nname = \"\\u001b[31m\"\n",
+            "preset.toml:2: name contains the control character '\\u{1b}'",
+        ),
+        (
+            "schema = 2\neffects = 3\n",
+            "preset.toml:2: effects must be a table, written [effects]",
+        ),
+        (
+            "schema = 2\neffects.facet = true\n",
+            "preset.toml:2: effects.facet must be a table, written [effects.facet]",
+        ),
+        (
+            "schema = 2\n[[camera]]\n",
+            "preset.toml:2: camera must be a table, written [camera]",
+        ),
         (
             "# mine\nschema = 1\n",
             "preset.toml:2: schema 1 is older than 2, the oldest that this program reads; write schema = 2, then mend the keys that are reported as unknown",
         ),
-        ("schema = \"2\"\n", "preset.toml:1: schema must be the whole number 2"),
-        ("schema = 2\n[scene]\npath = \"https://example.org/a.glb\"\n", "preset.toml:3: scene.path must be a file, not an address"),
-        ("schema = 2\n[scene]\npath = \"a.glb\"\nbuiltin = \"knot\"\n", "preset.toml:3: scene.path and scene.builtin exclude each other"),
+        (
+            "schema = \"2\"\n",
+            "preset.toml:1: schema must be the whole number 2",
+        ),
+        (
+            "schema = 2\n[scene]\npath = \"https://example.org/a.glb\"\n",
+            "preset.toml:3: scene.path must be a file, not an address",
+        ),
+        (
+            "schema = 2\n[scene]\npath = \"a.glb\"\nbuiltin = \"knot\"\n",
+            "preset.toml:3: scene.path and scene.builtin exclude each other",
+        ),
     ];
     for (text, wanted) in cases {
         assert_eq!(refusal(text), wanted);
@@ -70,8 +131,15 @@ fn errors_name_line_key_value_and_range() {
 
 #[test]
 fn keys_that_cannot_be_are_refused_by_name() {
-    let with = |keys: &str| format!("schema = 2\n[effects.facet]\n[animation.facet]\namount = {keys}\n");
-    let many = format!("[{}]", (0..=MAX_KEYFRAMES).map(|i| format!("{{ time_s = {i}, value = 0 }}")).collect::<Vec<_>>().join(", "));
+    let with =
+        |keys: &str| format!("schema = 2\n[effects.facet]\n[animation.facet]\namount = {keys}\n");
+    let many = format!(
+        "[{}]",
+        (0..=MAX_KEYFRAMES)
+            .map(|i| format!("{{ time_s = {i}, value = 0 }}"))
+            .collect::<Vec<_>>()
+            .join(", ")
+    );
     for (text, wanted) in [
         (with("[{ time_s = 0, value = 2 }]"), "preset.toml:4: animation.facet.amount keyframe 1: value 2 lies outside 0..=1"),
         (with("[{ time_s = 0, value = nan }]"), "preset.toml:4: animation.facet.amount keyframe 1: value nan is not a finite number"),
@@ -120,7 +188,10 @@ fn keys_of_what_is_not_there_warn_and_stay() {
         "preset.toml:4: unknown key animation.facet.amuont; did you mean \"amount\"?",
         "preset.toml:5: unknown key animation.fascet; did you mean \"facet\"?",
     ] {
-        assert!(warnings.contains(wanted), "{wanted:?} is not among\n{warnings}");
+        assert!(
+            warnings.contains(wanted),
+            "{wanted:?} is not among\n{warnings}"
+        );
     }
     assert!(preset_file.preset.evaluated_stack().0.is_empty());
     assert_eq!(preset_file::to_toml(&preset_file), text);
@@ -128,16 +199,25 @@ fn keys_of_what_is_not_there_warn_and_stay() {
 
 #[test]
 fn a_syntax_error_names_its_line() {
-    for (text, line) in [("schema = 2\nname = \n", 2), ("schema = 2\n\n[effects.facet\n", 3), ("schema = 2\nschema = 2\n", 2)] {
+    for (text, line) in [
+        ("schema = 2\nname = \n", 2),
+        ("schema = 2\n\n[effects.facet\n", 3),
+        ("schema = 2\nschema = 2\n", 2),
+    ] {
         let message = refusal(text);
-        assert!(message.starts_with(&format!("preset.toml:{line}: ")), "{message}");
+        assert!(
+            message.starts_with(&format!("preset.toml:{line}: ")),
+            "{message}"
+        );
         assert!(!message.contains('\n'), "{message}");
     }
 }
 
 #[test]
 fn unknown_keys_warn_with_a_suggestion_and_strictness_refuses_them() {
-    let preset_file = parse("schema = 2\nnmae = 1\n[effects.fascet]\n[effects.lambert]\nsnu = 1\n[camera]\nfov = 3\n[otuput]\n");
+    let preset_file = parse(
+        "schema = 2\nnmae = 1\n[effects.fascet]\n[effects.lambert]\nsnu = 1\n[camera]\nfov = 3\n[otuput]\n",
+    );
     let warnings = preset_file.warnings.join("\n");
     for wanted in [
         "preset.toml:2: unknown key nmae; did you mean \"name\"?",
@@ -146,41 +226,82 @@ fn unknown_keys_warn_with_a_suggestion_and_strictness_refuses_them() {
         "preset.toml:7: unknown key camera.fov",
         "preset.toml:8: unknown key otuput; did you mean \"output\"?",
     ] {
-        assert!(warnings.contains(wanted), "{wanted:?} is not among\n{warnings}");
+        assert!(
+            warnings.contains(wanted),
+            "{wanted:?} is not among\n{warnings}"
+        );
     }
-    assert!(matches!(preset_file.strict(), Err(PresetError::Strict(warnings)) if warnings.len() == 5));
+    assert!(
+        matches!(preset_file.strict(), Err(PresetError::Strict(warnings)) if warnings.len() == 5)
+    );
     assert!(parse("name = \"x\"").warnings[0].contains("schema is missing"));
 }
 
 #[test]
 fn hostile_text_is_refused_without_harm() {
-    let deep = format!("schema = 2\nx = {}{}\n", "[".repeat(100_000), "]".repeat(100_000));
+    let deep = format!(
+        "schema = 2\nx = {}{}\n",
+        "[".repeat(100_000),
+        "]".repeat(100_000)
+    );
     let long = format!("schema = 2\nname = \"{}\"\n", "x".repeat(2 << 20));
     let wide = format!("schema = 2\ntags = [{}]\n", "\"t\",".repeat(1000));
     let huge = "schema = 2\n[effects.facet]\nseed = 99999999999999999999\n".to_owned();
-    for text in [deep, long, wide, huge, "\u{0}".into(), "schema = [1]".into(), "=".into(), "[]".into()] {
+    for text in [
+        deep,
+        long,
+        wide,
+        huge,
+        "\u{0}".into(),
+        "schema = [1]".into(),
+        "=".into(),
+        "[]".into(),
+    ] {
         assert!(preset_file::parse(&text, "hostile").is_err());
     }
     let folder = tempfile::tempdir().unwrap();
     let binary = folder.path().join("binary.toml");
     std::fs::write(&binary, [0xff, 0xfe, 0x00]).unwrap();
-    assert!(preset_file::load(&binary).unwrap_err().to_string().contains("not UTF-8"));
+    assert!(
+        preset_file::load(&binary)
+            .unwrap_err()
+            .to_string()
+            .contains("not UTF-8")
+    );
 }
 
 #[test]
 fn a_file_full_of_unknown_keys_is_read_in_a_moment() {
     let began = std::time::Instant::now();
-    let short: String = (0..45_000).map(|i| format!("facet_amuont{i} = 1\n")).collect();
-    let effects: String = (0..19_000).map(|i| format!("[effects.facet{i}]\n[animation.facet{i}]\n")).collect();
+    let short: String = (0..45_000)
+        .map(|i| format!("facet_amuont{i} = 1\n"))
+        .collect();
+    let effects: String = (0..19_000)
+        .map(|i| format!("[effects.facet{i}]\n[animation.facet{i}]\n"))
+        .collect();
     let long = format!("{} = 1\n", "a".repeat(1_000_000));
-    let fields = format!("[effects.facet]\n{}", (0..60_000).map(|i| format!("amuont{i} = 1\n")).collect::<String>());
+    let fields = format!(
+        "[effects.facet]\n{}",
+        (0..60_000)
+            .map(|i| format!("amuont{i} = 1\n"))
+            .collect::<String>()
+    );
     let list: String = (0..100_000).map(|i| format!("\"x{i}\",")).collect();
     for text in [&short, &effects, &long, &fields] {
         let preset_file = parse(&format!("schema = 2\n{text}"));
-        assert!(preset_file.warnings.len() <= 33 && preset_file.warnings.iter().all(|warning| warning.len() < 200));
+        assert!(
+            preset_file.warnings.len() <= 33
+                && preset_file
+                    .warnings
+                    .iter()
+                    .all(|warning| warning.len() < 200)
+        );
         if text != &long {
             let last = preset_file.warnings.last().unwrap();
-            assert!(last.starts_with("preset.toml: ") && last.ends_with("more warnings of this kind"), "{last}");
+            assert!(
+                last.starts_with("preset.toml: ") && last.ends_with("more warnings of this kind"),
+                "{last}"
+            );
         }
         assert!(preset_file.strict().is_err());
     }
@@ -192,19 +313,40 @@ fn a_file_full_of_unknown_keys_is_read_in_a_moment() {
 #[test]
 fn messages_quote_no_control_characters_and_no_long_values() {
     let key = "\"a\\u001b[2J\\u202e\\nb\"";
-    let warned = parse(&format!("schema = 2\n{key} = 1\n[effects.facet]\n{key} = 1\n[effects.{key}]\n[animation.{key}]\n"));
+    let warned = parse(&format!(
+        "schema = 2\n{key} = 1\n[effects.facet]\n{key} = 1\n[effects.{key}]\n[animation.{key}]\n"
+    ));
     assert_eq!(warned.warnings.len(), 4, "{:?}", warned.warnings);
     let refused = [
         refusal(&format!("schema = 2\nstack = [{key}]\n")),
-        refusal(&format!("schema = 2\n[effects.{key}]\neffect = \"facet\"\n")),
+        refusal(&format!(
+            "schema = 2\n[effects.{key}]\neffect = \"facet\"\n"
+        )),
         refusal(&format!("schema = 2\n[effects.facet]\non = [{key}]\n")),
-        refusal(&format!("schema = 2\n[effect_files]\n{key} = \"\"\n[effects.{key}]\n")),
+        refusal(&format!(
+            "schema = 2\n[effect_files]\n{key} = \"\"\n[effects.{key}]\n"
+        )),
     ];
     for message in warned.warnings.iter().chain(&refused) {
-        assert!(!message.chars().any(rasterlab::params::is_hidden), "{message:?}");
+        assert!(
+            !message.chars().any(rasterlab::params::is_hidden),
+            "{message:?}"
+        );
         assert!(message.contains("u{1b}[2J"), "{message}");
     }
-    let long = refusal(&format!("schema = 2\n[scene]\nunit = \"{}\"\n", "ab ".repeat(10_000)));
-    assert!(long.chars().count() < 1100, "{} characters", long.chars().count());
-    assert!(long.starts_with("preset.toml:3: scene.unit \"ab ab") && long.contains(" … ") && long.ends_with("scene"), "{long}");
+    let long = refusal(&format!(
+        "schema = 2\n[scene]\nunit = \"{}\"\n",
+        "ab ".repeat(10_000)
+    ));
+    assert!(
+        long.chars().count() < 1100,
+        "{} characters",
+        long.chars().count()
+    );
+    assert!(
+        long.starts_with("preset.toml:3: scene.unit \"ab ab")
+            && long.contains(" … ")
+            && long.ends_with("scene"),
+        "{long}"
+    );
 }

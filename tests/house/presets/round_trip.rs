@@ -7,8 +7,8 @@ use rasterlab::{
     effects::{EFFECTS, Effect},
     params::ValueType,
     preset::{
-        AccuracyRequest, Animation, ClipPlayback, Clock, GoldenTest, LengthUnit, Output, PinnedOptions, Preset, SceneSource, Tier,
-        Visibility,
+        AccuracyRequest, Animation, ClipPlayback, Clock, GoldenTest, LengthUnit, Output,
+        PinnedOptions, Preset, SceneSource, Tier, Visibility,
         animation::{Easing, Keyframe, Track, steps},
     },
     preset_file::{self, PresetFile},
@@ -22,12 +22,20 @@ use rasterlab::{
 use super::*;
 
 fn finite_f32() -> impl Strategy<Value = f32> {
-    any::<u32>().prop_map(f32::from_bits).prop_filter("finite", |v| v.is_finite())
+    any::<u32>()
+        .prop_map(f32::from_bits)
+        .prop_filter("finite", |v| v.is_finite())
 }
 
 /// Any value that a key of this range may have, with a taste for its ends.
 fn within(low: f64, high: f64) -> impl Strategy<Value = f64> {
-    prop_oneof![Just(low), Just(high), low..=high, Just(0.0f64.clamp(low, high)), Just((-0.0f64).max(low))]
+    prop_oneof![
+        Just(low),
+        Just(high),
+        low..=high,
+        Just(0.0f64.clamp(low, high)),
+        Just((-0.0f64).max(low))
+    ]
 }
 
 fn any_effect() -> impl Strategy<Value = (usize, u64)> {
@@ -45,8 +53,14 @@ fn filled(effect: &Arc<Effect>, seed: u64) -> Vec<u32> {
                 let [low, high] = field.hard;
                 let value = low + (high - low) * f64::from(state) / f64::from(u32::MAX);
                 match field.value_type {
-                    ValueType::F32 | ValueType::Color | ValueType::Point if state.is_multiple_of(7) && (low..=high).contains(&-0.0) => -0.0,
-                    ValueType::F32 | ValueType::Color | ValueType::Point => f64::from(value as f32).clamp(low, high),
+                    ValueType::F32 | ValueType::Color | ValueType::Point
+                        if state.is_multiple_of(7) && (low..=high).contains(&-0.0) =>
+                    {
+                        -0.0
+                    }
+                    ValueType::F32 | ValueType::Color | ValueType::Point => {
+                        f64::from(value as f32).clamp(low, high)
+                    }
                     _ => value.round(),
                 }
             })
@@ -80,11 +94,17 @@ prop_compose! {
 type AnyKeyframe = (f64, u64, usize);
 
 fn any_keyframes() -> impl Strategy<Value = Vec<AnyKeyframe>> {
-    prop::collection::vec((within(-1e9, 1e9), any::<u64>(), 0..Easing::ALL.len()), 1..6)
+    prop::collection::vec(
+        (within(-1e9, 1e9), any::<u64>(), 0..Easing::ALL.len()),
+        1..6,
+    )
 }
 
 /// Keys on parameters of the enabled effects.
-fn animated(stack: &rasterlab::effects::Stack, tracks: Vec<(prop::sample::Index, prop::sample::Index, Vec<AnyKeyframe>)>) -> Animation {
+fn animated(
+    stack: &rasterlab::effects::Stack,
+    tracks: Vec<(prop::sample::Index, prop::sample::Index, Vec<AnyKeyframe>)>,
+) -> Animation {
     let mut animation = Animation::default();
     for (effect, field, keys) in tracks.into_iter().filter(|_| !stack.0.is_empty()) {
         let effect = &stack.0[effect.index(stack.0.len())].effect;
@@ -94,9 +114,17 @@ fn animated(stack: &rasterlab::effects::Stack, tracks: Vec<(prop::sample::Index,
         let field = &effect.fields[field.index(effect.fields.len())];
         let mut frames: Vec<Keyframe> = Vec::new();
         for (time_s, seed, easing) in keys {
-            let easing = if steps(field) { Easing::Hold } else { Easing::ALL[easing] };
+            let easing = if steps(field) {
+                Easing::Hold
+            } else {
+                Easing::ALL[easing]
+            };
             if !frames.iter().any(|frame| frame.time_s == time_s) {
-                frames.push(Keyframe { time_s, value: field.get(&filled(effect, seed)), easing });
+                frames.push(Keyframe {
+                    time_s,
+                    value: field.get(&filled(effect, seed)),
+                    easing,
+                });
             }
         }
         animation.put(Track::new(effect, field, frames).expect("sound keys"));
@@ -233,7 +261,8 @@ fn every_random_preset_is_one_that_a_file_may_hold() {
     for seed in 0..60 {
         let random = PresetFile::new("random", rasterlab::stress::random::preset(seed));
         let text = preset_file::to_toml(&random);
-        let read = preset_file::parse(&text, "random").unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
+        let read = preset_file::parse(&text, "random")
+            .unwrap_or_else(|error| panic!("seed {seed}: {error}\n{text}"));
         assert_eq!(read.preset, random.preset, "seed {seed}\n{text}");
         assert!(read.warnings.is_empty(), "seed {seed}: {:?}", read.warnings);
     }

@@ -1,5 +1,5 @@
-//! Promise: the key `on` of an effect is read, written, shared and changed like any other value, and what it cannot mean is refused in one
-//! sentence.
+//! Promise: the key `on` of an effect is read, written, shared and changed like any other value,
+//! and what it cannot mean is refused in one sentence.
 
 use rasterlab::{
     effect_files::{Catalog, Hook, template},
@@ -12,15 +12,28 @@ use super::*;
 
 /// The scope of an effect as a text.
 fn on(preset_file: &PresetFile, effect: &str) -> String {
-    preset_file.preset.stack.get(effect).unwrap_or_else(|| panic!("{effect} is off")).on.to_string()
+    preset_file
+        .preset
+        .stack
+        .get(effect)
+        .unwrap_or_else(|| panic!("{effect} is off"))
+        .on
+        .to_string()
 }
 
 #[test]
 fn a_scope_survives_the_text_and_the_line() {
     let text = "schema = 2\n\n[effects.toon]\n# the glass alone\non = [\"material:Lens*\", \"node:Body\", \"mesh:a b: c?\"] # and the body\nsteps = 2\n\n[effects.skin]\neffect = \"toon\"\non = [\"node:Skin\"]\n";
     let preset_file = parse(text);
-    assert!(preset_file.warnings.is_empty(), "{:?}", preset_file.warnings);
-    assert_eq!(on(&preset_file, "toon"), "material:Lens*, node:Body, mesh:a b: c?");
+    assert!(
+        preset_file.warnings.is_empty(),
+        "{:?}",
+        preset_file.warnings
+    );
+    assert_eq!(
+        on(&preset_file, "toon"),
+        "material:Lens*, node:Body, mesh:a b: c?"
+    );
     assert_eq!(on(&preset_file, "skin"), "node:Skin");
     assert_eq!(to_toml(&preset_file), text);
     let back = from_line(&to_line(&preset_file)).expect("a line of ours");
@@ -34,7 +47,13 @@ fn a_scope_survives_the_text_and_the_line() {
 
 #[test]
 fn one_text_is_a_list_of_one_and_an_empty_list_is_the_whole_scene() {
-    assert_eq!(on(&parse("schema = 2\n[effects.toon]\non = \"mesh:x\"\n"), "toon"), "mesh:x");
+    assert_eq!(
+        on(
+            &parse("schema = 2\n[effects.toon]\non = \"mesh:x\"\n"),
+            "toon"
+        ),
+        "mesh:x"
+    );
     let whole = parse("schema = 2\n[effects.toon]\non = []\n");
     assert_eq!(on(&whole, "toon"), "whole scene");
     assert_eq!(whole.preset, parse("schema = 2\n[effects.toon]\n").preset);
@@ -44,15 +63,26 @@ fn one_text_is_a_list_of_one_and_an_empty_list_is_the_whole_scene() {
 #[test]
 fn set_and_unset_change_a_scope_and_its_line() {
     let mut preset_file = parse("schema = 2\n\n[effects.toon]\nsteps = 2 # few\n");
-    preset_file::set(&mut preset_file, "toon.on", "[\"node:Body\", \"node:Body\", \"mesh:*\"]").unwrap();
+    preset_file::set(
+        &mut preset_file,
+        "toon.on",
+        "[\"node:Body\", \"node:Body\", \"mesh:*\"]",
+    )
+    .unwrap();
     assert_eq!(on(&preset_file, "toon"), "node:Body, mesh:*");
-    assert_eq!(to_toml(&preset_file), "schema = 2\n\n[effects.toon]\nsteps = 2 # few\non = [\"node:Body\", \"mesh:*\"]\n");
+    assert_eq!(
+        to_toml(&preset_file),
+        "schema = 2\n\n[effects.toon]\nsteps = 2 # few\non = [\"node:Body\", \"mesh:*\"]\n"
+    );
     // A bare word is a text, and setting a scope enables the effect.
     preset_file::set(&mut preset_file, "effects.fog.on", "material:clay").unwrap();
     assert_eq!(on(&preset_file, "fog"), "material:clay");
     preset_file::unset(&mut preset_file, "toon.on").unwrap();
     preset_file::unset(&mut preset_file, "fog").unwrap();
-    assert_eq!(to_toml(&preset_file), "schema = 2\n\n[effects.toon]\nsteps = 2 # few\n");
+    assert_eq!(
+        to_toml(&preset_file),
+        "schema = 2\n\n[effects.toon]\nsteps = 2 # few\n"
+    );
 }
 
 #[test]
@@ -68,12 +98,25 @@ fn a_faulty_scope_is_refused_with_its_line_and_what_is_allowed() {
         ("[\"mesh:\\u0007\"]", "has a control character"),
     ] {
         let error = refusal(&format!("schema = 2\n[effects.toon]\non = {value}\n"));
-        assert!(error.starts_with("preset.toml:3: effects.toon.on ") && error.contains(reason) && !error.contains('\n'), "{error}");
+        assert!(
+            error.starts_with("preset.toml:3: effects.toon.on ")
+                && error.contains(reason)
+                && !error.contains('\n'),
+            "{error}"
+        );
         let mut preset_file = parse("schema = 2\n");
-        let error = preset_file::set(&mut preset_file, "toon.on", value).unwrap_err().to_string();
-        assert!(error.contains(reason) && preset_file.preset.stack.0.is_empty(), "{error}");
+        let error = preset_file::set(&mut preset_file, "toon.on", value)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            error.contains(reason) && preset_file.preset.stack.0.is_empty(),
+            "{error}"
+        );
     }
-    let long = format!("schema = 2\n[effects.toon]\non = [{}]\n", "\"mesh:x\", ".repeat(33));
+    let long = format!(
+        "schema = 2\n[effects.toon]\non = [{}]\n",
+        "\"mesh:x\", ".repeat(33)
+    );
     assert!(refusal(&long).contains("has 33 patterns; at most 32 are allowed"));
     let table = refusal("schema = 2\n[effects.toon.on]\nnode = 1\n");
     assert!(table.contains("effects.toon.on must be a list"), "{table}");
@@ -81,17 +124,47 @@ fn a_faulty_scope_is_refused_with_its_line_and_what_is_allowed() {
 
 #[test]
 fn only_effects_on_draws_take_a_scope() {
-    let taking: Vec<&str> = EFFECTS.iter().filter(|effect| effect.has_scope()).map(|effect| effect.name.as_str()).collect();
-    for name in ["explode", "inflate", "wobble", "dissolve", "stipple", "facet", "lambert", "shadow", "toon", "hatch", "wireframe", "fog"] {
+    let taking: Vec<&str> = EFFECTS
+        .iter()
+        .filter(|effect| effect.has_scope())
+        .map(|effect| effect.name.as_str())
+        .collect();
+    for name in [
+        "explode",
+        "inflate",
+        "wobble",
+        "dissolve",
+        "stipple",
+        "facet",
+        "lambert",
+        "shadow",
+        "toon",
+        "hatch",
+        "wireframe",
+        "fog",
+    ] {
         assert!(taking.contains(&name), "{name}");
     }
     for effect in EFFECTS.iter().filter(|effect| !effect.has_scope()) {
-        let error = refusal(&format!("schema = 2\n[effects.{}]\non = [\"node:x\"]\n", effect.name));
-        assert!(error.contains("cannot be set, because") && error.contains(&effect.name), "{error}");
+        let error = refusal(&format!(
+            "schema = 2\n[effects.{}]\non = [\"node:x\"]\n",
+            effect.name
+        ));
+        assert!(
+            error.contains("cannot be set, because") && error.contains(&effect.name),
+            "{error}"
+        );
         // The whole scene is what it acts on anyway.
         parse(&format!("schema = 2\n[effects.{}]\non = []\n", effect.name));
     }
-    for name in ["boxes", "xray", "outline", "dots", "particles", "draw_order"] {
+    for name in [
+        "boxes",
+        "xray",
+        "outline",
+        "dots",
+        "particles",
+        "draw_order",
+    ] {
         assert!(!taking.contains(&name), "{name}");
     }
 }
@@ -99,19 +172,42 @@ fn only_effects_on_draws_take_a_scope() {
 #[test]
 fn an_effect_of_a_file_takes_a_scope_and_keeps_it_when_its_text_changes() {
     let mut catalog = Catalog::default();
-    catalog.add_text("ink", &template("ink", Hook::Surface)).unwrap();
-    let mut preset_file =
-        parse_with("schema = 2\n[effects.ink]\non = \"mesh:x\"\n", "mine", "mine.toml", &catalog).unwrap_or_else(|error| panic!("{error}"));
-    let old = preset_file.preset.stack.get("ink").expect("it is on").effect.clone();
+    catalog
+        .add_text("ink", &template("ink", Hook::Surface))
+        .unwrap();
+    let mut preset_file = parse_with(
+        "schema = 2\n[effects.ink]\non = \"mesh:x\"\n",
+        "mine",
+        "mine.toml",
+        &catalog,
+    )
+    .unwrap_or_else(|error| panic!("{error}"));
+    let old = preset_file
+        .preset
+        .stack
+        .get("ink")
+        .expect("it is on")
+        .effect
+        .clone();
     let mut edited = Catalog::default();
-    edited.add_text("ink", &format!("{}\n// edited\n", template("ink", Hook::Surface))).unwrap();
+    edited
+        .add_text(
+            "ink",
+            &format!("{}\n// edited\n", template("ink", Hook::Surface)),
+        )
+        .unwrap();
     let new = edited.find("ink").unwrap().expect("it is there").clone();
     assert_ne!(old, new);
     preset_file.preset.rebind(&[(old, new.clone())]);
     assert_eq!(on(&preset_file, "ink"), "mesh:x");
     // Edited into an effect on pixels, it has none.
-    edited.add_text("ink", &template("ink", Hook::Pixel)).unwrap();
-    preset_file.preset.rebind(&[(new, edited.find("ink").unwrap().expect("it is there").clone())]);
+    edited
+        .add_text("ink", &template("ink", Hook::Pixel))
+        .unwrap();
+    preset_file.preset.rebind(&[(
+        new,
+        edited.find("ink").unwrap().expect("it is there").clone(),
+    )]);
     assert_eq!(on(&preset_file, "ink"), "whole scene");
 }
 
@@ -122,31 +218,58 @@ fn as_many_effects_have_a_scope_as_a_draw_has_bits() {
     let mut full = parse(&format!("schema = 2\n{text}"));
     assert_eq!(full.preset.stack.check(), Ok(()));
     let error = refusal(&format!("schema = 2\n{text}{}", table(MAX_SCOPES)));
-    assert!(error.contains("33 effects are limited to parts of the scene, but at most 32 can be"), "{error}");
+    assert!(
+        error.contains("33 effects are limited to parts of the scene, but at most 32 can be"),
+        "{error}"
+    );
     let before = full.preset.clone();
-    let error = preset_file::set(&mut full, "fog.on", "node:x").unwrap_err().to_string();
-    assert!(error.contains("at most 32 can be") && full.preset == before, "{error}");
+    let error = preset_file::set(&mut full, "fog.on", "node:x")
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("at most 32 can be") && full.preset == before,
+        "{error}"
+    );
     // One more without a scope is fine.
     preset_file::set(&mut full, "fog", "").unwrap();
-    assert!(matches!(full.preset.stack.check(), Ok(()) | Err(Conflict::Slot { .. })));
+    assert!(matches!(
+        full.preset.stack.check(),
+        Ok(()) | Err(Conflict::Slot { .. })
+    ));
 }
 
 #[test]
 fn a_pattern_that_matches_nothing_names_the_parts_that_there_are() {
     let scene = builtin::build("cube-wall").expect("a scene").in_room(1.5);
-    let missing = |text: &str| parse(&format!("schema = 2\n[effects.toon]\non = {text}\n")).preset.missing_parts(&scene);
-    assert_eq!(missing("[\"material:coral\", \"mesh:cube\", \"node:cube 1*\", \"node:room\"]"), [""; 0]);
-    let [warning] = &missing("[\"material:coral\", \"material:choral\"]")[..] else { panic!("one warning") };
+    let missing = |text: &str| {
+        parse(&format!("schema = 2\n[effects.toon]\non = {text}\n"))
+            .preset
+            .missing_parts(&scene)
+    };
+    assert_eq!(
+        missing("[\"material:coral\", \"mesh:cube\", \"node:cube 1*\", \"node:room\"]"),
+        [""; 0]
+    );
+    let [warning] = &missing("[\"material:coral\", \"material:choral\"]")[..] else {
+        panic!("one warning")
+    };
     assert!(
         warning.starts_with("effects.toon.on: the scene has no material that matches \"choral\"; its materials are \"amber\""),
         "{warning}"
     );
     assert!(warning.contains("did you mean \"coral\"?"), "{warning}");
-    let [warning] = &missing("\"node:Body\"")[..] else { panic!("one warning") };
+    let [warning] = &missing("\"node:Body\"")[..] else {
+        panic!("one warning")
+    };
     assert!(warning.contains("\"cube 11\" and 149 more"), "{warning}");
     // Particles join the scene when it is drawn.
-    let particles =
-        |extra: &str| parse(&format!("schema = 2\n{extra}[effects.toon]\non = \"mesh:particles\"\n")).preset.missing_parts(&scene);
+    let particles = |extra: &str| {
+        parse(&format!(
+            "schema = 2\n{extra}[effects.toon]\non = \"mesh:particles\"\n"
+        ))
+        .preset
+        .missing_parts(&scene)
+    };
     assert_eq!(particles("[effects.particles]\n"), [""; 0]);
     assert_eq!(particles("").len(), 1);
 }
@@ -155,7 +278,10 @@ fn a_pattern_that_matches_nothing_names_the_parts_that_there_are() {
 fn disabled_and_enabled_anew_an_effect_is_on_the_whole_scene() {
     let mut preset_file = parse("schema = 2\n[effects.toon]\non = \"node:x\"\n");
     preset_file.preset.disable("toon");
-    preset_file.preset.stack.enable(Effect::find("toon").expect("a listed effect"));
+    preset_file
+        .preset
+        .stack
+        .enable(Effect::find("toon").expect("a listed effect"));
     assert_eq!(on(&preset_file, "toon"), "whole scene");
     assert!(!to_toml(&preset_file).contains("node:x"));
 }

@@ -6,7 +6,8 @@ use super::*;
 
 #[test]
 fn a_shared_line_gives_the_preset_back() {
-    let mut preset_file = parse("schema = 2\nname = \"Tinte ✒\"\n[effects.facet]\namount = 0.1\n# kept\n");
+    let mut preset_file =
+        parse("schema = 2\nname = \"Tinte ✒\"\n[effects.facet]\namount = 0.1\n# kept\n");
     preset_file.preset.clock.time_s = 0.1;
     let line = preset_file::to_line(&preset_file);
     assert!(line.starts_with("rasterlab1:") && !line.contains('\n'));
@@ -20,33 +21,70 @@ fn a_shared_line_gives_the_preset_back() {
 fn hostile_shared_lines_are_refused() {
     use std::io::Write as _;
     let pack = |bytes: &[u8]| {
-        let mut deflate = flate2::write::DeflateEncoder::new(Vec::new(), flate2::Compression::best());
+        let mut deflate =
+            flate2::write::DeflateEncoder::new(Vec::new(), flate2::Compression::best());
         deflate.write_all(bytes).unwrap();
         use base64::Engine as _;
-        format!("rasterlab1:{}", base64::engine::general_purpose::STANDARD.encode(deflate.finish().unwrap()))
+        format!(
+            "rasterlab1:{}",
+            base64::engine::general_purpose::STANDARD.encode(deflate.finish().unwrap())
+        )
     };
-    let bomb = preset_file::from_line(&pack(&vec![b' '; 64 << 20])).unwrap_err().to_string();
+    let bomb = preset_file::from_line(&pack(&vec![b' '; 64 << 20]))
+        .unwrap_err()
+        .to_string();
     assert!(bomb.contains("more than 1 MiB"), "{bomb}");
-    for path in ["../secret.glb", "/etc/passwd", "a/../../b.glb", "C:\\x.glb", "..\\x.glb"] {
+    for path in [
+        "../secret.glb",
+        "/etc/passwd",
+        "a/../../b.glb",
+        "C:\\x.glb",
+        "..\\x.glb",
+    ] {
         let line = pack(format!("schema = 2\n[scene]\npath = '{path}'\n").as_bytes());
         let error = preset_file::from_line(&line).unwrap_err().to_string();
-        assert!(error.contains("leaves the folder of the preset"), "{path}: {error}");
+        assert!(
+            error.contains("leaves the folder of the preset"),
+            "{path}: {error}"
+        );
     }
-    for line in ["", "rasterlab2:AAAA", "rasterlab1:", "rasterlab1:!!", "rasterlab1:AAAA"] {
-        assert!(preset_file::from_line(line).is_err() || line == "rasterlab1:", "{line}");
+    for line in [
+        "",
+        "rasterlab2:AAAA",
+        "rasterlab1:",
+        "rasterlab1:!!",
+        "rasterlab1:AAAA",
+    ] {
+        assert!(
+            preset_file::from_line(line).is_err() || line == "rasterlab1:",
+            "{line}"
+        );
     }
 }
 
 #[test]
 fn a_saved_picture_gives_its_preset_back_and_a_bare_one_says_so() {
     let preset_file = parse("schema = 2\nname = \"Tinte ✒\"\n[effects.facet]\namount = 0.1\n");
-    let frame = rasterlab::frame::Frame { width: 2, height: 1, color: vec![[1, 2, 3, 255], [4, 5, 6, 255]], ..Default::default() };
-    let provenance = preset_file::Provenance { adapter: "cpu".into(), driver: "none".into() };
+    let frame = rasterlab::frame::Frame {
+        width: 2,
+        height: 1,
+        color: vec![[1, 2, 3, 255], [4, 5, 6, 255]],
+        ..Default::default()
+    };
+    let provenance = preset_file::Provenance {
+        adapter: "cpu".into(),
+        driver: "none".into(),
+    };
     let png = preset_file::png_with_preset(&frame, &preset_file, &provenance).unwrap();
     let back = preset_file::preset_from_png(&png, "shot.png").unwrap();
     assert_eq!(back.preset, preset_file.preset);
     let bare = preset_file::png_bytes(&frame.color, [2, 1]).unwrap();
-    assert!(preset_file::preset_from_png(&bare, "bare.png").unwrap_err().to_string().contains("bare"));
+    assert!(
+        preset_file::preset_from_png(&bare, "bare.png")
+            .unwrap_err()
+            .to_string()
+            .contains("bare")
+    );
     assert!(preset_file::preset_from_png(b"no png", "x.png").is_err());
     assert!(preset_file::png_bytes(&[], [0, 1]).is_err());
 }

@@ -1,4 +1,5 @@
-//! Promise: every section is read, only what differs from a default is written, and what a person wrote keeps its form.
+//! Promise: every section is read, only what differs from a default is written, and what a person
+//! wrote keeps its form.
 
 use std::path::Path;
 
@@ -69,26 +70,69 @@ why = "because"
     );
     let s = &preset_file.preset;
     assert_eq!(preset_file.warnings, Vec::<String>::new());
-    assert_eq!((s.name.as_str(), s.tags.len(), s.spin_deg_per_s, s.clock.time_s), ("Ink on glass", 2, 30.0, 1.25));
-    assert_eq!(s.stack.0.iter().map(|e| e.effect.name.as_str()).collect::<Vec<_>>(), ["lambert", "facet"]);
+    assert_eq!(
+        (
+            s.name.as_str(),
+            s.tags.len(),
+            s.spin_deg_per_s,
+            s.clock.time_s
+        ),
+        ("Ink on glass", 2, 30.0, 1.25)
+    );
+    assert_eq!(
+        s.stack
+            .0
+            .iter()
+            .map(|e| e.effect.name.as_str())
+            .collect::<Vec<_>>(),
+        ["lambert", "facet"]
+    );
     let facet = s.stack.get("facet").unwrap();
     let value = |name: &str| facet.effect.field(name).unwrap().get(&facet.words);
-    assert_eq!((value("amount"), value("pattern"), value("center")), (vec![f64::from(0.8f32)], vec![2.0], vec![1.0, 2.0, 3.0]));
-    assert_eq!(s.camera.unwrap().projection, Projection::Perspective { fov_y_deg: 60.0 });
-    assert_eq!(s.clock, Clock { time_s: 1.25, range_s: [0.0, 2.5], is_looping: false, speed: 0.5 });
+    assert_eq!(
+        (value("amount"), value("pattern"), value("center")),
+        (vec![f64::from(0.8f32)], vec![2.0], vec![1.0, 2.0, 3.0])
+    );
+    assert_eq!(
+        s.camera.unwrap().projection,
+        Projection::Perspective { fov_y_deg: 60.0 }
+    );
+    assert_eq!(
+        s.clock,
+        Clock {
+            time_s: 1.25,
+            range_s: [0.0, 2.5],
+            is_looping: false,
+            speed: 0.5
+        }
+    );
     let amount = s.animation.get("facet", "amount").unwrap();
     assert_eq!(
-        amount.keys().iter().map(|key| (key.time_s, key.easing)).collect::<Vec<_>>(),
+        amount
+            .keys()
+            .iter()
+            .map(|key| (key.time_s, key.easing))
+            .collect::<Vec<_>>(),
         [(0.0, Easing::Smooth), (2.0, Easing::Linear)]
     );
-    assert_eq!(s.animation.get("facet", "seed").unwrap().keys()[0].easing, Easing::Hold);
+    assert_eq!(
+        s.animation.get("facet", "seed").unwrap().keys()[0].easing,
+        Easing::Hold
+    );
     // 0.625 of the way in time, by the smoothstep.
     let posed = s.evaluated_stack().get("facet").unwrap().words.clone();
-    assert_eq!(facet.effect.field("amount").unwrap().get(&posed), [f64::from((0.625f64 * 0.625 * (3.0 - 1.25)) as f32)]);
+    assert_eq!(
+        facet.effect.field("amount").unwrap().get(&posed),
+        [f64::from((0.625f64 * 0.625 * (3.0 - 1.25)) as f32)]
+    );
     assert_eq!(facet.effect.field("seed").unwrap().get(&posed), [7.0]);
     assert_eq!(
         s.accuracy,
-        AccuracyRequest { tier: Tier::Fast, pins: PinnedOptions::of(Visibility::Packed64), ..AccuracyRequest::default() }
+        AccuracyRequest {
+            tier: Tier::Fast,
+            pins: PinnedOptions::of(Visibility::Packed64),
+            ..AccuracyRequest::default()
+        }
     );
     assert_eq!(s.output.size, [64, 48]);
     assert_eq!(s.test.as_ref().unwrap().max_channel, 2);
@@ -100,7 +144,12 @@ fn an_unmodified_preset_is_written_byte_for_byte() {
     assert_eq!(preset_file::to_toml(&parse(odd)), odd);
     for path in preset_files() {
         let text = std::fs::read_to_string(&path).unwrap();
-        assert_eq!(preset_file::to_toml(&preset_file::load(&path).unwrap()), text, "{}", path.display());
+        assert_eq!(
+            preset_file::to_toml(&preset_file::load(&path).unwrap()),
+            text,
+            "{}",
+            path.display()
+        );
     }
 }
 
@@ -112,11 +161,16 @@ fn comments_and_unknown_keys_survive_a_change() {
     preset_file::set(&mut preset_file, "camera.eye", "[1, 2, 4]").unwrap();
     preset_file::unset(&mut preset_file, "camera.up").unwrap();
     let written = preset_file::to_toml(&preset_file);
-    let wanted =
-        text.replace("amount = 0.5 #", "amount = 0.25 #").replace("3.0] # high", "4.0] # high").replace("up = [0.0, 1.0, 0.5]\n", "");
+    let wanted = text
+        .replace("amount = 0.5 #", "amount = 0.25 #")
+        .replace("3.0] # high", "4.0] # high")
+        .replace("up = [0.0, 1.0, 0.5]\n", "");
     assert_eq!(written, wanted);
     preset_file::unset(&mut preset_file, "facet.amount").unwrap();
-    assert!(preset_file::to_toml(&preset_file).contains("# half\namount = 1.0 # of the way"), "a commented line is kept with its default");
+    assert!(
+        preset_file::to_toml(&preset_file).contains("# half\namount = 1.0 # of the way"),
+        "a commented line is kept with its default"
+    );
 }
 
 #[test]
@@ -131,7 +185,13 @@ fn only_differences_from_defaults_are_written() {
         preset_file::to_toml(&preset_file),
         "schema = 2\n\n[camera]\n\n[effects.facet]\n\n[effects.lambert]\nheadlight = 0.2\n\n[accuracy]\ntier = \"draft\"\n"
     );
-    for path in ["effects.lambert.headlight", "accuracy", "camera", "facet", "lambert"] {
+    for path in [
+        "effects.lambert.headlight",
+        "accuracy",
+        "camera",
+        "facet",
+        "lambert",
+    ] {
         preset_file::unset(&mut preset_file, path).unwrap();
     }
     assert_eq!(preset_file::to_toml(&preset_file), "schema = 2\n");
@@ -142,7 +202,10 @@ fn the_stack_key_is_written_only_where_order_is_unusual() {
     let mut preset_file = parse("schema = 2\n[effects.facet]\n[effects.lambert]\n");
     preset_file.preset.stack.0.reverse();
     let written = preset_file::to_toml(&preset_file);
-    assert!(written.contains("stack = [\"lambert\", \"facet\"]"), "{written}");
+    assert!(
+        written.contains("stack = [\"lambert\", \"facet\"]"),
+        "{written}"
+    );
     let mut again = parse(&written);
     assert_eq!(again.preset, preset_file.preset);
     again.preset.stack.0.reverse();
@@ -153,18 +216,29 @@ fn the_stack_key_is_written_only_where_order_is_unusual() {
 
 #[test]
 fn the_stack_key_names_each_enabled_effect_exactly_once() {
-    let with = |stack: &str| format!("schema = 2\nstack = {stack}\n[effects.facet]\n[effects.lambert]\n");
-    assert_eq!(refusal(&with("[\"facet\"]")), "preset.toml:2: stack leaves out lambert, which is enabled");
-    assert_eq!(refusal(&with("[\"facet\", \"lambert\", \"facet\"]")), "preset.toml:2: stack names facet twice");
-    assert!(refusal(&with("[\"facet\", \"lambert\", \"depth\"]")).contains("names depth, which is not enabled"));
+    let with =
+        |stack: &str| format!("schema = 2\nstack = {stack}\n[effects.facet]\n[effects.lambert]\n");
+    assert_eq!(
+        refusal(&with("[\"facet\"]")),
+        "preset.toml:2: stack leaves out lambert, which is enabled"
+    );
+    assert_eq!(
+        refusal(&with("[\"facet\", \"lambert\", \"facet\"]")),
+        "preset.toml:2: stack names facet twice"
+    );
+    assert!(
+        refusal(&with("[\"facet\", \"lambert\", \"depth\"]"))
+            .contains("names depth, which is not enabled")
+    );
     assert!(refusal(&with("[\"fascet\", \"lambert\"]")).contains("did you mean \"facet\"?"));
     assert!(refusal(&with("\"facet\"")).contains("must be a list of effect names"));
 }
 
 #[test]
 fn tables_and_inline_tables_say_the_same_keys() {
-    let inline =
-        parse("schema = 2\n[effects.facet]\n[animation]\nfacet.amount = [{ time_s = 0, value = 0.5 }, { time_s = 1, value = 1 }]\n");
+    let inline = parse(
+        "schema = 2\n[effects.facet]\n[animation]\nfacet.amount = [{ time_s = 0, value = 0.5 }, { time_s = 1, value = 1 }]\n",
+    );
     let tables = "schema = 2\n[effects.facet]\n[[animation.facet.amount]]\ntime_s = 0\nvalue = 0.5\n[[animation.facet.amount]]\ntime_s = 1\nvalue = 1\n";
     let mut tables = parse(tables);
     assert_eq!(inline.preset, tables.preset);
@@ -177,46 +251,105 @@ fn tables_and_inline_tables_say_the_same_keys() {
 fn keys_are_written_one_a_line_and_comments_stay_with_theirs() {
     let mut preset_file = parse("schema = 2\n[effects.facet]\n");
     let keys = [(0.0, 0.0, Easing::Smooth), (1.5, 0.1, Easing::Linear)];
-    let keys = keys.map(|(time_s, value, easing)| Keyframe { time_s, value: vec![value], easing }).to_vec();
+    let keys = keys
+        .map(|(time_s, value, easing)| Keyframe {
+            time_s,
+            value: vec![value],
+            easing,
+        })
+        .to_vec();
     let facet = Effect::find("facet").unwrap();
-    preset_file.preset.animation.put(Track::new(facet, facet.field("amount").unwrap(), keys).unwrap());
+    preset_file
+        .preset
+        .animation
+        .put(Track::new(facet, facet.field("amount").unwrap(), keys).unwrap());
     let written = preset_file::to_toml(&preset_file);
     let wanted = "schema = 2\n[effects.facet]\n\n[animation.facet]\namount = [\n    { time_s = 0.0, value = 0.0 },\n    { time_s = 1.5, value = 0.1, easing = \"linear\" },\n]\n";
     assert_eq!(written, wanted);
-    let mut preset_file =
-        parse(&written.replace("    { time_s = 1.5, value = 0.1", "    # the end\n    { time_s = 1.50, value = 0.10, mine = 7"));
-    let track = preset_file.preset.animation.get_mut("facet", "amount").unwrap();
+    let mut preset_file = parse(&written.replace(
+        "    { time_s = 1.5, value = 0.1",
+        "    # the end\n    { time_s = 1.50, value = 0.10, mine = 7",
+    ));
+    let track = preset_file
+        .preset
+        .animation
+        .get_mut("facet", "amount")
+        .unwrap();
     track.move_keyframe(0, 0.25);
     track.set_easing(1, Easing::Out);
     let written = preset_file::to_toml(&preset_file);
-    assert!(written.contains("{ time_s = 0.25, value = 0.0 }"), "{written}");
-    assert!(written.contains("# the end\n    { time_s = 1.50, value = 0.10, mine = 7, easing = \"out\" }"), "{written}");
+    assert!(
+        written.contains("{ time_s = 0.25, value = 0.0 }"),
+        "{written}"
+    );
+    assert!(
+        written
+            .contains("# the end\n    { time_s = 1.50, value = 0.10, mine = 7, easing = \"out\" }"),
+        "{written}"
+    );
     preset_file::unset(&mut preset_file, "animation").unwrap();
-    assert!(!preset_file::to_toml(&preset_file).contains("animation"), "{}", preset_file::to_toml(&preset_file));
+    assert!(
+        !preset_file::to_toml(&preset_file).contains("animation"),
+        "{}",
+        preset_file::to_toml(&preset_file)
+    );
 }
 
 #[test]
 fn set_animates_and_a_value_set_by_hand_holds_still() {
     let mut preset_file = PresetFile::new("new", Preset::default());
-    preset_file::set(&mut preset_file, "animation.facet.amount", "[{ time_s = 0, value = 0 }, { time_s = 1, value = 1 }]").unwrap();
+    preset_file::set(
+        &mut preset_file,
+        "animation.facet.amount",
+        "[{ time_s = 0, value = 0 }, { time_s = 1, value = 1 }]",
+    )
+    .unwrap();
     preset_file::set(&mut preset_file, "clock.range_s", "[1, 2]").unwrap();
     assert!(preset_file.preset.is_moving() && preset_file.preset.stack.get("facet").is_some());
-    assert_eq!(parse(&preset_file::to_toml(&preset_file)).preset, preset_file.preset);
+    assert_eq!(
+        parse(&preset_file::to_toml(&preset_file)).preset,
+        preset_file.preset
+    );
     for (path, value, wanted) in [
-        ("animation.facet.amount", "[{ time_s = 0, value = 9 }]", "keyframe 1: value 9 lies outside 0..=1"),
-        ("animation.facet.amount", "[", "--set: animation.facet.amount"),
+        (
+            "animation.facet.amount",
+            "[{ time_s = 0, value = 9 }]",
+            "keyframe 1: value 9 lies outside 0..=1",
+        ),
+        (
+            "animation.facet.amount",
+            "[",
+            "--set: animation.facet.amount",
+        ),
         ("animation.facet", "1", "animation.facet takes no value"),
         ("animation.facet.amuont", "[]", "did you mean \"amount\"?"),
-        ("animation.camera.eye", "[]", "is unknown; only parameters of effects can be animated"),
+        (
+            "animation.camera.eye",
+            "[]",
+            "is unknown; only parameters of effects can be animated",
+        ),
         ("clock.range_s", "[2, 1]", "clock.range_s must rise"),
     ] {
-        let error = preset_file::set(&mut preset_file, path, value).unwrap_err().to_string();
+        let error = preset_file::set(&mut preset_file, path, value)
+            .unwrap_err()
+            .to_string();
         assert!(error.contains(wanted) && !error.contains('\n'), "{error}");
     }
     preset_file::set(&mut preset_file, "facet.amount", "0.5").unwrap();
     assert!(preset_file.preset.animation.is_empty() && !preset_file.preset.is_moving());
-    for unset in ["animation.facet.amount", "animation.facet", "animation", "facet.amount", "facet"] {
-        preset_file::set(&mut preset_file, "animation.facet.amount", "[{ time_s = 0, value = 0 }]").unwrap();
+    for unset in [
+        "animation.facet.amount",
+        "animation.facet",
+        "animation",
+        "facet.amount",
+        "facet",
+    ] {
+        preset_file::set(
+            &mut preset_file,
+            "animation.facet.amount",
+            "[{ time_s = 0, value = 0 }]",
+        )
+        .unwrap();
         preset_file::unset(&mut preset_file, unset).unwrap();
         assert!(preset_file.preset.animation.is_empty(), "{unset}");
     }
@@ -226,21 +359,51 @@ fn set_animates_and_a_value_set_by_hand_holds_still() {
 fn set_obeys_the_rules_of_files() {
     let mut preset_file = PresetFile::new("new", Preset::default());
     for (path, value, wanted) in [
-        ("facet.amount", "2", "--set: facet.amount 2 lies outside 0..=1"),
-        ("facet.amount", "inf", "facet.amount inf is not a finite number"),
-        ("facet.amuont", "1", "facet.amuont is unknown; did you mean \"amount\"?"),
+        (
+            "facet.amount",
+            "2",
+            "--set: facet.amount 2 lies outside 0..=1",
+        ),
+        (
+            "facet.amount",
+            "inf",
+            "facet.amount inf is not a finite number",
+        ),
+        (
+            "facet.amuont",
+            "1",
+            "facet.amuont is unknown; did you mean \"amount\"?",
+        ),
         ("fascet.amount", "1", "did you mean \"facet.amount\"?"),
-        ("output.size", "[1]", "output.size must be a list of 2 numbers"),
+        (
+            "output.size",
+            "[1]",
+            "output.size must be a list of 2 numbers",
+        ),
         ("facet", "1", "facet takes no value"),
-        ("stack", "[\"facet\"]", "stack names facet, which is not enabled"),
-        ("facet.amount", "", "--set: facet.amount needs a value, as in --set facet.amount=VALUE"),
+        (
+            "stack",
+            "[\"facet\"]",
+            "stack names facet, which is not enabled",
+        ),
+        (
+            "facet.amount",
+            "",
+            "--set: facet.amount needs a value, as in --set facet.amount=VALUE",
+        ),
         ("camera.eye", "", "--set: camera.eye needs a value"),
         ("stack", "", "--set: stack needs a value"),
     ] {
-        let error = preset_file::set(&mut preset_file, path, value).unwrap_err().to_string();
+        let error = preset_file::set(&mut preset_file, path, value)
+            .unwrap_err()
+            .to_string();
         assert!(error.contains(wanted), "{error}");
     }
-    assert_eq!(preset_file.preset, Preset::default(), "a refused value changes nothing");
+    assert_eq!(
+        preset_file.preset,
+        Preset::default(),
+        "a refused value changes nothing"
+    );
     for (path, value) in [
         ("effects.facet.pattern", "random"),
         ("depth.fit", "false"),
@@ -250,8 +413,17 @@ fn set_obeys_the_rules_of_files() {
     ] {
         preset_file::set(&mut preset_file, path, value).unwrap_or_else(|e| panic!("{e}"));
     }
-    assert_eq!((preset_file.preset.name.as_str(), preset_file.preset.stack.0.len()), ("42", 2));
-    assert_eq!(preset_file.preset.scene, SceneSource::Builtin("teapot?tess=16".into()));
+    assert_eq!(
+        (
+            preset_file.preset.name.as_str(),
+            preset_file.preset.stack.0.len()
+        ),
+        ("42", 2)
+    );
+    assert_eq!(
+        preset_file.preset.scene,
+        SceneSource::Builtin("teapot?tess=16".into())
+    );
     preset_file::set(&mut preset_file, "camera.orthographic_height_m", "3").unwrap();
     preset_file::unset(&mut preset_file, "camera.orthographic_height_m").unwrap();
     assert_eq!(preset_file.preset.camera, Some(Camera::default()));
@@ -277,9 +449,15 @@ fn the_schema_refuses_a_room_that_the_loader_refuses() {
     let number = |value: &serde_json::Value| value.as_f64().unwrap();
     for value in [0.0, 0.1, 0.999, 1.0, 50.0, 100.0, 100.5] {
         let not = &room["not"];
-        let is_between = value > number(&not["exclusiveMinimum"]) && value < number(&not["exclusiveMaximum"]);
-        let allows = value >= number(&room["minimum"]) && value <= number(&room["maximum"]) && !is_between;
-        let loads = preset_file::parse(&format!("schema = 2\n[scene]\nroom = {value:?}\n"), "preset").is_ok();
+        let is_between =
+            value > number(&not["exclusiveMinimum"]) && value < number(&not["exclusiveMaximum"]);
+        let allows =
+            value >= number(&room["minimum"]) && value <= number(&room["maximum"]) && !is_between;
+        let loads = preset_file::parse(
+            &format!("schema = 2\n[scene]\nroom = {value:?}\n"),
+            "preset",
+        )
+        .is_ok();
         assert_eq!(allows, loads, "{value}");
     }
 }
@@ -288,11 +466,36 @@ fn the_schema_refuses_a_room_that_the_loader_refuses() {
 fn an_edit_of_one_value_neither_prints_nor_parses_a_whole_preset() {
     let source = include_str!("../../../crates/files/src/preset_file/edit.rs");
     for name in ["to_toml(", "parse(text", "parse_file(", "DocumentMut"] {
-        assert!(!source.contains(name), "crates/files/src/preset_file/edit.rs uses {name}");
+        assert!(
+            !source.contains(name),
+            "crates/files/src/preset_file/edit.rs uses {name}"
+        );
     }
     // The text of an effect that only a newer program knows counts for the order all the same.
-    let mut preset_file = parse("schema = 2\n[effects.facet]\n[effects.lambert]\n[effects.later]\n");
-    preset_file::set(&mut preset_file, "stack", "[\"lambert\", \"later\", \"facet\"]").unwrap();
-    assert_eq!(preset_file.preset.stack.0.iter().map(|enabled| enabled.effect.name.as_str()).collect::<Vec<_>>(), ["lambert", "facet"]);
-    assert!(preset_file::set(&mut preset_file, "stack", "[\"lambert\", \"never\", \"facet\"]").is_err());
+    let mut preset_file =
+        parse("schema = 2\n[effects.facet]\n[effects.lambert]\n[effects.later]\n");
+    preset_file::set(
+        &mut preset_file,
+        "stack",
+        "[\"lambert\", \"later\", \"facet\"]",
+    )
+    .unwrap();
+    assert_eq!(
+        preset_file
+            .preset
+            .stack
+            .0
+            .iter()
+            .map(|enabled| enabled.effect.name.as_str())
+            .collect::<Vec<_>>(),
+        ["lambert", "facet"]
+    );
+    assert!(
+        preset_file::set(
+            &mut preset_file,
+            "stack",
+            "[\"lambert\", \"never\", \"facet\"]"
+        )
+        .is_err()
+    );
 }

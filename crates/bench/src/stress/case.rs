@@ -11,7 +11,8 @@ use crate::gpu::Renderer;
 /// The expected outcome of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expectation {
-    /// Every integer equals the oracle's, with every exact option and work distribution; colors are within one step of 255.
+    /// Every integer equals the oracle's, with every exact option and work distribution; colors are
+    /// within one step of 255.
     Exact,
     /// Correct within this bound.
     Bounded(&'static str),
@@ -101,13 +102,24 @@ pub struct Report {
 }
 
 impl Case {
-    /// Runs the case. `keep_going` receives what is drawn next and may stop the run by returning false. The renderer can be used
-    /// for the next case after every outcome. Within [`Work`](rasterlab_model::work::Work) that is canceled, the case ends as stopped.
-    pub fn run(&self, renderer: &mut Renderer, seed: u32, keep_going: &dyn Fn(&str) -> bool) -> Report {
+    /// Runs the case. `keep_going` receives what is drawn next and may stop the run by returning
+    /// false. The renderer can be used for the next case after every outcome. Within
+    /// [`Work`](rasterlab_model::work::Work) that is canceled, the case ends as stopped.
+    pub fn run(
+        &self,
+        renderer: &mut Renderer,
+        seed: u32,
+        keep_going: &dyn Fn(&str) -> bool,
+    ) -> Report {
         let began = Instant::now();
         let mut context = CaseContext::new(renderer, seed, keep_going);
-        let result = catch_unwind(AssertUnwindSafe(|| (self.run)(&mut context)))
-            .unwrap_or_else(|panic| Err(EarlyEnd::Failed(format!("the program panicked: {}", said(panic.as_ref())))));
+        let result =
+            catch_unwind(AssertUnwindSafe(|| (self.run)(&mut context))).unwrap_or_else(|panic| {
+                Err(EarlyEnd::Failed(format!(
+                    "the program panicked: {}",
+                    said(panic.as_ref())
+                )))
+            });
         let left = context.leave();
         let outcome = match (result, self.expectation) {
             (Err(EarlyEnd::Failed(why)), _) => Outcome::Failed(why),
@@ -135,6 +147,9 @@ impl Case {
 
 /// The message of a panic.
 fn said(panic: &(dyn std::any::Any + Send)) -> &str {
-    let text = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
+    let text = panic
+        .downcast_ref::<String>()
+        .map(String::as_str)
+        .or_else(|| panic.downcast_ref::<&str>().copied());
     text.unwrap_or("no message")
 }

@@ -24,13 +24,21 @@ impl From<String> for EarlyEnd {
 
 impl From<RenderError> for EarlyEnd {
     fn from(error: RenderError) -> Self {
-        if let RenderError::Draw(error) = error { error.into() } else { Self::Failed(error.to_string()) }
+        if let RenderError::Draw(error) = error {
+            error.into()
+        } else {
+            Self::Failed(error.to_string())
+        }
     }
 }
 
 impl From<DrawError> for EarlyEnd {
     fn from(error: DrawError) -> Self {
-        if let DrawError::Canceled(_) = error { Self::Stopped } else { Self::Failed(error.to_string()) }
+        if let DrawError::Canceled(_) = error {
+            Self::Stopped
+        } else {
+            Self::Failed(error.to_string())
+        }
     }
 }
 
@@ -52,19 +60,37 @@ pub(super) fn layers(capture: &Capture) -> &[u32] {
 
 /// Fails unless every sample is covered exactly once.
 pub(super) fn once(capture: &Capture, what: &str) -> Result<(), EarlyEnd> {
-    match layers(capture).iter().enumerate().find(|(_, hits)| **hits != 1) {
+    match layers(capture)
+        .iter()
+        .enumerate()
+        .find(|(_, hits)| **hits != 1)
+    {
         None if !layers(capture).is_empty() => Ok(()),
         None => Err(EarlyEnd::Failed(format!("{what}: no hits were counted"))),
         Some((pixel, hits)) => {
             let width = capture.frame.width.max(1) as usize;
-            Err(EarlyEnd::Failed(format!("{what}: the sample of pixel {}, {} is covered {hits} times", pixel % width, pixel / width)))
+            Err(EarlyEnd::Failed(format!(
+                "{what}: the sample of pixel {}, {} is covered {hits} times",
+                pixel % width,
+                pixel / width
+            )))
         }
     }
 }
 
 /// Fails with both values if they differ.
-pub(super) fn equal<T: PartialEq + std::fmt::Debug>(found: &T, expected: &T, what: &str) -> Result<(), EarlyEnd> {
-    if found == expected { Ok(()) } else { Err(EarlyEnd::Failed(format!("{what}: found {found:?}, expected {expected:?}"))) }
+pub(super) fn equal<T: PartialEq + std::fmt::Debug>(
+    found: &T,
+    expected: &T,
+    what: &str,
+) -> Result<(), EarlyEnd> {
+    if found == expected {
+        Ok(())
+    } else {
+        Err(EarlyEnd::Failed(format!(
+            "{what}: found {found:?}, expected {expected:?}"
+        )))
+    }
 }
 
 /// Fails where two pictures differ in a triangle id, a depth key or a number of hits.
@@ -74,16 +100,31 @@ pub(super) fn same(found: &Capture, expected: &Capture, what: &str) -> Result<()
 }
 
 /// Fails where two pictures differ in a triangle id or a depth key.
-pub(super) fn same_nearest(found: &Capture, expected: &Capture, what: &str) -> Result<(), EarlyEnd> {
-    same_values("triangle ids", &found.frame.triangle_id, &expected.frame.triangle_id, what)?;
-    same_values("depth keys", &found.frame.depth_key, &expected.frame.depth_key, what)
+pub(super) fn same_nearest(
+    found: &Capture,
+    expected: &Capture,
+    what: &str,
+) -> Result<(), EarlyEnd> {
+    same_values(
+        "triangle ids",
+        &found.frame.triangle_id,
+        &expected.frame.triangle_id,
+        what,
+    )?;
+    same_values(
+        "depth keys",
+        &found.frame.depth_key,
+        &expected.frame.depth_key,
+        what,
+    )
 }
 
 fn same_values(which: &str, found: &[u32], expected: &[u32], what: &str) -> Result<(), EarlyEnd> {
     match compare::triangle_ids(found, expected) {
-        delta if delta.different > 0 => {
-            Err(EarlyEnd::Failed(format!("{what}: {} pixels have other {which}: {:?}", delta.different, delta.mismatches)))
-        }
+        delta if delta.different > 0 => Err(EarlyEnd::Failed(format!(
+            "{what}: {} pixels have other {which}: {:?}",
+            delta.different, delta.mismatches
+        ))),
         _ => Ok(()),
     }
 }

@@ -9,7 +9,10 @@ use super::{
     checks::{EarlyEnd, check, once},
     context::CaseContext,
     drawing::{pinned, stack},
-    scenes::{camera_view, pixel_view, scene_of_meshes, square_perspective, triangle_soup, triangle_soup_in_units},
+    scenes::{
+        camera_view, pixel_view, scene_of_meshes, square_perspective, triangle_soup,
+        triangle_soup_in_units,
+    },
 };
 use crate::{
     math::{GUARD_BAND, SMALL_EXTENT, UNITS_PER_PIXEL},
@@ -42,7 +45,9 @@ pub const CASES: &[Case] = &[
         number: 11,
         name: "near-plane-sweep",
         about: "the near plane moves through a closed shell and the ground below it in 1,000 steps",
-        expectation: Expectation::Bounded("at most 48 pixels along a cut may show a neighboring triangle"),
+        expectation: Expectation::Bounded(
+            "at most 48 pixels along a cut may show a neighboring triangle",
+        ),
         run: near_plane_sweep,
     },
 ];
@@ -58,8 +63,18 @@ fn guard_band(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             let reach = |axis: usize| GUARD_BAND + (beyond >> (2 * i + axis) & 1);
             [x * reach(0), y * reach(1)]
         };
-        let [a, b, c, d] = [corner(0, [-1, -1]), corner(1, [1, -1]), corner(2, [1, 1]), corner(3, [-1, 1])];
-        let faces = [[center, a, b], [center, b, c], [center, c, d], [center, d, a]];
+        let [a, b, c, d] = [
+            corner(0, [-1, -1]),
+            corner(1, [1, -1]),
+            corner(2, [1, 1]),
+            corner(3, [-1, 1]),
+        ];
+        let faces = [
+            [center, a, b],
+            [center, b, c],
+            [center, c, d],
+            [center, d, a],
+        ];
         let scene = scene_of_meshes(&[triangle_soup_in_units(&faces.map(|face| (face, 0.5)))]);
         let what = format!("corners beyond: {beyond:08b}");
         let capture = match beyond {
@@ -70,13 +85,23 @@ fn guard_band(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         once(&capture, &what)?;
         for (vertex, [x, y]) in capture.geometry.vertices.iter().zip(faces.as_flattened()) {
             let is_inside = x.abs().max(y.abs()) <= GUARD_BAND;
-            check!((vertex.flags == 0) == is_inside, "{what}: the vertex at {x}, {y} has the flags {}", vertex.flags);
-            check!(!is_inside || (vertex.x, vertex.y) == (*x, *y), "{what}: {vertex:?} for {x}, {y}");
+            check!(
+                (vertex.flags == 0) == is_inside,
+                "{what}: the vertex at {x}, {y} has the flags {}",
+                vertex.flags
+            );
+            check!(
+                !is_inside || (vertex.x, vertex.y) == (*x, *y),
+                "{what}: {vertex:?} for {x}, {y}"
+            );
         }
         let counters = capture.frame.counters;
         (whole, cut) = (whole + 4 - counters.clipped, cut + counters.clipped);
     }
-    check!(whole >= 4 * 16 && cut > 512, "{whole} triangles whole, {cut} cut");
+    check!(
+        whole >= 4 * 16 && cut > 512,
+        "{whole} triangles whole, {cut} cut"
+    );
     Ok(())
 }
 
@@ -92,16 +117,31 @@ fn clipped_needles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                 let beyond = GUARD_BAND + rng.between(1, GUARD_BAND);
                 let mut corner = |i: usize| {
                     // One corner in the picture and two beyond, or two and one.
-                    let along = if i == 0 || i == 1 && needle % 2 == 0 { along[i] } else { (dx + dy) * beyond };
+                    let along = if i == 0 || i == 1 && needle % 2 == 0 {
+                        along[i]
+                    } else {
+                        (dx + dy) * beyond
+                    };
                     // Thinner than what small kernels may draw.
                     let across = middle + rng.between(-SMALL_EXTENT / 2, SMALL_EXTENT / 2);
-                    if dx == 0 { [across, along] } else { [along, across] }
+                    if dx == 0 {
+                        [across, along]
+                    } else {
+                        [along, across]
+                    }
                 };
-                ([corner(0), corner(1), corner(2)], 0.25 + needle as f32 / 64.0)
+                (
+                    [corner(0), corner(1), corner(2)],
+                    0.25 + needle as f32 / 64.0,
+                )
             })
             .collect();
         let what = format!("needles towards {dx}, {dy}");
-        let capture = context.exact_on_all(&scene_of_meshes(&[triangle_soup_in_units(&needles)]), &view, &what)?;
+        let capture = context.exact_on_all(
+            &scene_of_meshes(&[triangle_soup_in_units(&needles)]),
+            &view,
+            &what,
+        )?;
         let counters = capture.frame.counters;
         check!(
             counters.clipped >= 20 && capture.frame.covered() > 2000,
@@ -115,21 +155,45 @@ fn clipped_needles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
 fn w_around_zero(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let near = 1.0f32 / 128.0;
     let step = |v: f32, by: i32| f32::from_bits(v.to_bits().wrapping_add_signed(by));
-    let depths = [0.0, 1e-30, -1e-30, near, step(near, 1), step(near, -1), 1.0, -1.0, 0.5, 1e3, -1e3];
+    let depths = [
+        0.0,
+        1e-30,
+        -1e-30,
+        near,
+        step(near, 1),
+        step(near, -1),
+        1.0,
+        -1.0,
+        0.5,
+        1e3,
+        -1e3,
+    ];
     for round in 1..=6 {
         let mut rng = context.rng(round);
         let mut corner = || {
             let w = depths[rng.between(0, depths.len() as i32) as usize];
             let spread = if w.abs() > 1.0 { 900.0 } else { 2.0 };
-            [rng.real(-spread, spread) as f32, rng.real(-spread, spread) as f32, -w]
+            [
+                rng.real(-spread, spread) as f32,
+                rng.real(-spread, spread) as f32,
+                -w,
+            ]
         };
         let positions: Vec<_> = (0..180).map(|_| corner()).collect();
         let view = square_perspective(64, 64, near.into());
         let what = format!("round {round}");
-        let capture = context.exact_on_all(&scene_of_meshes(&[triangle_soup(positions)]), &view, &what)?;
+        let capture =
+            context.exact_on_all(&scene_of_meshes(&[triangle_soup(positions)]), &view, &what)?;
         let counters = capture.frame.counters;
-        check!(counters.clipped > 20 && capture.frame.covered() > 2000, "{what}: {counters:?}");
-        let wild = capture.geometry.vertices.iter().find(|v| !(v.depth.is_finite() && v.inv_w.is_finite() && v.inv_w <= 129.0));
+        check!(
+            counters.clipped > 20 && capture.frame.covered() > 2000,
+            "{what}: {counters:?}"
+        );
+        let wild = capture
+            .geometry
+            .vertices
+            .iter()
+            .find(|v| !(v.depth.is_finite() && v.inv_w.is_finite() && v.inv_w <= 129.0));
         check!(wild.is_none(), "{what}: {wild:?}");
     }
     Ok(())
@@ -138,7 +202,11 @@ fn w_around_zero(context: &mut CaseContext) -> Result<(), EarlyEnd> {
 fn near_plane_sweep(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let mut shell = Scene::clone(&*context.scene("sphere?triangles=300")?);
     shell.materials[0].double_sided = true;
-    let ground = scene_of_meshes(&[triangle_soup(vec![[-50.0, -0.5, -50.0], [-50.0, -0.5, 50.0], [50.0, -0.5, 50.0]])]);
+    let ground = scene_of_meshes(&[triangle_soup(vec![
+        [-50.0, -0.5, -50.0],
+        [-50.0, -0.5, 50.0],
+        [50.0, -0.5, 50.0],
+    ])]);
     let shell = Arc::new(shell);
     let option = pinned(context.quick_option());
     let (mut cut, mut worst) = (0, 0);
@@ -146,15 +214,31 @@ fn near_plane_sweep(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let way = f64::from(step) / 1000.0;
         let scene = if step % 4 == 0 { &ground } else { &shell };
         let eye = DVec3::new(0.3 - 0.4 * way, 0.9 - 1.6 * way, 1.7 - 1.4 * way);
-        let camera = Camera { eye, target: DVec3::new(0.1, -0.2, -1.0), near_m: 0.1, ..Camera::default() };
+        let camera = Camera {
+            eye,
+            target: DVec3::new(0.1, -0.2, -1.0),
+            near_m: 0.1,
+            ..Camera::default()
+        };
         let view = camera_view(scene, &camera, [48, 32]);
-        let (capture, verdict) = context.exact(scene, &view, &stack(&["depth"]), &option, &format!("step {step}"))?;
+        let (capture, verdict) = context.exact(
+            scene,
+            &view,
+            &stack(&["depth"]),
+            &option,
+            &format!("step {step}"),
+        )?;
         cut += u32::from(capture.frame.counters.clipped > 0);
         worst = worst.max(verdict.report.explained_by_snap);
     }
     check!(cut > 300, "{cut} pictures were clipped");
     // Clipped outlines may move by less than a pixel: at most one row along the longest cut.
-    check!(worst <= 48, "{worst} pixels differ from the oracle's own picture");
-    context.note(format!("at most {worst} pixels of a picture differ from the oracle's along a cut"));
+    check!(
+        worst <= 48,
+        "{worst} pixels differ from the oracle's own picture"
+    );
+    context.note(format!(
+        "at most {worst} pixels of a picture differ from the oracle's along a cut"
+    ));
     Ok(())
 }

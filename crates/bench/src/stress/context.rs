@@ -1,5 +1,5 @@
-//! The context of a running case: draws with every option and work distribution, compares with the oracle, counts, and can
-//! be stopped between pictures.
+//! The context of a running case: draws with every option and work distribution, compares with the
+//! oracle, counts, and can be stopped between pictures.
 
 use std::sync::Arc;
 
@@ -66,7 +66,11 @@ pub(super) struct Strict {
 }
 
 impl<'a> CaseContext<'a> {
-    pub(super) fn new(renderer: &'a mut Renderer, seed: u32, keep_going: &'a dyn Fn(&str) -> bool) -> Self {
+    pub(super) fn new(
+        renderer: &'a mut Renderer,
+        seed: u32,
+        keep_going: &'a dyn Fn(&str) -> bool,
+    ) -> Self {
         let default = renderer.gpu().caps.tuning();
         renderer.set_tuning(default);
         Self {
@@ -86,7 +90,12 @@ impl<'a> CaseContext<'a> {
     pub(super) fn leave(self) -> CaseResult {
         let default = self.renderer.gpu().caps.tuning();
         self.renderer.set_tuning(default);
-        CaseResult { refusal: self.refusal, seed: self.is_seeded.then_some(self.seed), notes: self.notes, counts: self.counts }
+        CaseResult {
+            refusal: self.refusal,
+            seed: self.is_seeded.then_some(self.seed),
+            notes: self.notes,
+            counts: self.counts,
+        }
     }
 
     /// A random number generator; each stream and each seed gives other numbers.
@@ -95,7 +104,8 @@ impl<'a> CaseContext<'a> {
         Rng(stream ^ hash(self.seed))
     }
 
-    /// From now on any number of pixels may be in the depth band. Needed for pictures of few pixels.
+    /// From now on any number of pixels may be in the depth band. Needed for pictures of few
+    /// pixels.
     pub(super) fn allow_any_depth_band(&mut self) {
         self.allows_any_depth_band = true;
     }
@@ -117,11 +127,19 @@ impl<'a> CaseContext<'a> {
         self.counts.pictures += 1;
         self.counts.pixels += view.pixels() as u64;
         self.counts.triangles += scene.triangle_count();
-        if (self.keep_going)(what) { Ok(()) } else { Err(EarlyEnd::Stopped) }
+        if (self.keep_going)(what) {
+            Ok(())
+        } else {
+            Err(EarlyEnd::Stopped)
+        }
     }
 
     /// Runs a case with strict accuracy. Its remarks are dropped, since it made them before.
-    pub(super) fn strictly(&mut self, name: &str, run: fn(&mut Self) -> Result<(), EarlyEnd>) -> Result<Strict, EarlyEnd> {
+    pub(super) fn strictly(
+        &mut self,
+        name: &str,
+        run: fn(&mut Self) -> Result<(), EarlyEnd>,
+    ) -> Result<Strict, EarlyEnd> {
         let remarks = self.notes.len();
         self.strict = Some(Strict::default());
         let outcome = run(self);
@@ -136,7 +154,8 @@ impl<'a> CaseContext<'a> {
         }
     }
 
-    /// The accuracy for a picture: strict where that is requested and the picture does not depend on floats.
+    /// The accuracy for a picture: strict where that is requested and the picture does not depend
+    /// on floats.
     fn requested(
         &mut self,
         scene: &Arc<Scene>,
@@ -144,8 +163,13 @@ impl<'a> CaseContext<'a> {
         stack: &Stack,
         accuracy: &AccuracyRequest,
     ) -> Result<AccuracyRequest, EarlyEnd> {
-        let Some(strict) = &mut self.strict else { return Ok(*accuracy) };
-        let expected = AccuracyRequest { tier: Tier::Strict, ..*accuracy };
+        let Some(strict) = &mut self.strict else {
+            return Ok(*accuracy);
+        };
+        let expected = AccuracyRequest {
+            tier: Tier::Strict,
+            ..*accuracy
+        };
         self.renderer.set_scene(scene).block_on()?;
         match self.renderer.draw(view, stack, &expected).block_on() {
             Err(RenderError::Plan(_)) => {
@@ -157,20 +181,39 @@ impl<'a> CaseContext<'a> {
     }
 
     /// Compares a strict picture with the CPU's, bit by bit.
-    fn hold_strict(&mut self, capture: &Capture, scene: &Scene, view: &View, stack: &Stack, what: &str) -> Result<(), EarlyEnd> {
-        let Some(strict) = &mut self.strict else { return Ok(()) };
+    fn hold_strict(
+        &mut self,
+        capture: &Capture,
+        scene: &Scene,
+        view: &View,
+        stack: &Stack,
+        what: &str,
+    ) -> Result<(), EarlyEnd> {
+        let Some(strict) = &mut self.strict else {
+            return Ok(());
+        };
         let view = &view.with_grid(view.precision.subpixel_bits, capture.geometry.is_relative);
         let (triangle_id, key) = oracle::strict_frame(scene, view, stack)?;
-        let folded = |hash: u64, [a, b]: [&[u32]; 2]| fnv1a(&[&[hash as u32, (hash >> 32) as u32], a, b].concat());
+        let folded = |hash: u64, [a, b]: [&[u32]; 2]| {
+            fnv1a(&[&[hash as u32, (hash >> 32) as u32], a, b].concat())
+        };
         strict.pictures += 1;
-        strict.adapter = folded(strict.adapter, [&capture.frame.triangle_id, &capture.frame.depth_key]);
+        strict.adapter = folded(
+            strict.adapter,
+            [&capture.frame.triangle_id, &capture.frame.depth_key],
+        );
         strict.cpu = folded(strict.cpu, [&triangle_id, &key]);
-        let different = [(&capture.frame.triangle_id, &triangle_id), (&capture.frame.depth_key, &key)]
-            .map(|(a, b)| compare::triangle_ids(a, b).different);
+        let different = [
+            (&capture.frame.triangle_id, &triangle_id),
+            (&capture.frame.depth_key, &key),
+        ]
+        .map(|(a, b)| compare::triangle_ids(a, b).different);
         if different == [0, 0] {
             Ok(())
         } else {
-            Err(EarlyEnd::Failed(format!("{what}: {different:?} triangle ids and keys are not the CPU's")))
+            Err(EarlyEnd::Failed(format!(
+                "{what}: {different:?} triangle ids and keys are not the CPU's"
+            )))
         }
     }
 
@@ -199,12 +242,18 @@ impl<'a> CaseContext<'a> {
 
     /// Builds a built-in scene.
     pub(super) fn scene(&self, query: &str) -> Result<Arc<Scene>, EarlyEnd> {
-        builtin::build(query).map(Arc::new).map_err(|error| EarlyEnd::Failed(format!("{query}: {error}")))
+        builtin::build(query)
+            .map(Arc::new)
+            .map_err(|error| EarlyEnd::Failed(format!("{query}: {error}")))
     }
 
     /// The view of a scene with the default camera.
     pub(super) fn view(&self, scene: &Scene, size: [u32; 2]) -> View {
-        Preset { scene: SceneSource::Builtin(scene.name.clone()), ..Preset::default() }.view(scene, size)
+        Preset {
+            scene: SceneSource::Builtin(scene.name.clone()),
+            ..Preset::default()
+        }
+        .view(scene, size)
     }
 
     /// Draws without judging.
@@ -218,7 +267,8 @@ impl<'a> CaseContext<'a> {
     ) -> Result<Capture, EarlyEnd> {
         self.step(scene, view, what)?;
         let accuracy = &self.requested(scene, view, stack, accuracy)?;
-        drawing::captured(self.renderer, scene, view, stack, accuracy).map_err(|error| EarlyEnd::Failed(format!("{what}: {error}")))
+        drawing::captured(self.renderer, scene, view, stack, accuracy)
+            .map_err(|error| EarlyEnd::Failed(format!("{what}: {error}")))
     }
 
     /// Draws and judges.
@@ -232,8 +282,8 @@ impl<'a> CaseContext<'a> {
     ) -> Result<(Capture, Verdict), EarlyEnd> {
         self.step(scene, view, what)?;
         let accuracy = &self.requested(scene, view, stack, accuracy)?;
-        let judged =
-            drawing::judged(self.renderer, scene, view, stack, accuracy).map_err(|error| EarlyEnd::Failed(format!("{what}: {error}")))?;
+        let judged = drawing::judged(self.renderer, scene, view, stack, accuracy)
+            .map_err(|error| EarlyEnd::Failed(format!("{what}: {error}")))?;
         if accuracy.tier == Tier::Strict && view.pixels() > 0 {
             self.hold_strict(&judged.0, scene, view, stack, what)?;
         }
@@ -250,14 +300,19 @@ impl<'a> CaseContext<'a> {
         what: &str,
     ) -> Result<(Capture, Verdict), EarlyEnd> {
         let (capture, verdict) = self.judged(scene, view, stack, accuracy, what)?;
-        let judgement = if self.allows_any_depth_band { verdict.report.within(&Budget::default()) } else { exactness(&verdict.report) };
+        let judgement = if self.allows_any_depth_band {
+            verdict.report.within(&Budget::default())
+        } else {
+            exactness(&verdict.report)
+        };
         match judgement {
             Ok(()) => Ok((capture, verdict)),
             Err(faults) => Err(EarlyEnd::Failed(format!("{what}: {faults}"))),
         }
     }
 
-    /// Draws a picture that may use what the last one left, judges it and insists on [`exactness`]; what was left out of it.
+    /// Draws a picture that may use what the last one left, judges it and insists on [`exactness`];
+    /// what was left out of it.
     pub(super) fn exact_next(
         &mut self,
         scene: &Arc<Scene>,
@@ -267,39 +322,65 @@ impl<'a> CaseContext<'a> {
         what: &str,
     ) -> Result<CullingStats, EarlyEnd> {
         if self.strict.is_some() {
-            return Err(EarlyEnd::Skipped("pictures that follow others are drawn with default accuracy".into()));
+            return Err(EarlyEnd::Skipped(
+                "pictures that follow others are drawn with default accuracy".into(),
+            ));
         }
         self.step(scene, view, what)?;
         let failed = |error: String| EarlyEnd::Failed(format!("{what}: {error}"));
         self.renderer.set_scene(scene).block_on()?;
-        let capture = self.renderer.capture_next(view, stack, accuracy).block_on().map_err(|error| failed(error.to_string()))?;
+        let capture = self
+            .renderer
+            .capture_next(view, stack, accuracy)
+            .block_on()
+            .map_err(|error| failed(error.to_string()))?;
         let verdict = oracle::judge(scene, view, stack, &capture.picture())?;
         exactness(&verdict.report).map_err(failed)?;
         Ok(self.renderer.culled().unwrap_or_default())
     }
 
-    /// Draws with every exact option and the work distribution of a graphics card, and with the quickest option also with a
-    /// workgroup for each triangle and with the adapter's default. Every picture must be exact and equal to the first, which is
-    /// returned.
-    pub(super) fn exact_on_all_with(&mut self, scene: &Arc<Scene>, view: &View, stack: &Stack, what: &str) -> Result<Capture, EarlyEnd> {
+    /// Draws with every exact option and the work distribution of a graphics card, and with the
+    /// quickest option also with a workgroup for each triangle and with the adapter's default.
+    /// Every picture must be exact and equal to the first, which is returned.
+    pub(super) fn exact_on_all_with(
+        &mut self,
+        scene: &Arc<Scene>,
+        view: &View,
+        stack: &Stack,
+        what: &str,
+    ) -> Result<Capture, EarlyEnd> {
         if self.strict.is_some() {
-            return Ok(self.exact(scene, view, stack, &pinned(self.quick_option()), what)?.0);
+            return Ok(self
+                .exact(scene, view, stack, &pinned(self.quick_option()), what)?
+                .0);
         }
         let default = self.renderer.gpu().caps.tuning();
-        let [workgroup_each, card] = [WorkDistribution::WorkgroupEach, WorkDistribution::Card].map(WorkDistribution::tuning);
+        let [workgroup_each, card] =
+            [WorkDistribution::WorkgroupEach, WorkDistribution::Card].map(WorkDistribution::tuning);
         let last = self.quick_option();
         let options = self.options();
         let ways: Vec<_> = if self.is_slow() {
             // Compiling kernels takes longer than drawing all their pictures.
             self.note("each option and each way to share out work is drawn once, since this adapter is slow".into());
-            options.into_iter().zip([workgroup_each, card].into_iter().cycle()).collect()
+            options
+                .into_iter()
+                .zip([workgroup_each, card].into_iter().cycle())
+                .collect()
         } else {
-            options.into_iter().map(|option| (option, card)).chain([(last, workgroup_each), (last, default)]).collect()
+            options
+                .into_iter()
+                .map(|option| (option, card))
+                .chain([(last, workgroup_each), (last, default)])
+                .collect()
         };
         let mut first: Option<Capture> = None;
         for (option, tuning) in ways {
             self.renderer.set_tuning(tuning);
-            let what = format!("{what}, {}, up to {} samples to an invocation", option.name(), tuning.max_small_samples);
+            let what = format!(
+                "{what}, {}, up to {} samples to an invocation",
+                option.name(),
+                tuning.max_small_samples
+            );
             let (capture, _) = self.exact(scene, view, stack, &pinned(option), &what)?;
             match &first {
                 None => first = Some(capture),
@@ -307,11 +388,20 @@ impl<'a> CaseContext<'a> {
             }
         }
         self.renderer.set_tuning(default);
-        first.ok_or_else(|| EarlyEnd::Failed(format!("{what}: this adapter has no exact visibility option")))
+        first.ok_or_else(|| {
+            EarlyEnd::Failed(format!(
+                "{what}: this adapter has no exact visibility option"
+            ))
+        })
     }
 
     /// [`Self::exact_on_all_with`] without effects.
-    pub(super) fn exact_on_all(&mut self, scene: &Arc<Scene>, view: &View, what: &str) -> Result<Capture, EarlyEnd> {
+    pub(super) fn exact_on_all(
+        &mut self,
+        scene: &Arc<Scene>,
+        view: &View,
+        what: &str,
+    ) -> Result<Capture, EarlyEnd> {
         self.exact_on_all_with(scene, view, &Stack::default(), what)
     }
 }

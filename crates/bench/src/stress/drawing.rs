@@ -1,4 +1,5 @@
-//! Draws and judges single pictures; the accuracy, stacks and work distributions that cases and tests draw with.
+//! Draws and judges single pictures; the accuracy, stacks and work distributions that cases and
+//! tests draw with.
 
 use std::sync::Arc;
 
@@ -14,7 +15,8 @@ use crate::{
     scene::{Scene, view::View},
 };
 
-/// Largest fraction of pixels in the depth band, where two triangle ids are correct. 16 pixels are always allowed.
+/// Largest fraction of pixels in the depth band, where two triangle ids are correct. 16 pixels are
+/// always allowed.
 pub const MAX_DEPTH_BAND_FRACTION: f64 = 0.01;
 
 /// Checks that all integers are exact, colors are within one step, and the depth band is small.
@@ -22,7 +24,10 @@ pub const MAX_DEPTH_BAND_FRACTION: f64 = 0.01;
 /// # Errors
 /// A sentence for each violation.
 pub fn exactness(errors: &ErrorReport) -> Result<(), String> {
-    errors.within(&Budget { max_depth_band_pixels: ((errors.pixels as f64 * MAX_DEPTH_BAND_FRACTION) as u64).max(16), ..Budget::default() })
+    errors.within(&Budget {
+        max_depth_band_pixels: ((errors.pixels as f64 * MAX_DEPTH_BAND_FRACTION) as u64).max(16),
+        ..Budget::default()
+    })
 }
 
 /// How triangles are distributed over invocations and workgroups.
@@ -40,7 +45,12 @@ pub enum WorkDistribution {
 
 impl WorkDistribution {
     /// Together they use every kernel.
-    pub const ALL: [Self; 4] = [Self::WorkgroupEach, Self::CardListedTiles, Self::Card, Self::InvocationEach];
+    pub const ALL: [Self; 4] = [
+        Self::WorkgroupEach,
+        Self::CardListedTiles,
+        Self::Card,
+        Self::InvocationEach,
+    ];
 
     /// The tuning that distributes work in this way.
     pub fn tuning(self) -> Tuning {
@@ -78,17 +88,27 @@ pub fn tunings() -> [Tuning; 4] {
 
 /// The visibility options that lose nothing and that an adapter has.
 pub fn options(caps: &Caps) -> Vec<Visibility> {
-    Visibility::EXACT.into_iter().filter(|option| option.is_supported(caps.int64_atomics)).collect()
+    Visibility::EXACT
+        .into_iter()
+        .filter(|option| option.is_supported(caps.int64_atomics))
+        .collect()
 }
 
 /// The exact option that a CPU adapter is quickest on, for what takes long.
 pub fn quick_option(caps: &Caps) -> Visibility {
-    if caps.int64_atomics { Visibility::Packed64 } else { Visibility::Split32 }
+    if caps.int64_atomics {
+        Visibility::Packed64
+    } else {
+        Visibility::Split32
+    }
 }
 
 /// A request for one visibility option, all else planned.
 pub fn pinned(visibility: Visibility) -> AccuracyRequest {
-    AccuracyRequest { pins: PinnedOptions::of(visibility), ..AccuracyRequest::default() }
+    AccuracyRequest {
+        pins: PinnedOptions::of(visibility),
+        ..AccuracyRequest::default()
+    }
 }
 
 /// A stack of effects with default parameters.
@@ -115,8 +135,14 @@ pub fn captured(
     accuracy: &AccuracyRequest,
 ) -> Result<Capture, String> {
     let name = &scene.name;
-    renderer.set_scene(scene).block_on().map_err(|error| format!("{name}: {error}"))?;
-    let capture = renderer.capture(view, stack, accuracy).block_on().map_err(|error| format!("{name}: {error}"))?;
+    renderer
+        .set_scene(scene)
+        .block_on()
+        .map_err(|error| format!("{name}: {error}"))?;
+    let capture = renderer
+        .capture(view, stack, accuracy)
+        .block_on()
+        .map_err(|error| format!("{name}: {error}"))?;
     match renderer.gpu().take_error() {
         Some(error) => Err(format!("{name}: the device reports {error}")),
         None => Ok(capture),
@@ -135,6 +161,7 @@ pub fn judged(
     accuracy: &AccuracyRequest,
 ) -> Result<(Capture, Verdict), String> {
     let capture = captured(renderer, scene, view, stack, accuracy)?;
-    let verdict = oracle::judge(scene, view, stack, &capture.picture()).map_err(|error| format!("{}: {error}", scene.name))?;
+    let verdict = oracle::judge(scene, view, stack, &capture.picture())
+        .map_err(|error| format!("{}: {error}", scene.name))?;
     Ok((capture, verdict))
 }

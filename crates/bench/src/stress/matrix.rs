@@ -1,4 +1,5 @@
-//! Scenes by effects by options by work distributions: every pair of them in few pictures, and their full products.
+//! Scenes by effects by options by work distributions: every pair of them in few pictures, and
+//! their full products.
 
 use std::{collections::BTreeSet, sync::Arc};
 
@@ -14,7 +15,8 @@ use super::{
 };
 use crate::{
     accuracy::{
-        AXES, Axis, AxisOption, Culling, DepthFormat, Parameters, PinnedOptions, PositionFormat, RenderScale, Skinning, Visibility,
+        AXES, Axis, AxisOption, Culling, DepthFormat, Parameters, PinnedOptions, PositionFormat,
+        RenderScale, Skinning, Visibility,
     },
     effects::{EFFECTS, Stack},
     gpu::{Capture, RenderError},
@@ -50,7 +52,9 @@ pub const CASES: &[Case] = &[
         number: 36,
         name: "scenes-by-axes",
         about: "every built-in scene with every option of every accuracy axis: drawn, or refused in words",
-        expectation: Expectation::Bounded("one triangle id in ten may differ where an option errs by design"),
+        expectation: Expectation::Bounded(
+            "one triangle id in ten may differ where an option errs by design",
+        ),
         run: scenes_by_axes,
     },
 ];
@@ -92,14 +96,18 @@ const MAX_PARTICLES: f64 = 200.0;
 /// Time of every picture, seconds: clips and particles have moved.
 const TIME_S: f64 = 0.4;
 
-// ---------------------------------------------------------------- covering
+// -------- covering
 
-/// Rows of levels, one level of each factor, in which every pair of levels of two factors stands at least once: a covering array of
-/// strength 2. `counts`: the number of levels of each factor, at least 1.
+/// Rows of levels, one level of each factor, in which every pair of levels of two factors stands at
+/// least once: a covering array of strength 2. `counts`: the number of levels of each factor, at
+/// least 1.
 ///
-/// Greedy: a row begins with a pair that no row has, and takes the level of each other factor that adds most new pairs.
+/// Greedy: a row begins with a pair that no row has, and takes the level of each other factor that
+/// adds most new pairs.
 pub fn covering_rows(counts: &[usize], rng: &mut Rng) -> Vec<Vec<usize>> {
-    let pair = |(f, a): (usize, usize), (g, b): (usize, usize)| if f < g { (f, a, g, b) } else { (g, b, f, a) };
+    let pair = |(f, a): (usize, usize), (g, b): (usize, usize)| {
+        if f < g { (f, a, g, b) } else { (g, b, f, a) }
+    };
     let mut missing: BTreeSet<(usize, usize, usize, usize)> = BTreeSet::new();
     for g in 0..counts.len() {
         for f in 0..g {
@@ -114,8 +122,16 @@ pub fn covering_rows(counts: &[usize], rng: &mut Rng) -> Vec<Vec<usize>> {
         for h in others {
             let mut levels: Vec<usize> = (0..counts[h]).collect();
             rng.shuffle(&mut levels);
-            let gain = |level: &usize| chosen.iter().filter(|&&one| missing.contains(&pair(one, (h, *level)))).count();
-            let best = levels.into_iter().max_by_key(gain).expect("a factor has a level");
+            let gain = |level: &usize| {
+                chosen
+                    .iter()
+                    .filter(|&&one| missing.contains(&pair(one, (h, *level))))
+                    .count()
+            };
+            let best = levels
+                .into_iter()
+                .max_by_key(gain)
+                .expect("a factor has a level");
             chosen.push((h, best));
         }
         chosen.sort_unstable();
@@ -129,16 +145,28 @@ pub fn covering_rows(counts: &[usize], rng: &mut Rng) -> Vec<Vec<usize>> {
     rows
 }
 
-/// For each row the scenes to draw with it, so that every scene meets every level of every factor. Pictures of a row share their kernels.
+/// For each row the scenes to draw with it, so that every scene meets every level of every factor.
+/// Pictures of a row share their kernels.
 fn scenes_of_rows(rows: &[Vec<usize>], scenes: usize) -> Vec<Vec<usize>> {
-    let mut missing: BTreeSet<(usize, usize, usize)> =
-        rows.iter().flat_map(|row| row.iter().enumerate()).flat_map(|(f, &a)| (0..scenes).map(move |scene| (scene, f, a))).collect();
+    let mut missing: BTreeSet<(usize, usize, usize)> = rows
+        .iter()
+        .flat_map(|row| row.iter().enumerate())
+        .flat_map(|(f, &a)| (0..scenes).map(move |scene| (scene, f, a)))
+        .collect();
     let mut of_rows = vec![Vec::new(); rows.len()];
     while !missing.is_empty() {
         for (at, (row, of_row)) in rows.iter().zip(&mut of_rows).enumerate() {
-            let gain = |scene: usize| row.iter().enumerate().filter(|&(f, &a)| missing.contains(&(scene, f, a))).count();
+            let gain = |scene: usize| {
+                row.iter()
+                    .enumerate()
+                    .filter(|&(f, &a)| missing.contains(&(scene, f, a)))
+                    .count()
+            };
             // Rows begin with different scenes, so that equal gains do not all go to the first.
-            let best = (0..scenes).map(|scene| (scene + at) % scenes).max_by_key(|&scene| gain(scene)).expect("a scene");
+            let best = (0..scenes)
+                .map(|scene| (scene + at) % scenes)
+                .max_by_key(|&scene| gain(scene))
+                .expect("a scene");
             if gain(best) > 0 {
                 missing.retain(|&(scene, f, a)| scene != best || row[f] != a);
                 of_row.push(best);
@@ -148,7 +176,7 @@ fn scenes_of_rows(rows: &[Vec<usize>], scenes: usize) -> Vec<Vec<usize>> {
     of_rows
 }
 
-// ---------------------------------------------------------------- factors
+// -------- factors
 
 /// What a level of a factor gives a picture.
 #[derive(Clone, Copy)]
@@ -161,15 +189,39 @@ enum Level {
 }
 
 fn pins<O: AxisOption>(levels: &[O]) -> Vec<Level> {
-    levels.iter().map(|option| Level::Pin(&AXES[O::AXIS], option.index())).collect()
+    levels
+        .iter()
+        .map(|option| Level::Pin(&AXES[O::AXIS], option.index()))
+        .collect()
 }
 
-/// The factors of [`every_pair`] besides the scene. Effects that exclude one another are levels of one factor.
+/// The factors of [`every_pair`] besides the scene. Effects that exclude one another are levels of
+/// one factor.
 fn factors(caps: &Caps) -> Vec<Vec<Level>> {
-    let effects = |levels: &[&'static [&'static str]]| levels.iter().map(|names| Level::Effects(names)).collect::<Vec<_>>();
+    let effects = |levels: &[&'static [&'static str]]| {
+        levels
+            .iter()
+            .map(|names| Level::Effects(names))
+            .collect::<Vec<_>>()
+    };
     vec![
-        effects(&[&[], &["facet", "lambert"], &["triangle_id", "fog"], &["normals", "toon"], &["lambert", "hatch"], &["depth"]]),
-        effects(&[&[], &["dissolve"], &["stipple"], &["wireframe"], &["draw_order"], &["boxes"], &["points"]]),
+        effects(&[
+            &[],
+            &["facet", "lambert"],
+            &["triangle_id", "fog"],
+            &["normals", "toon"],
+            &["lambert", "hatch"],
+            &["depth"],
+        ]),
+        effects(&[
+            &[],
+            &["dissolve"],
+            &["stipple"],
+            &["wireframe"],
+            &["draw_order"],
+            &["boxes"],
+            &["points"],
+        ]),
         effects(&[&[], &["explode"], &["inflate"], &["wobble"]]),
         effects(&[&[], &["xray"], &["overdraw"], &["race"]]),
         effects(&[&[], &["posterize"], &["outline"], &["dither"]]),
@@ -180,7 +232,11 @@ fn factors(caps: &Caps) -> Vec<Vec<Level>> {
         pins(&[PositionFormat::Stored, PositionFormat::Relative]),
         pins(&[Skinning::Linear, Skinning::Dual]),
         pins(&[Parameters::Uniform, Parameters::Baked]),
-        tunings().into_iter().chain([caps.tuning()]).map(Level::Tuning).collect(),
+        tunings()
+            .into_iter()
+            .chain([caps.tuning()])
+            .map(Level::Tuning)
+            .collect(),
         [false, true].map(Level::RandomValues).to_vec(),
         [false, true].map(Level::Gradient).to_vec(),
     ]
@@ -188,20 +244,31 @@ fn factors(caps: &Caps) -> Vec<Vec<Level>> {
 
 /// A preset of the scene `query` with these effects.
 fn preset(query: &str, scene: &Scene, stack: Stack) -> Preset {
-    let clip = scene.rig.clips.first().map(|clip| clip.name.clone()).unwrap_or_default();
+    let clip = scene
+        .rig
+        .clips
+        .first()
+        .map(|clip| clip.name.clone())
+        .unwrap_or_default();
     let mut preset = Preset {
         scene: SceneSource::Builtin(query.into()),
         stack,
-        clock: Clock { time_s: TIME_S, ..Clock::default() },
-        playback: ClipPlayback { clip, ..ClipPlayback::default() },
+        clock: Clock {
+            time_s: TIME_S,
+            ..Clock::default()
+        },
+        playback: ClipPlayback {
+            clip,
+            ..ClipPlayback::default()
+        },
         ..Preset::default()
     };
     limit(&mut preset.stack, scene);
     preset
 }
 
-/// Keeps the values on which the work of a picture depends where a picture of any scene is quickly drawn: lengths within a fraction of the
-/// scene's radius, few particles and dots.
+/// Keeps the values on which the work of a picture depends where a picture of any scene is quickly
+/// drawn: lengths within a fraction of the scene's radius, few particles and dots.
 fn limit(stack: &mut Stack, scene: &Scene) {
     let radius = scene.bounds().radius().clamp(1e-3, 1e5);
     for (name, field, range) in [
@@ -214,14 +281,21 @@ fn limit(stack: &mut Stack, scene: &Scene) {
     ] {
         if let Some(enabled) = stack.get_mut(name) {
             let field = enabled.effect.field(field).expect("a field of the effect");
-            let value = field.get(&enabled.words)[0].clamp(range[0], range[1]).clamp(field.hard[0], field.hard[1]);
-            field.set(&mut enabled.words, &[value]).expect("a value within the range");
+            let value = field.get(&enabled.words)[0]
+                .clamp(range[0], range[1])
+                .clamp(field.hard[0], field.hard[1]);
+            field
+                .set(&mut enabled.words, &[value])
+                .expect("a value within the range");
         }
     }
 }
 
 fn with_random_values(mut stack: Stack, rng: &mut Rng) -> Stack {
-    stack.0.iter_mut().for_each(|enabled| shake(rng, enabled, Values::OfSlider));
+    stack
+        .0
+        .iter_mut()
+        .for_each(|enabled| shake(rng, enabled, Values::OfSlider));
     stack
 }
 
@@ -231,10 +305,14 @@ fn every_pair(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let factors = factors(&context.renderer.gpu().caps);
     let rows = covering_rows(&factors.iter().map(Vec::len).collect::<Vec<_>>(), &mut rng);
     let queries = all_scenes();
-    let scenes = queries.iter().map(|query| context.scene(query)).collect::<Result<Vec<_>, _>>()?;
+    let scenes = queries
+        .iter()
+        .map(|query| context.scene(query))
+        .collect::<Result<Vec<_>, _>>()?;
     let of_rows = scenes_of_rows(&rows, scenes.len());
     for (row, of_row) in rows.iter().zip(&of_rows) {
-        let (mut names, mut pins, mut tuning, mut is_random, mut is_gradient) = (Vec::new(), PinnedOptions::default(), None, false, false);
+        let (mut names, mut pins, mut tuning, mut is_random, mut is_gradient) =
+            (Vec::new(), PinnedOptions::default(), None, false, false);
         for (levels, &level) in factors.iter().zip(row) {
             match levels[level] {
                 Level::Effects(effects) => names.extend(effects),
@@ -244,31 +322,56 @@ fn every_pair(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                 Level::Gradient(of_row) => is_gradient = of_row,
             }
         }
-        tuning.into_iter().for_each(|tuning| context.renderer.set_tuning(tuning));
+        tuning
+            .into_iter()
+            .for_each(|tuning| context.renderer.set_tuning(tuning));
         for &at in of_row {
             let (query, scene) = (queries[at], &scenes[at]);
-            let stack = if is_random { with_random_values(stack(&names), &mut rng) } else { stack(&names) };
+            let stack = if is_random {
+                with_random_values(stack(&names), &mut rng)
+            } else {
+                stack(&names)
+            };
             let mut preset = preset(query, scene, stack);
             if is_gradient {
                 preset.output.background_bottom = Some([0.9, 0.3, 0.1, 1.0]);
             }
             let (view, stack) = (preset.view(scene, SIZE), preset.evaluated_stack());
-            let what = format!("{query} with {names:?}{}, {}, {tuning:?}", if is_random { " of random values" } else { "" }, pins.words());
-            let accuracy = AccuracyRequest { pins, ..AccuracyRequest::default() };
+            let what = format!(
+                "{query} with {names:?}{}, {}, {tuning:?}",
+                if is_random { " of random values" } else { "" },
+                pins.words()
+            );
+            let accuracy = AccuracyRequest {
+                pins,
+                ..AccuracyRequest::default()
+            };
             let (_, verdict) = context.judged(scene, &view, &stack, &accuracy, &what)?;
-            // Boxes and discs fill the depth band, and random values may put many pixels on a step of color.
-            let has_bands = is_random || ["boxes", "points"].iter().any(|name| names.contains(name));
-            let bands = Budget { max_step_band_fraction: 1.0, ..Budget::default() };
-            let judgement = if has_bands { verdict.report.within(&bands) } else { exactness(&verdict.report) };
+            // Boxes and discs fill the depth band, and random values may put many pixels on a step
+            // of color.
+            let has_bands =
+                is_random || ["boxes", "points"].iter().any(|name| names.contains(name));
+            let bands = Budget {
+                max_step_band_fraction: 1.0,
+                ..Budget::default()
+            };
+            let judgement = if has_bands {
+                verdict.report.within(&bands)
+            } else {
+                exactness(&verdict.report)
+            };
             judgement.map_err(|fault| EarlyEnd::Failed(format!("{what}: {fault}")))?;
             let (ill, vertices) = (verdict.report.ill_conditioned, verdict.report.vertices);
-            check!(is_random || ill * 100 <= vertices, "{what}: {ill} of {vertices} corners are not judged");
+            check!(
+                is_random || ill * 100 <= vertices,
+                "{what}: {ill} of {vertices} corners are not judged"
+            );
         }
     }
     Ok(())
 }
 
-// ---------------------------------------------------------------- full products
+// -------- full products
 
 fn scenes_by_options(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let stack = stack(&["facet", "depth", "lambert"]);
@@ -286,8 +389,14 @@ fn scenes_by_options(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                     continue;
                 };
                 same(&capture, first, &what)?;
-                check!(capture.frame.color == first.frame.color, "{what}: other colors than the first picture's");
-                check!(capture.frame.counters == first.frame.counters, "{what}: other counters than the first picture's");
+                check!(
+                    capture.frame.color == first.frame.color,
+                    "{what}: other colors than the first picture's"
+                );
+                check!(
+                    capture.frame.counters == first.frame.counters,
+                    "{what}: other counters than the first picture's"
+                );
             }
         }
     }
@@ -323,16 +432,31 @@ fn scenes_by_effects(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                 }
                 let preset = preset(query, &scene, stack);
                 let moments = preset.moments(&scene, [96, 72]);
-                let (view, stack) = moments.last().ok_or_else(|| EarlyEnd::Failed(format!("{query} shows no moment")))?;
+                let (view, stack) = moments
+                    .last()
+                    .ok_or_else(|| EarlyEnd::Failed(format!("{query} shows no moment")))?;
                 // Every effect meets the options and tunings in turn.
                 turn += 1;
-                let (option, tuning) = (options[turn % options.len()], tunings[turn % tunings.len()]);
+                let (option, tuning) =
+                    (options[turn % options.len()], tunings[turn % tunings.len()]);
                 context.renderer.set_tuning(tuning);
-                let what = format!("{} on {query}, random: {is_random}, {}, {tuning:?}", effect.name, option.name());
+                let what = format!(
+                    "{} on {query}, random: {is_random}, {}, {tuning:?}",
+                    effect.name,
+                    option.name()
+                );
                 let (_, verdict) = context.judged(&scene, view, stack, &pinned(option), &what)?;
-                let most = if is_random { 1.0 } else { Budget::default().max_step_band_fraction };
-                let judgement = verdict.report.within(&Budget { max_step_band_fraction: most, ..Budget::default() });
-                judgement.map_err(|fault| EarlyEnd::Failed(format!("{what}: {fault}\n{stack:?}")))?;
+                let most = if is_random {
+                    1.0
+                } else {
+                    Budget::default().max_step_band_fraction
+                };
+                let judgement = verdict.report.within(&Budget {
+                    max_step_band_fraction: most,
+                    ..Budget::default()
+                });
+                judgement
+                    .map_err(|fault| EarlyEnd::Failed(format!("{what}: {fault}\n{stack:?}")))?;
             }
         }
     }
@@ -344,13 +468,21 @@ fn scenes_by_axes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let scenes = pictures(context, [160, 120])?;
     let mut exact = Vec::new();
     for (query, scene, view) in &scenes {
-        exact.push(context.captured(scene, view, &stack, &AccuracyRequest::default(), query)?.frame.triangle_id);
+        exact.push(
+            context
+                .captured(scene, view, &stack, &AccuracyRequest::default(), query)?
+                .frame
+                .triangle_id,
+        );
     }
     for axis in AXES {
         for index in 0..axis.words.len() {
             let mut pins = PinnedOptions::default();
             pins.set(axis, Some(index));
-            let accuracy = AccuracyRequest { pins, ..AccuracyRequest::default() };
+            let accuracy = AccuracyRequest {
+                pins,
+                ..AccuracyRequest::default()
+            };
             for ((query, scene, view), triangle_ids) in scenes.iter().zip(&exact) {
                 let what = format!("{query} on {}", pins.words());
                 context.step(scene, view, &what)?;
@@ -358,17 +490,29 @@ fn scenes_by_axes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                 match context.renderer.capture(view, &stack, &accuracy).block_on() {
                     Ok(capture) => {
                         let shown = capture.shown.as_ref().unwrap_or(&capture.frame);
-                        let different = compare::triangle_ids(&shown.triangle_id, triangle_ids).different;
-                        // What would be clipped may be all of a scene, a race may lose anything, a box that reaches far beyond the
-                        // picture has steps of pixels, and other pixels have other triangle ids.
+                        let different =
+                            compare::triangle_ids(&shown.triangle_id, triangle_ids).different;
+                        // What would be clipped may be all of a scene, a race may lose anything, a
+                        // box that reaches far beyond the picture has steps
+                        // of pixels, and other pixels have other triangle ids.
                         let may_be_any = axis.name == "clipping"
                             || pins.option() == Some(Visibility::Race)
-                            || pins.option::<PositionFormat>().is_some_and(|option| option.packed_bits().is_some())
-                            || pins.option::<RenderScale>().is_some_and(|option| option != RenderScale::Full);
-                        check!(may_be_any || different * 10 <= view.pixels() as u64, "{what}: {different} triangle ids differ");
+                            || pins
+                                .option::<PositionFormat>()
+                                .is_some_and(|option| option.packed_bits().is_some())
+                            || pins
+                                .option::<RenderScale>()
+                                .is_some_and(|option| option != RenderScale::Full);
+                        check!(
+                            may_be_any || different * 10 <= view.pixels() as u64,
+                            "{what}: {different} triangle ids differ"
+                        );
                     }
                     Err(error) => {
-                        check!(error.is_unsupported() && !matches!(error, RenderError::Lost), "{what}: {error}");
+                        check!(
+                            error.is_unsupported() && !matches!(error, RenderError::Lost),
+                            "{what}: {error}"
+                        );
                     }
                 }
                 let error = context.renderer.gpu().take_error();
@@ -389,16 +533,24 @@ mod tests {
         for seed in 0..20 {
             let counts = [9, 7, 4, 4, 2, 1, 5, 3];
             let rows = covering_rows(&counts, &mut Rng(seed));
-            assert!(rows.iter().all(|row| row.len() == counts.len() && row.iter().zip(counts).all(|(level, count)| *level < count)));
+            assert!(rows.iter().all(|row| row.len() == counts.len()
+                && row.iter().zip(counts).all(|(level, count)| *level < count)));
             for (g, f) in (0..counts.len()).flat_map(|g| (0..g).map(move |f| (g, f))) {
                 let met: BTreeSet<[usize; 2]> = rows.iter().map(|row| [row[f], row[g]]).collect();
-                assert_eq!(met.len(), counts[f] * counts[g], "seed {seed}, factors {f} and {g}");
+                assert_eq!(
+                    met.len(),
+                    counts[f] * counts[g],
+                    "seed {seed}, factors {f} and {g}"
+                );
             }
             assert!(rows.len() <= 2 * 9 * 7, "seed {seed}: {} rows", rows.len());
             let of_rows = scenes_of_rows(&rows, 5);
             for (f, count) in counts.iter().enumerate() {
-                let met: BTreeSet<[usize; 2]> =
-                    rows.iter().zip(&of_rows).flat_map(|(row, scenes)| scenes.iter().map(|&scene| [scene, row[f]])).collect();
+                let met: BTreeSet<[usize; 2]> = rows
+                    .iter()
+                    .zip(&of_rows)
+                    .flat_map(|(row, scenes)| scenes.iter().map(|&scene| [scene, row[f]]))
+                    .collect();
                 assert_eq!(met.len(), 5 * count, "seed {seed}, factor {f}");
             }
         }
@@ -406,12 +558,31 @@ mod tests {
 
     #[test]
     fn every_builtin_scene_and_every_effect_but_the_trail_is_in_the_matrix() {
-        let scenes: BTreeSet<&str> = all_scenes().into_iter().filter_map(|query| query.split('?').next()).collect();
-        assert_eq!(scenes, BUILTINS.iter().map(|builtin| builtin.name).collect());
+        let scenes: BTreeSet<&str> = all_scenes()
+            .into_iter()
+            .filter_map(|query| query.split('?').next())
+            .collect();
+        assert_eq!(
+            scenes,
+            BUILTINS.iter().map(|builtin| builtin.name).collect()
+        );
         let factors = factors(&Caps::ALL);
-        let levels = factors.iter().flatten().filter_map(|level| if let Level::Effects(names) = level { Some(*names) } else { None });
+        let levels = factors.iter().flatten().filter_map(|level| {
+            if let Level::Effects(names) = level {
+                Some(*names)
+            } else {
+                None
+            }
+        });
         let effects: BTreeSet<&str> = levels.flatten().copied().collect();
         // A trail needs the pictures before.
-        assert_eq!(effects, EFFECTS.iter().map(|effect| effect.name.as_str()).filter(|name| *name != "smear").collect());
+        assert_eq!(
+            effects,
+            EFFECTS
+                .iter()
+                .map(|effect| effect.name.as_str())
+                .filter(|name| *name != "smear")
+                .collect()
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! Picture sizes: empty pictures, one pixel, odd sides and the largest ones, resizing, and a lost device.
+//! Picture sizes: empty pictures, one pixel, odd sides and the largest ones, resizing, and a lost
+//! device.
 
 use std::time::Duration;
 
@@ -58,7 +59,9 @@ pub const CASES: &[Case] = &[
         number: 20,
         name: "binding-too-large",
         about: "an x-ray picture whose sums exceed the largest binding",
-        expectation: Expectation::Refused("the message names the buffer, its size and the adapter's limit"),
+        expectation: Expectation::Refused(
+            "the message names the buffer, its size and the adapter's limit",
+        ),
         run: binding_too_large,
     },
     Case {
@@ -72,7 +75,9 @@ pub const CASES: &[Case] = &[
         number: 21,
         name: "device-lost",
         about: "the device is destroyed between two pictures, and another device draws the same state",
-        expectation: Expectation::Refused("the message says that the device is lost; no state is lost"),
+        expectation: Expectation::Refused(
+            "the message says that the device is lost; no state is lost",
+        ),
         run: device_lost,
     },
 ];
@@ -81,12 +86,33 @@ fn empty_pictures(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let hall = context.scene("near")?;
     for size in [[0, 0], [0, 64], [64, 0]] {
         let what = format!("{size:?} pixels");
-        let capture = context.captured(&hall, &context.view(&hall, size), &stack(&["lambert"]), &AccuracyRequest::default(), &what)?;
+        let capture = context.captured(
+            &hall,
+            &context.view(&hall, size),
+            &stack(&["lambert"]),
+            &AccuracyRequest::default(),
+            &what,
+        )?;
         equal(&[capture.frame.width, capture.frame.height], &size, &what)?;
-        check!(capture.frame.triangle_id.is_empty() && capture.frame.color.is_empty(), "{what}: it has pixels");
-        check!(context.renderer.texture_view().is_none(), "{what}: there is a picture");
-        context.exact(&hall, &context.view(&hall, [33, 17]), &stack(&["lambert"]), &AccuracyRequest::default(), "the next picture")?;
-        check!(context.renderer.texture_view().is_some(), "after {what} there is no picture");
+        check!(
+            capture.frame.triangle_id.is_empty() && capture.frame.color.is_empty(),
+            "{what}: it has pixels"
+        );
+        check!(
+            context.renderer.texture_view().is_none(),
+            "{what}: there is a picture"
+        );
+        context.exact(
+            &hall,
+            &context.view(&hall, [33, 17]),
+            &stack(&["lambert"]),
+            &AccuracyRequest::default(),
+            "the next picture",
+        )?;
+        check!(
+            context.renderer.texture_view().is_some(),
+            "after {what} there is no picture"
+        );
     }
     Ok(())
 }
@@ -94,18 +120,28 @@ fn empty_pictures(context: &mut CaseContext) -> Result<(), EarlyEnd> {
 fn odd_picture_sizes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let hall = context.scene("near")?;
     for size in [[1, 1], [1, 97], [97, 1], [9, 7], [65, 63], [129, 127]] {
-        context.exact_on_all_with(&hall, &context.view(&hall, size), &stack(&["lambert"]), &format!("{size:?} pixels"))?;
+        context.exact_on_all_with(
+            &hall,
+            &context.view(&hall, size),
+            &stack(&["lambert"]),
+            &format!("{size:?} pixels"),
+        )?;
     }
     Ok(())
 }
 
 fn largest_pictures(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let most = context.renderer.gpu().caps.max_texture_side;
-    check!(most >= 8192, "WebGPU guarantees 8,192 pixels along each side; this adapter has {most}");
+    check!(
+        most >= 8192,
+        "WebGPU guarantees 8,192 pixels along each side; this adapter has {most}"
+    );
     let teapot = context.scene("teapot?tess=4")?;
     for side in [8192, 16_384] {
         if side > most {
-            context.note(format!("skipped: {side} pixels; this adapter supports at most {most}"));
+            context.note(format!(
+                "skipped: {side} pixels; this adapter supports at most {most}"
+            ));
             continue;
         }
         for size in [[side, 6], [6, side]] {
@@ -128,15 +164,24 @@ fn picture_too_large(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let view = pixel_view(size[0], size[1]);
         context.renderer.set_scene(&teapot).block_on()?;
         let what = format!("{} x {} pixels", size[0], size[1]);
-        match context.renderer.draw(&view, &stack(&[]), &AccuracyRequest::default()).block_on() {
+        match context
+            .renderer
+            .draw(&view, &stack(&[]), &AccuracyRequest::default())
+            .block_on()
+        {
             Err(error @ RenderError::TooWide { .. }) => {
                 let text = error.to_string();
-                let says = text.contains(&format!("{} x {}", size[0], size[1])) && text.contains(&most.to_string());
+                let says = text.contains(&format!("{} x {}", size[0], size[1]))
+                    && text.contains(&most.to_string());
                 check!(says && error.is_unsupported(), "{what}: {text}");
                 context.refused(text);
             }
             Err(error) => return Err(EarlyEnd::Failed(format!("{what}: {error}"))),
-            Ok(()) => return Err(EarlyEnd::Failed(format!("{what} were drawn, although the limit is {most} along each side"))),
+            Ok(()) => {
+                return Err(EarlyEnd::Failed(format!(
+                    "{what} were drawn, although the limit is {most} along each side"
+                )));
+            }
         }
     }
     Ok(())
@@ -144,7 +189,13 @@ fn picture_too_large(context: &mut CaseContext) -> Result<(), EarlyEnd> {
 
 /// Two layers of different colors over the whole picture.
 fn veils() -> SimpleMesh {
-    let corners = |depth: f32| [[-16.0, -16.0, depth], [40_000.0, -16.0, depth], [-16.0, 40_000.0, depth]];
+    let corners = |depth: f32| {
+        [
+            [-16.0, -16.0, depth],
+            [40_000.0, -16.0, depth],
+            [-16.0, 40_000.0, depth],
+        ]
+    };
     let colors = [[1.0, 0.0, 0.25, 1.0], [0.0, 1.0, 0.25, 1.0]];
     SimpleMesh {
         positions: [corners(0.5), corners(0.25)].concat(),
@@ -160,43 +211,94 @@ fn xray_at_5k(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let caps = &context.renderer.gpu().caps;
     let room = caps.max_storage_binding_bytes.min(caps.max_buffer_bytes);
     if room < bytes {
-        return Err(EarlyEnd::Skipped(format!("its sums need a binding of {bytes} bytes, and this adapter binds at most {room}")));
+        return Err(EarlyEnd::Skipped(format!(
+            "its sums need a binding of {bytes} bytes, and this adapter binds at most {room}"
+        )));
     }
     // The oracle judges a small picture; every pixel of the large one must equal it.
-    let (small, _) = context.exact(&scene, &pixel_view(64, 36), &stack, &accuracy, "64 x 36 pixels")?;
+    let (small, _) = context.exact(
+        &scene,
+        &pixel_view(64, 36),
+        &stack,
+        &accuracy,
+        "64 x 36 pixels",
+    )?;
     let (color, count) = (small.frame.color[0], small.frame.layer_sums[0]);
-    check!(small.frame.color.iter().all(|c| *c == color), "the layers are not uniform");
+    check!(
+        small.frame.color.iter().all(|c| *c == color),
+        "the layers are not uniform"
+    );
     let what = "5,120 x 2,880 pixels";
     let large = context.captured(&scene, &pixel_view(width, height), &stack, &accuracy, what)?;
-    let odd = large.frame.color.iter().zip(&large.frame.layer_sums).filter(|found| *found != (&color, &count)).count();
-    equal(&odd, &0, &format!("{what}: pixels that show something else"))?;
-    equal(&large.frame.covered(), &(width as usize * height as usize), &format!("{what}: pixels covered"))
+    let odd = large
+        .frame
+        .color
+        .iter()
+        .zip(&large.frame.layer_sums)
+        .filter(|found| *found != (&color, &count))
+        .count();
+    equal(
+        &odd,
+        &0,
+        &format!("{what}: pixels that show something else"),
+    )?;
+    equal(
+        &large.frame.covered(),
+        &(width as usize * height as usize),
+        &format!("{what}: pixels covered"),
+    )
 }
 
 fn binding_too_large(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let caps = &context.renderer.gpu().caps;
-    let (room, most) = (caps.max_storage_binding_bytes.min(caps.max_buffer_bytes), caps.max_texture_side);
+    let (room, most) = (
+        caps.max_storage_binding_bytes.min(caps.max_buffer_bytes),
+        caps.max_texture_side,
+    );
     let (scene, stack) = (scene_of_meshes(&[veils()]), stack(&["xray"]));
     if room >= 24 * u64::from(most) * u64::from(most) {
-        return Err(EarlyEnd::Skipped(format!("this adapter binds {room} bytes, enough for any picture up to {most} x {most} pixels")));
+        return Err(EarlyEnd::Skipped(format!(
+            "this adapter binds {room} bytes, enough for any picture up to {most} x {most} pixels"
+        )));
     }
     context.renderer.set_scene(&scene).block_on()?;
-    match context.renderer.draw(&pixel_view(most, most), &stack, &AccuracyRequest::default()).block_on() {
+    match context
+        .renderer
+        .draw(&pixel_view(most, most), &stack, &AccuracyRequest::default())
+        .block_on()
+    {
         Err(error @ RenderError::TooLarge { .. }) => {
             let text = error.to_string();
-            check!(error.is_unsupported() && text.contains(&room.to_string()), "{text}");
+            check!(
+                error.is_unsupported() && text.contains(&room.to_string()),
+                "{text}"
+            );
             context.refused(text);
             // The renderer still works.
             context.renderer.set_scene(&scene).block_on()?;
-            context.exact(&scene, &pixel_view(64, 36), &stack, &AccuracyRequest::default(), "the next picture")?;
+            context.exact(
+                &scene,
+                &pixel_view(64, 36),
+                &stack,
+                &AccuracyRequest::default(),
+                "the next picture",
+            )?;
             check!(
-                matches!(context.renderer.key().and_then(|key| key.framebuffer.layers), Some(Layers::Xray { .. })),
+                matches!(
+                    context
+                        .renderer
+                        .key()
+                        .and_then(|key| key.framebuffer.layers),
+                    Some(Layers::Xray { .. })
+                ),
                 "the effect is gone"
             );
             Ok(())
         }
         Err(error) => Err(EarlyEnd::Failed(format!("{most} x {most} pixels: {error}"))),
-        Ok(()) => Err(EarlyEnd::Failed(format!("{most} x {most} pixels were drawn, although a binding has at most {room} bytes"))),
+        Ok(()) => Err(EarlyEnd::Failed(format!(
+            "{most} x {most} pixels were drawn, although a binding has at most {room} bytes"
+        ))),
     }
 }
 
@@ -204,13 +306,24 @@ fn resizing(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     context.allow_any_depth_band();
     let mut rng = context.rng(21);
     let hall = context.scene("near")?;
-    let stacks = [stack(&["lambert"]), stack(&["xray"]), stack(&["lambert", "outline"]), Stack::default()];
+    let stacks = [
+        stack(&["lambert"]),
+        stack(&["xray"]),
+        stack(&["lambert", "outline"]),
+        Stack::default(),
+    ];
     let options = context.options();
     for picture in 0..100 {
         let size = [rng.between(1, 160), rng.between(1, 120)].map(|side| side as u32);
         let option = options[picture % options.len()];
         let what = format!("picture {picture} of {size:?} pixels on {}", option.name());
-        context.exact(&hall, &context.view(&hall, size), &stacks[picture % stacks.len()], &pinned(option), &what)?;
+        context.exact(
+            &hall,
+            &context.view(&hall, size),
+            &stacks[picture % stacks.len()],
+            &pinned(option),
+            &what,
+        )?;
     }
     Ok(())
 }
@@ -220,29 +333,56 @@ const PATIENCE: Duration = Duration::from_secs(20);
 
 fn device_lost(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let name = context.renderer.gpu().summary.name.clone();
-    let gpu = Gpu::open(&AdapterChoice::Named(name)).block_on().map_err(|error| EarlyEnd::Failed(format!("a second device: {error}")))?;
+    let gpu = Gpu::open(&AdapterChoice::Named(name))
+        .block_on()
+        .map_err(|error| EarlyEnd::Failed(format!("a second device: {error}")))?;
     let hall = context.scene("near")?;
-    let (view, stack, accuracy) = (context.view(&hall, [96, 64]), stack(&["lambert"]), AccuracyRequest::default());
+    let (view, stack, accuracy) = (
+        context.view(&hall, [96, 64]),
+        stack(&["lambert"]),
+        AccuracyRequest::default(),
+    );
     let mut renderer = Renderer::new(gpu.clone());
     let before = captured(&mut renderer, &hall, &view, &stack, &accuracy)?;
     gpu.device.destroy();
     let began = Instant::now();
     let error = loop {
         context.step(&hall, &view, "a lost device")?;
-        match renderer.draw(&view, &stack, &accuracy).block_on().and_then(|()| renderer.finish().block_on().map(|_| ())) {
+        match renderer
+            .draw(&view, &stack, &accuracy)
+            .block_on()
+            .and_then(|()| renderer.finish().block_on().map(|_| ()))
+        {
             Err(error) if error.is_lost() => break error,
-            _ if began.elapsed() > PATIENCE => return Err(EarlyEnd::Failed("the renderer never reports that its device is lost".into())),
+            _ if began.elapsed() > PATIENCE => {
+                return Err(EarlyEnd::Failed(
+                    "the renderer never reports that its device is lost".into(),
+                ));
+            }
             _ => std::thread::sleep(Duration::from_millis(5)),
         }
     };
     check!(gpu.is_lost(), "the device does not know that it is lost");
     let again = renderer.capture(&view, &stack, &accuracy).block_on();
-    check!(again.is_err_and(|error| error.is_lost()), "a lost device draws");
+    check!(
+        again.is_err_and(|error| error.is_lost()),
+        "a lost device draws"
+    );
     drop(renderer);
-    // Scene, view and stack do not belong to the device: another one draws the same picture, bit by bit.
-    let after = context.captured(&hall, &view, &stack, &accuracy, "the same on another device")?;
+    // Scene, view and stack do not belong to the device: another one draws the same picture, bit by
+    // bit.
+    let after = context.captured(
+        &hall,
+        &view,
+        &stack,
+        &accuracy,
+        "the same on another device",
+    )?;
     same(&after, &before, "the same on another device")?;
-    check!(after.frame.color == before.frame.color, "another device shows other colors");
+    check!(
+        after.frame.color == before.frame.color,
+        "another device shows other colors"
+    );
     context.refused(error);
     Ok(())
 }

@@ -1,4 +1,5 @@
-//! Random presets: effects, scenes, cameras, times and options, each preset from one seed. Every preset is one that a file may hold.
+//! Random presets: effects, scenes, cameras, times and options, each preset from one seed. Every
+//! preset is one that a file may hold.
 
 use std::sync::Arc;
 
@@ -24,7 +25,8 @@ use crate::{
 const MAX_TRIANGLES: u64 = 20_000;
 /// Most pixels to a side of a random picture.
 const MAX_SIDE: i32 = 160;
-/// Most particles of seven random presets in eight: a picture of more takes minutes with every option.
+/// Most particles of seven random presets in eight: a picture of more takes minutes with every
+/// option.
 const MAX_PARTICLES: f64 = 5_000.0;
 /// The scene where a random one has too many triangles several times.
 const SMALL_SCENE: &str = "teapot?tess=4";
@@ -51,7 +53,9 @@ impl Rng {
     /// A unit vector.
     fn direction(&mut self) -> DVec3 {
         let component = |rng: &mut Self| rng.real(-1.0, 1.0);
-        DVec3::new(component(self), component(self), component(self)).try_normalize().unwrap_or(DVec3::Z)
+        DVec3::new(component(self), component(self), component(self))
+            .try_normalize()
+            .unwrap_or(DVec3::Z)
     }
 
     /// A number of any magnitude within a range: 0.001 is as likely as 1000.
@@ -60,10 +64,18 @@ impl Rng {
             let side = if self.one_in(2) { low } else { high };
             return side.signum() * self.magnitude([0.0, side.abs()]);
         }
-        let (sign, near, far) = if high <= 0.0 { (-1.0, -high, -low) } else { (1.0, low, high) };
+        let (sign, near, far) = if high <= 0.0 {
+            (-1.0, -high, -low)
+        } else {
+            (1.0, low, high)
+        };
         let near = near.max(far * 1e-12);
         // A range of one number, zero among them, has no magnitudes to choose from.
-        let value = if near < far { near * (far / near).powf(self.real(0.0, 1.0)) } else { far };
+        let value = if near < far {
+            near * (far / near).powf(self.real(0.0, 1.0))
+        } else {
+            far
+        };
         (sign * value).clamp(low, high)
     }
 
@@ -85,19 +97,25 @@ fn components(rng: &mut Rng, field: &Field, values: Values) -> Vec<f64> {
     let mut component = || {
         let chance = rng.between(0, 8);
         match (&field.value_type, values) {
-            (ValueType::Choice(_) | ValueType::Bool, _) => f64::from(rng.between(low as i32, high as i32 + 1)),
+            (ValueType::Choice(_) | ValueType::Bool, _) => {
+                f64::from(rng.between(low as i32, high as i32 + 1))
+            }
             (ValueType::U32 | ValueType::I32, Values::Allowed) => rng.number(field).round(),
             (_, Values::Allowed) => rng.number(field),
             (whole, Values::OfSlider) => match chance {
                 0 => low,
                 1 => high,
-                _ if matches!(whole, ValueType::U32 | ValueType::I32) => rng.real(low, high + 1.0).floor().min(high),
+                _ if matches!(whole, ValueType::U32 | ValueType::I32) => {
+                    rng.real(low, high + 1.0).floor().min(high)
+                }
                 _ if field.log => low * (high / low).powf(rng.real(0.0, 1.0)),
                 _ => rng.real(low, high),
             },
         }
     };
-    (0..field.value_type.components()).map(|_| component()).collect()
+    (0..field.value_type.components())
+        .map(|_| component())
+        .collect()
 }
 
 /// Up to five effects, at most one in each slot, in random order.
@@ -118,15 +136,28 @@ pub fn stack(rng: &mut Rng, values: Values) -> Stack {
 pub(super) fn shake(rng: &mut Rng, enabled: &mut EnabledEffect, values: Values) {
     for field in &enabled.effect.fields {
         let value = components(rng, field, values);
-        field.set(&mut enabled.words, &value).unwrap_or_else(|error| panic!("{}.{}: {error}", enabled.effect.name, field.name));
+        field
+            .set(&mut enabled.words, &value)
+            .unwrap_or_else(|error| panic!("{}.{}: {error}", enabled.effect.name, field.name));
     }
 }
 
 /// A value of a built-in scene's parameter: small scenes are likelier than large ones.
 fn builtin_value(rng: &mut Rng, param: &BuiltinParam) -> f64 {
     let [low, high] = [*param.range.start(), *param.range.end()];
-    let value = rng.magnitude([low, if param.whole { high.min(4.0 * param.default.max(1.0)) } else { high }]);
-    if param.whole { value.round().clamp(low, high) } else { value }
+    let value = rng.magnitude([
+        low,
+        if param.whole {
+            high.min(4.0 * param.default.max(1.0))
+        } else {
+            high
+        },
+    ]);
+    if param.whole {
+        value.round().clamp(low, high)
+    } else {
+        value
+    }
 }
 
 /// A built-in scene with its query.
@@ -134,8 +165,15 @@ fn scene(rng: &mut Rng) -> (String, Scene) {
     for _ in 0..6 {
         let builtin = &BUILTINS[rng.between(0, BUILTINS.len() as i32) as usize];
         let changed: Vec<&BuiltinParam> = builtin.params.iter().filter(|_| rng.one_in(2)).collect();
-        let pairs: Vec<String> = changed.iter().map(|param| format!("{}={}", param.name, builtin_value(rng, param))).collect();
-        let query = if pairs.is_empty() { builtin.name.to_owned() } else { format!("{}?{}", builtin.name, pairs.join("&")) };
+        let pairs: Vec<String> = changed
+            .iter()
+            .map(|param| format!("{}={}", param.name, builtin_value(rng, param)))
+            .collect();
+        let query = if pairs.is_empty() {
+            builtin.name.to_owned()
+        } else {
+            format!("{}?{}", builtin.name, pairs.join("&"))
+        };
         // A query with too many triangles for the scene itself is an error.
         if let Ok(scene) = builtin::build(&query)
             && scene.triangle_count() <= MAX_TRIANGLES
@@ -143,31 +181,67 @@ fn scene(rng: &mut Rng) -> (String, Scene) {
             return (query, scene);
         }
     }
-    (SMALL_SCENE.into(), builtin::build(SMALL_SCENE).expect("a small scene of the list"))
+    (
+        SMALL_SCENE.into(),
+        builtin::build(SMALL_SCENE).expect("a small scene of the list"),
+    )
 }
 
 /// The range of a setting of the camera.
 fn camera_number(rng: &mut Rng, name: &str) -> f64 {
-    rng.number(&Setting::find(&format!("camera.{name}")).expect("a setting of the camera").param)
+    rng.number(
+        &Setting::find(&format!("camera.{name}"))
+            .expect("a setting of the camera")
+            .param,
+    )
 }
 
-/// A camera from inside the scene to a hundred times its radius away, now and then from much farther.
+/// A camera from inside the scene to a hundred times its radius away, now and then from much
+/// farther.
 fn camera(rng: &mut Rng, bounds: &Bounds) -> Camera {
-    let radius = if bounds.is_empty() { 1.0 } else { bounds.radius().max(1e-3) };
-    let center = if bounds.is_empty() { DVec3::ZERO } else { bounds.center() };
-    let decades = if rng.one_in(8) { [2.0, 6.0] } else { [-2.0, 2.0] };
+    let radius = if bounds.is_empty() {
+        1.0
+    } else {
+        bounds.radius().max(1e-3)
+    };
+    let center = if bounds.is_empty() {
+        DVec3::ZERO
+    } else {
+        bounds.center()
+    };
+    let decades = if rng.one_in(8) {
+        [2.0, 6.0]
+    } else {
+        [-2.0, 2.0]
+    };
     let distance = radius * 10f64.powf(rng.real(decades[0], decades[1]));
     let target = center + rng.direction() * rng.real(0.0, radius);
-    let up = if rng.one_in(4) { rng.direction() } else { DVec3::Y };
+    let up = if rng.one_in(4) {
+        rng.direction()
+    } else {
+        DVec3::Y
+    };
     let projection = if rng.one_in(4) {
-        let height_m = if rng.one_in(8) { camera_number(rng, "orthographic_height_m") } else { radius * rng.real(0.1, 4.0) };
+        let height_m = if rng.one_in(8) {
+            camera_number(rng, "orthographic_height_m")
+        } else {
+            radius * rng.real(0.1, 4.0)
+        };
         Projection::Orthographic { height_m }
     } else {
-        Projection::Perspective { fov_y_deg: camera_number(rng, "fov_y_deg") }
+        Projection::Perspective {
+            fov_y_deg: camera_number(rng, "fov_y_deg"),
+        }
     };
     let near_m = (distance * 10f64.powf(rng.real(-6.0, 0.0))).clamp(MIN_NEAR_M, 1e6);
     let within = |point: DVec3| point.clamp(DVec3::splat(-1e9), DVec3::splat(1e9));
-    Camera { eye: within(target - rng.direction() * distance), target: within(target), up, projection, near_m }
+    Camera {
+        eye: within(target - rng.direction() * distance),
+        target: within(target),
+        up,
+        projection,
+        near_m,
+    }
 }
 
 /// A preset of `seed`.
@@ -175,12 +249,21 @@ pub fn preset(seed: u32) -> Preset {
     let mut rng = Rng(seed.wrapping_mul(0x1234_5679).wrapping_add(0x51ed_270b));
     let rng = &mut rng;
     let (query, scene) = scene(rng);
-    let mut preset = Preset { name: format!("random {seed}"), scene: SceneSource::Builtin(query), ..Preset::default() };
-    preset.output.size = [rng.between(1, MAX_SIDE + 1) as u32, rng.between(1, MAX_SIDE * 3 / 4 + 1) as u32];
+    let mut preset = Preset {
+        name: format!("random {seed}"),
+        scene: SceneSource::Builtin(query),
+        ..Preset::default()
+    };
+    preset.output.size = [
+        rng.between(1, MAX_SIDE + 1) as u32,
+        rng.between(1, MAX_SIDE * 3 / 4 + 1) as u32,
+    ];
     preset.output.background = std::array::from_fn(|_| rng.real(0.0, 1.0) as f32);
     if seed % 3 == 1 {
         // Not a turn of `rng`, so that seeds keep what else they draw.
-        preset.output.background_bottom = Some(std::array::from_fn(|c| hash_unit(seed.wrapping_mul(4).wrapping_add(c as u32)) as f32));
+        preset.output.background_bottom = Some(std::array::from_fn(|c| {
+            hash_unit(seed.wrapping_mul(4).wrapping_add(c as u32)) as f32
+        }));
     }
     preset.stack = stack(rng, Values::Allowed);
     if seed % 8 != 3 {
@@ -197,7 +280,12 @@ pub fn preset(seed: u32) -> Preset {
     }
     if seed % 5 == 2 {
         let shape = GroundShape::ALL[(seed / 5 % 2) as usize];
-        preset.ground = Some(Ground { shape, size: 0.5 + 4.0 * hash_unit(seed), cells: 1 + seed % 7, ..Ground::default() });
+        preset.ground = Some(Ground {
+            shape,
+            size: 0.5 + 4.0 * hash_unit(seed),
+            cells: 1 + seed % 7,
+            ..Ground::default()
+        });
     }
     if rng.one_in(2) {
         preset.clock.time_s = rng.real(0.0, 4.0);
@@ -205,15 +293,26 @@ pub fn preset(seed: u32) -> Preset {
     if rng.one_in(4) {
         preset.spin_deg_per_s = rng.real(-180.0, 180.0);
     }
-    if preset.stack.0.iter().any(|enabled| enabled.effect.hooks.has_lines) && !rng.one_in(3) {
+    if preset
+        .stack
+        .0
+        .iter()
+        .any(|enabled| enabled.effect.hooks.has_lines)
+        && !rng.one_in(3)
+    {
         let radius = scene.bounds().radius().clamp(1e-3, 1e5);
-        let points: Vec<[f32; 3]> = (0..rng.between(2, 9)).map(|_| (rng.direction() * radius).as_vec3().to_array()).collect();
+        let points: Vec<[f32; 3]> = (0..rng.between(2, 9))
+            .map(|_| (rng.direction() * radius).as_vec3().to_array())
+            .collect();
         preset.polyline = Arc::from(points);
     }
     preset.playback = playback(rng, &scene);
     for axis in AXES {
         if rng.one_in(10) {
-            preset.accuracy.pins.set(axis, Some(rng.between(0, axis.words.len() as i32) as usize));
+            preset
+                .accuracy
+                .pins
+                .set(axis, Some(rng.between(0, axis.words.len() as i32) as usize));
         }
     }
     // One exact option takes half the time of both.
@@ -226,32 +325,62 @@ pub fn preset(seed: u32) -> Preset {
     preset
 }
 
-/// Lowers a number of particles above the most that is quickly judged to one of any magnitude below, chosen by `unit` of 0 to 1. No turn
-/// of the generator, so that seeds keep what else they draw.
+/// Lowers a number of particles above the most that is quickly judged to one of any magnitude
+/// below, chosen by `unit` of 0 to 1. No turn of the generator, so that seeds keep what else they
+/// draw.
 fn thin_out(stack: &mut Stack, unit: f64) {
-    let Some(enabled) = stack.0.iter_mut().find(|enabled| enabled.effect.name == "particles") else { return };
-    let field = enabled.effect.fields.iter().find(|field| field.name == "count").expect("a field of the particles");
+    let Some(enabled) = stack
+        .0
+        .iter_mut()
+        .find(|enabled| enabled.effect.name == "particles")
+    else {
+        return;
+    };
+    let field = enabled
+        .effect
+        .fields
+        .iter()
+        .find(|field| field.name == "count")
+        .expect("a field of the particles");
     if field.get(&enabled.words)[0] > MAX_PARTICLES {
-        field.set(&mut enabled.words, &[MAX_PARTICLES.powf(unit).floor()]).expect("a number within the range");
+        field
+            .set(&mut enabled.words, &[MAX_PARTICLES.powf(unit).floor()])
+            .expect("a number within the range");
     }
 }
 
 /// Limits one effect to one part of the scene.
 fn limit_an_effect(rng: &mut Rng, stack: &mut Stack, scene: &Scene) {
     let parts = parts(scene);
-    let limited: Vec<_> = stack.0.iter().map(|enabled| enabled.effect.clone()).filter(|effect| effect.has_scope()).collect();
+    let limited: Vec<_> = stack
+        .0
+        .iter()
+        .map(|enabled| enabled.effect.clone())
+        .filter(|effect| effect.has_scope())
+        .collect();
     if !limited.is_empty() && !parts.is_empty() {
         let pattern = parts[rng.between(0, parts.len() as i32) as usize].pattern();
-        stack.limit(&rng.pick(&limited), Scope::new([pattern])).expect("one scope is allowed");
+        stack
+            .limit(&rng.pick(&limited), Scope::new([pattern]))
+            .expect("one scope is allowed");
     }
 }
 
 fn playback(rng: &mut Rng, scene: &Scene) -> ClipPlayback {
-    let clips: Vec<&str> = scene.rig.clips.iter().map(|clip| clip.name.as_str()).collect();
+    let clips: Vec<&str> = scene
+        .rig
+        .clips
+        .iter()
+        .map(|clip| clip.name.as_str())
+        .collect();
     if clips.is_empty() || rng.one_in(4) {
         return ClipPlayback::default();
     }
-    let mut playback = ClipPlayback { clip: rng.pick(&clips).into(), speed: rng.real(-2.0, 2.0), ..ClipPlayback::default() };
+    let mut playback = ClipPlayback {
+        clip: rng.pick(&clips).into(),
+        speed: rng.real(-2.0, 2.0),
+        ..ClipPlayback::default()
+    };
     if rng.one_in(3) {
         playback.second_clip = rng.pick(&clips).into();
         playback.blend = rng.real(0.0, 1.0);
@@ -272,11 +401,25 @@ mod tests {
     #[test]
     fn magnitudes_stay_in_their_range_and_reach_all_of_it() {
         let mut rng = Rng(1);
-        for range in [[-1e6, 1e6], [0.0, 1.0], [-3.0, 0.0], [0.0, 0.0], [2.0, 2.0], [1e-3, 1e9]] {
+        for range in [
+            [-1e6, 1e6],
+            [0.0, 1.0],
+            [-3.0, 0.0],
+            [0.0, 0.0],
+            [2.0, 2.0],
+            [1e-3, 1e9],
+        ] {
             let values: Vec<f64> = (0..2_000).map(|_| rng.magnitude(range)).collect();
-            assert!(values.iter().all(|value| (range[0]..=range[1]).contains(value)), "{range:?}");
+            assert!(
+                values
+                    .iter()
+                    .all(|value| (range[0]..=range[1]).contains(value)),
+                "{range:?}"
+            );
         }
-        let signs: Vec<f64> = (0..100).map(|_| rng.magnitude([-1.0, 1.0]).signum()).collect();
+        let signs: Vec<f64> = (0..100)
+            .map(|_| rng.magnitude([-1.0, 1.0]).signum())
+            .collect();
         assert!(signs.contains(&1.0) && signs.contains(&-1.0));
     }
 }

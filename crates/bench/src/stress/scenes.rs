@@ -1,4 +1,5 @@
-//! Scenes from explicit vertices, and views with known coordinates, for the cases and for tests of the renderer.
+//! Scenes from explicit vertices, and views with known coordinates, for the cases and for tests of
+//! the renderer.
 
 use std::sync::Arc;
 
@@ -36,7 +37,14 @@ pub struct SimpleMesh {
 impl Default for SimpleMesh {
     fn default() -> Self {
         let transforms = vec![DMat4::IDENTITY];
-        Self { positions: vec![], normals: vec![], colors: vec![], indices: vec![], double_sided: true, transforms }
+        Self {
+            positions: vec![],
+            normals: vec![],
+            colors: vec![],
+            indices: vec![],
+            double_sided: true,
+            transforms,
+        }
     }
 }
 
@@ -44,51 +52,92 @@ impl SimpleMesh {
     /// The same mesh with one instance at this transform.
     #[must_use]
     pub fn at(self, world_from_object: DMat4) -> Self {
-        Self { transforms: vec![world_from_object], ..self }
+        Self {
+            transforms: vec![world_from_object],
+            ..self
+        }
     }
 }
 
 /// A double-sided mesh of separate triangles.
 pub fn triangle_soup(positions: impl IntoIterator<Item = [f32; 3]>) -> SimpleMesh {
-    SimpleMesh { positions: positions.into_iter().collect(), ..SimpleMesh::default() }
+    SimpleMesh {
+        positions: positions.into_iter().collect(),
+        ..SimpleMesh::default()
+    }
 }
 
-/// Separate triangles with corners in units of 1/256 px and one depth each. Exact in a [`pixel_view`] up to the guard band.
+/// Separate triangles with corners in units of 1/256 px and one depth each. Exact in a
+/// [`pixel_view`] up to the guard band.
 pub fn triangle_soup_in_units(triangles: &[([[i32; 2]; 3], f32)]) -> SimpleMesh {
     let position = |[x, y]: [i32; 2], depth: f32| [x as f32 / 256.0, y as f32 / 256.0, depth];
-    triangle_soup(triangles.iter().flat_map(|(corners, depth)| corners.map(|corner| position(corner, *depth))))
+    triangle_soup(
+        triangles
+            .iter()
+            .flat_map(|(corners, depth)| corners.map(|corner| position(corner, *depth))),
+    )
 }
 
 /// A scene of these meshes.
 pub fn scene_of_meshes(meshes: &[SimpleMesh]) -> Arc<Scene> {
-    let mut scene = Scene { name: "hand-made".into(), ..Scene::default() };
+    let mut scene = Scene {
+        name: "hand-made".into(),
+        ..Scene::default()
+    };
     for (i, mesh) in meshes.iter().enumerate() {
         let mut push = |components: u32, values: &[f32]| {
             let offset = scene.vertex_bytes.len();
-            scene.vertex_bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
+            scene
+                .vertex_bytes
+                .extend(values.iter().flat_map(|v| v.to_le_bytes()));
             Accessor::packed_f32(offset, components, values.len() / components as usize)
         };
         let positions = push(3, mesh.positions.as_flattened());
-        let normals = if mesh.normals.is_empty() { vec![[0.0, 0.0, 1.0]; mesh.positions.len()] } else { mesh.normals.clone() };
+        let normals = if mesh.normals.is_empty() {
+            vec![[0.0, 0.0, 1.0]; mesh.positions.len()]
+        } else {
+            mesh.normals.clone()
+        };
         let normals = push(3, normals.as_flattened());
         let colors = (!mesh.colors.is_empty()).then(|| push(4, mesh.colors.as_flattened()));
         let indices = (!mesh.indices.is_empty()).then(|| {
             let (offset, count) = (scene.index_bytes.len() as u32, mesh.indices.len() as u32);
-            scene.index_bytes.extend(mesh.indices.iter().flat_map(|i| i.to_le_bytes()));
-            Accessor { offset, stride: 4, component_type: ComponentType::U32, components: 1, normalized: false, count }
+            scene
+                .index_bytes
+                .extend(mesh.indices.iter().flat_map(|i| i.to_le_bytes()));
+            Accessor {
+                offset,
+                stride: 4,
+                component_type: ComponentType::U32,
+                components: 1,
+                normalized: false,
+                count,
+            }
         });
         let mut bounds = Bounds::EMPTY;
-        let finite = mesh.positions.iter().filter(|p| p.iter().all(|v| v.is_finite()));
+        let finite = mesh
+            .positions
+            .iter()
+            .filter(|p| p.iter().all(|v| v.is_finite()));
         finite.for_each(|p| bounds.include(DVec3::from_array(p.map(f64::from))));
         let corner = |position: usize| {
             let vertex = mesh.indices.get(position).map_or(position, |&i| i as usize);
             DVec3::from_array(mesh.positions[vertex].map(f64::from))
         };
-        let corners = if mesh.indices.is_empty() { mesh.positions.len() } else { mesh.indices.len() };
-        let edges = (0..corners / 3).flat_map(|t| [(0, 1), (1, 2), (2, 0)].map(|(a, b)| corner(3 * t + a).distance(corner(3 * t + b))));
+        let corners = if mesh.indices.is_empty() {
+            mesh.positions.len()
+        } else {
+            mesh.indices.len()
+        };
+        let edges = (0..corners / 3).flat_map(|t| {
+            [(0, 1), (1, 2), (2, 0)].map(|(a, b)| corner(3 * t + a).distance(corner(3 * t + b)))
+        });
         let longest_edge = edges.filter(|edge| edge.is_finite()).fold(0.0, f64::max);
         let material = scene.materials.len();
-        scene.materials.push(Material { double_sided: mesh.double_sided, ..Material::default() });
+        scene.materials.push(Material {
+            double_sided: mesh.double_sided,
+            ..Material::default()
+        });
         scene.primitives.push(Primitive {
             name: format!("part {i}"),
             mesh: format!("part {i}"),
@@ -104,19 +153,28 @@ pub fn scene_of_meshes(meshes: &[SimpleMesh]) -> Arc<Scene> {
             normals_agree: false,
             deformation: Default::default(),
         });
-        scene.instances.extend(mesh.transforms.iter().map(|&world_from_object| Instance::fixed(i, world_from_object)));
+        scene.instances.extend(
+            mesh.transforms
+                .iter()
+                .map(|&world_from_object| Instance::fixed(i, world_from_object)),
+        );
     }
     Arc::new(scene)
 }
 
-/// A view in which positions are pixels right and down and z is the depth (larger is nearer). Exact for sides that are powers
-/// of two.
+/// A view in which positions are pixels right and down and z is the depth (larger is nearer). Exact
+/// for sides that are powers of two.
 pub fn pixel_view(width: u32, height: u32) -> View {
     let (w, h) = (f64::from(width), f64::from(height));
     View {
         width,
         height,
-        clip_from_world: DMat4::from_cols(DVec4::X * 2.0 / w, DVec4::Y * -2.0 / h, DVec4::Z, DVec4::new(-1.0, 1.0, 0.0, 1.0)),
+        clip_from_world: DMat4::from_cols(
+            DVec4::X * 2.0 / w,
+            DVec4::Y * -2.0 / h,
+            DVec4::Z,
+            DVec4::new(-1.0, 1.0, 0.0, 1.0),
+        ),
         eye: DVec3::new(w / 2.0, h / 2.0, 1.0),
         forward: DVec3::NEG_Z,
         ndc_axes: [DVec3::X * w / 2.0, DVec3::NEG_Y * h / 2.0],
@@ -132,7 +190,12 @@ pub fn pixel_view(width: u32, height: u32) -> View {
 /// A perspective view in which (x w, y w, -w) lands on (x, y) in normalized device coordinates.
 pub fn square_perspective(width: u32, height: u32, near: f64) -> View {
     View {
-        clip_from_world: DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::new(0.0, 0.0, 0.0, -1.0), DVec4::new(0.0, 0.0, near, 0.0)),
+        clip_from_world: DMat4::from_cols(
+            DVec4::X,
+            DVec4::Y,
+            DVec4::new(0.0, 0.0, 0.0, -1.0),
+            DVec4::new(0.0, 0.0, near, 0.0),
+        ),
         eye: DVec3::ZERO,
         ndc_axes: [DVec3::X, DVec3::Y],
         linear_depth_m: None,
@@ -143,7 +206,14 @@ pub fn square_perspective(width: u32, height: u32, near: f64) -> View {
 
 /// The view of `scene` by `camera`.
 pub fn camera_view(scene: &Scene, camera: &Camera, [width, height]: [u32; 2]) -> View {
-    View::new(camera, width, height, &scene.bounds(), DMat4::IDENTITY, [0.01, 0.02, 0.03, 1.0])
+    View::new(
+        camera,
+        width,
+        height,
+        &scene.bounds(),
+        DMat4::IDENTITY,
+        [0.01, 0.02, 0.03, 1.0],
+    )
 }
 
 /// The coverage that the oracle computes without any data of an adapter.

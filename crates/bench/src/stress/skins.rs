@@ -29,7 +29,9 @@ pub const CASES: &[Case] = &[
         number: 30,
         name: "unusual-skins",
         about: "weights of 0, weights that do not sum to 1, and tiny weights",
-        expectation: Expectation::Bounded("finite vertices and an exact picture, or a message of the loader"),
+        expectation: Expectation::Bounded(
+            "finite vertices and an exact picture, or a message of the loader",
+        ),
         run: unusual_skins,
     },
     Case {
@@ -69,16 +71,34 @@ struct Skin {
     rotation: [f64; 4],
 }
 
-const SOUND: Skin = Skin { joints: [0, 1, 0, 0], weights: [0.5, 0.5, 0.0, 0.0], rotation: [0.0, 0.0, 0.0, 1.0] };
+const SOUND: Skin = Skin {
+    joints: [0, 1, 0, 0],
+    weights: [0.5, 0.5, 0.0, 0.0],
+    rotation: [0.0, 0.0, 0.0, 1.0],
+};
 
 /// Four triangles around a vertex, with two joints.
 fn model(skin: &Skin) -> Result<crate::scene::Scene, gltf::LoadError> {
-    let positions: [[f32; 3]; 5] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 0.5]];
+    let positions: [[f32; 3]; 5] = [
+        [-1.0, -1.0, 0.0],
+        [1.0, -1.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [-1.0, 1.0, 0.0],
+        [0.0, 0.0, 0.5],
+    ];
     let indices = [[0u16, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
-    let mut bytes: Vec<u8> = positions.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
+    let mut bytes: Vec<u8> = positions
+        .iter()
+        .flatten()
+        .flat_map(|v| v.to_le_bytes())
+        .collect();
     // Only the vertex in the center differs.
     bytes.extend((0..5).flat_map(|i| if i == 4 { skin.joints } else { SOUND.joints }));
-    bytes.extend((0..5).flat_map(|i| if i == 4 { skin.weights } else { SOUND.weights }).flat_map(f32::to_le_bytes));
+    bytes.extend(
+        (0..5)
+            .flat_map(|i| if i == 4 { skin.weights } else { SOUND.weights })
+            .flat_map(f32::to_le_bytes),
+    );
     bytes.extend(indices.as_flattened().iter().flat_map(|v| v.to_le_bytes()));
     let document = json!({
         "asset": { "version": "2.0" },
@@ -105,24 +125,56 @@ fn model(skin: &Skin) -> Result<crate::scene::Scene, gltf::LoadError> {
         ],
         "buffers": [{ "uri": "skin.bin", "byteLength": 184 }]
     });
-    gltf::load(document.to_string().as_bytes(), &mut |_, _| Ok(bytes.clone()))
+    gltf::load(document.to_string().as_bytes(), &mut |_, _| {
+        Ok(bytes.clone())
+    })
 }
 
 fn unusual_skins(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let skins = [
         ("a sound skin", SOUND),
-        ("weights of zero", Skin { weights: [0.0; 4], ..SOUND }),
-        ("weights of the sum 3", Skin { weights: [2.0, 1.0, 0.0, 0.0], ..SOUND }),
-        ("weights of 1e-30", Skin { weights: [1e-30, 1e-30, 0.0, 0.0], ..SOUND }),
+        (
+            "weights of zero",
+            Skin {
+                weights: [0.0; 4],
+                ..SOUND
+            },
+        ),
+        (
+            "weights of the sum 3",
+            Skin {
+                weights: [2.0, 1.0, 0.0, 0.0],
+                ..SOUND
+            },
+        ),
+        (
+            "weights of 1e-30",
+            Skin {
+                weights: [1e-30, 1e-30, 0.0, 0.0],
+                ..SOUND
+            },
+        ),
     ];
     for (i, (what, skin)) in skins.into_iter().enumerate() {
         match model(&skin) {
             Ok(scene) => {
                 let bounds = scene.bounds();
-                check!(bounds.min.is_finite() && bounds.max.is_finite(), "{what}: vertices of {bounds:?}");
+                check!(
+                    bounds.min.is_finite() && bounds.max.is_finite(),
+                    "{what}: vertices of {bounds:?}"
+                );
                 let view = context.view(&scene, [64, 48]);
-                let capture = context.exact_on_all_with(&Arc::new(scene), &view, &stack(&["lambert"]), what)?;
-                check!(capture.frame.covered() > 300, "{what}: {} pixels", capture.frame.covered());
+                let capture = context.exact_on_all_with(
+                    &Arc::new(scene),
+                    &view,
+                    &stack(&["lambert"]),
+                    what,
+                )?;
+                check!(
+                    capture.frame.covered() > 300,
+                    "{what}: {} pixels",
+                    capture.frame.covered()
+                );
             }
             Err(error) => {
                 check!(i > 0, "{what} is refused: {error}");
@@ -133,41 +185,97 @@ fn unusual_skins(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     Ok(())
 }
 
-/// A quaternion of any length rotates as its unit quaternion does, and the loader reports that it normalized it.
+/// A quaternion of any length rotates as its unit quaternion does, and the loader reports that it
+/// normalized it.
 fn rotations_of_any_length(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let half = std::f64::consts::FRAC_1_SQRT_2;
-    let turned = |length: f64| Skin { rotation: [0.0, 0.0, half * length, half * length], ..SOUND };
-    let taken = |length: f64| model(&turned(length)).map_err(|error| EarlyEnd::Failed(format!("a rotation of length {length}: {error}")));
+    let turned = |length: f64| Skin {
+        rotation: [0.0, 0.0, half * length, half * length],
+        ..SOUND
+    };
+    let taken = |length: f64| {
+        model(&turned(length))
+            .map_err(|error| EarlyEnd::Failed(format!("a rotation of length {length}: {error}")))
+    };
     let sound = taken(1.0)?;
     let view = context.view(&sound, [64, 48]);
-    let says = |scene: &crate::scene::Scene| scene.notes.iter().any(|note| note.contains("rotation") && note.contains("normalized"));
-    check!(!says(&sound), "a unit quaternion is reported: {:?}", sound.notes);
-    let reference = context.exact_on_all_with(&Arc::new(sound), &view, &stack(&["lambert"]), "a rotation of length 1")?;
+    let says = |scene: &crate::scene::Scene| {
+        scene
+            .notes
+            .iter()
+            .any(|note| note.contains("rotation") && note.contains("normalized"))
+    };
+    check!(
+        !says(&sound),
+        "a unit quaternion is reported: {:?}",
+        sound.notes
+    );
+    let reference = context.exact_on_all_with(
+        &Arc::new(sound),
+        &view,
+        &stack(&["lambert"]),
+        "a rotation of length 1",
+    )?;
     for length in [3.0, 1e-3, 1e18] {
         let what = format!("a rotation of length {length:e}");
         let scene = taken(length)?;
-        check!(says(&scene), "{what} is accepted without a note: {:?}", scene.notes);
-        let capture = context.exact_on_all_with(&Arc::new(scene), &view, &stack(&["lambert"]), &what)?;
+        check!(
+            says(&scene),
+            "{what} is accepted without a note: {:?}",
+            scene.notes
+        );
+        let capture =
+            context.exact_on_all_with(&Arc::new(scene), &view, &stack(&["lambert"]), &what)?;
         same(&capture, &reference, &what)?;
     }
     Ok(())
 }
 
-/// Five meshes that can deform, beside one another: one follows joints, two follow morph targets, of which some move positions or normals
-/// alone, and two, the first among them, follow neither in this picture.
+/// Five meshes that can deform, beside one another: one follows joints, two follow morph targets,
+/// of which some move positions or normals alone, and two, the first among them, follow neither in
+/// this picture.
 fn mixed_company(tentacle: &Scene) -> Scene {
     let mut scene = tentacle.clone();
     let mut boneless = scene.primitives[0].clone();
-    boneless.deformation = Deformation { influences: Vec::new(), joint_bounds: Vec::new(), ..boneless.deformation };
+    boneless.deformation = Deformation {
+        influences: Vec::new(),
+        joint_bounds: Vec::new(),
+        ..boneless.deformation
+    };
     let whole = boneless.deformation.morph_targets[0];
-    boneless.deformation.morph_targets.extend([MorphTarget { normals: None, ..whole }, MorphTarget { positions: None, ..whole }]);
+    boneless.deformation.morph_targets.extend([
+        MorphTarget {
+            normals: None,
+            ..whole
+        },
+        MorphTarget {
+            positions: None,
+            ..whole
+        },
+    ]);
     scene.primitives.push(boneless);
-    for (place, weights) in [(-2.0, [0.0; 3]), (-1.0, [1.5, 0.25, -0.5]), (1.0, [0.0; 3]), (2.0, [-0.75, -0.125, 1.0])] {
-        let rest = Trs { translation: DVec3::X * place, ..Trs::default() };
+    for (place, weights) in [
+        (-2.0, [0.0; 3]),
+        (-1.0, [1.5, 0.25, -0.5]),
+        (1.0, [0.0; 3]),
+        (2.0, [-0.75, -0.125, 1.0]),
+    ] {
+        let rest = Trs {
+            translation: DVec3::X * place,
+            ..Trs::default()
+        };
         let node = scene.rig.nodes.len();
-        scene.rig.nodes.push(Node { name: String::new(), parent: None, rest: LocalTransform::Trs(rest), weights: weights.to_vec() });
+        scene.rig.nodes.push(Node {
+            name: String::new(),
+            parent: None,
+            rest: LocalTransform::Trs(rest),
+            weights: weights.to_vec(),
+        });
         let rest = LocalTransform::Trs(rest).matrix();
-        scene.instances.push(Instance { node: Some(node), ..Instance::fixed(1, rest) });
+        scene.instances.push(Instance {
+            node: Some(node),
+            ..Instance::fixed(1, rest)
+        });
     }
     // The skin comes third: a mesh that stays lies before and behind it.
     scene.instances.rotate_left(1);
@@ -178,7 +286,14 @@ fn mixed_company(tentacle: &Scene) -> Scene {
 
 /// Writes values into a component of every seventh vertex, beginning with `first`.
 fn spoil(scene: &mut Scene, accessor: &Accessor, first: u32) {
-    let values = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -f32::NAN, 1e-40];
+    let values = [
+        f32::NAN,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        f32::MAX,
+        -f32::NAN,
+        1e-40,
+    ];
     for (i, vertex) in (first..accessor.count).step_by(7).enumerate() {
         let at = (accessor.offset + vertex * accessor.stride) as usize + 4 * (i % 3);
         scene.vertex_bytes[at..at + 4].copy_from_slice(&values[i / 3 % values.len()].to_le_bytes());
@@ -190,7 +305,12 @@ fn skins_beside_other_meshes(context: &mut CaseContext) -> Result<(), EarlyEnd> 
     let mut spoiled = sound.clone();
     let primitive = sound.primitives[0].clone();
     let target = &primitive.deformation.morph_targets[0];
-    for (first, accessor) in [(0, Some(primitive.positions)), (2, Some(primitive.normals)), (4, target.positions), (5, target.normals)] {
+    for (first, accessor) in [
+        (0, Some(primitive.positions)),
+        (2, Some(primitive.normals)),
+        (4, target.positions),
+        (5, target.normals),
+    ] {
         if let Some(accessor) = accessor {
             spoil(&mut spoiled, &accessor, first);
         }
@@ -199,19 +319,37 @@ fn skins_beside_other_meshes(context: &mut CaseContext) -> Result<(), EarlyEnd> 
         for (what, scene) in [("sound", &sound), ("with NaN and infinities", &spoiled)] {
             let what = format!("{what}, {} skinning", skinning.name());
             let preset = Preset {
-                playback: ClipPlayback { clip: "Curl".into(), ..ClipPlayback::default() },
-                clock: Clock { time_s: 1.25, ..Clock::default() },
-                accuracy: AccuracyRequest { pins: PinnedOptions::of(*skinning), ..AccuracyRequest::default() },
+                playback: ClipPlayback {
+                    clip: "Curl".into(),
+                    ..ClipPlayback::default()
+                },
+                clock: Clock {
+                    time_s: 1.25,
+                    ..Clock::default()
+                },
+                accuracy: AccuracyRequest {
+                    pins: PinnedOptions::of(*skinning),
+                    ..AccuracyRequest::default()
+                },
                 ..Preset::default()
             };
             let (scene, view) = (Arc::new(scene.clone()), preset.view(scene, [160, 96]));
             let accuracy = pinned(context.quick_option());
             for effects in [&["normals"][..], &["wobble", "lambert"]] {
                 let what = format!("{what}, {}", effects.join(" and "));
-                let (capture, verdict) = context.exact(&scene, &view, &stack(effects), &accuracy, &what)?;
-                check!(capture.frame.covered() > 800, "{what}: {} pixels", capture.frame.covered());
+                let (capture, verdict) =
+                    context.exact(&scene, &view, &stack(effects), &accuracy, &what)?;
+                check!(
+                    capture.frame.covered() > 800,
+                    "{what}: {} pixels",
+                    capture.frame.covered()
+                );
                 let bent = 3 * u64::from(primitive.vertex_count());
-                check!(verdict.report.deformed_vertices == bent, "{what}: {} of {bent} vertices bend", verdict.report.deformed_vertices);
+                check!(
+                    verdict.report.deformed_vertices == bent,
+                    "{what}: {} of {bent} vertices bend",
+                    verdict.report.deformed_vertices
+                );
             }
         }
     }
@@ -224,8 +362,14 @@ fn culled_skins(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let (mut covered, mut culled) = (0, 0);
     for step in 0..if context.is_slow() { 12 } else { 48 } {
         let preset = Preset {
-            playback: ClipPlayback { clip: "Curl".into(), ..ClipPlayback::default() },
-            clock: Clock { time_s: 0.05 * f64::from(step), ..Clock::default() },
+            playback: ClipPlayback {
+                clip: "Curl".into(),
+                ..ClipPlayback::default()
+            },
+            clock: Clock {
+                time_s: 0.05 * f64::from(step),
+                ..Clock::default()
+            },
             camera: Some(camera_anywhere(&scene, &mut rng, step as usize)),
             ..Preset::default()
         };
@@ -234,19 +378,71 @@ fn culled_skins(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         covered += left_out.covered;
         culled += left_out.outside + left_out.backfacing;
     }
-    check!(covered > 3_000 && culled > 200, "{covered} pixels are covered, and {culled} meshlets were left out");
+    check!(
+        covered > 3_000 && culled > 200,
+        "{covered} pixels are covered, and {culled} meshlets were left out"
+    );
     Ok(())
 }
 
 fn invalid_skins(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     for (what, skin, word) in [
-        ("a joint out of range", Skin { joints: [0, 2, 0, 0], ..SOUND }, "joint 2"),
-        ("the last joint that a byte names", Skin { joints: [255; 4], ..SOUND }, "joint 255"),
-        ("a weight of NaN", Skin { weights: [f32::NAN, 1.0, 0.0, 0.0], ..SOUND }, "weight"),
-        ("an infinite weight", Skin { weights: [f32::INFINITY, 1.0, 0.0, 0.0], ..SOUND }, "weight"),
-        ("a rotation of length 0", Skin { rotation: [0.0; 4], ..SOUND }, "rotation"),
-        ("a rotation of length 1e-30", Skin { rotation: [0.0, 0.0, 1e-30, 0.0], ..SOUND }, "rotation"),
-        ("a negative weight", Skin { weights: [-0.5, 1.5, 0.0, 0.0], ..SOUND }, "weight"),
+        (
+            "a joint out of range",
+            Skin {
+                joints: [0, 2, 0, 0],
+                ..SOUND
+            },
+            "joint 2",
+        ),
+        (
+            "the last joint that a byte names",
+            Skin {
+                joints: [255; 4],
+                ..SOUND
+            },
+            "joint 255",
+        ),
+        (
+            "a weight of NaN",
+            Skin {
+                weights: [f32::NAN, 1.0, 0.0, 0.0],
+                ..SOUND
+            },
+            "weight",
+        ),
+        (
+            "an infinite weight",
+            Skin {
+                weights: [f32::INFINITY, 1.0, 0.0, 0.0],
+                ..SOUND
+            },
+            "weight",
+        ),
+        (
+            "a rotation of length 0",
+            Skin {
+                rotation: [0.0; 4],
+                ..SOUND
+            },
+            "rotation",
+        ),
+        (
+            "a rotation of length 1e-30",
+            Skin {
+                rotation: [0.0, 0.0, 1e-30, 0.0],
+                ..SOUND
+            },
+            "rotation",
+        ),
+        (
+            "a negative weight",
+            Skin {
+                weights: [-0.5, 1.5, 0.0, 0.0],
+                ..SOUND
+            },
+            "weight",
+        ),
     ] {
         match model(&skin) {
             Err(error) => {

@@ -1,8 +1,8 @@
 //! The table of stress cases, except [`super::strict`], which runs the others again.
 
 use super::{
-    case::Case, clipping, coverage, culling, depth, effects, hardware, matrix, normals, occlusion, parameters, picture_sizes, published,
-    queues, skins, time, values,
+    case::Case, clipping, coverage, culling, depth, effects, hardware, matrix, normals, occlusion,
+    parameters, picture_sizes, published, queues, skins, time, values,
 };
 
 /// All cases by kind, except those that run other cases.

@@ -1,4 +1,5 @@
-//! The trade: milliseconds beside error for every combination of options on chosen axes, interleaved in one run on one adapter.
+//! The trade: milliseconds beside error for every combination of options on chosen axes,
+//! interleaved in one run on one adapter.
 
 mod error;
 mod watch;
@@ -49,8 +50,8 @@ pub struct TradeRow {
     pub options: String,
     #[serde(skip)]
     pub pins: PinnedOptions,
-    /// Whole frame by timestamps, and what the CPU chose before it by the clock; none without timestamps or where the
-    /// combination cannot be drawn.
+    /// Whole frame by timestamps, and what the CPU chose before it by the clock; none without
+    /// timestamps or where the combination cannot be drawn.
     pub ms_p5: Option<f64>,
     pub ms_p50: Option<f64>,
     pub ms_p95: Option<f64>,
@@ -81,8 +82,12 @@ pub struct TradeRow {
 pub fn factors(preset: &Preset, axes: &[&'static Axis]) -> Vec<f64> {
     let pinned = preset.accuracy.scale();
     let is_walked = axes.iter().any(|axis| axis.index() == RenderScale::AXIS);
-    let drawn = RenderScale::ALL.iter().filter(|option| **option != RenderScale::Full && (is_walked || **option == pinned));
-    std::iter::once(1.0).chain(drawn.map(|option| option.factor())).collect()
+    let drawn = RenderScale::ALL
+        .iter()
+        .filter(|option| **option != RenderScale::Full && (is_walked || **option == pinned));
+    std::iter::once(1.0)
+        .chain(drawn.map(|option| option.factor()))
+        .collect()
 }
 
 /// Which samples a time belongs to.
@@ -110,11 +115,12 @@ struct Entry {
     invalid: usize,
 }
 
-/// Measures every combination of options on the chosen axes, held against `reference`. Ended early by `watch`, it returns what has been
-/// timed so far.
+/// Measures every combination of options on the chosen axes, held against `reference`. Ended early
+/// by `watch`, it returns what has been timed so far.
 ///
 /// # Errors
-/// When the device is lost or the scene does not fit. What a combination cannot draw becomes its row's note.
+/// When the device is lost or the scene does not fit. What a combination cannot draw becomes its
+/// row's note.
 pub fn trade(
     gpu: &Arc<Gpu>,
     preset: &Preset,
@@ -126,18 +132,41 @@ pub fn trade(
 ) -> Result<Vec<TradeRow>, RenderError> {
     const WARM_UP: usize = 3;
     let pins = preset.accuracy.pins;
-    let combinations = if options.is_one_option_at_a_time { each_alone(pins, &options.axes) } else { combinations(pins, &options.axes) };
+    let combinations = if options.is_one_option_at_a_time {
+        each_alone(pins, &options.axes)
+    } else {
+        combinations(pins, &options.axes)
+    };
     let (mut entries, mut lacking) = (Vec::new(), Vec::new());
     let mut is_wanted = true;
     for (i, &pins) in combinations.iter().enumerate() {
         let what = words(&pins, &options.axes);
-        is_wanted = is_wanted && watch.goes_on(&Step { what: &what, phase: Phase::SetUp, done: i, all: combinations.len() });
+        is_wanted = is_wanted
+            && watch.goes_on(&Step {
+                what: &what,
+                phase: Phase::SetUp,
+                done: i,
+                all: combinations.len(),
+            });
         if !is_wanted {
             break;
         }
         // A option of the joints is settled with the pose that the view holds.
-        let pinned = Preset { accuracy: AccuracyRequest { pins, ..preset.accuracy }, ..preset.clone() };
-        match Entry::new(gpu, preset, scene, pinned.view(scene, options.size), pins, reference) {
+        let pinned = Preset {
+            accuracy: AccuracyRequest {
+                pins,
+                ..preset.accuracy
+            },
+            ..preset.clone()
+        };
+        match Entry::new(
+            gpu,
+            preset,
+            scene,
+            pinned.view(scene, options.size),
+            pins,
+            reference,
+        ) {
             Ok(Some(mut entry)) => {
                 for _ in 0..WARM_UP {
                     entry.sample(preset, Kept::Alone, FRAMES_PER_SAMPLE)?;
@@ -154,11 +183,16 @@ pub fn trade(
         }
     }
     if is_wanted {
-        warm_up::warm_up(gpu, warm_up::FROM_IDLE, entries.len(), async |at, frames| {
-            entries[at].sample(preset, Kept::Alone, frames)?;
-            is_wanted = watch.is_wanted();
-            Ok(is_wanted)
-        })
+        warm_up::warm_up(
+            gpu,
+            warm_up::FROM_IDLE,
+            entries.len(),
+            async |at, frames| {
+                entries[at].sample(preset, Kept::Alone, frames)?;
+                is_wanted = watch.is_wanted();
+                Ok(is_wanted)
+            },
+        )
         .block_on()?;
     }
     let steps = entries.len() * options.samples;
@@ -167,7 +201,12 @@ pub fn trade(
             let what = words(&entries[at].pins, &options.axes);
             // A sample that was disturbed is taken again.
             loop {
-                let step = Step { what: &what, phase: Phase::Time, done: round * entries.len() + at, all: steps };
+                let step = Step {
+                    what: &what,
+                    phase: Phase::Time,
+                    done: round * entries.len() + at,
+                    all: steps,
+                };
                 is_wanted = is_wanted && watch.goes_on(&step);
                 if !is_wanted {
                     break;
@@ -205,9 +244,15 @@ pub fn trade(
         culled: None,
         note: None,
     };
-    let mut rows: Vec<TradeRow> = entries.into_iter().map(|entry| entry.finish(&row)).collect();
+    let mut rows: Vec<TradeRow> = entries
+        .into_iter()
+        .map(|entry| entry.finish(&row))
+        .collect();
     mark_dominated(&mut rows);
-    rows.extend(lacking.into_iter().map(|(pins, why)| TradeRow { note: Some(why), ..row(pins) }));
+    rows.extend(lacking.into_iter().map(|(pins, why)| TradeRow {
+        note: Some(why),
+        ..row(pins)
+    }));
     Ok(rows)
 }
 
@@ -219,7 +264,9 @@ fn combinations(pins: PinnedOptions, axes: &[&'static Axis]) -> Vec<PinnedOption
             pins.set(axis, Some(place));
             pins
         };
-        all.iter().flat_map(|pins| (0..axis.words.len()).map(move |place| with(pins, place))).collect()
+        all.iter()
+            .flat_map(|pins| (0..axis.words.len()).map(move |place| with(pins, place)))
+            .collect()
     })
 }
 
@@ -235,8 +282,13 @@ pub const AS_PLANNED: &str = "as planned";
 /// The options of a combination on the chosen axes.
 fn words(pins: &PinnedOptions, axes: &[&'static Axis]) -> String {
     let mut chosen = PinnedOptions::default();
-    axes.iter().for_each(|axis| chosen.set(axis, pins.get(axis)));
-    if AXES.iter().all(|axis| chosen.get(axis).is_none()) { AS_PLANNED.into() } else { chosen.words() }
+    axes.iter()
+        .for_each(|axis| chosen.set(axis, pins.get(axis)));
+    if AXES.iter().all(|axis| chosen.get(axis).is_none()) {
+        AS_PLANNED.into()
+    } else {
+        chosen.words()
+    }
 }
 
 impl Entry {
@@ -251,22 +303,64 @@ impl Entry {
     ) -> Result<Option<Self>, RenderError> {
         let mut renderer = Renderer::new(gpu.clone());
         renderer.set_scene(scene).block_on()?;
-        let accuracy = AccuracyRequest { pins, ..preset.accuracy };
-        let first = renderer.capture(&view, &preset.stack, &accuracy).block_on()?;
-        let second = renderer.capture(&view, &preset.stack, &accuracy).block_on()?;
-        let bytes = renderer.explain().buffers.iter().map(|buffer| buffer.bytes).sum();
-        let Some(judged) = (reference.judge)(&view, &preset.stack, &first) else { return Ok(None) };
+        let accuracy = AccuracyRequest {
+            pins,
+            ..preset.accuracy
+        };
+        let first = renderer
+            .capture(&view, &preset.stack, &accuracy)
+            .block_on()?;
+        let second = renderer
+            .capture(&view, &preset.stack, &accuracy)
+            .block_on()?;
+        let bytes = renderer
+            .explain()
+            .buffers
+            .iter()
+            .map(|buffer| buffer.bytes)
+            .sum();
+        let Some(judged) = (reference.judge)(&view, &preset.stack, &first) else {
+            return Ok(None);
+        };
         let error = TradeError::of(&first, &second.frame, &judged, reference);
-        let triangle_ids = first.frame.triangle_id.iter().filter(|triangle_id| **triangle_id != NO_TRIANGLE).collect::<HashSet<_>>().len();
+        let triangle_ids = first
+            .frame
+            .triangle_id
+            .iter()
+            .filter(|triangle_id| **triangle_id != NO_TRIANGLE)
+            .collect::<HashSet<_>>()
+            .len();
         let (alone, ms, cpu_ms) = (Vec::new(), Vec::new(), Vec::new());
-        Ok(Some(Self { pins, view, renderer, error, triangle_ids, bytes, alone, ms, cpu_ms, invalid: 0 }))
+        Ok(Some(Self {
+            pins,
+            view,
+            renderer,
+            error,
+            triangle_ids,
+            bytes,
+            alone,
+            ms,
+            cpu_ms,
+            invalid: 0,
+        }))
     }
 
     /// Draws so many frames without a pause, waits, and times the last.
     fn sample(&mut self, preset: &Preset, kept: Kept, frames: usize) -> Result<(), RenderError> {
-        let accuracy = AccuracyRequest { pins: self.pins, ..preset.accuracy };
+        let accuracy = AccuracyRequest {
+            pins: self.pins,
+            ..preset.accuracy
+        };
         for _ in 0..frames {
-            self.renderer.draw_timed(&self.view, &preset.stack, &accuracy, Detail::Whole, Wait::Simulation).block_on()?;
+            self.renderer
+                .draw_timed(
+                    &self.view,
+                    &preset.stack,
+                    &accuracy,
+                    Detail::Whole,
+                    Wait::Simulation,
+                )
+                .block_on()?;
         }
         let report = self.renderer.finish().block_on()?;
         match report.gpu_ms {
@@ -296,7 +390,10 @@ impl Entry {
     /// What culling spared, and the work that it left in vain.
     fn wasted(&self, culled: &CullingStats) -> String {
         let (drawn, all, meshlet_visibility) = (culled.drawn, culled.all(), self.triangle_ids);
-        format!("{drawn} of {all} meshlets drawn ({}); {meshlet_visibility} triangles own a pixel", culled.reasons())
+        format!(
+            "{drawn} of {all} meshlets drawn ({}); {meshlet_visibility} triangles own a pixel",
+            culled.reasons()
+        )
     }
 
     fn finish(self, row: &dyn Fn(PinnedOptions) -> TradeRow) -> TradeRow {
@@ -304,7 +401,8 @@ impl Entry {
         let ms = if is_alone { &self.alone } else { &self.ms };
         let spread = Spread::of(ms);
         let wasted = self.renderer.culled().map(|culled| self.wasted(&culled));
-        let early = is_alone.then(|| "timed alone, since the measurement was ended before its rounds".to_owned());
+        let early = is_alone
+            .then(|| "timed alone, since the measurement was ended before its rounds".to_owned());
         TradeRow {
             ms_p5: spread.map(|spread| spread.p5),
             ms_p50: spread.map(|spread| spread.p50),
@@ -317,29 +415,45 @@ impl Entry {
             error: Some(self.error),
             bytes: self.bytes,
             culled: self.renderer.culled(),
-            note: wasted.into_iter().chain(early).reduce(|a, b| format!("{a}; {b}")),
+            note: wasted
+                .into_iter()
+                .chain(early)
+                .reduce(|a, b| format!("{a}; {b}")),
             ..row(self.pins)
         }
     }
 }
 
-/// Marks rows that another row makes pointless: as right or better, and quicker by more than the noise.
+/// Marks rows that another row makes pointless: as right or better, and quicker by more than the
+/// noise.
 fn mark_dominated(rows: &mut [TradeRow]) {
     let beats = |a: &TradeRow, b: &TradeRow| {
-        let (Some(ea), Some(eb), Some(ta), Some(tb)) = (a.error, b.error, a.spread, b.spread) else { return false };
+        let (Some(ea), Some(eb), Some(ta), Some(tb)) = (a.error, b.error, a.spread, b.spread)
+        else {
+            return false;
+        };
         ea.is_at_most(&eb) && ta.is_clearly_below(&tb)
     };
     let dominated: Vec<Option<String>> = rows
         .iter()
         .map(|row| {
             let better = rows.iter().filter(|other| beats(other, row));
-            better.min_by(|a, b| a.ms_p50.unwrap_or(f64::MAX).total_cmp(&b.ms_p50.unwrap_or(f64::MAX))).map(|other| other.options.clone())
+            better
+                .min_by(|a, b| {
+                    a.ms_p50
+                        .unwrap_or(f64::MAX)
+                        .total_cmp(&b.ms_p50.unwrap_or(f64::MAX))
+                })
+                .map(|other| other.options.clone())
         })
         .collect();
     for (row, better) in rows.iter_mut().zip(dominated) {
         row.is_dominated = better.is_some();
         let dominated = better.map(|better| format!("no gain: {better} is as right and quicker"));
-        row.note = [row.note.take(), dominated].into_iter().flatten().reduce(|a, b| format!("{a}; {b}"));
+        row.note = [row.note.take(), dominated]
+            .into_iter()
+            .flatten()
+            .reduce(|a, b| format!("{a}; {b}"));
     }
 }
 
@@ -351,10 +465,23 @@ mod tests {
     #[test]
     fn combinations_are_the_product_and_keep_other_pins() {
         let axes = [&AXES[Coverage::AXIS], &AXES[DepthFormat::AXIS]];
-        let all = combinations(PinnedOptions::of(crate::accuracy::Visibility::Split32), &axes);
+        let all = combinations(
+            PinnedOptions::of(crate::accuracy::Visibility::Split32),
+            &axes,
+        );
         assert_eq!(all.len(), Coverage::ALL.len() * DepthFormat::ALL.len());
-        assert!(all.iter().all(|pins| pins.option() == Some(crate::accuracy::Visibility::Split32)));
-        assert_eq!(words(&all[0], &axes), format!("coverage={} depth={}", Coverage::ALL[0].name(), DepthFormat::ALL[0].name()));
+        assert!(
+            all.iter()
+                .all(|pins| pins.option() == Some(crate::accuracy::Visibility::Split32))
+        );
+        assert_eq!(
+            words(&all[0], &axes),
+            format!(
+                "coverage={} depth={}",
+                Coverage::ALL[0].name(),
+                DepthFormat::ALL[0].name()
+            )
+        );
     }
 
     #[test]
@@ -369,19 +496,36 @@ mod tests {
             ms_p5: Some(ms),
             ms_p50: Some(ms),
             ms_p95: Some(ms),
-            spread: Spread::of(&(0..30).map(|i| ms + 0.01 * f64::from(i % 10)).collect::<Vec<_>>()),
+            spread: Spread::of(
+                &(0..30)
+                    .map(|i| ms + 0.01 * f64::from(i % 10))
+                    .collect::<Vec<_>>(),
+            ),
             cpu_ms_p50: None,
             samples: 30,
             invalid: 0,
             outliers: 0,
-            error: Some(TradeError { wrong_ppm, ..TradeError::default() }),
+            error: Some(TradeError {
+                wrong_ppm,
+                ..TradeError::default()
+            }),
             bytes: 0,
             is_dominated: false,
             culled: None,
             note: None,
         };
-        let mut rows = [row(1.0, 5.0), row(2.0, 1.0), row(3.0, 1.0), row(3.0, 0.0), row(2.005, 1.0)];
+        let mut rows = [
+            row(1.0, 5.0),
+            row(2.0, 1.0),
+            row(3.0, 1.0),
+            row(3.0, 0.0),
+            row(2.005, 1.0),
+        ];
         mark_dominated(&mut rows);
-        assert_eq!(rows.map(|row| row.is_dominated), [false, false, true, false, false], "the last is slower by chance");
+        assert_eq!(
+            rows.map(|row| row.is_dominated),
+            [false, false, true, false, false],
+            "the last is slower by chance"
+        );
     }
 }

@@ -22,7 +22,8 @@ pub enum Phase {
 
 /// Follows a measurement, and ends it.
 pub trait Watch {
-    /// Called before each step; false ends the measurement. It may wait, for instance until the device is free.
+    /// Called before each step; false ends the measurement. It may wait, for instance until the
+    /// device is free.
     fn goes_on(&mut self, step: &Step) -> bool;
 
     /// False ends the measurement.
@@ -30,7 +31,8 @@ pub trait Watch {
         true
     }
 
-    /// Returns true if nothing else has used the device since the last step began, so that its time counts.
+    /// Returns true if nothing else has used the device since the last step began, so that its time
+    /// counts.
     fn was_undisturbed(&mut self) -> bool {
         true
     }

@@ -25,7 +25,9 @@ impl<'m> Lowering<'m, '_> {
         fun: MathFunction,
         arguments: [Option<Handle<Expression>>; 4],
     ) -> Result<Words, LowerError> {
-        let Some(first) = arguments[0] else { return Err(self.invalid("a built-in function without arguments")) };
+        let Some(first) = arguments[0] else {
+            return Err(self.invalid("a built-in function without arguments"));
+        };
         let kind = self.kind(scope, first)?;
         let matrix = self.matrix_size(scope, first);
         let mut given = Vec::with_capacity(4);
@@ -56,7 +58,9 @@ impl<'m> Lowering<'m, '_> {
         }
         match (fun, matrix) {
             (MathFunction::Transpose, Some(size)) => Ok(self.transpose(&a, size)),
-            (MathFunction::Determinant, Some((size, _))) => Ok(Words::one(self.determinant(&a, size)?)),
+            (MathFunction::Determinant, Some((size, _))) => {
+                Ok(Words::one(self.determinant(&a, size)?))
+            }
             (MathFunction::Inverse, Some((size, _))) => self.inverse(&a, size),
             (MathFunction::Modf, _) => self.pair(Op::ModfFractF, Op::TruncF, &a),
             (MathFunction::Frexp, _) => self.pair(Op::FrexpFractF, Op::FrexpExponentF, &a),
@@ -81,7 +85,13 @@ impl<'m> Lowering<'m, '_> {
         Ok(first.iter().chain(second.iter()).collect())
     }
 
-    fn insert_bits(&mut self, word: &Words, bits: &Words, offset: u32, count: u32) -> Result<Words, LowerError> {
+    fn insert_bits(
+        &mut self,
+        word: &Words,
+        bits: &Words,
+        offset: u32,
+        count: u32,
+    ) -> Result<Words, LowerError> {
         let mask = self.two(Op::BitMask, offset, count)?;
         let rest = self.one(Op::NotW, mask)?;
         let kept = self.zip(Op::AndW, word, &Words::one(rest))?;
@@ -136,9 +146,19 @@ impl<'m> Lowering<'m, '_> {
         Ok(Words::one(packed))
     }
 
-    fn unpack(&mut self, op: Option<Op>, is_signed: bool, word: u32, bits: u32) -> Result<Words, LowerError> {
+    fn unpack(
+        &mut self,
+        op: Option<Op>,
+        is_signed: bool,
+        word: u32,
+        bits: u32,
+    ) -> Result<Words, LowerError> {
         let width = self.integer(bits)?;
-        let extract = if is_signed { Op::ExtractBitsI } else { Op::ExtractBitsU };
+        let extract = if is_signed {
+            Op::ExtractBitsI
+        } else {
+            Op::ExtractBitsU
+        };
         (0..32 / bits)
             .map(|index| {
                 let offset = self.integer(index * bits)?;

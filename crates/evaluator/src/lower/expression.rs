@@ -9,7 +9,11 @@ use crate::instruction::Op;
 use crate::word::Word;
 
 impl<'m> Lowering<'m, '_> {
-    pub(super) fn expression(&mut self, scope: &mut Scope<'m>, handle: Handle<Expression>) -> Result<Value, LowerError> {
+    pub(super) fn expression(
+        &mut self,
+        scope: &mut Scope<'m>,
+        handle: Handle<Expression>,
+    ) -> Result<Value, LowerError> {
         let expressions = scope.expressions;
         let words = match expressions[handle] {
             Expression::FunctionArgument(index) => {
@@ -18,13 +22,21 @@ impl<'m> Lowering<'m, '_> {
             }
             Expression::LocalVariable(local) => {
                 let base = scope.locals.get(local.index()).copied();
-                let Some(base) = base else { return Err(self.invalid("a local variable outside of its function")) };
-                return Ok(Value::Place(Place { base, offset: None, is_writable: true }));
+                let Some(base) = base else {
+                    return Err(self.invalid("a local variable outside of its function"));
+                };
+                return Ok(Value::Place(Place {
+                    base,
+                    offset: None,
+                    is_writable: true,
+                }));
             }
             Expression::GlobalVariable(global) => return Ok(Value::Place(self.variable(global)?)),
             Expression::AccessIndex { base, index } => return self.part(scope, base, index),
             Expression::Access { base, index } => return self.element(scope, base, index),
-            Expression::Literal(literal) => self.literal(literal, expressions.get_span(handle).to_range())?,
+            Expression::Literal(literal) => {
+                self.literal(literal, expressions.get_span(handle).to_range())?
+            }
             Expression::Constant(constant) => self.module_constant(constant)?,
             Expression::Override(constant) => self.override_words(constant)?,
             Expression::ZeroValue(ty) => self.zero(ty)?,
@@ -36,17 +48,30 @@ impl<'m> Lowering<'m, '_> {
                 }
                 self.code.count(len).map_err(|full| self.full(full))?;
                 if list.len() != len as usize {
-                    return Err(self.invalid("a value is composed of parts that do not make up its type"));
+                    return Err(
+                        self.invalid("a value is composed of parts that do not make up its type")
+                    );
                 }
                 list.into_iter().collect()
             }
             Expression::Splat { size, value } => {
                 let register = self.words(scope, value)?.at(0);
-                Words::Repeat { register, len: size as u32 }
+                Words::Repeat {
+                    register,
+                    len: size as u32,
+                }
             }
-            Expression::Swizzle { size, vector, pattern } => {
+            Expression::Swizzle {
+                size,
+                vector,
+                pattern,
+            } => {
                 let vector = self.words(scope, vector)?;
-                pattern.iter().take(size as usize).map(|component| vector.at(component_index(*component))).collect()
+                pattern
+                    .iter()
+                    .take(size as usize)
+                    .map(|component| vector.at(component_index(*component)))
+                    .collect()
             }
             Expression::Load { pointer } => self.load(scope, handle, pointer)?,
             Expression::Unary { op, expr } => {
@@ -55,7 +80,11 @@ impl<'m> Lowering<'m, '_> {
                 self.unary(op, kind, &words)?
             }
             Expression::Binary { op, left, right } => self.binary(scope, op, left, right)?,
-            Expression::Select { condition, accept, reject } => {
+            Expression::Select {
+                condition,
+                accept,
+                reject,
+            } => {
                 let condition = self.words(scope, condition)?;
                 let accept = self.words(scope, accept)?;
                 let reject = self.words(scope, reject)?;
@@ -65,11 +94,21 @@ impl<'m> Lowering<'m, '_> {
                 let words = self.words(scope, argument)?;
                 self.relational(fun, &words)?
             }
-            Expression::Math { fun, arg, arg1, arg2, arg3 } => {
+            Expression::Math {
+                fun,
+                arg,
+                arg1,
+                arg2,
+                arg3,
+            } => {
                 let arguments = [Some(arg), arg1, arg2, arg3];
                 self.math(scope, fun, arguments)?
             }
-            Expression::As { expr, kind, convert } => {
+            Expression::As {
+                expr,
+                kind,
+                convert,
+            } => {
                 let from = self.kind(scope, expr)?;
                 let words = self.words(scope, expr)?;
                 if convert.is_some_and(|width| width != 4 && kind != ScalarKind::Bool) {
@@ -77,15 +116,23 @@ impl<'m> Lowering<'m, '_> {
                 }
                 self.convert(&words, from, kind, convert.is_none())?
             }
-            Expression::CallResult(_) => return Err(self.invalid("the result of a call is used before the call")),
+            Expression::CallResult(_) => {
+                return Err(self.invalid("the result of a call is used before the call"));
+            }
             Expression::Derivative { .. } => return Err(self.unsupported("a derivative")),
-            Expression::ImageSample { .. } | Expression::ImageLoad { .. } | Expression::ImageQuery { .. } => {
+            Expression::ImageSample { .. }
+            | Expression::ImageLoad { .. }
+            | Expression::ImageQuery { .. } => {
                 return Err(self.unsupported("a texture"));
             }
             Expression::ArrayLength(_) => return Err(self.unsupported("`arrayLength`")),
             Expression::AtomicResult { .. } => return Err(self.unsupported("an atomic")),
-            Expression::WorkGroupUniformLoadResult { .. } => return Err(self.unsupported("`workgroupUniformLoad`")),
-            Expression::RayQueryVertexPositions { .. } | Expression::RayQueryProceedResult | Expression::RayQueryGetIntersection { .. } => {
+            Expression::WorkGroupUniformLoadResult { .. } => {
+                return Err(self.unsupported("`workgroupUniformLoad`"));
+            }
+            Expression::RayQueryVertexPositions { .. }
+            | Expression::RayQueryProceedResult
+            | Expression::RayQueryGetIntersection { .. } => {
                 return Err(self.unsupported("ray tracing"));
             }
             Expression::SubgroupBallotResult | Expression::SubgroupOperationResult { .. } => {
@@ -99,7 +146,11 @@ impl<'m> Lowering<'m, '_> {
     }
 
     /// Kind of the scalars of an expression.
-    pub(super) fn kind(&mut self, scope: &Scope<'m>, handle: Handle<Expression>) -> Result<ScalarKind, LowerError> {
+    pub(super) fn kind(
+        &mut self,
+        scope: &Scope<'m>,
+        handle: Handle<Expression>,
+    ) -> Result<ScalarKind, LowerError> {
         match scope.inner(self.module, handle).scalar_kind() {
             Some(ScalarKind::AbstractFloat) => Ok(ScalarKind::Float),
             Some(ScalarKind::AbstractInt) => Ok(ScalarKind::Sint),
@@ -127,19 +178,38 @@ impl<'m> Lowering<'m, '_> {
 
     /// An instruction on the components of two vectors, or of a vector and a scalar.
     pub(super) fn zip(&mut self, op: Op, a: &Words, b: &Words) -> Result<Words, LowerError> {
-        (0..a.len().max(b.len())).map(|index| self.two(op, a.at(index), b.at(index))).collect()
+        (0..a.len().max(b.len()))
+            .map(|index| self.two(op, a.at(index), b.at(index)))
+            .collect()
     }
 
-    pub(super) fn zip3(&mut self, op: Op, a: &Words, b: &Words, c: &Words) -> Result<Words, LowerError> {
+    pub(super) fn zip3(
+        &mut self,
+        op: Op,
+        a: &Words,
+        b: &Words,
+        c: &Words,
+    ) -> Result<Words, LowerError> {
         let len = a.len().max(b.len()).max(c.len());
-        (0..len).map(|index| self.three(op, a.at(index), b.at(index), c.at(index))).collect()
+        (0..len)
+            .map(|index| self.three(op, a.at(index), b.at(index), c.at(index)))
+            .collect()
     }
 
-    pub(super) fn select(&mut self, condition: &Words, accept: &Words, reject: &Words) -> Result<Words, LowerError> {
+    pub(super) fn select(
+        &mut self,
+        condition: &Words,
+        accept: &Words,
+        reject: &Words,
+    ) -> Result<Words, LowerError> {
         if condition.len() == 1
             && let Some(known) = self.code.known(condition.at(0))
         {
-            return Ok(if known.to_bool() { accept.clone() } else { reject.clone() });
+            return Ok(if known.to_bool() {
+                accept.clone()
+            } else {
+                reject.clone()
+            });
         }
         self.zip3(Op::Select, condition, accept, reject)
     }
@@ -158,7 +228,13 @@ impl<'m> Lowering<'m, '_> {
         Ok(Words::one(sum))
     }
 
-    fn convert(&mut self, words: &Words, from: ScalarKind, to: ScalarKind, is_bitcast: bool) -> Result<Words, LowerError> {
+    fn convert(
+        &mut self,
+        words: &Words,
+        from: ScalarKind,
+        to: ScalarKind,
+        is_bitcast: bool,
+    ) -> Result<Words, LowerError> {
         use ScalarKind::{Bool, Float, Sint, Uint};
         let op = match (from, to) {
             (Float, Float) | (Bool, Bool) | (Sint | Uint, Sint | Uint) => return Ok(words.clone()),
@@ -188,7 +264,11 @@ impl<'m> Lowering<'m, '_> {
     }
 
     /// Columns and rows, if an expression is a matrix.
-    pub(super) fn matrix_size(&self, scope: &Scope<'m>, handle: Handle<Expression>) -> Option<(u32, u32)> {
+    pub(super) fn matrix_size(
+        &self,
+        scope: &Scope<'m>,
+        handle: Handle<Expression>,
+    ) -> Option<(u32, u32)> {
         match *scope.inner(self.module, handle) {
             TypeInner::Matrix { columns, rows, .. } => Some((columns as u32, rows as u32)),
             _ => None,

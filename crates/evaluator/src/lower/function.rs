@@ -12,27 +12,44 @@ use crate::facts::{Facts, Returning};
 use crate::instruction::Op;
 
 impl<'m> Lowering<'m, '_> {
-    fn facts(&mut self, handle: Handle<Function>) -> Result<(Rc<naga::front::Typifier>, Rc<Facts>), LowerError> {
+    fn facts(
+        &mut self,
+        handle: Handle<Function>,
+    ) -> Result<(Rc<naga::front::Typifier>, Rc<Facts>), LowerError> {
         if let Some((types, facts)) = self.functions.get(&handle) {
             return Ok((types.clone(), facts.clone()));
         }
         let function = &self.module.functions[handle];
-        let context = ResolveContext::with_locals(self.module, &function.local_variables, &function.arguments);
+        let context = ResolveContext::with_locals(
+            self.module,
+            &function.local_variables,
+            &function.arguments,
+        );
         let types = Rc::new(self.typed(&function.expressions, &context)?);
-        let facts = Facts::new(self.module, function, &types, &mut self.layout).map_err(|reason| self.no_layout(reason))?;
+        let facts = Facts::new(self.module, function, &types, &mut self.layout)
+            .map_err(|reason| self.no_layout(reason))?;
         let facts = Rc::new(facts);
-        self.functions.insert(handle, (types.clone(), facts.clone()));
+        self.functions
+            .insert(handle, (types.clone(), facts.clone()));
         Ok((types, facts))
     }
 
     /// Lowers a call; the words of its result.
-    pub(super) fn inline(&mut self, handle: Handle<Function>, arguments: Vec<Value>) -> Result<Words, LowerError> {
+    pub(super) fn inline(
+        &mut self,
+        handle: Handle<Function>,
+        arguments: Vec<Value>,
+    ) -> Result<Words, LowerError> {
         if self.calls.contains(&handle) {
             return Err(self.invalid("a function calls itself"));
         }
         if self.calls.len() >= DEPTH_LIMIT {
             let (function, span) = (self.function_name(), self.location.span.to_range());
-            return Err(LowerError::Depth { limit: DEPTH_LIMIT, function, span });
+            return Err(LowerError::Depth {
+                limit: DEPTH_LIMIT,
+                function,
+                span,
+            });
         }
         self.code.count(0).map_err(|full| self.full(full))?;
         let function = &self.module.functions[handle];
@@ -47,8 +64,14 @@ impl<'m> Lowering<'m, '_> {
             let len = self.words_of(result.ty)?;
             scope.result = match facts.returning {
                 Returning::Last => Words::none(),
-                Returning::Variable(local) => Words::Range { start: scope.locals[local.index()], len },
-                Returning::Mixed => Words::Range { start: self.allocate(len)?, len },
+                Returning::Variable(local) => Words::Range {
+                    start: scope.locals[local.index()],
+                    len,
+                },
+                Returning::Mixed => Words::Range {
+                    start: self.allocate(len)?,
+                    len,
+                },
             };
         }
         self.block(&mut scope, &function.body)?;
@@ -80,11 +103,19 @@ impl<'m> Lowering<'m, '_> {
     }
 
     fn mark(&mut self) {
-        self.marks.push((self.code.instructions.len() as u32, self.location.function as u32));
+        self.marks.push((
+            self.code.instructions.len() as u32,
+            self.location.function as u32,
+        ));
     }
 
     /// Gives the local variables registers and their first values.
-    fn variables(&mut self, scope: &mut Scope<'m>, function: &'m Function, facts: &Facts) -> Result<(), LowerError> {
+    fn variables(
+        &mut self,
+        scope: &mut Scope<'m>,
+        function: &'m Function,
+        facts: &Facts,
+    ) -> Result<(), LowerError> {
         for (handle, variable) in function.local_variables.iter() {
             self.location.span = function.local_variables.get_span(handle);
             let len = self.words_of(variable.ty)?;
@@ -107,19 +138,30 @@ impl<'m> Lowering<'m, '_> {
         Ok(())
     }
 
-    pub(super) fn block(&mut self, scope: &mut Scope<'m>, block: &'m Block) -> Result<(), LowerError> {
+    pub(super) fn block(
+        &mut self,
+        scope: &mut Scope<'m>,
+        block: &'m Block,
+    ) -> Result<(), LowerError> {
         for (statement, span) in block.span_iter() {
             self.location.span = *span;
             self.code.count(0).map_err(|full| self.full(full))?;
             self.statement(scope, statement)?;
-            if matches!(statement, Statement::Break | Statement::Continue | Statement::Return { .. }) {
+            if matches!(
+                statement,
+                Statement::Break | Statement::Continue | Statement::Return { .. }
+            ) {
                 break;
             }
         }
         Ok(())
     }
 
-    fn statement(&mut self, scope: &mut Scope<'m>, statement: &'m Statement) -> Result<(), LowerError> {
+    fn statement(
+        &mut self,
+        scope: &mut Scope<'m>,
+        statement: &'m Statement,
+    ) -> Result<(), LowerError> {
         match statement {
             Statement::Emit(range) => {
                 for handle in range.clone() {
@@ -130,9 +172,17 @@ impl<'m> Lowering<'m, '_> {
                 Ok(())
             }
             Statement::Block(block) => self.block(scope, block),
-            Statement::If { condition, accept, reject } => self.branch(scope, *condition, accept, reject),
+            Statement::If {
+                condition,
+                accept,
+                reject,
+            } => self.branch(scope, *condition, accept, reject),
             Statement::Switch { selector, cases } => self.switch(scope, *selector, cases),
-            Statement::Loop { body, continuing, break_if } => self.repeat(scope, body, continuing, *break_if),
+            Statement::Loop {
+                body,
+                continuing,
+                break_if,
+            } => self.repeat(scope, body, continuing, *break_if),
             Statement::Break => self.jump_out(scope.breaks.last_mut()),
             Statement::Continue => self.jump_out(scope.continues.last_mut()),
             Statement::Return { value } => self.give_back(scope, *value),
@@ -140,7 +190,11 @@ impl<'m> Lowering<'m, '_> {
                 let words = self.words(scope, *value)?;
                 self.store(scope, *pointer, &words)
             }
-            Statement::Call { function, arguments, result } => {
+            Statement::Call {
+                function,
+                arguments,
+                result,
+            } => {
                 let words = self.call(scope, *function, arguments)?;
                 if let Some(result) = result {
                     scope.values[result.index()] = Some(Value::Words(words));
@@ -148,12 +202,22 @@ impl<'m> Lowering<'m, '_> {
                 Ok(())
             }
             Statement::Kill => Err(self.unsupported("`discard`")),
-            Statement::ControlBarrier(_) | Statement::MemoryBarrier(_) => Err(self.unsupported("a barrier")),
-            Statement::ImageStore { .. } | Statement::ImageAtomic { .. } => Err(self.unsupported("a texture")),
+            Statement::ControlBarrier(_) | Statement::MemoryBarrier(_) => {
+                Err(self.unsupported("a barrier"))
+            }
+            Statement::ImageStore { .. } | Statement::ImageAtomic { .. } => {
+                Err(self.unsupported("a texture"))
+            }
             Statement::Atomic { .. } => Err(self.unsupported("an atomic")),
-            Statement::WorkGroupUniformLoad { .. } => Err(self.unsupported("`workgroupUniformLoad`")),
-            Statement::RayQuery { .. } | Statement::RayPipelineFunction(_) => Err(self.unsupported("ray tracing")),
-            Statement::SubgroupBallot { .. } | Statement::SubgroupGather { .. } | Statement::SubgroupCollectiveOperation { .. } => {
+            Statement::WorkGroupUniformLoad { .. } => {
+                Err(self.unsupported("`workgroupUniformLoad`"))
+            }
+            Statement::RayQuery { .. } | Statement::RayPipelineFunction(_) => {
+                Err(self.unsupported("ray tracing"))
+            }
+            Statement::SubgroupBallot { .. }
+            | Statement::SubgroupGather { .. }
+            | Statement::SubgroupCollectiveOperation { .. } => {
                 Err(self.unsupported("an operation of subgroups"))
             }
             Statement::CooperativeStore { .. } => Err(self.unsupported("a cooperative matrix")),
@@ -161,15 +225,25 @@ impl<'m> Lowering<'m, '_> {
     }
 
     fn jump_out(&mut self, label: Option<&mut Label>) -> Result<(), LowerError> {
-        let Some(label) = label else { return Err(self.invalid("a jump out of no loop")) };
-        self.code.jump(Op::Jump, 0, 0, label).map_err(|full| self.full(full))
+        let Some(label) = label else {
+            return Err(self.invalid("a jump out of no loop"));
+        };
+        self.code
+            .jump(Op::Jump, 0, 0, label)
+            .map_err(|full| self.full(full))
     }
 
     fn jump(&mut self, op: Op, a: u32, b: u32, label: &mut Label) -> Result<(), LowerError> {
-        self.code.jump(op, a, b, label).map_err(|full| self.full(full))
+        self.code
+            .jump(op, a, b, label)
+            .map_err(|full| self.full(full))
     }
 
-    fn give_back(&mut self, scope: &mut Scope<'m>, value: Option<Handle<Expression>>) -> Result<(), LowerError> {
+    fn give_back(
+        &mut self,
+        scope: &mut Scope<'m>,
+        value: Option<Handle<Expression>>,
+    ) -> Result<(), LowerError> {
         let returning = scope.facts.as_ref().map(|facts| facts.returning);
         if let Some(value) = value {
             match returning {
@@ -185,7 +259,9 @@ impl<'m> Lowering<'m, '_> {
         if returning == Some(Returning::Last) {
             return Ok(());
         }
-        self.code.jump(Op::Jump, 0, 0, &mut scope.end).map_err(|full| self.full(full))
+        self.code
+            .jump(Op::Jump, 0, 0, &mut scope.end)
+            .map_err(|full| self.full(full))
     }
 
     fn branch(
@@ -216,7 +292,12 @@ impl<'m> Lowering<'m, '_> {
         Ok(())
     }
 
-    fn switch(&mut self, scope: &mut Scope<'m>, selector: Handle<Expression>, cases: &'m [SwitchCase]) -> Result<(), LowerError> {
+    fn switch(
+        &mut self,
+        scope: &mut Scope<'m>,
+        selector: Handle<Expression>,
+        cases: &'m [SwitchCase],
+    ) -> Result<(), LowerError> {
         let selector = self.words(scope, selector)?.at(0);
         let known = self.code.known(selector).map(|word| word.to_u32());
         let mut labels: Vec<Label> = cases.iter().map(|_| Label::default()).collect();
@@ -289,9 +370,21 @@ impl<'m> Lowering<'m, '_> {
         Ok(())
     }
 
-    fn call(&mut self, scope: &mut Scope<'m>, function: Handle<Function>, arguments: &[Handle<Expression>]) -> Result<Words, LowerError> {
-        let name = self.module.functions[function].name.as_deref().unwrap_or_default();
-        let external = self.options.externals.iter().position(|external| external == name);
+    fn call(
+        &mut self,
+        scope: &mut Scope<'m>,
+        function: Handle<Function>,
+        arguments: &[Handle<Expression>],
+    ) -> Result<Words, LowerError> {
+        let name = self.module.functions[function]
+            .name
+            .as_deref()
+            .unwrap_or_default();
+        let external = self
+            .options
+            .externals
+            .iter()
+            .position(|external| external == name);
         let mut values = Vec::new();
         for &argument in arguments {
             values.push(self.value(scope, argument)?);
@@ -302,12 +395,21 @@ impl<'m> Lowering<'m, '_> {
         }
     }
 
-    fn external(&mut self, index: usize, function: Handle<Function>, arguments: &[Value]) -> Result<Words, LowerError> {
+    fn external(
+        &mut self,
+        index: usize,
+        function: Handle<Function>,
+        arguments: &[Value],
+    ) -> Result<Words, LowerError> {
         let mut given = Vec::new();
         for argument in arguments {
             match argument {
                 Value::Words(words) => given.extend(words.iter()),
-                Value::Place(_) => return Err(self.unsupported("a pointer as an argument of a function of the host")),
+                Value::Place(_) => {
+                    return Err(
+                        self.unsupported("a pointer as an argument of a function of the host")
+                    );
+                }
             }
         }
         let given: Words = given.into_iter().collect();
@@ -317,8 +419,13 @@ impl<'m> Lowering<'m, '_> {
         };
         let start = self.allocate(given.len() + result)?;
         self.copy(start, &given)?;
-        let pushed = self.code.push(Op::External, index as u32, start, given.len(), result);
+        let pushed = self
+            .code
+            .push(Op::External, index as u32, start, given.len(), result);
         pushed.map_err(|full| self.full(full))?;
-        Ok(Words::Range { start: start + given.len(), len: result })
+        Ok(Words::Range {
+            start: start + given.len(),
+            len: result,
+        })
     }
 }

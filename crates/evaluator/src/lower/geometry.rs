@@ -8,7 +8,12 @@ use crate::error::LowerError;
 use crate::instruction::Op;
 
 impl Lowering<'_, '_> {
-    pub(super) fn dot(&mut self, kind: ScalarKind, a: &Words, b: &Words) -> Result<u32, LowerError> {
+    pub(super) fn dot(
+        &mut self,
+        kind: ScalarKind,
+        a: &Words,
+        b: &Words,
+    ) -> Result<u32, LowerError> {
         if kind == ScalarKind::Float {
             return self.sum_of_products(a.iter().zip(b.iter()));
         }
@@ -50,11 +55,19 @@ impl Lowering<'_, '_> {
     }
 
     pub(super) fn outer(&mut self, a: &Words, b: &Words) -> Result<Words, LowerError> {
-        b.iter().flat_map(|b| a.iter().map(move |a| (a, b))).map(|(a, b)| self.two(Op::MulF, a, b)).collect()
+        b.iter()
+            .flat_map(|b| a.iter().map(move |a| (a, b)))
+            .map(|(a, b)| self.two(Op::MulF, a, b))
+            .collect()
     }
 
     /// `v`, or its opposite unless `incident` goes against `reference`.
-    pub(super) fn face_forward(&mut self, v: &Words, incident: &Words, reference: &Words) -> Result<Words, LowerError> {
+    pub(super) fn face_forward(
+        &mut self,
+        v: &Words,
+        incident: &Words,
+        reference: &Words,
+    ) -> Result<Words, LowerError> {
         let dot = self.dot(ScalarKind::Float, incident, reference)?;
         let zero = self.float(0.0)?;
         let against = self.two(Op::LtF, dot, zero)?;
@@ -62,7 +75,11 @@ impl Lowering<'_, '_> {
         self.select(&Words::one(against), v, &opposite)
     }
 
-    pub(super) fn reflect(&mut self, incident: &Words, normal: &Words) -> Result<Words, LowerError> {
+    pub(super) fn reflect(
+        &mut self,
+        incident: &Words,
+        normal: &Words,
+    ) -> Result<Words, LowerError> {
         let dot = self.dot(ScalarKind::Float, normal, incident)?;
         let two = self.float(2.0)?;
         let twice = self.two(Op::MulF, two, dot)?;
@@ -71,7 +88,12 @@ impl Lowering<'_, '_> {
     }
 
     /// Zero where the angle is that of total reflection.
-    pub(super) fn refract(&mut self, incident: &Words, normal: &Words, ratio: u32) -> Result<Words, LowerError> {
+    pub(super) fn refract(
+        &mut self,
+        incident: &Words,
+        normal: &Words,
+        ratio: u32,
+    ) -> Result<Words, LowerError> {
         let dot = self.dot(ScalarKind::Float, normal, incident)?;
         let (zero, one) = (self.float(0.0)?, self.float(1.0)?);
         let squared = self.two(Op::MulF, dot, dot)?;
@@ -85,7 +107,10 @@ impl Lowering<'_, '_> {
         let along = self.zip(Op::MulF, &Words::one(factor), normal)?;
         let refracted = self.zip(Op::SubF, &kept, &along)?;
         let is_total = self.two(Op::LtF, k, zero)?;
-        let nothing = Words::Repeat { register: zero, len: incident.len() };
+        let nothing = Words::Repeat {
+            register: zero,
+            len: incident.len(),
+        };
         self.select(&Words::one(is_total), &nothing, &refracted)
     }
 }

@@ -7,7 +7,10 @@ use crate::instruction::Op;
 
 impl Lowering<'_, '_> {
     /// Sum of products.
-    pub(super) fn sum_of_products(&mut self, pairs: impl Iterator<Item = (u32, u32)>) -> Result<u32, LowerError> {
+    pub(super) fn sum_of_products(
+        &mut self,
+        pairs: impl Iterator<Item = (u32, u32)>,
+    ) -> Result<u32, LowerError> {
         let mut sum = None;
         for (a, b) in pairs {
             sum = Some(match sum {
@@ -18,15 +21,41 @@ impl Lowering<'_, '_> {
         sum.ok_or_else(|| self.invalid("a sum of nothing"))
     }
 
-    pub(super) fn matrix_vector(&mut self, m: &Words, (columns, rows): (u32, u32), v: &Words) -> Result<Words, LowerError> {
-        (0..rows).map(|row| self.sum_of_products((0..columns).map(|column| (m.at(column * rows + row), v.at(column))))).collect()
+    pub(super) fn matrix_vector(
+        &mut self,
+        m: &Words,
+        (columns, rows): (u32, u32),
+        v: &Words,
+    ) -> Result<Words, LowerError> {
+        (0..rows)
+            .map(|row| {
+                self.sum_of_products(
+                    (0..columns).map(|column| (m.at(column * rows + row), v.at(column))),
+                )
+            })
+            .collect()
     }
 
-    pub(super) fn vector_matrix(&mut self, v: &Words, m: &Words, (columns, rows): (u32, u32)) -> Result<Words, LowerError> {
-        (0..columns).map(|column| self.sum_of_products((0..rows).map(|row| (v.at(row), m.at(column * rows + row))))).collect()
+    pub(super) fn vector_matrix(
+        &mut self,
+        v: &Words,
+        m: &Words,
+        (columns, rows): (u32, u32),
+    ) -> Result<Words, LowerError> {
+        (0..columns)
+            .map(|column| {
+                self.sum_of_products((0..rows).map(|row| (v.at(row), m.at(column * rows + row))))
+            })
+            .collect()
     }
 
-    pub(super) fn matrix_matrix(&mut self, a: &Words, size: (u32, u32), b: &Words, columns: u32) -> Result<Words, LowerError> {
+    pub(super) fn matrix_matrix(
+        &mut self,
+        a: &Words,
+        size: (u32, u32),
+        b: &Words,
+        columns: u32,
+    ) -> Result<Words, LowerError> {
         let mut all = Vec::new();
         for column in 0..columns {
             let v = b.slice(column * size.0, size.0);
@@ -36,7 +65,9 @@ impl Lowering<'_, '_> {
     }
 
     pub(super) fn transpose(&self, m: &Words, (columns, rows): (u32, u32)) -> Words {
-        (0..rows).flat_map(|row| (0..columns).map(move |column| m.at(column * rows + row))).collect()
+        (0..rows)
+            .flat_map(|row| (0..columns).map(move |column| m.at(column * rows + row)))
+            .collect()
     }
 
     pub(super) fn determinant(&mut self, m: &Words, size: u32) -> Result<u32, LowerError> {
@@ -45,8 +76,16 @@ impl Lowering<'_, '_> {
     }
 
     /// Determinant of the given columns and rows.
-    fn minor(&mut self, m: &Words, size: u32, columns: &[u32], rows: &[u32]) -> Result<u32, LowerError> {
-        let (Some((&column, columns)), Some(&row)) = (columns.split_first(), rows.first()) else { return self.float(1.0) };
+    fn minor(
+        &mut self,
+        m: &Words,
+        size: u32,
+        columns: &[u32],
+        rows: &[u32],
+    ) -> Result<u32, LowerError> {
+        let (Some((&column, columns)), Some(&row)) = (columns.split_first(), rows.first()) else {
+            return self.float(1.0);
+        };
         if columns.is_empty() {
             return Ok(m.at(column * size + row));
         }
@@ -57,7 +96,9 @@ impl Lowering<'_, '_> {
             let product = self.two(Op::MulF, m.at(column * size + row), minor)?;
             sum = Some(match sum {
                 None => product,
-                Some(sum) => self.two(if at % 2 == 0 { Op::AddF } else { Op::SubF }, sum, product)?,
+                Some(sum) => {
+                    self.two(if at % 2 == 0 { Op::AddF } else { Op::SubF }, sum, product)?
+                }
             });
         }
         sum.ok_or_else(|| self.invalid("a determinant of nothing"))

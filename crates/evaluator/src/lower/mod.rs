@@ -1,4 +1,5 @@
-//! Lowers a function of a naga module to flat code: all calls are inlined, and vectors become scalars.
+//! Lowers a function of a naga module to flat code: all calls are inlined, and vectors become
+//! scalars.
 
 mod builtins;
 mod expression;
@@ -96,8 +97,13 @@ impl Program {
 }
 
 fn lower(module: &Module, function: &str, options: &Options) -> Result<Program, LowerError> {
-    let named = module.functions.iter().find(|(_, candidate)| candidate.name.as_deref() == Some(function));
-    let Some((handle, _)) = named else { return Err(LowerError::NoFunction(function.to_owned())) };
+    let named = module
+        .functions
+        .iter()
+        .find(|(_, candidate)| candidate.name.as_deref() == Some(function));
+    let Some((handle, _)) = named else {
+        return Err(LowerError::NoFunction(function.to_owned()));
+    };
     let mut lowering = Lowering {
         module,
         options,
@@ -111,7 +117,10 @@ fn lower(module: &Module, function: &str, options: &Options) -> Result<Program, 
         supplied: vec![None; options.globals.len()],
         prologue: Vec::new(),
         calls: Vec::new(),
-        location: Location { function: 0, span: Span::UNDEFINED },
+        location: Location {
+            function: 0,
+            span: Span::UNDEFINED,
+        },
         marks: Vec::new(),
         names: vec![function.to_owned()],
     };
@@ -120,7 +129,11 @@ fn lower(module: &Module, function: &str, options: &Options) -> Result<Program, 
 }
 
 impl<'m> Scope<'m> {
-    fn new(expressions: &'m Arena<Expression>, types: Rc<Typifier>, facts: Option<Rc<Facts>>) -> Scope<'m> {
+    fn new(
+        expressions: &'m Arena<Expression>,
+        types: Rc<Typifier>,
+        facts: Option<Rc<Facts>>,
+    ) -> Scope<'m> {
         Scope {
             expressions,
             types,
@@ -149,7 +162,13 @@ impl<'m> Lowering<'m, '_> {
         let types = self.typed(&self.module.global_expressions, &context)?;
         self.global.types = Rc::new(types);
         for (_, ty) in self.module.types.iter() {
-            let TypeInner::Array { size: naga::ArraySize::Pending(constant), .. } = ty.inner else { continue };
+            let TypeInner::Array {
+                size: naga::ArraySize::Pending(constant),
+                ..
+            } = ty.inner
+            else {
+                continue;
+            };
             match self.override_words(constant) {
                 Ok(words) => {
                     let length = self.code.known(words.at(0)).map_or(0, |word| word.to_u32());
@@ -165,10 +184,16 @@ impl<'m> Lowering<'m, '_> {
         Ok(())
     }
 
-    fn typed(&self, expressions: &Arena<Expression>, context: &ResolveContext) -> Result<Typifier, LowerError> {
+    fn typed(
+        &self,
+        expressions: &Arena<Expression>,
+        context: &ResolveContext,
+    ) -> Result<Typifier, LowerError> {
         let mut types = Typifier::new();
         if let Some((last, _)) = expressions.iter().next_back() {
-            types.grow(last, expressions, context).map_err(|error| self.invalid(error.to_string()))?;
+            types
+                .grow(last, expressions, context)
+                .map_err(|error| self.invalid(error.to_string()))?;
         }
         Ok(types)
     }
@@ -178,7 +203,11 @@ impl<'m> Lowering<'m, '_> {
         self.location.span = self.module.functions.get_span(handle);
         let mut words = 0;
         for argument in &function.arguments {
-            if self.module.types[argument.ty].inner.pointer_space().is_some() {
+            if self.module.types[argument.ty]
+                .inner
+                .pointer_space()
+                .is_some()
+            {
                 return Err(self.unsupported("a pointer as its argument"));
             }
             words = self.words_of(argument.ty)?.saturating_add(words);
@@ -217,7 +246,9 @@ impl<'m> Lowering<'m, '_> {
     }
 
     fn words_of(&mut self, ty: Handle<naga::Type>) -> Result<u32, LowerError> {
-        self.layout.words_of(ty).map_err(|reason| self.no_layout(reason))
+        self.layout
+            .words_of(ty)
+            .map_err(|reason| self.no_layout(reason))
     }
 
     fn allocate(&mut self, words: u32) -> Result<u32, LowerError> {
@@ -229,22 +260,41 @@ impl<'m> Lowering<'m, '_> {
     }
 
     fn function_name(&self) -> String {
-        self.names.get(self.location.function).cloned().unwrap_or_default()
+        self.names
+            .get(self.location.function)
+            .cloned()
+            .unwrap_or_default()
     }
 
     fn unsupported(&self, what: &str) -> LowerError {
-        LowerError::Unsupported { what: what.to_owned(), function: self.function_name(), span: self.location.span.to_range() }
+        LowerError::Unsupported {
+            what: what.to_owned(),
+            function: self.function_name(),
+            span: self.location.span.to_range(),
+        }
     }
 
     fn invalid(&self, what: impl Into<String>) -> LowerError {
-        LowerError::Invalid { what: what.into(), function: self.function_name(), span: self.location.span.to_range() }
+        LowerError::Invalid {
+            what: what.into(),
+            function: self.function_name(),
+            span: self.location.span.to_range(),
+        }
     }
 
     fn full(&self, full: Full) -> LowerError {
         let (function, span) = (self.function_name(), self.location.span.to_range());
         match full {
-            Full::Slots => LowerError::Slots { limit: self.options.limits.slots, function, span },
-            Full::Instructions => LowerError::Instructions { limit: self.options.limits.instructions, function, span },
+            Full::Slots => LowerError::Slots {
+                limit: self.options.limits.slots,
+                function,
+                span,
+            },
+            Full::Instructions => LowerError::Instructions {
+                limit: self.options.limits.instructions,
+                function,
+                span,
+            },
         }
     }
 
@@ -252,7 +302,12 @@ impl<'m> Lowering<'m, '_> {
         match reason {
             NoLayout::Unsupported(what) => self.unsupported(&what),
             NoLayout::TooLarge => self.full(Full::Slots),
-            NoLayout::Pending(constant) => LowerError::Override { name: self.module.overrides[constant].name.clone().unwrap_or_default() },
+            NoLayout::Pending(constant) => LowerError::Override {
+                name: self.module.overrides[constant]
+                    .name
+                    .clone()
+                    .unwrap_or_default(),
+            },
         }
     }
 }

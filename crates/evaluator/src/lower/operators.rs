@@ -8,7 +8,12 @@ use crate::error::LowerError;
 use crate::instruction::Op;
 
 impl<'m> Lowering<'m, '_> {
-    pub(super) fn unary(&mut self, op: UnaryOperator, kind: ScalarKind, words: &Words) -> Result<Words, LowerError> {
+    pub(super) fn unary(
+        &mut self,
+        op: UnaryOperator,
+        kind: ScalarKind,
+        words: &Words,
+    ) -> Result<Words, LowerError> {
         let op = match (op, kind) {
             (UnaryOperator::Negate, ScalarKind::Float) => Op::NegF,
             (UnaryOperator::Negate, ScalarKind::Sint) => Op::NegW,
@@ -30,7 +35,10 @@ impl<'m> Lowering<'m, '_> {
         let a = self.words(scope, left)?;
         let b = self.words(scope, right)?;
         if op == BinaryOperator::Multiply {
-            match (self.matrix_size(scope, left), self.matrix_size(scope, right)) {
+            match (
+                self.matrix_size(scope, left),
+                self.matrix_size(scope, right),
+            ) {
                 (Some(m), Some((columns, _))) => return self.matrix_matrix(&a, m, &b, columns),
                 (Some(m), None) if b.len() > 1 => return self.matrix_vector(&a, m, &b),
                 (None, Some(m)) if a.len() > 1 => return self.vector_matrix(&a, &b, m),
@@ -40,7 +48,11 @@ impl<'m> Lowering<'m, '_> {
         let Some((op, is_swapped)) = instruction(op, kind) else {
             return Err(self.invalid("an operator on a type that does not have it"));
         };
-        if is_swapped { self.zip(op, &b, &a) } else { self.zip(op, &a, &b) }
+        if is_swapped {
+            self.zip(op, &b, &a)
+        } else {
+            self.zip(op, &a, &b)
+        }
     }
 }
 

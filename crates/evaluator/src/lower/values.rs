@@ -18,10 +18,18 @@ impl<'m> Lowering<'m, '_> {
         let len = self.words_of(ty)?;
         // Zero of every kind has the same bits.
         let register = self.constant(Word::ZERO)?;
-        Ok(if len == 1 { Words::one(register) } else { Words::Repeat { register, len } })
+        Ok(if len == 1 {
+            Words::one(register)
+        } else {
+            Words::Repeat { register, len }
+        })
     }
 
-    pub(super) fn literal(&mut self, literal: Literal, source: Option<std::ops::Range<usize>>) -> Result<Words, LowerError> {
+    pub(super) fn literal(
+        &mut self,
+        literal: Literal,
+        source: Option<std::ops::Range<usize>>,
+    ) -> Result<Words, LowerError> {
         let word = match literal {
             Literal::F32(value) => Word::from_f64(self.decimal(value, source)),
             Literal::U32(value) => Word::from_u32(value),
@@ -30,7 +38,9 @@ impl<'m> Lowering<'m, '_> {
             // Expressions of the module may be abstract; functions only see them converted.
             Literal::AbstractInt(value) => Word::from_i32(value as i32),
             Literal::AbstractFloat(value) => Word::from_f64(value),
-            Literal::F64(_) | Literal::F16(_) => return Err(self.unsupported("floats of other than 32 bits")),
+            Literal::F64(_) | Literal::F16(_) => {
+                return Err(self.unsupported("floats of other than 32 bits"));
+            }
             Literal::U16(_) | Literal::I16(_) | Literal::U64(_) | Literal::I64(_) => {
                 return Err(self.unsupported("integers of other than 32 bits"));
             }
@@ -53,7 +63,10 @@ impl<'m> Lowering<'m, '_> {
         shortest(value)
     }
 
-    pub(super) fn module_constant(&mut self, handle: Handle<naga::Constant>) -> Result<Words, LowerError> {
+    pub(super) fn module_constant(
+        &mut self,
+        handle: Handle<naga::Constant>,
+    ) -> Result<Words, LowerError> {
         if let Some(words) = self.constants.get(&handle) {
             return Ok(words.clone());
         }
@@ -62,14 +75,19 @@ impl<'m> Lowering<'m, '_> {
         Ok(words)
     }
 
-    pub(super) fn override_words(&mut self, handle: Handle<naga::Override>) -> Result<Words, LowerError> {
+    pub(super) fn override_words(
+        &mut self,
+        handle: Handle<naga::Override>,
+    ) -> Result<Words, LowerError> {
         if let Some(words) = self.overrides.get(&handle) {
             return Ok(words.clone());
         }
         let constant = &self.module.overrides[handle];
         let name = constant.name.clone().unwrap_or_default();
         let number = constant.id.map(|id| id.to_string());
-        let given = number.and_then(|number| self.options.overrides.get(&number)).or(self.options.overrides.get(&name));
+        let given = number
+            .and_then(|number| self.options.overrides.get(&number))
+            .or(self.options.overrides.get(&name));
         let words = match (given, constant.init) {
             (Some(&value), _) => {
                 let TypeInner::Scalar(scalar) = self.module.types[constant.ty].inner else {
@@ -95,7 +113,11 @@ impl<'m> Lowering<'m, '_> {
 
     /// Words of an expression of the module.
     pub(super) fn global_words(&mut self, handle: Handle<Expression>) -> Result<Words, LowerError> {
-        let empty = Scope::new(&self.module.global_expressions, self.global.types.clone(), None);
+        let empty = Scope::new(
+            &self.module.global_expressions,
+            self.global.types.clone(),
+            None,
+        );
         let mut scope = std::mem::replace(&mut self.global, empty);
         let words = self.words(&mut scope, handle);
         self.global.values = scope.values;
@@ -103,7 +125,11 @@ impl<'m> Lowering<'m, '_> {
     }
 
     /// Value of an expression; one that no statement emits is lowered when it is first needed.
-    pub(super) fn value(&mut self, scope: &mut Scope<'m>, handle: Handle<Expression>) -> Result<Value, LowerError> {
+    pub(super) fn value(
+        &mut self,
+        scope: &mut Scope<'m>,
+        handle: Handle<Expression>,
+    ) -> Result<Value, LowerError> {
         if let Some(Some(value)) = scope.values.get(handle.index()) {
             return Ok(value.clone());
         }
@@ -116,7 +142,11 @@ impl<'m> Lowering<'m, '_> {
         Ok(value)
     }
 
-    pub(super) fn words(&mut self, scope: &mut Scope<'m>, handle: Handle<Expression>) -> Result<Words, LowerError> {
+    pub(super) fn words(
+        &mut self,
+        scope: &mut Scope<'m>,
+        handle: Handle<Expression>,
+    ) -> Result<Words, LowerError> {
         match self.value(scope, handle)? {
             Value::Words(words) => Ok(words),
             Value::Place(_) => Err(self.unsupported("a pointer as a value")),
@@ -132,7 +162,9 @@ fn shortest(value: f32) -> f64 {
 /// Number that a decimal literal of WGSL is.
 fn written_number(text: &str) -> Option<f64> {
     let text = text.trim();
-    let is_decimal = text.bytes().all(|byte| byte.is_ascii_digit() || matches!(byte, b'.' | b'e' | b'E' | b'+' | b'-' | b'f'));
+    let is_decimal = text.bytes().all(|byte| {
+        byte.is_ascii_digit() || matches!(byte, b'.' | b'e' | b'E' | b'+' | b'-' | b'f')
+    });
     if !is_decimal {
         return None;
     }

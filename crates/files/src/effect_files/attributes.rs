@@ -1,5 +1,5 @@
-//! Attributes of a parameter: `@range(0.5, 8.0, 2.0) @unit(px) @log`. They follow the convention of the WESL community's
-//! wgsl-play, with the options that parameters of built-in effects have.
+//! Attributes of a parameter: `@range(0.5, 8.0, 2.0) @unit(px) @log`. They follow the convention of
+//! the WESL community's wgsl-play, with the options that parameters of built-in effects have.
 
 use super::{
     error::{EffectError, Text},
@@ -8,7 +8,9 @@ use super::{
 use crate::params::did_you_mean;
 
 /// Every attribute that a parameter may have.
-pub const NAMES: [&str; 10] = ["range", "hard", "default", "unit", "log", "color", "point", "toggle", "choice", "when"];
+pub const NAMES: [&str; 10] = [
+    "range", "hard", "default", "unit", "log", "color", "point", "toggle", "choice", "when",
+];
 
 /// `@name(arguments)`.
 #[derive(Clone, Debug)]
@@ -31,14 +33,30 @@ impl Attribute<'_> {
     ///
     /// # Errors
     /// Another number of arguments, or one that is no finite number.
-    pub fn numbers(&self, text: &Text<'_>, counts: (usize, usize), usage: &str) -> Result<Vec<f64>, EffectError> {
+    pub fn numbers(
+        &self,
+        text: &Text<'_>,
+        counts: (usize, usize),
+        usage: &str,
+    ) -> Result<Vec<f64>, EffectError> {
         if !(counts.0..=counts.1).contains(&self.arguments.len()) {
             return Err(self.error(text, format!("@{} takes {usage}", self.name)));
         }
         let number = |argument: &&str| {
             let digits = argument.trim_end_matches(['f', 'h', 'u', 'i']);
-            let value = digits.parse::<f64>().ok().filter(|value| value.is_finite() && (*value as f32).is_finite());
-            value.ok_or_else(|| self.error(text, format!("@{}: {argument:?} is no finite number; it takes {usage}", self.name)))
+            let value = digits
+                .parse::<f64>()
+                .ok()
+                .filter(|value| value.is_finite() && (*value as f32).is_finite());
+            value.ok_or_else(|| {
+                self.error(
+                    text,
+                    format!(
+                        "@{}: {argument:?} is no finite number; it takes {usage}",
+                        self.name
+                    ),
+                )
+            })
         };
         self.arguments.iter().map(number).collect()
     }
@@ -48,21 +66,49 @@ impl Attribute<'_> {
 ///
 /// # Errors
 /// No name follows, or a parenthesis stays open.
-pub fn read<'a>(text: &Text<'a>, tokens: &[Token<'a>], at: usize) -> Result<(Attribute<'a>, usize), EffectError> {
+pub fn read<'a>(
+    text: &Text<'a>,
+    tokens: &[Token<'a>],
+    at: usize,
+) -> Result<(Attribute<'a>, usize), EffectError> {
     let begin = tokens[at].offset;
     let Some(name) = tokens.get(at + 1).filter(|token| token.is_name()) else {
         return Err(text.error(begin, 1, "an attribute needs a name after @"));
     };
     if tokens.get(at + 2).is_none_or(|token| token.text != "(") {
-        return Ok((Attribute { name: name.text, arguments: Vec::new(), begin, end: name.end() }, at + 2));
+        return Ok((
+            Attribute {
+                name: name.text,
+                arguments: Vec::new(),
+                begin,
+                end: name.end(),
+            },
+            at + 2,
+        ));
     }
     let close = closing(tokens, at + 2);
     if tokens[close].text != ")" {
-        return Err(text.error(begin, name.end() - begin, format!("the parenthesis of @{} is not closed", name.text)));
+        return Err(text.error(
+            begin,
+            name.end() - begin,
+            format!("the parenthesis of @{} is not closed", name.text),
+        ));
     }
     let inner = &text.text[tokens[at + 2].end()..tokens[close].offset];
-    let arguments = if inner.trim().is_empty() { Vec::new() } else { inner.split(',').map(str::trim).collect() };
-    Ok((Attribute { name: name.text, arguments, begin, end: tokens[close].end() }, close + 1))
+    let arguments = if inner.trim().is_empty() {
+        Vec::new()
+    } else {
+        inner.split(',').map(str::trim).collect()
+    };
+    Ok((
+        Attribute {
+            name: name.text,
+            arguments,
+            begin,
+            end: tokens[close].end(),
+        },
+        close + 1,
+    ))
 }
 
 /// Refuses an attribute that no parameter can have.
@@ -74,5 +120,8 @@ pub fn check_name(text: &Text<'_>, attribute: &Attribute<'_>) -> Result<(), Effe
         return Ok(());
     }
     let hint = did_you_mean(attribute.name, NAMES.into_iter());
-    Err(attribute.error(text, format!("@{} is no attribute of a parameter{hint}", attribute.name)))
+    Err(attribute.error(
+        text,
+        format!("@{} is no attribute of a parameter{hint}", attribute.name),
+    ))
 }

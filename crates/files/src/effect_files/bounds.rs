@@ -1,5 +1,5 @@
-//! Bounds on the text of an effect file, checked on its tokens before anything parses it: a short file can otherwise exhaust stack or
-//! memory of a parser, a validator or a driver.
+//! Bounds on the text of an effect file, checked on its tokens before anything parses it: a short
+//! file can otherwise exhaust stack or memory of a parser, a validator or a driver.
 
 use super::{
     error::{EffectError, Text},
@@ -21,13 +21,18 @@ pub const MAX_ELEMENTS: u64 = 4096;
 pub fn check(text: &Text<'_>, tokens: &[Token<'_>]) -> Result<(), EffectError> {
     check_characters(text)?;
     if let Some(offset) = open_comment(text.text) {
-        return Err(text.error(offset, 2, "the comment that begins here has no end; close it with */"));
+        return Err(text.error(
+            offset,
+            2,
+            "the comment that begins here has no end; close it with */",
+        ));
     }
     check_brackets(text, tokens)?;
     check_arrays(text, tokens)
 }
 
-/// Other line breaks and control characters end a comment in WGSL but not in an editor, so they could hide code.
+/// Other line breaks and control characters end a comment in WGSL but not in an editor, so they
+/// could hide code.
 fn check_characters(text: &Text<'_>) -> Result<(), EffectError> {
     let mut characters = text.text.char_indices().peekable();
     while let Some((offset, c)) = characters.next() {
@@ -38,7 +43,10 @@ fn check_characters(text: &Text<'_>) -> Result<(), EffectError> {
             other => !is_hidden(other),
         };
         if !is_allowed {
-            let message = format!("the character U+{:04X} cannot stand in an effect file; remove it", u32::from(c));
+            let message = format!(
+                "the character U+{:04X} cannot stand in an effect file; remove it",
+                u32::from(c)
+            );
             return Err(text.error(offset, c.len_utf8(), message));
         }
     }
@@ -69,7 +77,10 @@ fn check_brackets(text: &Text<'_>, tokens: &[Token<'_>]) -> Result<(), EffectErr
             "," | ";" => level.operators = 0,
             "(" | "[" | "{" => {
                 level.operators += usize::from(token.text == "[");
-                levels.push(Level { open: index, ..Level::default() });
+                levels.push(Level {
+                    open: index,
+                    ..Level::default()
+                });
                 let depth: usize = levels.iter().map(|level| 1 + level.branches).sum();
                 if depth > MAX_DEPTH + 1 {
                     return error(format!(
@@ -88,17 +99,24 @@ fn check_brackets(text: &Text<'_>, tokens: &[Token<'_>]) -> Result<(), EffectErr
                     _ => "}",
                 };
                 if token.text != expected {
-                    return error(format!("{} stands where {expected} must close the {opened} before it", token.text));
+                    return error(format!(
+                        "{} stands where {expected} must close the {opened} before it",
+                        token.text
+                    ));
                 }
                 if token.text == "}" {
                     levels.last_mut().expect("one is left").operators = 0;
                 }
             }
-            "+" | "-" | "*" | "/" | "%" | "&" | "|" | "^" | "<" | ">" | "=" | "!" | "~" | "." => level.operators += 1,
+            "+" | "-" | "*" | "/" | "%" | "&" | "|" | "^" | "<" | ">" | "=" | "!" | "~" | "." => {
+                level.operators += 1
+            }
             _ => {}
         }
         if levels.iter().map(|level| level.operators).sum::<usize>() > MAX_OPERATORS {
-            return error(format!("the expression has more than {MAX_OPERATORS} operators; split it with let"));
+            return error(format!(
+                "the expression has more than {MAX_OPERATORS} operators; split it with let"
+            ));
         }
         before = token.text;
     }
@@ -111,7 +129,10 @@ fn check_brackets(text: &Text<'_>, tokens: &[Token<'_>]) -> Result<(), EffectErr
 /// A whole number as WGSL writes it.
 fn whole_number(text: &str) -> Option<u64> {
     let digits = text.strip_suffix(['u', 'i']).unwrap_or(text);
-    match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
+    match digits
+        .strip_prefix("0x")
+        .or_else(|| digits.strip_prefix("0X"))
+    {
         Some(hexadecimal) => u64::from_str_radix(hexadecimal, 16).ok(),
         None => digits.parse().ok(),
     }
@@ -119,7 +140,9 @@ fn whole_number(text: &str) -> Option<u64> {
 
 /// Values of the constants that are declared as one whole number.
 fn constant(tokens: &[Token<'_>], name: &str) -> Option<u64> {
-    let at = tokens.windows(2).position(|pair| pair[0].text == "const" && pair[1].text == name)?;
+    let at = tokens
+        .windows(2)
+        .position(|pair| pair[0].text == "const" && pair[1].text == name)?;
     let end = at + tokens[at..].iter().position(|token| token.text == ";")?;
     let equals = at + tokens[at..end].iter().position(|token| token.text == "=")?;
     match &tokens[equals + 1..end] {
@@ -128,7 +151,8 @@ fn constant(tokens: &[Token<'_>], name: &str) -> Option<u64> {
     }
 }
 
-/// Array lengths are known before the text is parsed: a parser that evaluates constants makes every element.
+/// Array lengths are known before the text is parsed: a parser that evaluates constants makes every
+/// element.
 fn check_arrays(text: &Text<'_>, tokens: &[Token<'_>]) -> Result<(), EffectError> {
     for (index, token) in tokens.iter().enumerate() {
         let next = |ahead: usize| tokens.get(index + ahead).map_or("", |token| token.text);
@@ -152,7 +176,11 @@ fn check_arrays(text: &Text<'_>, tokens: &[Token<'_>]) -> Result<(), EffectError
         }
         let closes = tokens.get(at).is_some_and(|token| token.text == ">");
         if !closes {
-            return Err(text.error(token.offset, token.text.len(), "the < of this array type is not closed"));
+            return Err(text.error(
+                token.offset,
+                token.text.len(),
+                "the < of this array type is not closed",
+            ));
         }
         // WGSL allows a comma at the end.
         let length = comma.map(|comma| match &tokens[comma + 1..at] {
@@ -165,12 +193,18 @@ fn check_arrays(text: &Text<'_>, tokens: &[Token<'_>]) -> Result<(), EffectError
         };
         if !elements.is_some_and(|elements| (1..=MAX_ELEMENTS).contains(&elements)) {
             let place = length.and_then(|length| length.first()).unwrap_or(token);
-            let message = format!("the length of an array is a whole number from 1 to {MAX_ELEMENTS}, or a const that is declared as one");
+            let message = format!(
+                "the length of an array is a whole number from 1 to {MAX_ELEMENTS}, or a const that is declared as one"
+            );
             return Err(text.error(place.offset, place.text.len(), message));
         }
         // Nested arrays multiply, and naga reads their types one inside the other.
         if (0..MAX_ARRAYS).all(|level| next(2 * level) == "array" && next(2 * level + 1) == "<") {
-            return Err(text.error(token.offset, token.text.len(), format!("fewer than {MAX_ARRAYS} arrays may stand inside each other")));
+            return Err(text.error(
+                token.offset,
+                token.text.len(),
+                format!("fewer than {MAX_ARRAYS} arrays may stand inside each other"),
+            ));
         }
     }
     Ok(())

@@ -1,5 +1,5 @@
-//! Checking: an effect file is linked alone and validated, so that every fault is reported at its line before any kernel is
-//! compiled.
+//! Checking: an effect file is linked alone and validated, so that every fault is reported at its
+//! line before any kernel is compiled.
 
 use std::sync::Arc;
 
@@ -48,7 +48,8 @@ pub struct Parts<'a> {
 /// # Errors
 /// What the linker or naga refuses, at its line of the file.
 pub fn check(parts: Parts<'_>, effect: &Arc<Effect>) -> Result<Checked, EffectError> {
-    let linked = link::link_effect(&Library::of_process(), effect).map_err(|error| of_link(parts, &error))?;
+    let linked = link::link_effect(&Library::of_process(), effect)
+        .map_err(|error| of_link(parts, &error))?;
     let module = naga::front::wgsl::parse_str(&linked.text).map_err(|error| {
         let spans: Vec<naga::Span> = error.labels().map(|(span, _)| span).collect();
         let label = error.labels().next().map_or("", |(_, label)| label);
@@ -56,8 +57,17 @@ pub fn check(parts: Parts<'_>, effect: &Arc<Effect>) -> Result<Checked, EffectEr
             .iter()
             .any(|start| label.starts_with(start) && (!start.is_empty() || label.is_empty()));
         let is_told = adds_nothing || error.message().contains(label.trim_matches('`'));
-        let detail = if is_told { String::new() } else { format!(" ({label})") };
-        error_at(parts, &linked, &spans, &format!("{}{detail}{}", error.message(), hint(error.message())))
+        let detail = if is_told {
+            String::new()
+        } else {
+            format!(" ({label})")
+        };
+        error_at(
+            parts,
+            &linked,
+            &spans,
+            &format!("{}{detail}{}", error.message(), hint(error.message())),
+        )
     })?;
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
     validator.validate(&module).map_err(|error| {
@@ -85,7 +95,9 @@ fn told(causes: &[String]) -> String {
         return plain;
     }
     match &clear[..] {
-        [] => causes.last().map_or_else(String::new, |last| without_indices(last.split(" (of type ").next().unwrap_or(last))),
+        [] => causes.last().map_or_else(String::new, |last| {
+            without_indices(last.split(" (of type ").next().unwrap_or(last))
+        }),
         all => all.join(": "),
     }
 }
@@ -93,36 +105,65 @@ fn told(causes: &[String]) -> String {
 /// Refusals that naga tells by the indices of its expressions.
 fn in_plain_words(cause: &str) -> Option<String> {
     let number = |text: &str| {
-        text.split(|c: char| !c.is_ascii_digit()).find(|digits| !digits.is_empty()).and_then(|digits| digits.parse::<u32>().ok())
+        text.split(|c: char| !c.is_ascii_digit())
+            .find(|digits| !digits.is_empty())
+            .and_then(|digits| digits.parse::<u32>().ok())
     };
     if let Some(rest) = cause.strip_prefix("Operation ") {
         let operator = rest.split_whitespace().next().unwrap_or_default();
-        return Some(format!("the operator {operator} does not take values of these types; convert one of them"));
+        return Some(format!(
+            "the operator {operator} does not take values of these types; convert one of them"
+        ));
     }
     if cause.starts_with("The type of ") {
-        return Some("the value has another type than the variable that it is stored in; convert it".into());
+        return Some(
+            "the value has another type than the variable that it is stored in; convert it".into(),
+        );
     }
     if let Some(rest) = cause.strip_prefix("Requires ") {
         let (takes, given) = rest.split_once("but")?;
-        return Some(format!("wrong number of arguments: the function takes {}, and {} are given", number(takes)?, number(given)?));
+        return Some(format!(
+            "wrong number of arguments: the function takes {}, and {} are given",
+            number(takes)?,
+            number(given)?
+        ));
     }
     if cause.starts_with("Argument ") && cause.contains("doesn't match") {
-        return Some(format!("argument {} has another type than the function's parameter; convert it", number(cause)? + 1));
+        return Some(format!(
+            "argument {} has another type than the function's parameter; convert it",
+            number(cause)? + 1
+        ));
     }
-    cause.starts_with("The `return` ").then(|| "what is returned has another type than the function's result; convert it".into())
+    cause
+        .starts_with("The `return` ")
+        .then(|| "what is returned has another type than the function's result; convert it".into())
 }
 
 /// Where an effect finds a name that it does not declare.
 fn hint(message: &str) -> String {
-    let name = message.strip_prefix("no definition in scope for identifier: `").and_then(|rest| rest.strip_suffix('`'));
+    let name = message
+        .strip_prefix("no definition in scope for identifier: `")
+        .and_then(|rest| rest.strip_suffix('`'));
     let declares = |name: &str, file: &&str| {
         let text = Library::Embedded.text(&format!("lib/{file}"));
         text.is_some_and(|text| {
-            [format!("\nfn {name}("), format!("\nconst {name} "), format!("\nstruct {name} ")].iter().any(|head| text.contains(head))
+            [
+                format!("\nfn {name}("),
+                format!("\nconst {name} "),
+                format!("\nstruct {name} "),
+            ]
+            .iter()
+            .any(|head| text.contains(head))
         })
     };
-    let file = name.and_then(|name| declaration::LIBRARY.into_iter().find(|file| declares(name, file)));
-    file.map_or(String::new(), |file| format!("; lib/{file} declares it: add the line //@ use lib/{file}"))
+    let file = name.and_then(|name| {
+        declaration::LIBRARY
+            .into_iter()
+            .find(|file| declares(name, file))
+    });
+    file.map_or(String::new(), |file| {
+        format!("; lib/{file} declares it: add the line //@ use lib/{file}")
+    })
 }
 
 /// A message without `[12]`, the numbers by which naga calls expressions and types.
@@ -130,8 +171,14 @@ fn without_indices(message: &str) -> String {
     let mut rest = message;
     let mut told = String::new();
     while let Some((before, after)) = rest.split_once('[') {
-        let number = after.find(']').filter(|&end| after[..end].chars().all(|c| c.is_ascii_digit()));
-        told.push_str(if number.is_some() { before.trim_end() } else { before });
+        let number = after
+            .find(']')
+            .filter(|&end| after[..end].chars().all(|c| c.is_ascii_digit()));
+        told.push_str(if number.is_some() {
+            before.trim_end()
+        } else {
+            before
+        });
         rest = match number {
             Some(end) => &after[end + 1..],
             None => {
@@ -153,8 +200,15 @@ fn check_types(parts: Parts<'_>, linked: &Linked, module: &Module) -> Result<(),
         let bytes = layouter[handle].size;
         if bytes > MAX_TYPE_BYTES {
             let name = ty.name.as_deref().unwrap_or("a type");
-            let message = format!("{name} takes {bytes} bytes; a type of an effect takes at most {MAX_TYPE_BYTES}");
-            return Err(error_at(parts, linked, &[module.types.get_span(handle)], &message));
+            let message = format!(
+                "{name} takes {bytes} bytes; a type of an effect takes at most {MAX_TYPE_BYTES}"
+            );
+            return Err(error_at(
+                parts,
+                linked,
+                &[module.types.get_span(handle)],
+                &message,
+            ));
         }
     }
     for (_, function) in module.functions.iter() {
@@ -162,8 +216,15 @@ fn check_types(parts: Parts<'_>, linked: &Linked, module: &Module) -> Result<(),
             let bytes = layouter[local.ty].size;
             if bytes > MAX_LOCAL_BYTES {
                 let name = local.name.as_deref().unwrap_or("a variable");
-                let message = format!("{name} takes {bytes} bytes; a variable of an effect takes at most {MAX_LOCAL_BYTES}");
-                return Err(error_at(parts, linked, &[function.local_variables.get_span(handle)], &message));
+                let message = format!(
+                    "{name} takes {bytes} bytes; a variable of an effect takes at most {MAX_LOCAL_BYTES}"
+                );
+                return Err(error_at(
+                    parts,
+                    linked,
+                    &[function.local_variables.get_span(handle)],
+                    &message,
+                ));
             }
         }
     }
@@ -171,21 +232,52 @@ fn check_types(parts: Parts<'_>, linked: &Linked, module: &Module) -> Result<(),
 }
 
 /// An error at the first of these ranges of the linked text that comes from the file.
-pub fn error_at(parts: Parts<'_>, linked: &Linked, spans: &[naga::Span], message: &str) -> EffectError {
-    let Parts { text, stem, declaration, rewritten } = parts;
+pub fn error_at(
+    parts: Parts<'_>,
+    linked: &Linked,
+    spans: &[naga::Span],
+    message: &str,
+) -> EffectError {
+    let Parts {
+        text,
+        stem,
+        declaration,
+        rewritten,
+    } = parts;
     let message = in_names_of_author(stem, declaration, message);
-    let message = message.replace("`{AbstractFloat}`", "a number with a point").replace("`{AbstractInt}`", "a whole number");
+    let message = message
+        .replace("`{AbstractFloat}`", "a number with a point")
+        .replace("`{AbstractInt}`", "a whole number");
     let name = format!("effects/{stem}");
-    let first_line = linked.parts.iter().find(|part| part.name == name).map_or(0, |part| part.line);
-    let begin: usize = linked.text.split_inclusive('\n').take(first_line).map(str::len).sum();
-    let place = spans.iter().filter_map(|span| span.to_range()).find_map(|range| {
-        let offset = rewritten.origin(range.start.checked_sub(begin)?)?;
-        let end = rewritten.origin(range.end.checked_sub(begin)?).unwrap_or(offset);
-        Some((offset, end.saturating_sub(offset).max(1)))
-    });
+    let first_line = linked
+        .parts
+        .iter()
+        .find(|part| part.name == name)
+        .map_or(0, |part| part.line);
+    let begin: usize = linked
+        .text
+        .split_inclusive('\n')
+        .take(first_line)
+        .map(str::len)
+        .sum();
+    let place = spans
+        .iter()
+        .filter_map(|span| span.to_range())
+        .find_map(|range| {
+            let offset = rewritten.origin(range.start.checked_sub(begin)?)?;
+            let end = rewritten
+                .origin(range.end.checked_sub(begin)?)
+                .unwrap_or(offset);
+            Some((offset, end.saturating_sub(offset).max(1)))
+        });
     match place {
         // What is missing at the end is missing behind the last token.
-        Some((offset, _)) if declaration.tokens.last().is_some_and(|last| offset >= last.end()) => {
+        Some((offset, _))
+            if declaration
+                .tokens
+                .last()
+                .is_some_and(|last| offset >= last.end()) =>
+        {
             let last = declaration.tokens.last().map_or(0, Token::end);
             text.error(last.saturating_sub(1), 1, message)
         }
@@ -195,17 +287,44 @@ pub fn error_at(parts: Parts<'_>, linked: &Linked, spans: &[naga::Span], message
 }
 
 fn of_link(parts: Parts<'_>, error: &LinkError) -> EffectError {
-    let Parts { text, stem, declaration, .. } = parts;
+    let Parts {
+        text,
+        stem,
+        declaration,
+        ..
+    } = parts;
     match error {
-        LinkError::Undeclared { file, line, name, declared_in } if *file == format!("effects/{stem}") => {
-            let is_open = declared_in.strip_prefix("lib/").is_some_and(|file| declaration::LIBRARY.contains(&file));
+        LinkError::Undeclared {
+            file,
+            line,
+            name,
+            declared_in,
+        } if *file == format!("effects/{stem}") => {
+            let is_open = declared_in
+                .strip_prefix("lib/")
+                .is_some_and(|file| declaration::LIBRARY.contains(&file));
             let message = match is_open {
-                true => format!("{name} is declared in {declared_in}; add the line //@ use {declared_in}"),
-                false => format!("{name} belongs to the kernels, and an effect cannot use it; choose another name"),
+                true => format!(
+                    "{name} is declared in {declared_in}; add the line //@ use {declared_in}"
+                ),
+                false => format!(
+                    "{name} belongs to the kernels, and an effect cannot use it; choose another name"
+                ),
             };
-            let begin: usize = text.text.split_inclusive('\n').take(*line as usize - 1).map(str::len).sum();
-            let token = declaration.tokens.iter().find(|token| token.offset >= begin && token.text == *name);
-            token.map_or_else(|| text.whole(&message), |token| text.error(token.offset, token.text.len(), &message))
+            let begin: usize = text
+                .text
+                .split_inclusive('\n')
+                .take(*line as usize - 1)
+                .map(str::len)
+                .sum();
+            let token = declaration
+                .tokens
+                .iter()
+                .find(|token| token.offset >= begin && token.text == *name);
+            token.map_or_else(
+                || text.whole(&message),
+                |token| text.error(token.offset, token.text.len(), &message),
+            )
         }
         other => text.whole(in_names_of_author(stem, declaration, &other.to_string())),
     }

@@ -1,4 +1,5 @@
-//! Declarations: what an effect file declares at module scope, which of its functions are hooks, and what it may not contain.
+//! Declarations: what an effect file declares at module scope, which of its functions are hooks,
+//! and what it may not contain.
 
 use std::collections::BTreeSet;
 
@@ -12,11 +13,18 @@ use super::{
 use crate::effects::HookFunctions;
 
 /// Files of `shaders/lib` that an effect file may use: pure functions and the types of hooks.
-pub const LIBRARY: [&str; 9] = ["angle", "color", "front", "hash", "image", "lattice", "sample", "surface", "vertex"];
+pub const LIBRARY: [&str; 9] = [
+    "angle", "color", "front", "hash", "image", "lattice", "sample", "surface", "vertex",
+];
 
-/// The hooks: type of the first parameter, type of the result, and the library file that declares the former.
-const HOOKS: [(&str, &str, &str); 4] =
-    [("Vertex", "Vertex", "vertex"), ("Sample", "bool", "sample"), ("Surface", "Surface", "surface"), ("Pixel", "Pixel", "image")];
+/// The hooks: type of the first parameter, type of the result, and the library file that declares
+/// the former.
+const HOOKS: [(&str, &str, &str); 4] = [
+    ("Vertex", "Vertex", "vertex"),
+    ("Sample", "bool", "sample"),
+    ("Surface", "Surface", "surface"),
+    ("Pixel", "Pixel", "image"),
+];
 
 /// What an effect file says.
 #[derive(Debug)]
@@ -47,7 +55,8 @@ struct Function<'a> {
 /// Reads an effect file; its constants of choices begin with `stem`.
 ///
 /// # Errors
-/// A text out of bounds, a declaration that an effect cannot have, no hook, two functions on one hook, or as [`parameters::read`].
+/// A text out of bounds, a declaration that an effect cannot have, no hook, two functions on one
+/// hook, or as [`parameters::read`].
 pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectError> {
     let tokens = tokens(text.text);
     bounds::check(text, &tokens)?;
@@ -66,7 +75,10 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
                     return Err(text.error(
                         name.offset,
                         name.text.len(),
-                        format!("the struct {0} has no members; write struct {0} {{ … }}", name.text),
+                        format!(
+                            "the struct {0} has no members; write struct {0} {{ … }}",
+                            name.text
+                        ),
                     ));
                 }
                 declared.push(name);
@@ -75,11 +87,15 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
             }
             ("fn", Some(name)) => {
                 let body = match opening {
-                    "(" => (closing(&tokens, at + 2)..tokens.len()).find(|&index| ["{", ";", "fn", "struct"].contains(&tokens[index].text)),
+                    "(" => (closing(&tokens, at + 2)..tokens.len())
+                        .find(|&index| ["{", ";", "fn", "struct"].contains(&tokens[index].text)),
                     _ => None,
                 };
                 let Some(body) = body.filter(|&body| tokens[body].text == "{") else {
-                    let message = format!("the function {0} is incomplete; write fn {0}(parameters) -> type {{ … }}", name.text);
+                    let message = format!(
+                        "the function {0} is incomplete; write fn {0}(parameters) -> type {{ … }}",
+                        name.text
+                    );
                     return Err(text.error(name.offset, name.text.len(), message));
                 };
                 declared.push(name);
@@ -91,20 +107,44 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
                 at = end_of_statement(text, &tokens, at)?;
             }
             ("const_assert", _) => at = end_of_statement(text, &tokens, at)?,
-            ("struct" | "fn" | "const" | "alias", None) => return refuse(&format!("{} needs a name after it", token.text)),
-            ("var", _) => return refuse("an effect declares no variable at module scope; its parameters are the members of its struct"),
-            ("override", _) => return refuse("an effect declares no override; use const, or a parameter"),
-            ("enable" | "requires" | "diagnostic", _) => return refuse("an effect file has no directives of WGSL; remove this one"),
-            ("@", _) => return refuse("attributes belong to the parameters of an effect; an effect has no entry point and no binding"),
-            _ => return refuse(&format!("expected struct, fn, const or alias at the start of a declaration, and found {}", token.text)),
+            ("struct" | "fn" | "const" | "alias", None) => {
+                return refuse(&format!("{} needs a name after it", token.text));
+            }
+            ("var", _) => {
+                return refuse(
+                    "an effect declares no variable at module scope; its parameters are the members of its struct",
+                );
+            }
+            ("override", _) => {
+                return refuse("an effect declares no override; use const, or a parameter");
+            }
+            ("enable" | "requires" | "diagnostic", _) => {
+                return refuse("an effect file has no directives of WGSL; remove this one");
+            }
+            ("@", _) => {
+                return refuse(
+                    "attributes belong to the parameters of an effect; an effect has no entry point and no binding",
+                );
+            }
+            _ => {
+                return refuse(&format!(
+                    "expected struct, fn, const or alias at the start of a declaration, and found {}",
+                    token.text
+                ));
+            }
         }
     }
     words::check_declared(text, &declared)?;
     words::refuse(text, &tokens, &declared)?;
     let (hooks, struct_name) = hooks(text, &functions)?;
-    let Some((_, open)) = structs.iter().find(|(name, _)| name.text == struct_name.text) else {
-        let message =
-            format!("the hook takes {0}, which is no struct of this file; write struct {0} {{ … }} with the parameters", struct_name.text);
+    let Some((_, open)) = structs
+        .iter()
+        .find(|(name, _)| name.text == struct_name.text)
+    else {
+        let message = format!(
+            "the hook takes {0}, which is no struct of this file; write struct {0} {{ … }} with the parameters",
+            struct_name.text
+        );
         return Err(text.error(struct_name.offset, struct_name.text.len(), message));
     };
     let parameters = parameters::read(text, &tokens, *open)?;
@@ -122,22 +162,46 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
     // The library's file for pixels reads buffers, which passes with the other hooks do not have.
     let has_others = hooks.vertex.is_some() || hooks.sample.is_some() || hooks.surface.is_some();
     if has_others && uses.iter().any(|used| used == "lib/image") {
-        let name = functions.iter().map(|function| function.name).find(|name| hooks.image.as_deref() == Some(name.text));
+        let name = functions
+            .iter()
+            .map(|function| function.name)
+            .find(|name| hooks.image.as_deref() == Some(name.text));
         let message = "only an effect with no other hook reads the picture; put the hook of Pixel and lib/image into a file of their own";
-        return Err(name.map_or_else(|| text.whole(message), |name| text.error(name.offset, name.text.len(), message)));
+        return Err(name.map_or_else(
+            || text.whole(message),
+            |name| text.error(name.offset, name.text.len(), message),
+        ));
     }
     let constants = parameters::constants(text, stem, &parameters)?;
     if let Some(name) = declared.iter().find(|name| constants.contains(name.text)) {
-        let message = format!("{} is the constant of a choice of this effect; choose another name", name.text);
+        let message = format!(
+            "{} is the constant of a choice of this effect; choose another name",
+            name.text
+        );
         return Err(text.error(name.offset, name.text.len(), message));
     }
-    let declared = constants.into_iter().chain(declared.iter().map(|name| name.text.to_owned())).collect();
+    let declared = constants
+        .into_iter()
+        .chain(declared.iter().map(|name| name.text.to_owned()))
+        .collect();
     let about = about(text.text);
-    Ok(Declaration { about, tokens, struct_name: struct_name.text, parameters, hooks, declared, uses })
+    Ok(Declaration {
+        about,
+        tokens,
+        struct_name: struct_name.text,
+        parameters,
+        hooks,
+        declared,
+        uses,
+    })
 }
 
 /// Index behind the semicolon of the declaration at `at`.
-fn end_of_statement(text: &Text<'_>, tokens: &[Token<'_>], at: usize) -> Result<usize, EffectError> {
+fn end_of_statement(
+    text: &Text<'_>,
+    tokens: &[Token<'_>],
+    at: usize,
+) -> Result<usize, EffectError> {
     let marks = ["fn", "struct", "const", "alias", "{", ";"];
     let end = (at + 1..tokens.len()).find(|&index| marks.contains(&tokens[index].text));
     let closed = end.filter(|&end| tokens[end].text == ";");
@@ -148,37 +212,72 @@ fn end_of_statement(text: &Text<'_>, tokens: &[Token<'_>], at: usize) -> Result<
 }
 
 /// The head of the function whose `fn` is at `at`, and whose body opens at `body`.
-fn function<'a>(text: &Text<'a>, tokens: &[Token<'a>], at: usize, name: Token<'a>, body: usize) -> Function<'a> {
+fn function<'a>(
+    text: &Text<'a>,
+    tokens: &[Token<'a>],
+    at: usize,
+    name: Token<'a>,
+    body: usize,
+) -> Function<'a> {
     let close = closing(tokens, at + 2);
     let between = |from: usize, to: usize| -> String {
         let range = tokens.get(from..to).filter(|range| !range.is_empty());
-        range.map_or(String::new(), |range| text.text[range[0].offset..range[range.len() - 1].end()].split_whitespace().collect())
+        range.map_or(String::new(), |range| {
+            text.text[range[0].offset..range[range.len() - 1].end()]
+                .split_whitespace()
+                .collect()
+        })
     };
-    let colons: Vec<usize> = (at + 3..close).filter(|&index| tokens[index].text == ":").collect();
+    let colons: Vec<usize> = (at + 3..close)
+        .filter(|&index| tokens[index].text == ":")
+        .collect();
     let end_of = |colon: usize| {
         let mut depth = 0_i32;
         (colon + 1..close)
             .find(|&index| {
-                depth += i32::from(tokens[index].text == "<") - i32::from(tokens[index].text == ">");
+                depth +=
+                    i32::from(tokens[index].text == "<") - i32::from(tokens[index].text == ">");
                 depth == 0 && tokens[index].text == ","
             })
             .unwrap_or(close)
     };
-    let parameters = colons.iter().map(|&colon| between(colon + 1, end_of(colon))).collect();
-    let last_type = colons.last().and_then(|&colon| tokens.get(colon + 1)).copied().filter(Token::is_name);
+    let parameters = colons
+        .iter()
+        .map(|&colon| between(colon + 1, end_of(colon)))
+        .collect();
+    let last_type = colons
+        .last()
+        .and_then(|&colon| tokens.get(colon + 1))
+        .copied()
+        .filter(Token::is_name);
     // The result follows `->`, which is two marks.
     let result = between(close + 3, body);
-    Function { name, parameters, last_type, result }
+    Function {
+        name,
+        parameters,
+        last_type,
+        result,
+    }
 }
 
 /// Which function is on which hook, and the struct of parameters that all of them take.
-fn hooks<'a>(text: &Text<'a>, functions: &[Function<'a>]) -> Result<(HookFunctions, Token<'a>), EffectError> {
+fn hooks<'a>(
+    text: &Text<'a>,
+    functions: &[Function<'a>],
+) -> Result<(HookFunctions, Token<'a>), EffectError> {
     let mut found: [Option<&Function<'a>>; 4] = [None; 4];
     for function in functions {
-        let [first, second] = &function.parameters[..] else { continue };
+        let [first, second] = &function.parameters[..] else {
+            continue;
+        };
         let is_name = function.last_type.is_some_and(|name| name.text == second);
-        let is_struct = is_name && !words::is_predeclared(second) && !HOOKS.iter().any(|(kind, ..)| kind == second);
-        let Some(hook) = HOOKS.iter().position(|(kind, result, _)| kind == first && *result == function.result) else {
+        let is_struct = is_name
+            && !words::is_predeclared(second)
+            && !HOOKS.iter().any(|(kind, ..)| kind == second);
+        let Some(hook) = HOOKS
+            .iter()
+            .position(|(kind, result, _)| kind == first && *result == function.result)
+        else {
             continue;
         };
         if !is_struct {
@@ -194,9 +293,18 @@ fn hooks<'a>(text: &Text<'a>, functions: &[Function<'a>]) -> Result<(HookFunctio
         found[hook] = Some(function);
     }
     let Some(first) = found.iter().flatten().next() else {
-        let kind_of =
-            |function: &Function<'_>| HOOKS.iter().find(|(kind, ..)| function.parameters.first().is_some_and(|first| first == kind));
-        if let Some((function, (kind, result, _))) = functions.iter().find_map(|function| Some((function, kind_of(function)?))) {
+        let kind_of = |function: &Function<'_>| {
+            HOOKS.iter().find(|(kind, ..)| {
+                function
+                    .parameters
+                    .first()
+                    .is_some_and(|first| first == kind)
+            })
+        };
+        if let Some((function, (kind, result, _))) = functions
+            .iter()
+            .find_map(|function| Some((function, kind_of(function)?)))
+        {
             let name = function.name;
             let message = format!(
                 "{0} takes a {kind} but is no hook; the signature of the hook is fn {0}(x: {kind}, p: Parameters) -> {result}, where \
@@ -209,7 +317,11 @@ fn hooks<'a>(text: &Text<'a>, functions: &[Function<'a>]) -> Result<(HookFunctio
                        with Pixel, or fn name(sample: Sample, p: Parameters) -> bool";
         return Err(text.whole(message));
     };
-    if let Some(other) = found.iter().flatten().find(|function| function.parameters[1] != first.parameters[1]) {
+    if let Some(other) = found
+        .iter()
+        .flatten()
+        .find(|function| function.parameters[1] != first.parameters[1])
+    {
         let message = format!(
             "{} takes {} and {} takes {}; all hooks of an effect take the same struct",
             first.name.text, first.parameters[1], other.name.text, other.parameters[1]
@@ -217,8 +329,16 @@ fn hooks<'a>(text: &Text<'a>, functions: &[Function<'a>]) -> Result<(HookFunctio
         return Err(text.error(other.name.offset, other.name.text.len(), message));
     }
     let name = |hook: usize| found[hook].map(|function| function.name.text.to_owned());
-    let hooks = HookFunctions { vertex: name(0), sample: name(1), sample_setup: None, surface: name(2), image: name(3) };
-    let struct_name = first.last_type.expect("a hook's second parameter is a struct");
+    let hooks = HookFunctions {
+        vertex: name(0),
+        sample: name(1),
+        sample_setup: None,
+        surface: name(2),
+        image: name(3),
+    };
+    let struct_name = first
+        .last_type
+        .expect("a hook's second parameter is a struct");
     Ok((hooks, struct_name))
 }
 
@@ -229,13 +349,19 @@ fn uses(text: &Text<'_>) -> Result<Vec<String>, EffectError> {
     for line in text.text.split_inclusive('\n') {
         if let Some(directive) = line.trim().strip_prefix("//@") {
             let used = directive.trim().strip_prefix("use ").map(str::trim);
-            let is_known = used.and_then(|used| used.strip_prefix("lib/")).is_some_and(|name| LIBRARY.contains(&name));
+            let is_known = used
+                .and_then(|used| used.strip_prefix("lib/"))
+                .is_some_and(|name| LIBRARY.contains(&name));
             match used.filter(|_| is_known) {
                 Some(used) => found.push(used.to_owned()),
                 None => {
                     let files = LIBRARY.map(|name| format!("lib/{name}")).join(", ");
                     let begin = offset + line.len() - line.trim_start().len();
-                    return Err(text.error(begin, line.trim().len(), format!("an effect may use {files}")));
+                    return Err(text.error(
+                        begin,
+                        line.trim().len(),
+                        format!("an effect may use {files}"),
+                    ));
                 }
             }
         }
@@ -246,10 +372,28 @@ fn uses(text: &Text<'_>) -> Result<Vec<String>, EffectError> {
 
 /// The first sentence of the comment at the top of the file, without a leading `Name:`.
 fn about(text: &str) -> String {
-    let lines = text.trim_start_matches('\u{feff}').lines().map(str::trim).skip_while(|line| line.is_empty());
-    let comment = lines.map_while(|line| line.strip_prefix("//").filter(|line| !line.starts_with('@')));
-    let joined = comment.map(|line| line.trim_start_matches(['/', '!']).trim()).collect::<Vec<_>>().join(" ");
-    let sentence = joined.split_inclusive(". ").next().unwrap_or_default().trim().trim_end_matches('.');
-    let about = sentence.split_once(": ").filter(|(head, _)| !head.contains(' ')).map_or(sentence, |(_, rest)| rest);
+    let lines = text
+        .trim_start_matches('\u{feff}')
+        .lines()
+        .map(str::trim)
+        .skip_while(|line| line.is_empty());
+    let comment = lines.map_while(|line| {
+        line.strip_prefix("//")
+            .filter(|line| !line.starts_with('@'))
+    });
+    let joined = comment
+        .map(|line| line.trim_start_matches(['/', '!']).trim())
+        .collect::<Vec<_>>()
+        .join(" ");
+    let sentence = joined
+        .split_inclusive(". ")
+        .next()
+        .unwrap_or_default()
+        .trim()
+        .trim_end_matches('.');
+    let about = sentence
+        .split_once(": ")
+        .filter(|(head, _)| !head.contains(' '))
+        .map_or(sentence, |(_, rest)| rest);
     about.chars().take(160).collect()
 }

@@ -1,4 +1,5 @@
-//! Errors about effect files: one sentence with file, line and column, and the line of text with a caret below it.
+//! Errors about effect files: one sentence with file, line and column, and the line of text with a
+//! caret below it.
 
 use std::fmt;
 
@@ -43,12 +44,24 @@ impl Place {
             offset -= 1;
         }
         let begin = text[..offset].rfind('\n').map_or(0, |at| at + 1);
-        let end = text[offset..].find('\n').map_or(text.len(), |at| offset + at);
-        let marked = text.get(offset..(offset + length).min(end)).map_or(1, |marked| marked.trim_end().chars().count().max(1));
+        let end = text[offset..]
+            .find('\n')
+            .map_or(text.len(), |at| offset + at);
+        let marked = text
+            .get(offset..(offset + length).min(end))
+            .map_or(1, |marked| marked.trim_end().chars().count().max(1));
         let before = text[begin..offset].chars().count();
-        let skipped = if before + marked.min(MAX_SHOWN / 2) > MAX_SHOWN { before - MAX_SHOWN / 2 } else { 0 };
+        let skipped = if before + marked.min(MAX_SHOWN / 2) > MAX_SHOWN {
+            before - MAX_SHOWN / 2
+        } else {
+            0
+        };
         // One character takes one column, so that the caret stands below its place.
-        let shown = text[begin..end].trim_end().chars().skip(skipped).take(MAX_SHOWN);
+        let shown = text[begin..end]
+            .trim_end()
+            .chars()
+            .skip(skipped)
+            .take(MAX_SHOWN);
         Self {
             line: text[..offset].matches('\n').count() as u32 + 1,
             column: before as u32 + 1,
@@ -70,12 +83,22 @@ fn shown_character(c: char) -> char {
 
 impl fmt::Display for EffectError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Some(place) = &self.place else { return write!(f, "{}: {}", self.file, self.message) };
-        let Place { line, column, length, text, skipped } = place;
+        let Some(place) = &self.place else {
+            return write!(f, "{}: {}", self.file, self.message);
+        };
+        let Place {
+            line,
+            column,
+            length,
+            text,
+            skipped,
+        } = place;
         let number = line.to_string();
         let (indent, before) = (" ".repeat(number.len()), (*column - 1 - *skipped) as usize);
         let dent = " ".repeat(before);
-        let marked = (*length as usize).min(MAX_SHOWN.saturating_sub(before)).max(1);
+        let marked = (*length as usize)
+            .min(MAX_SHOWN.saturating_sub(before))
+            .max(1);
         writeln!(f, "{}:{line}:{column}: {}", self.file, self.message)?;
         writeln!(f, "  {number} | {text}")?;
         write!(f, "  {indent} | {dent}{}", "^".repeat(marked))
@@ -84,9 +107,12 @@ impl fmt::Display for EffectError {
 
 impl std::error::Error for EffectError {}
 
-/// A message in one line, without characters that steer a terminal or reorder text, and without a period at its end.
+/// A message in one line, without characters that steer a terminal or reorder text, and without a
+/// period at its end.
 fn sentence(message: &str) -> String {
-    let words = message.split(|c: char| c.is_whitespace() || is_hidden(c)).filter(|word| !word.is_empty());
+    let words = message
+        .split(|c: char| c.is_whitespace() || is_hidden(c))
+        .filter(|word| !word.is_empty());
     let joined = words.collect::<Vec<_>>().join(" ");
     let kept: String = joined.chars().take(MAX_MESSAGE).collect();
     kept.trim_end_matches('.').to_owned()
@@ -103,16 +129,29 @@ pub struct Text<'a> {
 impl Text<'_> {
     /// An error about `length` bytes at byte `offset`.
     pub fn error(&self, offset: usize, length: usize, message: impl Into<String>) -> EffectError {
-        EffectError { file: legible_line(self.file), place: Some(Place::of(self.text, offset, length)), message: sentence(&message.into()) }
+        EffectError {
+            file: legible_line(self.file),
+            place: Some(Place::of(self.text, offset, length)),
+            message: sentence(&message.into()),
+        }
     }
 
     /// The line, from 1, of byte `offset`.
     pub fn line(&self, offset: usize) -> usize {
-        1 + self.text.bytes().take(offset).filter(|byte| *byte == b'\n').count()
+        1 + self
+            .text
+            .bytes()
+            .take(offset)
+            .filter(|byte| *byte == b'\n')
+            .count()
     }
 
     /// An error about the file as a whole.
     pub fn whole(&self, message: impl Into<String>) -> EffectError {
-        EffectError { file: legible_line(self.file), place: None, message: sentence(&message.into()) }
+        EffectError {
+            file: legible_line(self.file),
+            place: None,
+            message: sentence(&message.into()),
+        }
     }
 }

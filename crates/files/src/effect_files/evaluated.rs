@@ -1,5 +1,5 @@
-//! Built-in effects by their own text: the hooks of an effect, evaluated in f64 from its WGSL as those of a file are. They are a third
-//! witness beside the kernels and the functions in Rust.
+//! Built-in effects by their own text: the hooks of an effect, evaluated in f64 from its WGSL as
+//! those of a file are. They are a third witness beside the kernels and the functions in Rust.
 
 use std::sync::Arc;
 
@@ -30,7 +30,8 @@ pub enum EvaluatedError {
     Lower(#[from] LowerError),
 }
 
-/// The hooks of `effect`, with each function of them evaluated from the text that the library has for it. Bounds stay as they are.
+/// The hooks of `effect`, with each function of them evaluated from the text that the library has
+/// for it. Bounds stay as they are.
 ///
 /// # Errors
 /// The text cannot be linked, is not valid, or uses what cannot be evaluated.
@@ -42,17 +43,35 @@ pub fn evaluated(library: &Library, effect: &Arc<Effect>) -> Result<Hooks, Evalu
 ///
 /// # Errors
 /// As [`evaluated`].
-pub fn evaluated_in(library: &Library, effect: &Arc<Effect>, precision: Precision) -> Result<Hooks, EvaluatedError> {
+pub fn evaluated_in(
+    library: &Library,
+    effect: &Arc<Effect>,
+    precision: Precision,
+) -> Result<Hooks, EvaluatedError> {
     let linked = link::link_effect(library, effect)?;
     let text = &linked.text;
-    let module = naga::front::wgsl::parse_str(text).map_err(|error| EvaluatedError::Refused(error.emit_to_string(text)))?;
-    let validated = Validator::new(ValidationFlags::all(), Capabilities::default()).validate(&module);
+    let module = naga::front::wgsl::parse_str(text)
+        .map_err(|error| EvaluatedError::Refused(error.emit_to_string(text)))?;
+    let validated =
+        Validator::new(ValidationFlags::all(), Capabilities::default()).validate(&module);
     validated.map_err(|error| EvaluatedError::Refused(error.emit_to_string(text)))?;
-    let function = |chain: Chain, precision| Function::new(&module, text, &chain.function(effect), &effect.fields, precision);
+    let function = |chain: Chain, precision| {
+        Function::new(
+            &module,
+            text,
+            &chain.function(effect),
+            &effect.fields,
+            precision,
+        )
+    };
     let mut hooks = effect.hooks.clone();
     if let Some(hook) = hooks.vertex.take() {
-        let [chosen, single] = [precision, Precision::Single].map(|precision| function(Chain::Vertex, precision));
-        hooks.vertex = Some(VertexHook { moved: twin::vertex(chosen?, single?, hook.needs_triangle).moved, ..hook });
+        let [chosen, single] =
+            [precision, Precision::Single].map(|precision| function(Chain::Vertex, precision));
+        hooks.vertex = Some(VertexHook {
+            moved: twin::vertex(chosen?, single?, hook.needs_triangle).moved,
+            ..hook
+        });
     }
     if let Some(hook) = hooks.sample.take() {
         let is_drawn = twin::sample(function(Chain::Sample, precision)?).is_drawn;
@@ -60,13 +79,20 @@ pub fn evaluated_in(library: &Library, effect: &Arc<Effect>, precision: Precisio
             true => twin::sample_setup(function(Chain::SampleSetup, precision)?),
             false => hook.sample_setup.clone(),
         };
-        hooks.sample = Some(SampleHook { is_drawn, sample_setup, ..hook });
+        hooks.sample = Some(SampleHook {
+            is_drawn,
+            sample_setup,
+            ..hook
+        });
     }
     if hooks.surface.is_some() {
         hooks.surface = Some(twin::surface(function(Chain::Surface, precision)?));
     }
     if let Some(hook) = hooks.image {
-        hooks.image = Some(twin::image(function(Chain::Image, precision)?, hook.reads_previous));
+        hooks.image = Some(twin::image(
+            function(Chain::Image, precision)?,
+            hook.reads_previous,
+        ));
     }
     Ok(hooks)
 }

@@ -1,5 +1,5 @@
-//! Effect files: effects that anyone can write, one WGSL file each. A file is read, checked, made safe to link, and evaluated in f64
-//! for the oracle.
+//! Effect files: effects that anyone can write, one WGSL file each. A file is read, checked, made
+//! safe to link, and evaluated in f64 for the oracle.
 
 mod attributes;
 mod bounds;

@@ -1,5 +1,5 @@
-//! Parameters: the struct of an effect file as fields of the registry. Documentation stands in the comment above a member, and
-//! type, range, unit, default and widget in its attributes.
+//! Parameters: the struct of an effect file as fields of the registry. Documentation stands in the
+//! comment above a member, and type, range, unit, default and widget in its attributes.
 
 use std::{collections::BTreeSet, ops::Range, sync::Arc};
 
@@ -34,7 +34,8 @@ pub struct Parameters {
 /// Reads the members between the braces of a struct; `open` is the index of the opening one.
 ///
 /// # Errors
-/// A member of a type that no parameter has, an unknown or contradictory attribute, or a range without its default.
+/// A member of a type that no parameter has, an unknown or contradictory attribute, or a range
+/// without its default.
 pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parameters, EffectError> {
     let close = closing(tokens, open);
     let (mut fields, mut defaults, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
@@ -46,61 +47,123 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
             let (attribute, behind) = attributes::read(text, tokens, at)?;
             attributes::check_name(text, &attribute)?;
             if attributes.iter().any(|other| other.name == attribute.name) {
-                return Err(attribute.error(text, format!("@{} stands twice before one parameter", attribute.name)));
+                return Err(attribute.error(
+                    text,
+                    format!("@{} stands twice before one parameter", attribute.name),
+                ));
             }
             ranges.push(attribute.begin..attribute.end);
             attributes.push(attribute);
             at = behind;
         }
-        let (Some(name), Some(colon)) = (tokens.get(at).filter(|token| token.is_name()), tokens.get(at + 1)) else {
+        let (Some(name), Some(colon)) = (
+            tokens.get(at).filter(|token| token.is_name()),
+            tokens.get(at + 1),
+        ) else {
             return Err(text.error(first.offset, 1, "a parameter has the form name: type"));
         };
         if colon.text != ":" || at + 2 >= close {
-            return Err(text.error(name.offset, name.text.len(), format!("the parameter {} needs a type", name.text)));
+            return Err(text.error(
+                name.offset,
+                name.text.len(),
+                format!("the parameter {} needs a type", name.text),
+            ));
         }
-        let end = (at + 2..close).find(|&index| tokens[index].text == ",").unwrap_or(close);
+        let end = (at + 2..close)
+            .find(|&index| tokens[index].text == ",")
+            .unwrap_or(close);
         if end == at + 2 {
-            return Err(text.error(name.offset, name.text.len(), format!("the parameter {} needs a type", name.text)));
+            return Err(text.error(
+                name.offset,
+                name.text.len(),
+                format!("the parameter {} needs a type", name.text),
+            ));
         }
-        if let Some(other) = (at + 2..end).find(|&index| [":", ";", "@"].contains(&tokens[index].text)) {
+        if let Some(other) =
+            (at + 2..end).find(|&index| [":", ";", "@"].contains(&tokens[index].text))
+        {
             let token = tokens[other];
-            return Err(text.error(token.offset, token.text.len(), format!("expected , between parameters, and found {}", token.text)));
+            return Err(text.error(
+                token.offset,
+                token.text.len(),
+                format!("expected , between parameters, and found {}", token.text),
+            ));
         }
         check_name(text, *name)?;
         let kind = &text.text[tokens[at + 2].offset..tokens[end - 1].end()];
-        if fields.iter().any(|field: &Arc<Field>| field.name == name.text) {
-            return Err(text.error(name.offset, name.text.len(), format!("the parameter {} is declared twice", name.text)));
+        if fields
+            .iter()
+            .any(|field: &Arc<Field>| field.name == name.text)
+        {
+            return Err(text.error(
+                name.offset,
+                name.text.len(),
+                format!("the parameter {} is declared twice", name.text),
+            ));
         }
         if fields.len() == MAX_MEMBERS {
-            return Err(text.error(name.offset, name.text.len(), format!("an effect has at most {MAX_MEMBERS} parameters")));
+            return Err(text.error(
+                name.offset,
+                name.text.len(),
+                format!("an effect has at most {MAX_MEMBERS} parameters"),
+            ));
         }
-        let member = Member { text, name: *name, kind, attributes: &attributes };
-        let (param, wgsl, numbers) = member.param(&fields, &documentation(text.text, first.offset))?;
+        let member = Member {
+            text,
+            name: *name,
+            kind,
+            attributes: &attributes,
+        };
+        let (param, wgsl, numbers) =
+            member.param(&fields, &documentation(text.text, first.offset))?;
         let offset = (4 * defaults.len()).next_multiple_of(4 * wgsl.words());
         defaults.resize(offset / 4 + wgsl.words(), 0);
         let field = Field::new(param, wgsl, offset);
-        field.set(&mut defaults, &numbers).map_err(|error| member.error(format!("the default of {}: {error}", name.text)))?;
+        field
+            .set(&mut defaults, &numbers)
+            .map_err(|error| member.error(format!("the default of {}: {error}", name.text)))?;
         fields.push(Arc::new(field));
         at = end + 1;
     }
     if fields.is_empty() {
-        return Err(text.error(tokens[open].offset, 1, "the struct of an effect's parameters needs at least one member"));
+        return Err(text.error(
+            tokens[open].offset,
+            1,
+            "the struct of an effect's parameters needs at least one member",
+        ));
     }
-    let align = if fields.iter().any(|field| field.wgsl == WgslType::Vec4F32) { 4 } else { 1 };
+    let align = if fields.iter().any(|field| field.wgsl == WgslType::Vec4F32) {
+        4
+    } else {
+        1
+    };
     defaults.resize(defaults.len().next_multiple_of(align), 0);
-    Ok(Parameters { fields, defaults, attributes: ranges })
+    Ok(Parameters {
+        fields,
+        defaults,
+        attributes: ranges,
+    })
 }
 
 /// Refuses names that presets, the command line or WGSL could not write.
 fn check_name(text: &Text<'_>, name: Token<'_>) -> Result<(), EffectError> {
     let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    let is_plain = name.text.starts_with(|c: char| c.is_ascii_alphabetic()) && name.text.chars().all(is_letter);
+    let is_plain = name.text.starts_with(|c: char| c.is_ascii_alphabetic())
+        && name.text.chars().all(is_letter);
     let message = if !is_plain || name.text.len() > MAX_NAME_CHARS {
-        format!("the name of a parameter begins with a letter and has at most {MAX_NAME_CHARS} letters a to z, digits and _")
+        format!(
+            "the name of a parameter begins with a letter and has at most {MAX_NAME_CHARS} letters a to z, digits and _"
+        )
     } else if words::is_reserved(name.text) {
-        format!("{} is a reserved word of WGSL; give the parameter another name", name.text)
+        format!(
+            "{} is a reserved word of WGSL; give the parameter another name",
+            name.text
+        )
     } else if RESERVED.contains(&name.text) {
-        format!("a preset uses {} itself; give the parameter another name", name.text)
+        format!(
+            "a preset uses {} itself; give the parameter another name",
+            name.text
+        )
     } else {
         return Ok(());
     };
@@ -111,10 +174,16 @@ fn check_name(text: &Text<'_>, name: Token<'_>) -> Result<(), EffectError> {
 ///
 /// # Errors
 /// Two choices make the same name.
-pub fn constants(text: &Text<'_>, stem: &str, parameters: &Parameters) -> Result<BTreeSet<String>, EffectError> {
+pub fn constants(
+    text: &Text<'_>,
+    stem: &str,
+    parameters: &Parameters,
+) -> Result<BTreeSet<String>, EffectError> {
     let mut constants = BTreeSet::new();
     for field in &parameters.fields {
-        let ValueType::Choice(words) = &field.value_type else { continue };
+        let ValueType::Choice(words) = &field.value_type else {
+            continue;
+        };
         for word in words {
             let name = constant_name(stem, &field.name, word);
             if constants.contains(&name) {
@@ -134,7 +203,13 @@ fn documentation(text: &str, offset: usize) -> String {
     let begin = before.rfind('\n').map_or(0, |at| at + 1);
     let mut lines: Vec<&str> = Vec::new();
     for line in before[..begin].lines().rev() {
-        let Some(comment) = line.trim().strip_prefix("//").filter(|comment| !comment.starts_with('@')) else { break };
+        let Some(comment) = line
+            .trim()
+            .strip_prefix("//")
+            .filter(|comment| !comment.starts_with('@'))
+        else {
+            break;
+        };
         lines.push(comment.trim_start_matches(['/', '!']).trim());
     }
     lines.reverse();
@@ -152,29 +227,54 @@ struct Member<'a> {
 
 impl<'a> Member<'a> {
     fn error(&self, message: impl Into<String>) -> EffectError {
-        self.text.error(self.name.offset, self.name.text.len(), message)
+        self.text
+            .error(self.name.offset, self.name.text.len(), message)
     }
 
     fn attribute(&self, name: &str) -> Option<&'a Attribute<'a>> {
-        self.attributes.iter().find(|attribute| attribute.name == name)
+        self.attributes
+            .iter()
+            .find(|attribute| attribute.name == name)
     }
 
     /// The attribute that says which widget sets the parameter; exactly one of these.
     fn widget(&self, allowed: &[&str], usage: &str) -> Result<&'a Attribute<'a>, EffectError> {
         const WIDGETS: [&str; 5] = ["range", "color", "point", "toggle", "choice"];
-        let mut widgets = self.attributes.iter().filter(|attribute| WIDGETS.contains(&attribute.name));
-        let Some(first) = widgets.next() else { return Err(self.error(format!("{} is {}; it needs {usage}", self.name.text, self.kind))) };
+        let mut widgets = self
+            .attributes
+            .iter()
+            .filter(|attribute| WIDGETS.contains(&attribute.name));
+        let Some(first) = widgets.next() else {
+            return Err(self.error(format!(
+                "{} is {}; it needs {usage}",
+                self.name.text, self.kind
+            )));
+        };
         if let Some(second) = widgets.next() {
-            return Err(second.error(self.text, format!("@{} and @{} exclude each other", first.name, second.name)));
+            return Err(second.error(
+                self.text,
+                format!("@{} and @{} exclude each other", first.name, second.name),
+            ));
         }
         if !allowed.contains(&first.name) {
-            return Err(first.error(self.text, format!("@{} does not fit {}; it needs {usage}", first.name, self.kind)));
+            return Err(first.error(
+                self.text,
+                format!(
+                    "@{} does not fit {}; it needs {usage}",
+                    first.name, self.kind
+                ),
+            ));
         }
         Ok(first)
     }
 
-    /// The registry's entry, the WGSL type, and the components of the default. `known` are the fields declared so far.
-    fn param(&self, known: &[Arc<Field>], doc: &str) -> Result<(Param, WgslType, Vec<f64>), EffectError> {
+    /// The registry's entry, the WGSL type, and the components of the default. `known` are the
+    /// fields declared so far.
+    fn param(
+        &self,
+        known: &[Arc<Field>],
+        doc: &str,
+    ) -> Result<(Param, WgslType, Vec<f64>), EffectError> {
         let kind: String = self.kind.split_whitespace().collect();
         let (value_type, wgsl, default) = match kind.as_str() {
             "f32" => {
@@ -187,9 +287,16 @@ impl<'a> Member<'a> {
             }
             "u32" => self.whole()?,
             "vec4f" | "vec4<f32>" => {
-                let widget = self.widget(&["color", "point"], "@color(red, green, blue) or @point(x, y, z)")?;
+                let widget = self.widget(
+                    &["color", "point"],
+                    "@color(red, green, blue) or @point(x, y, z)",
+                )?;
                 if widget.name == "color" {
-                    let mut color = widget.numbers(self.text, (3, 4), "red, green, blue and perhaps alpha, each 0 to 1")?;
+                    let mut color = widget.numbers(
+                        self.text,
+                        (3, 4),
+                        "red, green, blue and perhaps alpha, each 0 to 1",
+                    )?;
                     color.resize(4, 1.0);
                     (ValueType::Color, WgslType::Vec4F32, color)
                 } else {
@@ -199,7 +306,10 @@ impl<'a> Member<'a> {
             }
             other => {
                 let allowed = "f32, i32, u32 or vec4f";
-                return Err(self.error(format!("{} is {other}; a parameter is {allowed}", self.name.text)));
+                return Err(self.error(format!(
+                    "{} is {other}; a parameter is {allowed}",
+                    self.name.text
+                )));
             }
         };
         let mut param = Param::new(self.name.text, doc, value_type.clone());
@@ -209,35 +319,65 @@ impl<'a> Member<'a> {
             param = param.hard(range[0]..=range[1]).soft(range[0]..=range[1]);
         }
         if let Some(hard) = self.attribute("hard") {
-            let ends = hard.numbers(self.text, (2, 2), "the least and the largest value that is allowed")?;
-            if !value_type.is_continuous() && !matches!(value_type, ValueType::U32 | ValueType::I32) || value_type == ValueType::Color {
+            let ends = hard.numbers(
+                self.text,
+                (2, 2),
+                "the least and the largest value that is allowed",
+            )?;
+            if !value_type.is_continuous() && !matches!(value_type, ValueType::U32 | ValueType::I32)
+                || value_type == ValueType::Color
+            {
                 return Err(hard.error(self.text, "@hard belongs to a number or a point"));
             }
-            let soft = if value_type == ValueType::Point { [ends[0], ends[1]] } else { param.soft };
+            let soft = if value_type == ValueType::Point {
+                [ends[0], ends[1]]
+            } else {
+                param.soft
+            };
             if !(ends[0] <= soft[0] && soft[1] <= ends[1] && ends[0] < ends[1]) {
-                return Err(hard.error(self.text, "the range of @hard must be ascending and contain that of @range"));
+                return Err(hard.error(
+                    self.text,
+                    "the range of @hard must be ascending and contain that of @range",
+                ));
             }
-            self.check_ends("hard", [ends[0], ends[1]], &Param::new("", "", value_type.clone()))?;
+            self.check_ends(
+                "hard",
+                [ends[0], ends[1]],
+                &Param::new("", "", value_type.clone()),
+            )?;
             (param.hard, param.soft) = ([ends[0], ends[1]], soft);
         }
         if let Some(unit) = self.attribute("unit") {
-            let [unit_text] = unit.arguments[..] else { return Err(unit.error(self.text, "@unit takes one unit, for instance m or px")) };
-            let is_plain = !unit_text.contains("//") && !unit_text.contains("/*") && !unit_text.contains(char::is_control);
+            let [unit_text] = unit.arguments[..] else {
+                return Err(unit.error(self.text, "@unit takes one unit, for instance m or px"));
+            };
+            let is_plain = !unit_text.contains("//")
+                && !unit_text.contains("/*")
+                && !unit_text.contains(char::is_control);
             if unit_text.is_empty() || unit_text.chars().count() > 8 || !is_plain {
-                return Err(unit.error(self.text, "@unit takes a unit of at most 8 characters, for instance m or px"));
+                return Err(unit.error(
+                    self.text,
+                    "@unit takes a unit of at most 8 characters, for instance m or px",
+                ));
             }
             param = param.unit(unit_text);
         }
         if let Some(log) = self.attribute("log") {
             if value_type != ValueType::F32 || param.soft[0] <= 0.0 || !log.arguments.is_empty() {
-                return Err(log.error(self.text, "@log belongs to an f32 whose @range begins above 0, and takes nothing"));
+                return Err(log.error(
+                    self.text,
+                    "@log belongs to an f32 whose @range begins above 0, and takes nothing",
+                ));
             }
             param = param.log(true);
         }
         if let Some(default) = self.attribute("default")
             && !matches!(value_type, ValueType::Choice(_))
         {
-            return Err(default.error(self.text, "@default belongs to @choice; other widgets take the default themselves"));
+            return Err(default.error(
+                self.text,
+                "@default belongs to @choice; other widgets take the default themselves",
+            ));
         }
         if let Some(when) = self.attribute("when") {
             param.when = Some(self.condition(when, known)?);
@@ -246,7 +386,12 @@ impl<'a> Member<'a> {
     }
 
     /// Refuses the ends of a range that the parameter's type does not have.
-    fn check_ends(&self, attribute: &str, [low, high]: [f64; 2], param: &Param) -> Result<(), EffectError> {
+    fn check_ends(
+        &self,
+        attribute: &str,
+        [low, high]: [f64; 2],
+        param: &Param,
+    ) -> Result<(), EffectError> {
         let is_whole = matches!(param.value_type, ValueType::I32 | ValueType::U32);
         let (least, most) = match param.value_type {
             ValueType::I32 => (f64::from(i32::MIN), f64::from(i32::MAX)),
@@ -254,16 +399,28 @@ impl<'a> Member<'a> {
             _ => (f64::from(f32::MIN), f64::from(f32::MAX)),
         };
         let message = if is_whole && (low.fract() != 0.0 || high.fract() != 0.0) {
-            format!("the range of {} has whole numbers at its ends, because it is {}", self.name.text, self.kind)
+            format!(
+                "the range of {} has whole numbers at its ends, because it is {}",
+                self.name.text, self.kind
+            )
         } else if low < least || high > most {
-            format!("the range of {} lies within {least} and {most}, because it is {}", self.name.text, self.kind)
+            format!(
+                "the range of {} lies within {least} and {most}, because it is {}",
+                self.name.text, self.kind
+            )
         } else if !is_whole && low as f32 >= high as f32 {
-            format!("the range of {} is empty in f32; move its ends apart", self.name.text)
+            format!(
+                "the range of {} is empty in f32; move its ends apart",
+                self.name.text
+            )
         } else {
             return Ok(());
         };
         let place = self.attribute(attribute);
-        Err(place.map_or_else(|| self.error(message.clone()), |place| place.error(self.text, message.clone())))
+        Err(place.map_or_else(
+            || self.error(message.clone()),
+            |place| place.error(self.text, message.clone()),
+        ))
     }
 
     /// Range and default of `@range`.
@@ -272,10 +429,18 @@ impl<'a> Member<'a> {
         let numbers = widget.numbers(self.text, (3, 3), "min, max, default and nothing else")?;
         let (low, high, default) = (numbers[0], numbers[1], numbers[2]);
         if low >= high {
-            return Err(widget.error(self.text, format!("the range {low}..={high} is empty; the first number must be the smaller one")));
+            return Err(widget.error(
+                self.text,
+                format!(
+                    "the range {low}..={high} is empty; the first number must be the smaller one"
+                ),
+            ));
         }
         if self.attribute("hard").is_none() && !(low..=high).contains(&default) {
-            return Err(widget.error(self.text, format!("the default {default} lies outside {low}..={high}")));
+            return Err(widget.error(
+                self.text,
+                format!("the default {default} lies outside {low}..={high}"),
+            ));
         }
         Ok(([low, high], default))
     }
@@ -292,7 +457,9 @@ impl<'a> Member<'a> {
             },
             "choice" => {
                 let is_word = |word: &&str| {
-                    let is_letter = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
+                    let is_letter = |c: char| {
+                        c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_'
+                    };
                     !word.is_empty()
                         && word.chars().count() <= 40
                         && word.starts_with(|c: char| c.is_ascii_lowercase() || c.is_ascii_digit())
@@ -301,13 +468,21 @@ impl<'a> Member<'a> {
                 let words = &widget.arguments;
                 let is_repeated = words.iter().collect::<BTreeSet<_>>().len() < words.len();
                 if !(2..=32).contains(&words.len()) || !words.iter().all(is_word) || is_repeated {
-                    return Err(widget.error(self.text, "@choice takes 2 to 32 different words of small letters, digits, - and _"));
+                    return Err(widget.error(
+                        self.text,
+                        "@choice takes 2 to 32 different words of small letters, digits, - and _",
+                    ));
                 }
                 let chosen = match self.attribute("default") {
                     None => 0,
                     Some(default) => {
                         let position = words.iter().position(|word| default.arguments == [*word]);
-                        position.ok_or_else(|| default.error(self.text, format!("@default takes one of {}", words.join(", "))))?
+                        position.ok_or_else(|| {
+                            default.error(
+                                self.text,
+                                format!("@default takes one of {}", words.join(", ")),
+                            )
+                        })?
                     }
                 };
                 Ok((ValueType::choice(words), WgslType::U32, vec![chosen as f64]))
@@ -315,7 +490,10 @@ impl<'a> Member<'a> {
             _ => {
                 let (range, default) = self.range(usage)?;
                 if range[0] < 0.0 {
-                    return Err(widget.error(self.text, "the range of a u32 begins at 0 or above; use i32 for negative numbers"));
+                    return Err(widget.error(
+                        self.text,
+                        "the range of a u32 begins at 0 or above; use i32 for negative numbers",
+                    ));
                 }
                 Ok((ValueType::U32, WgslType::U32, vec![default]))
             }
@@ -323,18 +501,43 @@ impl<'a> Member<'a> {
     }
 
     /// `@when(mode, word, …)`.
-    fn condition(&self, when: &Attribute<'_>, known: &[Arc<Field>]) -> Result<(String, Vec<String>), EffectError> {
+    fn condition(
+        &self,
+        when: &Attribute<'_>,
+        known: &[Arc<Field>],
+    ) -> Result<(String, Vec<String>), EffectError> {
         let usage = "@when takes the name of a choice above and some of its words";
-        let Some((name, words)) = when.arguments.split_first().filter(|(_, words)| !words.is_empty()) else {
+        let Some((name, words)) = when
+            .arguments
+            .split_first()
+            .filter(|(_, words)| !words.is_empty())
+        else {
             return Err(when.error(self.text, usage));
         };
         let choice = known.iter().find(|field| field.name == *name);
-        let Some((field, ValueType::Choice(allowed))) = choice.map(|field| (field, &field.value_type)) else {
-            return Err(when.error(self.text, format!("{usage}; there is no choice {name} above")));
+        let Some((field, ValueType::Choice(allowed))) =
+            choice.map(|field| (field, &field.value_type))
+        else {
+            return Err(when.error(
+                self.text,
+                format!("{usage}; there is no choice {name} above"),
+            ));
         };
-        if let Some(unknown) = words.iter().find(|word| !allowed.iter().any(|known| known == *word)) {
-            return Err(when.error(self.text, format!("{name} has no word {unknown}; it has {}", allowed.join(", "))));
+        if let Some(unknown) = words
+            .iter()
+            .find(|word| !allowed.iter().any(|known| known == *word))
+        {
+            return Err(when.error(
+                self.text,
+                format!(
+                    "{name} has no word {unknown}; it has {}",
+                    allowed.join(", ")
+                ),
+            ));
         }
-        Ok((field.name.clone(), words.iter().map(|&word| word.into()).collect()))
+        Ok((
+            field.name.clone(),
+            words.iter().map(|&word| word.into()).collect(),
+        ))
     }
 }

@@ -1,5 +1,5 @@
-//! Precision probes: effects that do what another effect does in f64, and record on the way how far its text in f32 is from that. The oracle
-//! draws with them as with any other effect.
+//! Precision probes: effects that do what another effect does in f64, and record on the way how far
+//! its text in f32 is from that. The oracle draws with them as with any other effect.
 
 use std::sync::{
     Arc, Mutex, MutexGuard, PoisonError, Weak,
@@ -72,7 +72,8 @@ pub(super) fn locked<T: ?Sized>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Probes, each with the effect that it probes. A probe does not hold that effect, so that both go when nobody uses it any more.
+/// Probes, each with the effect that it probes. A probe does not hold that effect, so that both go
+/// when nobody uses it any more.
 pub(super) type Probes<T> = Mutex<Vec<(Weak<Effect>, Arc<T>)>>;
 
 /// The probe of `effect`; there is one of each.
@@ -82,7 +83,9 @@ pub(super) fn kept<T>(
     make: impl FnOnce() -> Result<T, EvaluatedError>,
 ) -> Result<Arc<T>, EvaluatedError> {
     let find = |known: &[(Weak<Effect>, Arc<T>)]| {
-        let found = known.iter().find(|(probed, _)| std::ptr::eq(probed.as_ptr(), Arc::as_ptr(effect)));
+        let found = known
+            .iter()
+            .find(|(probed, _)| std::ptr::eq(probed.as_ptr(), Arc::as_ptr(effect)));
         found.map(|(_, probe)| probe.clone())
     };
     if let Some(probe) = find(&locked(known)) {
@@ -108,10 +111,20 @@ impl Errors {
             Place::Pixel([x, y]) => [y, x, 0.0],
             Place::World(at) => at.to_array(),
         };
-        match self.largest.iter_mut().find(|known| known.quantity == quantity) {
-            None => self.largest.push(LargestError { quantity, error, place }),
+        match self
+            .largest
+            .iter_mut()
+            .find(|known| known.quantity == quantity)
+        {
+            None => self.largest.push(LargestError {
+                quantity,
+                error,
+                place,
+            }),
             Some(known) => {
-                if error > known.error || (error == known.error && order(place) < order(known.place)) {
+                if error > known.error
+                    || (error == known.error && order(place) < order(known.place))
+                {
                     (known.error, known.place) = (error, place);
                 }
             }
@@ -119,8 +132,9 @@ impl Errors {
     }
 }
 
-/// Records the errors of the f32 side of the effects of `stack` that `is_probed` while `draw` draws a picture with the stack that it is given.
-/// Once `cancelled` is set, the picture is finished quickly and nothing is returned.
+/// Records the errors of the f32 side of the effects of `stack` that `is_probed` while `draw` draws
+/// a picture with the stack that it is given. Once `cancelled` is set, the picture is finished
+/// quickly and nothing is returned.
 ///
 /// # Errors
 /// The text of an effect cannot be evaluated.
@@ -132,7 +146,11 @@ pub fn precision(
 ) -> Result<Vec<ErrorsOfEffect>, EvaluatedError> {
     let mut probed = stack.clone();
     let mut probes = Vec::new();
-    for enabled in probed.0.iter_mut().filter(|enabled| is_probed(&enabled.effect)) {
+    for enabled in probed
+        .0
+        .iter_mut()
+        .filter(|enabled| is_probed(&enabled.effect))
+    {
         let probe = PrecisionProbe::of(&enabled.effect)?;
         let original = std::mem::replace(&mut enabled.effect, probe.effect.clone());
         probes.push((original, probe));
@@ -142,12 +160,24 @@ pub fn precision(
     ordered.sort_by_key(|probe| std::ptr::from_ref(*probe) as usize);
     let _in_use: Vec<_> = ordered.iter().map(|probe| locked(&probe.in_use)).collect();
     for (_, probe) in &probes {
-        *locked(&probe.errors) = Errors { cancelled: cancelled.clone(), largest: Vec::new() };
+        *locked(&probe.errors) = Errors {
+            cancelled: cancelled.clone(),
+            largest: Vec::new(),
+        };
     }
     draw(&probed);
-    let mut found: Vec<_> =
-        probes.iter().map(|(effect, probe)| (effect.clone(), std::mem::take(&mut locked(&probe.errors).largest))).collect();
-    found.iter_mut().for_each(|(_, largest)| largest.sort_by_key(|error| error.quantity));
+    let mut found: Vec<_> = probes
+        .iter()
+        .map(|(effect, probe)| {
+            (
+                effect.clone(),
+                std::mem::take(&mut locked(&probe.errors).largest),
+            )
+        })
+        .collect();
+    found
+        .iter_mut()
+        .for_each(|(_, largest)| largest.sort_by_key(|error| error.quantity));
     if cancelled.load(Ordering::Relaxed) {
         found.clear();
     }
@@ -173,28 +203,55 @@ impl PrecisionProbe {
                         let place = Place::Pixel(s.pixel.to_array());
                         let normal = (result.normal - other.normal).abs().max_element();
                         let mut errors = locked(&errors);
-                        errors.record(Quantity::Color, color_error(shown(result.color), shown(other.color)), place);
+                        errors.record(
+                            Quantity::Color,
+                            color_error(shown(result.color), shown(other.color)),
+                            place,
+                        );
                         // A normal is changed on purpose, or it is passed on as it came.
-                        errors.record(Quantity::Normal, if result.normal == s.normal { 0.0 } else { normal }, place);
+                        errors.record(
+                            Quantity::Normal,
+                            if result.normal == s.normal {
+                                0.0
+                            } else {
+                                normal
+                            },
+                            place,
+                        );
                     }
                     result
                 }));
             }
             if let (Some(exact), Some(single)) = (hooks.image.clone(), single.image) {
                 let errors = errors.clone();
-                let finish = move |q: Pixel, picture: &crate::effects::hooks::Picture<'_>, words: &[u32]| {
-                    if is_cancelled(&errors) {
-                        return q;
-                    }
-                    let result = (exact.finish)(q, picture, words);
-                    if q.step_offset == 0.0 {
-                        let other = (single.finish)(Pixel { color: q.color.as_vec4().as_dvec4(), ..q }, picture, words);
-                        let place = Place::Pixel([f64::from(q.x) + 0.5, f64::from(q.y) + 0.5]);
-                        locked(&errors).record(Quantity::Color, color_error(result.color, other.color), place);
-                    }
-                    result
-                };
-                hooks.image = Some(ImageHook { finish: Arc::new(finish), ..exact });
+                let finish =
+                    move |q: Pixel, picture: &crate::effects::hooks::Picture<'_>, words: &[u32]| {
+                        if is_cancelled(&errors) {
+                            return q;
+                        }
+                        let result = (exact.finish)(q, picture, words);
+                        if q.step_offset == 0.0 {
+                            let other = (single.finish)(
+                                Pixel {
+                                    color: q.color.as_vec4().as_dvec4(),
+                                    ..q
+                                },
+                                picture,
+                                words,
+                            );
+                            let place = Place::Pixel([f64::from(q.x) + 0.5, f64::from(q.y) + 0.5]);
+                            locked(&errors).record(
+                                Quantity::Color,
+                                color_error(result.color, other.color),
+                                place,
+                            );
+                        }
+                        result
+                    };
+                hooks.image = Some(ImageHook {
+                    finish: Arc::new(finish),
+                    ..exact
+                });
             }
             if let (Some(exact), Some(single)) = (hooks.vertex.clone(), single.vertex) {
                 let errors = errors.clone();
@@ -205,12 +262,22 @@ impl PrecisionProbe {
                     let result = (exact.moved)(v, words);
                     let other = (single.moved)(v, words);
                     let error = (result.offset - other.offset).abs().max_element();
-                    locked(&errors).record(Quantity::Vertex, error, Place::World(result.position + result.offset));
+                    locked(&errors).record(
+                        Quantity::Vertex,
+                        error,
+                        Place::World(result.position + result.offset),
+                    );
                     result
                 };
-                hooks.vertex = Some(VertexHook { moved: Arc::new(moved), ..exact });
+                hooks.vertex = Some(VertexHook {
+                    moved: Arc::new(moved),
+                    ..exact
+                });
             }
-            if let (Some(exact), Some(single)) = (hooks.sample.clone().filter(|hook| !hook.has_setup), single.sample) {
+            if let (Some(exact), Some(single)) = (
+                hooks.sample.clone().filter(|hook| !hook.has_setup),
+                single.sample,
+            ) {
                 let errors = errors.clone();
                 let is_drawn = move |s: &crate::effects::hooks::Sample, words: &[u32]| {
                     let result = (exact.is_drawn)(s, words);
@@ -220,9 +287,19 @@ impl PrecisionProbe {
                     }
                     result
                 };
-                hooks.sample = Some(SampleHook { is_drawn: Arc::new(is_drawn), ..exact });
+                hooks.sample = Some(SampleHook {
+                    is_drawn: Arc::new(is_drawn),
+                    ..exact
+                });
             }
-            Ok(Self { effect: Arc::new(Effect { hooks, ..Effect::clone(effect) }), errors, in_use: Mutex::new(()) })
+            Ok(Self {
+                effect: Arc::new(Effect {
+                    hooks,
+                    ..Effect::clone(effect)
+                }),
+                errors,
+                in_use: Mutex::new(()),
+            })
         })
     }
 }
@@ -264,7 +341,8 @@ fn shown(color: DVec4) -> DVec4 {
     DVec4::new(srgb(color.x), srgb(color.y), srgb(color.z), color.w)
 }
 
-/// Largest difference of a channel of two colors of a picture, of 255; infinite if only the second is not a color.
+/// Largest difference of a channel of two colors of a picture, of 255; infinite if only the second
+/// is not a color.
 fn color_error(exact: DVec4, other: DVec4) -> f64 {
     if !exact.is_finite() {
         return 0.0; // Nothing can be told of an error of what is no color.
@@ -272,5 +350,8 @@ fn color_error(exact: DVec4, other: DVec4) -> f64 {
     if !other.is_finite() {
         return f64::INFINITY;
     }
-    255.0 * (exact.clamp(DVec4::ZERO, DVec4::ONE) - other.clamp(DVec4::ZERO, DVec4::ONE)).abs().max_element()
+    255.0
+        * (exact.clamp(DVec4::ZERO, DVec4::ONE) - other.clamp(DVec4::ZERO, DVec4::ONE))
+            .abs()
+            .max_element()
 }

@@ -21,8 +21,8 @@ use crate::{
 
 /// Largest effect file, bytes.
 pub const MAX_BYTES: usize = 64 << 10;
-/// Most instructions of a hook that has loops, with all that it calls. Loops take [`rewrite::MAX_TURNS`] turns together, so that
-/// the product bounds what a pixel can cost.
+/// Most instructions of a hook that has loops, with all that it calls. Loops take
+/// [`rewrite::MAX_TURNS`] turns together, so that the product bounds what a pixel can cost.
 pub const MAX_LOOPED_INSTRUCTIONS: usize = 8192;
 /// Longest name of an effect.
 const MAX_NAME_CHARS: usize = 40;
@@ -83,8 +83,9 @@ pub fn check_name(name: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Reads the effect `stem` from the text of its file, which messages call `file`. Equal texts of one name give the same effect, which
-/// is checked once: every preset of a folder asks for the effects beside it. Few effects that nobody uses any more are kept.
+/// Reads the effect `stem` from the text of its file, which messages call `file`. Equal texts of
+/// one name give the same effect, which is checked once: every preset of a folder asks for the
+/// effects beside it. Few effects that nobody uses any more are kept.
 ///
 /// # Errors
 /// The first fault, at its line.
@@ -109,10 +110,16 @@ pub fn read(file: &str, stem: &str, written: &str) -> Result<Arc<Effect>, Effect
 }
 
 fn read_anew(file: &str, stem: &str, written: &str) -> Result<Effect, EffectError> {
-    let text = Text { file, text: written };
+    let text = Text {
+        file,
+        text: written,
+    };
     check_name(stem).map_err(|reason| text.whole(format!("{stem:?} {reason}")))?;
     if written.len() > MAX_BYTES {
-        return Err(text.whole(format!("the file has {} bytes; an effect has at most {MAX_BYTES}", written.len())));
+        return Err(text.whole(format!(
+            "the file has {} bytes; an effect has at most {MAX_BYTES}",
+            written.len()
+        )));
     }
     let declaration = declaration::read(&text, stem)?;
     let fields = &declaration.parameters.fields;
@@ -121,7 +128,10 @@ fn read_anew(file: &str, stem: &str, written: &str) -> Result<Effect, EffectErro
     {
         let name = declaration.tokens.iter().find(|token| token.text == vertex);
         let message = "a vertex effect needs an f32 parameter with @unit(m): it moves a vertex by at most the sum of these lengths";
-        return Err(name.map_or_else(|| text.whole(message), |name| text.error(name.offset, name.text.len(), message)));
+        return Err(name.map_or_else(
+            || text.whole(message),
+            |name| text.error(name.offset, name.text.len(), message),
+        ));
     }
     let rewritten = rewrite::rewritten(stem, written, &declaration);
     let source = Arc::new(EffectSource {
@@ -141,12 +151,27 @@ fn read_anew(file: &str, stem: &str, written: &str) -> Result<Effect, EffectErro
         base: None,
         is_repeatable: |_| true,
     };
-    let parts = Parts { text: &text, stem, declaration: &declaration, rewritten: &rewritten };
+    let parts = Parts {
+        text: &text,
+        stem,
+        declaration: &declaration,
+        rewritten: &rewritten,
+    };
     let checked = check::check(parts, &Arc::new(effect.clone()))?;
     let function = |name: &str, precision: Precision| {
-        let read = Function::new(&checked.module, &checked.linked.text, name, fields, precision);
+        let read = Function::new(
+            &checked.module,
+            &checked.linked.text,
+            name,
+            fields,
+            precision,
+        );
         let function = read.map_err(|error| {
-            let spans: Vec<naga::Span> = error.span().map(|span| naga::Span::new(span.start as u32, span.end as u32)).into_iter().collect();
+            let spans: Vec<naga::Span> = error
+                .span()
+                .map(|span| naga::Span::new(span.start as u32, span.end as u32))
+                .into_iter()
+                .collect();
             check::error_at(parts, &checked.linked, &spans, &error.to_string())
         })?;
         let length = function.instructions();
@@ -158,23 +183,42 @@ fn read_anew(file: &str, stem: &str, written: &str) -> Result<Effect, EffectErro
         }
         Ok(function)
     };
-    let members: Vec<&str> = declaration.tokens.windows(2).filter(|pair| pair[0].text == ".").map(|pair| pair[1].text).collect();
+    let members: Vec<&str> = declaration
+        .tokens
+        .windows(2)
+        .filter(|pair| pair[0].text == ".")
+        .map(|pair| pair[1].text)
+        .collect();
     let hooks = &mut effect.hooks;
     if let Some(name) = &source.functions.vertex {
-        let needs_triangle = ["flat_normal", "center", "arm", "center_screen", "triangle"].iter().any(|member| members.contains(member));
-        hooks.vertex = Some(twin::vertex(function(name, Precision::Double)?, function(name, Precision::Single)?, needs_triangle));
+        let needs_triangle = ["flat_normal", "center", "arm", "center_screen", "triangle"]
+            .iter()
+            .any(|member| members.contains(member));
+        hooks.vertex = Some(twin::vertex(
+            function(name, Precision::Double)?,
+            function(name, Precision::Single)?,
+            needs_triangle,
+        ));
     }
     if let Some(name) = &source.functions.sample {
         hooks.sample = Some(twin::sample(function(name, Precision::Double)?));
     }
     if let Some(name) = &source.functions.surface {
         hooks.surface = Some(twin::surface(function(name, Precision::Double)?));
-        hooks.surface_inputs =
-            SurfaceInput::ALL.into_iter().filter(|input| *input != SurfaceInput::Lit && members.contains(&input.member())).collect();
+        hooks.surface_inputs = SurfaceInput::ALL
+            .into_iter()
+            .filter(|input| *input != SurfaceInput::Lit && members.contains(&input.member()))
+            .collect();
     }
     if let Some(name) = &source.functions.image {
-        let reads_previous = declaration.tokens.iter().any(|token| token.text == "image_previous");
-        hooks.image = Some(twin::image(function(name, Precision::Double)?, reads_previous));
+        let reads_previous = declaration
+            .tokens
+            .iter()
+            .any(|token| token.text == "image_previous");
+        hooks.image = Some(twin::image(
+            function(name, Precision::Double)?,
+            reads_previous,
+        ));
     }
     // Any comparison in the text may be a step of color.
     hooks.has_steps = source.functions.surface.is_some() || source.functions.image.is_some();
@@ -189,7 +233,12 @@ pub fn decoded(text: &Text<'_>, bytes: Vec<u8>) -> Result<String, EffectError> {
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let lossy = String::from_utf8_lossy(error.as_bytes());
-        let message = "this byte is not UTF-8, and an effect file is UTF-8 text; save it in that encoding";
-        Text { text: &lossy, ..*text }.error(valid, 1, message)
+        let message =
+            "this byte is not UTF-8, and an effect file is UTF-8 text; save it in that encoding";
+        Text {
+            text: &lossy,
+            ..*text
+        }
+        .error(valid, 1, message)
     })
 }

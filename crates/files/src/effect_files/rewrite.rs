@@ -1,5 +1,5 @@
-//! Rewriting: the text of an effect file as it is linked. Attributes are blanked, names that the file declares get a prefix of
-//! their own, and every loop counts its turns.
+//! Rewriting: the text of an effect file as it is linked. Attributes are blanked, names that the
+//! file declares get a prefix of their own, and every loop counts its turns.
 
 use std::{fmt::Write, sync::Arc};
 
@@ -39,7 +39,10 @@ enum Origin {
 impl Rewritten {
     /// The byte of the file that byte `offset` of the text comes from; none for generated text.
     pub fn origin(&self, offset: usize) -> Option<usize> {
-        let piece = &self.pieces[self.pieces.partition_point(|piece| piece.begin <= offset).checked_sub(1)?];
+        let piece = &self.pieces[self
+            .pieces
+            .partition_point(|piece| piece.begin <= offset)
+            .checked_sub(1)?];
         match piece.origin {
             Origin::Copied(from) => Some(from + offset - piece.begin),
             Origin::Inserted(at) => Some(at),
@@ -48,12 +51,18 @@ impl Rewritten {
     }
 
     fn copy(&mut self, file: &str, from: usize, to: usize) {
-        self.pieces.push(Piece { begin: self.text.len(), origin: Origin::Copied(from) });
+        self.pieces.push(Piece {
+            begin: self.text.len(),
+            origin: Origin::Copied(from),
+        });
         self.text.push_str(&file[from..to]);
     }
 
     fn insert(&mut self, text: &str, at: usize) {
-        self.pieces.push(Piece { begin: self.text.len(), origin: Origin::Inserted(at) });
+        self.pieces.push(Piece {
+            begin: self.text.len(),
+            origin: Origin::Inserted(at),
+        });
         self.text.push_str(text);
     }
 }
@@ -66,12 +75,15 @@ fn plain(text: &str, declaration: &Declaration<'_>) -> String {
         bytes[token.offset..token.end()].copy_from_slice(token.text.as_bytes());
     }
     for range in &declaration.parameters.attributes {
-        bytes[range.clone()].iter_mut().for_each(|byte| *byte = blank(*byte));
+        bytes[range.clone()]
+            .iter_mut()
+            .for_each(|byte| *byte = blank(*byte));
     }
     String::from_utf8(bytes).expect("whole characters were replaced")
 }
 
-/// The name of what the rewriting itself declares; no name of [`EffectSource::unique`] has this form.
+/// The name of what the rewriting itself declares; no name of [`EffectSource::unique`] has this
+/// form.
 fn generated(stem: &str, what: &str) -> String {
     format!("effect_{what}__{stem}")
 }
@@ -82,12 +94,21 @@ pub fn rewritten(stem: &str, file: &str, declaration: &Declaration<'_>) -> Rewri
     let tokens = &declaration.tokens;
     let counter = generated(stem, "turns");
     let text = String::with_capacity(2 * plain.len());
-    let mut result = Rewritten { text, functions: HookFunctions::default(), has_loops: false, pieces: Vec::new() };
+    let mut result = Rewritten {
+        text,
+        functions: HookFunctions::default(),
+        has_loops: false,
+        pieces: Vec::new(),
+    };
     let (mut copied, mut in_struct, mut has_loops) = (0, None, false);
     let mut loop_depth: Option<usize> = None;
     let mut depth = 0_usize;
     for (index, token) in tokens.iter().enumerate() {
-        let before = if index > 0 { tokens[index - 1].text } else { "" };
+        let before = if index > 0 {
+            tokens[index - 1].text
+        } else {
+            ""
+        };
         let next = tokens.get(index + 1).map_or("", |token| token.text);
         match token.text {
             "(" | "[" => depth += 1,
@@ -95,7 +116,9 @@ pub fn rewritten(stem: &str, file: &str, declaration: &Declaration<'_>) -> Rewri
             "struct" if in_struct.is_none() => in_struct = Some(false),
             "}" => in_struct = None,
             ";" if loop_depth == Some(depth) => loop_depth = None,
-            "loop" | "for" | "while" if before != "." && in_struct.is_none() => loop_depth = Some(depth),
+            "loop" | "for" | "while" if before != "." && in_struct.is_none() => {
+                loop_depth = Some(depth)
+            }
             _ => {}
         }
         if token.text == "{" {
@@ -104,14 +127,27 @@ pub fn rewritten(stem: &str, file: &str, declaration: &Declaration<'_>) -> Rewri
             }
             if loop_depth == Some(depth) {
                 result.copy(&plain, copied, token.end());
-                result.insert(&format!(" {counter} += 1u; if {counter} > {MAX_TURNS}u {{ break; }}"), token.end());
+                result.insert(
+                    &format!(" {counter} += 1u; if {counter} > {MAX_TURNS}u {{ break; }}"),
+                    token.end(),
+                );
                 (copied, loop_depth, has_loops) = (token.end(), None, true);
             }
             continue;
         }
-        let is_attribute = before == "@" || declaration.parameters.attributes.iter().any(|range| range.contains(&token.offset));
+        let is_attribute = before == "@"
+            || declaration
+                .parameters
+                .attributes
+                .iter()
+                .any(|range| range.contains(&token.offset));
         let is_member_name = in_struct == Some(true) && next == ":";
-        if token.is_name() && declaration.declared.contains(token.text) && before != "." && !is_member_name && !is_attribute {
+        if token.is_name()
+            && declaration.declared.contains(token.text)
+            && before != "."
+            && !is_member_name
+            && !is_attribute
+        {
             result.copy(&plain, copied, token.offset);
             let prefix = EffectSource::unique(stem, "");
             result.insert(&prefix, token.offset);
@@ -119,14 +155,27 @@ pub fn rewritten(stem: &str, file: &str, declaration: &Declaration<'_>) -> Rewri
         }
     }
     result.copy(&plain, copied, plain.len());
-    result.pieces.push(Piece { begin: result.text.len(), origin: Origin::Generated });
+    result.pieces.push(Piece {
+        begin: result.text.len(),
+        origin: Origin::Generated,
+    });
     result.has_loops = has_loops;
-    result.functions = append_hooks(stem, &mut result.text, declaration, has_loops.then_some(&counter));
+    result.functions = append_hooks(
+        stem,
+        &mut result.text,
+        declaration,
+        has_loops.then_some(&counter),
+    );
     result
 }
 
 /// Appends the files that are used, the counter of turns, and the functions that the kernels call.
-fn append_hooks(stem: &str, text: &mut String, declaration: &Declaration<'_>, counter: Option<&String>) -> HookFunctions {
+fn append_hooks(
+    stem: &str,
+    text: &mut String,
+    declaration: &Declaration<'_>,
+    counter: Option<&String>,
+) -> HookFunctions {
     text.push('\n');
     for used in &declaration.uses {
         writeln!(text, "//@ use {used}").expect("writing to a string");
@@ -137,12 +186,19 @@ fn append_hooks(stem: &str, text: &mut String, declaration: &Declaration<'_>, co
     let reset = counter.map_or(String::new(), |counter| format!("    {counter} = 0u;\n"));
     let parameters = EffectSource::unique(stem, declaration.struct_name);
     let mut wrapped = |name: &Option<String>, hook: &str, kind: &str, result: &str| {
-        let (called, wrapper) = (EffectSource::unique(stem, name.as_ref()?), generated(stem, hook));
+        let (called, wrapper) = (
+            EffectSource::unique(stem, name.as_ref()?),
+            generated(stem, hook),
+        );
         let body = match hook {
             "vertex" => format!("    let moved = {called}(v, p);\n{}", limited(declaration)),
             _ => format!("    return {called}(v, p);\n"),
         };
-        write!(text, "fn {wrapper}(v: {kind}, p: {parameters}) -> {result} {{\n{reset}{body}}}\n").expect("writing to a string");
+        write!(
+            text,
+            "fn {wrapper}(v: {kind}, p: {parameters}) -> {result} {{\n{reset}{body}}}\n"
+        )
+        .expect("writing to a string");
         Some(wrapper)
     };
     let hooks = &declaration.hooks;
@@ -158,7 +214,12 @@ fn append_hooks(stem: &str, text: &mut String, declaration: &Declaration<'_>, co
 /// A message about the linked text, with the names that the author wrote.
 pub fn in_names_of_author(stem: &str, declaration: &Declaration<'_>, message: &str) -> String {
     let hooks = &declaration.hooks;
-    let named = [("vertex", &hooks.vertex), ("sample", &hooks.sample), ("surface", &hooks.surface), ("image", &hooks.image)];
+    let named = [
+        ("vertex", &hooks.vertex),
+        ("sample", &hooks.sample),
+        ("surface", &hooks.surface),
+        ("image", &hooks.image),
+    ];
     let mut message = message.replace(&EffectSource::unique(stem, ""), "");
     for (hook, name) in named {
         message = message.replace(&generated(stem, hook), name.as_deref().unwrap_or(hook));
@@ -168,12 +229,17 @@ pub fn in_names_of_author(stem: &str, declaration: &Declaration<'_>, message: &s
 
 /// Lengths among the parameters: a vertex effect moves a vertex by at most their sum.
 pub fn lengths(fields: &[Arc<Field>]) -> impl Iterator<Item = &Arc<Field>> {
-    fields.iter().filter(|field| field.unit == "m" && field.value_type == ValueType::F32)
+    fields
+        .iter()
+        .filter(|field| field.unit == "m" && field.value_type == ValueType::F32)
 }
 
-/// The end of a vertex hook: it changes offset and normal alone, and the offset by at most the sum of the lengths.
+/// The end of a vertex hook: it changes offset and normal alone, and the offset by at most the sum
+/// of the lengths.
 fn limited(declaration: &Declaration<'_>) -> String {
-    let lengths: Vec<String> = lengths(&declaration.parameters.fields).map(|field| format!("abs(p.{})", field.name)).collect();
+    let lengths: Vec<String> = lengths(&declaration.parameters.fields)
+        .map(|field| format!("abs(p.{})", field.name))
+        .collect();
     format!(
         "    let change = clamp(moved.offset - v.offset, vec3f(-1e12), vec3f(1e12));
     let distance = length(change);

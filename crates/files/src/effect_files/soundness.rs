@@ -1,4 +1,5 @@
-//! Soundness probes: effects that do what another effect does, and record on the way where its result stops being a color.
+//! Soundness probes: effects that do what another effect does, and record on the way where its
+//! result stops being a color.
 
 use std::sync::{
     Arc, Mutex, Weak,
@@ -88,12 +89,16 @@ fn of_surface(s: &Surface) -> Outcome {
     Unsound::of(s.color, &[g, n, p].concat())
 }
 
-/// Pixels of a picture at which an effect of `stack` makes no color of a color, by row; the first effect where there are several. `draw` draws
-/// the picture with the stack that it is given, or anything that shades its samples.
+/// Pixels of a picture at which an effect of `stack` makes no color of a color, by row; the first
+/// effect where there are several. `draw` draws the picture with the stack that it is given, or
+/// anything that shades its samples.
 ///
 /// # Errors
 /// The text of an effect of a file cannot be evaluated in f32.
-pub fn crossings<T>(stack: &Stack, draw: impl FnOnce(&Stack) -> T) -> Result<(T, Vec<Crossing>), EvaluatedError> {
+pub fn crossings<T>(
+    stack: &Stack,
+    draw: impl FnOnce(&Stack) -> T,
+) -> Result<(T, Vec<Crossing>), EvaluatedError> {
     // One picture at a time, since the probes are shared.
     static IN_USE: Mutex<()> = Mutex::new(());
     let _in_use = locked(&IN_USE);
@@ -123,42 +128,90 @@ impl SoundnessProbe {
     fn of(effect: &Arc<Effect>) -> Result<Arc<Self>, EvaluatedError> {
         static KNOWN: Probes<SoundnessProbe> = Mutex::new(Vec::new());
         kept(&KNOWN, effect, || {
-            // The kernels are f32, and the text says what they do. Built-in effects have an f64 function that is not their text.
-            let single = if effect.is_of_file() { Some(evaluated_in(&Library::of_process(), effect, Precision::Single)?) } else { None };
-            let (single_surface, single_image) = single.map_or((None, None), |hooks| (hooks.surface, hooks.image));
+            // The kernels are f32, and the text says what they do. Built-in effects have an f64
+            // function that is not their text.
+            let single = if effect.is_of_file() {
+                Some(evaluated_in(
+                    &Library::of_process(),
+                    effect,
+                    Precision::Single,
+                )?)
+            } else {
+                None
+            };
+            let (single_surface, single_image) =
+                single.map_or((None, None), |hooks| (hooks.surface, hooks.image));
             let recorder = Arc::new(Recorder::default());
             let mut hooks = effect.hooks.clone();
             if let Some(exact) = hooks.surface.clone() {
-                let (recorder, probed, single) = (recorder.clone(), Arc::downgrade(effect), single_surface);
+                let (recorder, probed, single) =
+                    (recorder.clone(), Arc::downgrade(effect), single_surface);
                 hooks.surface = Some(Arc::new(move |s: Surface, words: &[u32]| {
                     let result = exact(s, words);
-                    if s.step_offset == 0.0 && recorder.is_on.load(Ordering::Relaxed) && of_surface(&s).is_none() {
+                    if s.step_offset == 0.0
+                        && recorder.is_on.load(Ordering::Relaxed)
+                        && of_surface(&s).is_none()
+                    {
                         let pixel = s.pixel.to_array().map(|v| v as u32);
                         let in_f64 = |words: &[u32]| of_surface(&exact(s, words));
-                        let in_f32 = |words: &[u32]| single.as_ref().and_then(|single| of_surface(&single(rounded(s), words)));
-                        recorder.record(&probed, pixel, of_surface(&result), (&in_f64, &in_f32), words);
+                        let in_f32 = |words: &[u32]| {
+                            single
+                                .as_ref()
+                                .and_then(|single| of_surface(&single(rounded(s), words)))
+                        };
+                        recorder.record(
+                            &probed,
+                            pixel,
+                            of_surface(&result),
+                            (&in_f64, &in_f32),
+                            words,
+                        );
                     }
                     result
                 }));
             }
             if let Some(exact) = hooks.image.clone() {
-                let (recorder, probed, single) = (recorder.clone(), Arc::downgrade(effect), single_image);
+                let (recorder, probed, single) =
+                    (recorder.clone(), Arc::downgrade(effect), single_image);
                 let finish = move |q: Pixel, picture: &Picture<'_>, words: &[u32]| {
                     let result = (exact.finish)(q, picture, words);
-                    if q.step_offset == 0.0 && recorder.is_on.load(Ordering::Relaxed) && Unsound::of(q.color, &[]).is_none() {
-                        let rounded = Pixel { color: q.color.as_vec4().as_dvec4(), ..q };
-                        let in_f64 = |words: &[u32]| Unsound::of((exact.finish)(q, picture, words).color, &[]);
+                    if q.step_offset == 0.0
+                        && recorder.is_on.load(Ordering::Relaxed)
+                        && Unsound::of(q.color, &[]).is_none()
+                    {
+                        let rounded = Pixel {
+                            color: q.color.as_vec4().as_dvec4(),
+                            ..q
+                        };
+                        let in_f64 = |words: &[u32]| {
+                            Unsound::of((exact.finish)(q, picture, words).color, &[])
+                        };
                         let in_f32 = |words: &[u32]| {
                             let single = single.as_ref()?;
                             Unsound::of((single.finish)(rounded, picture, words).color, &[])
                         };
-                        recorder.record(&probed, [q.x, q.y], Unsound::of(result.color, &[]), (&in_f64, &in_f32), words);
+                        recorder.record(
+                            &probed,
+                            [q.x, q.y],
+                            Unsound::of(result.color, &[]),
+                            (&in_f64, &in_f32),
+                            words,
+                        );
                     }
                     result
                 };
-                hooks.image = Some(ImageHook { finish: Arc::new(finish), ..exact });
+                hooks.image = Some(ImageHook {
+                    finish: Arc::new(finish),
+                    ..exact
+                });
             }
-            Ok(Self { effect: Arc::new(Effect { hooks, ..Effect::clone(effect) }), recorder })
+            Ok(Self {
+                effect: Arc::new(Effect {
+                    hooks,
+                    ..Effect::clone(effect)
+                }),
+                recorder,
+            })
         })
     }
 }
@@ -167,23 +220,52 @@ impl SoundnessProbe {
 type Retried<'a> = &'a dyn Fn(&[u32]) -> Outcome;
 
 impl Recorder {
-    /// Records what `probed` made at a pixel with `words`: `exact` in f64, and the rest by evaluating again.
-    fn record(&self, probed: &Weak<Effect>, pixel: [u32; 2], exact: Outcome, (in_f64, in_f32): (Retried, Retried), words: &[u32]) {
-        let Some((made, only_f32)) = exact.map(|made| (made, false)).or_else(|| in_f32(words).map(|made| (made, true))) else { return };
-        let Some(effect) = probed.upgrade() else { return };
+    /// Records what `probed` made at a pixel with `words`: `exact` in f64, and the rest by
+    /// evaluating again.
+    fn record(
+        &self,
+        probed: &Weak<Effect>,
+        pixel: [u32; 2],
+        exact: Outcome,
+        (in_f64, in_f32): (Retried, Retried),
+        words: &[u32],
+    ) {
+        let Some((made, only_f32)) = exact
+            .map(|made| (made, false))
+            .or_else(|| in_f32(words).map(|made| (made, true)))
+        else {
+            return;
+        };
+        let Some(effect) = probed.upgrade() else {
+            return;
+        };
         let is_explained = self.explained.fetch_add(1, Ordering::Relaxed) < MAX_EXPLAINED;
         let retried = if only_f32 { in_f32 } else { in_f64 };
-        let parameter = if is_explained { parameter_of(&effect, words, retried) } else { None };
-        locked(&self.crossings).push(Crossing { pixel, effect, made, parameter, only_f32 });
+        let parameter = if is_explained {
+            parameter_of(&effect, words, retried)
+        } else {
+            None
+        };
+        locked(&self.crossings).push(Crossing {
+            pixel,
+            effect,
+            made,
+            parameter,
+            only_f32,
+        });
     }
 }
 
 /// The first parameter whose default, with all others as they are, gives a color.
 fn parameter_of(effect: &Effect, words: &[u32], retried: Retried) -> Option<Arc<Field>> {
     let defaults = &effect.defaults;
-    let found = effect.fields.iter().filter(|field| !field.same(words, defaults)).find(|field| {
-        let mut changed = words.to_vec();
-        field.set(&mut changed, &field.get(defaults)).is_ok() && retried(&changed).is_none()
-    });
+    let found = effect
+        .fields
+        .iter()
+        .filter(|field| !field.same(words, defaults))
+        .find(|field| {
+            let mut changed = words.to_vec();
+            field.set(&mut changed, &field.get(defaults)).is_ok() && retried(&changed).is_none()
+        });
     found.cloned()
 }

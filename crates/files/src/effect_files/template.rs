@@ -31,13 +31,25 @@ impl Hook {
     pub fn parse(name: &str) -> Result<Self, String> {
         let names = Self::ALL.map(Self::name);
         let found = Self::ALL.into_iter().find(|hook| hook.name() == name);
-        found.ok_or_else(|| format!("{name:?} is no hook; hooks are {}{}", names.join(", "), did_you_mean(name, names.into_iter())))
+        found.ok_or_else(|| {
+            format!(
+                "{name:?} is no hook; hooks are {}{}",
+                names.join(", "),
+                did_you_mean(name, names.into_iter())
+            )
+        })
     }
 }
 
 /// The name of the struct of an effect: `my_ink` is `MyInk`.
 pub fn type_name(name: &str) -> String {
-    let capital = |word: &str| word.chars().take(1).flat_map(char::to_uppercase).chain(word.chars().skip(1)).collect::<String>();
+    let capital = |word: &str| {
+        word.chars()
+            .take(1)
+            .flat_map(char::to_uppercase)
+            .chain(word.chars().skip(1))
+            .collect::<String>()
+    };
     name.split('_').map(capital).collect()
 }
 

@@ -15,7 +15,8 @@ impl Token<'_> {
     }
 
     pub fn is_name(&self) -> bool {
-        self.text.starts_with(|c: char| c.is_alphabetic() || c == '_')
+        self.text
+            .starts_with(|c: char| c.is_alphabetic() || c == '_')
     }
 }
 
@@ -24,8 +25,8 @@ fn is_word(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 
-/// Bytes that a comment at the start of `text` takes, none without one, and whether it is closed. Block comments nest; an open one goes
-/// to the end.
+/// Bytes that a comment at the start of `text` takes, none without one, and whether it is closed.
+/// Block comments nest; an open one goes to the end.
 fn comment(text: &str) -> Option<(usize, bool)> {
     if text.starts_with("//") {
         return Some((text.find('\n').unwrap_or(text.len()), true));
@@ -78,13 +79,17 @@ pub fn tokens(text: &str) -> Vec<Token<'_>> {
         let rest = &text[at..];
         let length = if is_word(first) {
             let is_number = first.is_ascii_digit();
-            rest.find(|c: char| !(is_word(c) || (is_number && c == '.'))).unwrap_or(rest.len())
+            rest.find(|c: char| !(is_word(c) || (is_number && c == '.')))
+                .unwrap_or(rest.len())
         } else {
             first.len_utf8()
         };
         let is_mark_of_order = at == 0 && first == '\u{feff}';
         if !first.is_whitespace() && !is_mark_of_order {
-            found.push(Token { text: &rest[..length], offset: at });
+            found.push(Token {
+                text: &rest[..length],
+                offset: at,
+            });
         }
         at += length;
     }
@@ -117,7 +122,14 @@ mod tests {
     fn comments_are_left_out_and_offsets_are_bytes() {
         let text = "fn a /* b /* c */ d */ (x: f32) // é\n{ 1.5e3; }";
         let words: Vec<&str> = tokens(text).iter().map(|token| token.text).collect();
-        assert_eq!(words, ["fn", "a", "(", "x", ":", "f32", ")", "{", "1.5e3", ";", "}"]);
-        assert!(tokens(text).iter().all(|token| &text[token.offset..token.end()] == token.text));
+        assert_eq!(
+            words,
+            ["fn", "a", "(", "x", ":", "f32", ")", "{", "1.5e3", ";", "}"]
+        );
+        assert!(
+            tokens(text)
+                .iter()
+                .all(|token| &text[token.offset..token.end()] == token.text)
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! The f64 side of an effect file: its own text, evaluated on the CPU with integers exact and floats in f64.
+//! The f64 side of an effect file: its own text, evaluated on the CPU with integers exact and
+//! floats in f64.
 
 use std::{
     cell::RefCell,
@@ -11,8 +12,8 @@ use glam::{DVec2, DVec3, DVec4};
 use super::rewrite::lengths;
 use crate::{
     effects::hooks::{
-        ErrorBound, ImageHook, Picture, Pixel, ROUNDING, Sample, SampleHook, SetupFunction, Surface, SurfaceFunction, TriangleSetup,
-        Vertex, VertexHook,
+        ErrorBound, ImageHook, Picture, Pixel, ROUNDING, Sample, SampleHook, SetupFunction,
+        Surface, SurfaceFunction, TriangleSetup, Vertex, VertexHook,
     },
     evaluator::{Host, LowerError, NoHost, Options, Precision, Program, Word},
     math::hash,
@@ -22,8 +23,15 @@ use crate::{
 /// Instructions of one call. The loops of an effect end long before.
 const MAX_STEPS: u64 = 100_000_000;
 /// Functions of `lib/image` that read the picture.
-const EXTERNALS: [&str; 5] = ["image_has", "image_at", "image_background", "image_size", "image_previous"];
-/// How much the inputs of a color may be off on the f32 side, relative to the largest component of each.
+const EXTERNALS: [&str; 5] = [
+    "image_has",
+    "image_at",
+    "image_background",
+    "image_size",
+    "image_previous",
+];
+/// How much the inputs of a color may be off on the f32 side, relative to the largest component of
+/// each.
 const INPUT_ERROR: f64 = 1.0 / (1 << 17) as f64;
 /// Programs whose registers a thread keeps.
 const MAX_PROGRAMS: usize = 64;
@@ -44,8 +52,19 @@ impl Function {
     ///
     /// # Errors
     /// The function uses what cannot be evaluated, or is too long with all that it calls.
-    pub fn new(module: &naga::Module, text: &str, name: &str, fields: &[Arc<Field>], precision: Precision) -> Result<Self, LowerError> {
-        let mut options = Options { precision, source: Some(text), externals: EXTERNALS.map(str::to_owned).to_vec(), ..Options::default() };
+    pub fn new(
+        module: &naga::Module,
+        text: &str,
+        name: &str,
+        fields: &[Arc<Field>],
+        precision: Precision,
+    ) -> Result<Self, LowerError> {
+        let mut options = Options {
+            precision,
+            source: Some(text),
+            externals: EXTERNALS.map(str::to_owned).to_vec(),
+            ..Options::default()
+        };
         options.limits.steps = MAX_STEPS;
         let program = Arc::new(Program::new(module, name, &options)?);
         let mut fields = fields.to_vec();
@@ -59,7 +78,13 @@ impl Function {
     }
 
     /// Evaluates the function for arguments and parameter words; none if it does not end.
-    fn call<R>(&self, mut arguments: Vec<Word>, words: &[u32], host: &mut dyn Host, read: impl FnOnce(&mut Reader<'_>) -> R) -> Option<R> {
+    fn call<R>(
+        &self,
+        mut arguments: Vec<Word>,
+        words: &[u32],
+        host: &mut dyn Host,
+        read: impl FnOnce(&mut Reader<'_>) -> R,
+    ) -> Option<R> {
         thread_local! {
             /// By the address of the program, which no other has as long as it is weakly held.
             static REGISTERS: RefCell<HashMap<usize, Kept>> = RefCell::new(HashMap::new());
@@ -79,7 +104,9 @@ impl Function {
                     kept.clear();
                 }
             }
-            let (_, registers) = kept.entry(address).or_insert_with(|| (Arc::downgrade(&self.program), self.program.registers()));
+            let (_, registers) = kept
+                .entry(address)
+                .or_insert_with(|| (Arc::downgrade(&self.program), self.program.registers()));
             let result = self.program.call(registers, &arguments, host).ok()?;
             Some(read(&mut Reader(result)))
         })
@@ -107,7 +134,10 @@ struct Reader<'a>(&'a [Word]);
 
 impl Reader<'_> {
     fn word(&mut self) -> Word {
-        let (first, rest) = self.0.split_first().expect("a result has the scalars of its type");
+        let (first, rest) = self
+            .0
+            .split_first()
+            .expect("a result has the scalars of its type");
         self.0 = rest;
         *first
     }
@@ -117,20 +147,34 @@ impl Reader<'_> {
     }
 }
 
-/// `values`, moved by `strength` times their largest magnitude, each up or down by a hash of its `index`. 0 changes nothing.
+/// `values`, moved by `strength` times their largest magnitude, each up or down by a hash of its
+/// `index`. 0 changes nothing.
 fn perturbed<const N: usize>(values: [f64; N], index: u32, strength: f64) -> [f64; N] {
     if strength == 0.0 {
         return values;
     }
-    let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-    let sign = |component: usize| if hash(index * 4 + component as u32) & 1 == 0 { 1.0 } else { -1.0 };
+    let largest = values
+        .iter()
+        .fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let sign = |component: usize| {
+        if hash(index * 4 + component as u32) & 1 == 0 {
+            1.0
+        } else {
+            -1.0
+        }
+    };
     std::array::from_fn(|component| values[component] + sign(component) * strength * largest)
 }
 
 /// The surface hook.
 pub fn surface(function: Function) -> Arc<SurfaceFunction> {
     Arc::new(move |mut s: Surface, words: &[u32]| {
-        let strength = INPUT_ERROR * if s.step_offset == 0.0 { 0.0 } else { s.step_offset.signum() };
+        let strength = INPUT_ERROR
+            * if s.step_offset == 0.0 {
+                0.0
+            } else {
+                s.step_offset.signum()
+            };
         let mut arguments = Writer::default();
         arguments
             .floats(perturbed(s.color.to_array(), 0, strength))
@@ -170,7 +214,10 @@ pub fn surface(function: Function) -> Arc<SurfaceFunction> {
             [s.rank, s.lit] = result.floats();
             s
         });
-        read.unwrap_or(Surface { color: DVec4::NAN, ..s })
+        read.unwrap_or(Surface {
+            color: DVec4::NAN,
+            ..s
+        })
     })
 }
 
@@ -180,7 +227,12 @@ struct PictureHost<'a>(&'a Picture<'a>, usize);
 impl Host for PictureHost<'_> {
     fn external(&mut self, index: usize, arguments: &[Word], result: &mut [Word]) {
         let Self(picture, pixel) = self;
-        let at = || (i64::from(arguments[0].to_i32()), i64::from(arguments[1].to_i32()));
+        let at = || {
+            (
+                i64::from(arguments[0].to_i32()),
+                i64::from(arguments[1].to_i32()),
+            )
+        };
         let row = *pixel as u32 / picture.width;
         match index {
             0 => result[0] = Word::from_bool(picture.has(at().0, at().1)),
@@ -192,7 +244,9 @@ impl Host for PictureHost<'_> {
             3 => result.copy_from_slice(&[picture.width, picture.height].map(Word::from_u32)),
             _ => {
                 let background = picture.background[row as usize].map(u32::from);
-                let bytes = picture.previous.map_or(background, |previous| previous[*pixel].map(u32::from));
+                let bytes = picture
+                    .previous
+                    .map_or(background, |previous| previous[*pixel].map(u32::from));
                 result.copy_from_slice(&bytes.map(Word::from_u32));
             }
         }
@@ -202,18 +256,35 @@ impl Host for PictureHost<'_> {
 /// The image hook.
 pub fn image(function: Function, reads_previous: bool) -> ImageHook {
     let finish = move |mut q: Pixel, picture: &Picture<'_>, words: &[u32]| {
-        let strength = INPUT_ERROR * if q.step_offset == 0.0 { 0.0 } else { q.step_offset.signum() };
+        let strength = INPUT_ERROR
+            * if q.step_offset == 0.0 {
+                0.0
+            } else {
+                q.step_offset.signum()
+            };
         let mut arguments = Writer::default();
-        arguments.floats(perturbed(q.color.to_array(), 0, strength)).whole(q.x).whole(q.y);
-        let mut host = PictureHost(picture, q.y as usize * picture.width as usize + q.x as usize);
+        arguments
+            .floats(perturbed(q.color.to_array(), 0, strength))
+            .whole(q.x)
+            .whole(q.y);
+        let mut host = PictureHost(
+            picture,
+            q.y as usize * picture.width as usize + q.x as usize,
+        );
         let read = function.call(arguments.0, words, &mut host, |result| {
             q.color = DVec4::from_array(result.floats());
             [q.x, q.y] = [result.word().to_u32(), result.word().to_u32()];
             q
         });
-        read.unwrap_or(Pixel { color: DVec4::NAN, ..q })
+        read.unwrap_or(Pixel {
+            color: DVec4::NAN,
+            ..q
+        })
     };
-    ImageHook { reads_previous, finish: Arc::new(finish) }
+    ImageHook {
+        reads_previous,
+        finish: Arc::new(finish),
+    }
 }
 
 /// The sample hook.
@@ -221,8 +292,15 @@ pub fn sample(function: Function) -> SampleHook {
     let is_drawn = move |s: &Sample, words: &[u32]| {
         let mut arguments = Writer::default();
         arguments.whole(s.x).whole(s.y).whole(s.triangle);
-        s.areas.iter().chain(&s.setup).for_each(|&word| arguments.0.push(Word::from_u32(word)));
-        function.call(arguments.0, words, &mut NoHost, |result| result.word().to_bool()).unwrap_or(true)
+        s.areas
+            .iter()
+            .chain(&s.setup)
+            .for_each(|&word| arguments.0.push(Word::from_u32(word)));
+        function
+            .call(arguments.0, words, &mut NoHost, |result| {
+                result.word().to_bool()
+            })
+            .unwrap_or(true)
     };
     SampleHook {
         has_setup: false,
@@ -233,23 +311,37 @@ pub fn sample(function: Function) -> SampleHook {
     }
 }
 
-/// What a sample effect computes for each triangle. The f64 side may be given the word that comes from floats; the text computes it anew.
+/// What a sample effect computes for each triangle. The f64 side may be given the word that comes
+/// from floats; the text computes it anew.
 pub fn sample_setup(function: Function) -> Arc<SetupFunction> {
     Arc::new(move |t: &TriangleSetup, words: &[u32], _: Option<u32>| {
         let mut arguments = Writer::default();
         arguments.whole(t.triangle);
-        t.corners.as_flattened().iter().for_each(|at| arguments.0.push(Word::from_i32(*at)));
+        t.corners
+            .as_flattened()
+            .iter()
+            .for_each(|at| arguments.0.push(Word::from_i32(*at)));
         arguments.whole(t.outline).whole(t.size[0]).whole(t.size[1]);
-        arguments.floats(t.center.to_array()).floats(t.center_screen.to_array());
+        arguments
+            .floats(t.center.to_array())
+            .floats(t.center_screen.to_array());
         let read = |result: &mut Reader<'_>| std::array::from_fn(|_| result.word().to_u32());
-        function.call(arguments.0, words, &mut NoHost, read).unwrap_or([0; 4])
+        function
+            .call(arguments.0, words, &mut NoHost, read)
+            .unwrap_or([0; 4])
     })
 }
 
 /// A corner with its members moved by up to `bound` times `strength`, by a hash of `turn`.
 fn moved_within(v: &Vertex, bound: &ErrorBound, turn: u32) -> Vertex {
     let away = |values: DVec3, index: u32, by: f64| {
-        let sign = |component: u32| if hash(turn * 64 + index * 4 + component) & 1 == 0 { by } else { -by };
+        let sign = |component: u32| {
+            if hash(turn * 64 + index * 4 + component) & 1 == 0 {
+                by
+            } else {
+                -by
+            }
+        };
         values + DVec3::new(sign(0), sign(1), sign(2))
     };
     let screen = away(v.center_screen.extend(0.0), 6, bound.center_screen);
@@ -280,14 +372,32 @@ pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> Verte
             .whole(v.triangle);
         let read = function.call(arguments.0, words, &mut NoHost, |result| {
             let _position: [f64; 3] = result.floats();
-            (DVec3::from_array(result.floats()), DVec3::from_array(result.floats()))
+            (
+                DVec3::from_array(result.floats()),
+                DVec3::from_array(result.floats()),
+            )
         });
-        read.map_or(Vertex { offset: DVec3::NAN, ..*v }, |(offset, normal)| Vertex { offset, normal, ..*v })
+        read.map_or(
+            Vertex {
+                offset: DVec3::NAN,
+                ..*v
+            },
+            |(offset, normal)| Vertex {
+                offset,
+                normal,
+                ..*v
+            },
+        )
     };
     let (moving, fields) = (double.clone(), double.fields.clone());
     let moved = move |v: Vertex, words: &[u32]| evaluate(&moving, &v, words);
-    let limit = move |_: f64, words: &[u32]| lengths(&fields).map(|field| field.get(words)[0].abs()).sum();
-    // The text is evaluated at inputs at the ends of their bounds and in f32. Twice the largest difference is the bound.
+    let limit = move |_: f64, words: &[u32]| {
+        lengths(&fields)
+            .map(|field| field.get(words)[0].abs())
+            .sum()
+    };
+    // The text is evaluated at inputs at the ends of their bounds and in f32. Twice the largest
+    // difference is the bound.
     let error_bound = move |v: &Vertex, bound: ErrorBound, words: &[u32]| {
         let exact = evaluate(&double, v, words);
         let rounded = Vertex {
@@ -300,16 +410,30 @@ pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> Verte
             center_screen: v.center_screen.as_vec2().as_dvec2(),
             triangle: v.triangle,
         };
-        let others =
-            (0..6).map(|turn| evaluate(&double, &moved_within(v, &bound, turn), words)).chain([evaluate(&single, &rounded, words)]);
+        let others = (0..6)
+            .map(|turn| evaluate(&double, &moved_within(v, &bound, turn), words))
+            .chain([evaluate(&single, &rounded, words)]);
         let (mut offset_m, mut normal) = (0.0_f64, 0.0_f64);
         for other in others {
             offset_m = offset_m.max((other.offset - exact.offset).abs().max_element());
             normal = normal.max((other.normal - exact.normal).abs().max_element());
         }
         let scale = v.position.abs().max_element() + exact.offset.abs().max_element();
-        let (offset_m, normal) = (2.0 * offset_m + 16.0 * ROUNDING * scale, 2.0 * normal + 16.0 * ROUNDING);
-        ErrorBound { offset_m, along_m: DVec3::ZERO, normal, ..bound }
+        let (offset_m, normal) = (
+            2.0 * offset_m + 16.0 * ROUNDING * scale,
+            2.0 * normal + 16.0 * ROUNDING,
+        );
+        ErrorBound {
+            offset_m,
+            along_m: DVec3::ZERO,
+            normal,
+            ..bound
+        }
     };
-    VertexHook { needs_triangle, moved: Arc::new(moved), error_bound: Arc::new(error_bound), max_displacement_m: Arc::new(limit) }
+    VertexHook {
+        needs_triangle,
+        moved: Arc::new(moved),
+        error_bound: Arc::new(error_bound),
+        max_displacement_m: Arc::new(limit),
+    }
 }

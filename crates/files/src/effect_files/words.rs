@@ -17,7 +17,9 @@ pub fn is_reserved(name: &str) -> bool {
 /// Is it the name of a function or type that WGSL itself declares?
 pub fn is_predeclared(name: &str) -> bool {
     // vec3f, mat4x4f and the like are short names of types.
-    let is_short = name.strip_suffix(['f', 'h', 'i', 'u']).is_some_and(|name| BUILTIN_IDENTIFIERS.contains(&name));
+    let is_short = name
+        .strip_suffix(['f', 'h', 'i', 'u'])
+        .is_some_and(|name| BUILTIN_IDENTIFIERS.contains(&name));
     BUILTIN_IDENTIFIERS.contains(&name) || is_short
 }
 
@@ -37,7 +39,11 @@ pub fn check_declared(text: &Text<'_>, declared: &[Token<'_>]) -> Result<(), Eff
         } else {
             continue;
         };
-        return Err(text.error(name.offset, name.text.len(), format!("{} {reason}", name.text)));
+        return Err(text.error(
+            name.offset,
+            name.text.len(),
+            format!("{} {reason}", name.text),
+        ));
     }
     Ok(())
 }
@@ -46,7 +52,11 @@ pub fn check_declared(text: &Text<'_>, declared: &[Token<'_>]) -> Result<(), Eff
 ///
 /// # Errors
 /// At the word.
-pub fn refuse(text: &Text<'_>, tokens: &[Token<'_>], declared: &[Token<'_>]) -> Result<(), EffectError> {
+pub fn refuse(
+    text: &Text<'_>,
+    tokens: &[Token<'_>],
+    declared: &[Token<'_>],
+) -> Result<(), EffectError> {
     const WORDS: [(&str, &str); 9] = [
         ("workgroupBarrier", "barriers"),
         ("storageBarrier", "barriers"),
@@ -70,9 +80,14 @@ pub fn refuse(text: &Text<'_>, tokens: &[Token<'_>], declared: &[Token<'_>]) -> 
     ];
     for (index, token) in tokens.iter().enumerate() {
         let is_member = index > 0 && tokens[index - 1].text == ".";
-        // A word of the language stands before a parenthesis or inside angle brackets; anything else is a name of the author's.
+        // A word of the language stands before a parenthesis or inside angle brackets; anything
+        // else is a name of the author's.
         let next = tokens.get(index + 1).map_or("", |token| token.text);
-        let before = if index > 0 { tokens[index - 1].text } else { "" };
+        let before = if index > 0 {
+            tokens[index - 1].text
+        } else {
+            ""
+        };
         if token.text == "discard" && !is_member {
             let message = "discard: an effect removes no invocation; a function on the hook Sample returns false to leave a sample out";
             return Err(text.error(token.offset, token.text.len(), message));
@@ -83,16 +98,21 @@ pub fn refuse(text: &Text<'_>, tokens: &[Token<'_>], declared: &[Token<'_>]) -> 
         }
         let word = WORDS.iter().find(|(word, _)| *word == token.text);
         let begun = BEGINNINGS.iter().find(|(begin, _)| {
-            token
-                .text
-                .strip_prefix(begin)
-                .is_some_and(|rest| rest.is_empty() || rest.starts_with(|c: char| c.is_ascii_uppercase() || c == '_' || c.is_ascii_digit()))
+            token.text.strip_prefix(begin).is_some_and(|rest| {
+                rest.is_empty()
+                    || rest.starts_with(|c: char| {
+                        c.is_ascii_uppercase() || c == '_' || c.is_ascii_digit()
+                    })
+            })
         });
         if let Some((_, what)) = word.or(begun) {
             return Err(text.error(
                 token.offset,
                 token.text.len(),
-                format!("{}: an effect has no {what}; it is a pure function of its arguments", token.text),
+                format!(
+                    "{}: an effect has no {what}; it is a pure function of its arguments",
+                    token.text
+                ),
             ));
         }
     }

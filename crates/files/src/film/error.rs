@@ -2,7 +2,8 @@
 
 use crate::preset_file::PresetError;
 
-/// Why a film is not drawn, each a sentence. What the reader can do about an existing file depends on where it is said.
+/// Why a film is not drawn, each a sentence. What the reader can do about an existing file depends
+/// on where it is said.
 #[derive(Debug, thiserror::Error)]
 pub enum FilmError {
     /// Times or frames that no film has.

@@ -1,8 +1,9 @@
-//! Films: the frames of an animated preset as PNG files, an animated PNG, or a video that `ffmpeg` writes. The command line and the
-//! window both draw them with this.
+//! Films: the frames of an animated preset as PNG files, an animated PNG, or a video that `ffmpeg`
+//! writes. The command line and the window both draw them with this.
 //!
-//! Every frame carries a fingerprint of its inputs. A complete picture with the right fingerprint is not drawn again, so an
-//! interrupted film continues where it stopped, and several machines can each draw a range into a shared folder.
+//! Every frame carries a fingerprint of its inputs. A complete picture with the right fingerprint
+//! is not drawn again, so an interrupted film continues where it stopped, and several machines can
+//! each draw a range into a shared folder.
 
 mod error;
 mod ffmpeg;

@@ -14,8 +14,8 @@ use crate::{
     frame::Frame,
     preset::Preset,
     preset_file::{
-        self, AnimatedPng, AnimationOptions, Existing, Fnv, FrameStatus, Provenance, hex, is_taken, png_of_frame, png_pixels,
-        write_atomically,
+        self, AnimatedPng, AnimationOptions, Existing, Fnv, FrameStatus, Provenance, hex, is_taken,
+        png_of_frame, png_pixels, write_atomically,
     },
     scene::Scene,
 };
@@ -78,33 +78,59 @@ pub struct Production {
 }
 
 impl Production {
-    /// Looks for finished frames and begins the files. Files that are not of this film are overwritten only if `overwrites`.
+    /// Looks for finished frames and begins the files. Files that are not of this film are
+    /// overwritten only if `overwrites`.
     ///
     /// # Errors
     /// Somebody else's files are there, a file cannot be written, or ffmpeg does not start.
-    pub fn begin(film: Film, outputs: Outputs, provenance: Provenance, overwrites: bool) -> Result<Self, FilmError> {
-        let Outputs { frames, apng, video } = outputs;
+    pub fn begin(
+        film: Film,
+        outputs: Outputs,
+        provenance: Provenance,
+        overwrites: bool,
+    ) -> Result<Self, FilmError> {
+        let Outputs {
+            frames,
+            apng,
+            video,
+        } = outputs;
         let mut jobs = jobs(&film, frames);
-        let other_adapters = find_finished(&mut jobs, film.size(), &provenance.adapter, overwrites)?;
+        let other_adapters =
+            find_finished(&mut jobs, film.size(), &provenance.adapter, overwrites)?;
         let mut reels = Vec::new();
         if let Some(path) = apng {
-            reels.extend(animated_png(&film, &jobs, path, &provenance, overwrites)?.map(Reel::Apng));
+            reels
+                .extend(animated_png(&film, &jobs, path, &provenance, overwrites)?.map(Reel::Apng));
         }
         if let Some(target) = video {
-            let existing = if overwrites && is_taken(&target.path) { Existing::Replace } else { Existing::Keep };
+            let existing = if overwrites && is_taken(&target.path) {
+                Existing::Replace
+            } else {
+                Existing::Keep
+            };
             let options = VideoOptions {
                 size: film.size(),
                 frames: jobs.len(),
                 duration_s: film.schedule.frame_duration_s(),
                 is_looping: film.is_looping(),
             };
-            reels.push(Reel::Video(Video::begin(&target, &options, existing)?.into()));
+            reels.push(Reel::Video(
+                Video::begin(&target, &options, existing)?.into(),
+            ));
         }
         if reels.is_empty() {
             // The animation is finished already, so frames without a file are not needed.
-            jobs.iter_mut().filter(|job| job.path.is_none()).for_each(|job| job.is_kept = true);
+            jobs.iter_mut()
+                .filter(|job| job.path.is_none())
+                .for_each(|job| job.is_kept = true);
         }
-        Ok(Self { film, jobs, reels, provenance, other_adapters })
+        Ok(Self {
+            film,
+            jobs,
+            reels,
+            provenance,
+            other_adapters,
+        })
     }
 
     pub fn film(&self) -> &Film {
@@ -116,15 +142,27 @@ impl Production {
         self.jobs.iter().filter(|job| job.is_kept).count()
     }
 
-    /// Draws the frames that are not kept, in batches: the device draws one at a time, and a batch is compressed in parallel. After a stop
-    /// the frames that were drawn are there, and no file of the whole film.
+    /// Draws the frames that are not kept, in batches: the device draws one at a time, and a batch
+    /// is compressed in parallel. After a stop the frames that were drawn are there, and no
+    /// file of the whole film.
     ///
     /// # Errors
     /// A frame cannot be drawn, a file cannot be written, or the person stopped the film.
-    pub fn draw<P: Painter>(&mut self, painter: &mut P, observer: &dyn Observer) -> Result<(), P::Error> {
+    pub fn draw<P: Painter>(
+        &mut self,
+        painter: &mut P,
+        observer: &dyn Observer,
+    ) -> Result<(), P::Error> {
         let [width, height] = self.film.size().map(u64::from);
-        let batch = (BATCH_BYTES / (4 * width * height).max(1)).clamp(1, rayon::current_num_threads() as u64) as usize;
-        let Self { film, jobs, reels, provenance, .. } = self;
+        let batch = (BATCH_BYTES / (4 * width * height).max(1))
+            .clamp(1, rayon::current_num_threads() as u64) as usize;
+        let Self {
+            film,
+            jobs,
+            reels,
+            provenance,
+            ..
+        } = self;
         for jobs in jobs.chunks(batch) {
             let mut drawn: Vec<Option<Frame>> = Vec::new();
             for job in jobs {
@@ -132,10 +170,16 @@ impl Production {
                     break;
                 }
                 observer.begins(job);
-                drawn.push(if job.is_kept { None } else { Some(painter.paint(&film.at(job.frame).preset, &film.scene)?) });
+                drawn.push(if job.is_kept {
+                    None
+                } else {
+                    Some(painter.paint(&film.at(job.frame).preset, &film.scene)?)
+                });
                 observer.ended(job);
             }
-            jobs.par_iter().zip(&drawn).try_for_each(|(job, frame)| write_frame(film, job, frame.as_ref(), provenance))?;
+            jobs.par_iter()
+                .zip(&drawn)
+                .try_for_each(|(job, frame)| write_frame(film, job, frame.as_ref(), provenance))?;
             for (job, frame) in jobs.iter().zip(drawn) {
                 push(reels, job, frame, observer)?;
             }
@@ -162,31 +206,67 @@ fn animated_png(
     overwrites: bool,
 ) -> Result<Option<Box<AnimatedPng>>, FilmError> {
     let delay_s = film.schedule.frame_duration_s();
-    let options = AnimationOptions { size: film.size(), frames: jobs.len() as u32, delay_s, is_looping: film.is_looping() };
-    let all = jobs.iter().fold(Fnv::new(), |hash, job| hash.bytes(job.fingerprint.as_bytes()));
-    let fingerprint = hex(all.words(&[delay_s[0].into(), delay_s[1].into(), options.is_looping.into()]));
+    let options = AnimationOptions {
+        size: film.size(),
+        frames: jobs.len() as u32,
+        delay_s,
+        is_looping: film.is_looping(),
+    };
+    let all = jobs.iter().fold(Fnv::new(), |hash, job| {
+        hash.bytes(job.fingerprint.as_bytes())
+    });
+    let fingerprint = hex(all.words(&[
+        delay_s[0].into(),
+        delay_s[1].into(),
+        options.is_looping.into(),
+    ]));
     let found = preset_file::frame_status(&path, options.size, &fingerprint)?;
     match &found {
         FrameStatus::Finished { adapter } if *adapter == provenance.adapter => return Ok(None),
         FrameStatus::Finished { .. } | FrameStatus::Other if !overwrites => {
-            return Err(FilmError::Exists { file: path.display().to_string() });
+            return Err(FilmError::Exists {
+                file: path.display().to_string(),
+            });
         }
         _ => {}
     }
-    let existing = if found == FrameStatus::Absent { Existing::Keep } else { Existing::Replace };
+    let existing = if found == FrameStatus::Absent {
+        Existing::Keep
+    } else {
+        Existing::Replace
+    };
     let saved = film.preset_file().for_picture(&path);
-    Ok(Some(AnimatedPng::begin(&path, &options, &saved, provenance, &fingerprint, existing)?.into()))
+    Ok(Some(
+        AnimatedPng::begin(&path, &options, &saved, provenance, &fingerprint, existing)?.into(),
+    ))
 }
 
 /// Writes the file of a frame, if it has one and was drawn.
-fn write_frame(film: &Film, job: &FrameJob, frame: Option<&Frame>, provenance: &Provenance) -> Result<(), FilmError> {
-    let (Some(path), Some(frame)) = (&job.path, frame) else { return Ok(()) };
-    let png = png_of_frame(frame, &film.at(job.frame).for_picture(path), provenance, &job.fingerprint)?;
+fn write_frame(
+    film: &Film,
+    job: &FrameJob,
+    frame: Option<&Frame>,
+    provenance: &Provenance,
+) -> Result<(), FilmError> {
+    let (Some(path), Some(frame)) = (&job.path, frame) else {
+        return Ok(());
+    };
+    let png = png_of_frame(
+        frame,
+        &film.at(job.frame).for_picture(path),
+        provenance,
+        &job.fingerprint,
+    )?;
     Ok(write_atomically(path, &png, job.existing)?)
 }
 
 /// Adds a frame to the files of the whole film; one that was not drawn is read from its file.
-fn push(reels: &mut [Reel], job: &FrameJob, frame: Option<Frame>, observer: &dyn Observer) -> Result<(), FilmError> {
+fn push(
+    reels: &mut [Reel],
+    job: &FrameJob,
+    frame: Option<Frame>,
+    observer: &dyn Observer,
+) -> Result<(), FilmError> {
     if reels.is_empty() {
         return Ok(());
     }

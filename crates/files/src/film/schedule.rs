@@ -40,26 +40,38 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// The frames of a preset with this `clock`. `dashes` stands in front of the names of times in errors.
+    /// The frames of a preset with this `clock`. `dashes` stands in front of the names of times in
+    /// errors.
     ///
     /// # Errors
     /// A time, a rate or a frame lies outside of what there is, or there are too many frames.
     pub fn new(times: &Times, clock: &Clock, dashes: &str) -> Result<Self, FilmError> {
         let [begin_s, end_s] = clock.range_s;
-        let (from_s, to_s, fps) = (times.from_s.unwrap_or(begin_s), times.to_s.unwrap_or(end_s), times.fps);
+        let (from_s, to_s, fps) = (
+            times.from_s.unwrap_or(begin_s),
+            times.to_s.unwrap_or(end_s),
+            times.fps,
+        );
         for (name, time_s) in [("from", from_s), ("to", to_s)] {
             if !(-MAX_TIME_S..=MAX_TIME_S).contains(&time_s) {
-                return Err(FilmError::Times(format!("{dashes}{name} {time_s} lies outside -1e9..=1e9")));
+                return Err(FilmError::Times(format!(
+                    "{dashes}{name} {time_s} lies outside -1e9..=1e9"
+                )));
             }
         }
         if to_s <= from_s {
-            return Err(FilmError::Times(format!("{dashes}to {to_s} must come after {dashes}from {from_s}")));
+            return Err(FilmError::Times(format!(
+                "{dashes}to {to_s} must come after {dashes}from {from_s}"
+            )));
         }
         if !(0.001..=MAX_FPS).contains(&fps) {
-            return Err(FilmError::Times(format!("{dashes}fps {fps} lies outside 0.001..=1000")));
+            return Err(FilmError::Times(format!(
+                "{dashes}fps {fps} lies outside 0.001..=1000"
+            )));
         }
         let step_s = clock.speed / fps;
-        // Without the margin, rounding could add a last frame at the end, which equals the first of the next round.
+        // Without the margin, rounding could add a last frame at the end, which equals the first of
+        // the next round.
         let count = ((to_s - from_s) / step_s - 1e-6).ceil().max(1.0);
         if count > f64::from(MAX_FRAMES) {
             return Err(FilmError::Times(format!(
@@ -75,16 +87,23 @@ impl Schedule {
                 "{dashes}frames {start}..{end} lies outside 0..{total}, the frames from {from_s} to {to_s} s at {fps} a second"
             )));
         }
-        Ok(Self { range_s: [from_s, to_s], fps, step_s, total, frames })
+        Ok(Self {
+            range_s: [from_s, to_s],
+            fps,
+            step_s,
+            total,
+            frames,
+        })
     }
 
-    /// The clock's time of a frame, seconds. Computed from the frame number, so that errors do not add up and every machine gets the
-    /// same time.
+    /// The clock's time of a frame, seconds. Computed from the frame number, so that errors do not
+    /// add up and every machine gets the same time.
     pub fn time_s(&self, frame: u32) -> f64 {
         self.range_s[0] + f64::from(frame) * self.step_s
     }
 
-    /// How long each frame stays: the closest fraction of seconds that APNG can hold, numerator and denominator.
+    /// How long each frame stays: the closest fraction of seconds that APNG can hold, numerator and
+    /// denominator.
     pub fn frame_duration_s(&self) -> [u16; 2] {
         closest_fraction(self.fps)
     }
@@ -111,25 +130,44 @@ mod tests {
     use super::*;
 
     fn times(from_s: Option<f64>, to_s: Option<f64>, fps: f64, frames: [Option<u32>; 2]) -> Times {
-        Times { from_s, to_s, fps, frames }
+        Times {
+            from_s,
+            to_s,
+            fps,
+            frames,
+        }
     }
 
     #[test]
     fn a_loop_does_not_draw_its_first_moment_twice() {
         let clock = Clock::default();
         for fps in [24.0, 25.0, 29.97, 30.0, 60.0, 144.0, 1.0, 0.3] {
-            let schedule = Schedule::new(&times(Some(-1.0), Some(3.1), fps, [None; 2]), &clock, "").unwrap();
+            let schedule =
+                Schedule::new(&times(Some(-1.0), Some(3.1), fps, [None; 2]), &clock, "").unwrap();
             let last = schedule.time_s(schedule.total - 1);
             assert!(last < 3.1 && last + 1.0 / fps > 3.1 - 1e-6, "{fps}: {last}");
         }
-        assert_eq!(Schedule::new(&times(None, None, 30.0, [None; 2]), &clock, "").unwrap().total, 120);
+        assert_eq!(
+            Schedule::new(&times(None, None, 30.0, [None; 2]), &clock, "")
+                .unwrap()
+                .total,
+            120
+        );
     }
 
     #[test]
     fn the_speed_of_the_clock_is_the_speed_of_the_film() {
-        let clock = Clock { range_s: [0.0, 4.0], speed: 2.0, ..Clock::default() };
-        let schedule = Schedule::new(&times(None, None, 30.0, [Some(30), None]), &clock, "").unwrap();
-        assert_eq!((schedule.total, schedule.frames.clone(), schedule.time_s(30)), (60, 30..60, 2.0));
+        let clock = Clock {
+            range_s: [0.0, 4.0],
+            speed: 2.0,
+            ..Clock::default()
+        };
+        let schedule =
+            Schedule::new(&times(None, None, 30.0, [Some(30), None]), &clock, "").unwrap();
+        assert_eq!(
+            (schedule.total, schedule.frames.clone(), schedule.time_s(30)),
+            (60, 30..60, 2.0)
+        );
     }
 
     #[test]

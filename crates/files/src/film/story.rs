@@ -26,9 +26,23 @@ pub struct Film {
 impl Film {
     /// # Errors
     /// The preset cannot be saved in a picture.
-    pub fn new(preset_file: PresetFile, scene: Arc<Scene>, schedule: Schedule, turntable: Option<Turntable>) -> Result<Self, PresetError> {
-        let around = turntable.filter(|turntable| *turntable == Turntable::Camera).and_then(|_| all_around(&preset_file.preset, &scene));
-        let film = Self { scene_hash: scene_hash(&scene), preset_file, scene, schedule, turntable, around };
+    pub fn new(
+        preset_file: PresetFile,
+        scene: Arc<Scene>,
+        schedule: Schedule,
+        turntable: Option<Turntable>,
+    ) -> Result<Self, PresetError> {
+        let around = turntable
+            .filter(|turntable| *turntable == Turntable::Camera)
+            .and_then(|_| all_around(&preset_file.preset, &scene));
+        let film = Self {
+            scene_hash: scene_hash(&scene),
+            preset_file,
+            scene,
+            schedule,
+            turntable,
+            around,
+        };
         film.at(film.schedule.frames.end - 1).check_savable()?;
         Ok(film)
     }
@@ -54,17 +68,29 @@ impl Film {
         preset.clock.time_s = self.schedule.time_s(frame);
         if let Some(turntable) = self.turntable {
             let fraction = f64::from(frame) / f64::from(self.schedule.total);
-            turntable.turn(preset, &self.scene, self.around, fraction, self.schedule.range_s);
+            turntable.turn(
+                preset,
+                &self.scene,
+                self.around,
+                fraction,
+                self.schedule.range_s,
+            );
         }
         preset_file
     }
 
-    /// Hash of the preset at a frame, the scene's bytes and the version of this program; not of the adapter.
+    /// Hash of the preset at a frame, the scene's bytes and the version of this program; not of the
+    /// adapter.
     pub fn fingerprint(&self, frame: u32) -> String {
         // The path of the scene differs between machines; the hash of its bytes replaces it.
-        let anywhere = Preset { scene: SceneSource::Builtin(String::new()), ..self.at(frame).preset };
+        let anywhere = Preset {
+            scene: SceneSource::Builtin(String::new()),
+            ..self.at(frame).preset
+        };
         let version = Fnv::new().bytes(env!("CARGO_PKG_VERSION").as_bytes());
         let hashes = [preset_hash(&anywhere).0, self.scene_hash.0];
-        hex(hashes.iter().fold(version, |hash, part| hash.bytes(&part.to_le_bytes())))
+        hex(hashes
+            .iter()
+            .fold(version, |hash, part| hash.bytes(&part.to_le_bytes())))
     }
 }

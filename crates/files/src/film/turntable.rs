@@ -11,7 +11,8 @@ use crate::{
 /// What turns once about a vertical axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Turntable {
-    /// The camera goes around the point that it looks at; walls and light stay where they are in the scene.
+    /// The camera goes around the point that it looks at; walls and light stay where they are in
+    /// the scene.
     Camera,
     /// The scene turns about its own axis, in front of a camera and a light that stay.
     Scene,
@@ -21,9 +22,17 @@ pub enum Turntable {
 const SIDES: u32 = 72;
 
 impl Turntable {
-    /// Turns `preset` to a moment of the film of the range `range_s`: `fraction` of one turn, 0 to 1. The preset is at its time already;
-    /// `around` is the automatic camera of the whole turn.
-    pub fn turn(self, preset: &mut Preset, scene: &Scene, around: Option<Camera>, fraction: f64, range_s: [f64; 2]) {
+    /// Turns `preset` to a moment of the film of the range `range_s`: `fraction` of one turn, 0 to
+    /// 1. The preset is at its time already; `around` is the automatic camera of the whole
+    /// turn.
+    pub fn turn(
+        self,
+        preset: &mut Preset,
+        scene: &Scene,
+        around: Option<Camera>,
+        fraction: f64,
+        range_s: [f64; 2],
+    ) {
         match self {
             Self::Scene => preset.spin_deg_per_s += 360.0 / (range_s[1] - range_s[0]),
             Self::Camera => {
@@ -32,13 +41,18 @@ impl Turntable {
                 // Backwards, so that the scene seems to turn the way it does with a positive spin.
                 let turn = rotation_y(-fraction.fract() * TAU);
                 let eye = camera.target + turn.transform_vector3(camera.eye - camera.target);
-                preset.camera = Some(Camera { eye, up: turn.transform_vector3(camera.up), ..camera });
+                preset.camera = Some(Camera {
+                    eye,
+                    up: turn.transform_vector3(camera.up),
+                    ..camera
+                });
             }
         }
     }
 }
 
-/// The automatic camera from a distance that shows the scene from all sides; none if the preset or the scene has a camera.
+/// The automatic camera from a distance that shows the scene from all sides; none if the preset or
+/// the scene has a camera.
 pub fn all_around(preset: &Preset, scene: &Scene) -> Option<Camera> {
     if preset.camera.is_some() || !scene.cameras.is_empty() {
         return None;
@@ -47,16 +61,25 @@ pub fn all_around(preset: &Preset, scene: &Scene) -> Option<Camera> {
     let mut bounds = scene.bounds();
     if let Some(particles) = preset.stack_on(scene).particle_settings() {
         let reach = particles.disc_bounds();
-        [reach.min, reach.max].into_iter().for_each(|corner| bounds.include(corner));
+        [reach.min, reach.max]
+            .into_iter()
+            .for_each(|corner| bounds.include(corner));
     }
     let from = |side: u32| {
-        let direction = rotation_y(f64::from(side) / f64::from(SIDES) * TAU).transform_vector3(FRAMING_DIRECTION);
+        let direction = rotation_y(f64::from(side) / f64::from(SIDES) * TAU)
+            .transform_vector3(FRAMING_DIRECTION);
         Camera::framing(&bounds, direction, width / height)
     };
     let distance = |camera: &Camera| camera.eye.distance(camera.target);
-    let farthest = (0..SIDES).map(from).max_by(|a, b| distance(a).total_cmp(&distance(b))).map_or(0.0, |camera| distance(&camera));
+    let farthest = (0..SIDES)
+        .map(from)
+        .max_by(|a, b| distance(a).total_cmp(&distance(b)))
+        .map_or(0.0, |camera| distance(&camera));
     let first = from(0);
-    Some(Camera { eye: first.target - first.forward() * farthest, ..first })
+    Some(Camera {
+        eye: first.target - first.forward() * farthest,
+        ..first
+    })
 }
 
 #[cfg(test)]
@@ -76,14 +99,30 @@ mod tests {
         };
         let start = camera(0.0);
         assert_eq!(camera(1.0), start, "the film is a loop");
-        assert!(camera(0.5).eye.distance(start.eye) > 1.9 * (start.eye - start.target).with_y(0.0).length());
+        assert!(
+            camera(0.5).eye.distance(start.eye)
+                > 1.9 * (start.eye - start.target).with_y(0.0).length()
+        );
         for step in 0..16 {
             let camera = camera(f64::from(step) / 16.0);
-            assert!((camera.eye.distance(camera.target) - start.eye.distance(start.target)).abs() < 1e-9);
-            let view = crate::scene::view::View::new(&camera, 320, 240, &scene.bounds(), glam::DMat4::IDENTITY, [0.0; 4]);
+            assert!(
+                (camera.eye.distance(camera.target) - start.eye.distance(start.target)).abs()
+                    < 1e-9
+            );
+            let view = crate::scene::view::View::new(
+                &camera,
+                320,
+                240,
+                &scene.bounds(),
+                glam::DMat4::IDENTITY,
+                [0.0; 4],
+            );
             for corner in scene.bounds().corners() {
                 let clip = view.clip_from_world * corner.extend(1.0);
-                assert!(clip.x.abs() < clip.w && clip.y.abs() < clip.w, "step {step}: {clip}");
+                assert!(
+                    clip.x.abs() < clip.w && clip.y.abs() < clip.w,
+                    "step {step}: {clip}"
+                );
             }
         }
     }
@@ -91,7 +130,10 @@ mod tests {
     #[test]
     fn the_scene_turns_once_over_the_range_on_top_of_its_own_spin() {
         let scene = builtin::build("teapot?tess=2").expect("a built-in scene");
-        let own = Preset { spin_deg_per_s: 10.0, ..Preset::default() };
+        let own = Preset {
+            spin_deg_per_s: 10.0,
+            ..Preset::default()
+        };
         let mut turned = own.clone();
         Turntable::Scene.turn(&mut turned, &scene, None, 0.25, [1.0, 3.0]);
         assert_eq!((turned.spin_deg_per_s, turned.camera), (190.0, None));

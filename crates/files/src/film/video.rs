@@ -1,4 +1,5 @@
-//! Videos that `ffmpeg` writes: frames go to its stdin, and the file takes its name when it is whole.
+//! Videos that `ffmpeg` writes: frames go to its stdin, and the file takes its name when it is
+//! whole.
 
 use std::{
     io::{self, Read as _, Write as _},
@@ -45,12 +46,20 @@ impl VideoTarget {
     /// Another extension, an odd side where the kind has none, or there is no ffmpeg.
     pub fn new(path: &Path, size: [u32; 2]) -> Result<Self, FilmError> {
         let file = path.display().to_string();
-        let Some(container) = Container::of(path) else { return Err(FilmError::NoContainer { file }) };
+        let Some(container) = Container::of(path) else {
+            return Err(FilmError::NoContainer { file });
+        };
         if container.has_even_sides() && size.iter().any(|side| !side.is_multiple_of(2)) {
             return Err(FilmError::OddSize { file, size });
         }
-        let Some(ffmpeg) = find_ffmpeg() else { return Err(FilmError::NoFfmpeg { file }) };
-        Ok(Self { path: path.to_owned(), container, ffmpeg })
+        let Some(ffmpeg) = find_ffmpeg() else {
+            return Err(FilmError::NoFfmpeg { file });
+        };
+        Ok(Self {
+            path: path.to_owned(),
+            container,
+            ffmpeg,
+        })
     }
 }
 
@@ -84,25 +93,52 @@ impl Video {
     ///
     /// # Errors
     /// The file cannot be written, or is kept as `existing` says, or ffmpeg does not start.
-    pub fn begin(target: &VideoTarget, options: &VideoOptions, existing: Existing) -> Result<Self, FilmError> {
+    pub fn begin(
+        target: &VideoTarget,
+        options: &VideoOptions,
+        existing: Existing,
+    ) -> Result<Self, FilmError> {
         let name = target.path.display().to_string();
         let file = AtomicFile::create(&target.path, existing)?;
         // With the protocol, a name that begins with a dash or has a colon is a name still.
         let mut url = std::ffi::OsString::from("file:");
         url.push(file.path());
-        let arguments = target.container.arguments(options.size, options.duration_s, options.frames, options.is_looping);
+        let arguments = target.container.arguments(
+            options.size,
+            options.duration_s,
+            options.frames,
+            options.is_looping,
+        );
         let mut command = Command::new(&target.ffmpeg);
-        command.args(arguments).arg(url).stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
-        let failed = |error: io::Error| FilmError::Ffmpeg { file: name.clone(), reason: error.to_string() };
+        command
+            .args(arguments)
+            .arg(url)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped());
+        let failed = |error: io::Error| FilmError::Ffmpeg {
+            file: name.clone(),
+            reason: error.to_string(),
+        };
         let mut ffmpeg = command.spawn().map_err(failed)?;
         let (sender, frames) = mpsc::sync_channel(WAITING_FRAMES);
-        let feeder = ffmpeg.stdin.take().map(|stdin| thread::spawn(move || feed(stdin, &frames)));
+        let feeder = ffmpeg
+            .stdin
+            .take()
+            .map(|stdin| thread::spawn(move || feed(stdin, &frames)));
         let (teller, said) = mpsc::channel();
         if let Some(stderr) = ffmpeg.stderr.take() {
             // The film may have been stopped by the time that ffmpeg says something.
             thread::spawn(move || drop(teller.send(listen(stderr))));
         }
-        Ok(Self { name, ffmpeg, frames: Some(sender), feeder, said, file: Some(file) })
+        Ok(Self {
+            name,
+            ffmpeg,
+            frames: Some(sender),
+            feeder,
+            said,
+            file: Some(file),
+        })
     }
 
     /// Adds the next frame.
@@ -139,8 +175,13 @@ impl Video {
                 Err(error) => return Err(self.failed(error.to_string())),
             }
         };
-        let is_fed = self.feeder.take().is_some_and(|feeder| feeder.join().is_ok_and(|fed| fed.is_ok()));
-        let Some(file) = self.file.take().filter(|_| status.success() && is_fed) else { return Err(self.failure()) };
+        let is_fed = self
+            .feeder
+            .take()
+            .is_some_and(|feeder| feeder.join().is_ok_and(|fed| fed.is_ok()));
+        let Some(file) = self.file.take().filter(|_| status.success() && is_fed) else {
+            return Err(self.failure());
+        };
         if file.path().metadata().is_ok_and(|about| about.len() == 0) {
             return Err(self.failed("it wrote nothing".into()));
         }
@@ -158,14 +199,19 @@ impl Video {
         }
         let said = self.said.recv_timeout(PATIENCE).ok();
         let how = match ended {
-            Ok(Some(status)) => format!("it ended with {status} before the film did, and said nothing"),
+            Ok(Some(status)) => {
+                format!("it ended with {status} before the film did, and said nothing")
+            }
             _ => "it stopped reading before the end of the film, and said nothing".into(),
         };
         self.failed(said.as_deref().and_then(first_line).unwrap_or(how))
     }
 
     fn failed(&self, reason: String) -> FilmError {
-        FilmError::Ffmpeg { file: self.name.clone(), reason }
+        FilmError::Ffmpeg {
+            file: self.name.clone(),
+            reason,
+        }
     }
 }
 
@@ -179,7 +225,9 @@ impl Drop for Video {
 
 /// Hands frames to ffmpeg until there are no more, and closes its stdin.
 fn feed(mut stdin: ChildStdin, frames: &Receiver<Pixels>) -> io::Result<()> {
-    frames.iter().try_for_each(|pixels| stdin.write_all(bytemuck::cast_slice(&pixels)))
+    frames
+        .iter()
+        .try_for_each(|pixels| stdin.write_all(bytemuck::cast_slice(&pixels)))
 }
 
 /// What ffmpeg writes to stderr until it ends.

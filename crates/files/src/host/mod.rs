@@ -1,4 +1,5 @@
-//! The host: what the core, which knows no files and no environment, is given of the machine it runs on.
+//! The host: what the core, which knows no files and no environment, is given of the machine it
+//! runs on.
 
 pub mod memory;
 pub mod model;

@@ -1,6 +1,8 @@
-//! Models on disk. A model file is read to where its bytes belong, and it reaches only files in its folder and below.
+//! Models on disk. A model file is read to where its bytes belong, and it reaches only files in its
+//! folder and below.
 //!
-//! Files are read, not mapped: one that another program cuts short while it is mapped would end the program.
+//! Files are read, not mapped: one that another program cuts short while it is mapped would end the
+//! program.
 
 use std::{
     cell::Cell,
@@ -19,12 +21,14 @@ use crate::{
     work::checkpoint,
 };
 
-/// Loads a `.gltf` or `.glb` file within the memory budget of the process. Only files in its folder and below are read.
+/// Loads a `.gltf` or `.glb` file within the memory budget of the process. Only files in its folder
+/// and below are read.
 ///
 /// Within [`Work`](crate::work::Work) it counts its bytes, and unwinds where that was canceled.
 ///
 /// # Errors
-/// If a file cannot be read, is malformed, or exceeds [`limits`](gltf::limits); the sentence begins with the file name.
+/// If a file cannot be read, is malformed, or exceeds [`limits`](gltf::limits); the sentence begins
+/// with the file name.
 pub fn load(path: &Path) -> Result<Scene, LoadError> {
     load_within(path, MemoryBudget::of_process())
 }
@@ -34,12 +38,21 @@ pub fn load(path: &Path) -> Result<Scene, LoadError> {
 /// # Errors
 /// As [`load`].
 pub fn load_within(path: &Path, budget: MemoryBudget) -> Result<Scene, LoadError> {
-    let file = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
-    let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let file = path
+        .file_name()
+        .unwrap_or(path.as_os_str())
+        .to_string_lossy()
+        .into_owned();
+    let name = path
+        .file_stem()
+        .map(|stem| stem.to_string_lossy().into_owned())
+        .unwrap_or_default();
     let limits = Limits::of_files(budget);
     let load = || {
         let model = OpenFile::open(path, limits.file_bytes, &limits)?;
-        let scene = gltf::load_within(&model, budget, &mut |beside, most| read_beside(path, beside, most, &limits))?;
+        let scene = gltf::load_within(&model, budget, &mut |beside, most| {
+            read_beside(path, beside, most, &limits)
+        })?;
         checkpoint().advance(model.unread())?;
         Ok(scene)
     };
@@ -49,13 +62,24 @@ pub fn load_within(path: &Path, budget: MemoryBudget) -> Result<Scene, LoadError
     }
 }
 
-/// Reads `beside`, a relative path without `..`, from the folder of `model`. Symbolic links must not lead out of the folder.
-fn read_beside(model: &Path, beside: &Path, most: u64, limits: &Limits) -> Result<Vec<u8>, LoadError> {
-    let folder = model.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+/// Reads `beside`, a relative path without `..`, from the folder of `model`. Symbolic links must
+/// not lead out of the folder.
+fn read_beside(
+    model: &Path,
+    beside: &Path,
+    most: u64,
+    limits: &Limits,
+) -> Result<Vec<u8>, LoadError> {
+    let folder = model
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
     let folder = folder.canonicalize().map_err(failed)?;
     let path = folder.join(beside).canonicalize().map_err(failed)?;
     if !path.starts_with(&folder) {
-        return Err(LoadError::new("it lies outside the model's folder; copy it there"));
+        return Err(LoadError::new(
+            "it lies outside the model's folder; copy it there",
+        ));
     }
     let file = OpenFile::open(&path, most, limits)?;
     let mut bytes = Vec::new();
@@ -72,8 +96,8 @@ struct OpenFile {
 }
 
 impl OpenFile {
-    /// Opens a regular file of at most `most` bytes and counts them as expected. Pipes, devices and folders are refused before they are
-    /// opened.
+    /// Opens a regular file of at most `most` bytes and counts them as expected. Pipes, devices and
+    /// folders are refused before they are opened.
     ///
     /// # Errors
     /// It is no such file.
@@ -87,7 +111,11 @@ impl OpenFile {
         }
         let file = fs::File::open(path).map_err(failed)?;
         checkpoint().expect(about.len());
-        Ok(Self { file, size: about.len(), read: Cell::new(0) })
+        Ok(Self {
+            file,
+            size: about.len(),
+            read: Cell::new(0),
+        })
     }
 
     /// Bytes that nobody has read.
@@ -106,9 +134,14 @@ impl Source for OpenFile {
         file.seek(SeekFrom::Start(range.start)).map_err(failed)?;
         let (mut left, checkpoint) = (range.end - range.start, checkpoint());
         while left > 0 {
-            let read = file.take(left.min(PART_BYTES as u64)).read_to_end(bytes).map_err(failed)? as u64;
+            let read = file
+                .take(left.min(PART_BYTES as u64))
+                .read_to_end(bytes)
+                .map_err(failed)? as u64;
             if read == 0 {
-                return Err(LoadError::new("the file has become shorter while it was read; load it again"));
+                return Err(LoadError::new(
+                    "the file has become shorter while it was read; load it again",
+                ));
             }
             left -= read;
             self.read.set(self.read.get() + read);
@@ -131,11 +164,18 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("model.glb");
         fs::write(&path, [1; 200]).expect("a file");
-        let file = OpenFile::open(&path, 1 << 20, &Limits::of_files(MemoryBudget::LEAST)).expect("a regular file");
-        fs::File::options().write(true).open(&path).and_then(|file| file.set_len(100)).expect("it can be cut");
+        let file = OpenFile::open(&path, 1 << 20, &Limits::of_files(MemoryBudget::LEAST))
+            .expect("a regular file");
+        fs::File::options()
+            .write(true)
+            .open(&path)
+            .and_then(|file| file.set_len(100))
+            .expect("it can be cut");
         let mut bytes = Vec::new();
         assert_eq!(file.append_to(&mut bytes, 10..30), Ok(()));
-        let shorter = Err(LoadError::new("the file has become shorter while it was read; load it again"));
+        let shorter = Err(LoadError::new(
+            "the file has become shorter while it was read; load it again",
+        ));
         assert_eq!(file.append_to(&mut bytes, 50..150), shorter);
         assert_eq!((bytes.len(), file.unread()), (70, 130));
     }

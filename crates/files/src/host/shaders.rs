@@ -21,7 +21,8 @@ impl ShaderFiles for Folder {
         fs::read_to_string(self.0.join(format!("{name}.wgsl"))).ok()
     }
 
-    /// Adds the names to the file that `RASTERLAB_PARTS` names: `scripts/mutants.py` asks which parts a command uses.
+    /// Adds the names to the file that `RASTERLAB_PARTS` names: `scripts/mutants.py` asks which
+    /// parts a command uses.
     fn linked(&self, parts: &mut dyn Iterator<Item = &str>) {
         if let Some(path) = std::env::var_os("RASTERLAB_PARTS") {
             let names: String = parts.map(|name| format!("{name}\n")).collect();
@@ -32,8 +33,9 @@ impl ShaderFiles for Folder {
     }
 }
 
-/// Makes all renderers take their shaders from `folder`, or else from the folder of `RASTERLAB_SHADERS`; without either they take those inside
-/// the program. Only the first call counts. Returns the folder.
+/// Makes all renderers take their shaders from `folder`, or else from the folder of
+/// `RASTERLAB_SHADERS`; without either they take those inside the program. Only the first call
+/// counts. Returns the folder.
 pub fn choose(folder: Option<PathBuf>) -> Option<&'static Path> {
     static CHOSEN: OnceLock<Option<PathBuf>> = OnceLock::new();
     let choose = || {

@@ -22,7 +22,8 @@ pub struct AnimationOptions {
     pub is_looping: bool,
 }
 
-/// An animated PNG that is being written. The file appears when it is finished, and otherwise not at all.
+/// An animated PNG that is being written. The file appears when it is finished, and otherwise not
+/// at all.
 pub struct AnimatedPng {
     writer: png::Writer<BufWriter<File>>,
     /// The file that `writer` writes to.
@@ -44,12 +45,23 @@ impl AnimatedPng {
     ) -> Result<Self, PresetError> {
         let file = AtomicFile::create(path, existing)?;
         let handle = file.handle().map_err(|e| file.failed(e))?;
-        let mut encoder = encoder(BufWriter::new(handle), options.size, &texts(preset_file, provenance, Some(fingerprint))?)?;
-        encoder.set_animated(options.frames, if options.is_looping { 0 } else { 1 }).map_err(failed)?;
+        let mut encoder = encoder(
+            BufWriter::new(handle),
+            options.size,
+            &texts(preset_file, provenance, Some(fingerprint))?,
+        )?;
+        encoder
+            .set_animated(options.frames, if options.is_looping { 0 } else { 1 })
+            .map_err(failed)?;
         let [numerator, denominator] = options.delay_s;
-        encoder.set_frame_delay(numerator, denominator).map_err(failed)?;
+        encoder
+            .set_frame_delay(numerator, denominator)
+            .map_err(failed)?;
         encoder.validate_sequence(true);
-        Ok(Self { writer: encoder.write_header().map_err(failed)?, file })
+        Ok(Self {
+            writer: encoder.write_header().map_err(failed)?,
+            file,
+        })
     }
 
     /// Adds the next frame, row-major RGBA.
@@ -57,7 +69,9 @@ impl AnimatedPng {
     /// # Errors
     /// The file cannot be written.
     pub fn push(&mut self, color: &[[u8; 4]]) -> Result<(), PresetError> {
-        self.writer.write_image_data(bytemuck::cast_slice(color)).map_err(|e| self.file.failed(e))
+        self.writer
+            .write_image_data(bytemuck::cast_slice(color))
+            .map_err(|e| self.file.failed(e))
     }
 
     /// Ends the animation after its last frame.

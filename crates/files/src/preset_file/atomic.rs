@@ -1,4 +1,5 @@
-//! Atomic files: written next to their target, then renamed, so that a reader sees the old file or the new one.
+//! Atomic files: written next to their target, then renamed, so that a reader sees the old file or
+//! the new one.
 
 use std::{
     collections::HashSet,
@@ -19,10 +20,12 @@ const PREFIX: &str = ".rasterlab-";
 const RANDOM: usize = 12;
 const SUFFIX: &str = ".tmp";
 
-/// An unfinished file that no process has locked is removed at this age. A younger one may be about to be locked.
+/// An unfinished file that no process has locked is removed at this age. A younger one may be about
+/// to be locked.
 const UNLOCKED_STALE: Duration = Duration::from_secs(60);
 
-/// Where the file system has no locks, an unfinished file that did not change for this long is removed.
+/// Where the file system has no locks, an unfinished file that did not change for this long is
+/// removed.
 const UNCHANGED_STALE: Duration = Duration::from_secs(3600);
 
 /// Links that are followed to a file; as many as Linux follows.
@@ -31,12 +34,14 @@ const MAX_LINKS: usize = 40;
 /// What happens to a file that exists under the name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existing {
-    /// It stays, and the new file is refused with [`PresetError::Exists`], even if it appeared a moment ago.
+    /// It stays, and the new file is refused with [`PresetError::Exists`], even if it appeared a
+    /// moment ago.
     Keep,
     Replace,
 }
 
-/// A file that appears under its name on [`AtomicFile::commit`], and is removed when it is dropped before.
+/// A file that appears under its name on [`AtomicFile::commit`], and is removed when it is dropped
+/// before.
 pub struct AtomicFile {
     /// Locked while it is written, so that no other process removes it.
     file: NamedTempFile,
@@ -49,13 +54,18 @@ pub struct AtomicFile {
 }
 
 impl AtomicFile {
-    /// Begins a file that will be called `path`. A symbolic link stays one: the file that it leads to is written.
+    /// Begins a file that will be called `path`. A symbolic link stays one: the file that it leads
+    /// to is written.
     ///
     /// # Errors
-    /// A file is there and `existing` keeps it; it is read-only, or a folder, device or pipe; or its folder cannot be written.
+    /// A file is there and `existing` keeps it; it is read-only, or a folder, device or pipe; or
+    /// its folder cannot be written.
     pub fn create(path: &Path, existing: Existing) -> Result<Self, PresetError> {
         let name = path.display().to_string();
-        let failed = |reason: String| PresetError::Write { file: name.clone(), reason };
+        let failed = |reason: String| PresetError::Write {
+            file: name.clone(),
+            reason,
+        };
         if existing == Existing::Keep && is_taken(path) {
             return Err(PresetError::Exists { file: name });
         }
@@ -63,8 +73,14 @@ impl AtomicFile {
         let replaced = std::fs::metadata(&target).ok();
         if let Some(replaced) = &replaced {
             if !replaced.is_file() {
-                let kind = if replaced.is_dir() { "is a folder" } else { "is a device, pipe or socket" };
-                return Err(failed(format!("it {kind}, not a regular file; name another file")));
+                let kind = if replaced.is_dir() {
+                    "is a folder"
+                } else {
+                    "is a device, pipe or socket"
+                };
+                return Err(failed(format!(
+                    "it {kind}, not a regular file; name another file"
+                )));
             }
             if replaced.permissions().readonly() {
                 return Err(failed("the file is read-only".into()));
@@ -87,12 +103,21 @@ impl AtomicFile {
         })?;
         // A file system without locks is covered by the longer age.
         drop(file.as_file().try_lock());
-        Ok(Self { file, name, target, existing, replaced })
+        Ok(Self {
+            file,
+            name,
+            target,
+            existing,
+            replaced,
+        })
     }
 
     /// The error of a write, with the file's name.
     pub fn failed(&self, error: impl ToString) -> PresetError {
-        PresetError::Write { file: self.name.clone(), reason: error.to_string() }
+        PresetError::Write {
+            file: self.name.clone(),
+            reason: error.to_string(),
+        }
     }
 
     /// Where the file is while it is written, for another program that writes it.
@@ -108,9 +133,16 @@ impl AtomicFile {
     /// Flushes the file to the disk and renames it to its target.
     ///
     /// # Errors
-    /// The disk is full, the target cannot be replaced, or a file that is kept appeared there; then the target is unchanged.
+    /// The disk is full, the target cannot be replaced, or a file that is kept appeared there; then
+    /// the target is unchanged.
     pub fn commit(self) -> Result<(), PresetError> {
-        let Self { file, name, target, existing, replaced } = self;
+        let Self {
+            file,
+            name,
+            target,
+            existing,
+            replaced,
+        } = self;
         let rename = || -> io::Result<()> {
             file.as_file().sync_all()?;
             if let Some(replaced) = replaced {
@@ -122,8 +154,13 @@ impl AtomicFile {
             }
         };
         rename().map_err(|error| match error.kind() {
-            io::ErrorKind::AlreadyExists if existing == Existing::Keep => PresetError::Exists { file: name },
-            _ => PresetError::Write { file: name, reason: error.to_string() },
+            io::ErrorKind::AlreadyExists if existing == Existing::Keep => {
+                PresetError::Exists { file: name }
+            }
+            _ => PresetError::Write {
+                file: name,
+                reason: error.to_string(),
+            },
         })
     }
 }
@@ -148,19 +185,26 @@ pub fn write_atomically(path: &Path, bytes: &[u8], existing: Existing) -> Result
     file.commit()
 }
 
-/// Is there a file or anything else under this name? A symbolic link takes its name, even if it leads nowhere.
+/// Is there a file or anything else under this name? A symbolic link takes its name, even if it
+/// leads nowhere.
 pub fn is_taken(path: &Path) -> bool {
     path.symlink_metadata().is_ok()
 }
 
 /// Gives the file its name unless the name is taken, in one step.
 fn persist_new(file: NamedTempFile, target: &Path) -> io::Result<()> {
-    let Err(failed) = file.persist_noclobber(target) else { return Ok(()) };
+    let Err(failed) = file.persist_noclobber(target) else {
+        return Ok(());
+    };
     if failed.error.kind() == io::ErrorKind::AlreadyExists {
         return Err(failed.error);
     }
-    // File systems without hard links, such as FAT and some network shares: an empty file reserves the name.
-    OpenOptions::new().write(true).create_new(true).open(target)?;
+    // File systems without hard links, such as FAT and some network shares: an empty file reserves
+    // the name.
+    OpenOptions::new()
+        .write(true)
+        .create_new(true)
+        .open(target)?;
     failed.file.persist(target).map(drop).map_err(|e| {
         drop(std::fs::remove_file(target));
         e.error
@@ -172,7 +216,9 @@ fn link_target(path: &Path) -> io::Result<PathBuf> {
     let mut target = path.to_owned();
     for _ in 0..MAX_LINKS {
         match target.symlink_metadata() {
-            Ok(about) if about.is_symlink() => target = folder(&target).join(std::fs::read_link(&target)?),
+            Ok(about) if about.is_symlink() => {
+                target = folder(&target).join(std::fs::read_link(&target)?)
+            }
             _ => return Ok(target),
         }
     }
@@ -180,10 +226,13 @@ fn link_target(path: &Path) -> io::Result<PathBuf> {
 }
 
 fn folder(path: &Path) -> &Path {
-    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+    path.parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."))
 }
 
-/// Removes unfinished files of killed processes in `folder`; once for each folder in the life of this process.
+/// Removes unfinished files of killed processes in `folder`; once for each folder in the life of
+/// this process.
 fn remove_unfinished(folder: &Path) {
     static SEEN: Mutex<Option<HashSet<PathBuf>>> = Mutex::new(None);
     let Ok(mut seen) = SEEN.lock() else { return };
@@ -193,21 +242,37 @@ fn remove_unfinished(folder: &Path) {
     drop(seen);
     // Names and kinds are looked at first: opening a pipe would wait for its other end.
     let files = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let unfinished = files.filter(|file| is_unfinished(&file.file_name()) && file.file_type().is_ok_and(|kind| kind.is_file()));
+    let unfinished = files.filter(|file| {
+        is_unfinished(&file.file_name()) && file.file_type().is_ok_and(|kind| kind.is_file())
+    });
     // A file that cannot be removed does no harm.
-    unfinished.map(|file| file.path()).filter(|file| is_stale(file)).for_each(|file| drop(std::fs::remove_file(file)));
+    unfinished
+        .map(|file| file.path())
+        .filter(|file| is_stale(file))
+        .for_each(|file| drop(std::fs::remove_file(file)));
 }
 
 /// Is this the name of an unfinished file?
 fn is_unfinished(name: &OsStr) -> bool {
-    let random = name.to_str().and_then(|name| name.strip_prefix(PREFIX)?.strip_suffix(SUFFIX));
-    random.is_some_and(|random| random.len() == RANDOM && random.bytes().all(|byte| byte.is_ascii_alphanumeric()))
+    let random = name
+        .to_str()
+        .and_then(|name| name.strip_prefix(PREFIX)?.strip_suffix(SUFFIX));
+    random.is_some_and(|random| {
+        random.len() == RANDOM && random.bytes().all(|byte| byte.is_ascii_alphanumeric())
+    })
 }
 
 /// Does no process write this unfinished file any more?
 fn is_stale(path: &Path) -> bool {
-    let Ok(file) = OpenOptions::new().read(true).write(true).open(path) else { return false };
-    let age = file.metadata().and_then(|about| about.modified()).ok().and_then(|at| at.elapsed().ok()).unwrap_or_default();
+    let Ok(file) = OpenOptions::new().read(true).write(true).open(path) else {
+        return false;
+    };
+    let age = file
+        .metadata()
+        .and_then(|about| about.modified())
+        .ok()
+        .and_then(|at| at.elapsed().ok())
+        .unwrap_or_default();
     match file.try_lock() {
         Ok(()) => age > UNLOCKED_STALE,
         Err(TryLockError::WouldBlock) => false,

@@ -59,21 +59,52 @@ fn target(path: &str, catalog: &Catalog) -> Result<Target, String> {
         return Ok(Target::Section(section));
     }
     let short = path.strip_prefix("effects.").unwrap_or(path);
-    let (name, field) = short.split_once('.').map_or((short, None), |(name, field)| (name, Some(field)));
-    let found = catalog.find(name).map_err(|error| format!("cannot be used: {error}"))?;
-    let Some(effect) = found else { return Err(format!("is unknown{}", suggestion_for_path(short, catalog))) };
-    let Some(field) = field else { return Ok(Target::Effect(effect.clone())) };
+    let (name, field) = short
+        .split_once('.')
+        .map_or((short, None), |(name, field)| (name, Some(field)));
+    let found = catalog
+        .find(name)
+        .map_err(|error| format!("cannot be used: {error}"))?;
+    let Some(effect) = found else {
+        return Err(format!("is unknown{}", suggestion_for_path(short, catalog)));
+    };
+    let Some(field) = field else {
+        return Ok(Target::Effect(effect.clone()));
+    };
     if field == SCOPE_KEY {
         return Ok(Target::Scope(effect.clone()));
     }
-    let unknown = || format!("is unknown{}", did_you_mean(field, effect.fields.iter().map(|field| field.name.as_str()).chain([SCOPE_KEY])));
-    effect.field(field).map(|field| Target::Field(effect.clone(), field.clone())).ok_or_else(unknown)
+    let unknown = || {
+        format!(
+            "is unknown{}",
+            did_you_mean(
+                field,
+                effect
+                    .fields
+                    .iter()
+                    .map(|field| field.name.as_str())
+                    .chain([SCOPE_KEY])
+            )
+        )
+    };
+    effect
+        .field(field)
+        .map(|field| Target::Field(effect.clone(), field.clone()))
+        .ok_or_else(unknown)
 }
 
 /// The closest of all paths.
 fn suggestion_for_path(path: &str, catalog: &Catalog) -> String {
-    let fields = catalog.effects().flat_map(|e| e.fields.iter().map(move |f| format!("{}.{}", e.name, f.name)));
-    let known: Vec<String> = settings().map(Setting::path).chain(fields).chain(catalog.names().map(str::to_owned)).collect();
+    let fields = catalog.effects().flat_map(|e| {
+        e.fields
+            .iter()
+            .map(move |f| format!("{}.{}", e.name, f.name))
+    });
+    let known: Vec<String> = settings()
+        .map(Setting::path)
+        .chain(fields)
+        .chain(catalog.names().map(str::to_owned))
+        .collect();
     did_you_mean(path, known.iter().map(String::as_str))
 }
 
@@ -95,16 +126,27 @@ fn read_text(param: &Param, text: &str) -> Result<Value, String> {
     toml_value::read(param, &toml, &|toml| number_text(toml, None))
 }
 
-/// Changes one value, as `--set path=value` does: `effects.` is optional, setting a parameter enables its effect, and an
-/// effect or section with an empty value is enabled with defaults. A parameter that was animated has this value at all times.
+/// Changes one value, as `--set path=value` does: `effects.` is optional, setting a parameter
+/// enables its effect, and an effect or section with an empty value is enabled with defaults. A
+/// parameter that was animated has this value at all times.
 ///
 /// # Errors
 /// An unknown path, or a value that a file could not have either; then nothing is changed.
 pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), PresetError> {
-    let at = Position { file: ARGUMENT.into(), line: None };
+    let at = Position {
+        file: ARGUMENT.into(),
+        line: None,
+    };
     let wrong = |reason: String| PresetError::value(at.clone(), path, reason);
-    if let Some((name, INSTANCE_KEY)) = path.strip_prefix("effects.").unwrap_or(path).split_once('.') {
-        let effect = preset_file.effects.add_instance(name, value.trim().trim_matches('"')).map_err(wrong)?;
+    if let Some((name, INSTANCE_KEY)) = path
+        .strip_prefix("effects.")
+        .unwrap_or(path)
+        .split_once('.')
+    {
+        let effect = preset_file
+            .effects
+            .add_instance(name, value.trim().trim_matches('"'))
+            .map_err(wrong)?;
         preset_file.preset.stack.enable(&effect);
         return Ok(());
     }
@@ -112,26 +154,37 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
     let target = target(path, &catalog).map_err(wrong)?;
     let has_unknown_effect = |name: &str| preset_file.has_effect_table(name);
     let preset = &preset_file.preset;
-    if let Target::Effect(effect) | Target::Field(effect, _) | Target::Scope(effect) | Target::Animation(Some(effect), _) = &target
+    if let Target::Effect(effect)
+    | Target::Field(effect, _)
+    | Target::Scope(effect)
+    | Target::Animation(Some(effect), _) = &target
         && let Some(conflict) = preset.stack.conflict_with(effect)
     {
         return Err(PresetError::value(at, "effects", conflict.to_string()));
     }
     // An empty text is a value.
-    let is_missing =
-        value.is_empty() && !matches!(&target, Target::Setting(setting) if matches!(setting.value_type, ValueType::Text { .. }));
+    let is_missing = value.is_empty()
+        && !matches!(&target, Target::Setting(setting) if matches!(setting.value_type, ValueType::Text { .. }));
     match target {
-        Target::Effect(effect) if value.is_empty() => drop(preset_file.preset.stack.enable(&effect)),
+        Target::Effect(effect) if value.is_empty() => {
+            drop(preset_file.preset.stack.enable(&effect))
+        }
         Target::Section(section) if value.is_empty() => section.add(&mut preset_file.preset),
-        Target::Field(..) | Target::Setting(_) | Target::Stack | Target::Animation(_, Some(_)) if is_missing => {
+        Target::Field(..) | Target::Setting(_) | Target::Stack | Target::Animation(_, Some(_))
+            if is_missing =>
+        {
             return Err(wrong(format!("needs a value, as in --set {path}=VALUE")));
         }
-        Target::Effect(_) | Target::Section(_) => return Err(wrong("takes no value; name one of its keys".into())),
+        Target::Effect(_) | Target::Section(_) => {
+            return Err(wrong("takes no value; name one of its keys".into()));
+        }
         Target::Field(effect, field) => {
             let value = read_text(&field, value).map_err(wrong)?;
             let preset = &mut preset_file.preset;
             let mut stack = preset.stack.clone();
-            field.set_value(&mut stack.enable(&effect).words, &value).map_err(|error| wrong(error.to_string()))?;
+            field
+                .set_value(&mut stack.enable(&effect).words, &value)
+                .map_err(|error| wrong(error.to_string()))?;
             preset.stack = stack;
             preset.animation.remove(&effect.name, &field.name);
         }
@@ -142,35 +195,61 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
         }
         Target::Animation(Some(effect), Some(field)) => {
             let mut reader = Reader::new(ARGUMENT, None, catalog.clone());
-            let track = keyframes::read_track(&mut reader, None, &effect, &field, &Item::Value(command_line_value(value)))?;
+            let track = keyframes::read_track(
+                &mut reader,
+                None,
+                &effect,
+                &field,
+                &Item::Value(command_line_value(value)),
+            )?;
             preset_file.preset.stack.enable(&effect);
             preset_file.preset.animation.put(track);
         }
-        Target::Animation(..) => return Err(wrong("takes no value; name a parameter, for instance animation.facet.amount".into())),
+        Target::Animation(..) => {
+            return Err(wrong(
+                "takes no value; name a parameter, for instance animation.facet.amount".into(),
+            ));
+        }
         Target::Setting(setting) => {
             let value = read_text(setting, value).map_err(wrong)?;
-            setting.set(&mut preset_file.preset, &value).map_err(|error| wrong(error.to_string()))?;
+            setting
+                .set(&mut preset_file.preset, &value)
+                .map_err(|error| wrong(error.to_string()))?;
         }
         Target::Stack => {
-            let order = order::read(Some(&command_line_value(value)), &preset.stack, &catalog, &has_unknown_effect).map_err(wrong)?;
+            let order = order::read(
+                Some(&command_line_value(value)),
+                &preset.stack,
+                &catalog,
+                &has_unknown_effect,
+            )
+            .map_err(wrong)?;
             preset_file.preset.stack = order;
         }
     }
     Ok(())
 }
 
-/// Puts one value back to its default, as `--unset path` does; an effect or optional section is taken out, with its keyframes.
+/// Puts one value back to its default, as `--unset path` does; an effect or optional section is
+/// taken out, with its keyframes.
 ///
 /// # Errors
 /// An unknown path.
 pub fn unset(preset_file: &mut PresetFile, path: &str) -> Result<(), PresetError> {
-    let at = Position { file: "--unset".into(), line: None };
+    let at = Position {
+        file: "--unset".into(),
+        line: None,
+    };
     let preset = &mut preset_file.preset;
-    match target(path, &preset_file.effects).map_err(|reason| PresetError::value(at, path, reason))? {
+    match target(path, &preset_file.effects)
+        .map_err(|reason| PresetError::value(at, path, reason))?
+    {
         Target::Effect(effect) => preset.disable(&effect.name),
         Target::Animation(None, _) => preset.animation = Animation::default(),
         Target::Animation(Some(effect), None) => preset.animation.remove_effect(&effect.name),
-        Target::Animation(Some(effect), Some(field)) => preset.animation.remove(&effect.name, &field.name),
+        Target::Animation(Some(effect), Some(field)) => {
+            preset.animation.remove(&effect.name, &field.name)
+        }
         Target::Scope(effect) => {
             if let Some(enabled) = preset.stack.get_mut(&effect.name) {
                 enabled.on = Scope::default();

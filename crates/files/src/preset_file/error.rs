@@ -30,7 +30,11 @@ pub enum PresetError {
     Syntax { at: Position, reason: String },
     /// A value of another type or outside its range, or keys that contradict each other.
     #[error("{at}: {key} {reason}")]
-    Value { at: Position, key: String, reason: String },
+    Value {
+        at: Position,
+        key: String,
+        reason: String,
+    },
     /// Warnings, when strictness makes them errors.
     #[error("{}", .0.join("\n"))]
     Strict(Vec<String>),
@@ -54,12 +58,21 @@ impl PresetError {
     pub fn position(&self) -> Option<Position> {
         match self {
             Self::Syntax { at, .. } | Self::Value { at, .. } => Some(at.clone()),
-            Self::Read { file, .. } | Self::Write { file, .. } | Self::Exists { file } => Some(Position { file: file.clone(), line: None }),
+            Self::Read { file, .. } | Self::Write { file, .. } | Self::Exists { file } => {
+                Some(Position {
+                    file: file.clone(),
+                    line: None,
+                })
+            }
             _ => None,
         }
     }
 
     pub(super) fn value(at: Position, key: impl Into<String>, reason: impl Into<String>) -> Self {
-        Self::Value { at, key: legible_line(&key.into()), reason: legible(&reason.into()) }
+        Self::Value {
+            at,
+            key: legible_line(&key.into()),
+            reason: legible(&reason.into()),
+        }
     }
 }

@@ -37,7 +37,8 @@ pub struct PresetFile {
     pub warnings: Vec<String>,
     /// The effects that it may use.
     pub effects: Catalog,
-    /// Names of the effects whose text came inside the preset: code that its reader has not seen yet.
+    /// Names of the effects whose text came inside the preset: code that its reader has not seen
+    /// yet.
     pub brought_effects: Vec<String>,
     /// The person chose the scene: a model or built-in scene was opened.
     pub chose_scene: bool,
@@ -72,16 +73,28 @@ impl PresetFile {
         }
     }
 
-    /// The default preset for a model or built-in scene that was chosen: daylight and no other effect.
+    /// The default preset for a model or built-in scene that was chosen: daylight and no other
+    /// effect.
     pub fn of_scene(id: &str, scene: SceneSource) -> Self {
-        let mut preset = Preset { name: id.into(), scene, ..Preset::default() };
+        let mut preset = Preset {
+            name: id.into(),
+            scene,
+            ..Preset::default()
+        };
         preset.stack.enable(&lambert::EFFECT);
-        Self { chose_scene: true, ..Self::new(id, preset) }
+        Self {
+            chose_scene: true,
+            ..Self::new(id, preset)
+        }
     }
 
     /// The name, or the id of a preset without a name.
     pub fn title(&self) -> &str {
-        if self.preset.name.is_empty() { &self.id } else { &self.preset.name }
+        if self.preset.name.is_empty() {
+            &self.id
+        } else {
+            &self.preset.name
+        }
     }
 
     /// What a person should know after opening it: warnings, and the code that it brings.
@@ -94,13 +107,20 @@ impl PresetFile {
                 .and_then(|effect| effect.source.as_ref())
                 .map_or(0, |source| source.written.lines().count())
         };
-        let brought = self.brought_effects.iter().map(|name| format!("the preset brings the effect {name}, {} lines of WGSL", lines(name)));
+        let brought = self.brought_effects.iter().map(|name| {
+            format!(
+                "the preset brings the effect {name}, {} lines of WGSL",
+                lines(name)
+            )
+        });
         self.warnings.iter().cloned().chain(brought).collect()
     }
 
     /// The effects whose text came inside the preset.
     pub fn brought(&self) -> impl Iterator<Item = &Arc<Effect>> {
-        self.brought_effects.iter().filter_map(|name| self.effects.find(name).ok().flatten())
+        self.brought_effects
+            .iter()
+            .filter_map(|name| self.effects.find(name).ok().flatten())
     }
 
     /// The preset without the effects that it brings, their instances, keyframes and texts.
@@ -108,7 +128,9 @@ impl PresetFile {
     pub fn without_brought(mut self) -> Self {
         let brought = std::mem::take(&mut self.brought_effects);
         let is_brought = |effect: &Effect| {
-            brought.iter().any(|name| effect.name == *name || effect.base.as_ref().is_some_and(|base| base.name == *name))
+            brought.iter().any(|name| {
+                effect.name == *name || effect.base.as_ref().is_some_and(|base| base.name == *name)
+            })
         };
         let used: Vec<String> = self
             .preset
@@ -135,17 +157,25 @@ impl PresetFile {
     /// # Errors
     /// The reader had warnings.
     pub fn strict(self) -> Result<Self, PresetError> {
-        if self.warnings.is_empty() { Ok(self) } else { Err(PresetError::Strict(self.warnings)) }
+        if self.warnings.is_empty() {
+            Ok(self)
+        } else {
+            Err(PresetError::Strict(self.warnings))
+        }
     }
 
     /// Could a file hold the changes? A picture or a copy then gives this preset back.
     ///
     /// # Errors
-    /// A changed preset of a newer schema, effects that exclude each other, or a test budget that no file may state.
+    /// A changed preset of a newer schema, effects that exclude each other, or a test budget that
+    /// no file may state.
     pub fn check_savable(&self) -> Result<(), PresetError> {
         if self.is_newer && self.is_modified() {
             let reason = "its schema is newer than this program, so its changes cannot be saved; draw it as it is, or use --bare";
-            return Err(PresetError::ReadOnly { id: self.id.clone(), reason: reason.into() });
+            return Err(PresetError::ReadOnly {
+                id: self.id.clone(),
+                reason: reason.into(),
+            });
         }
         self.check_values()
     }
@@ -155,12 +185,21 @@ impl PresetFile {
     /// # Errors
     /// As [`PresetFile::check_savable`], except for a newer schema.
     pub fn check_values(&self) -> Result<(), PresetError> {
-        let at = Position { file: self.id.clone(), line: None };
-        self.preset.stack.check().map_err(|conflict| PresetError::value(at.clone(), "effects", conflict.to_string()))?;
-        self.preset.check_budget().map_err(|[key, reason]| PresetError::value(at, key, reason))
+        let at = Position {
+            file: self.id.clone(),
+            line: None,
+        };
+        self.preset
+            .stack
+            .check()
+            .map_err(|conflict| PresetError::value(at.clone(), "effects", conflict.to_string()))?;
+        self.preset
+            .check_budget()
+            .map_err(|[key, reason]| PresetError::value(at, key, reason))
     }
 
-    /// The preset as a picture saved at `picture` holds it: a relative model path starts at the folder of the picture.
+    /// The preset as a picture saved at `picture` holds it: a relative model path starts at the
+    /// folder of the picture.
     #[must_use]
     pub fn for_picture(&self, picture: &Path) -> Self {
         let mut moved = self.clone();
@@ -172,22 +211,36 @@ impl PresetFile {
 
     /// Does the text have a table for this effect, known or not?
     pub(super) fn has_effect_table(&self, name: &str) -> bool {
-        self.document.get("effects").and_then(|effects| effects.get(name)).is_some()
+        self.document
+            .get("effects")
+            .and_then(|effects| effects.get(name))
+            .is_some()
     }
 }
 
-/// The preset as TOML: the text that it came from with the differences written in; the same bytes where nothing changed.
+/// The preset as TOML: the text that it came from with the differences written in; the same bytes
+/// where nothing changed.
 pub fn to_toml(preset_file: &PresetFile) -> String {
     let mut document = preset_file.document.clone();
     if !preset_file.is_newer {
-        write::patch(&mut document, &preset_file.effects, &preset_file.saved, &preset_file.preset);
+        write::patch(
+            &mut document,
+            &preset_file.effects,
+            &preset_file.saved,
+            &preset_file.preset,
+        );
     }
     document.to_string()
 }
 
 /// The preset as TOML with the effects of files that it uses, so that it can be opened elsewhere.
 pub fn to_shared_toml(preset_file: &PresetFile) -> String {
-    let sources = preset_file.preset.stack.0.iter().filter_map(|enabled| enabled.effect.source.as_ref());
+    let sources = preset_file
+        .preset
+        .stack
+        .0
+        .iter()
+        .filter_map(|enabled| enabled.effect.source.as_ref());
     let mut document: DocumentMut = match to_toml(preset_file).parse() {
         Ok(document) => document,
         Err(_) => return to_toml(preset_file),
@@ -203,14 +256,18 @@ pub fn to_shared_toml(preset_file: &PresetFile) -> String {
     document.to_string()
 }
 
-/// Writes the preset to `path`, whole or not at all, and makes that its file. A file that has this text already is not written.
-/// A relative model path is rewritten so that it still leads to the model.
+/// Writes the preset to `path`, whole or not at all, and makes that its file. A file that has this
+/// text already is not written. A relative model path is rewritten so that it still leads to the
+/// model.
 ///
 /// # Errors
 /// The preset has a newer schema, or the file cannot be written; then `preset_file` stays as it is.
 pub fn save(preset_file: &mut PresetFile, path: &Path) -> Result<(), PresetError> {
     if preset_file.is_newer {
-        return Err(PresetError::ReadOnly { id: preset_file.id.clone(), reason: "its schema is newer than this program".into() });
+        return Err(PresetError::ReadOnly {
+            id: preset_file.id.clone(),
+            reason: "its schema is newer than this program".into(),
+        });
     }
     let mut next = preset_file.clone();
     if let SceneSource::File(model) = &preset_file.preset.scene {
@@ -222,26 +279,38 @@ pub fn save(preset_file: &mut PresetFile, path: &Path) -> Result<(), PresetError
         next.preset.name = typed.chars().take(MAX_NAME).collect();
     }
     let text = to_toml(&next);
-    let is_there = preset_file.path.as_deref() == Some(path) && std::fs::read(path).is_ok_and(|there| there == text.as_bytes());
+    let is_there = preset_file.path.as_deref() == Some(path)
+        && std::fs::read(path).is_ok_and(|there| there == text.as_bytes());
     if !is_there {
         write_atomically(path, text.as_bytes(), Existing::Replace)?;
     }
-    next.document =
-        text.parse().map_err(|e: toml_edit::TomlError| PresetError::Write { file: path.display().to_string(), reason: e.to_string() })?;
+    next.document = text
+        .parse()
+        .map_err(|e: toml_edit::TomlError| PresetError::Write {
+            file: path.display().to_string(),
+            reason: e.to_string(),
+        })?;
     next.saved = next.preset.clone();
-    (next.id, next.path, next.read_only, next.look) = (stem(path), Some(path.to_owned()), false, None);
+    (next.id, next.path, next.read_only, next.look) =
+        (stem(path), Some(path.to_owned()), false, None);
     *preset_file = next;
     Ok(())
 }
 
 /// The id of a preset at `path`.
 pub(super) fn stem(path: &Path) -> String {
-    path.file_stem().map_or_else(|| "preset".into(), |stem| stem.to_string_lossy().into_owned())
+    path.file_stem().map_or_else(
+        || "preset".into(),
+        |stem| stem.to_string_lossy().into_owned(),
+    )
 }
 
 /// The path of a model, for a preset at `preset_path` (or in the current folder).
 pub(super) fn model_path(model: &Path, preset_path: Option<&Path>) -> PathBuf {
-    preset_path.and_then(Path::parent).unwrap_or(Path::new("")).join(model)
+    preset_path
+        .and_then(Path::parent)
+        .unwrap_or(Path::new(""))
+        .join(model)
 }
 
 /// `model` relative to the folder of `to`, when it was relative to the folder of `from`.
@@ -261,13 +330,24 @@ fn rebase(model: &Path, from: Option<&Path>, to: &Path) -> PathBuf {
     let (Some(model_path), Some(folder)) = (normalized(&model_path(model, from)), folder) else {
         return model.to_owned();
     };
-    let (model_parts, folder_parts): (Vec<_>, Vec<_>) = (model_path.components().collect(), folder.components().collect());
-    let shared = model_parts.iter().zip(&folder_parts).take_while(|(a, b)| a == b).count();
+    let (model_parts, folder_parts): (Vec<_>, Vec<_>) = (
+        model_path.components().collect(),
+        folder.components().collect(),
+    );
+    let shared = model_parts
+        .iter()
+        .zip(&folder_parts)
+        .take_while(|(a, b)| a == b)
+        .count();
     if shared == 0 {
         return model_path; // Another drive: there is no relative path.
     }
     let up = std::iter::repeat_n("..", folder_parts.len() - shared).collect::<PathBuf>();
     let relative = up.join(model_parts[shared..].iter().collect::<PathBuf>());
     // Forward slashes read the same on every system.
-    PathBuf::from(relative.to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/"))
+    PathBuf::from(
+        relative
+            .to_string_lossy()
+            .replace(std::path::MAIN_SEPARATOR, "/"),
+    )
 }

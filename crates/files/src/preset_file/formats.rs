@@ -18,18 +18,33 @@ pub struct ModelFormat {
 
 /// Every format that is read. `tests/house/registry.rs` compares the help texts that name them.
 pub const MODEL_FORMATS: &[ModelFormat] = &[
-    ModelFormat { extension: "glb", beside: &[], load: model::load },
-    ModelFormat { extension: "gltf", beside: &["bin", "png", "jpg", "jpeg", "ktx2"], load: model::load },
+    ModelFormat {
+        extension: "glb",
+        beside: &[],
+        load: model::load,
+    },
+    ModelFormat {
+        extension: "gltf",
+        beside: &["bin", "png", "jpg", "jpeg", "ktx2"],
+        load: model::load,
+    },
 ];
 
 impl ModelFormat {
     /// The format of a file, by its extension; none if it is no model.
     pub fn of(path: &Path) -> Option<&'static Self> {
-        MODEL_FORMATS.iter().find(|format| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(format.extension)))
+        MODEL_FORMATS.iter().find(|format| {
+            path.extension()
+                .is_some_and(|extension| extension.eq_ignore_ascii_case(format.extension))
+        })
     }
 
     /// Every extension with its dot, with `between` between them.
     pub fn names(between: &str) -> String {
-        MODEL_FORMATS.iter().map(|format| format!(".{}", format.extension)).collect::<Vec<_>>().join(between)
+        MODEL_FORMATS
+            .iter()
+            .map(|format| format!(".{}", format.extension))
+            .collect::<Vec<_>>()
+            .join(between)
     }
 }

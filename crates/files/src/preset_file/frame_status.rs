@@ -1,7 +1,8 @@
-//! Frames of a sequence that are there already: whether a file is finished, cut off, or somebody else's.
+//! Frames of a sequence that are there already: whether a file is finished, cut off, or somebody
+//! else's.
 //!
-//! Nothing is decoded: the checksums of a PNG's chunks say whether every byte is as it was written, so that a file of any stated
-//! size is judged in constant memory.
+//! Nothing is decoded: the checksums of a PNG's chunks say whether every byte is as it was written,
+//! so that a file of any stated size is judged in constant memory.
 
 use std::{
     fs::File,
@@ -15,7 +16,8 @@ use super::{atomic::is_taken, error::PresetError};
 
 /// Keyword of the text that says what drew a picture.
 pub(super) const ADAPTER: &str = "rasterlab adapter";
-/// Keyword of the hash of everything that decides the picture: a frame of a sequence is finished when it has the right one.
+/// Keyword of the hash of everything that decides the picture: a frame of a sequence is finished
+/// when it has the right one.
 pub(super) const FINGERPRINT: &str = "rasterlab frame";
 
 const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
@@ -42,11 +44,16 @@ pub enum FrameStatus {
     Other,
 }
 
-/// Is the file at `path` the picture with this `size` (width, height) and `fingerprint`? A pipe or device is never opened.
+/// Is the file at `path` the picture with this `size` (width, height) and `fingerprint`? A pipe or
+/// device is never opened.
 ///
 /// # Errors
 /// The file cannot be read.
-pub fn frame_status(path: &Path, size: [u32; 2], fingerprint: &str) -> Result<FrameStatus, PresetError> {
+pub fn frame_status(
+    path: &Path,
+    size: [u32; 2],
+    fingerprint: &str,
+) -> Result<FrameStatus, PresetError> {
     if !is_taken(path) {
         return Ok(FrameStatus::Absent);
     }
@@ -55,11 +62,18 @@ pub fn frame_status(path: &Path, size: [u32; 2], fingerprint: &str) -> Result<Fr
         Ok(about) if about.is_file() => {}
         _ => return Ok(FrameStatus::Other),
     }
-    let failed = |error: io::Error| PresetError::Read { file: path.display().to_string(), reason: error.to_string() };
-    let chunks = File::open(path).and_then(|file| chunks(BufReader::new(file))).map_err(failed)?;
+    let failed = |error: io::Error| PresetError::Read {
+        file: path.display().to_string(),
+        reason: error.to_string(),
+    };
+    let chunks = File::open(path)
+        .and_then(|file| chunks(BufReader::new(file)))
+        .map_err(failed)?;
     Ok(match chunks {
         Chunks::Intact(texts) => match texts.is_frame(size, fingerprint) {
-            true => FrameStatus::Finished { adapter: texts.adapter.unwrap_or_default() },
+            true => FrameStatus::Finished {
+                adapter: texts.adapter.unwrap_or_default(),
+            },
             false => FrameStatus::Other,
         },
         Chunks::NoPng | Chunks::Trailed => FrameStatus::Other,
@@ -75,7 +89,8 @@ pub(super) fn is_damaged(bytes: &[u8]) -> bool {
     matches!(chunks(bytes), Ok(Chunks::Damaged))
 }
 
-/// Is a damaged file a frame of ours? A flipped bit hits either the name of the mark or the fingerprint itself, and not both.
+/// Is a damaged file a frame of ours? A flipped bit hits either the name of the mark or the
+/// fingerprint itself, and not both.
 fn has_mark(path: &Path, fingerprint: &str) -> io::Result<bool> {
     let mut head = Vec::new();
     File::open(path)?.take(HEAD).read_to_end(&mut head)?;
@@ -107,18 +122,26 @@ struct Texts {
 
 impl Texts {
     fn is_frame(&self, size: [u32; 2], fingerprint: &str) -> bool {
-        self.fingerprint.as_deref() == Some(fingerprint) && self.size == size && self.announced == self.frames
+        self.fingerprint.as_deref() == Some(fingerprint)
+            && self.size == size
+            && self.announced == self.frames
     }
 
     /// Takes what a chunk says; `head` are its first bytes.
     fn take(&mut self, name: [u8; 4], head: &[u8]) {
-        let word = |at: usize| head.get(at..at + 4).map_or(0, |bytes| u32::from_be_bytes(bytes.try_into().unwrap_or_default()));
+        let word = |at: usize| {
+            head.get(at..at + 4).map_or(0, |bytes| {
+                u32::from_be_bytes(bytes.try_into().unwrap_or_default())
+            })
+        };
         match &name {
             b"IHDR" => self.size = [word(0), word(4)],
             b"acTL" => self.announced = word(0),
             b"fcTL" => self.frames += 1,
             b"iTXt" => {
-                let Some((keyword, text)) = text(head) else { return };
+                let Some((keyword, text)) = text(head) else {
+                    return;
+                };
                 match keyword {
                     FINGERPRINT => self.fingerprint = Some(text.into()),
                     ADAPTER => self.adapter = Some(text.into()),
@@ -142,18 +165,26 @@ fn text(chunk: &[u8]) -> Option<(&str, &str)> {
 /// Reads a PNG to its end and compares the checksum of every chunk.
 fn chunks(mut file: impl Read) -> io::Result<Chunks> {
     let mut signature = Vec::new();
-    file.by_ref().take(SIGNATURE.len() as u64).read_to_end(&mut signature)?;
+    file.by_ref()
+        .take(SIGNATURE.len() as u64)
+        .read_to_end(&mut signature)?;
     if signature != SIGNATURE {
         return Ok(Chunks::NoPng);
     }
     let mut texts = Texts::default();
     loop {
-        let Some(length) = word(&mut file)? else { return Ok(Chunks::Damaged) };
-        let Some(name) = word(&mut file)?.map(u32::to_be_bytes) else { return Ok(Chunks::Damaged) };
+        let Some(length) = word(&mut file)? else {
+            return Ok(Chunks::Damaged);
+        };
+        let Some(name) = word(&mut file)?.map(u32::to_be_bytes) else {
+            return Ok(Chunks::Damaged);
+        };
         let mut crc = Crc::new();
         crc.update(&name);
         let mut head = Vec::new();
-        file.by_ref().take(u64::from(length.min(MAX_TEXT))).read_to_end(&mut head)?;
+        file.by_ref()
+            .take(u64::from(length.min(MAX_TEXT)))
+            .read_to_end(&mut head)?;
         crc.update(&head);
         let mut left = u64::from(length) - head.len() as u64;
         let mut block = [0; 1 << 14];
@@ -171,7 +202,11 @@ fn chunks(mut file: impl Read) -> io::Result<Chunks> {
         texts.take(name, &head);
         if &name == b"IEND" {
             let is_end = file.read(&mut [0])? == 0;
-            return Ok(if is_end { Chunks::Intact(texts) } else { Chunks::Trailed });
+            return Ok(if is_end {
+                Chunks::Intact(texts)
+            } else {
+                Chunks::Trailed
+            });
         }
     }
 }

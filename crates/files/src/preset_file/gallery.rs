@@ -1,4 +1,5 @@
-//! Gallery: every available preset. Folders are searched in order and the first preset of an id wins.
+//! Gallery: every available preset. Folders are searched in order and the first preset of an id
+//! wins.
 
 use std::path::{Path, PathBuf};
 
@@ -49,25 +50,31 @@ pub struct GalleryEntry {
 impl GalleryEntry {
     /// The name that the preset shows; its id where it has none or cannot be read.
     pub fn title(&self) -> &str {
-        self.preset_file.as_ref().map_or(&self.id, |preset_file| preset_file.title())
+        self.preset_file
+            .as_ref()
+            .map_or(&self.id, |preset_file| preset_file.title())
     }
 
     /// Is `what` its id or its name, whatever the case of the letters?
     fn is_called(&self, what: &str) -> bool {
         let what = what.to_lowercase();
-        [&self.id, self.title()].iter().any(|name| name.to_lowercase() == what)
+        [&self.id, self.title()]
+            .iter()
+            .any(|name| name.to_lowercase() == what)
     }
 }
 
 /// Where presets and effects are looked for, beside the built-in ones.
 #[derive(Clone, Debug, Default)]
 pub struct Folders {
-    /// The user's own folder, `rasterlab` in the configuration folder of the system: `presets`, `effects`, `effect-values` and
-    /// `favorites.toml` are in it. None: the user has no presets, and nothing is kept.
+    /// The user's own folder, `rasterlab` in the configuration folder of the system: `presets`,
+    /// `effects`, `effect-values` and `favorites.toml` are in it. None: the user has no
+    /// presets, and nothing is kept.
     pub user: Option<PathBuf>,
     /// `--presets DIR`.
     pub presets: Option<PathBuf>,
-    /// Folders of effects: the user's, `--effects DIR`, then those of dropped files. A later one wins.
+    /// Folders of effects: the user's, `--effects DIR`, then those of dropped files. A later one
+    /// wins.
     pub effect_folders: Vec<PathBuf>,
     /// The effects in these folders.
     pub effects: Catalog,
@@ -76,9 +83,17 @@ pub struct Folders {
 impl Folders {
     /// These folders, and the effects in the user's own folder.
     pub fn new(presets: Option<PathBuf>, effects: &Path) -> Self {
-        let effect_folders: Vec<PathBuf> = user_effects_folder().into_iter().chain([effects.to_owned()]).collect();
+        let effect_folders: Vec<PathBuf> = user_effects_folder()
+            .into_iter()
+            .chain([effects.to_owned()])
+            .collect();
         let user = user_folder().and_then(|presets| presets.parent().map(Path::to_owned));
-        Self { user, presets, effects: Catalog::of_folders(effect_folders.iter().map(PathBuf::as_path)), effect_folders }
+        Self {
+            user,
+            presets,
+            effects: Catalog::of_folders(effect_folders.iter().map(PathBuf::as_path)),
+            effect_folders,
+        }
     }
 }
 
@@ -102,8 +117,13 @@ pub fn user_effects_folder() -> Option<PathBuf> {
 /// Every preset, sorted by id.
 pub fn gallery(folders: &Folders) -> Vec<GalleryEntry> {
     let mut entries: Vec<GalleryEntry> = Vec::new();
-    let on_disk = preset_folders(folders).into_iter().flat_map(|(origin, folder)| folder_entries(origin, &folder, &folders.effects));
-    let built_in = BUILTIN_DIR.files().filter(|file| has_extension(file.path(), "toml")).map(builtin_entry);
+    let on_disk = preset_folders(folders)
+        .into_iter()
+        .flat_map(|(origin, folder)| folder_entries(origin, &folder, &folders.effects));
+    let built_in = BUILTIN_DIR
+        .files()
+        .filter(|file| has_extension(file.path(), "toml"))
+        .map(builtin_entry);
     for entry in on_disk.chain(built_in) {
         match entries.iter_mut().find(|winner| winner.id == entry.id) {
             Some(winner) => winner.shadows.push(entry.origin),
@@ -115,44 +135,82 @@ pub fn gallery(folders: &Folders) -> Vec<GalleryEntry> {
 }
 
 fn folder_entries(origin: Origin, folder: &Path, effects: &Catalog) -> Vec<GalleryEntry> {
-    let files = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let files = std::fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|entry| entry.path());
     let preset_files = files.filter(|path| has_extension(path, "toml") && path.is_file());
     preset_files
-        .map(|path| GalleryEntry { id: stem(&path), origin, preset_file: load_with(&path, effects), path: Some(path), shadows: Vec::new() })
+        .map(|path| GalleryEntry {
+            id: stem(&path),
+            origin,
+            preset_file: load_with(&path, effects),
+            path: Some(path),
+            shadows: Vec::new(),
+        })
         .collect()
 }
 
 fn builtin_entry(file: &File<'_>) -> GalleryEntry {
-    let (id, name) = (stem(file.path()), format!("presets/{}", file.path().display()));
+    let (id, name) = (
+        stem(file.path()),
+        format!("presets/{}", file.path().display()),
+    );
     let text = file.contents_utf8().unwrap_or_default();
-    let preset_file = parse_file(text, &id, &name).map(|preset_file| PresetFile { read_only: true, ..preset_file });
-    GalleryEntry { id, origin: Origin::Builtin, path: None, preset_file, shadows: Vec::new() }
+    let preset_file = parse_file(text, &id, &name).map(|preset_file| PresetFile {
+        read_only: true,
+        ..preset_file
+    });
+    GalleryEntry {
+        id,
+        origin: Origin::Builtin,
+        path: None,
+        preset_file,
+        shadows: Vec::new(),
+    }
 }
 
 /// The folders of presets on disk, in order of precedence.
 fn preset_folders(folders: &Folders) -> Vec<(Origin, PathBuf)> {
-    let beside = std::env::current_exe().ok().and_then(|exe| Some(exe.parent()?.join("presets")));
-    let folders = [(Origin::Chosen, folders.presets.clone()), (Origin::Beside, beside), (Origin::User, folders.user_presets())];
-    folders.into_iter().filter_map(|(origin, folder)| Some((origin, folder?))).collect()
+    let beside = std::env::current_exe()
+        .ok()
+        .and_then(|exe| Some(exe.parent()?.join("presets")));
+    let folders = [
+        (Origin::Chosen, folders.presets.clone()),
+        (Origin::Beside, beside),
+        (Origin::User, folders.user_presets()),
+    ];
+    folders
+        .into_iter()
+        .filter_map(|(origin, folder)| Some((origin, folder?)))
+        .collect()
 }
 
 /// The folder of the user's presets: `rasterlab/presets` in the configuration folder of the system.
 pub fn user_folder() -> Option<PathBuf> {
     let system = choose_native_strategy().ok()?;
     // On macOS, *Preferences* is for files of the system's own format.
-    let config = if cfg!(target_os = "macos") { system.data_dir() } else { system.config_dir() };
+    let config = if cfg!(target_os = "macos") {
+        system.data_dir()
+    } else {
+        system.config_dir()
+    };
     Some(config.join("rasterlab/presets"))
 }
 
-/// Opens what a person names: a preset of the gallery by its id, or by its id or name in other letters; a `.toml` file; a PNG saved by
-/// rasterlab; a model; or `builtin:QUERY`.
+/// Opens what a person names: a preset of the gallery by its id, or by its id or name in other
+/// letters; a `.toml` file; a PNG saved by rasterlab; a model; or `builtin:QUERY`.
 ///
 /// # Errors
 /// No such preset or file, a name that several presets have, or a file that cannot be read.
 pub fn open(what: &str, folders: &Folders) -> Result<PresetFile, PresetError> {
     if let Some(query) = what.strip_prefix("builtin:") {
         let name = query.split('?').next().unwrap_or(query);
-        return Ok(PresetFile { effects: folders.effects.clone(), ..PresetFile::of_scene(name, SceneSource::Builtin(query.into())) });
+        return Ok(PresetFile {
+            effects: folders.effects.clone(),
+            ..PresetFile::of_scene(name, SceneSource::Builtin(query.into()))
+        });
     }
     let path = Path::new(what);
     if has_extension(path, "toml") {
@@ -162,38 +220,69 @@ pub fn open(what: &str, folders: &Folders) -> Result<PresetFile, PresetError> {
         return load_picture(path);
     }
     if ModelFormat::of(path).is_some() {
-        let absolute = std::path::absolute(path).map_err(|e| PresetError::Read { file: what.into(), reason: e.to_string() })?;
-        return Ok(PresetFile { effects: folders.effects.clone(), ..PresetFile::of_scene(&stem(path), SceneSource::File(absolute)) });
+        let absolute = std::path::absolute(path).map_err(|e| PresetError::Read {
+            file: what.into(),
+            reason: e.to_string(),
+        })?;
+        return Ok(PresetFile {
+            effects: folders.effects.clone(),
+            ..PresetFile::of_scene(&stem(path), SceneSource::File(absolute))
+        });
     }
     if let Some(found) = by_id(what, folders) {
         return found;
     }
     let entries = gallery(folders);
-    // An entry may have exactly this id: a file whose extension is written in capitals, for instance.
+    // An entry may have exactly this id: a file whose extension is written in capitals, for
+    // instance.
     let exact = entries.iter().find(|entry| entry.id == what);
-    let named: Vec<&GalleryEntry> =
-        exact.map_or_else(|| entries.iter().filter(|entry| entry.is_called(what)).collect(), |entry| vec![entry]);
+    let named: Vec<&GalleryEntry> = exact.map_or_else(
+        || {
+            entries
+                .iter()
+                .filter(|entry| entry.is_called(what))
+                .collect()
+        },
+        |entry| vec![entry],
+    );
     match named[..] {
         [] => {}
         [entry] => return by_id(&entry.id, folders).unwrap_or_else(|| entry.preset_file.clone()),
         _ => {
             let ids: Vec<&str> = named.iter().map(|entry| entry.id.as_str()).collect();
-            return Err(PresetError::Ambiguous { name: what.into(), ids: ids.join(", ") });
+            return Err(PresetError::Ambiguous {
+                name: what.into(),
+                ids: ids.join(", "),
+            });
         }
     }
     if path.exists() {
         let models = ModelFormat::names(" and ");
-        let reason = format!("rasterlab opens .toml files, .png pictures that it has saved, and models in {models} files");
-        return Err(PresetError::NotOurs { what: what.into(), reason });
+        let reason = format!(
+            "rasterlab opens .toml files, .png pictures that it has saved, and models in {models} files"
+        );
+        return Err(PresetError::NotOurs {
+            what: what.into(),
+            reason,
+        });
     }
-    Err(PresetError::NoPreset { what: what.into(), hint: near_presets(what, &entries) })
+    Err(PresetError::NoPreset {
+        what: what.into(),
+        hint: near_presets(what, &entries),
+    })
 }
 
-/// `; did you mean "facet" (Half cut)?`: the presets whose ids or names are nearest to `what`, or where all of them are listed.
+/// `; did you mean "facet" (Half cut)?`: the presets whose ids or names are nearest to `what`, or
+/// where all of them are listed.
 fn near_presets(what: &str, entries: &[GalleryEntry]) -> String {
     let near = entries.iter().filter_map(|entry| {
         let names = [&entry.id, entry.title()].into_iter();
-        Some((names.filter_map(|name| likeness(what, name)).max_by(f64::total_cmp)?, entry))
+        Some((
+            names
+                .filter_map(|name| likeness(what, name))
+                .max_by(f64::total_cmp)?,
+            entry,
+        ))
     });
     let mut near: Vec<(f64, &GalleryEntry)> = near.collect();
     near.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -202,7 +291,11 @@ fn near_presets(what: &str, entries: &[GalleryEntry]) -> String {
         title => format!("{:?} ({title})", entry.id),
     };
     let near: Vec<String> = near.iter().take(MAX_NEAR).map(described).collect();
-    if near.is_empty() { "; rasterlab list presets shows all of them".into() } else { format!("; did you mean {}?", near.join(" or ")) }
+    if near.is_empty() {
+        "; rasterlab list presets shows all of them".into()
+    } else {
+        format!("; did you mean {}?", near.join(" or "))
+    }
 }
 
 /// The preset called `id`, read from the first place that has it; no other preset is read.
@@ -211,14 +304,21 @@ fn by_id(id: &str, folders: &Folders) -> Option<Result<PresetFile, PresetError>>
         return None;
     }
     let file = format!("{id}.toml");
-    let on_disk = preset_folders(folders).into_iter().map(|(_, folder)| folder.join(&file)).find(|path| path.is_file());
+    let on_disk = preset_folders(folders)
+        .into_iter()
+        .map(|(_, folder)| folder.join(&file))
+        .find(|path| path.is_file());
     if let Some(path) = on_disk {
         return Some(load_with(&path, &folders.effects));
     }
     let built_in = builtin_entry(BUILTIN_DIR.get_file(&file)?).preset_file;
-    Some(built_in.map(|opened| PresetFile { effects: opened.effects.joined(&folders.effects), ..opened }))
+    Some(built_in.map(|opened| PresetFile {
+        effects: opened.effects.joined(&folders.effects),
+        ..opened
+    }))
 }
 
 fn has_extension(path: &Path, expected: &str) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(expected))
+    path.extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case(expected))
 }

@@ -1,5 +1,5 @@
-//! Keyframes: `[animation.facet]` with one list per parameter, each entry `{ time_s = 1.5, value = 0.25, easing = "linear" }`.
-//! An easing that is the default of its parameter is left out.
+//! Keyframes: `[animation.facet]` with one list per parameter, each entry `{ time_s = 1.5, value =
+//! 0.25, easing = "linear" }`. An easing that is the default of its parameter is left out.
 
 use std::sync::Arc;
 
@@ -16,15 +16,23 @@ use crate::{
     params::{Field, Param, Value, ValueType},
     preset::{
         Animation, Preset,
-        animation::{Easing, Keyframe, KeyframeError, MAX_KEYFRAMES, MAX_TIME_S, Track, default_easing},
+        animation::{
+            Easing, Keyframe, KeyframeError, MAX_KEYFRAMES, MAX_TIME_S, Track, default_easing,
+        },
     },
 };
 
 /// The parameters of an entry: time, value and easing.
 pub fn entry_params(field: &Field) -> [Param; 3] {
     [
-        Param::new("time_s", "Time of the clock", ValueType::F64).hard(-MAX_TIME_S..=MAX_TIME_S).unit("s"),
-        Param { name: "value".into(), doc: "The parameter's value at that time".into(), ..field.param.clone() },
+        Param::new("time_s", "Time of the clock", ValueType::F64)
+            .hard(-MAX_TIME_S..=MAX_TIME_S)
+            .unit("s"),
+        Param {
+            name: "value".into(),
+            doc: "The parameter's value at that time".into(),
+            ..field.param.clone()
+        },
         Param::new(
             "easing",
             "How the value goes to the next keyframe; whole numbers, flags and words always hold",
@@ -34,24 +42,43 @@ pub fn entry_params(field: &Field) -> [Param; 3] {
 }
 
 /// Reads `[animation]`.
-pub fn read(reader: &mut Reader<'_>, effects: &dyn TableLike, preset: &mut Preset) -> Result<(), PresetError> {
+pub fn read(
+    reader: &mut Reader<'_>,
+    effects: &dyn TableLike,
+    preset: &mut Preset,
+) -> Result<(), PresetError> {
     for (name, _) in effects.iter() {
-        let Some(table) = reader.table(effects, "animation.", name)? else { continue };
+        let Some(table) = reader.table(effects, "animation.", name)? else {
+            continue;
+        };
         let Some(effect) = reader.effect(effects, "animation.", name)? else {
             reader.unknown_effect(effects, "animation.", name);
             continue;
         };
         if preset.stack.get(name).is_none() {
-            let warning =
-                |reader: &Reader<'_>| format!("{}: animation.{name} moves nothing; add [effects.{name}]", reader.position(effects, name));
+            let warning = |reader: &Reader<'_>| {
+                format!(
+                    "{}: animation.{name} moves nothing; add [effects.{name}]",
+                    reader.position(effects, name)
+                )
+            };
             reader.warn(warning);
         }
         for (name, item) in table.iter() {
             match effect.field(name) {
-                Some(field) => preset.animation.put(read_track(reader, Some(table), &effect, field, item)?),
+                Some(field) => {
+                    preset
+                        .animation
+                        .put(read_track(reader, Some(table), &effect, field, item)?)
+                }
                 None => {
                     let prefix = format!("animation.{}.", effect.name);
-                    reader.unknown(table, &prefix, name, effect.fields.iter().map(|field| field.name.as_str()));
+                    reader.unknown(
+                        table,
+                        &prefix,
+                        name,
+                        effect.fields.iter().map(|field| field.name.as_str()),
+                    );
                 }
             }
         }
@@ -70,7 +97,10 @@ pub fn read_track(
     let path = format!("animation.{}.{}", effect.name, field.name);
     let here = |reader: &Reader<'_>| match table {
         Some(table) => reader.position(table, &field.name),
-        None => Position { file: reader.file.into(), line: None },
+        None => Position {
+            file: reader.file.into(),
+            line: None,
+        },
     };
     let wrong = |at: Position, reason: String| PresetError::value(at, path.clone(), reason);
     let entries = entries(item).filter(|entries| (1..=MAX_KEYFRAMES).contains(&entries.len())).ok_or_else(|| {
@@ -87,34 +117,62 @@ pub fn read_track(
             Some(track) if track.at(time_s).is_some() => Err(KeyframeError::Taken(time_s)),
             Some(track) => track.set(keyframe),
         };
-        added.map_err(|error| wrong(entry_position(reader, entry), format!("keyframe {number}: {error}")))?;
+        added.map_err(|error| {
+            wrong(
+                entry_position(reader, entry),
+                format!("keyframe {number}: {error}"),
+            )
+        })?;
     }
     Ok(track.expect("the list has an entry"))
 }
 
-fn read_keyframe(reader: &mut Reader<'_>, entry: &dyn TableLike, field: &Field, prefix: &str) -> Result<Keyframe, PresetError> {
+fn read_keyframe(
+    reader: &mut Reader<'_>,
+    entry: &dyn TableLike,
+    field: &Field,
+    prefix: &str,
+) -> Result<Keyframe, PresetError> {
     let params = entry_params(field);
     let mut values: [Option<Value>; 3] = [None, None, None];
     for (name, item) in entry.iter() {
         match params.iter().position(|param| param.name == name) {
-            Some(index) => values[index] = Some(reader.value(entry, prefix, &params[index], item)?),
-            None => reader.unknown(entry, prefix, name, params.iter().map(|param| param.name.as_str())),
+            Some(index) => {
+                values[index] = Some(reader.value(entry, prefix, &params[index], item)?)
+            }
+            None => reader.unknown(
+                entry,
+                prefix,
+                name,
+                params.iter().map(|param| param.name.as_str()),
+            ),
         }
     }
     let [Some(time), Some(value), easing] = values else {
-        return Err(PresetError::value(entry_position(reader, entry), prefix.trim_end_matches(": "), "must have time_s and value"));
+        return Err(PresetError::value(
+            entry_position(reader, entry),
+            prefix.trim_end_matches(": "),
+            "must have time_s and value",
+        ));
     };
     let easing = match easing {
         Some(Value::Choice(index)) => Easing::ALL[index],
         _ => default_easing(field),
     };
-    Ok(Keyframe { time_s: time.components()[0], value: value.components(), easing })
+    Ok(Keyframe {
+        time_s: time.components()[0],
+        value: value.components(),
+        easing,
+    })
 }
 
 /// Where an entry begins: at its first key that has a line.
 fn entry_position(reader: &Reader<'_>, entry: &dyn TableLike) -> Position {
     let positions = entry.iter().map(|(name, _)| reader.position(entry, name));
-    positions.into_iter().find(|position| position.line.is_some()).unwrap_or_else(|| reader.position(entry, ""))
+    positions
+        .into_iter()
+        .find(|position| position.line.is_some())
+        .unwrap_or_else(|| reader.position(entry, ""))
 }
 
 /// The entries of a list of tables, in either form that TOML has for it.
@@ -122,10 +180,14 @@ fn entries(item: &Item) -> Option<Vec<&dyn TableLike>> {
     if let Some(tables) = item.as_array_of_tables() {
         return Some(tables.iter().map(|table| table as &dyn TableLike).collect());
     }
-    item.as_array()?.iter().map(|value| value.as_inline_table().map(|table| table as &dyn TableLike)).collect()
+    item.as_array()?
+        .iter()
+        .map(|value| value.as_inline_table().map(|table| table as &dyn TableLike))
+        .collect()
 }
 
-/// Patches `root`, whose animation describes `saved`, so that it describes `now`. An unchanged track keeps its text.
+/// Patches `root`, whose animation describes `saved`, so that it describes `now`. An unchanged
+/// track keeps its text.
 pub fn patch(root: &mut Table, catalog: &Catalog, saved: &Animation, now: &Animation) {
     if saved == now {
         return;
@@ -133,15 +195,26 @@ pub fn patch(root: &mut Table, catalog: &Catalog, saved: &Animation, now: &Anima
     if root.get("animation").is_none() {
         root.insert("animation", Item::Table(implicit()));
     }
-    let tables = root.get_mut("animation").and_then(Item::as_table_like_mut).expect("the animation was read as a table");
-    for effect in catalog.effects_with([saved, now].into_iter().flat_map(|animation| animation.tracks().iter().map(Track::effect))) {
+    let tables = root
+        .get_mut("animation")
+        .and_then(Item::as_table_like_mut)
+        .expect("the animation was read as a table");
+    for effect in catalog.effects_with(
+        [saved, now]
+            .into_iter()
+            .flat_map(|animation| animation.tracks().iter().map(Track::effect)),
+    ) {
         for field in &effect.fields {
-            let [before, after] = [saved, now].map(|animation| animation.get(&effect.name, &field.name));
+            let [before, after] =
+                [saved, now].map(|animation| animation.get(&effect.name, &field.name));
             match after {
                 _ if before == after => {}
                 Some(track) => patch_track(tables, track),
                 None => {
-                    if let Some(table) = tables.get_mut(&effect.name).and_then(Item::as_table_like_mut) {
+                    if let Some(table) = tables
+                        .get_mut(&effect.name)
+                        .and_then(Item::as_table_like_mut)
+                    {
                         table.remove(&field.name);
                         if table.is_empty() {
                             tables.remove(&effect.name);
@@ -167,7 +240,10 @@ fn patch_track(tables: &mut dyn TableLike, track: &Track) {
     if tables.get(effect).is_none() {
         tables.insert(effect, Item::Table(Table::new()));
     }
-    let table = tables.get_mut(effect).and_then(Item::as_table_like_mut).expect("an effect's animation was read as a table");
+    let table = tables
+        .get_mut(effect)
+        .and_then(Item::as_table_like_mut)
+        .expect("an effect's animation was read as a table");
     let list = to_toml(track, table.get(field));
     match table.get_mut(field).and_then(Item::as_value_mut) {
         Some(there) => {
@@ -179,15 +255,31 @@ fn patch_track(tables: &mut dyn TableLike, track: &Track) {
     }
 }
 
-/// The list, one keyframe per line. An entry of `before` at the same time keeps its comments and unknown keys.
+/// The list, one keyframe per line. An entry of `before` at the same time keeps its comments and
+/// unknown keys.
 fn to_toml(track: &Track, before: Option<&Item>) -> Array {
     let mut list = Array::new();
     for key in track.keys() {
         let [time, value, easing] = entry_params(track.field());
-        let old = before.and_then(Item::as_array).into_iter().flatten().find(|entry| time_of(entry) == Some(key.time_s));
-        let mut entry = old.and_then(Toml::as_inline_table).cloned().unwrap_or_default();
+        let old = before
+            .and_then(Item::as_array)
+            .into_iter()
+            .flatten()
+            .find(|entry| time_of(entry) == Some(key.time_s));
+        let mut entry = old
+            .and_then(Toml::as_inline_table)
+            .cloned()
+            .unwrap_or_default();
         put(&mut entry, &time, &Value::number(key.time_s));
-        put(&mut entry, &value, &track.field().value_type.value(&key.value).expect("keyframes hold no texts"));
+        put(
+            &mut entry,
+            &value,
+            &track
+                .field()
+                .value_type
+                .value(&key.value)
+                .expect("keyframes hold no texts"),
+        );
         if key.easing == default_easing(track.field()) {
             entry.remove(&easing.name);
         } else {
@@ -217,7 +309,9 @@ fn time_of(entry: &Toml) -> Option<f64> {
 }
 
 fn number(value: &Toml) -> Option<f64> {
-    value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
+    value
+        .as_float()
+        .or_else(|| value.as_integer().map(|whole| whole as f64))
 }
 
 /// Sets a value; one that is already there keeps its spelling.

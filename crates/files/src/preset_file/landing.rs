@@ -1,4 +1,5 @@
-//! Landing: a preset whose look is put on the scene of another becomes a new preset, without a file.
+//! Landing: a preset whose look is put on the scene of another becomes a new preset, without a
+//! file.
 
 use std::path::Path;
 
@@ -9,7 +10,8 @@ use super::{
 use crate::preset::{Fit, LengthUnit, SceneSource};
 
 impl PresetFile {
-    /// Is the scene the person's own, so that presets land on it: a model, or a built-in scene that was chosen?
+    /// Is the scene the person's own, so that presets land on it: a model, or a built-in scene that
+    /// was chosen?
     pub fn has_own_scene(&self) -> bool {
         self.chose_scene || matches!(self.preset.scene, SceneSource::File(_))
     }
@@ -22,7 +24,8 @@ impl PresetFile {
         }
     }
 
-    /// Name of the scene for people: the model's file without its extension, or the built-in scene without parameters.
+    /// Name of the scene for people: the model's file without its extension, or the built-in scene
+    /// without parameters.
     pub fn scene_name(&self) -> String {
         match &self.preset.scene {
             SceneSource::File(model) => stem(model),
@@ -35,12 +38,16 @@ impl PresetFile {
         self.preset.unit == LengthUnit::Meter && self.preset.has_lengths()
     }
 
-    /// This look on the scene of `own`, as a new preset without a file. `fit` leads from the box of this scene to that of `own`; without
-    /// it lengths and points stay as they are. The warnings of the new preset say what was left out or could not be fitted.
+    /// This look on the scene of `own`, as a new preset without a file. `fit` leads from the box of
+    /// this scene to that of `own`; without it lengths and points stay as they are. The
+    /// warnings of the new preset say what was left out or could not be fitted.
     #[must_use]
     pub fn landed_on(&self, own: &Self, fit: Option<&Fit>) -> Self {
         let fit = fit.filter(|_| self.needs_fit());
-        let (fitted, mut warnings) = fit.map_or_else(|| (self.preset.clone(), Vec::new()), |fit| self.preset.fitted(fit));
+        let (fitted, mut warnings) = fit.map_or_else(
+            || (self.preset.clone(), Vec::new()),
+            |fit| self.preset.fitted(fit),
+        );
         warnings.extend(self.preset.left_out_on(&own.preset));
         let mut preset = fitted.applied_to(&own.preset);
         if let SceneSource::File(model) = own.scene_source() {
@@ -49,11 +56,17 @@ impl PresetFile {
         let look = self.origin();
         let model = own.scene_name();
         let (id, name) = match &look {
-            Some(look) => (format!("{}-{model}", look.id), format!("{} on {model}", look.title)),
+            Some(look) => (
+                format!("{}-{model}", look.id),
+                format!("{} on {model}", look.title),
+            ),
             None => (model.clone(), own.title().to_owned()),
         };
         preset.name = name.chars().take(MAX_NAME).collect();
-        let warnings = warnings.into_iter().map(|warning| format!("{}: {warning}", preset.name)).collect();
+        let warnings = warnings
+            .into_iter()
+            .map(|warning| format!("{}: {warning}", preset.name))
+            .collect();
         Self {
             warnings,
             effects: self.effects.clone(),
@@ -66,11 +79,18 @@ impl PresetFile {
 
     /// The preset that the look comes from; none where it is only the default look of a scene.
     fn origin(&self) -> Option<Look> {
-        let own = || Look { id: self.id.clone(), path: self.path.clone(), title: self.title().to_owned() };
-        self.look.clone().or_else(|| (!self.chose_scene || self.path.is_some()).then(own))
+        let own = || Look {
+            id: self.id.clone(),
+            path: self.path.clone(),
+            title: self.title().to_owned(),
+        };
+        self.look
+            .clone()
+            .or_else(|| (!self.chose_scene || self.path.is_some()).then(own))
     }
 
-    /// Does the preset lie at `path`, or is it the built-in one called `id`? A look that has landed counts as its preset.
+    /// Does the preset lie at `path`, or is it the built-in one called `id`? A look that has landed
+    /// counts as its preset.
     pub fn is_look_of(&self, id: &str, path: Option<&Path>) -> bool {
         match &self.look {
             Some(look) => look.id == id && is_same_file(look.path.as_deref(), path),
@@ -87,13 +107,23 @@ impl PresetFile {
 /// Are two presets the same file? The path of one may be relative.
 fn is_same_file(a: Option<&Path>, b: Option<&Path>) -> bool {
     match (a, b) {
-        (Some(a), Some(b)) => a == b || std::path::absolute(a).is_ok_and(|a| std::path::absolute(b).is_ok_and(|b| a == b)),
+        (Some(a), Some(b)) => {
+            a == b
+                || std::path::absolute(a)
+                    .is_ok_and(|a| std::path::absolute(b).is_ok_and(|b| a == b))
+        }
         (a, b) => a == b,
     }
 }
 
 /// A name without characters that a file name could not have.
 fn file_name(name: &str) -> String {
-    let kept = name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' });
+    let kept = name.chars().map(|c| {
+        if c.is_alphanumeric() || "-_.".contains(c) {
+            c
+        } else {
+            '-'
+        }
+    });
     kept.take(MAX_NAME).collect()
 }

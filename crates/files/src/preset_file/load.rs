@@ -34,7 +34,12 @@ pub fn parse_file(text: &str, id: &str, file: &str) -> Result<PresetFile, Preset
 ///
 /// # Errors
 /// As [`parse_file`], or an effect whose file is faulty.
-pub fn parse_with(text: &str, id: &str, file: &str, catalog: &Catalog) -> Result<PresetFile, PresetError> {
+pub fn parse_with(
+    text: &str,
+    id: &str,
+    file: &str,
+    catalog: &Catalog,
+) -> Result<PresetFile, PresetError> {
     let mut warnings = Vec::new();
     let (current, is_newer) = migrate::migrate(document(text, file)?, file, &mut warnings)?;
     let read = read::read(&current, file, catalog)?;
@@ -64,33 +69,53 @@ pub fn load(path: &Path) -> Result<PresetFile, PresetError> {
     load_with(path, &Catalog::default())
 }
 
-/// [`load`] for a preset that may use the effects of `catalog`, and those in the folder `effects` beside it.
+/// [`load`] for a preset that may use the effects of `catalog`, and those in the folder `effects`
+/// beside it.
 ///
 /// # Errors
 /// As [`load`], or an effect whose file is faulty.
 pub fn load_with(path: &Path, catalog: &Catalog) -> Result<PresetFile, PresetError> {
     let mut catalog = catalog.clone();
     catalog.add_folder(&path.with_file_name("effects"));
-    let preset_file = parse_with(&read_text(path)?, &stem(path), &path.display().to_string(), &catalog)?;
-    Ok(PresetFile { path: Some(path.to_owned()), ..preset_file })
+    let preset_file = parse_with(
+        &read_text(path)?,
+        &stem(path),
+        &path.display().to_string(),
+        &catalog,
+    )?;
+    Ok(PresetFile {
+        path: Some(path.to_owned()),
+        ..preset_file
+    })
 }
 
 /// The text of a preset file, or of another file of at most [`MAX_BYTES`].
 pub(super) fn read_text(path: &Path) -> Result<String, PresetError> {
     let bytes = read_capped(path, MAX_BYTES as u64)?;
-    String::from_utf8(bytes).map_err(|_| PresetError::Read { file: path.display().to_string(), reason: "it is not UTF-8 text".into() })
+    String::from_utf8(bytes).map_err(|_| PresetError::Read {
+        file: path.display().to_string(),
+        reason: "it is not UTF-8 text".into(),
+    })
 }
 
 /// The bytes of a regular file of at most `max_bytes`.
 pub(super) fn read_capped(path: &Path, max_bytes: u64) -> Result<Vec<u8>, PresetError> {
-    let failed = |reason: String| PresetError::Read { file: path.display().to_string(), reason };
+    let failed = |reason: String| PresetError::Read {
+        file: path.display().to_string(),
+        reason,
+    };
     // A pipe would wait for its other end when it is opened.
-    if !std::fs::metadata(path).map_err(|e| failed(e.to_string()))?.is_file() {
+    if !std::fs::metadata(path)
+        .map_err(|e| failed(e.to_string()))?
+        .is_file()
+    {
         return Err(failed("it is not a regular file".into()));
     }
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(|e| failed(e.to_string()))?;
-    file.take(max_bytes + 1).read_to_end(&mut bytes).map_err(|e| failed(e.to_string()))?;
+    file.take(max_bytes + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|e| failed(e.to_string()))?;
     if bytes.len() as u64 > max_bytes {
         return Err(failed(format!("it is longer than {max_bytes} bytes")));
     }
@@ -99,12 +124,21 @@ pub(super) fn read_capped(path: &Path, max_bytes: u64) -> Result<Vec<u8>, Preset
 
 /// Parses TOML; a syntax error has its line.
 fn document(text: &str, file: &str) -> Result<Document<String>, PresetError> {
-    let at = |line| Position { file: file.into(), line };
+    let at = |line| Position {
+        file: file.into(),
+        line,
+    };
     if text.len() > MAX_BYTES {
-        return Err(PresetError::Syntax { at: at(None), reason: format!("is longer than {MAX_BYTES} bytes") });
+        return Err(PresetError::Syntax {
+            at: at(None),
+            reason: format!("is longer than {MAX_BYTES} bytes"),
+        });
     }
     Document::parse(text.to_owned()).map_err(|error| {
         let line = error.span().map(|span| reader::line_of(text, span.start));
-        PresetError::Syntax { at: at(line), reason: legible_line(&error.message().trim().replace('\n', ", ")) }
+        PresetError::Syntax {
+            at: at(line),
+            reason: legible_line(&error.message().trim().replace('\n', ", ")),
+        }
     })
 }

@@ -12,14 +12,19 @@ use super::toml_value;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Merged {
     pub preset: Preset,
-    /// Paths of the values that both sides have changed to different values; they have the value of `mine`.
+    /// Paths of the values that both sides have changed to different values; they have the value
+    /// of `mine`.
     pub conflicts: Vec<String>,
 }
 
-/// What `theirs` becomes with the changes from `base` to `mine`, key by key: settings, effects, parameters, keyframes and the order of the
-/// stack. Where both have changed a value, that of `mine` stays.
+/// What `theirs` becomes with the changes from `base` to `mine`, key by key: settings, effects,
+/// parameters, keyframes and the order of the stack. Where both have changed a value, that of
+/// `mine` stays.
 pub fn merge(base: &Preset, mine: &Preset, theirs: &Preset) -> Merged {
-    let mut merged = Merged { preset: theirs.clone(), conflicts: Vec::new() };
+    let mut merged = Merged {
+        preset: theirs.clone(),
+        conflicts: Vec::new(),
+    };
     merged.settings(base, mine, theirs);
     merged.effects(base, mine, theirs);
     merged.order(base, mine);
@@ -36,7 +41,8 @@ impl Merged {
     fn settings(&mut self, base: &Preset, mine: &Preset, theirs: &Preset) {
         for setting in settings() {
             let [before, now, other] = [base, mine, theirs].map(|preset| setting.get(preset));
-            let [before, now_text, other] = [&before, &now, &other].map(|value| text(setting, value.as_ref()));
+            let [before, now_text, other] =
+                [&before, &now, &other].map(|value| text(setting, value.as_ref()));
             if before == now_text || other == now_text {
                 continue;
             }
@@ -73,24 +79,46 @@ impl Merged {
                 continue;
             }
             let new = EnabledEffect::new(&now.effect);
-            let EnabledEffect { words: before, on, .. } = before.unwrap_or(&new);
-            if let Some(other) = self.preset.stack.get_mut(name).filter(|other| now.on != *on && other.on != now.on) {
+            let EnabledEffect {
+                words: before, on, ..
+            } = before.unwrap_or(&new);
+            if let Some(other) = self
+                .preset
+                .stack
+                .get_mut(name)
+                .filter(|other| now.on != *on && other.on != now.on)
+            {
                 if other.on != *on {
                     self.conflicts.push(format!("{name}.on"));
                 }
                 other.on.clone_from(&now.on);
             }
-            for field in now.effect.fields.iter().filter(|field| !field.same(&now.words, before)) {
-                let Some(other) = self.preset.stack.get_mut(name) else { continue };
-                let Some(theirs) = other.effect.field(&field.name) else { continue };
+            for field in now
+                .effect
+                .fields
+                .iter()
+                .filter(|field| !field.same(&now.words, before))
+            {
+                let Some(other) = self.preset.stack.get_mut(name) else {
+                    continue;
+                };
+                let Some(theirs) = other.effect.field(&field.name) else {
+                    continue;
+                };
                 if !field.same(&other.words, before) && !field.same(&other.words, &now.words) {
                     self.conflicts.push(format!("{name}.{}", field.name));
                 }
-                // A value outside the range of another version of the effect is refused, and theirs stays.
+                // A value outside the range of another version of the effect is refused, and theirs
+                // stays.
                 drop(theirs.set_value(&mut other.words, &field.value(&now.words)));
             }
         }
-        for gone in base.stack.0.iter().filter(|before| mine.stack.get(&before.effect.name).is_none()) {
+        for gone in base
+            .stack
+            .0
+            .iter()
+            .filter(|before| mine.stack.get(&before.effect.name).is_none())
+        {
             self.preset.disable(&gone.effect.name);
         }
     }
@@ -98,18 +126,38 @@ impl Merged {
     /// The order of `mine`, if it is another than that of `base`.
     fn order(&mut self, base: &Preset, mine: &Preset) {
         let shared = |of: &Preset, other: &Preset| -> Vec<String> {
-            of.stack.0.iter().map(|enabled| enabled.effect.name.clone()).filter(|name| other.stack.get(name).is_some()).collect()
+            of.stack
+                .0
+                .iter()
+                .map(|enabled| enabled.effect.name.clone())
+                .filter(|name| other.stack.get(name).is_some())
+                .collect()
         };
         if shared(base, mine) != shared(mine, base) {
-            let position = |name: &str| mine.stack.0.iter().position(|enabled| enabled.effect.name == name).unwrap_or(usize::MAX);
-            self.preset.stack.0.sort_by_key(|enabled| position(&enabled.effect.name));
+            let position = |name: &str| {
+                mine.stack
+                    .0
+                    .iter()
+                    .position(|enabled| enabled.effect.name == name)
+                    .unwrap_or(usize::MAX)
+            };
+            self.preset
+                .stack
+                .0
+                .sort_by_key(|enabled| position(&enabled.effect.name));
         }
     }
 
     fn animation(&mut self, base: &Preset, mine: &Preset, theirs: &Preset) {
-        for track in mine.animation.tracks().iter().chain(base.animation.tracks()) {
+        for track in mine
+            .animation
+            .tracks()
+            .iter()
+            .chain(base.animation.tracks())
+        {
             let (effect, field) = (&track.effect().name, &track.field().name);
-            let [before, now, other] = [base, mine, theirs].map(|preset| preset.animation.get(effect, field));
+            let [before, now, other] =
+                [base, mine, theirs].map(|preset| preset.animation.get(effect, field));
             if before == now || other == now || self.preset.stack.get(effect).is_none() {
                 continue;
             }

@@ -1,4 +1,5 @@
-//! The schema of preset files. A changed name or default changes what files mean, so it raises the schema.
+//! The schema of preset files. A changed name or default changes what files mean, so it raises the
+//! schema.
 
 use toml_edit::Document;
 
@@ -7,17 +8,24 @@ use super::{error::PresetError, reader};
 /// The schema that this program writes, and the only one that it knows.
 pub const CURRENT: i64 = 2;
 
-/// A document in the current schema; true if its schema is newer, so that parts of it may be unknown. A missing schema is taken for the current
-/// one, with a warning.
+/// A document in the current schema; true if its schema is newer, so that parts of it may be
+/// unknown. A missing schema is taken for the current one, with a warning.
 ///
-/// No release had a schema before [`CURRENT`]. The next one is migrated here, in memory: a migration changes keys and words inside their lines,
-/// so that the lines of later errors are those of the file, and saving writes the new schema down.
+/// No release had a schema before [`CURRENT`]. The next one is migrated here, in memory: a
+/// migration changes keys and words inside their lines, so that the lines of later errors are those
+/// of the file, and saving writes the new schema down.
 ///
 /// # Errors
 /// The schema is no whole number, or older than [`CURRENT`].
-pub fn migrate(document: Document<String>, file: &str, warnings: &mut Vec<String>) -> Result<(Document<String>, bool), PresetError> {
+pub fn migrate(
+    document: Document<String>,
+    file: &str,
+    warnings: &mut Vec<String>,
+) -> Result<(Document<String>, bool), PresetError> {
     let Some(item) = document.get("schema") else {
-        warnings.push(format!("{file}: schema is missing; write schema = {CURRENT} on the first line"));
+        warnings.push(format!(
+            "{file}: schema is missing; write schema = {CURRENT} on the first line"
+        ));
         return Ok((document, false));
     };
     let at = reader::position(document.as_table(), "schema", file, document.raw());
@@ -28,9 +36,21 @@ pub fn migrate(document: Document<String>, file: &str, warnings: &mut Vec<String
             Ok((document, true))
         }
         Some(schema) => {
-            let todo = format!("write schema = {CURRENT}, then mend the keys that are reported as unknown");
-            Err(PresetError::value(at, "schema", format!("{schema} is older than {CURRENT}, the oldest that this program reads; {todo}")))
+            let todo = format!(
+                "write schema = {CURRENT}, then mend the keys that are reported as unknown"
+            );
+            Err(PresetError::value(
+                at,
+                "schema",
+                format!(
+                    "{schema} is older than {CURRENT}, the oldest that this program reads; {todo}"
+                ),
+            ))
         }
-        None => Err(PresetError::value(at, "schema", format!("must be the whole number {CURRENT}"))),
+        None => Err(PresetError::value(
+            at,
+            "schema",
+            format!("must be the whole number {CURRENT}"),
+        )),
     }
 }

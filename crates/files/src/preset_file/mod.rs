@@ -1,7 +1,9 @@
-//! Preset files: TOML files that hold a whole [`Preset`](crate::preset::Preset), sparse, versioned and keyed by name.
+//! Preset files: TOML files that hold a whole [`Preset`](crate::preset::Preset), sparse, versioned
+//! and keyed by name.
 //!
-//! Presence of `[effects.NAME]` enables an effect; `stack` is only order. Comments and unknown keys are kept and
-//! written back. Every value is finite and inside its hard range after loading, or the file is refused with a line.
+//! Presence of `[effects.NAME]` enables an effect; `stack` is only order. Comments and unknown keys
+//! are kept and written back. Every value is finite and inside its hard range after loading, or the
+//! file is refused with a line.
 
 mod apng;
 mod atomic;
@@ -37,18 +39,24 @@ mod write;
 pub use apng::{AnimatedPng, AnimationOptions};
 pub use atomic::{AtomicFile, Existing, is_taken, write_atomically};
 pub use edit::{set, unset};
-pub use effect_values::{EffectValues, SavedValues, is_effect_text, load_values, save_values, saved_values};
+pub use effect_values::{
+    EffectValues, SavedValues, is_effect_text, load_values, save_values, saved_values,
+};
 pub use error::{Position, PresetError};
 pub use file::{MAX_NAME, PresetFile, save, to_shared_toml, to_toml};
 pub use formats::{MODEL_FORMATS, ModelFormat};
 pub use frame_status::{FrameStatus, frame_status};
-pub use gallery::{BUILTIN_DIR, Folders, GalleryEntry, Origin, gallery, open, user_effects_folder, user_folder};
+pub use gallery::{
+    BUILTIN_DIR, Folders, GalleryEntry, Origin, gallery, open, user_effects_folder, user_folder,
+};
 pub use goldens::{golden_folder, golden_paths};
 pub use hash::{Fnv, hex, preset_hash, scene_hash};
 pub use load::{load, load_with, parse, parse_file, parse_with};
 pub use look::Look;
 pub use manage::{duplicate, file_stem, rename};
 pub use merge::{Merged, merge};
-pub use picture::{Provenance, png_bytes, png_of_frame, png_pixels, png_with_preset, preset_from_png};
+pub use picture::{
+    Provenance, png_bytes, png_of_frame, png_pixels, png_with_preset, preset_from_png,
+};
 pub use scene::{SceneError, load_scene, scene_bounds};
 pub use share::{from_line, to_line};

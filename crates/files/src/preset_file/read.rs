@@ -1,5 +1,5 @@
-//! Reading: TOML of the current schema to a [`Preset`]. Unknown keys warn; everything else that is wrong is an error with its
-//! line.
+//! Reading: TOML of the current schema to a [`Preset`]. Unknown keys warn; everything else that is
+//! wrong is an error with its line.
 
 use toml_edit::{Document, TableLike};
 
@@ -34,12 +34,21 @@ pub struct ReadPreset {
     pub catalog: Catalog,
 }
 
-/// Reads a whole preset that may use the effects of `catalog`; `file` is what errors and warnings call it.
-pub fn read(document: &Document<String>, file: &str, catalog: &Catalog) -> Result<ReadPreset, PresetError> {
+/// Reads a whole preset that may use the effects of `catalog`; `file` is what errors and warnings
+/// call it.
+pub fn read(
+    document: &Document<String>,
+    file: &str,
+    catalog: &Catalog,
+) -> Result<ReadPreset, PresetError> {
     let mut reader = Reader::new(file, Some(document.raw()), catalog.clone());
     let (root, mut preset) = (document.as_table(), Preset::default());
     for section in SECTIONS {
-        let table = if section.name.is_empty() { Some(root as &dyn TableLike) } else { reader.table(root, "", section.name)? };
+        let table = if section.name.is_empty() {
+            Some(root as &dyn TableLike)
+        } else {
+            reader.table(root, "", section.name)?
+        };
         if let Some(table) = table {
             section.add(&mut preset);
             read_section(&mut reader, table, section, &mut preset)?;
@@ -56,83 +65,180 @@ pub fn read(document: &Document<String>, file: &str, catalog: &Catalog) -> Resul
         keyframes::read(&mut reader, table, &mut preset)?;
     }
     if let Some(item) = root.get("stack") {
-        let has_table = |name: &str| root.get("effects").and_then(|effects| effects.get(name)).is_some();
+        let has_table = |name: &str| {
+            root.get("effects")
+                .and_then(|effects| effects.get(name))
+                .is_some()
+        };
         preset.stack = order::read(item.as_value(), &preset.stack, &reader.catalog, &has_table)
             .map_err(|reason| reader.error(root, "", "stack", reason))?;
     }
-    preset.check_budget().map_err(|[key, reason]| PresetError::value(reader.position(root, "test"), key, reason))?;
+    preset
+        .check_budget()
+        .map_err(|[key, reason]| PresetError::value(reader.position(root, "test"), key, reason))?;
     let catalog = reader.catalog.clone();
-    Ok(ReadPreset { preset, warnings: reader.all_warnings(), brought_effects, catalog })
+    Ok(ReadPreset {
+        preset,
+        warnings: reader.all_warnings(),
+        brought_effects,
+        catalog,
+    })
 }
 
 /// Reads every setting of one section; at the top of the file, tables are left out.
-fn read_section(reader: &mut Reader<'_>, table: &dyn TableLike, section: &'static Section, preset: &mut Preset) -> Result<(), PresetError> {
-    let (is_top, prefix) = (section.name.is_empty(), if section.name.is_empty() { String::new() } else { format!("{}.", section.name) });
+fn read_section(
+    reader: &mut Reader<'_>,
+    table: &dyn TableLike,
+    section: &'static Section,
+    preset: &mut Preset,
+) -> Result<(), PresetError> {
+    let (is_top, prefix) = (
+        section.name.is_empty(),
+        if section.name.is_empty() {
+            String::new()
+        } else {
+            format!("{}.", section.name)
+        },
+    );
     for (name, item) in table.iter() {
         let Some(setting) = section.setting(name) else {
-            let tables = || SECTIONS.iter().map(|section| section.name).chain(OTHER_KEYS).filter(|_| is_top);
+            let tables = || {
+                SECTIONS
+                    .iter()
+                    .map(|section| section.name)
+                    .chain(OTHER_KEYS)
+                    .filter(|_| is_top)
+            };
             if !tables().any(|known| known == name) {
-                reader.unknown(table, &prefix, name, section.settings.iter().map(|setting| setting.name.as_str()).chain(tables()));
+                reader.unknown(
+                    table,
+                    &prefix,
+                    name,
+                    section
+                        .settings
+                        .iter()
+                        .map(|setting| setting.name.as_str())
+                        .chain(tables()),
+                );
             }
             continue;
         };
-        if let Some(alternative) = setting.alternative.filter(|alternative| table.contains_key(alternative)) {
-            return Err(reader.error(table, &prefix, name, format!("and {prefix}{alternative} exclude each other")));
+        if let Some(alternative) = setting
+            .alternative
+            .filter(|alternative| table.contains_key(alternative))
+        {
+            return Err(reader.error(
+                table,
+                &prefix,
+                name,
+                format!("and {prefix}{alternative} exclude each other"),
+            ));
         }
         let value = reader.value(table, &prefix, setting, item)?;
-        setting.set(preset, &value).map_err(|error| reader.error(table, &prefix, name, error))?;
+        setting
+            .set(preset, &value)
+            .map_err(|error| reader.error(table, &prefix, name, error))?;
     }
     Ok(())
 }
 
-/// Adds the effects whose text the preset holds; returns the names of those that were not known with this text.
-fn read_effect_files(reader: &mut Reader<'_>, table: &dyn TableLike) -> Result<Vec<String>, PresetError> {
+/// Adds the effects whose text the preset holds; returns the names of those that were not known
+/// with this text.
+fn read_effect_files(
+    reader: &mut Reader<'_>,
+    table: &dyn TableLike,
+) -> Result<Vec<String>, PresetError> {
     let mut brought = Vec::new();
     let prefix = format!("{EFFECT_FILES}.");
     for (name, item) in table.iter() {
-        let Some(text) = item.as_str() else { return Err(reader.error(table, &prefix, name, "must be the text of an effect file")) };
+        let Some(text) = item.as_str() else {
+            return Err(reader.error(table, &prefix, name, "must be the text of an effect file"));
+        };
         if brought.len() == MAX_BROUGHT {
-            return Err(reader.error(table, &prefix, name, format!("is one effect too many; a preset brings at most {MAX_BROUGHT}")));
+            return Err(reader.error(
+                table,
+                &prefix,
+                name,
+                format!("is one effect too many; a preset brings at most {MAX_BROUGHT}"),
+            ));
         }
         let known = reader.catalog.find(name).ok().flatten();
-        if known.is_some_and(|known| known.source.as_ref().is_some_and(|source| source.written == text)) {
+        if known.is_some_and(|known| {
+            known
+                .source
+                .as_ref()
+                .is_some_and(|source| source.written == text)
+        }) {
             continue;
         }
-        reader.catalog.add_text(name, text).map_err(|error| reader.error(table, &prefix, name, format!("cannot be used: {error}")))?;
+        reader.catalog.add_text(name, text).map_err(|error| {
+            reader.error(table, &prefix, name, format!("cannot be used: {error}"))
+        })?;
         brought.push(name.to_owned());
     }
     Ok(brought)
 }
 
-fn read_effects(reader: &mut Reader<'_>, effects: &dyn TableLike, stack: &mut Stack) -> Result<(), PresetError> {
+fn read_effects(
+    reader: &mut Reader<'_>,
+    effects: &dyn TableLike,
+    stack: &mut Stack,
+) -> Result<(), PresetError> {
     for (name, _) in effects.iter() {
-        let Some(table) = reader.table(effects, "effects.", name)? else { continue };
+        let Some(table) = reader.table(effects, "effects.", name)? else {
+            continue;
+        };
         match reader.effect(effects, "effects.", name)? {
             Some(effect) => read_effect(reader, table, stack.enable(&effect))?,
             None => reader.unknown_effect(effects, "effects.", name),
         }
     }
-    let error = |conflict: Conflict| PresetError::value(reader.position(effects, conflict.effect()), "effects", conflict.to_string());
+    let error = |conflict: Conflict| {
+        PresetError::value(
+            reader.position(effects, conflict.effect()),
+            "effects",
+            conflict.to_string(),
+        )
+    };
     stack.check().map_err(error)
 }
 
-fn read_effect(reader: &mut Reader<'_>, table: &dyn TableLike, enabled: &mut EnabledEffect) -> Result<(), PresetError> {
+fn read_effect(
+    reader: &mut Reader<'_>,
+    table: &dyn TableLike,
+    enabled: &mut EnabledEffect,
+) -> Result<(), PresetError> {
     let prefix = format!("effects.{}.", enabled.effect.name);
     for (name, item) in table.iter() {
         if name == INSTANCE_KEY && enabled.effect.base.is_some() {
             continue;
         }
         if name == SCOPE_KEY {
-            let toml = item.as_value().ok_or_else(|| reader.error(table, &prefix, name, "must be a list, not a table"))?;
-            enabled.on = scope::read(toml, &enabled.effect).map_err(|reason| reader.error(table, &prefix, name, reason))?;
+            let toml = item
+                .as_value()
+                .ok_or_else(|| reader.error(table, &prefix, name, "must be a list, not a table"))?;
+            enabled.on = scope::read(toml, &enabled.effect)
+                .map_err(|reason| reader.error(table, &prefix, name, reason))?;
             continue;
         }
         let Some(field) = enabled.effect.field(name) else {
-            reader.unknown(table, &prefix, name, enabled.effect.fields.iter().map(|field| field.name.as_str()).chain([SCOPE_KEY]));
+            reader.unknown(
+                table,
+                &prefix,
+                name,
+                enabled
+                    .effect
+                    .fields
+                    .iter()
+                    .map(|field| field.name.as_str())
+                    .chain([SCOPE_KEY]),
+            );
             continue;
         };
         let value = reader.value(table, &prefix, field, item)?;
-        field.set_value(&mut enabled.words, &value).map_err(|error| reader.error(table, &prefix, name, error))?;
+        field
+            .set_value(&mut enabled.words, &value)
+            .map_err(|error| reader.error(table, &prefix, name, error))?;
     }
     Ok(())
 }

@@ -35,7 +35,13 @@ pub struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     pub fn new(file: &'a str, text: Option<&'a str>, catalog: Catalog) -> Self {
-        Self { file, text, catalog, warnings: Vec::new(), unnamed: 0 }
+        Self {
+            file,
+            text,
+            catalog,
+            warnings: Vec::new(),
+            unnamed: 0,
+        }
     }
 
     /// Adds a warning while there is room for it.
@@ -49,7 +55,8 @@ impl<'a> Reader<'a> {
 
     /// The warnings, and how many more there would be.
     pub fn all_warnings(self) -> Vec<String> {
-        let more = (self.unnamed > 0).then(|| format!("{}: {} more warnings of this kind", self.file, self.unnamed));
+        let more = (self.unnamed > 0)
+            .then(|| format!("{}: {} more warnings of this kind", self.file, self.unnamed));
         self.warnings.into_iter().chain(more).collect()
     }
 
@@ -57,28 +64,55 @@ impl<'a> Reader<'a> {
     pub fn position(&self, table: &dyn TableLike, name: &str) -> Position {
         match self.text {
             Some(text) => position(table, name, self.file, text),
-            None => Position { file: self.file.into(), line: None },
+            None => Position {
+                file: self.file.into(),
+                line: None,
+            },
         }
     }
 
     /// The table called `name`, if it is there.
-    pub fn table<'t>(&self, parent: &'t dyn TableLike, prefix: &str, name: &str) -> Result<Option<&'t dyn TableLike>, PresetError> {
-        let Some(item) = parent.get(name) else { return Ok(None) };
+    pub fn table<'t>(
+        &self,
+        parent: &'t dyn TableLike,
+        prefix: &str,
+        name: &str,
+    ) -> Result<Option<&'t dyn TableLike>, PresetError> {
+        let Some(item) = parent.get(name) else {
+            return Ok(None);
+        };
         let path = format!("{prefix}{name}");
         let reason = format!("must be a table, written [{path}]");
-        item.as_table_like().map(Some).ok_or_else(|| PresetError::value(self.position(parent, name), path, reason))
+        item.as_table_like()
+            .map(Some)
+            .ok_or_else(|| PresetError::value(self.position(parent, name), path, reason))
     }
 
-    /// The effect called `name`, which is a key of `table`; none if it is unknown. Its own table may say which effect it is an
-    /// instance of.
-    pub fn effect(&mut self, table: &dyn TableLike, prefix: &str, name: &str) -> Result<Option<Arc<Effect>>, PresetError> {
-        let base = table.get(name).and_then(Item::as_table_like).and_then(|own| own.get(INSTANCE_KEY));
+    /// The effect called `name`, which is a key of `table`; none if it is unknown. Its own table
+    /// may say which effect it is an instance of.
+    pub fn effect(
+        &mut self,
+        table: &dyn TableLike,
+        prefix: &str,
+        name: &str,
+    ) -> Result<Option<Arc<Effect>>, PresetError> {
+        let base = table
+            .get(name)
+            .and_then(Item::as_table_like)
+            .and_then(|own| own.get(INSTANCE_KEY));
         if let Some(base) = base {
             let Some(base) = base.as_str() else {
-                return Err(self.error(table, prefix, name, "must name an effect as text in the key effect"));
+                return Err(self.error(
+                    table,
+                    prefix,
+                    name,
+                    "must name an effect as text in the key effect",
+                ));
             };
             let added = self.catalog.add_instance(name, base);
-            return added.map(Some).map_err(|reason| self.error(table, prefix, name, reason));
+            return added
+                .map(Some)
+                .map_err(|reason| self.error(table, prefix, name, reason));
         }
         self.catalog
             .find(name)
@@ -86,8 +120,15 @@ impl<'a> Reader<'a> {
             .map_err(|error| self.error(table, prefix, name, format!("cannot be used: {error}")))
     }
 
-    /// The value of `param`, which stands in `table` as `item`; its type is right, its range is not checked.
-    pub fn value(&self, table: &dyn TableLike, prefix: &str, param: &Param, item: &Item) -> Result<Value, PresetError> {
+    /// The value of `param`, which stands in `table` as `item`; its type is right, its range is not
+    /// checked.
+    pub fn value(
+        &self,
+        table: &dyn TableLike,
+        prefix: &str,
+        param: &Param,
+        item: &Item,
+    ) -> Result<Value, PresetError> {
         let read = match item.as_value() {
             Some(toml) => toml_value::read(param, toml, &|toml| number_text(toml, self.text)),
             None => Err("must be a value, not a table".into()),
@@ -96,8 +137,18 @@ impl<'a> Reader<'a> {
     }
 
     /// The error of the key `name` in `table`.
-    pub fn error(&self, table: &dyn TableLike, prefix: &str, name: &str, reason: impl ToString) -> PresetError {
-        PresetError::value(self.position(table, name), format!("{prefix}{name}"), reason.to_string())
+    pub fn error(
+        &self,
+        table: &dyn TableLike,
+        prefix: &str,
+        name: &str,
+        reason: impl ToString,
+    ) -> PresetError {
+        PresetError::value(
+            self.position(table, name),
+            format!("{prefix}{name}"),
+            reason.to_string(),
+        )
     }
 
     /// Warns of an effect that is not in the catalog.
@@ -106,12 +157,24 @@ impl<'a> Reader<'a> {
     }
 
     /// Warns of a key that is not one of `known`.
-    pub fn unknown<'k>(&mut self, table: &dyn TableLike, prefix: &str, name: &str, known: impl Iterator<Item = &'k str>) {
+    pub fn unknown<'k>(
+        &mut self,
+        table: &dyn TableLike,
+        prefix: &str,
+        name: &str,
+        known: impl Iterator<Item = &'k str>,
+    ) {
         self.warn(|reader| unknown(reader, table, prefix, name, known));
     }
 }
 
-fn unknown<'k>(reader: &Reader<'_>, table: &dyn TableLike, prefix: &str, name: &str, known: impl Iterator<Item = &'k str>) -> String {
+fn unknown<'k>(
+    reader: &Reader<'_>,
+    table: &dyn TableLike,
+    prefix: &str,
+    name: &str,
+    known: impl Iterator<Item = &'k str>,
+) -> String {
     let (at, hint) = (reader.position(table, name), did_you_mean(name, known));
     format!("{at}: unknown key {prefix}{}{hint}", shortened(name))
 }
@@ -126,13 +189,21 @@ fn shortened(name: &str) -> String {
 
 /// Where the key `name` of `table` stands in `text`, or the table itself when it has no such key.
 pub fn position(table: &dyn TableLike, name: &str, file: &str, text: &str) -> Position {
-    let span = table.get_key_value(name).and_then(|(key, item)| key.span().or_else(|| item.span()));
-    Position { file: file.into(), line: span.map(|span| line_of(text, span.start)) }
+    let span = table
+        .get_key_value(name)
+        .and_then(|(key, item)| key.span().or_else(|| item.span()));
+    Position {
+        file: file.into(),
+        line: span.map(|span| line_of(text, span.start)),
+    }
 }
 
 /// The line of a byte, counted from 1.
 pub fn line_of(text: &str, byte: usize) -> usize {
-    1 + text.as_bytes()[..byte.min(text.len())].iter().filter(|&&b| b == b'\n').count()
+    1 + text.as_bytes()[..byte.min(text.len())]
+        .iter()
+        .filter(|&&b| b == b'\n')
+        .count()
 }
 
 /// A number as it stands in the file.
@@ -143,6 +214,8 @@ pub fn number_text(toml: &Toml, text: Option<&str>) -> String {
         _ => None,
     };
     let raw = repr.map(|repr| repr.as_raw());
-    let written = raw.and_then(|raw| raw.as_str()).or_else(|| text?.get(raw?.span()?));
+    let written = raw
+        .and_then(|raw| raw.as_str())
+        .or_else(|| text?.get(raw?.span()?));
     written.map_or_else(|| toml.to_string().trim().to_owned(), str::to_owned)
 }

@@ -24,22 +24,31 @@ pub enum SceneError {
     Missing(#[from] MissingInScene),
 }
 
-/// Builds or loads the scene of a preset, with its ground and its room; a relative model path starts at the folder of `preset_path`.
+/// Builds or loads the scene of a preset, with its ground and its room; a relative model path
+/// starts at the folder of `preset_path`.
 ///
 /// # Errors
-/// No such built-in scene or model, a model that cannot be read, or a clip or camera that the scene does not have.
+/// No such built-in scene or model, a model that cannot be read, or a clip or camera that the scene
+/// does not have.
 pub fn load_scene(preset: &Preset, preset_path: Option<&Path>) -> Result<Arc<Scene>, SceneError> {
     let scene = load_source(&preset.scene, preset_path)?;
     preset.check(&scene)?;
     let scene = preset.ground.iter().fold(scene, Scene::on_ground);
-    Ok(Arc::new(if preset.room > 0.0 { scene.in_room(preset.room) } else { scene }))
+    Ok(Arc::new(if preset.room > 0.0 {
+        scene.in_room(preset.room)
+    } else {
+        scene
+    }))
 }
 
 /// The box of a scene without ground and room, which is built or loaded for that.
 ///
 /// # Errors
 /// No such built-in scene or model, or a model that cannot be read.
-pub fn scene_bounds(source: &SceneSource, preset_path: Option<&Path>) -> Result<Bounds, SceneError> {
+pub fn scene_bounds(
+    source: &SceneSource,
+    preset_path: Option<&Path>,
+) -> Result<Bounds, SceneError> {
     Ok(load_source(source, preset_path)?.bounds())
 }
 
@@ -49,7 +58,9 @@ fn load_source(source: &SceneSource, preset_path: Option<&Path>) -> Result<Scene
         SceneSource::File(model) => {
             let path = model_path(model, preset_path);
             if !path.exists() {
-                return Err(SceneError::Absent { path: path.display().to_string() });
+                return Err(SceneError::Absent {
+                    path: path.display().to_string(),
+                });
             }
             // What has another extension is loaded too, if it is one by its content.
             let format = ModelFormat::of(&path).unwrap_or(&MODEL_FORMATS[0]);

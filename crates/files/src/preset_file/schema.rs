@@ -19,7 +19,10 @@ use crate::{
 /// The whole schema. `presets/schema.json` is this, and a test fails when it is stale.
 pub fn schema() -> Json {
     let mut properties = Map::new();
-    properties.insert("schema".into(), json!({ "const": migrate::CURRENT, "description": "Version of the format" }));
+    properties.insert(
+        "schema".into(),
+        json!({ "const": migrate::CURRENT, "description": "Version of the format" }),
+    );
     properties.extend(section_schema(&TOP));
     let names: Vec<_> = EFFECTS.iter().map(|effect| effect.name.as_str()).collect();
     properties.insert(
@@ -33,14 +36,26 @@ pub fn schema() -> Json {
         properties
             .insert(section.name.into(), json!({ "type": "object", "description": section.doc, "properties": section_schema(section) }));
     }
-    let effects: Map<String, Json> = EFFECTS.iter().map(|effect| (effect.name.to_owned(), effect_schema(effect))).collect();
+    let effects: Map<String, Json> = EFFECTS
+        .iter()
+        .map(|effect| (effect.name.to_owned(), effect_schema(effect)))
+        .collect();
     let doc = "Presence of a table enables the effect";
-    properties.insert("effects".into(), json!({ "type": "object", "description": doc, "properties": effects }));
+    properties.insert(
+        "effects".into(),
+        json!({ "type": "object", "description": doc, "properties": effects }),
+    );
     let doc = "Texts of effect files that a shared preset brings, by name";
     properties.insert(EFFECT_FILES.into(), json!({ "type": "object", "description": doc, "additionalProperties": { "type": "string" } }));
-    let animation: Map<String, Json> = EFFECTS.iter().map(|effect| (effect.name.to_owned(), animation_schema(effect))).collect();
+    let animation: Map<String, Json> = EFFECTS
+        .iter()
+        .map(|effect| (effect.name.to_owned(), animation_schema(effect)))
+        .collect();
     let doc = "Parameters that follow the clock, as lists of keyframes";
-    properties.insert("animation".into(), json!({ "type": "object", "description": doc, "properties": animation }));
+    properties.insert(
+        "animation".into(),
+        json!({ "type": "object", "description": doc, "properties": animation }),
+    );
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "rasterlab preset",
@@ -78,8 +93,16 @@ fn refused(path: &str) -> Option<Json> {
 
 fn effect_schema(effect: &Effect) -> Json {
     let defaults = &effect.defaults;
-    let mut properties: Map<String, Json> =
-        effect.fields.iter().map(|field| (field.name.clone(), param_schema(field, Some(field.value(defaults))))).collect();
+    let mut properties: Map<String, Json> = effect
+        .fields
+        .iter()
+        .map(|field| {
+            (
+                field.name.clone(),
+                param_schema(field, Some(field.value(defaults))),
+            )
+        })
+        .collect();
     if effect.has_scope() {
         properties.insert(SCOPE_KEY.into(), scope_schema());
     }
@@ -95,9 +118,13 @@ fn scope_schema() -> Json {
 
 fn animation_schema(effect: &Effect) -> Json {
     let track = |field: &Arc<crate::params::Field>| {
-        let entry = entry_params(field).map(|param| (param.name.clone(), param_schema(&param, None)));
+        let entry =
+            entry_params(field).map(|param| (param.name.clone(), param_schema(&param, None)));
         let keyframe = json!({ "type": "object", "required": ["time_s", "value"], "properties": Map::from_iter(entry) });
-        (field.name.clone(), json!({ "type": "array", "minItems": 1, "maxItems": MAX_KEYFRAMES, "items": keyframe }))
+        (
+            field.name.clone(),
+            json!({ "type": "array", "minItems": 1, "maxItems": MAX_KEYFRAMES, "items": keyframe }),
+        )
     };
     json!({ "type": "object", "properties": effect.fields.iter().map(track).collect::<Map<String, Json>>() })
 }
@@ -105,22 +132,35 @@ fn animation_schema(effect: &Effect) -> Json {
 fn param_schema(param: &Param, default: Option<Value>) -> Json {
     let mut schema = match &param.value_type {
         ValueType::Text { max_chars } => json!({ "type": "string", "maxLength": max_chars }),
-        ValueType::TextList { max_entries, max_chars } => {
+        ValueType::TextList {
+            max_entries,
+            max_chars,
+        } => {
             json!({ "type": "array", "maxItems": max_entries, "items": { "type": "string", "maxLength": max_chars } })
         }
         ValueType::Bool => json!({ "type": "boolean" }),
         ValueType::Choice(words) => json!({ "enum": words }),
         numbers => {
-            let kind = if numbers.is_continuous() { "number" } else { "integer" };
+            let kind = if numbers.is_continuous() {
+                "number"
+            } else {
+                "integer"
+            };
             let number = json!({ "type": kind, "minimum": exact(param.hard[0]), "maximum": exact(param.hard[1]) });
             match numbers.components() {
                 1 => number,
-                count => json!({ "type": "array", "minItems": count, "maxItems": count, "items": number }),
+                count => {
+                    json!({ "type": "array", "minItems": count, "maxItems": count, "items": number })
+                }
             }
         }
     };
     let doc = param.doc.trim();
-    schema["description"] = if param.unit.is_empty() { doc.into() } else { format!("{doc} ({})", param.unit).into() };
+    schema["description"] = if param.unit.is_empty() {
+        doc.into()
+    } else {
+        format!("{doc} ({})", param.unit).into()
+    };
     if let Some(default) = default {
         schema["default"] = default_json(&param.value_type, &default);
     }
@@ -130,7 +170,9 @@ fn param_schema(param: &Param, default: Option<Value>) -> Json {
 /// A default as the file would have it.
 fn default_json(value_type: &ValueType, default: &Value) -> Json {
     let shortest = |number: &f64| match value_type.is_single() {
-        true => format!("{:?}", *number as f32).parse().map_or(json!(number), exact),
+        true => format!("{:?}", *number as f32)
+            .parse()
+            .map_or(json!(number), exact),
         false => exact(*number),
     };
     match default {
@@ -150,5 +192,9 @@ fn default_json(value_type: &ValueType, default: &Value) -> Json {
 
 /// Whole numbers without a point.
 fn exact(number: f64) -> Json {
-    if number.fract() == 0.0 && number.abs() < 1e15 { json!(number as i64) } else { json!(number) }
+    if number.fract() == 0.0 && number.abs() < 1e15 {
+        json!(number as i64)
+    } else {
+        json!(number)
+    }
 }

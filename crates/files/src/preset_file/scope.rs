@@ -10,20 +10,31 @@ use crate::{
 /// In an effect's table: patterns of the parts that it changes.
 pub const SCOPE_KEY: &str = "on";
 
-/// The scope that `toml` gives `effect`: a list of patterns, or one pattern. An empty list is the whole scene.
+/// The scope that `toml` gives `effect`: a list of patterns, or one pattern. An empty list is the
+/// whole scene.
 ///
 /// # Errors
-/// Completes a sentence that begins with the name of the key: a value of another type, a faulty pattern, too many patterns, or an effect
-/// that cannot be limited.
+/// Completes a sentence that begins with the name of the key: a value of another type, a faulty
+/// pattern, too many patterns, or an effect that cannot be limited.
 pub fn read(toml: &Toml, effect: &Effect) -> Result<Scope, String> {
-    let malformed = || r#"must be a list of patterns such as ["material:Lens*", "node:Body", "mesh:Helmet"]"#.to_owned();
+    let malformed = || {
+        r#"must be a list of patterns such as ["material:Lens*", "node:Body", "mesh:Helmet"]"#
+            .to_owned()
+    };
     let texts: Vec<&str> = match toml {
         Toml::String(text) => vec![text.value()],
-        Toml::Array(list) => list.iter().map(Toml::as_str).collect::<Option<_>>().ok_or_else(malformed)?,
+        Toml::Array(list) => list
+            .iter()
+            .map(Toml::as_str)
+            .collect::<Option<_>>()
+            .ok_or_else(malformed)?,
         _ => return Err(malformed()),
     };
     if texts.len() > MAX_PATTERNS {
-        return Err(format!("has {} patterns; at most {MAX_PATTERNS} are allowed", texts.len()));
+        return Err(format!(
+            "has {} patterns; at most {MAX_PATTERNS} are allowed",
+            texts.len()
+        ));
     }
     let patterns: Vec<PartPattern> = texts
         .into_iter()
@@ -53,5 +64,11 @@ pub fn check(effect: &Effect) -> Result<(), String> {
 
 /// The value that [`read`] takes back to the same scope; none for the whole scene.
 pub fn write(scope: &Scope) -> Option<Toml> {
-    (!scope.is_whole_scene()).then(|| scope.patterns().iter().map(PartPattern::to_string).collect())
+    (!scope.is_whole_scene()).then(|| {
+        scope
+            .patterns()
+            .iter()
+            .map(PartPattern::to_string)
+            .collect()
+    })
 }

@@ -1,4 +1,5 @@
-//! Sharing: a preset as one line of text, `rasterlab1:` + base64(deflate(TOML)). No server, no account.
+//! Sharing: a preset as one line of text, `rasterlab1:` + base64(deflate(TOML)). No server, no
+//! account.
 
 use std::io::{Read as _, Write as _};
 use std::path::{Component, Path};
@@ -18,19 +19,40 @@ const PREFIX: &str = "rasterlab1:";
 /// The preset as one line.
 pub fn to_line(preset_file: &PresetFile) -> String {
     let mut deflate = DeflateEncoder::new(Vec::new(), Compression::best());
-    deflate.write_all(to_shared_toml(preset_file).as_bytes()).expect("memory takes all bytes");
-    format!("{PREFIX}{}", STANDARD.encode(deflate.finish().expect("memory takes all bytes")))
+    deflate
+        .write_all(to_shared_toml(preset_file).as_bytes())
+        .expect("memory takes all bytes");
+    format!(
+        "{PREFIX}{}",
+        STANDARD.encode(deflate.finish().expect("memory takes all bytes"))
+    )
 }
 
-/// Reads a pasted line; white space from a mail or chat is forgiven. A model path may not leave the folder.
+/// Reads a pasted line; white space from a mail or chat is forgiven. A model path may not leave the
+/// folder.
 pub fn from_line(line: &str) -> Result<PresetFile, PresetError> {
-    let not_ours = |reason: &str| PresetError::NotOurs { what: "the pasted text".into(), reason: reason.into() };
-    let packed = line.trim().strip_prefix(PREFIX).ok_or_else(|| not_ours("it does not begin with rasterlab1:"))?;
-    let packed: String = packed.chars().filter(|c| !c.is_whitespace()).take(MAX_BYTES * 2).collect();
-    let deflated = STANDARD.decode(packed).map_err(|_| not_ours("it is cut off or garbled"))?;
+    let not_ours = |reason: &str| PresetError::NotOurs {
+        what: "the pasted text".into(),
+        reason: reason.into(),
+    };
+    let packed = line
+        .trim()
+        .strip_prefix(PREFIX)
+        .ok_or_else(|| not_ours("it does not begin with rasterlab1:"))?;
+    let packed: String = packed
+        .chars()
+        .filter(|c| !c.is_whitespace())
+        .take(MAX_BYTES * 2)
+        .collect();
+    let deflated = STANDARD
+        .decode(packed)
+        .map_err(|_| not_ours("it is cut off or garbled"))?;
     let mut toml = Vec::new();
     let inflate = DeflateDecoder::new(deflated.as_slice());
-    inflate.take(MAX_BYTES as u64 + 1).read_to_end(&mut toml).map_err(|_| not_ours("it is cut off or garbled"))?;
+    inflate
+        .take(MAX_BYTES as u64 + 1)
+        .read_to_end(&mut toml)
+        .map_err(|_| not_ours("it is cut off or garbled"))?;
     if toml.len() > MAX_BYTES {
         return Err(not_ours("it unpacks to more than 1 MiB"));
     }
@@ -47,5 +69,8 @@ pub fn from_line(line: &str) -> Result<PresetFile, PresetError> {
 /// Is this a path inside the folder that it starts at, on every system?
 pub(super) fn stays_inside(model: &Path) -> bool {
     let text = model.to_string_lossy();
-    model.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) && !text.contains(['\\', ':'])
+    model
+        .components()
+        .all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
+        && !text.contains(['\\', ':'])
 }

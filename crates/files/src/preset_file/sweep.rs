@@ -23,23 +23,46 @@ impl Variation {
     /// # Errors
     /// In a sentence that says what to write.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let wrong = |why: &str| format!("{text:?} {why}; write PATH=FROM..TO:STEPS, for instance facet.amount=0..1:5, or PATH=A,B,C");
+        let wrong = |why: &str| {
+            format!(
+                "{text:?} {why}; write PATH=FROM..TO:STEPS, for instance facet.amount=0..1:5, or PATH=A,B,C"
+            )
+        };
         let (path, values) = text.split_once('=').ok_or_else(|| wrong("has no values"))?;
         let (path, values) = (path.trim(), values.trim());
         if path.is_empty() {
             return Err(wrong("names no value"));
         }
         let Some((from, rest)) = values.split_once("..") else {
-            let values: Vec<String> = values.split(',').map(|value| value.trim().to_owned()).collect();
+            let values: Vec<String> = values
+                .split(',')
+                .map(|value| value.trim().to_owned())
+                .collect();
             return match values.iter().any(String::is_empty) || values.len() < 2 {
                 true => Err(wrong("needs at least two values")),
-                false => Self { path: path.into(), values }.checked(),
+                false => Self {
+                    path: path.into(),
+                    values,
+                }
+                .checked(),
             };
         };
-        let (to, steps) = rest.split_once(':').ok_or_else(|| wrong("does not say in how many steps"))?;
-        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
-        let (Some(from), Some(to)) = (number(from), number(to)) else { return Err(wrong("has an end that is no number")) };
-        let steps = steps.trim().parse::<usize>().map_err(|_| wrong("has a number of steps that is no whole number"))?;
+        let (to, steps) = rest
+            .split_once(':')
+            .ok_or_else(|| wrong("does not say in how many steps"))?;
+        let number = |text: &str| {
+            text.trim()
+                .parse::<f64>()
+                .ok()
+                .filter(|number| number.is_finite())
+        };
+        let (Some(from), Some(to)) = (number(from), number(to)) else {
+            return Err(wrong("has an end that is no number"));
+        };
+        let steps = steps
+            .trim()
+            .parse::<usize>()
+            .map_err(|_| wrong("has a number of steps that is no whole number"))?;
         if !(2..=MAX_CELLS).contains(&steps) {
             return Err(format!("{text:?} has {steps} steps; take 2 to {MAX_CELLS}"));
         }
@@ -53,20 +76,30 @@ impl Variation {
             let t = step as f64 / (steps - 1) as f64;
             number_text(from * (1.0 - t) + to * t)
         };
-        Self { path: path.into(), values: (0..steps).map(at).collect() }
+        Self {
+            path: path.into(),
+            values: (0..steps).map(at).collect(),
+        }
     }
 
     fn checked(self) -> Result<Self, String> {
         match self.values.len() {
             0..=MAX_CELLS => Ok(self),
-            count => Err(format!("{} has {count} values; take at most {MAX_CELLS}", self.path)),
+            count => Err(format!(
+                "{} has {count} values; take at most {MAX_CELLS}",
+                self.path
+            )),
         }
     }
 }
 
-/// A number in nine digits, without those that rounding leaves behind: `0.3`, not `0.30000000000000004`.
+/// A number in nine digits, without those that rounding leaves behind: `0.3`, not
+/// `0.30000000000000004`.
 fn number_text(number: f64) -> String {
-    format!("{number:.8e}").parse::<f64>().map_or_else(|_| number.to_string(), |rounded| (rounded + 0.0).to_string())
+    format!("{number:.8e}").parse::<f64>().map_or_else(
+        |_| number.to_string(),
+        |rounded| (rounded + 0.0).to_string(),
+    )
 }
 
 /// A preset of a sheet, and the values that make it.
@@ -81,7 +114,11 @@ impl Cell {
     /// `amount=0.25 spacing=3`: the values without the names of their effects.
     pub fn caption(&self) -> String {
         let short = |path: &str| path.rsplit('.').next().unwrap_or(path).to_owned();
-        self.values.iter().map(|(path, value)| format!("{}={value}", short(path))).collect::<Vec<_>>().join(" ")
+        self.values
+            .iter()
+            .map(|(path, value)| format!("{}={value}", short(path)))
+            .collect::<Vec<_>>()
+            .join(" ")
     }
 }
 
@@ -97,34 +134,58 @@ impl Sheet {
     /// The cells of one or two variations of `base`.
     ///
     /// # Errors
-    /// In a sentence: another number of variations, the same value twice, too many cells, or a value that the preset cannot have.
+    /// In a sentence: another number of variations, the same value twice, too many cells, or a
+    /// value that the preset cannot have.
     pub fn new(base: &PresetFile, variations: &[Variation]) -> Result<Self, String> {
         let (first, second) = match variations {
             [first] => (first, None),
-            [first, second] if first.path == second.path => return Err(format!("{} is varied twice; vary two values", first.path)),
+            [first, second] if first.path == second.path => {
+                return Err(format!("{} is varied twice; vary two values", first.path));
+            }
             [first, second] => (first, Some(second)),
-            _ => return Err(format!("a sheet varies one or two values, and there are {}", variations.len())),
+            _ => {
+                return Err(format!(
+                    "a sheet varies one or two values, and there are {}",
+                    variations.len()
+                ));
+            }
         };
         let count = first.values.len() * second.map_or(1, |second| second.values.len());
         if count > MAX_CELLS {
-            return Err(format!("the sheet has {count} cells; take at most {MAX_CELLS}"));
+            return Err(format!(
+                "the sheet has {count} cells; take at most {MAX_CELLS}"
+            ));
         }
         let columns = match second {
             Some(_) => first.values.len(),
             None if first.values.len() <= MAX_COLUMNS => first.values.len(),
             None => (first.values.len() as f64).sqrt().ceil() as usize,
         };
-        let rows = second.map_or_else(|| vec![None], |second| second.values.iter().map(|value| Some((second, value))).collect());
+        let rows = second.map_or_else(
+            || vec![None],
+            |second| {
+                second
+                    .values
+                    .iter()
+                    .map(|value| Some((second, value)))
+                    .collect()
+            },
+        );
         let mut cells = Vec::new();
         for row in rows {
             for value in &first.values {
                 let values = std::iter::once((first, value)).chain(row);
-                let values: Vec<_> = values.map(|(variation, value)| (variation.path.clone(), value.clone())).collect();
+                let values: Vec<_> = values
+                    .map(|(variation, value)| (variation.path.clone(), value.clone()))
+                    .collect();
                 let mut preset_file = base.clone();
                 for (path, value) in &values {
                     set(&mut preset_file, path, value).map_err(|error| error.to_string())?;
                 }
-                cells.push(Cell { values, preset_file });
+                cells.push(Cell {
+                    values,
+                    preset_file,
+                });
             }
         }
         Ok(Self { columns, cells })
@@ -146,10 +207,16 @@ mod tests {
 
     #[test]
     fn a_range_has_both_ends_and_no_remains_of_rounding() {
-        assert_eq!(values("facet.amount=0..1:5"), ["0", "0.25", "0.5", "0.75", "1"]);
+        assert_eq!(
+            values("facet.amount=0..1:5"),
+            ["0", "0.25", "0.5", "0.75", "1"]
+        );
         assert_eq!(values("a.b=0..0.3:4"), ["0", "0.1", "0.2", "0.3"]);
         assert_eq!(values("a.b=1..-1:3"), ["1", "0", "-1"]);
-        assert_eq!(values("facet.pattern = uniform, sweep"), ["uniform", "sweep"]);
+        assert_eq!(
+            values("facet.pattern = uniform, sweep"),
+            ["uniform", "sweep"]
+        );
     }
 
     #[test]
@@ -160,7 +227,10 @@ mod tests {
             ("facet.amount=0.5", "needs at least two values"),
             ("facet.amount=0..1", "does not say in how many steps"),
             ("facet.amount=0..one:5", "has an end that is no number"),
-            ("facet.amount=0..1:few", "has a number of steps that is no whole number"),
+            (
+                "facet.amount=0..1:few",
+                "has a number of steps that is no whole number",
+            ),
             ("facet.amount=0..1:1", "has 1 steps"),
             ("facet.amount=0..inf:3", "has an end that is no number"),
         ] {
@@ -173,20 +243,50 @@ mod tests {
     fn the_first_value_runs_along_the_rows() {
         let base = open("facet-sweep", &Folders::default()).expect("a built-in preset");
         let vary = |texts: &[&str]| {
-            let variations: Vec<_> = texts.iter().map(|text| Variation::parse(text).expect("a variation")).collect();
+            let variations: Vec<_> = texts
+                .iter()
+                .map(|text| Variation::parse(text).expect("a variation"))
+                .collect();
             Sheet::new(&base, &variations)
         };
         let sheet = vary(&["facet.amount=0..1:3", "facet.front=0.2,0.8"]).expect("a sheet");
         assert_eq!((sheet.columns, sheet.rows(), sheet.cells.len()), (3, 2, 6));
         assert_eq!(sheet.cells[4].caption(), "amount=0.5 front=0.8");
-        let words = |cell: &Cell| cell.preset_file.preset.stack.get("facet").expect("it is enabled").words.clone();
-        assert!(words(&sheet.cells[0]) != words(&sheet.cells[1]) && words(&sheet.cells[0]) != words(&sheet.cells[3]));
-        assert_eq!(vary(&["facet.amount=0..1:10"]).map(|sheet| (sheet.columns, sheet.rows())), Ok((4, 3)));
+        let words = |cell: &Cell| {
+            cell.preset_file
+                .preset
+                .stack
+                .get("facet")
+                .expect("it is enabled")
+                .words
+                .clone()
+        };
+        assert!(
+            words(&sheet.cells[0]) != words(&sheet.cells[1])
+                && words(&sheet.cells[0]) != words(&sheet.cells[3])
+        );
+        assert_eq!(
+            vary(&["facet.amount=0..1:10"]).map(|sheet| (sheet.columns, sheet.rows())),
+            Ok((4, 3))
+        );
         for (wrong, why) in [
             (&["facet.amount=0..2:3"][..], "facet.amount"),
-            (&["facet.amount=0..1:3", "facet.amount=0..1:3"], "varied twice"),
-            (&["facet.amount=0..1:3", "facet.front=0..1:3", "facet.width=0.1,0.2"], "one or two"),
-            (&["facet.amount=0..1:100", "facet.front=0..1:100"], "at most 1024"),
+            (
+                &["facet.amount=0..1:3", "facet.amount=0..1:3"],
+                "varied twice",
+            ),
+            (
+                &[
+                    "facet.amount=0..1:3",
+                    "facet.front=0..1:3",
+                    "facet.width=0.1,0.2",
+                ],
+                "one or two",
+            ),
+            (
+                &["facet.amount=0..1:100", "facet.front=0..1:100"],
+                "at most 1024",
+            ),
             (&["facet.amonut=0..1:3"], "amount"),
         ] {
             let error = vary(wrong).expect_err(why);

@@ -1,7 +1,7 @@
 //! Values as TOML: how each type is read, and how it is written so that it reads back to the bit.
 //!
-//! Floats are written as the shortest decimal that reads back to the same f32 (or f64), read in their own precision,
-//! and refused when they would silently become infinite or zero.
+//! Floats are written as the shortest decimal that reads back to the same f32 (or f64), read in
+//! their own precision, and refused when they would silently become infinite or zero.
 
 use toml_edit::Value as Toml;
 
@@ -10,7 +10,8 @@ use crate::params::{Param, Value, ValueType, did_you_mean};
 /// The text of a number as it stands in the file.
 pub type NumberText<'a> = &'a dyn Fn(&Toml) -> String;
 
-/// Reads a value of `param`'s type; `text_of` gives the text of a number. What stores the value checks its range.
+/// Reads a value of `param`'s type; `text_of` gives the text of a number. What stores the value
+/// checks its range.
 ///
 /// # Errors
 /// The value has another type. Completes a sentence that begins with the parameter's name.
@@ -18,17 +19,31 @@ pub fn read(param: &Param, toml: &Toml, text_of: NumberText<'_>) -> Result<Value
     Ok(match &param.value_type {
         ValueType::Text { .. } => Value::Text(text(toml)?),
         ValueType::TextList { .. } => {
-            let list = toml.as_array().ok_or_else(|| format!("must be a list of texts, not {}", description(toml)))?;
+            let list = toml
+                .as_array()
+                .ok_or_else(|| format!("must be a list of texts, not {}", description(toml)))?;
             Value::TextList(list.iter().map(text).collect::<Result<_, _>>()?)
         }
-        ValueType::Bool => Value::Bool(toml.as_bool().ok_or_else(|| format!("must be true or false, not {}", description(toml)))?),
+        ValueType::Bool => Value::Bool(
+            toml.as_bool()
+                .ok_or_else(|| format!("must be true or false, not {}", description(toml)))?,
+        ),
         ValueType::Choice(words) => Value::Choice(word(toml, words)?),
         numbers => match numbers.components() {
             1 => Value::Numbers(vec![number(toml, &text_of(toml), numbers)?]),
             count => {
                 let list = toml.as_array().filter(|list| list.len() == count);
-                let list = list.ok_or_else(|| format!("must be a list of {count} numbers, not {}", description(toml)))?;
-                Value::Numbers(list.iter().map(|item| number(item, &text_of(item), numbers)).collect::<Result<_, _>>()?)
+                let list = list.ok_or_else(|| {
+                    format!(
+                        "must be a list of {count} numbers, not {}",
+                        description(toml)
+                    )
+                })?;
+                Value::Numbers(
+                    list.iter()
+                        .map(|item| number(item, &text_of(item), numbers))
+                        .collect::<Result<_, _>>()?,
+                )
             }
         },
     })
@@ -44,7 +59,10 @@ pub fn write(value_type: &ValueType, value: &Value) -> Toml {
         },
         Value::Numbers(numbers) => match numbers[..] {
             [single] => numeral(single, value_type),
-            _ => numbers.iter().map(|number| numeral(*number, value_type)).collect(),
+            _ => numbers
+                .iter()
+                .map(|number| numeral(*number, value_type))
+                .collect(),
         },
         Value::Text(text) => text.as_str().into(),
         Value::TextList(texts) => texts.iter().map(String::as_str).collect(),
@@ -70,7 +88,9 @@ fn numeral(number: f64, value_type: &ValueType) -> Toml {
 
 fn number(toml: &Toml, written: &str, value_type: &ValueType) -> Result<f64, String> {
     let number = match toml {
-        Toml::Integer(integer) if integer.value().unsigned_abs() <= 1 << 53 => *integer.value() as f64,
+        Toml::Integer(integer) if integer.value().unsigned_abs() <= 1 << 53 => {
+            *integer.value() as f64
+        }
         Toml::Integer(integer) => return Err(format!("{} is too large", integer.value())),
         Toml::Float(float) => *float.value(),
         other => return Err(format!("must be a number, not {}", description(other))),
@@ -78,32 +98,58 @@ fn number(toml: &Toml, written: &str, value_type: &ValueType) -> Result<f64, Str
     if !number.is_finite() {
         return Err(format!("{written} is not a finite number"));
     }
-    if value_type.is_single() { single(number, written) } else { Ok(number) }
+    if value_type.is_single() {
+        single(number, written)
+    } else {
+        Ok(number)
+    }
 }
 
 /// The f32 nearest to the decimal in the file, rounded once, as f64.
 fn single(number: f64, written: &str) -> Result<f64, String> {
     let nearest = written.replace('_', "").parse().unwrap_or(number as f32);
     if nearest.is_infinite() {
-        return Err(format!("{written} is too large for a 32-bit float, which ends at 3.4028235e38"));
+        return Err(format!(
+            "{written} is too large for a 32-bit float, which ends at 3.4028235e38"
+        ));
     }
     if nearest == 0.0 && number != 0.0 {
-        return Err(format!("{written} is too small for a 32-bit float, which would make it 0"));
+        return Err(format!(
+            "{written} is too small for a 32-bit float, which would make it 0"
+        ));
     }
     // The f64 stays, for messages, unless rounding it to f32 would round the decimal twice.
-    Ok(if number as f32 == nearest { number } else { f64::from(nearest) })
+    Ok(if number as f32 == nearest {
+        number
+    } else {
+        f64::from(nearest)
+    })
 }
 
 fn text(toml: &Toml) -> Result<String, String> {
-    toml.as_str().map(str::to_owned).ok_or_else(|| format!("must be a text in quotes, not {}", description(toml)))
+    toml.as_str()
+        .map(str::to_owned)
+        .ok_or_else(|| format!("must be a text in quotes, not {}", description(toml)))
 }
 
 fn word(toml: &Toml, words: &[String]) -> Result<usize, String> {
-    let written = toml.as_str().ok_or_else(|| format!("must be one of {}, not {}", words.join(", "), description(toml)))?;
+    let written = toml.as_str().ok_or_else(|| {
+        format!(
+            "must be one of {}, not {}",
+            words.join(", "),
+            description(toml)
+        )
+    })?;
     words
         .iter()
         .position(|word| *word == written)
-        .ok_or_else(|| format!("{written:?} is not one of {}{}", words.join(", "), did_you_mean(written, words.iter().map(String::as_str))))
+        .ok_or_else(|| {
+            format!(
+                "{written:?} is not one of {}{}",
+                words.join(", "),
+                did_you_mean(written, words.iter().map(String::as_str))
+            )
+        })
 }
 
 /// What a TOML value is, to complete "must be …, not …".
@@ -143,12 +189,31 @@ mod tests {
 
     #[test]
     fn every_f32_is_written_so_that_it_reads_back_to_the_bit() {
-        let corners = [0.0, -0.0, 0.1, 0.2, 1e-40, f32::from_bits(1), f32::MIN_POSITIVE, f32::MAX, f32::MIN, 1e16, 16_777_216.0];
-        let spread = (0..20_000u32).map(|i| f32::from_bits(crate::math::hash(i))).filter(|v| v.is_finite());
+        let corners = [
+            0.0,
+            -0.0,
+            0.1,
+            0.2,
+            1e-40,
+            f32::from_bits(1),
+            f32::MIN_POSITIVE,
+            f32::MAX,
+            f32::MIN,
+            1e16,
+            16_777_216.0,
+        ];
+        let spread = (0..20_000u32)
+            .map(|i| f32::from_bits(crate::math::hash(i)))
+            .filter(|v| v.is_finite());
         for value in corners.into_iter().chain(spread) {
             let text = written(&any_f32(), value.into());
-            let back = read_number(&any_f32(), &text).unwrap_or_else(|e| panic!("{text}: {e}")) as f32;
-            assert_eq!(back.to_bits(), value.to_bits(), "{value:?} was written {text}");
+            let back =
+                read_number(&any_f32(), &text).unwrap_or_else(|e| panic!("{text}: {e}")) as f32;
+            assert_eq!(
+                back.to_bits(),
+                value.to_bits(),
+                "{value:?} was written {text}"
+            );
         }
     }
 
@@ -156,23 +221,50 @@ mod tests {
     fn every_f64_is_written_so_that_it_reads_back_to_the_bit() {
         for value in [0.1, -0.0, 1e-320, f64::MAX, 1.0 / 3.0, 1e300] {
             let text = written(&any_f64(), value);
-            assert_eq!(read_number(&any_f64(), &text).unwrap().to_bits(), value.to_bits(), "{text}");
+            assert_eq!(
+                read_number(&any_f64(), &text).unwrap().to_bits(),
+                value.to_bits(),
+                "{text}"
+            );
         }
     }
 
     #[test]
     fn a_float_is_never_silently_infinite_or_zero() {
-        assert!(read_number(&any_f32(), "1e39").unwrap_err().contains("1e39 is too large for a 32-bit float"));
-        assert!(read_number(&any_f32(), "-1e39").unwrap_err().contains("too large"));
-        assert!(read_number(&any_f32(), "1e-46").unwrap_err().contains("1e-46 is too small for a 32-bit float"));
-        assert!(read_number(&any_f32(), "inf").unwrap_err().contains("not a finite number"));
-        assert!(read_number(&any_f32(), "nan").unwrap_err().contains("not a finite number"));
+        assert!(
+            read_number(&any_f32(), "1e39")
+                .unwrap_err()
+                .contains("1e39 is too large for a 32-bit float")
+        );
+        assert!(
+            read_number(&any_f32(), "-1e39")
+                .unwrap_err()
+                .contains("too large")
+        );
+        assert!(
+            read_number(&any_f32(), "1e-46")
+                .unwrap_err()
+                .contains("1e-46 is too small for a 32-bit float")
+        );
+        assert!(
+            read_number(&any_f32(), "inf")
+                .unwrap_err()
+                .contains("not a finite number")
+        );
+        assert!(
+            read_number(&any_f32(), "nan")
+                .unwrap_err()
+                .contains("not a finite number")
+        );
     }
 
     #[test]
     fn a_decimal_bound_admits_its_own_decimal() {
         let param = Param::new("any", "", ValueType::F32).hard(0.1..=0.7);
         assert!(read_number(&param, "0.1").is_ok() && read_number(&param, "0.7").is_ok());
-        assert_eq!(read_number(&param, "0.71").unwrap_err(), "0.71 lies outside 0.1..=0.7");
+        assert_eq!(
+            read_number(&param, "0.71").unwrap_err(),
+            "0.71 lies outside 0.1..=0.7"
+        );
     }
 }

@@ -1,7 +1,7 @@
 //! Capabilities of an adapter, and how work is divided on it.
 
-/// Kernels bind at most 8 storage buffers, and at most 2 more in place of uniforms or to clear what a draw order counts. A resolve that reads
-/// a shadow map from a buffer binds one more.
+/// Kernels bind at most 8 storage buffers, and at most 2 more in place of uniforms or to clear what
+/// a draw order counts. A resolve that reads a shadow map from a buffer binds one more.
 pub(super) const MANY_STORAGE_BUFFERS: u32 = 10;
 
 /// What an adapter can do for us.
@@ -20,7 +20,8 @@ pub struct Caps {
     pub max_storage_buffers: u32,
     /// It runs on the CPU: pictures are right, times say nothing about a graphics card.
     pub software: bool,
-    /// The atomic maximum costs far more than compare and exchange: SwiftShader calls a function for each.
+    /// The atomic maximum costs far more than compare and exchange: SwiftShader calls a function
+    /// for each.
     pub slow_atomic_maximum: bool,
 }
 
@@ -40,14 +41,22 @@ impl Caps {
 
     /// `native-int64` or `portable`.
     pub fn class(&self) -> &'static str {
-        if self.int64_atomics { "native-int64" } else { "portable" }
+        if self.int64_atomics {
+            "native-int64"
+        } else {
+            "portable"
+        }
     }
 
-    /// How work is divided on this adapter. On a GPU a whole workgroup takes over early, since one slow invocation delays its
-    /// neighbors; a CPU adapter runs invocations one after another, executes both sides of every branch, and gains nothing
-    /// by it.
+    /// How work is divided on this adapter. On a GPU a whole workgroup takes over early, since one
+    /// slow invocation delays its neighbors; a CPU adapter runs invocations one after another,
+    /// executes both sides of every branch, and gains nothing by it.
     pub fn tuning(&self) -> Tuning {
-        let (max_small_samples, max_small_side) = if self.software { (MOST_SMALL_SAMPLES, 128) } else { (32, 32) };
+        let (max_small_samples, max_small_side) = if self.software {
+            (MOST_SMALL_SAMPLES, 128)
+        } else {
+            (32, 32)
+        };
         let group_size = if self.software { 64 } else { 256 };
         Tuning {
             max_small_samples,
@@ -72,11 +81,12 @@ impl Caps {
 /// The most samples of a triangle that one invocation may walk.
 pub const MOST_SMALL_SAMPLES: u32 = 128 * 128;
 
-/// How the kernels divide their work: it changes speed alone, never a picture. [`Caps::tuning`] knows what suits an adapter;
-/// benches and tests try others.
+/// How the kernels divide their work: it changes speed alone, never a picture. [`Caps::tuning`]
+/// knows what suits an adapter; benches and tests try others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tuning {
-    /// Most candidate samples of a triangle that one invocation walks, 1 to [`MOST_SMALL_SAMPLES`].
+    /// Most candidate samples of a triangle that one invocation walks, 1 to
+    /// [`MOST_SMALL_SAMPLES`].
     pub max_small_samples: u32,
     /// Most pixels per side of such a triangle's box, 1 to 128.
     pub max_small_side: u32,
@@ -84,31 +94,38 @@ pub struct Tuning {
     pub group_size: u32,
     /// The resolve visits only tiles that a triangle's box touches, without branches.
     pub listed_tiles: bool,
-    /// Load before the depth atomic (visibility `split32`; for discs, many of which lie on a pixel, always).
+    /// Load before the depth atomic (visibility `split32`; for discs, many of which lie on a
+    /// pixel, always).
     pub early_load: bool,
-    /// The largest word of a pixel is kept by compare and exchange instead of the atomic maximum (visibility `split32` and `packed32`).
+    /// The largest word of a pixel is kept by compare and exchange instead of the atomic maximum
+    /// (visibility `split32` and `packed32`).
     pub exchanges_maximum: bool,
-    /// Workgroups of every pass over a queue, which share its entries, at most 65,535; 0: as many as the queue has entries, by an
-    /// indirect dispatch (culled pictures always).
+    /// Workgroups of every pass over a queue, which share its entries, at most 65,535; 0: as many
+    /// as the queue has entries, by an indirect dispatch (culled pictures always).
     pub queue_groups: u32,
-    /// Workgroups among which few runs of dots are divided; more of them are divided 64 to a workgroup.
+    /// Workgroups among which few runs of dots are divided; more of them are divided 64 to a
+    /// workgroup.
     pub dot_groups: u32,
-    /// Workgroups take runs of neighboring triangles in turn instead of one long run each. On lavapipe one of two threads was done with its
-    /// triangles in half the time of the other (Mesa 22.3): triangles that cost much often lie beside each other.
+    /// Workgroups take runs of neighboring triangles in turn instead of one long run each. On
+    /// lavapipe one of two threads was done with its triangles in half the time of the other
+    /// (Mesa 22.3): triangles that cost much often lie beside each other.
     pub interleaves_triangles: bool,
-    /// The first pass clears counters and pixels beside its own work (pictures that are not culled).
+    /// The first pass clears counters and pixels beside its own work (pictures that are not
+    /// culled).
     pub clears_in_passes: bool,
     /// Large and medium triangles skip blocks of pixels in which what was drawn hides them.
     pub hides_blocks: bool,
-    /// What conditions read of draws, effects and particles lies in storage buffers instead of uniforms. lavapipe compiles a kernel
-    /// anew, in every draw, with the values of the uniforms that its conditions read, and frees none of them: some 170 KB a draw
+    /// What conditions read of draws, effects and particles lies in storage buffers instead of
+    /// uniforms. lavapipe compiles a kernel anew, in every draw, with the values of the
+    /// uniforms that its conditions read, and frees none of them: some 170 KB a draw
     /// (Mesa 22.3).
     pub stored_uniforms: bool,
-    /// The resolve gathers two words at a time, as 64-bit integers, which the adapter must have. On lavapipe a gathered
-    /// component of 64 bits costs about as much as one of 32; it was not tried on a card.
+    /// The resolve gathers two words at a time, as 64-bit integers, which the adapter must have.
+    /// On lavapipe a gathered component of 64 bits costs about as much as one of 32; it was
+    /// not tried on a card.
     pub wide_loads: bool,
-    /// A shadow map is read from the buffer that the light's passes wrote, which is one storage buffer more in the resolve; else it is
-    /// copied to a texture first.
+    /// A shadow map is read from the buffer that the light's passes wrote, which is one storage
+    /// buffer more in the resolve; else it is copied to a texture first.
     pub buffered_shadow_map: bool,
     /// Omit what the scene does not need; else keep every path and every branch.
     pub specialized: bool,

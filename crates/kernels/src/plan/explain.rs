@@ -1,6 +1,10 @@
-//! Explanation: why each part of a plan is as it is, and what its frame omits. Built only when asked for.
+//! Explanation: why each part of a plan is as it is, and what its frame omits. Built only when
+//! asked for.
 
-use super::{AccuracyRequest, Note, Plan, PlanError, StackTraits, Tuning, costs, options::Cause, predict::predict};
+use super::{
+    AccuracyRequest, Note, Plan, PlanError, StackTraits, Tuning, costs, options::Cause,
+    predict::predict,
+};
 use crate::{
     accuracy::{AXES, Axis, AxisOption, Culling},
     effects::{
@@ -12,13 +16,19 @@ use crate::{
 };
 
 fn note(name: &str, why: impl Into<String>) -> Note {
-    Note { name: name.into(), why: why.into() }
+    Note {
+        name: name.into(),
+        why: why.into(),
+    }
 }
 
 impl Plan {
     /// Why each part of the key is as it is.
     pub fn reasons(&self) -> Vec<Note> {
-        let options = AXES.iter().enumerate().filter_map(|(index, axis)| self.option_reason(index, axis));
+        let options = AXES
+            .iter()
+            .enumerate()
+            .filter_map(|(index, axis)| self.option_reason(index, axis));
         let parts = [
             self.shape_reason(),
             Some(self.fetch_reason()),
@@ -35,7 +45,8 @@ impl Plan {
         options.chain(parts.into_iter().flatten()).collect()
     }
 
-    /// Which option an axis is on, and why; none where the picture has nothing that it decides about.
+    /// Which option an axis is on, and why; none where the picture has nothing that it decides
+    /// about.
     pub fn reason(&self, axis: &Axis) -> Option<String> {
         self.option_reason(axis.index(), axis).map(|note| note.why)
     }
@@ -44,13 +55,28 @@ impl Plan {
     ///
     /// # Errors
     /// As [`plan`](super::plan).
-    pub fn under(&self, stack: &Stack, tuning: &Tuning, request: &AccuracyRequest) -> Result<Self, PlanError> {
-        super::plan(&self.needs, &StackTraits::of(stack, request)?, &self.caps, tuning, request)
+    pub fn under(
+        &self,
+        stack: &Stack,
+        tuning: &Tuning,
+        request: &AccuracyRequest,
+    ) -> Result<Self, PlanError> {
+        super::plan(
+            &self.needs,
+            &StackTraits::of(stack, request)?,
+            &self.caps,
+            tuning,
+            request,
+        )
     }
 
     /// The parts of the frame that the key omits, each with the reason.
     pub fn omissions(&self) -> Vec<Note> {
-        self.key.omissions(&self.needs).into_iter().map(|(name, why)| note(name, why)).collect()
+        self.key
+            .omissions(&self.needs)
+            .into_iter()
+            .map(|(name, why)| note(name, why))
+            .collect()
     }
 
     /// Why an axis is on its option; none where the picture has nothing that it decides about.
@@ -67,7 +93,11 @@ impl Plan {
             Cause::Cheaper => {
                 let fraction = costs::of(axis, option, &self.needs, &self.caps, &self.measured);
                 let own = predict(index, option, &self.needs);
-                let measured = if self.measured.fraction(index, option).is_some() { " as measured here" } else { "" };
+                let measured = if self.measured.fraction(index, option).is_some() {
+                    " as measured here"
+                } else {
+                    ""
+                };
                 format!(
                     "{word}: {fraction:.2} of the default's time{measured}, predicted error {:.0} of {:.0} ppm, {:.1} of {} in color",
                     own.wrong_ppm, self.tolerance.wrong_ppm, own.channel, self.tolerance.channel
@@ -77,7 +107,11 @@ impl Plan {
                 "relative: so far from the origin, rounding moves a stored corner by up to {:.2} px, predicted to cost {:.0} of {:.0} ppm",
                 self.needs.rounding_px[0], stored.wrong_ppm, self.tolerance.wrong_ppm
             ),
-            Cause::Limited { asked, why } => format!("{} instead of {}: {why}", Culling::from_index(option).name(), asked.name()),
+            Cause::Limited { asked, why } => format!(
+                "{} instead of {}: {why}",
+                Culling::from_index(option).name(),
+                asked.name()
+            ),
         };
         Some(note(axis.name, why))
     }
@@ -86,15 +120,23 @@ impl Plan {
         match (self.key.samples.shape, self.key.framebuffer.layers) {
             (Shape::Boxes, _) => Some(note("shape", "boxes: an effect fills the bounding boxes")),
             (Shape::Points, _) => Some(note("shape", "points: an effect draws corners as discs")),
-            (Shape::Triangles, Some(Layers::Race)) => {
-                Some(note("visibility", "the effect race takes the slot: one pass of plain loads and stores, which lose samples"))
-            }
+            (Shape::Triangles, Some(Layers::Race)) => Some(note(
+                "visibility",
+                "the effect race takes the slot: one pass of plain loads and stores, which lose samples",
+            )),
             (Shape::Triangles, _) => None,
         }
     }
 
     fn fetch_reason(&self) -> Note {
-        note("fetch", if self.needs.indexed { "the scene has index lists" } else { "no primitive has indices" })
+        note(
+            "fetch",
+            if self.needs.indexed {
+                "the scene has index lists"
+            } else {
+                "no primitive has indices"
+            },
+        )
     }
 
     fn small_reason(&self) -> Note {
@@ -103,7 +145,13 @@ impl Plan {
             (true, true) => "a CPU adapter runs invocations one after another",
             (true, false) => "a workgroup takes over early on a GPU",
         };
-        note("small", format!("one invocation walks up to {} samples: {why}", self.key.paths.max_small_samples))
+        note(
+            "small",
+            format!(
+                "one invocation walks up to {} samples: {why}",
+                self.key.paths.max_small_samples
+            ),
+        )
     }
 
     fn culling_reason(&self) -> Option<Note> {
@@ -112,20 +160,34 @@ impl Plan {
     }
 
     fn vertex_effects_reason(&self) -> Option<Note> {
-        let effects = self.key.effects.list.iter().filter(|effect| effect.hooks.vertex.is_some());
+        let effects = self
+            .key
+            .effects
+            .list
+            .iter()
+            .filter(|effect| effect.hooks.vertex.is_some());
         let names: Vec<_> = effects.map(|effect| effect.name.as_str()).collect();
         let why = if self.key.unshares_vertices() {
             "triangles move apart, with three projected vertices each"
         } else {
             "triangles keep sharing vertices"
         };
-        (!names.is_empty()).then(|| note("vertex effects", format!("{} move vertices: {why}", names.join(", "))))
+        (!names.is_empty()).then(|| {
+            note(
+                "vertex effects",
+                format!("{} move vertices: {why}", names.join(", ")),
+            )
+        })
     }
 
     fn scopes_reason(&self) -> Option<Note> {
         let effects = &self.key.effects;
-        let names: Vec<_> =
-            effects.list.iter().filter(|effect| effects.scope(effect).is_some()).map(|effect| effect.name.as_str()).collect();
+        let names: Vec<_> = effects
+            .list
+            .iter()
+            .filter(|effect| effects.scope(effect).is_some())
+            .map(|effect| effect.name.as_str())
+            .collect();
         let why = "limited to parts of the scene: one bit per draw decides";
         (!names.is_empty()).then(|| note("scopes", format!("{}: {why}", names.join(", "))))
     }
@@ -134,9 +196,14 @@ impl Plan {
         let count = self.needs.material_count;
         let why = match self.needs.textured {
             0 => format!("{count} materials emit light or are unlit, which the atlas stores"),
-            textured => format!("{textured} of {count} materials have textures, read texel by texel and filtered in linear light"),
+            textured => format!(
+                "{textured} of {count} materials have textures, read texel by texel and filtered in linear light"
+            ),
         };
-        self.key.surface.has_material_atlas.then(|| note("material atlas", why))
+        self.key
+            .surface
+            .has_material_atlas
+            .then(|| note("material atlas", why))
     }
 
     fn mask_reason(&self) -> Option<Note> {
@@ -146,7 +213,9 @@ impl Plan {
 
     fn image_reason(&self) -> Option<Note> {
         let why = "an image effect finishes every pixel, empty ones too, so no tile is skipped";
-        self.key.finishes_pixels().then(|| note("image effects", why))
+        self.key
+            .finishes_pixels()
+            .then(|| note("image effects", why))
     }
 
     fn dots_reason(&self) -> Option<Note> {
@@ -155,7 +224,10 @@ impl Plan {
             LineSource::Creases => "the creases of all meshes",
             LineSource::Polyline => "the preset's polyline",
         };
-        Some(note("dots", format!("an effect draws them along {lines}, over every pixel, so no tile is skipped")))
+        Some(note(
+            "dots",
+            format!("an effect draws them along {lines}, over every pixel, so no tile is skipped"),
+        ))
     }
 
     /// Why the samples of a pixel are summed or counted, and in how many bits.
@@ -163,10 +235,21 @@ impl Plan {
         Some(match self.key.framebuffer.layers? {
             Layers::Xray { bits } => {
                 let (most, triangles) = (xray::capacity(bits), self.needs.triangles);
-                note("layers", format!("xray: sums of {bits} bits a channel hold {most} full weights; the scene has {triangles} triangles"))
+                note(
+                    "layers",
+                    format!(
+                        "xray: sums of {bits} bits a channel hold {most} full weights; the scene has {triangles} triangles"
+                    ),
+                )
             }
-            Layers::Overdraw => note("layers", "overdraw: one more raster pass counts every covered sample"),
-            Layers::Race => note("layers", "race: the picture depends on chance, so it is not reproducible"),
+            Layers::Overdraw => note(
+                "layers",
+                "overdraw: one more raster pass counts every covered sample",
+            ),
+            Layers::Race => note(
+                "layers",
+                "race: the picture depends on chance, so it is not reproducible",
+            ),
         })
     }
 }
@@ -174,5 +257,7 @@ impl Plan {
 /// The sentence as it continues after a colon.
 fn lowercase_first(sentence: &str) -> String {
     let mut letters = sentence.chars();
-    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
+    letters.next().map_or_else(String::new, |first| {
+        first.to_lowercase().chain(letters).collect()
+    })
 }

@@ -11,8 +11,9 @@ use crate::{
     math::SMALL_EXTENT,
     scene::needs::Needs,
     shader::key::{
-        AttributeFormat, EffectList, Fetch, Framebuffer, GeneratedVertices, KernelKey, ONE64_BITS, ProjectionKind, RasterPaths,
-        SampleRules, SurfaceInputs, VertexInputs, ViewKind, WorkSharing,
+        AttributeFormat, EffectList, Fetch, Framebuffer, GeneratedVertices, KernelKey, ONE64_BITS,
+        ProjectionKind, RasterPaths, SampleRules, SurfaceInputs, VertexInputs, ViewKind,
+        WorkSharing,
     },
 };
 
@@ -37,15 +38,29 @@ pub(super) fn key_of(
             has_morph_targets: needs.morph_targets,
             has_particles: needs.particle_discs,
         },
-        samples: SampleRules { shape: stack.shape, draw_order: stack.draw_order, has_mask },
+        samples: SampleRules {
+            shape: stack.shape,
+            draw_order: stack.draw_order,
+            has_mask,
+        },
         paths: raster_paths(&options, needs, tuning, loops::samples(caps, loops)),
         work: WorkSharing {
             group_size: tuning.group_size,
-            invocations_per_triangle: loops::invocations_per_triangle(caps, stack.shape, needs.triangles, loops),
+            invocations_per_triangle: loops::invocations_per_triangle(
+                caps,
+                stack.shape,
+                needs.triangles,
+                loops,
+            ),
             listed_tiles: tuning.listed_tiles,
-            early_load: stack.shape == Shape::Points || tuning.early_load && options.visibility == Visibility::Split32,
+            early_load: stack.shape == Shape::Points
+                || tuning.early_load && options.visibility == Visibility::Split32,
             exchanges_maximum: tuning.exchanges_maximum,
-            queue_groups: if options.culling == Culling::None { tuning.queue_groups.min(65_535) } else { 0 },
+            queue_groups: if options.culling == Culling::None {
+                tuning.queue_groups.min(65_535)
+            } else {
+                0
+            },
             dot_groups: tuning.dot_groups,
             interleaves_triangles: tuning.interleaves_triangles,
             hides_blocks: tuning.hides_blocks,
@@ -58,21 +73,38 @@ pub(super) fn key_of(
                 && stack.sums_all_layers()
                 && caps.max_storage_buffers >= MANY_STORAGE_BUFFERS,
             clears_in_passes,
-            clears_order: clears_in_passes && stack.draw_order.is_some() && caps.max_storage_buffers >= MANY_STORAGE_BUFFERS,
+            clears_order: clears_in_passes
+                && stack.draw_order.is_some()
+                && caps.max_storage_buffers >= MANY_STORAGE_BUFFERS,
         },
         framebuffer: Framebuffer {
             layers,
             has_one64_sums: paired_sums && has_one64_sums(&options, layers, stack),
-            triangle_id_bits: if options.visibility == Visibility::Packed32 { bit_length(needs.triangles) } else { 0 },
+            triangle_id_bits: if options.visibility == Visibility::Packed32 {
+                bit_length(needs.triangles)
+            } else {
+                0
+            },
         },
-        surface: SurfaceInputs { has_material_atlas: needs.material_count > 0, has_planes: stack.reads_planes() || !needs.normals_agree },
+        surface: SurfaceInputs {
+            has_material_atlas: needs.material_count > 0,
+            has_planes: stack.reads_planes() || !needs.normals_agree,
+        },
         view: ViewKind {
-            projection: if needs.perspective { ProjectionKind::Perspective } else { ProjectionKind::Orthographic },
+            projection: if needs.perspective {
+                ProjectionKind::Perspective
+            } else {
+                ProjectionKind::Orthographic
+            },
             is_light: needs.is_light,
         },
         effects: EffectList {
             list: stack.effects.clone(),
-            baked: if options.parameters == Parameters::Baked { stack.baked.clone() } else { Vec::new() },
+            baked: if options.parameters == Parameters::Baked {
+                stack.baked.clone()
+            } else {
+                Vec::new()
+            },
             scope_bits: stack.scope_bits.clone(),
             dots: stack.dots,
         },
@@ -81,19 +113,27 @@ pub(super) fn key_of(
 
 /// Are the sums of an x-ray added two words at a time?
 fn adds_pairs(options: &AccuracyOptions, layers: Option<Layers>, caps: &Caps) -> bool {
-    let has_pairs = options.visibility == Visibility::Packed64 && options.xray_sums.words().is_multiple_of(2);
+    let has_pairs =
+        options.visibility == Visibility::Packed64 && options.xray_sums.words().is_multiple_of(2);
     caps.int64_additions && has_pairs && matches!(layers, Some(Layers::Xray { .. }))
 }
 
-/// Do the sums of an x-ray share one 64-bit integer? Layers of equal weight, and colors of few enough bits; where more layers lie on a pixel
-/// than that holds, the renderer takes a word for each sum instead.
+/// Do the sums of an x-ray share one 64-bit integer? Layers of equal weight, and colors of few
+/// enough bits; where more layers lie on a pixel than that holds, the renderer takes a word for
+/// each sum instead.
 fn has_one64_sums(options: &AccuracyOptions, layers: Option<Layers>, stack: &StackTraits) -> bool {
     let fits = matches!(layers, Some(Layers::Xray { bits }) if bits <= ONE64_BITS);
     fits && options.xray_sums == XraySums::Four32 && stack.xray.is_some_and(|xray| xray.unit() == 1)
 }
 
 fn vertex_inputs(needs: &Needs) -> VertexInputs {
-    let format = |is_f32: bool| if is_f32 { AttributeFormat::F32 } else { AttributeFormat::Any };
+    let format = |is_f32: bool| {
+        if is_f32 {
+            AttributeFormat::F32
+        } else {
+            AttributeFormat::Any
+        }
+    };
     VertexInputs {
         fetch: match (needs.indexed, needs.u32_indices) {
             (false, _) => Fetch::Direct,
@@ -109,8 +149,14 @@ fn vertex_inputs(needs: &Needs) -> VertexInputs {
 }
 
 /// The paths that triangles of these sizes take, where one invocation may walk so many samples.
-fn raster_paths(options: &AccuracyOptions, needs: &Needs, tuning: &Tuning, walkable_samples: u32) -> RasterPaths {
-    // With `clipping = drop` no clip pass is needed; the triangles that are drawn may still be large.
+fn raster_paths(
+    options: &AccuracyOptions,
+    needs: &Needs,
+    tuning: &Tuning,
+    walkable_samples: u32,
+) -> RasterPaths {
+    // With `clipping = drop` no clip pass is needed; the triangles that are drawn may still be
+    // large.
     let has_clipping = needs.clipping && options.clipping != Clipping::Drop;
     let max_small_samples = tuning.max_small_samples.min(walkable_samples).max(1);
     let max_small_side = tuning.max_small_side.clamp(1, 128);
@@ -118,7 +164,9 @@ fn raster_paths(options: &AccuracyOptions, needs: &Needs, tuning: &Tuning, walka
     let widest = needs.largest_px.floor() + 1.0;
     RasterPaths {
         has_clipping,
-        has_medium: has_clipping || widest > f64::from(max_small_side) || widest * widest > f64::from(max_small_samples),
+        has_medium: has_clipping
+            || widest > f64::from(max_small_side)
+            || widest * widest > f64::from(max_small_samples),
         has_large: needs.largest_px >= large_px(options),
         max_small_samples,
         max_small_side,

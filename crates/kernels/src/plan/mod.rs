@@ -49,7 +49,8 @@ pub struct Plan {
     /// How far the options are predicted to be off the oracle's picture.
     pub prediction: Prediction,
     pub tolerance: Tolerance,
-    /// How many triangles are predicted to take which path; none where effects move or reshape them.
+    /// How many triangles are predicted to take which path; none where effects move or reshape
+    /// them.
     pub classes: Option<SizeClasses>,
     /// Why each axis is on its option.
     causes: [Cause; AXES.len()],
@@ -62,17 +63,40 @@ pub struct Plan {
 ///
 /// # Errors
 /// When the request pins an option that adapter, scene or stack cannot have.
-pub fn plan(needs: &Arc<Needs>, stack: &StackTraits, caps: &Caps, tuning: &Tuning, request: &AccuracyRequest) -> Result<Plan, PlanError> {
+pub fn plan(
+    needs: &Arc<Needs>,
+    stack: &StackTraits,
+    caps: &Caps,
+    tuning: &Tuning,
+    request: &AccuracyRequest,
+) -> Result<Plan, PlanError> {
     let f32_positions = needs.f32_positions;
     let needs = needs_of_stack(needs, stack, tuning);
     let mut layers = stack.layers(needs.triangles);
-    let Choice { options, causes, prediction } = choose(&Inputs { needs: &needs, f32_positions, stack, layers, caps, request })?;
+    let Choice {
+        options,
+        causes,
+        prediction,
+    } = choose(&Inputs {
+        needs: &needs,
+        f32_positions,
+        stack,
+        layers,
+        caps,
+        request,
+    })?;
     if let (Some(Layers::Xray { bits }), Some(_)) = (&mut layers, options.xray_sums.capacity()) {
         *bits = 8;
     }
     let key = key::key_of(options, layers, &needs, stack, (caps, tuning));
     let keeps_sizes = stack.shape == Shape::Triangles && stack.vertex_effect().is_none();
-    let classes = || needs.sizes.classes(key.paths.max_small_samples, key.paths.max_small_side, key::large_px(&options));
+    let classes = || {
+        needs.sizes.classes(
+            key.paths.max_small_samples,
+            key.paths.max_small_side,
+            key::large_px(&options),
+        )
+    };
     Ok(Plan {
         classes: keeps_sizes.then(classes),
         key,
@@ -105,8 +129,8 @@ fn needs_of_stack(needs: &Arc<Needs>, stack: &StackTraits, tuning: &Tuning) -> A
     needs
 }
 
-/// Plans pictures and keeps the latest plans, so that a picture whose structure has not changed is not planned again: a slider
-/// changes uniform bytes alone.
+/// Plans pictures and keeps the latest plans, so that a picture whose structure has not changed is
+/// not planned again: a slider changes uniform bytes alone.
 #[derive(Debug, Default)]
 pub struct Planner {
     /// Number of plans that were made.
@@ -147,7 +171,8 @@ impl Planner {
     ) -> Result<Arc<Plan>, PlanError> {
         let stack = StackTraits::of(stack, request)?;
         let is_same = |(known, _): &(PlanInputs, Arc<Plan>)| {
-            (&known.stack, &known.caps, &known.tuning, &known.request) == (&stack, caps, tuning, request)
+            (&known.stack, &known.caps, &known.tuning, &known.request)
+                == (&stack, caps, tuning, request)
                 && (Arc::ptr_eq(&known.needs, needs) || known.needs == *needs)
         };
         if let Some(index) = self.latest.iter().position(is_same) {
@@ -156,7 +181,13 @@ impl Planner {
         self.made += 1;
         let planned = Arc::new(plan(needs, &stack, caps, tuning, request)?);
         self.latest.truncate(Self::KEPT - 1);
-        let inputs = PlanInputs { needs: needs.clone(), stack, caps: *caps, tuning: *tuning, request: *request };
+        let inputs = PlanInputs {
+            needs: needs.clone(),
+            stack,
+            caps: *caps,
+            tuning: *tuning,
+            request: *request,
+        };
         self.latest.insert(0, (inputs, planned.clone()));
         Ok(planned)
     }

@@ -12,8 +12,9 @@ use super::{
 };
 use crate::{
     accuracy::{
-        AXES, AccuracyOptions, Axis, AxisOption, Clipping, Coverage, Culling, CurlNoise, DepthFormat, DotCulling, Parameters,
-        ParticleStorage, Perspective, PositionFormat, SampleCounter, ShaderChecks, ShadowMapSize, ShadowTaps, Skinning, VertexTransform,
+        AXES, AccuracyOptions, Axis, AxisOption, Clipping, Coverage, Culling, CurlNoise,
+        DepthFormat, DotCulling, Parameters, ParticleStorage, Perspective, PositionFormat,
+        SampleCounter, ShaderChecks, ShadowMapSize, ShadowTaps, Skinning, VertexTransform,
         Visibility, XraySums,
     },
     effects::{
@@ -55,7 +56,8 @@ pub(super) enum Cause {
     Default,
     /// It takes less time, and its error fits the tolerance.
     Cheaper,
-    /// Rounding moves corners of meshes far from the origin, which stored positions are predicted to cost.
+    /// Rounding moves corners of meshes far from the origin, which stored positions are predicted
+    /// to cost.
     FarFromOrigin(Prediction),
     /// The picture cannot take the culling that was asked for.
     Limited {
@@ -71,7 +73,8 @@ pub(super) struct Choice {
     pub prediction: Prediction,
 }
 
-/// Chooses an option on every axis: pins first, then the options that save time and fit the tolerance.
+/// Chooses an option on every axis: pins first, then the options that save time and fit the
+/// tolerance.
 pub(super) fn choose(inputs: &Inputs) -> Result<Choice, PlanError> {
     let Inputs { needs, request, .. } = *inputs;
     let mut options = base_options(inputs);
@@ -93,28 +96,54 @@ pub(super) fn choose(inputs: &Inputs) -> Result<Choice, PlanError> {
         }
     }
     if let Some((culling, why)) = culling_limit(&options, inputs) {
-        causes[Culling::AXIS] = Cause::Limited { asked: options.culling, why };
+        causes[Culling::AXIS] = Cause::Limited {
+            asked: options.culling,
+            why,
+        };
         options.culling = culling;
     }
     check(&options, inputs)?;
-    Ok(Choice { options, causes, prediction: predict_all(&options, needs) })
+    Ok(Choice {
+        options,
+        causes,
+        prediction: predict_all(&options, needs),
+    })
 }
 
-/// The options to start from: the tier's, the pinned ones, and those that scene, stack and view decide.
+/// The options to start from: the tier's, the pinned ones, and those that scene, stack and view
+/// decide.
 fn base_options(inputs: &Inputs) -> AccuracyOptions {
-    let Inputs { needs, stack, caps, request, .. } = *inputs;
-    let visibility = if caps.int64_atomics { Visibility::Packed64 } else { Visibility::Split32 };
-    let mut options = AccuracyOptions { visibility, ..request.tier.base() };
+    let Inputs {
+        needs,
+        stack,
+        caps,
+        request,
+        ..
+    } = *inputs;
+    let visibility = if caps.int64_atomics {
+        Visibility::Packed64
+    } else {
+        Visibility::Split32
+    };
+    let mut options = AccuracyOptions {
+        visibility,
+        ..request.tier.base()
+    };
     request.pins.apply(&mut options);
     // The pose has its joint matrices made for a skinning already.
     options.skinning = needs.skinning.unwrap_or_default();
     // The view says how finely shadows are drawn.
-    (options.shadow_map_size, options.shadow_taps) = if stack.reads_light() { needs.shadow.options() } else { Default::default() };
+    (options.shadow_map_size, options.shadow_taps) = if stack.reads_light() {
+        needs.shadow.options()
+    } else {
+        Default::default()
+    };
     if stack.dots.is_none() {
         options.dot_culling = DotCulling::default();
     }
     if !needs.particle_discs {
-        (options.curl_noise, options.particle_storage) = (CurlNoise::default(), ParticleStorage::default());
+        (options.curl_noise, options.particle_storage) =
+            (CurlNoise::default(), ParticleStorage::default());
     }
     if inputs.layers == Some(Layers::Race) {
         options.visibility = Visibility::Race;
@@ -133,24 +162,40 @@ fn is_unused(index: usize, inputs: &Inputs) -> bool {
         XraySums::AXIS => inputs.stack.xray.is_none(),
         Clipping::AXIS => !inputs.needs.clipping,
         Perspective::AXIS => !inputs.needs.perspective,
-        Parameters::AXIS => inputs.stack.effects.iter().all(|effect| effect.fields.is_empty()),
+        Parameters::AXIS => inputs
+            .stack
+            .effects
+            .iter()
+            .all(|effect| effect.fields.is_empty()),
         _ => false,
     }
 }
 
-/// The predicted cost of positions as they are stored, where it exceeds the tolerance: then positions relative to the eye are
-/// taken unasked, since they cost no time. A strict picture follows from the preset alone.
+/// The predicted cost of positions as they are stored, where it exceeds the tolerance: then
+/// positions relative to the eye are taken unasked, since they cost no time. A strict picture
+/// follows from the preset alone.
 fn far_from_origin(options: &AccuracyOptions, inputs: &Inputs) -> Option<Prediction> {
-    let stored = predict(PositionFormat::AXIS, options.position_format.index(), inputs.needs);
-    let is_fixed = inputs.request.pins.option::<PositionFormat>().is_some() || options.vertex_transform == VertexTransform::Strict;
+    let stored = predict(
+        PositionFormat::AXIS,
+        options.position_format.index(),
+        inputs.needs,
+    );
+    let is_fixed = inputs.request.pins.option::<PositionFormat>().is_some()
+        || options.vertex_transform == VertexTransform::Strict;
     (!is_fixed && !stored.is_within(&inputs.request.tolerance())).then_some(stored)
 }
 
 /// The option of the axis that saves the most time within the tolerance, if any does.
 fn cheapest(axis: &Axis, options: &AccuracyOptions, inputs: &Inputs) -> Option<usize> {
-    let Inputs { needs, caps, request, .. } = *inputs;
+    let Inputs {
+        needs,
+        caps,
+        request,
+        ..
+    } = *inputs;
     let cost = |option: usize| costs::of(axis, option, needs, caps, &request.measured);
-    let saves = |option: &usize| axis.index() != Skinning::AXIS && cost(*option) < cost(options.get(axis));
+    let saves =
+        |option: &usize| axis.index() != Skinning::AXIS && cost(*option) < cost(options.get(axis));
     let mut cheaper: Vec<usize> = (0..axis.words.len()).filter(saves).collect();
     cheaper.sort_by(|a, b| cost(*a).total_cmp(&cost(*b)));
     let tolerance: Tolerance = request.tolerance();
@@ -161,21 +206,37 @@ fn cheapest(axis: &Axis, options: &AccuracyOptions, inputs: &Inputs) -> Option<u
     })
 }
 
-/// The most culling that the picture allows, and why, where that is less than was asked for. Culling never shows, so a preset
-/// that pins it is drawn without.
+/// The most culling that the picture allows, and why, where that is less than was asked for.
+/// Culling never shows, so a preset that pins it is drawn without.
 fn culling_limit(options: &AccuracyOptions, inputs: &Inputs) -> Option<(Culling, &'static str)> {
     let stack = inputs.stack;
     let (most, why) = match (inputs.layers, options.visibility) {
-        _ if options.position_format.packed_bits().is_some() => {
-            (Culling::None, "packed positions lie outside the bounds of their meshlets")
+        _ if options.position_format.packed_bits().is_some() => (
+            Culling::None,
+            "packed positions lie outside the bounds of their meshlets",
+        ),
+        _ if stack.vertex_effect().is_some() => {
+            (Culling::None, "effects move meshes out of their bounds")
         }
-        _ if stack.vertex_effect().is_some() => (Culling::None, "effects move meshes out of their bounds"),
         _ if stack.has_particles => (Culling::None, "particles move out of any meshlet's bounds"),
-        _ if stack.shape == Shape::Points => (Culling::None, "discs reach out of the bounds of their meshes"),
-        _ if stack.draw_order.is_some() => (Culling::None, "a draw order counts the samples of every triangle"),
-        (Some(Layers::Race), _) | (_, Visibility::Race) => (Culling::None, "a race shows what happens to every triangle"),
-        (Some(Layers::Xray { .. } | Layers::Overdraw), _) => (Culling::Frustum, "layers that are hidden count too"),
-        (_, Visibility::Packed32) => (Culling::Frustum, "packed32 stores too little of a depth to cull against"),
+        _ if stack.shape == Shape::Points => (
+            Culling::None,
+            "discs reach out of the bounds of their meshes",
+        ),
+        _ if stack.draw_order.is_some() => (
+            Culling::None,
+            "a draw order counts the samples of every triangle",
+        ),
+        (Some(Layers::Race), _) | (_, Visibility::Race) => {
+            (Culling::None, "a race shows what happens to every triangle")
+        }
+        (Some(Layers::Xray { .. } | Layers::Overdraw), _) => {
+            (Culling::Frustum, "layers that are hidden count too")
+        }
+        (_, Visibility::Packed32) => (
+            Culling::Frustum,
+            "packed32 stores too little of a depth to cull against",
+        ),
         _ => return None,
     };
     (options.culling > most).then_some((most, why))
@@ -183,28 +244,40 @@ fn culling_limit(options: &AccuracyOptions, inputs: &Inputs) -> Option<(Culling,
 
 /// Refuses what no kernel can draw.
 fn check(options: &AccuracyOptions, inputs: &Inputs) -> Result<(), PlanError> {
-    let Inputs { needs, stack, caps, .. } = *inputs;
+    let Inputs {
+        needs, stack, caps, ..
+    } = *inputs;
     if !options.visibility.is_supported(caps.int64_atomics) {
         return Err(PlanError::NoInt64Atomics);
     }
     if options.visibility == Visibility::Packed32 && needs.triangles > PACKED32_TRIANGLES {
-        return Err(PlanError::TooManyTriangles { triangles: needs.triangles });
+        return Err(PlanError::TooManyTriangles {
+            triangles: needs.triangles,
+        });
     }
     if options.coverage.subpixel_bits() != SUBPIXEL_BITS
         && let Some(effect) = subpixel_effect(stack)
     {
-        return Err(PlanError::SubpixelGrid { option: options.coverage.name(), effect });
+        return Err(PlanError::SubpixelGrid {
+            option: options.coverage.name(),
+            effect,
+        });
     }
     if options.coverage == Coverage::Fixed12 && needs.size.iter().any(|side| *side > FIXED12_SIDE) {
         return Err(PlanError::PictureTooLarge { size: needs.size });
     }
     if options.depth == DepthFormat::Integer && options.coverage.is_float() {
-        return Err(PlanError::FloatCoverage { option: options.coverage.name() });
+        return Err(PlanError::FloatCoverage {
+            option: options.coverage.name(),
+        });
     }
     if options.position_format.packed_bits().is_some()
         && let Some(what) = deformation(needs)
     {
-        return Err(PlanError::PackedDeformation { option: options.position_format.name(), what });
+        return Err(PlanError::PackedDeformation {
+            option: options.position_format.name(),
+            what,
+        });
     }
     if options.dot_culling == DotCulling::Cpu
         && let Some(what) = moving_lines(inputs)
@@ -219,32 +292,56 @@ fn check(options: &AccuracyOptions, inputs: &Inputs) -> Result<(), PlanError> {
     if options.shader_checks == ShaderChecks::Trusted
         && let Some(effect) = stack.effects.iter().find(|effect| effect.is_of_file())
     {
-        return Err(PlanError::UncheckedEffect { effect: effect.name.clone() });
+        return Err(PlanError::UncheckedEffect {
+            effect: effect.name.clone(),
+        });
     }
     check_xray(options, stack)
 }
 
 /// Refuses an xray that the sums or the depths cannot draw.
 fn check_xray(options: &AccuracyOptions, stack: &StackTraits) -> Result<(), PlanError> {
-    let Some(xray) = stack.xray else { return Ok(()) };
+    let Some(xray) = stack.xray else {
+        return Ok(());
+    };
     if options.xray_sums != XraySums::Four32 && xray.unit() != 1 {
-        return Err(PlanError::XrayWeights { option: options.xray_sums.name() });
+        return Err(PlanError::XrayWeights {
+            option: options.xray_sums.name(),
+        });
     }
-    if !matches!(options.depth, DepthFormat::Reversed | DepthFormat::Integer) && Reach::of(xray.layers) == Reach::Window {
-        return Err(PlanError::XrayWindow { option: options.depth.name() });
+    if !matches!(options.depth, DepthFormat::Reversed | DepthFormat::Integer)
+        && Reach::of(xray.layers) == Reach::Window
+    {
+        return Err(PlanError::XrayWindow {
+            option: options.depth.name(),
+        });
     }
     Ok(())
 }
 
 /// An effect whose integers are in units of 1/256 px.
 fn subpixel_effect(stack: &StackTraits) -> Option<String> {
-    let measures = |effect: &&Arc<Effect>| effect.hooks.sample.as_ref().is_some_and(|hook| hook.has_setup) || **effect == *points::EFFECT;
-    stack.effects.iter().find(measures).map(|effect| effect.name.clone())
+    let measures = |effect: &&Arc<Effect>| {
+        effect
+            .hooks
+            .sample
+            .as_ref()
+            .is_some_and(|hook| hook.has_setup)
+            || **effect == *points::EFFECT
+    };
+    stack
+        .effects
+        .iter()
+        .find(measures)
+        .map(|effect| effect.name.clone())
 }
 
 /// What changes the shape of a mesh after its positions are packed, if anything.
 fn deformation(needs: &Needs) -> Option<&'static str> {
-    match (needs.particle_discs, needs.skinning.is_some() || needs.morph_targets) {
+    match (
+        needs.particle_discs,
+        needs.skinning.is_some() || needs.morph_targets,
+    ) {
         (true, _) => Some("particles move"),
         (false, true) => Some("joints or morph targets deform one"),
         (false, false) => None,
@@ -256,8 +353,16 @@ fn moving_lines(inputs: &Inputs) -> Option<String> {
     if inputs.stack.dots == Some(LineSource::Polyline) {
         return None;
     }
-    let by_effect = inputs.stack.vertex_effect().map(|effect| format!("the effect {} moves them", effect.name));
-    by_effect.or_else(|| inputs.needs.moves.then(|| "the scene's own clips may move them".to_owned()))
+    let by_effect = inputs
+        .stack
+        .vertex_effect()
+        .map(|effect| format!("the effect {} moves them", effect.name));
+    by_effect.or_else(|| {
+        inputs
+            .needs
+            .moves
+            .then(|| "the scene's own clips may move them".to_owned())
+    })
 }
 
 /// What depends on floats or on chance even behind a strict vertex stage, if anything.
@@ -267,14 +372,26 @@ fn inexact_part(options: &AccuracyOptions, inputs: &Inputs) -> Option<String> {
         return Some(format!("the effect {} {}", effect.name, effect.why));
     }
     if options.position_format.packed_bits().is_some() {
-        return Some(format!("position_format {} unpacks positions in floats", options.position_format.name()));
+        return Some(format!(
+            "position_format {} unpacks positions in floats",
+            options.position_format.name()
+        ));
     }
     let deforms = needs.skinning.is_some() || needs.morph_targets;
     let parts = [
         (deforms, "joints or morph targets deform a mesh in floats"),
         (needs.particle_discs, "particles move in floats"),
-        (!inputs.f32_positions, "a mesh of the scene has positions that are not f32"),
-        (needs.masked && needs.clipping, "the mask of a clipped triangle is placed in floats"),
+        (
+            !inputs.f32_positions,
+            "a mesh of the scene has positions that are not f32",
+        ),
+        (
+            needs.masked && needs.clipping,
+            "the mask of a clipped triangle is placed in floats",
+        ),
     ];
-    parts.into_iter().find(|(is_there, _)| *is_there).map(|(_, what)| what.to_owned())
+    parts
+        .into_iter()
+        .find(|(is_there, _)| *is_there)
+        .map(|(_, what)| what.to_owned())
 }

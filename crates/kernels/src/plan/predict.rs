@@ -1,10 +1,11 @@
-//! Predictions: how far an option will be off in a scene, before anything is drawn. Where there is a bound it is the bound, else an
-//! estimate; measurements are compared with them, and a wrong prediction is shown.
+//! Predictions: how far an option will be off in a scene, before anything is drawn. Where there is
+//! a bound it is the bound, else an estimate; measurements are compared with them, and a wrong
+//! prediction is shown.
 
 use crate::{
     accuracy::{
-        AXES, AccuracyOptions, AxisOption, Clipping, Coverage, Culling, DepthFormat, Perspective, PositionFormat, RenderScale, Tolerance,
-        VertexTransform, Visibility, XraySums,
+        AXES, AccuracyOptions, AxisOption, Clipping, Coverage, Culling, DepthFormat, Perspective,
+        PositionFormat, RenderScale, Tolerance, VertexTransform, Visibility, XraySums,
     },
     scene::needs::Needs,
 };
@@ -20,7 +21,10 @@ pub struct Prediction {
 
 impl Prediction {
     fn wrong(wrong_ppm: f64) -> Self {
-        Self { wrong_ppm, channel: 0.0 }
+        Self {
+            wrong_ppm,
+            channel: 0.0,
+        }
     }
 
     /// Does it stay within a tolerance?
@@ -30,11 +34,15 @@ impl Prediction {
 
     /// Both errors in one picture.
     pub fn and(self, other: Self) -> Self {
-        Self { wrong_ppm: self.wrong_ppm + other.wrong_ppm, channel: self.channel + other.channel }
+        Self {
+            wrong_ppm: self.wrong_ppm + other.wrong_ppm,
+            channel: self.channel + other.channel,
+        }
     }
 }
 
-/// What an option adds to the error of a picture, given the indices of axis and option. Infinite where nothing is known.
+/// What an option adds to the error of a picture, given the indices of axis and option. Infinite
+/// where nothing is known.
 pub fn predict(axis: usize, option: usize, needs: &Needs) -> Prediction {
     debug_assert!(axis < AXES.len(), "an axis of the list");
     match axis {
@@ -45,8 +53,11 @@ pub fn predict(axis: usize, option: usize, needs: &Needs) -> Prediction {
         Perspective::AXIS => perspective(Perspective::from_index(option), needs),
         Clipping::AXIS => clipping(Clipping::from_index(option), needs),
         RenderScale::AXIS => scale(RenderScale::from_index(option)),
-        // What comes out from behind something is missing for one picture, and may be any number of pixels.
-        Culling::AXIS if Culling::from_index(option) == Culling::Hiz => Prediction::wrong(f64::INFINITY),
+        // What comes out from behind something is missing for one picture, and may be any number of
+        // pixels.
+        Culling::AXIS if Culling::from_index(option) == Culling::Hiz => {
+            Prediction::wrong(f64::INFINITY)
+        }
         XraySums::AXIS => sums(XraySums::from_index(option), needs),
         Visibility::AXIS => visibility(Visibility::from_index(option), needs),
         _ => Prediction::default(),
@@ -55,13 +66,18 @@ pub fn predict(axis: usize, option: usize, needs: &Needs) -> Prediction {
 
 /// The sum over all axes.
 pub fn predict_all(options: &AccuracyOptions, needs: &Needs) -> Prediction {
-    let each = AXES.iter().enumerate().map(|(i, axis)| predict(i, options.get(axis), needs));
+    let each = AXES
+        .iter()
+        .enumerate()
+        .map(|(i, axis)| predict(i, options.get(axis), needs));
     each.fold(Prediction::default(), Prediction::and)
 }
 
 /// Pixels that change their triangle when edges move by a fraction of a pixel, per million.
 fn moved_ppm(shift_px: f64, needs: &Needs) -> f64 {
-    1e6 * needs.sizes.changed_fraction(shift_px, needs.size.into_iter().map(f64::from).product())
+    1e6 * needs
+        .sizes
+        .changed_fraction(shift_px, needs.size.into_iter().map(f64::from).product())
 }
 
 fn coverage(option: Coverage, needs: &Needs) -> Prediction {
@@ -75,7 +91,8 @@ fn coverage(option: Coverage, needs: &Needs) -> Prediction {
         // Rounding decides only within 2^-24 of the largest product; ties are what meets it.
         Coverage::FloatTopLeft if needs.largest_px <= EXACT_PX => Prediction::default(),
         Coverage::FloatTopLeft => Prediction::wrong(moved_ppm(1.0 / 2048.0, needs)),
-        // A shared sample is drawn twice, and the later triangle may win: 1/256 of all samples lie on an edge's lattice.
+        // A shared sample is drawn twice, and the later triangle may win: 1/256 of all samples lie
+        // on an edge's lattice.
         Coverage::Float => Prediction::wrong(moved_ppm(1.0 / 256.0, needs)),
     }
 }
@@ -93,9 +110,14 @@ fn vertices(option: PositionFormat, needs: &Needs) -> Prediction {
     const USUAL: f64 = 1.0 / 8.0;
     let [stored, relative] = needs.rounding_px;
     match (option, option.packed_bits()) {
-        // A quarter of a step is the mean distance to the nearest one; the box is as wide as it looks from where it is nearest.
-        (_, Some(bits)) => Prediction::wrong(moved_ppm(0.25 * needs.box_px / libm::exp2(bits.into()), needs)),
-        // Within a unit of the grid every bound is at home; beyond it the relative one tells what the offset costs.
+        // A quarter of a step is the mean distance to the nearest one; the box is as wide as it
+        // looks from where it is nearest.
+        (_, Some(bits)) => Prediction::wrong(moved_ppm(
+            0.25 * needs.box_px / libm::exp2(bits.into()),
+            needs,
+        )),
+        // Within a unit of the grid every bound is at home; beyond it the relative one tells what
+        // the offset costs.
         (PositionFormat::Stored, _) if stored > 2.0 * relative.max(1.0 / 256.0) => {
             Prediction::wrong(moved_ppm(USUAL * (stored - relative), needs))
         }
@@ -106,8 +128,9 @@ fn vertices(option: PositionFormat, needs: &Needs) -> Prediction {
 fn depth(option: DepthFormat, needs: &Needs) -> Prediction {
     let [nearest, farthest] = needs.depth_m;
     let span = (farthest - nearest).max(f64::MIN_POSITIVE);
-    // Smallest distance that always gives another key, at the far end: surfaces nearer to each other than that are confused,
-    // and in a scene as deep as its box, that fraction of the pixels has another surface so close behind.
+    // Smallest distance that always gives another key, at the far end: surfaces nearer to each
+    // other than that are confused, and in a scene as deep as its box, that fraction of the
+    // pixels has another surface so close behind.
     let step_m = match option {
         DepthFormat::Ndc16 => needs.depth_unit_m(farthest) / 65_536.0,
         DepthFormat::Log16 => needs.doubling_span_m(farthest) / 2048.0,
@@ -119,8 +142,16 @@ fn depth(option: DepthFormat, needs: &Needs) -> Prediction {
 }
 
 fn scale(option: RenderScale) -> Prediction {
-    // Triangle ids are those of the pixels that are drawn. Where fewer are drawn than shown, an edge may lie anywhere between two.
-    Prediction { wrong_ppm: 0.0, channel: if option < RenderScale::Full { 255.0 } else { 0.0 } }
+    // Triangle ids are those of the pixels that are drawn. Where fewer are drawn than shown, an
+    // edge may lie anywhere between two.
+    Prediction {
+        wrong_ppm: 0.0,
+        channel: if option < RenderScale::Full {
+            255.0
+        } else {
+            0.0
+        },
+    }
 }
 
 fn perspective(option: Perspective, needs: &Needs) -> Prediction {
@@ -128,8 +159,12 @@ fn perspective(option: Perspective, needs: &Needs) -> Prediction {
     match option {
         Perspective::Exact => Prediction::default(),
         Perspective::Affine if !needs.perspective => Prediction::default(),
-        // An attribute errs by at most (sqrt(ratio) - 1) / (sqrt(ratio) + 1) of its span within a triangle.
-        Perspective::Affine => Prediction { wrong_ppm: 0.0, channel: 255.0 * ((ratio.sqrt() - 1.0) / (ratio.sqrt() + 1.0)).min(1.0) },
+        // An attribute errs by at most (sqrt(ratio) - 1) / (sqrt(ratio) + 1) of its span within a
+        // triangle.
+        Perspective::Affine => Prediction {
+            wrong_ppm: 0.0,
+            channel: 255.0 * ((ratio.sqrt() - 1.0) / (ratio.sqrt() + 1.0)).min(1.0),
+        },
     }
 }
 
@@ -151,9 +186,15 @@ fn sums(option: XraySums, needs: &Needs) -> Prediction {
     match option.capacity() {
         None => Prediction::default(),
         // More layers than triangles there are not.
-        Some(capacity) if needs.triangles > capacity => Prediction { wrong_ppm: 0.0, channel: f64::INFINITY },
+        Some(capacity) if needs.triangles > capacity => Prediction {
+            wrong_ppm: 0.0,
+            channel: f64::INFINITY,
+        },
         // Half a step of 8 bits of linear light, where its curve is steepest.
-        Some(_) => Prediction { wrong_ppm: 0.0, channel: 0.5 * 12.92 },
+        Some(_) => Prediction {
+            wrong_ppm: 0.0,
+            channel: 0.5 * 12.92,
+        },
     }
 }
 
@@ -161,6 +202,9 @@ fn clipping(option: Clipping, needs: &Needs) -> Prediction {
     match option {
         Clipping::Exact => Prediction::default(),
         _ if !needs.clipping => Prediction::default(),
-        _ => Prediction { wrong_ppm: f64::INFINITY, channel: 0.0 },
+        _ => Prediction {
+            wrong_ppm: f64::INFINITY,
+            channel: 0.0,
+        },
     }
 }

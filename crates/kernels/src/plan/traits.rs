@@ -1,4 +1,5 @@
-//! Stack traits: what planning reads of a stack. A parameter that is not among them changes uniform bytes alone.
+//! Stack traits: what planning reads of a stack. A parameter that is not among them changes uniform
+//! bytes alone.
 
 use std::sync::Arc;
 
@@ -51,26 +52,53 @@ impl StackTraits {
     pub fn of(stack: &Stack, request: &AccuracyRequest) -> Result<Self, PlanError> {
         stack.check()?;
         let is_baked = request.pins.option() == Some(Parameters::Baked);
-        let baked = stack.0.iter().filter(|_| is_baked).map(|enabled| enabled.words.clone()).collect();
-        let xray = stack.get(&xray::EFFECT.name).map(|enabled| read::<Xray>(&enabled.words));
+        let baked = stack
+            .0
+            .iter()
+            .filter(|_| is_baked)
+            .map(|enabled| enabled.words.clone())
+            .collect();
+        let xray = stack
+            .get(&xray::EFFECT.name)
+            .map(|enabled| read::<Xray>(&enabled.words));
         Ok(Self {
-            effects: stack.0.iter().map(|enabled| enabled.effect.clone()).collect(),
+            effects: stack
+                .0
+                .iter()
+                .map(|enabled| enabled.effect.clone())
+                .collect(),
             baked,
-            scope_bits: if stack.scopes().is_empty() { Vec::new() } else { stack.scope_bits().collect() },
+            scope_bits: if stack.scopes().is_empty() {
+                Vec::new()
+            } else {
+                stack.scope_bits().collect()
+            },
             shape: stack.shape(),
-            draw_order: stack.draw_order().map(|order| draw_order::Mode::of(order.mode)),
+            draw_order: stack
+                .draw_order()
+                .map(|order| draw_order::Mode::of(order.mode)),
             dots: stack.dots().map(|dots| LineSource::of(dots.lines)),
             has_particles: stack.particle_settings().is_some(),
-            xray: xray.map(|xray| Xray { window: 0, opacity: 0.0, ..xray }),
+            xray: xray.map(|xray| Xray {
+                window: 0,
+                opacity: 0.0,
+                ..xray
+            }),
             inexact_effect: stack.0.iter().find_map(inexact),
         })
     }
 
-    /// What becomes of the samples of a pixel in a scene of so many triangles; none: the nearest is shown.
+    /// What becomes of the samples of a pixel in a scene of so many triangles; none: the nearest is
+    /// shown.
     pub fn layers(&self, triangles: u64) -> Option<Layers> {
-        let effect = self.effects.iter().find(|effect| effect.hooks.slot == Some(Slot::Visibility))?;
+        let effect = self
+            .effects
+            .iter()
+            .find(|effect| effect.hooks.slot == Some(Slot::Visibility))?;
         Some(match self.xray {
-            Some(xray) => Layers::Xray { bits: xray.first_bits(triangles) },
+            Some(xray) => Layers::Xray {
+                bits: xray.first_bits(triangles),
+            },
             None if *effect == *overdraw::EFFECT => Layers::Overdraw,
             None => Layers::Race,
         })
@@ -78,17 +106,22 @@ impl StackTraits {
 
     /// Does an x-ray count every layer, whatever lies in front of it?
     pub fn sums_all_layers(&self) -> bool {
-        self.xray.is_some_and(|xray| Reach::of(xray.layers) == Reach::All)
+        self.xray
+            .is_some_and(|xray| Reach::of(xray.layers) == Reach::All)
     }
 
     /// The first effect that moves vertices.
     pub fn vertex_effect(&self) -> Option<&Arc<Effect>> {
-        self.effects.iter().find(|effect| effect.hooks.vertex.is_some())
+        self.effects
+            .iter()
+            .find(|effect| effect.hooks.vertex.is_some())
     }
 
     /// Does an effect finish pixels?
     pub fn finishes_pixels(&self) -> bool {
-        self.effects.iter().any(|effect| effect.hooks.image.is_some())
+        self.effects
+            .iter()
+            .any(|effect| effect.hooks.image.is_some())
     }
 
     /// Does an effect ask how much of a light arrives?
@@ -98,14 +131,24 @@ impl StackTraits {
 
     /// Does an effect read what only the plane of a triangle tells? The taps of a shadow map do.
     pub fn reads_planes(&self) -> bool {
-        let reads_planes = |effect: &Arc<Effect>| effect.hooks.surface_inputs.iter().any(|input| input.needs_planes());
+        let reads_planes = |effect: &Arc<Effect>| {
+            effect
+                .hooks
+                .surface_inputs
+                .iter()
+                .any(|input| input.needs_planes())
+        };
         self.reads_light() || self.effects.iter().any(reads_planes)
     }
 }
 
 /// How the samples of an effect depend on floats or on chance, if they do.
 fn inexact(EnabledEffect { effect, words, .. }: &EnabledEffect) -> Option<InexactEffect> {
-    let uses_floats = effect.hooks.sample.as_ref().is_some_and(|hook| hook.has_setup && (hook.is_from_floats)(words));
+    let uses_floats = effect
+        .hooks
+        .sample
+        .as_ref()
+        .is_some_and(|hook| hook.has_setup && (hook.is_from_floats)(words));
     let why = match () {
         () if effect.hooks.vertex.is_some() => "moves vertices in floats",
         () if uses_floats => "moves a front in floats",
@@ -113,7 +156,10 @@ fn inexact(EnabledEffect { effect, words, .. }: &EnabledEffect) -> Option<Inexac
         () if !(effect.is_repeatable)(words) => "leaves its picture to chance",
         () => return None,
     };
-    Some(InexactEffect { name: effect.name.clone(), why })
+    Some(InexactEffect {
+        name: effect.name.clone(),
+        why,
+    })
 }
 
 #[cfg(test)]
@@ -138,7 +184,9 @@ mod tests {
                     let mut moved = stack.clone();
                     let words = &mut moved.0[0].words;
                     let components = field.get(words).len();
-                    field.set(words, &vec![value; components]).expect("inside the range");
+                    field
+                        .set(words, &vec![value; components])
+                        .expect("inside the range");
                     let after = StackTraits::of(&moved, &request).expect("one effect has no rival");
                     assert_eq!(before, after, "{}.{} = {value}", effect.name, field.name);
                 }

@@ -33,9 +33,13 @@ impl KernelKey {
         passes
     }
 
-    /// Every pass of a shadow map of this kernel's scene: depth alone. The picture's own passes have written the vertices.
+    /// Every pass of a shadow map of this kernel's scene: depth alone. The picture's own passes
+    /// have written the vertices.
     pub fn light_frame(&self) -> Vec<Pass> {
-        self.passes(&[RasterPhase::Depth]).into_iter().filter(|pass| !matches!(pass, Pass::Particles | Pass::Skin)).collect()
+        self.passes(&[RasterPhase::Depth])
+            .into_iter()
+            .filter(|pass| !matches!(pass, Pass::Particles | Pass::Skin))
+            .collect()
     }
 
     /// The raster phases of one frame, in order.
@@ -44,7 +48,9 @@ impl KernelKey {
             (Some(Layers::Race), _) | (_, Visibility::Race) => &[RasterPhase::Race],
             (_, Visibility::Packed32) => &[RasterPhase::Packed32],
             (_, Visibility::Split32) => &[RasterPhase::Depth, RasterPhase::TriangleId],
-            (_, Visibility::Packed64) if self.work.sums_with_nearest => &[RasterPhase::NearestAndSum],
+            (_, Visibility::Packed64) if self.work.sums_with_nearest => {
+                &[RasterPhase::NearestAndSum]
+            }
             (_, Visibility::Packed64) => &[RasterPhase::Packed],
         };
         let layers: &[RasterPhase] = match self.framebuffer.layers {
@@ -59,7 +65,9 @@ impl KernelKey {
     pub const fn order_phases(&self) -> &'static [RasterPhase] {
         match self.samples.draw_order {
             None => &[],
-            Some(draw_order::Mode::Submission) => &[RasterPhase::CountSamples, RasterPhase::BoundaryTriangle],
+            Some(draw_order::Mode::Submission) => {
+                &[RasterPhase::CountSamples, RasterPhase::BoundaryTriangle]
+            }
             Some(draw_order::Mode::Scheduler) => &[RasterPhase::CountSamples],
         }
     }
@@ -81,10 +89,17 @@ impl KernelKey {
         if self.sample_setups() > 0 {
             passes.push(Pass::SampleSetup(TriangleSource::Triangles));
         }
-        let Some((&first, others)) = phases.split_first() else { return passes };
+        let Some((&first, others)) = phases.split_first() else {
+            return passes;
+        };
         for &cull_phase in self.cull_phases() {
             if cull_phase == CullPhase::Late {
-                passes.extend([Pass::DepthReduce, Pass::AdvanceQueues { reopens_queues: false }]);
+                passes.extend([
+                    Pass::DepthReduce,
+                    Pass::AdvanceQueues {
+                        reopens_queues: false,
+                    },
+                ]);
             }
             passes.extend([Pass::Cull(cull_phase), Pass::Args]);
             if !projects_all {
@@ -96,9 +111,18 @@ impl KernelKey {
             passes.extend(self.raster_passes(first, true));
         }
         if self.options.culling == Culling::TwoPass && !others.is_empty() {
-            passes.extend([Pass::AdvanceQueues { reopens_queues: true }, Pass::Args]);
+            passes.extend([
+                Pass::AdvanceQueues {
+                    reopens_queues: true,
+                },
+                Pass::Args,
+            ]);
         }
-        passes.extend(others.iter().flat_map(|&phase| self.raster_passes(phase, false)));
+        passes.extend(
+            others
+                .iter()
+                .flat_map(|&phase| self.raster_passes(phase, false)),
+        );
         passes
     }
 
@@ -116,7 +140,9 @@ impl KernelKey {
     fn raster_passes(&self, phase: RasterPhase, is_first: bool) -> Vec<Pass> {
         let mut passes = Vec::new();
         match self.samples.shape {
-            Shape::Triangles | Shape::Boxes if self.draws_all_at_once() && !is_first => passes.push(Pass::RasterAll(phase)),
+            Shape::Triangles | Shape::Boxes if self.draws_all_at_once() && !is_first => {
+                passes.push(Pass::RasterAll(phase))
+            }
             Shape::Triangles | Shape::Boxes => passes.push(Pass::RasterSmall(phase)),
             Shape::Points => passes.push(Pass::RasterPoints(phase)),
         }
@@ -128,7 +154,9 @@ impl KernelKey {
             passes.extend(self.paths.has_large.then_some(Pass::RasterLarge(phase)));
         }
         match phase {
-            RasterPhase::CountSamples => passes.extend([Pass::OrderSums, Pass::OrderLimit, Pass::OrderRanks]),
+            RasterPhase::CountSamples => {
+                passes.extend([Pass::OrderSums, Pass::OrderLimit, Pass::OrderRanks])
+            }
             RasterPhase::BoundaryTriangle => passes.push(Pass::OrderCut),
             _ => {}
         }
@@ -158,12 +186,14 @@ impl KernelKey {
         passes
     }
 
-    /// Does the first pass over the medium queue find the tiles of large triangles, too? No count decides how many workgroups it has.
+    /// Does the first pass over the medium queue find the tiles of large triangles, too? No count
+    /// decides how many workgroups it has.
     pub const fn divides_in_medium(&self) -> bool {
         self.paths.has_medium && self.paths.has_large && self.work.queue_groups > 0
     }
 
-    /// Does each raster phase but the first draw the triangles of all queues in one pass? No count decides how many workgroups that has.
+    /// Does each raster phase but the first draw the triangles of all queues in one pass? No count
+    /// decides how many workgroups that has.
     const fn draws_all_at_once(&self) -> bool {
         (self.paths.has_medium || self.paths.has_large) && self.work.queue_groups > 0
     }
@@ -173,7 +203,12 @@ impl KernelKey {
         match (self.effects.dots, self.options.dot_culling) {
             (None, _) => &[],
             (Some(_), DotCulling::Brute | DotCulling::Cpu) => &[Pass::DotsEnds, Pass::DotsDraw],
-            (Some(_), DotCulling::Gpu) => &[Pass::DotsEnds, Pass::DotsCull, Pass::DotsArgs, Pass::DotsDraw],
+            (Some(_), DotCulling::Gpu) => &[
+                Pass::DotsEnds,
+                Pass::DotsCull,
+                Pass::DotsArgs,
+                Pass::DotsDraw,
+            ],
         }
     }
 
@@ -188,8 +223,9 @@ impl KernelKey {
         }
     }
 
-    /// Does this pass visit all layers of a frame that has found the nearest before, and so count in the second counter? The
-    /// judge counts layers in a frame of its own, unless the picture itself shows the count.
+    /// Does this pass visit all layers of a frame that has found the nearest before, and so count
+    /// in the second counter? The judge counts layers in a frame of its own, unless the picture
+    /// itself shows the count.
     pub(super) fn uses_second_counter(&self, pass: Pass) -> bool {
         match pass.phase() {
             Some(RasterPhase::Sum) => true,

@@ -1,5 +1,5 @@
-//! Glue: generated WGSL. The parameters of the stack's effects with constants for their choices, one call chain per hook, and
-//! buffers that a kernel key declares in one of several ways.
+//! Glue: generated WGSL. The parameters of the stack's effects with constants for their choices,
+//! one call chain per hook, and buffers that a kernel key declares in one of several ways.
 
 use std::{fmt::Write, sync::Arc};
 
@@ -9,13 +9,18 @@ use crate::{
     shader::key::{EffectList, Fetch, KernelKey},
 };
 
-/// Bytes from the start of one effect's parameters to the next are a multiple of this (WGSL, uniform address space).
+/// Bytes from the start of one effect's parameters to the next are a multiple of this (WGSL,
+/// uniform address space).
 const MEMBER_ALIGN: usize = 16;
 
-/// Constants and the `Effects` struct for the enabled effects, in order. With none there is no struct and no binding; with
-/// `baked` parameters there is a constant instead of a binding.
+/// Constants and the `Effects` struct for the enabled effects, in order. With none there is no
+/// struct and no binding; with `baked` parameters there is a constant instead of a binding.
 pub fn effects(key: &KernelKey) -> String {
-    let EffectList { list: effects, baked, .. } = &key.effects;
+    let EffectList {
+        list: effects,
+        baked,
+        ..
+    } = &key.effects;
     let mut text = String::new();
     let mut files: Vec<&str> = Vec::new();
     for effect in effects {
@@ -27,7 +32,9 @@ pub fn effects(key: &KernelKey) -> String {
             if let ValueType::Choice(words) = &field.value_type {
                 for (index, word) in words.iter().enumerate() {
                     let name = constant_name(effect.file_stem(), &field.name, word);
-                    let name = effect.source.as_ref().map_or(name.clone(), |source| EffectSource::unique(&source.stem, &name));
+                    let name = effect.source.as_ref().map_or(name.clone(), |source| {
+                        EffectSource::unique(&source.stem, &name)
+                    });
                     writeln!(text, "const {name} = {index}u;").expect("writing to a string");
                 }
             }
@@ -36,20 +43,36 @@ pub fn effects(key: &KernelKey) -> String {
     if !effects.is_empty() {
         text.push_str("struct Effects {\n");
         for effect in effects {
-            writeln!(text, "    @align({MEMBER_ALIGN}) {}: {},", effect.name, effect.wgsl_struct).expect("writing to a string");
+            writeln!(
+                text,
+                "    @align({MEMBER_ALIGN}) {}: {},",
+                effect.name, effect.wgsl_struct
+            )
+            .expect("writing to a string");
         }
         text.push_str("}\n");
         if baked.is_empty() {
-            writeln!(text, "@group(0) @binding(12) var<{}> effects: Effects;", uniform(key)).expect("writing to a string");
+            writeln!(
+                text,
+                "@group(0) @binding(12) var<{}> effects: Effects;",
+                uniform(key)
+            )
+            .expect("writing to a string");
         } else {
-            let values: Vec<String> = effects.iter().zip(baked).map(|(effect, words)| constructor(effect, words)).collect();
-            writeln!(text, "const effects = Effects({});", values.join(", ")).expect("writing to a string");
+            let values: Vec<String> = effects
+                .iter()
+                .zip(baked)
+                .map(|(effect, words)| constructor(effect, words))
+                .collect();
+            writeln!(text, "const effects = Effects({});", values.join(", "))
+                .expect("writing to a string");
         }
     }
     text
 }
 
-/// An effect's parameters as a constant expression: every number as the shortest decimal that is exactly itself.
+/// An effect's parameters as a constant expression: every number as the shortest decimal that is
+/// exactly itself.
 fn constructor(effect: &Effect, words: &[u32]) -> String {
     let literal = |wgsl: WgslType, word: u32| match wgsl {
         WgslType::F32 | WgslType::Vec4F32 => format!("{:?}f", f32::from_bits(word)),
@@ -57,17 +80,35 @@ fn constructor(effect: &Effect, words: &[u32]) -> String {
         WgslType::U32 => format!("{word}u"),
     };
     let member = |field: &Field| {
-        let components: Vec<String> =
-            words[field.offset / 4..][..field.wgsl.words()].iter().map(|&word| literal(field.wgsl, word)).collect();
-        if components.len() == 1 { components[0].clone() } else { format!("vec4f({})", components.join(", ")) }
+        let components: Vec<String> = words[field.offset / 4..][..field.wgsl.words()]
+            .iter()
+            .map(|&word| literal(field.wgsl, word))
+            .collect();
+        if components.len() == 1 {
+            components[0].clone()
+        } else {
+            format!("vec4f({})", components.join(", "))
+        }
     };
     let mut fields: Vec<&Arc<Field>> = effect.fields.iter().collect();
     fields.sort_by_key(|field| field.offset);
-    let members = fields.chunk_by(|a, b| a.group.is_some() && a.group == b.group).map(|fields| {
-        let members = fields.iter().map(|field| member(field)).collect::<Vec<_>>().join(", ");
-        fields[0].group.map_or(members.clone(), |group| format!("{}({members})", group.wgsl_struct))
-    });
-    format!("{}({})", effect.wgsl_struct, members.collect::<Vec<_>>().join(", "))
+    let members = fields
+        .chunk_by(|a, b| a.group.is_some() && a.group == b.group)
+        .map(|fields| {
+            let members = fields
+                .iter()
+                .map(|field| member(field))
+                .collect::<Vec<_>>()
+                .join(", ");
+            fields[0].group.map_or(members.clone(), |group| {
+                format!("{}({members})", group.wgsl_struct)
+            })
+        });
+    format!(
+        "{}({})",
+        effect.wgsl_struct,
+        members.collect::<Vec<_>>().join(", ")
+    )
 }
 
 /// A hook as the kernels call it.
@@ -82,7 +123,13 @@ pub enum Chain {
 }
 
 impl Chain {
-    pub const ALL: [Self; 5] = [Self::Vertex, Self::Sample, Self::SampleSetup, Self::Surface, Self::Image];
+    pub const ALL: [Self; 5] = [
+        Self::Vertex,
+        Self::Sample,
+        Self::SampleSetup,
+        Self::Surface,
+        Self::Image,
+    ];
 
     /// Name in `//@ use glue/NAME` and in the names of WGSL functions.
     pub const fn name(self) -> &'static str {
@@ -95,7 +142,8 @@ impl Chain {
         }
     }
 
-    /// Are its effects called for parts of the scene? Setups of samples are computed for all triangles, and pixels belong to no part.
+    /// Are its effects called for parts of the scene? Setups of samples are computed for all
+    /// triangles, and pixels belong to no part.
     const fn is_scoped(self) -> bool {
         matches!(self, Self::Vertex | Self::Sample | Self::Surface)
     }
@@ -131,26 +179,54 @@ impl Chain {
             return name.clone().unwrap_or_default();
         }
         let functions = Self::ALL.iter().filter(|chain| chain.has(effect)).count();
-        if functions == 1 { effect.file_stem().into() } else { format!("{}_{}", effect.file_stem(), self.name()) }
+        if functions == 1 {
+            effect.file_stem().into()
+        } else {
+            format!("{}_{}", effect.file_stem(), self.name())
+        }
     }
 
-    /// The generated function `glue_<hook>` that calls every effect in stack order. An effect with a scope is called where its draw has
-    /// the scope's bit; text without scopes reads no such bits.
+    /// The generated function `glue_<hook>` that calls every effect in stack order. An effect with
+    /// a scope is called where its draw has the scope's bit; text without scopes reads no such
+    /// bits.
     pub fn text(self, list: &EffectList) -> String {
         let effects = list.list.as_slice();
         let (head, tail) = match self {
-            Self::Vertex => ("fn glue_vertex(vertex: Vertex, draw: u32) -> Vertex {\n    var v = vertex;\n", "    return v;\n}\n"),
-            Self::Sample => {
-                ("fn glue_sample(sample: Sample, draw: u32, entry: u32) -> bool {\n    var s = sample;\n", "    return true;\n}\n")
-            }
-            Self::SampleSetup => ("fn glue_sample_setup(setup: TriangleSetup, entry: u32) {\n", "}\n"),
-            Self::Surface => ("fn glue_surface(surface: Surface, draw: u32) -> Surface {\n    var s = surface;\n", "    return s;\n}\n"),
-            Self::Image => ("fn glue_image(pixel: Pixel) -> Pixel {\n    var q = pixel;\n", "    return q;\n}\n"),
+            Self::Vertex => (
+                "fn glue_vertex(vertex: Vertex, draw: u32) -> Vertex {\n    var v = vertex;\n",
+                "    return v;\n}\n",
+            ),
+            Self::Sample => (
+                "fn glue_sample(sample: Sample, draw: u32, entry: u32) -> bool {\n    var s = sample;\n",
+                "    return true;\n}\n",
+            ),
+            Self::SampleSetup => (
+                "fn glue_sample_setup(setup: TriangleSetup, entry: u32) {\n",
+                "}\n",
+            ),
+            Self::Surface => (
+                "fn glue_surface(surface: Surface, draw: u32) -> Surface {\n    var s = surface;\n",
+                "    return s;\n}\n",
+            ),
+            Self::Image => (
+                "fn glue_image(pixel: Pixel) -> Pixel {\n    var q = pixel;\n",
+                "    return q;\n}\n",
+            ),
         };
         let with_setup: Vec<&Arc<Effect>> = Self::SampleSetup.effects(effects).collect();
-        let setup_of = |effect: &Effect| with_setup.iter().position(|other| other.name == effect.name);
+        let setup_of = |effect: &Effect| {
+            with_setup
+                .iter()
+                .position(|other| other.name == effect.name)
+        };
         let mut text = head.to_owned();
-        let scope = |effect: &Effect| if self.is_scoped() { list.scope(effect) } else { None };
+        let scope = |effect: &Effect| {
+            if self.is_scoped() {
+                list.scope(effect)
+            } else {
+                None
+            }
+        };
         if self.effects(effects).any(|effect| scope(effect).is_some()) {
             text.push_str("    let scopes = draws[draw].scopes;\n");
         }
@@ -161,17 +237,24 @@ impl Chain {
                 Self::Surface => format!("    s = {function}(s, effects.{name});"),
                 Self::Image => format!("    q = {function}(q, effects.{name});"),
                 Self::Sample => {
-                    let load =
-                        setup_of(effect).map_or(String::new(), |index| format!("    s.setup = sample_setup_load(entry, {index}u);\n"));
+                    let load = setup_of(effect).map_or(String::new(), |index| {
+                        format!("    s.setup = sample_setup_load(entry, {index}u);\n")
+                    });
                     format!("{load}    if !{function}(s, effects.{name}) {{ return false; }}")
                 }
                 Self::SampleSetup => {
                     let index = setup_of(effect).expect("an effect of this chain has a setup");
-                    format!("    sample_setup_store(entry, {index}u, {function}(setup, effects.{name}));")
+                    format!(
+                        "    sample_setup_store(entry, {index}u, {function}(setup, effects.{name}));"
+                    )
                 }
             };
             match scope(effect) {
-                Some(bit) => writeln!(text, "    if (scopes & {}u) != 0u {{\n{line}\n    }}", 1u32 << bit),
+                Some(bit) => writeln!(
+                    text,
+                    "    if (scopes & {}u) != 0u {{\n{line}\n    }}",
+                    1u32 << bit
+                ),
                 None => writeln!(text, "{line}"),
             }
             .expect("writing to a string");
@@ -182,13 +265,20 @@ impl Chain {
 }
 
 /// Buffers that [`binding`] declares.
-pub const BINDINGS: [&str; 5] = ["draws", "index_bytes", "queues", "clipped_triangles", "particle_step"];
+pub const BINDINGS: [&str; 5] = [
+    "draws",
+    "index_bytes",
+    "queues",
+    "clipped_triangles",
+    "particle_step",
+];
 
 /// Functions that come with the buffer of draws.
 pub const DRAW_FUNCTIONS: [&str; 2] = ["draw_of_triangle", "draw_of_vertex"];
 
-/// The draw that a triangle or a vertex belongs to. A scene of one draw has no search in its text: a loop that an override
-/// switches off still costs 6 % of a frame of ten million triangles (NVIDIA H200, 2026-11-22).
+/// The draw that a triangle or a vertex belongs to. A scene of one draw has no search in its text:
+/// a loop that an override switches off still costs 6 % of a frame of ten million triangles (NVIDIA
+/// H200, 2026-11-22).
 pub fn draw_functions(key: &KernelKey) -> String {
     let function = |name: &str, first: &str| {
         if key.vertices.is_single_draw {
@@ -209,10 +299,12 @@ pub fn draw_functions(key: &KernelKey) -> String {
     function(of_triangle, "first_triangle") + &function(of_vertex, "first_vertex")
 }
 
-/// The declaration of a buffer whose form depends on the key. Where the key has no such buffer, a private variable stands in for
-/// it, which code that runs never touches.
+/// The declaration of a buffer whose form depends on the key. Where the key has no such buffer, a
+/// private variable stands in for it, which code that runs never touches.
 pub fn binding(name: &str, key: &KernelKey) -> Option<String> {
-    let binding = |index: u32, access: &str, kind: &str| format!("@group(0) @binding({index}) var<{access}> {name}: {kind};\n");
+    let binding = |index: u32, access: &str, kind: &str| {
+        format!("@group(0) @binding({index}) var<{access}> {name}: {kind};\n")
+    };
     let or_none = |exists: bool, index: u32, access: &str, element: &str| match exists {
         true => binding(index, access, &format!("array<{element}>")),
         false => format!("var<private> {name}: array<{element}, 1>;\n"),
@@ -220,30 +312,52 @@ pub fn binding(name: &str, key: &KernelKey) -> Option<String> {
     match name {
         "draws" if key.vertices.is_single_draw => Some(binding(1, uniform(key), "array<Draw, 1>")),
         "draws" => Some(binding(1, "storage, read", "array<Draw>")),
-        "index_bytes" => Some(or_none(key.vertices.fetch != Fetch::Direct, 3, "storage, read", "u32")),
+        "index_bytes" => Some(or_none(
+            key.vertices.fetch != Fetch::Direct,
+            3,
+            "storage, read",
+            "u32",
+        )),
         "queues" => Some(or_none(key.has_queues(), 8, "storage, read_write", "u32")),
         "particle_step" => Some(binding(20, uniform(key), "ParticleStep")),
-        "clipped_triangles" => Some(or_none(key.paths.has_clipping, 9, "storage, read", "ClippedTriangle")),
+        "clipped_triangles" => Some(or_none(
+            key.paths.has_clipping,
+            9,
+            "storage, read",
+            "ClippedTriangle",
+        )),
         _ => None,
     }
 }
 
 /// The address space of values that conditions read and that all invocations share.
 const fn uniform(key: &KernelKey) -> &'static str {
-    if key.work.stored_uniforms { "storage, read" } else { "uniform" }
+    if key.work.stored_uniforms {
+        "storage, read"
+    } else {
+        "uniform"
+    }
 }
 
 /// The struct of an effect's parameters, from its fields.
 pub fn struct_of(effect: &Effect) -> String {
-    let members: Vec<String> = effect.fields.iter().map(|field| format!("    {}: {},\n", field.name, field.wgsl.name())).collect();
+    let members: Vec<String> = effect
+        .fields
+        .iter()
+        .map(|field| format!("    {}: {},\n", field.name, field.wgsl.name()))
+        .collect();
     format!("struct {} {{\n{}}}\n", effect.wgsl_struct, members.concat())
 }
 
 /// The declaration of a struct in the text of a file.
 pub fn struct_text<'a>(text: &'a str, name: &str) -> &'a str {
     let head = format!("struct {name} {{");
-    let Some(begin) = text.find(&head) else { return "" };
-    text[begin..].find("}\n").map_or("", |end| &text[begin..begin + end + 2])
+    let Some(begin) = text.find(&head) else {
+        return "";
+    };
+    text[begin..]
+        .find("}\n")
+        .map_or("", |end| &text[begin..begin + end + 2])
 }
 
 /// Bytes of the `Effects` uniform for this stack; empty when there is none.

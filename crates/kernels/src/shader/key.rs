@@ -1,6 +1,8 @@
-//! The kernel key: everything that decides which shader text runs and with which constants. Equal keys, equal pipelines.
+//! The kernel key: everything that decides which shader text runs and with which constants. Equal
+//! keys, equal pipelines.
 //!
-//! What each member means for the shader files, the overrides, the label and the passes is one table: `super::features`.
+//! What each member means for the shader files, the overrides, the label and the passes is one
+//! table: `super::features`.
 
 use std::sync::Arc;
 
@@ -14,7 +16,8 @@ use crate::{
     },
 };
 
-/// Everything that decides which shader text runs and with which constants. Equal keys, equal pipelines.
+/// Everything that decides which shader text runs and with which constants. Equal keys, equal
+/// pipelines.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct KernelKey {
     /// One option on every accuracy axis.
@@ -123,7 +126,8 @@ pub struct WorkSharing {
     pub early_load: bool,
     /// The largest word of a pixel is kept by compare and exchange instead of the atomic maximum.
     pub exchanges_maximum: bool,
-    /// Workgroups of every pass over a queue, which share its entries; 0: as many as it has entries, by an indirect dispatch.
+    /// Workgroups of every pass over a queue, which share its entries; 0: as many as it has
+    /// entries, by an indirect dispatch.
     pub queue_groups: u32,
     /// Workgroups among which few runs of dots are divided.
     pub dot_groups: u32,
@@ -135,11 +139,13 @@ pub struct WorkSharing {
     pub clears_order: bool,
     /// Triangles that cover a block of pixels hide what lies behind.
     pub hides_blocks: bool,
-    /// What conditions read of draws, effects and particles lies in storage buffers instead of uniforms; see `plan::Tuning`.
+    /// What conditions read of draws, effects and particles lies in storage buffers instead of
+    /// uniforms; see `plan::Tuning`.
     pub stored_uniforms: bool,
     /// The resolve gathers two words at a time; see `plan::Tuning`.
     pub wide_loads: bool,
-    /// A shadow map is read from the buffer that the light's passes wrote, not from a texture; see `plan::Tuning`.
+    /// A shadow map is read from the buffer that the light's passes wrote, not from a texture; see
+    /// `plan::Tuning`.
     pub buffered_shadow_map: bool,
     /// The sums of an x-ray are added two words at a time, as 64-bit integers.
     pub paired_sums: bool,
@@ -174,7 +180,8 @@ pub enum FramebufferLayout {
 pub struct SurfaceInputs {
     /// Some material is more than a base color.
     pub has_material_atlas: bool,
-    /// Plane normals and triangle centers: an effect reads them, or a normal may need a substitute.
+    /// Plane normals and triangle centers: an effect reads them, or a normal may need a
+    /// substitute.
     pub has_planes: bool,
 }
 
@@ -191,7 +198,8 @@ pub enum ProjectionKind {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct ViewKind {
     pub projection: ProjectionKind,
-    /// The view is a light's: effects read positions in the picture for which it draws a shadow map.
+    /// The view is a light's: effects read positions in the picture for which it draws a shadow
+    /// map.
     pub is_light: bool,
 }
 
@@ -201,7 +209,8 @@ pub struct EffectList {
     pub list: Vec<Arc<Effect>>,
     /// Parameter words of each that are constants of the text; empty where a uniform holds them.
     pub baked: Vec<Vec<u32>>,
-    /// The bit of every effect in the scopes of a draw, none for an effect on the whole scene; empty where no effect has a scope.
+    /// The bit of every effect in the scopes of a draw, none for an effect on the whole scene;
+    /// empty where no effect has a scope.
     pub scope_bits: Vec<Option<u32>>,
     /// The lines along which an effect draws dots.
     pub dots: Option<LineSource>,
@@ -213,19 +222,32 @@ pub const ONE64_LAYERS: u32 = 127;
 /// Most bits per channel in such sums.
 pub const ONE64_BITS: u32 = 12;
 
-/// Records of an alpha mask among the sample setups of a triangle: where its corners lie in the image.
+/// Records of an alpha mask among the sample setups of a triangle: where its corners lie in the
+/// image.
 pub const MASK_SETUPS: u32 = 2;
 
 impl EffectList {
     /// The bit of an effect in the scopes of a draw; none for an effect on the whole scene.
     pub fn scope(&self, effect: &Effect) -> Option<u32> {
-        let at = self.list.iter().position(|other| other.name == effect.name)?;
+        let at = self
+            .list
+            .iter()
+            .position(|other| other.name == effect.name)?;
         self.scope_bits.get(at).copied().flatten()
     }
 
     /// Effects whose sample test needs a setup per triangle.
     pub fn setup_count(&self) -> u32 {
-        self.list.iter().filter(|effect| effect.hooks.sample.as_ref().is_some_and(|hook| hook.has_setup)).count() as u32
+        self.list
+            .iter()
+            .filter(|effect| {
+                effect
+                    .hooks
+                    .sample
+                    .as_ref()
+                    .is_some_and(|hook| hook.has_setup)
+            })
+            .count() as u32
     }
 }
 
@@ -234,7 +256,10 @@ impl KernelKey {
     pub fn complete(fetch: Fetch, visibility: Visibility, effects: Vec<Arc<Effect>>) -> Self {
         let layers = Stack(effects.iter().map(EnabledEffect::new).collect()).layers(u64::MAX);
         Self {
-            options: AccuracyOptions { visibility, ..AccuracyOptions::default() },
+            options: AccuracyOptions {
+                visibility,
+                ..AccuracyOptions::default()
+            },
             vertices: VertexInputs {
                 fetch,
                 positions: AttributeFormat::Any,
@@ -243,9 +268,23 @@ impl KernelKey {
                 only_triangle_lists: false,
                 is_single_draw: false,
             },
-            generated: GeneratedVertices { has_joints: true, has_morph_targets: true, has_particles: true },
-            samples: SampleRules { shape: Shape::Triangles, draw_order: None, has_mask: false },
-            paths: RasterPaths { has_clipping: true, has_medium: true, has_large: true, max_small_samples: 64, max_small_side: 32 },
+            generated: GeneratedVertices {
+                has_joints: true,
+                has_morph_targets: true,
+                has_particles: true,
+            },
+            samples: SampleRules {
+                shape: Shape::Triangles,
+                draw_order: None,
+                has_mask: false,
+            },
+            paths: RasterPaths {
+                has_clipping: true,
+                has_medium: true,
+                has_large: true,
+                max_small_samples: 64,
+                max_small_side: 32,
+            },
             work: WorkSharing {
                 group_size: 64,
                 invocations_per_triangle: 1,
@@ -267,12 +306,25 @@ impl KernelKey {
             framebuffer: Framebuffer {
                 layers,
                 has_one64_sums: false,
-                triangle_id_bits: if visibility == Visibility::Packed32 { 24 } else { 0 },
+                triangle_id_bits: if visibility == Visibility::Packed32 {
+                    24
+                } else {
+                    0
+                },
             },
-            surface: SurfaceInputs { has_material_atlas: true, has_planes: true },
-            view: ViewKind { projection: ProjectionKind::Perspective, is_light: false },
+            surface: SurfaceInputs {
+                has_material_atlas: true,
+                has_planes: true,
+            },
+            view: ViewKind {
+                projection: ProjectionKind::Perspective,
+                is_light: false,
+            },
             effects: EffectList {
-                dots: effects.iter().any(|effect| effect.hooks.has_lines).then_some(LineSource::Edges),
+                dots: effects
+                    .iter()
+                    .any(|effect| effect.hooks.has_lines)
+                    .then_some(LineSource::Edges),
                 baked: Vec::new(),
                 scope_bits: Vec::new(),
                 list: effects,
@@ -282,30 +334,53 @@ impl KernelKey {
 
     /// Does an effect move vertices?
     pub fn moves(&self) -> bool {
-        self.effects.list.iter().any(|effect| effect.hooks.vertex.is_some())
+        self.effects
+            .list
+            .iter()
+            .any(|effect| effect.hooks.vertex.is_some())
     }
 
-    /// Does an effect move corners by their triangle, so that every triangle has three projected vertices to itself?
+    /// Does an effect move corners by their triangle, so that every triangle has three projected
+    /// vertices to itself?
     pub fn unshares_vertices(&self) -> bool {
-        self.effects.list.iter().any(|effect| effect.hooks.vertex.as_ref().is_some_and(|hook| hook.needs_triangle))
+        self.effects.list.iter().any(|effect| {
+            effect
+                .hooks
+                .vertex
+                .as_ref()
+                .is_some_and(|hook| hook.needs_triangle)
+        })
     }
 
     /// Does an effect discard samples?
     pub fn has_sample_effects(&self) -> bool {
-        self.effects.list.iter().any(|effect| effect.hooks.sample.is_some())
+        self.effects
+            .list
+            .iter()
+            .any(|effect| effect.hooks.sample.is_some())
     }
 
-    /// Records per triangle that sample tests read: one of every effect that needs a setup, and those of an alpha mask.
+    /// Records per triangle that sample tests read: one of every effect that needs a setup, and
+    /// those of an alpha mask.
     pub fn sample_setups(&self) -> u32 {
-        self.effects.setup_count() + if self.samples.has_mask { MASK_SETUPS } else { 0 }
+        self.effects.setup_count()
+            + if self.samples.has_mask {
+                MASK_SETUPS
+            } else {
+                0
+            }
     }
 
     /// Does an effect finish pixels? Then the resolve visits all of them, empty ones too.
     pub fn finishes_pixels(&self) -> bool {
-        self.effects.list.iter().any(|effect| effect.hooks.image.is_some())
+        self.effects
+            .list
+            .iter()
+            .any(|effect| effect.hooks.image.is_some())
     }
 
-    /// Are the tiles that no triangle touches listed too, because dots or image effects finish the background?
+    /// Are the tiles that no triangle touches listed too, because dots or image effects finish the
+    /// background?
     pub fn lists_background(&self) -> bool {
         self.work.listed_tiles && (self.finishes_pixels() || self.effects.dots.is_some())
     }
@@ -317,12 +392,21 @@ impl KernelKey {
 
     /// Does an effect ask how much of a light arrives?
     pub fn reads_light(&self) -> bool {
-        self.effects.list.iter().any(|effect| effect.hooks.reads_light())
+        self.effects
+            .list
+            .iter()
+            .any(|effect| effect.hooks.reads_light())
     }
 
     /// Does an effect read the previous picture?
     pub fn reads_previous(&self) -> bool {
-        self.effects.list.iter().any(|effect| effect.hooks.image.as_ref().is_some_and(|hook| hook.reads_previous))
+        self.effects.list.iter().any(|effect| {
+            effect
+                .hooks
+                .image
+                .as_ref()
+                .is_some_and(|hook| hook.reads_previous)
+        })
     }
 
     /// Does the picture that is drawn have another size than the one that is shown?
@@ -345,13 +429,18 @@ impl KernelKey {
         self.generated.has_particles && self.samples.shape == Shape::Triangles
     }
 
-    /// Does a triangle that covers a block of pixels hide what lies behind? Only where every covered sample is drawn.
+    /// Does a triangle that covers a block of pixels hide what lies behind? Only where every
+    /// covered sample is drawn.
     pub fn hides_blocks(&self) -> bool {
-        let draws_all = !self.has_sample_effects() && !self.has_discs() && !self.samples.has_mask && self.samples.draw_order.is_none();
+        let draws_all = !self.has_sample_effects()
+            && !self.has_discs()
+            && !self.samples.has_mask
+            && self.samples.draw_order.is_none();
         self.work.hides_blocks && draws_all && self.samples.shape == Shape::Triangles
     }
 
-    /// Do workgroups of the medium and the large path share entries of their queues, or look for hidden blocks first?
+    /// Do workgroups of the medium and the large path share entries of their queues, or look for
+    /// hidden blocks first?
     pub fn shares_entries(&self) -> bool {
         self.work.queue_groups > 0 || self.hides_blocks()
     }
@@ -361,14 +450,19 @@ impl KernelKey {
         self.paths.has_clipping || self.paths.has_medium || self.paths.has_large
     }
 
-    /// Side of the pixel square that a workgroup of the resolve visits; listed tiles are the smaller ones.
+    /// Side of the pixel square that a workgroup of the resolve visits; listed tiles are the
+    /// smaller ones.
     pub const fn tile_side(&self) -> u32 {
         if self.work.listed_tiles { 8 } else { 16 }
     }
 
     /// Words per pixel in which an x-ray sums up layers.
     pub const fn sum_words(&self) -> u32 {
-        if self.framebuffer.has_one64_sums { 2 } else { self.options.xray_sums.words() }
+        if self.framebuffer.has_one64_sums {
+            2
+        } else {
+            self.options.xray_sums.words()
+        }
     }
 
     /// How depth and triangle id lie in memory.

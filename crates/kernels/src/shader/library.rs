@@ -20,12 +20,15 @@ pub trait ShaderFiles: Send + Sync {
     fn linked(&self, parts: &mut dyn Iterator<Item = &str>);
 }
 
-/// Name and range of every section of a file's text. The first is the head, whose name is empty; a line `//@ variant NAME` or `//@ step NAME`
-/// ends it and begins the section of that name, which reaches to the next such line or to the end.
+/// Name and range of every section of a file's text. The first is the head, whose name is empty; a
+/// line `//@ variant NAME` or `//@ step NAME` ends it and begins the section of that name, which
+/// reaches to the next such line or to the end.
 pub fn sections(text: &str) -> Vec<(&str, Range<usize>)> {
     let (mut sections, mut offset) = (vec![("", 0..text.len())], 0);
     for line in text.split_inclusive('\n') {
-        let directive = line.strip_prefix("//@ ").and_then(|rest| rest.trim_end().split_once(' '));
+        let directive = line
+            .strip_prefix("//@ ")
+            .and_then(|rest| rest.trim_end().split_once(' '));
         if let Some(("variant" | "step", name)) = directive {
             sections.last_mut().expect("the head is there").1.end = offset;
             sections.push((name, offset..text.len()));
@@ -62,7 +65,10 @@ impl Library {
     pub(super) fn embedded() -> impl Iterator<Item = (String, &'static str)> {
         fn files(folder: &'static Dir<'static>, found: &mut Vec<(String, &'static str)>) {
             for file in folder.files() {
-                if let (Some(name), Some(text)) = (file.path().with_extension("").to_str(), file.contents_utf8()) {
+                if let (Some(name), Some(text)) = (
+                    file.path().with_extension("").to_str(),
+                    file.contents_utf8(),
+                ) {
                     found.push((name.replace('\\', "/"), text));
                 }
             }
@@ -89,7 +95,10 @@ impl Library {
     /// Text of `name` (a path below `shaders`, without `.wgsl`), if there is such a file.
     pub fn text(&self, name: &str) -> Option<Cow<'static, str>> {
         match self {
-            Self::Embedded => EMBEDDED.get_file(format!("{name}.wgsl"))?.contents_utf8().map(Cow::Borrowed),
+            Self::Embedded => EMBEDDED
+                .get_file(format!("{name}.wgsl"))?
+                .contents_utf8()
+                .map(Cow::Borrowed),
             Self::Outside(files) => files.text(name).map(Cow::Owned),
         }
     }

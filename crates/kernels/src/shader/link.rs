@@ -1,5 +1,5 @@
-//! The linker: concatenates the files, and sections of files, that a pass uses, each once. Module scope in WGSL has no order, so a
-//! variant is which sections are taken; there is no preprocessor.
+//! The linker: concatenates the files, and sections of files, that a pass uses, each once. Module
+//! scope in WGSL has no order, so a variant is which sections are taken; there is no preprocessor.
 //!
 //! | directive | takes |
 //! |---|---|
@@ -10,9 +10,10 @@
 //! | `//@ use glue/surface` | the effects of the stack on that hook, with their call chain |
 //! | `//@ use glue/draws` | a buffer that the key declares in one of several ways, with the functions that depend on it |
 //!
-//! The text of a file is its head; sections, begun by `//@ variant NAME` and `//@ step NAME`, are taken when they are chosen. A head or a
-//! section may name only what it declares itself, and what it uses directly declares. Anything else is an error, so that each can be
-//! read alone. No file can use a stage.
+//! The text of a file is its head; sections, begun by `//@ variant NAME` and `//@ step NAME`, are
+//! taken when they are chosen. A head or a section may name only what it declares itself, and what
+//! it uses directly declares. Anything else is an error, so that each can be read alone. No file
+//! can use a stage.
 
 use std::{
     collections::{BTreeMap, BTreeSet, HashMap},
@@ -40,9 +41,11 @@ pub struct Linked {
 /// A part of a linked module: the head of a file, a section, or generated text. Lines count from 0.
 #[derive(Clone, Debug)]
 pub struct Part {
-    /// `lib/fixed` for the head of that file, `variants/coverage/float` for a section; for generated text what it is.
+    /// `lib/fixed` for the head of that file, `variants/coverage/float` for a section; for
+    /// generated text what it is.
     pub name: String,
-    /// The file below `shaders`, without `.wgsl`, and its line at which the part begins; none for generated text.
+    /// The file below `shaders`, without `.wgsl`, and its line at which the part begins; none for
+    /// generated text.
     pub origin: Option<(String, usize)>,
     /// The line at which it begins in the linked text.
     pub line: usize,
@@ -53,7 +56,11 @@ impl Linked {
     pub fn origin(&self, line: u32) -> String {
         let line = line as usize - 1;
         match self.parts.iter().rev().find(|part| part.line <= line) {
-            Some(Part { origin: Some((file, first)), line: begin, .. }) => place(file, first + line - begin),
+            Some(Part {
+                origin: Some((file, first)),
+                line: begin,
+                ..
+            }) => place(file, first + line - begin),
             Some(part) => format!("{}:{}", part.name, line - part.line + 1),
             None => format!("linked text:{}", line + 1),
         }
@@ -61,7 +68,11 @@ impl Linked {
 
     /// The files below `shaders`, without `.wgsl`, that the module takes heads or sections of.
     pub fn files(&self) -> BTreeSet<&str> {
-        self.parts.iter().filter_map(|part| part.origin.as_ref()).map(|(file, _)| file.as_str()).collect()
+        self.parts
+            .iter()
+            .filter_map(|part| part.origin.as_ref())
+            .map(|(file, _)| file.as_str())
+            .collect()
     }
 }
 
@@ -80,13 +91,34 @@ pub enum LinkError {
     #[error("shaders/{file}.wgsl has no section {section}, which this kernel chooses")]
     NoSection { file: String, section: String },
     #[error("shaders/{user}.wgsl:{line}: uses {name}, and a stage cannot be used")]
-    UsesStage { user: String, line: u32, name: String },
+    UsesStage {
+        user: String,
+        line: u32,
+        name: String,
+    },
     #[error("shaders/{user}.wgsl:{line}: unknown {name} in //@ use")]
-    UnknownUse { user: String, line: u32, name: String },
-    #[error("shaders/{file}.wgsl:{line}: names {name}, which {declared_in} declares; add //@ use for it")]
-    Undeclared { file: String, line: u32, name: String, declared_in: String },
-    #[error("section {section} of shaders/{file}.wgsl does not define {signature}, which the file declares")]
-    Incomplete { section: String, file: String, signature: String },
+    UnknownUse {
+        user: String,
+        line: u32,
+        name: String,
+    },
+    #[error(
+        "shaders/{file}.wgsl:{line}: names {name}, which {declared_in} declares; add //@ use for it"
+    )]
+    Undeclared {
+        file: String,
+        line: u32,
+        name: String,
+        declared_in: String,
+    },
+    #[error(
+        "section {section} of shaders/{file}.wgsl does not define {signature}, which the file declares"
+    )]
+    Incomplete {
+        section: String,
+        file: String,
+        signature: String,
+    },
 }
 
 /// The head or a section of a file: its text, and what it declares and refers to.
@@ -99,7 +131,11 @@ struct Section {
 
 impl Section {
     fn new(first_line: usize, text: &str) -> Arc<Self> {
-        Arc::new(Self { first_line, source: Source::parse(text), text: text.to_owned() })
+        Arc::new(Self {
+            first_line,
+            source: Source::parse(text),
+            text: text.to_owned(),
+        })
     }
 }
 
@@ -115,8 +151,11 @@ fn file_of(text: &str) -> Arc<File> {
 }
 
 /// The embedded files, read once.
-static EMBEDDED: LazyLock<HashMap<String, Arc<File>>> =
-    LazyLock::new(|| Library::embedded().map(|(name, text)| (name, file_of(text))).collect());
+static EMBEDDED: LazyLock<HashMap<String, Arc<File>>> = LazyLock::new(|| {
+    Library::embedded()
+        .map(|(name, text)| (name, file_of(text)))
+        .collect()
+});
 
 fn file(library: &Library, name: &str) -> Option<Arc<File>> {
     match library {
@@ -125,12 +164,18 @@ fn file(library: &Library, name: &str) -> Option<Arc<File>> {
     }
 }
 
-/// Puts together the module of `shaders/<root>.wgsl` for `key`. `variants` gives the section that the key chooses in each file of
-/// `shaders/variants`; steps have as many entries as are chosen.
+/// Puts together the module of `shaders/<root>.wgsl` for `key`. `variants` gives the section that
+/// the key chooses in each file of `shaders/variants`; steps have as many entries as are chosen.
 ///
 /// # Errors
-/// When a file is missing, names what no file that it uses declares, or does not define what its interface declares.
-pub fn link(library: &Library, root: &str, key: &KernelKey, variants: &[(&str, &str)]) -> Result<Linked, LinkError> {
+/// When a file is missing, names what no file that it uses declares, or does not define what its
+/// interface declares.
+pub fn link(
+    library: &Library,
+    root: &str,
+    key: &KernelKey,
+    variants: &[(&str, &str)],
+) -> Result<Linked, LinkError> {
     Linker::new(library, key, variants, false).link(root)
 }
 
@@ -160,10 +205,27 @@ struct Linker<'a> {
 }
 
 impl<'a> Linker<'a> {
-    fn new(library: &'a Library, key: &'a KernelKey, variants: &'a [(&'a str, &'a str)], has_effects: bool) -> Self {
-        let linked = Linked { text: String::new(), parts: Vec::new() };
+    fn new(
+        library: &'a Library,
+        key: &'a KernelKey,
+        variants: &'a [(&'a str, &'a str)],
+        has_effects: bool,
+    ) -> Self {
+        let linked = Linked {
+            text: String::new(),
+            parts: Vec::new(),
+        };
         let (files, taken, generated) = (HashMap::new(), BTreeMap::new(), BTreeMap::new());
-        Self { library, key, variants, linked, files, taken, generated, has_effects }
+        Self {
+            library,
+            key,
+            variants,
+            linked,
+            files,
+            taken,
+            generated,
+            has_effects,
+        }
     }
 
     fn link(mut self, root: &str) -> Result<Linked, LinkError> {
@@ -180,12 +242,23 @@ impl<'a> Linker<'a> {
             return Ok(file.clone());
         }
         let custom = name.strip_prefix("effects/").and_then(|stem| {
-            let sources = self.key.effects.list.iter().filter_map(|effect| effect.source.as_ref());
+            let sources = self
+                .key
+                .effects
+                .list
+                .iter()
+                .filter_map(|effect| effect.source.as_ref());
             sources.into_iter().find(|source| source.stem == stem)
         });
         let file = match custom {
-            Some(source) => Arc::new(File::from([(String::new(), Section::new(0, &source.linked))])),
-            None => file(self.library, name).ok_or_else(|| LinkError::Missing { user: user.into(), name: name.into() })?,
+            Some(source) => Arc::new(File::from([(
+                String::new(),
+                Section::new(0, &source.linked),
+            )])),
+            None => file(self.library, name).ok_or_else(|| LinkError::Missing {
+                user: user.into(),
+                name: name.into(),
+            })?,
         };
         self.files.insert(name.to_owned(), file.clone());
         Ok(file)
@@ -203,8 +276,15 @@ impl<'a> Linker<'a> {
 
     /// Takes a section of a file and all that it uses.
     fn take_section(&mut self, file: &str, section: &str) -> Result<Arc<Section>, LinkError> {
-        let none = || LinkError::NoSection { file: file.into(), section: section.into() };
-        let found = self.load(file, "the program")?.get(section).cloned().ok_or_else(none)?;
+        let none = || LinkError::NoSection {
+            file: file.into(),
+            section: section.into(),
+        };
+        let found = self
+            .load(file, "the program")?
+            .get(section)
+            .cloned()
+            .ok_or_else(none)?;
         self.take(&format!("{file}/{section}"), file, &found)?;
         Ok(found)
     }
@@ -213,8 +293,13 @@ impl<'a> Linker<'a> {
         if self.taken.contains_key(part) {
             return Ok(());
         }
-        self.append(part, Some((file.to_owned(), section.first_line)), &section.text);
-        self.taken.insert(part.to_owned(), (file.to_owned(), section.clone()));
+        self.append(
+            part,
+            Some((file.to_owned(), section.first_line)),
+            &section.text,
+        );
+        self.taken
+            .insert(part.to_owned(), (file.to_owned(), section.clone()));
         for (directive, line) in &section.source.directives {
             let line = section.first_line as u32 + line;
             let user = place(file, line as usize - 1);
@@ -228,25 +313,50 @@ impl<'a> Linker<'a> {
             };
             let (kind, rest) = used.split_once('/').unwrap_or(("", used));
             match kind {
-                "stages" => return Err(LinkError::UsesStage { user: file.into(), line, name: used.into() }),
+                "stages" => {
+                    return Err(LinkError::UsesStage {
+                        user: file.into(),
+                        line,
+                        name: used.into(),
+                    });
+                }
                 "variants" => self.take_variant(rest, &user)?,
                 "steps" => {
                     let interface = format!("variants/{rest}");
                     let head = self.load_head(&interface, &user)?;
-                    let steps = head.source.steps().next().ok_or_else(|| LinkError::Missing { user, name: used.into() })?;
+                    let steps = head
+                        .source
+                        .steps()
+                        .next()
+                        .ok_or_else(|| LinkError::Missing {
+                            user,
+                            name: used.into(),
+                        })?;
                     self.take_steps(&interface, steps)?;
                 }
-                "glue" => self.take_glue(rest).ok_or_else(|| LinkError::UnknownUse { user: file.into(), line, name: used.into() })??,
+                "glue" => self.take_glue(rest).ok_or_else(|| LinkError::UnknownUse {
+                    user: file.into(),
+                    line,
+                    name: used.into(),
+                })??,
                 _ => self.take_head(used, &user)?,
             }
         }
         Ok(())
     }
 
-    /// Takes the section that the key chooses in a file of variants, and checks it against the interface in the file's head.
+    /// Takes the section that the key chooses in a file of variants, and checks it against the
+    /// interface in the file's head.
     fn take_variant(&mut self, variants: &str, user: &str) -> Result<(), LinkError> {
-        let chosen = self.variants.iter().find(|(name, _)| *name == variants).map(|(_, section)| *section);
-        let section = chosen.ok_or_else(|| LinkError::NoVariant { user: user.into(), file: variants.into() })?;
+        let chosen = self
+            .variants
+            .iter()
+            .find(|(name, _)| *name == variants)
+            .map(|(_, section)| *section);
+        let section = chosen.ok_or_else(|| LinkError::NoVariant {
+            user: user.into(),
+            file: variants.into(),
+        })?;
         let file = format!("variants/{variants}");
         let interface = self.load_head(&file, user)?;
         let taken = self.take_section(&file, section)?;
@@ -256,24 +366,46 @@ impl<'a> Linker<'a> {
                 && !source.defines(signature)
                 && !binding_names(source).any(|name| name == signature.name)
             {
-                return Err(LinkError::Incomplete { section: section.into(), file, signature: signature.text.clone() });
+                return Err(LinkError::Incomplete {
+                    section: section.into(),
+                    file,
+                    signature: signature.text.clone(),
+                });
             }
         }
         Ok(())
     }
 
-    /// Takes every chosen step among the sections of a file, and generates the function that calls them in order.
+    /// Takes every chosen step among the sections of a file, and generates the function that calls
+    /// them in order.
     fn take_steps(&mut self, file: &str, signature: &Signature) -> Result<(), LinkError> {
-        let steps: Vec<&str> = self.variants.iter().filter(|(name, _)| *name == signature.name).map(|(_, step)| *step).collect();
-        if !self.generate(&format!("steps of {}", signature.name), || steps_text(signature, &steps)) {
+        let steps: Vec<&str> = self
+            .variants
+            .iter()
+            .filter(|(name, _)| *name == signature.name)
+            .map(|(_, step)| *step)
+            .collect();
+        if !self.generate(&format!("steps of {}", signature.name), || {
+            steps_text(signature, &steps)
+        }) {
             return Ok(());
         }
-        self.generated.insert(signature.name.clone(), format!("steps/{}", signature.name));
+        self.generated
+            .insert(signature.name.clone(), format!("steps/{}", signature.name));
         for step in steps {
             let wanted = signature.renamed(&format!("{}_{step}", signature.name));
             let section = self.take_section(file, step)?;
-            if !section.source.functions.iter().any(|function| same_types(function, &wanted)) {
-                return Err(LinkError::Incomplete { section: step.into(), file: file.into(), signature: wanted });
+            if !section
+                .source
+                .functions
+                .iter()
+                .any(|function| same_types(function, &wanted))
+            {
+                return Err(LinkError::Incomplete {
+                    section: step.into(),
+                    file: file.into(),
+                    signature: wanted,
+                });
             }
         }
         Ok(())
@@ -282,18 +414,35 @@ impl<'a> Linker<'a> {
     /// Takes generated text; none where there is no such glue.
     fn take_glue(&mut self, name: &str) -> Option<Result<(), LinkError>> {
         if let Some(declaration) = glue::binding(name, self.key) {
-            self.generated.insert(name.to_owned(), format!("glue/{name}"));
+            self.generated
+                .insert(name.to_owned(), format!("glue/{name}"));
             // Where the stage declares the buffer with another access, its declaration counts.
-            let is_declared = self.taken.values().any(|(_, section)| section.source.declared.contains(name));
+            let is_declared = self
+                .taken
+                .values()
+                .any(|(_, section)| section.source.declared.contains(name));
             let key = self.key;
             self.generate(&format!("glue of {name}"), || {
-                let functions = if name == "draws" { glue::draw_functions(key) } else { String::new() };
-                if is_declared { functions } else { declaration + &functions }
+                let functions = if name == "draws" {
+                    glue::draw_functions(key)
+                } else {
+                    String::new()
+                };
+                if is_declared {
+                    functions
+                } else {
+                    declaration + &functions
+                }
             });
             if name != "draws" {
                 return Some(Ok(()));
             }
-            glue::DRAW_FUNCTIONS.iter().for_each(|function| drop(self.generated.insert((*function).into(), "glue/draws".into())));
+            glue::DRAW_FUNCTIONS.iter().for_each(|function| {
+                drop(
+                    self.generated
+                        .insert((*function).into(), "glue/draws".into()),
+                )
+            });
             // The record that the buffer holds.
             return Some(self.take_head("lib/triangle", "glue/draws"));
         }
@@ -305,9 +454,13 @@ impl<'a> Linker<'a> {
         let key = self.key;
         if self.generate(&format!("glue of {name}"), || chain.text(&key.effects)) {
             self.has_effects = true;
-            self.generated.insert(format!("glue_{name}"), format!("glue/{name}"));
+            self.generated
+                .insert(format!("glue_{name}"), format!("glue/{name}"));
             for effect in chain.effects(&self.key.effects.list) {
-                if let Err(error) = self.take_head(&format!("effects/{}", effect.file_stem()), &format!("glue/{name}")) {
+                if let Err(error) = self.take_head(
+                    &format!("effects/{}", effect.file_stem()),
+                    &format!("glue/{name}"),
+                ) {
                     return Some(Err(error));
                 }
             }
@@ -315,30 +468,40 @@ impl<'a> Linker<'a> {
         Some(Ok(()))
     }
 
-    /// Declares the buffers of `//@ binding` lines that the stage does not declare with another access.
+    /// Declares the buffers of `//@ binding` lines that the stage does not declare with another
+    /// access.
     fn declare_bindings(&mut self, root: &str) {
         let of_stage = self.taken[root].1.source.declared.clone();
         let mut bindings: BTreeMap<String, String> = BTreeMap::new();
-        for (directive, _) in self.taken.values().flat_map(|(_, section)| &section.source.directives) {
+        for (directive, _) in self
+            .taken
+            .values()
+            .flat_map(|(_, section)| &section.source.directives)
+        {
             if let Directive::Binding { name, declaration } = directive
                 && !of_stage.contains(name)
             {
                 bindings.insert(name.clone(), declaration.clone());
             }
         }
-        let text: String = bindings.values().map(|declaration| format!("{declaration}\n")).collect();
+        let text: String = bindings
+            .values()
+            .map(|declaration| format!("{declaration}\n"))
+            .collect();
         if !text.is_empty() {
             self.append("bindings", None, &text);
         }
     }
 
-    /// The parameters of all effects of the stack, for a module that uses some of them. Of an effect whose functions no part of
-    /// the module uses, only the struct of its parameters is taken.
+    /// The parameters of all effects of the stack, for a module that uses some of them. Of an
+    /// effect whose functions no part of the module uses, only the struct of its parameters is
+    /// taken.
     fn append_effects(&mut self) -> Result<(), LinkError> {
         if !self.has_effects || self.key.effects.list.is_empty() {
             return Ok(());
         }
-        self.generated.insert("effects".into(), "glue/effects".into());
+        self.generated
+            .insert("effects".into(), "glue/effects".into());
         let mut text = glue::effects(self.key);
         let mut declared: BTreeSet<&str> = BTreeSet::new();
         for effect in &self.key.effects.list {
@@ -346,39 +509,66 @@ impl<'a> Linker<'a> {
             if !self.taken.contains_key(&name) && declared.insert(effect.file_stem()) {
                 match effect.source {
                     Some(_) => text.push_str(&glue::struct_of(effect)),
-                    None => text.push_str(glue::struct_text(&self.load_head(&name, "the stack")?.text, &effect.wgsl_struct)),
+                    None => text.push_str(glue::struct_text(
+                        &self.load_head(&name, "the stack")?.text,
+                        &effect.wgsl_struct,
+                    )),
                 }
             }
         }
-        // The structs of parameters that several effects share, where their files are not part of the module.
-        let groups: BTreeSet<&str> =
-            self.key.effects.list.iter().flat_map(|effect| &effect.fields).filter_map(|field| Some(field.group?.wgsl_struct)).collect();
+        // The structs of parameters that several effects share, where their files are not part of
+        // the module.
+        let groups: BTreeSet<&str> = self
+            .key
+            .effects
+            .list
+            .iter()
+            .flat_map(|effect| &effect.fields)
+            .filter_map(|field| Some(field.group?.wgsl_struct))
+            .collect();
         for group in groups {
             let name = format!("lib/{}", group.to_lowercase());
             if !self.taken.contains_key(&name) {
-                text.push_str(glue::struct_text(&self.load_head(&name, "the stack")?.text, group));
+                text.push_str(glue::struct_text(
+                    &self.load_head(&name, "the stack")?.text,
+                    group,
+                ));
             }
         }
         self.append("glue", None, &text);
         Ok(())
     }
 
-    /// Refuses names that a head or a section neither declares itself nor finds in what it uses directly.
+    /// Refuses names that a head or a section neither declares itself nor finds in what it uses
+    /// directly.
     fn check(&self) -> Result<(), LinkError> {
         let mut declared_in: BTreeMap<&str, String> = BTreeMap::new();
         for (file, section) in self.taken.values() {
-            let names = section.source.declared.iter().map(String::as_str).chain(binding_names(&section.source));
+            let names = section
+                .source
+                .declared
+                .iter()
+                .map(String::as_str)
+                .chain(binding_names(&section.source));
             names.for_each(|name| drop(declared_in.insert(name, file.clone())));
         }
-        self.generated.iter().for_each(|(name, part)| drop(declared_in.insert(name, part.clone())));
+        self.generated
+            .iter()
+            .for_each(|(name, part)| drop(declared_in.insert(name, part.clone())));
         for (file, section) in self.taken.values() {
             let visible = self.visible(&section.source);
             for (name, line) in &section.source.references {
                 if let Some(declared_in) = declared_in.get(name.as_str())
                     && !visible.contains(name.as_str())
                 {
-                    let (line, declared_in) = (section.first_line as u32 + line, declared_in.clone());
-                    return Err(LinkError::Undeclared { file: file.clone(), line, name: name.clone(), declared_in });
+                    let (line, declared_in) =
+                        (section.first_line as u32 + line, declared_in.clone());
+                    return Err(LinkError::Undeclared {
+                        file: file.clone(),
+                        line,
+                        name: name.clone(),
+                        declared_in,
+                    });
                 }
             }
         }
@@ -388,18 +578,31 @@ impl<'a> Linker<'a> {
     /// Names that a head or a section may refer to.
     fn visible(&self, source: &Source) -> BTreeSet<String> {
         let mut visible = source.declared.clone();
-        visible.extend(binding_names(source).chain(source.steps().map(|steps| steps.name.as_str())).map(str::to_owned));
+        visible.extend(
+            binding_names(source)
+                .chain(source.steps().map(|steps| steps.name.as_str()))
+                .map(str::to_owned),
+        );
         for used in source.uses() {
             match used.split_once('/').map_or("", |(kind, _)| kind) {
                 "variants" => {
                     let interface = &self.files[used][""];
-                    visible.extend(interface.source.directives.iter().filter_map(|(directive, _)| match directive {
-                        Directive::Declare(signature) | Directive::MayDeclare(signature) => Some(signature.name.clone()),
-                        _ => None,
-                    }));
+                    visible.extend(interface.source.directives.iter().filter_map(
+                        |(directive, _)| match directive {
+                            Directive::Declare(signature) | Directive::MayDeclare(signature) => {
+                                Some(signature.name.clone())
+                            }
+                            _ => None,
+                        },
+                    ));
                 }
                 "steps" | "glue" => {
-                    visible.extend(self.generated.iter().filter(|(_, part)| *part == used).map(|(name, _)| name.clone()));
+                    visible.extend(
+                        self.generated
+                            .iter()
+                            .filter(|(_, part)| *part == used)
+                            .map(|(name, _)| name.clone()),
+                    );
                 }
                 _ => {
                     if let Some((_, section)) = self.taken.get(used) {
@@ -414,7 +617,11 @@ impl<'a> Linker<'a> {
 
     /// Appends generated text, unless the module has this part already.
     fn generate(&mut self, part: &str, text: impl FnOnce() -> String) -> bool {
-        let is_new = self.linked.parts.iter().all(|taken| taken.origin.is_some() || taken.name != part);
+        let is_new = self
+            .linked
+            .parts
+            .iter()
+            .all(|taken| taken.origin.is_some() || taken.name != part);
         if is_new {
             self.append(part, None, &text());
         }
@@ -423,7 +630,11 @@ impl<'a> Linker<'a> {
 
     fn append(&mut self, name: &str, origin: Option<(String, usize)>, text: &str) {
         let line = self.linked.text.lines().count();
-        self.linked.parts.push(Part { name: name.to_owned(), origin, line });
+        self.linked.parts.push(Part {
+            name: name.to_owned(),
+            origin,
+            line,
+        });
         self.linked.text.push_str(text);
         if !text.is_empty() && !text.ends_with('\n') {
             self.linked.text.push('\n');
@@ -431,37 +642,51 @@ impl<'a> Linker<'a> {
     }
 }
 
-/// Buffers that a head or a section declares by directive: its bindings, and those that the glue declares for it.
+/// Buffers that a head or a section declares by directive: its bindings, and those that the glue
+/// declares for it.
 fn binding_names(source: &Source) -> impl Iterator<Item = &str> {
-    source.directives.iter().filter_map(|(directive, _)| match directive {
-        Directive::Binding { name, .. } => Some(name.as_str()),
-        Directive::Use(used) => used.strip_prefix("glue/").filter(|name| glue::BINDINGS.contains(name)),
-        _ => None,
-    })
+    source
+        .directives
+        .iter()
+        .filter_map(|(directive, _)| match directive {
+            Directive::Binding { name, .. } => Some(name.as_str()),
+            Directive::Use(used) => used
+                .strip_prefix("glue/")
+                .filter(|name| glue::BINDINGS.contains(name)),
+            _ => None,
+        })
 }
 
-/// Do two functions have the same name, parameter types and result? Parameters may have other names.
+/// Do two functions have the same name, parameter types and result? Parameters may have other
+/// names.
 fn same_types(function: &str, wanted: &str) -> bool {
     let types = |text: &str| {
         let (head, rest) = text.split_once('(').unwrap_or((text, ""));
         let (parameters, result) = rest.split_once(')').unwrap_or((rest, ""));
-        let kinds: Vec<String> = parameters.split(", ").map(|one| one.split_once(": ").map_or("", |(_, kind)| kind).to_owned()).collect();
+        let kinds: Vec<String> = parameters
+            .split(", ")
+            .map(|one| one.split_once(": ").map_or("", |(_, kind)| kind).to_owned())
+            .collect();
         (head.to_owned(), kinds, result.to_owned())
     };
     types(function) == types(wanted)
 }
 
-/// The function that calls every step: all must return true; or the first parameter passes through all; or each is called.
+/// The function that calls every step: all must return true; or the first parameter passes through
+/// all; or each is called.
 fn steps_text(signature: &Signature, stems: &[&str]) -> String {
     let parameters = signature.parameters();
     let first = parameters.first().map_or("", |(name, _)| *name);
     let names: Vec<&str> = parameters.iter().map(|(name, _)| *name).collect();
     let mut text = format!("{} {{\n", signature.text);
-    let call = |stem: &str, arguments: &[&str]| format!("{}_{stem}({})", signature.name, arguments.join(", "));
+    let call = |stem: &str, arguments: &[&str]| {
+        format!("{}_{stem}({})", signature.name, arguments.join(", "))
+    };
     match signature.result() {
         Some("bool") => {
             for stem in stems {
-                writeln!(text, "    if !{} {{ return false; }}", call(stem, &names)).expect("writing to a string");
+                writeln!(text, "    if !{} {{ return false; }}", call(stem, &names))
+                    .expect("writing to a string");
             }
             text.push_str("    return true;\n");
         }
@@ -470,7 +695,8 @@ fn steps_text(signature: &Signature, stems: &[&str]) -> String {
             let mut arguments = names.clone();
             arguments[0] = "value";
             for stem in stems {
-                writeln!(text, "    value = {};", call(stem, &arguments)).expect("writing to a string");
+                writeln!(text, "    value = {};", call(stem, &arguments))
+                    .expect("writing to a string");
             }
             text.push_str("    return value;\n");
         }

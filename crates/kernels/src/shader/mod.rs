@@ -1,5 +1,5 @@
-//! Shaders as text: the library of files, the linker, the generated glue, the kernel key and what naga says of it all.
-//! Names no GPU.
+//! Shaders as text: the library of files, the linker, the generated glue, the kernel key and what
+//! naga says of it all. Names no GPU.
 
 mod depth_keys;
 mod features;

@@ -1,6 +1,7 @@
 //! Passes: the entry points of a frame, and what each raster pass writes.
 
-/// One entry point of a frame. Its file in `shaders/stages` is [`Pass::path`], its name for profilers [`Pass::label`].
+/// One entry point of a frame. Its file in `shaders/stages` is [`Pass::path`], its name for
+/// profilers [`Pass::label`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Pass {
     /// Simulates particles and writes their discs.
@@ -15,8 +16,8 @@ pub enum Pass {
     ProjectMeshlets,
     /// Finds the farthest depth of every tile, behind which meshlets are hidden.
     DepthReduce,
-    /// Between the early and the late culling phase: makes the next passes start at the queue entries listed from here on, or
-    /// at the first entry again.
+    /// Between the early and the late culling phase: makes the next passes start at the queue
+    /// entries listed from here on, or at the first entry again.
     AdvanceQueues {
         reopens_queues: bool,
     },
@@ -164,12 +165,24 @@ impl Pass {
     /// The file below `shaders`, without `.wgsl`.
     pub fn path(self) -> String {
         let folder = match self {
-            Self::Particles | Self::Skin | Self::Project | Self::ProjectMeshlets | Self::Cull(_) | Self::DepthReduce => "geometry",
-            Self::AdvanceQueues { .. } | Self::SampleSetup(_) | Self::Args | Self::Clip => "geometry",
-            Self::RasterSmall(_) | Self::RasterPoints(_) | Self::RasterMedium(_) | Self::RasterLarge(_) => "raster",
+            Self::Particles
+            | Self::Skin
+            | Self::Project
+            | Self::ProjectMeshlets
+            | Self::Cull(_)
+            | Self::DepthReduce => "geometry",
+            Self::AdvanceQueues { .. } | Self::SampleSetup(_) | Self::Args | Self::Clip => {
+                "geometry"
+            }
+            Self::RasterSmall(_)
+            | Self::RasterPoints(_)
+            | Self::RasterMedium(_)
+            | Self::RasterLarge(_) => "raster",
             Self::RasterAll(_) | Self::TileLarge => "raster",
             Self::OrderSums | Self::OrderLimit | Self::OrderRanks | Self::OrderCut => "order",
-            Self::DotsEnds | Self::DotsCull | Self::DotsArgs | Self::DotsDraw | Self::DotsProbe => "lines",
+            Self::DotsEnds | Self::DotsCull | Self::DotsArgs | Self::DotsDraw | Self::DotsProbe => {
+                "lines"
+            }
             Self::ListTiles | Self::Resolve | Self::ResolveBackground | Self::Scale => "shade",
         };
         format!("stages/{folder}/{}", self.stem())
@@ -182,19 +195,25 @@ impl Pass {
 
     /// Does it run over dots?
     pub const fn is_of_dots(self) -> bool {
-        matches!(self, Self::DotsEnds | Self::DotsCull | Self::DotsArgs | Self::DotsDraw | Self::DotsProbe)
+        matches!(
+            self,
+            Self::DotsEnds | Self::DotsCull | Self::DotsArgs | Self::DotsDraw | Self::DotsProbe
+        )
     }
 
     /// What it writes, if it is a raster pass.
     pub const fn phase(self) -> Option<RasterPhase> {
         match self {
             Self::RasterSmall(phase) | Self::RasterPoints(phase) => Some(phase),
-            Self::RasterMedium(phase) | Self::RasterLarge(phase) | Self::RasterAll(phase) => Some(phase),
+            Self::RasterMedium(phase) | Self::RasterLarge(phase) | Self::RasterAll(phase) => {
+                Some(phase)
+            }
             _ => None,
         }
     }
 
-    /// Label for profilers and tables: the stem, and what tells the pass apart from others of the same file.
+    /// Label for profilers and tables: the stem, and what tells the pass apart from others of the
+    /// same file.
     pub fn label(self) -> String {
         let stem = self.stem();
         let detail = match self {
@@ -203,6 +222,10 @@ impl Pass {
             Self::Cull(CullPhase::Late) => "late",
             _ => self.phase().map_or("", RasterPhase::label),
         };
-        if detail.is_empty() { stem.into() } else { format!("{stem} {detail}") }
+        if detail.is_empty() {
+            stem.into()
+        } else {
+            format!("{stem} {detail}")
+        }
     }
 }

@@ -55,23 +55,40 @@ pub struct ShaderError {
 pub fn reflect(linked: &Linked, int64: bool) -> Result<Reflected, ShaderError> {
     let module = naga::front::wgsl::parse_str(&linked.text).map_err(|error| {
         let line = error.location(&linked.text).map_or(1, |l| l.line_number);
-        ShaderError { origin: linked.origin(line), message: error.emit_to_string(&linked.text) }
+        ShaderError {
+            origin: linked.origin(line),
+            message: error.emit_to_string(&linked.text),
+        }
     })?;
     let mut capabilities = Capabilities::default();
     if int64 {
-        capabilities |= Capabilities::SHADER_INT64 | Capabilities::SHADER_INT64_ATOMIC_MIN_MAX | Capabilities::SHADER_INT64_ATOMIC_ALL_OPS;
+        capabilities |= Capabilities::SHADER_INT64
+            | Capabilities::SHADER_INT64_ATOMIC_MIN_MAX
+            | Capabilities::SHADER_INT64_ATOMIC_ALL_OPS;
     }
-    let info = Validator::new(ValidationFlags::all(), capabilities).validate(&module).map_err(|error| {
-        let line = error.location(&linked.text).map_or(1, |l| l.line_number);
-        ShaderError { origin: linked.origin(line), message: error.emit_to_string(&linked.text) }
-    })?;
+    let info = Validator::new(ValidationFlags::all(), capabilities)
+        .validate(&module)
+        .map_err(|error| {
+            let line = error.location(&linked.text).map_or(1, |l| l.line_number);
+            ShaderError {
+                origin: linked.origin(line),
+                message: error.emit_to_string(&linked.text),
+            }
+        })?;
     Ok(Reflected { module, info })
 }
 
 impl Reflected {
     /// Resources of group 0 that `entry` uses, by binding number.
     pub fn bindings(&self, entry: &str) -> Vec<Binding> {
-        let Some(index) = self.module.entry_points.iter().position(|e| e.name == entry) else { return Vec::new() };
+        let Some(index) = self
+            .module
+            .entry_points
+            .iter()
+            .position(|e| e.name == entry)
+        else {
+            return Vec::new();
+        };
         let uses = self.info.get_entry_point(index);
         let mut bindings: Vec<_> = self
             .module
@@ -81,15 +98,26 @@ impl Reflected {
             .filter_map(|(_, variable)| {
                 let kind = match variable.space {
                     AddressSpace::Uniform => BindingKind::Uniform,
-                    AddressSpace::Storage { access } => BindingKind::Storage { read_only: !access.contains(StorageAccess::STORE) },
+                    AddressSpace::Storage { access } => BindingKind::Storage {
+                        read_only: !access.contains(StorageAccess::STORE),
+                    },
                     AddressSpace::Handle => match self.module.types[variable.ty].inner {
-                        TypeInner::Image { arrayed, .. } => BindingKind::Texture { layered: arrayed },
+                        TypeInner::Image { arrayed, .. } => {
+                            BindingKind::Texture { layered: arrayed }
+                        }
                         _ => return None,
                     },
                     _ => return None,
                 };
-                let binding = variable.binding.as_ref().filter(|binding| binding.group == 0)?;
-                Some(Binding { name: variable.name.clone()?, index: binding.binding, kind })
+                let binding = variable
+                    .binding
+                    .as_ref()
+                    .filter(|binding| binding.group == 0)?;
+                Some(Binding {
+                    name: variable.name.clone()?,
+                    index: binding.binding,
+                    kind,
+                })
             })
             .collect();
         bindings.sort_by_key(|binding| binding.index);
@@ -98,17 +126,33 @@ impl Reflected {
 
     /// Size in bytes and members of a struct.
     pub fn layout(&self, name: &str) -> Option<(usize, Vec<Member>)> {
-        let (_, ty) = self.module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name))?;
-        let TypeInner::Struct { members, span } = &ty.inner else { return None };
+        let (_, ty) = self
+            .module
+            .types
+            .iter()
+            .find(|(_, ty)| ty.name.as_deref() == Some(name))?;
+        let TypeInner::Struct { members, span } = &ty.inner else {
+            return None;
+        };
         let member = |m: &naga::StructMember| Member {
             name: m.name.clone().unwrap_or_default(),
             offset: m.offset as usize,
             kind: kind_name(&self.module, m.ty),
         };
         // An array that takes the rest of its buffer belongs to no record.
-        let is_open =
-            |m: &&naga::StructMember| matches!(self.module.types[m.ty].inner, TypeInner::Array { size: naga::ArraySize::Dynamic, .. });
-        Some((*span as usize, members.iter().filter(|m| !is_open(m)).map(member).collect()))
+        let is_open = |m: &&naga::StructMember| {
+            matches!(
+                self.module.types[m.ty].inner,
+                TypeInner::Array {
+                    size: naga::ArraySize::Dynamic,
+                    ..
+                }
+            )
+        };
+        Some((
+            *span as usize,
+            members.iter().filter(|m| !is_open(m)).map(member).collect(),
+        ))
     }
 }
 
@@ -125,8 +169,19 @@ fn scalar_name(scalar: naga::Scalar) -> String {
 fn kind_name(module: &Module, ty: naga::Handle<naga::Type>) -> String {
     match &module.types[ty].inner {
         TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => scalar_name(*scalar),
-        TypeInner::Vector { size, scalar } => format!("vec{}<{}>", *size as u8, scalar_name(*scalar)),
-        TypeInner::Matrix { columns, rows, scalar } => format!("mat{}x{}<{}>", *columns as u8, *rows as u8, scalar_name(*scalar)),
+        TypeInner::Vector { size, scalar } => {
+            format!("vec{}<{}>", *size as u8, scalar_name(*scalar))
+        }
+        TypeInner::Matrix {
+            columns,
+            rows,
+            scalar,
+        } => format!(
+            "mat{}x{}<{}>",
+            *columns as u8,
+            *rows as u8,
+            scalar_name(*scalar)
+        ),
         TypeInner::Struct { .. } => module.types[ty].name.clone().unwrap_or_default(),
         _ => "?".into(),
     }

@@ -1,7 +1,9 @@
-//! The accuracy axes: every way in which a picture trades speed for accuracy, and its options, from fast to accurate.
+//! The accuracy axes: every way in which a picture trades speed for accuracy, and its options, from
+//! fast to accurate.
 //!
-//! An option is another shader file, or an override where only arithmetic changes. One list, [`AXES`], drives the settings of
-//! presets, panels, benches and tests. The planner chooses the cheapest option within a tolerance.
+//! An option is another shader file, or an override where only arithmetic changes. One list,
+//! [`AXES`], drives the settings of presets, panels, benches and tests. The planner chooses the
+//! cheapest option within a tolerance.
 
 mod measured;
 mod request;
@@ -48,7 +50,9 @@ pub struct Axis {
 impl Axis {
     /// Index of the axis in [`AXES`].
     pub fn index(&self) -> usize {
-        AXES.iter().position(|axis| axis.name == self.name).expect("an axis of the list")
+        AXES.iter()
+            .position(|axis| axis.name == self.name)
+            .expect("an axis of the list")
     }
 
     pub fn find(name: &str) -> Option<&'static Self> {
@@ -56,7 +60,8 @@ impl Axis {
     }
 }
 
-/// Declares every axis: an enum of its options, its members of [`AccuracyOptions`] and [`PinnedOptions`], and its entry in [`AXES`].
+/// Declares every axis: an enum of its options, its members of [`AccuracyOptions`] and
+/// [`PinnedOptions`], and its entry in [`AXES`].
 macro_rules! axes {
     ($($(#[doc = $about:literal])+ $axis:ident: $name:ident, default $default:ident {
         $($(#[doc = $option_about:literal])+ $option:ident = $word:literal,)+
@@ -435,7 +440,9 @@ impl PinnedOptions {
 
     /// `coverage=float depth=log16`, or nothing.
     pub fn words(&self) -> String {
-        let pinned = AXES.iter().filter_map(|axis| Some(format!("{}={}", axis.name, axis.words[self.get(axis)?])));
+        let pinned = AXES
+            .iter()
+            .filter_map(|axis| Some(format!("{}={}", axis.name, axis.words[self.get(axis)?])));
         pinned.collect::<Vec<_>>().join(" ")
     }
 }
@@ -447,13 +454,32 @@ mod tests {
     #[test]
     fn every_axis_reads_back_what_it_is_set_to() {
         for axis in AXES {
-            assert_eq!((axis.words.len(), axis.default), (axis.option_abouts.len(), AccuracyOptions::default().get(axis)), "{}", axis.name);
+            assert_eq!(
+                (axis.words.len(), axis.default),
+                (
+                    axis.option_abouts.len(),
+                    AccuracyOptions::default().get(axis)
+                ),
+                "{}",
+                axis.name
+            );
             for index in 0..axis.words.len() {
-                let (mut options, mut pins) = (AccuracyOptions::default(), PinnedOptions::default());
+                let (mut options, mut pins) =
+                    (AccuracyOptions::default(), PinnedOptions::default());
                 pins.set(axis, Some(index));
                 pins.apply(&mut options);
-                assert_eq!((options.get(axis), pins.get(axis)), (index, Some(index)), "{}", axis.name);
-                assert_eq!(options.non_default().count(), usize::from(index != axis.default), "{}", axis.name);
+                assert_eq!(
+                    (options.get(axis), pins.get(axis)),
+                    (index, Some(index)),
+                    "{}",
+                    axis.name
+                );
+                assert_eq!(
+                    options.non_default().count(),
+                    usize::from(index != axis.default),
+                    "{}",
+                    axis.name
+                );
             }
         }
     }
@@ -462,7 +488,11 @@ mod tests {
     fn pins_know_options_by_type() {
         let pins = PinnedOptions::of(DepthFormat::Log16).with(Visibility::Split32);
         assert_eq!(
-            (pins.option::<DepthFormat>(), pins.option::<Visibility>(), pins.option::<Coverage>()),
+            (
+                pins.option::<DepthFormat>(),
+                pins.option::<Visibility>(),
+                pins.option::<Coverage>()
+            ),
             (Some(DepthFormat::Log16), Some(Visibility::Split32), None)
         );
         assert_eq!(pins.words(), "depth=log16 visibility=split32");

@@ -1,8 +1,8 @@
 //! Accuracy requests: the tolerance that a preset asks for, and the options that it pins.
 
 use super::{
-    AXES, AccuracyOptions, AxisOption, DepthFormat, MeasuredCosts, Parameters, PinnedOptions, RenderScale, SampleCounter, ShaderChecks,
-    Skinning, VertexTransform, Visibility,
+    AXES, AccuracyOptions, AxisOption, DepthFormat, MeasuredCosts, Parameters, PinnedOptions,
+    RenderScale, SampleCounter, ShaderChecks, Skinning, VertexTransform, Visibility,
 };
 
 /// Named tolerances.
@@ -22,7 +22,13 @@ pub enum Tier {
 }
 
 impl Tier {
-    pub const ALL: [Self; 5] = [Self::Draft, Self::Fast, Self::Precise, Self::Reference, Self::Strict];
+    pub const ALL: [Self; 5] = [
+        Self::Draft,
+        Self::Fast,
+        Self::Precise,
+        Self::Reference,
+        Self::Strict,
+    ];
 
     pub const fn name(self) -> &'static str {
         match self {
@@ -37,9 +43,18 @@ impl Tier {
     /// The tolerance of that name.
     pub const fn tolerance(self) -> Tolerance {
         match self {
-            Self::Draft => Tolerance { wrong_ppm: 20_000.0, channel: 48 },
-            Self::Fast => Tolerance { wrong_ppm: 1000.0, channel: 6 },
-            Self::Precise | Self::Reference | Self::Strict => Tolerance { wrong_ppm: 0.0, channel: 1 },
+            Self::Draft => Tolerance {
+                wrong_ppm: 20_000.0,
+                channel: 48,
+            },
+            Self::Fast => Tolerance {
+                wrong_ppm: 1000.0,
+                channel: 6,
+            },
+            Self::Precise | Self::Reference | Self::Strict => Tolerance {
+                wrong_ppm: 0.0,
+                channel: 1,
+            },
         }
     }
 
@@ -47,10 +62,15 @@ impl Tier {
     pub fn base(self) -> AccuracyOptions {
         match self {
             Self::Draft | Self::Fast | Self::Precise => AccuracyOptions::default(),
-            Self::Reference => AccuracyOptions { depth: DepthFormat::Integer, ..AccuracyOptions::default() },
-            Self::Strict => {
-                AccuracyOptions { depth: DepthFormat::Integer, vertex_transform: VertexTransform::Strict, ..AccuracyOptions::default() }
-            }
+            Self::Reference => AccuracyOptions {
+                depth: DepthFormat::Integer,
+                ..AccuracyOptions::default()
+            },
+            Self::Strict => AccuracyOptions {
+                depth: DepthFormat::Integer,
+                vertex_transform: VertexTransform::Strict,
+                ..AccuracyOptions::default()
+            },
         }
     }
 }
@@ -65,7 +85,13 @@ pub struct Tolerance {
 }
 
 /// Axes whose faster options lose nothing, or whose loss is judged in other ways.
-const EXACT_AXES: [usize; 5] = [Visibility::AXIS, Skinning::AXIS, RenderScale::AXIS, Parameters::AXIS, ShaderChecks::AXIS];
+const EXACT_AXES: [usize; 5] = [
+    Visibility::AXIS,
+    Skinning::AXIS,
+    RenderScale::AXIS,
+    Parameters::AXIS,
+    ShaderChecks::AXIS,
+];
 
 /// How exact the picture must be.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -77,7 +103,8 @@ pub struct AccuracyRequest {
     pub wrong_ppm: Option<f64>,
     /// Tolerance instead of the tier's: difference of a color channel, of 255.
     pub channel: Option<u8>,
-    /// What options cost on the adapter at hand, as far as it was measured. The window fills it in; no preset holds it.
+    /// What options cost on the adapter at hand, as far as it was measured. The window fills it
+    /// in; no preset holds it.
     pub measured: MeasuredCosts,
 }
 
@@ -89,7 +116,8 @@ impl AccuracyRequest {
 
     /// Does it pin an option whose picture differs from run to run?
     pub fn is_left_to_chance(&self) -> bool {
-        self.pins.option() == Some(Visibility::Race) || self.pins.option() == Some(SampleCounter::Racy)
+        self.pins.option() == Some(Visibility::Race)
+            || self.pins.option() == Some(SampleCounter::Racy)
     }
 
     /// Does it allow a picture that is not exact?
@@ -113,6 +141,9 @@ impl AccuracyRequest {
     /// The preset's own tolerance, or the tier's.
     pub fn tolerance(&self) -> Tolerance {
         let named = self.tier.tolerance();
-        Tolerance { wrong_ppm: self.wrong_ppm.unwrap_or(named.wrong_ppm), channel: self.channel.unwrap_or(named.channel) }
+        Tolerance {
+            wrong_ppm: self.wrong_ppm.unwrap_or(named.wrong_ppm),
+            channel: self.channel.unwrap_or(named.channel),
+        }
     }
 }

@@ -1,4 +1,5 @@
-//! Depth: shades by distance from the eye, fitted to the scene or by a scale and an offset of your own.
+//! Depth: shades by distance from the eye, fitted to the scene or by a scale and an offset of your
+//! own.
 
 use glam::{DVec3, DVec4};
 
@@ -23,10 +24,16 @@ params! {
     }
 }
 
-pub static EFFECT: BuiltIn = BuiltIn::new(|| Effect::surface::<Depth>("depth", "Depth", "shades by distance from the eye").into());
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::surface::<Depth>("depth", "Depth", "shades by distance from the eye").into()
+});
 
 impl SurfaceEffect for Depth {
-    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Depth, SurfaceInput::DepthRange, SurfaceInput::Color];
+    const INPUTS: &[SurfaceInput] = &[
+        SurfaceInput::Depth,
+        SurfaceInput::DepthRange,
+        SurfaceInput::Color,
+    ];
 
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let way = if p.fit != 0 {

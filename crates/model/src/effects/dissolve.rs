@@ -1,20 +1,17 @@
-//! Dissolve: fills every triangle to a fraction of its area, exactly, and lets a front travel over the model.
+//! Dissolve: fills every triangle to a fraction of its area, exactly, and lets a front travel over
+//! the model.
 //!
-//! Sweeps are of equal area: from an edge the filled part reaches 1 - √(1 - p) of the height, from a corner or the
-//! centroid √p of the way, so that p per cent mean p per cent. Integers decide, sample by sample.
+//! Sweeps are of equal area: from an edge the filled part reaches 1 - √(1 - p) of the height, from
+//! a corner or the centroid √p of the way, so that p per cent mean p per cent. Integers decide,
+//! sample by sample.
 
 use glam::{DVec2, DVec3, DVec4};
 
 use super::{
     BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
-    hooks::{TriangleSetup, Front, Pattern, Sample, SampleEffect},
+    hooks::{Front, Pattern, Sample, SampleEffect, TriangleSetup},
 };
-use crate::{
-    choice,
-    math::hash,
-    params,
-    params::Color,
-};
+use crate::{choice, math::hash, params, params::Color};
 
 choice! {
     /// How a triangle fills.
@@ -49,10 +46,14 @@ params! {
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Dissolve>("dissolve", "Dissolve", "fills every triangle to a fraction of its area")
-        .on_sample::<Dissolve>()
-        .on_surface::<Dissolve>()
-        .into()
+    Effect::new::<Dissolve>(
+        "dissolve",
+        "Dissolve",
+        "fills every triangle to a fraction of its area",
+    )
+    .on_sample::<Dissolve>()
+    .on_surface::<Dissolve>()
+    .into()
 });
 
 /// The whole triangle, in units of the fractions.
@@ -67,7 +68,6 @@ impl Dissolve {
         }
         1.0 - (1.0 - f64::from(self.fill)) * self.spread.reached(center, center_screen, triangle)
     }
-
 }
 
 /// round(√(fraction / 2^24) · 2^16); 65,537, beyond every path, where the fraction is 1.
@@ -87,7 +87,12 @@ impl SampleEffect for Dissolve {
         if p.spread.pattern() == Pattern::Uniform {
             return 0.0;
         }
-        let error_bound = p.spread.error_bound(setup.center, setup.center_screen, setup.triangle, &setup.error_bound());
+        let error_bound = p.spread.error_bound(
+            setup.center,
+            setup.center_screen,
+            setup.triangle,
+            &setup.error_bound(),
+        );
         error_bound * f64::from(ONE) + 2.0
     }
 
@@ -96,10 +101,23 @@ impl SampleEffect for Dissolve {
     }
 
     fn sample_setup(setup: &TriangleSetup, p: &Self, first: Option<u32>) -> [u32; 4] {
-        let fill = p.fill_of(setup.center, setup.center_screen, setup.triangle).clamp(0.0, 1.0);
+        let fill = p
+            .fill_of(setup.center, setup.center_screen, setup.triangle)
+            .clamp(0.0, 1.0);
         let fraction = first.unwrap_or((fill * f64::from(ONE)).round_ties_even() as u32);
         let mode = Mode::of(p.mode);
-        let samples = if mode == Mode::Hash { 0 } else { setup.samples().take(if mode == Mode::Scanline { usize::MAX } else { 2 }).count() };
+        let samples = if mode == Mode::Hash {
+            0
+        } else {
+            setup
+                .samples()
+                .take(if mode == Mode::Scanline {
+                    usize::MAX
+                } else {
+                    2
+                })
+                .count()
+        };
         if samples < 2 {
             return [fraction, 0, BY_HASH, 0];
         }
@@ -109,7 +127,10 @@ impl SampleEffect for Dissolve {
             Mode::Corner | Mode::Centroid => root(fraction),
             Mode::Scanline => {
                 let sample_count = (u64::from(fraction) * samples as u64 + (1 << 23)) >> 24;
-                setup.samples().nth(sample_count as usize).map_or(u32::MAX, |[x, y]| y << 16 | x)
+                setup
+                    .samples()
+                    .nth(sample_count as usize)
+                    .map_or(u32::MAX, |[x, y]| y << 16 | x)
             }
             Mode::Hash => unreachable!("it took the hash"),
         };
@@ -134,11 +155,19 @@ impl SampleEffect for Dissolve {
 }
 
 impl SurfaceEffect for Dissolve {
-    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Center, SurfaceInput::CenterScreen, SurfaceInput::TriangleId, SurfaceInput::Barycentrics, SurfaceInput::Color];
+    const INPUTS: &[SurfaceInput] = &[
+        SurfaceInput::Center,
+        SurfaceInput::CenterScreen,
+        SurfaceInput::TriangleId,
+        SurfaceInput::Barycentrics,
+        SurfaceInput::Color,
+    ];
 
     /// A rim that glows where the triangle is about to go.
     fn apply(mut s: Surface, p: &Self) -> Surface {
-        let fill = p.fill_of(s.center, s.center_screen, s.triangle_id).clamp(0.0, 1.0);
+        let fill = p
+            .fill_of(s.center, s.center_screen, s.triangle_id)
+            .clamp(0.0, 1.0);
         let part = s.barycentrics[p.corner.min(2) as usize];
         let (way, end) = match Mode::of(p.mode) {
             Mode::Edge => (part, 1.0 - (1.0 - fill).sqrt()),
@@ -147,7 +176,8 @@ impl SurfaceEffect for Dissolve {
             Mode::Scanline | Mode::Hash => (0.0, fill),
         };
         // The rim is born as the triangle starts to go, so a whole one has none.
-        let near = (1.0 - (end - way) / f64::from(p.rim_width)).clamp(0.0, 1.0) * (8.0 * (1.0 - fill)).min(1.0);
+        let near = (1.0 - (end - way) / f64::from(p.rim_width)).clamp(0.0, 1.0)
+            * (8.0 * (1.0 - fill)).min(1.0);
         let [red, green, blue, strength] = p.rim.map(f64::from);
         s.color += DVec4::new(red, green, blue, 0.0) * (strength * near * near);
         s

@@ -1,7 +1,7 @@
 //! Dither: ordered dithering (Bayer 1973), so that few levels look like many.
 //!
-//! A threshold from a matrix that tiles the picture decides between the two nearest levels; over a tile the mean is the
-//! value. With 256 levels it hides the banding of soft gradients.
+//! A threshold from a matrix that tiles the picture decides between the two nearest levels; over a
+//! tile the mean is the value. With 256 levels it hides the banding of soft gradients.
 
 use super::{
     BuiltIn, Effect,
@@ -49,10 +49,14 @@ params! {
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Dither>("dither", "Dither", "ordered dithering, so that few levels look like many")
-        .on_image::<Dither>()
-        .in_steps()
-        .into()
+    Effect::new::<Dither>(
+        "dither",
+        "Dither",
+        "ordered dithering, so that few levels look like many",
+    )
+    .on_image::<Dither>()
+    .in_steps()
+    .into()
 });
 
 impl ImageEffect for Dither {
@@ -62,14 +66,20 @@ impl ImageEffect for Dither {
             Matrix::Bayer4 => 2,
             Matrix::Bayer2 => 1,
         };
-        let threshold = (f64::from(rank(pixel.x / p.cell_px, pixel.y / p.cell_px, bits)) + 0.5) / f64::from(1 << (2 * bits));
+        let threshold = (f64::from(rank(pixel.x / p.cell_px, pixel.y / p.cell_px, bits)) + 0.5)
+            / f64::from(1 << (2 * bits));
         let last = f64::from(p.levels - 1);
-        let level = |value: f64| (((value + pixel.step_offset) * last + threshold).floor() / last).clamp(0.0, 1.0);
+        let level = |value: f64| {
+            (((value + pixel.step_offset) * last + threshold).floor() / last).clamp(0.0, 1.0)
+        };
         let base = pixel.color.truncate();
         let color = match Palette::of(p.palette) {
             Palette::Rgb => base.map(level),
             Palette::Duotone => {
-                let (ink, paper) = (tone::encoded(p.ink).truncate(), tone::encoded(p.paper).truncate());
+                let (ink, paper) = (
+                    tone::encoded(p.ink).truncate(),
+                    tone::encoded(p.paper).truncate(),
+                );
                 ink + (paper - ink) * level(tone::luminance(base))
             }
         };
@@ -78,7 +88,10 @@ impl ImageEffect for Dither {
     }
 }
 
-/// Rank of a cell in the order in which a matrix of 2^bits per side is filled: for every bit, the checkerboard first.
+/// Rank of a cell in the order in which a matrix of 2^bits per side is filled: for every bit, the
+/// checkerboard first.
 fn rank(x: u32, y: u32, bits: u32) -> u32 {
-    (0..bits).fold(0, |rank, bit| rank << 2 | ((x ^ y) >> bit & 1) << 1 | y >> bit & 1)
+    (0..bits).fold(0, |rank, bit| {
+        rank << 2 | ((x ^ y) >> bit & 1) << 1 | y >> bit & 1
+    })
 }

@@ -1,10 +1,11 @@
 //! Dots: draws dots along the edges of the meshes, or along a polyline, evenly spaced in the world.
 //!
-//! A dot's level is how often its number can be halved: every second dot is of level 0, every fourth of level 1 and so on.
-//! Where dots would crowd on the screen, those of the lowest level fade until they are gone when the gap has halved, then
-//! the next ones begin; so the pattern thins continuously as the camera moves away. The position of a dot is a
-//! float that is snapped once; its level, its fading and the samples that it covers are integers from there on. Of several
-//! dots on a pixel the strongest shows, in any drawing order.
+//! A dot's level is how often its number can be halved: every second dot is of level 0, every
+//! fourth of level 1 and so on. Where dots would crowd on the screen, those of the lowest level
+//! fade until they are gone when the gap has halved, then the next ones begin; so the pattern thins
+//! continuously as the camera moves away. The position of a dot is a float that is snapped once;
+//! its level, its fading and the samples that it covers are integers from there on. Of several dots
+//! on a pixel the strongest shows, in any drawing order.
 
 use super::{BuiltIn, Effect};
 use crate::{
@@ -52,8 +53,11 @@ params! {
     }
 }
 
-pub static EFFECT: BuiltIn =
-    BuiltIn::new(|| Effect::new::<Dots>("dots", "Dots", "draws dots along edges or a polyline").with_lines().into());
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::new::<Dots>("dots", "Dots", "draws dots along edges or a polyline")
+        .with_lines()
+        .into()
+});
 
 /// Most dots of a picture: 8 bytes each fit the binding of every adapter.
 pub const MAX_DOTS: u64 = 1 << 24;
@@ -75,10 +79,13 @@ impl Dots {
         (f64::from(self.size_px) * 128.0).round_ties_even() as u32
     }
 
-    /// Bits of the f32 nearest to the 1/w at which dots of level 0 begin to fade: there they lie `min_gap_px` apart.
+    /// Bits of the f32 nearest to the 1/w at which dots of level 0 begin to fade: there they lie
+    /// `min_gap_px` apart.
     pub fn fade_from(&self, view: &View) -> u32 {
         let pixel_size_m = view.ndc_axes[1].length() * 2.0 / f64::from(view.height.max(1));
-        ((pixel_size_m * f64::from(self.min_gap_px) / f64::from(self.spacing_m)).clamp(1e-30, 1e30) as f32).to_bits()
+        ((pixel_size_m * f64::from(self.min_gap_px) / f64::from(self.spacing_m)).clamp(1e-30, 1e30)
+            as f32)
+            .to_bits()
     }
 
     /// How fast dots fade, in strengths per level.
@@ -96,11 +103,17 @@ impl Dots {
         (f64::from(self.bias) * f64::from(1u32 << STEPS)) as u32
     }
 
-    /// Strength of the dot of this number where 1/w has these bits, 0 to [`FULL`]. Bits of floats rise by one level when the
-    /// float doubles, so their difference is how often the gap has halved.
+    /// Strength of the dot of this number where 1/w has these bits, 0 to [`FULL`]. Bits of floats
+    /// rise by one level when the float doubles, so their difference is how often the gap has
+    /// halved.
     pub fn strength(&self, number: u32, inv_w: u32, fade_from: u32) -> u32 {
-        let halved = (i64::from(fade_from) - i64::from(inv_w)).clamp(0, i64::from(self.levels) << STEPS) as u32;
-        let level = if number == 0 { 31 } else { number.trailing_zeros() };
+        let halved = (i64::from(fade_from) - i64::from(inv_w))
+            .clamp(0, i64::from(self.levels) << STEPS) as u32;
+        let level = if number == 0 {
+            31
+        } else {
+            number.trailing_zeros()
+        };
         match level.cmp(&(halved >> STEPS)) {
             std::cmp::Ordering::Greater => FULL,
             std::cmp::Ordering::Less => 0,
@@ -111,10 +124,12 @@ impl Dots {
         }
     }
 
-    /// How much of a pixel a dot covers, of [`FULL`], given the squared distance of its center from the sample: half at the radius,
-    /// falling over about a pixel and linearly with the square, so that all covers sum to the dot's area.
+    /// How much of a pixel a dot covers, of [`FULL`], given the squared distance of its center from
+    /// the sample: half at the radius, falling over about a pixel and linearly with the square,
+    /// so that all covers sum to the dot's area.
     pub fn cover(&self, squared: u64) -> u32 {
         let radius = u64::from(self.radius());
-        (((radius + 256) * radius).saturating_sub(squared) / (2 * radius)).min(u64::from(FULL)) as u32
+        (((radius + 256) * radius).saturating_sub(squared) / (2 * radius)).min(u64::from(FULL))
+            as u32
     }
 }

@@ -1,8 +1,10 @@
-//! Draw order: stops the picture after a number of samples, so that one sees the order in which it is drawn.
+//! Draw order: stops the picture after a number of samples, so that one sees the order in which it
+//! is drawn.
 //!
-//! Covered samples count before any depth test, overdraw included. In submission order the first of them are drawn,
-//! triangle by triangle and row by row: the same ones on every adapter. In the scheduler's order each sample takes
-//! a number from a counter: how many are drawn is exact, which ones depends on the hardware.
+//! Covered samples count before any depth test, overdraw included. In submission order the first of
+//! them are drawn, triangle by triangle and row by row: the same ones on every adapter. In the
+//! scheduler's order each sample takes a number from a counter: how many are drawn is exact, which
+//! ones depends on the hardware.
 
 use glam::DVec4;
 
@@ -47,11 +49,15 @@ params! {
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<DrawOrder>("draw_order", "DrawOrder", "stops the picture after a number of samples")
-        .in_slot(Slot::Order)
-        .on_surface::<DrawOrder>()
-        .repeatable_if(|words| Mode::of(read::<DrawOrder>(words).mode) == Mode::Submission)
-        .into()
+    Effect::new::<DrawOrder>(
+        "draw_order",
+        "DrawOrder",
+        "stops the picture after a number of samples",
+    )
+    .in_slot(Slot::Order)
+    .on_surface::<DrawOrder>()
+    .repeatable_if(|words| Mode::of(read::<DrawOrder>(words).mode) == Mode::Submission)
+    .into()
 });
 
 impl DrawOrder {
@@ -60,7 +66,8 @@ impl DrawOrder {
         match Unit::of(self.unit) {
             Unit::Count => total.min(self.limit.into()),
             Unit::Fraction => {
-                let fraction = (f64::from(self.fraction) * f64::from(1 << 24)).round_ties_even() as u128;
+                let fraction =
+                    (f64::from(self.fraction) * f64::from(1 << 24)).round_ties_even() as u128;
                 ((u128::from(total) * fraction + (1 << 23)) >> 24) as u64
             }
         }
@@ -75,7 +82,11 @@ impl SurfaceEffect for DrawOrder {
         let [first, last] = [p.first, p.last].map(|color| DVec4::from_array(color.map(f64::from)));
         let heat = first.lerp(last, s.rank);
         s.glow *= 1.0 - heat.w;
-        s.color = s.color.truncate().lerp(heat.truncate(), heat.w).extend(s.color.w);
+        s.color = s
+            .color
+            .truncate()
+            .lerp(heat.truncate(), heat.w)
+            .extend(s.color.w);
         s
     }
 }

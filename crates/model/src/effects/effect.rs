@@ -3,14 +3,16 @@
 use std::sync::{Arc, LazyLock};
 
 use super::hooks::{
-    Hooks, ImageEffect, ImageHook, Picture, SampleEffect, SampleHook, Slot, SurfaceEffect, SurfaceInput, VertexEffect, VertexHook,
+    Hooks, ImageEffect, ImageHook, Picture, SampleEffect, SampleHook, Slot, SurfaceEffect,
+    SurfaceInput, VertexEffect, VertexHook,
 };
 use crate::{
     params::{Field, Params},
     scene::particle_discs::ParticleSettings,
 };
 
-/// One entry of the list of effects. Everything that names an effect shares it, so that the effect of a file lives as long as it is used.
+/// One entry of the list of effects. Everything that names an effect shares it, so that the effect
+/// of a file lives as long as it is used.
 #[derive(Clone)]
 pub struct Effect {
     /// File stem, WGSL function, uniform member, preset table, `--set` prefix.
@@ -23,7 +25,8 @@ pub struct Effect {
     pub defaults: Vec<u32>,
     /// Name of the WGSL struct.
     pub wgsl_struct: String,
-    /// The WGSL text of an effect that a file brings; none for a built-in effect, whose text is in `shaders/effects`.
+    /// The WGSL text of an effect that a file brings; none for a built-in effect, whose text is in
+    /// `shaders/effects`.
     pub source: Option<Arc<EffectSource>>,
     /// The effect that this is another instance of, under a name of its own.
     pub base: Option<Arc<Effect>>,
@@ -67,8 +70,12 @@ impl Effect {
         self.hooks.vertex = Some(VertexHook {
             needs_triangle: P::NEEDS_TRIANGLE,
             moved: Arc::new(|vertex, words| P::moved(vertex, &read(words))),
-            error_bound: Arc::new(|vertex, error_bound, words| P::error_bound(vertex, error_bound, &read(words))),
-            max_displacement_m: Arc::new(|radius_m, words| P::max_displacement_m(radius_m, &read(words))),
+            error_bound: Arc::new(|vertex, error_bound, words| {
+                P::error_bound(vertex, error_bound, &read(words))
+            }),
+            max_displacement_m: Arc::new(|radius_m, words| {
+                P::max_displacement_m(radius_m, &read(words))
+            }),
         });
         self
     }
@@ -79,7 +86,9 @@ impl Effect {
             has_setup: P::HAS_SETUP,
             error_bound: Arc::new(|setup, words| P::error_bound(setup, &read(words))),
             is_from_floats: Arc::new(|words| P::is_from_floats(&read(words))),
-            sample_setup: Arc::new(|setup, words, first| P::sample_setup(setup, &read(words), first)),
+            sample_setup: Arc::new(|setup, words, first| {
+                P::sample_setup(setup, &read(words), first)
+            }),
             is_drawn: Arc::new(|sample, words| P::is_drawn(sample, &read(words))),
         });
         self
@@ -87,12 +96,18 @@ impl Effect {
 
     /// The same effect, also on the image hook.
     pub fn on_image<P: ImageEffect>(mut self) -> Self {
-        let finish = Arc::new(|pixel, picture: &Picture<'_>, words: &[u32]| P::finish(pixel, picture, &read(words)));
-        self.hooks.image = Some(ImageHook { reads_previous: P::READS_PREVIOUS, finish });
+        let finish = Arc::new(|pixel, picture: &Picture<'_>, words: &[u32]| {
+            P::finish(pixel, picture, &read(words))
+        });
+        self.hooks.image = Some(ImageHook {
+            reads_previous: P::READS_PREVIOUS,
+            finish,
+        });
         self
     }
 
-    /// The same effect, with steps in its color: the judge then accepts either side of a step that is very near.
+    /// The same effect, with steps in its color: the judge then accepts either side of a step that
+    /// is very near.
     pub fn in_steps(mut self) -> Self {
         self.hooks.has_steps = true;
         self
@@ -122,7 +137,8 @@ impl Effect {
         self
     }
 
-    /// The same effect, whose pictures depend on the order of the hardware unless `is_repeatable` holds.
+    /// The same effect, whose pictures depend on the order of the hardware unless `is_repeatable`
+    /// holds.
     pub fn repeatable_if(mut self, is_repeatable: fn(&[u32]) -> bool) -> Self {
         self.is_repeatable = is_repeatable;
         self
@@ -130,13 +146,20 @@ impl Effect {
 
     /// Another instance of `base`, so that it can stand in a stack more than once.
     pub fn instance(name: &str, base: &Arc<Self>) -> Self {
-        Self { name: name.into(), base: Some(base.clone()), ..Self::clone(base) }
+        Self {
+            name: name.into(),
+            base: Some(base.clone()),
+            ..Self::clone(base)
+        }
     }
 
     /// Can it stand in a stack more than once? Effects that the frame has one place for cannot.
     pub fn has_instances(&self) -> bool {
         let hooks = &self.hooks;
-        let is_alone = hooks.slot.is_some() || hooks.has_lines || hooks.particle_settings.is_some() || hooks.reads_light();
+        let is_alone = hooks.slot.is_some()
+            || hooks.has_lines
+            || hooks.particle_settings.is_some()
+            || hooks.reads_light();
         !is_alone && !hooks.image.as_ref().is_some_and(|hook| hook.reads_previous)
     }
 
@@ -145,11 +168,16 @@ impl Effect {
         self.source.is_some()
     }
 
-    /// Can it be limited to parts of a scene? Pixels, lines, slots of the rasterizer and particles belong to no draw.
+    /// Can it be limited to parts of a scene? Pixels, lines, slots of the rasterizer and particles
+    /// belong to no draw.
     pub const fn has_scope(&self) -> bool {
         let hooks = &self.hooks;
-        let is_elsewhere = hooks.image.is_some() || hooks.slot.is_some() || hooks.has_lines || hooks.particle_settings.is_some();
-        !is_elsewhere && (hooks.vertex.is_some() || hooks.sample.is_some() || hooks.surface.is_some())
+        let is_elsewhere = hooks.image.is_some()
+            || hooks.slot.is_some()
+            || hooks.has_lines
+            || hooks.particle_settings.is_some();
+        !is_elsewhere
+            && (hooks.vertex.is_some() || hooks.sample.is_some() || hooks.surface.is_some())
     }
 
     /// Name of the WGSL file below `effects`.
@@ -185,7 +213,10 @@ impl std::hash::Hash for Effect {
     fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
         self.name.hash(state);
         // Kernel keys are hashed for every pass; equal texts have equal lengths.
-        self.source.as_ref().map(|source| source.written.len()).hash(state);
+        self.source
+            .as_ref()
+            .map(|source| source.written.len())
+            .hash(state);
         self.base.as_ref().map(|base| &base.name).hash(state);
     }
 }
@@ -205,11 +236,14 @@ pub struct EffectSource {
 
 /// The WGSL constant of one word of a choice: `HATCH_SPACE_SURFACE`.
 pub fn constant_name(stem: &str, field: &str, word: &str) -> String {
-    format!("{stem}_{field}_{word}").to_uppercase().replace('-', "_")
+    format!("{stem}_{field}_{word}")
+        .to_uppercase()
+        .replace('-', "_")
 }
 
 impl EffectSource {
-    /// The name that `declared` of the file `stem` has in a linked module. A stem has no `__`, so that no two files share a name.
+    /// The name that `declared` of the file `stem` has in a linked module. A stem has no `__`, so
+    /// that no two files share a name.
     pub fn unique(stem: &str, declared: &str) -> String {
         format!("custom_{stem}__{declared}")
     }

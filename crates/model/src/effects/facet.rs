@@ -1,11 +1,9 @@
 //! Facet: blends every triangle between smooth and flat, in normal and in depth.
 //!
-//! The blend is one number per triangle, taken at its center. At 0 and 1 the pure values come through to the bit.
+//! The blend is one number per triangle, taken at its center. At 0 and 1 the pure values come
+//! through to the bit.
 
-use super::{
-    BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
-    hooks::Front,
-};
+use super::{BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput, hooks::Front};
 use crate::params;
 
 params! {
@@ -17,12 +15,24 @@ params! {
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::surface::<Facet>("facet", "Facet", "blends every triangle between smooth and flat, in normal and in depth")
-        .into()
+    Effect::surface::<Facet>(
+        "facet",
+        "Facet",
+        "blends every triangle between smooth and flat, in normal and in depth",
+    )
+    .into()
 });
 
 impl SurfaceEffect for Facet {
-    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Center, SurfaceInput::CenterScreen, SurfaceInput::TriangleId, SurfaceInput::Depth, SurfaceInput::FlatDepth, SurfaceInput::Normal, SurfaceInput::FlatNormal];
+    const INPUTS: &[SurfaceInput] = &[
+        SurfaceInput::Center,
+        SurfaceInput::CenterScreen,
+        SurfaceInput::TriangleId,
+        SurfaceInput::Depth,
+        SurfaceInput::FlatDepth,
+        SurfaceInput::Normal,
+        SurfaceInput::FlatNormal,
+    ];
 
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let t = f64::from(p.amount) * p.spread.reached(s.center, s.center_screen, s.triangle_id);
@@ -31,7 +41,11 @@ impl SurfaceEffect for Facet {
         }
         s.depth_m += (s.flat_depth_m - s.depth_m) * t;
         let blended = s.normal + (s.flat_normal - s.normal) * t;
-        s.normal = if t >= 1.0 || blended.length_squared() < 1e-12 { s.flat_normal } else { blended.normalize() };
+        s.normal = if t >= 1.0 || blended.length_squared() < 1e-12 {
+            s.flat_normal
+        } else {
+            blended.normalize()
+        };
         s
     }
 }

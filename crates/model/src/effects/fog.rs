@@ -1,7 +1,7 @@
 //! Fog: blends towards a color with distance (Beer–Lambert).
 //!
-//! The surface's light is multiplied by exp(-density · path), where the path is the depth beyond the start, and
-//! thinner above a level.
+//! The surface's light is multiplied by exp(-density · path), where the path is the depth beyond
+//! the start, and thinner above a level.
 
 use super::{BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput, hooks::tone::rgb};
 use crate::{params, params::Color};
@@ -21,10 +21,17 @@ params! {
     }
 }
 
-pub static EFFECT: BuiltIn = BuiltIn::new(|| Effect::surface::<Fog>("fog", "Fog", "blends towards a color with distance").into());
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::surface::<Fog>("fog", "Fog", "blends towards a color with distance").into()
+});
 
 impl SurfaceEffect for Fog {
-    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Position, SurfaceInput::Depth, SurfaceInput::Glow, SurfaceInput::Color];
+    const INPUTS: &[SurfaceInput] = &[
+        SurfaceInput::Position,
+        SurfaceInput::Depth,
+        SurfaceInput::Glow,
+        SurfaceInput::Color,
+    ];
 
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let above = (s.position.y - f64::from(p.level_m)).max(0.0);

@@ -1,8 +1,9 @@
 //! Hatch: cross-hatching in ink, whose lines grow as the tone darkens.
 //!
-//! Layers of parallel lines appear one after the other; each line is filtered over its pixel, so that nothing flickers.
-//! Lines lie in the picture, or are cuts of parallel planes through the world, as an engraver follows the form. Those on a
-//! triangle that the near plane cuts waver by a fraction of a pixel: there f32 resolves positions to 1e-5 of their distance.
+//! Layers of parallel lines appear one after the other; each line is filtered over its pixel, so
+//! that nothing flickers. Lines lie in the picture, or are cuts of parallel planes through the
+//! world, as an engraver follows the form. Those on a triangle that the near plane cuts waver by a
+//! fraction of a pixel: there f32 resolves positions to 1e-5 of their distance.
 
 use glam::DVec3;
 
@@ -50,11 +51,24 @@ params! {
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::surface::<Hatch>("hatch", "Hatch", "cross-hatching in ink, whose lines grow as the tone darkens").into()
+    Effect::surface::<Hatch>(
+        "hatch",
+        "Hatch",
+        "cross-hatching in ink, whose lines grow as the tone darkens",
+    )
+    .into()
 });
 
 impl SurfaceEffect for Hatch {
-    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Color, SurfaceInput::Pixel, SurfaceInput::Normal, SurfaceInput::View, SurfaceInput::PixelSize, SurfaceInput::Position, SurfaceInput::Depth];
+    const INPUTS: &[SurfaceInput] = &[
+        SurfaceInput::Color,
+        SurfaceInput::Pixel,
+        SurfaceInput::Normal,
+        SurfaceInput::View,
+        SurfaceInput::PixelSize,
+        SurfaceInput::Position,
+        SurfaceInput::Depth,
+    ];
 
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let base = s.color.truncate().max(DVec3::ZERO);
@@ -63,13 +77,19 @@ impl SurfaceEffect for Hatch {
         let darkness = 1.0 - ((tone - dark) / (bright - dark).max(0.2)).clamp(0.0, 1.0);
         let mut bare = 1.0;
         for layer in 0..p.layers {
-            let width = (darkness * f64::from(p.layers) - f64::from(layer)).clamp(0.0, 1.0) * f64::from(p.width);
+            let width = (darkness * f64::from(p.layers) - f64::from(layer)).clamp(0.0, 1.0)
+                * f64::from(p.width);
             bare *= 1.0 - p.line(&s, layer, width);
         }
         let paper = rgb(p.paper);
-        let hue = if base.max_element() > 1e-6 { base / base.max_element() } else { DVec3::ONE };
+        let hue = if base.max_element() > 1e-6 {
+            base / base.max_element()
+        } else {
+            DVec3::ONE
+        };
         let paper = paper + (paper * hue - paper) * f64::from(p.tint);
-        // Mixed as the eye sees it, as the tone was taken: in linear light a trace of paper would outshine the ink.
+        // Mixed as the eye sees it, as the tone was taken: in linear light a trace of paper would
+        // outshine the ink.
         let (ink, paper) = (rgb(p.ink).map(f64::sqrt), paper.map(f64::sqrt));
         let mixed = ink + (paper - ink) * bare;
         s.color = (mixed * mixed).extend(s.color.w);
@@ -81,20 +101,32 @@ impl Hatch {
     /// Coverage of the pixel by the lines of a layer, which are `width` of their spacing wide.
     fn line(&self, s: &Surface, layer: u32, width: f64) -> f64 {
         // Crossed, then between.
-        let along = turned(f64::from(self.angle_deg) + [0.0, 90.0, 45.0, 135.0][layer as usize & 3]);
+        let along =
+            turned(f64::from(self.angle_deg) + [0.0, 90.0, 45.0, 135.0][layer as usize & 3]);
         let (position, spacing_px) = match LineSpace::of(self.space) {
-            LineSpace::Screen => ((s.pixel.y * along.x - s.pixel.x * along.y) / f64::from(self.spacing_px), f64::from(self.spacing_px)),
+            LineSpace::Screen => (
+                (s.pixel.y * along.x - s.pixel.x * along.y) / f64::from(self.spacing_px),
+                f64::from(self.spacing_px),
+            ),
             LineSpace::Surface => {
-                let across = DVec3::new(-along.y, along.x, if layer < 2 { 0.0 } else { 1.0 }).normalize();
-                // How far the planes' distance changes from pixel to pixel; clamped where the surface lies along the planes or
-                // is seen edge-on, and where f32 resolves no finer positions in the world.
-                let change = across - s.normal * (across.dot(s.view) / s.normal.dot(s.view).max(0.1));
-                let per_px = (s.pixel_size_m * change.length().max(0.4)).max(1.5e-4 * (s.position.length() + s.depth_m));
-                (s.position.dot(across) / f64::from(self.spacing_m), f64::from(self.spacing_m) / per_px)
+                let across =
+                    DVec3::new(-along.y, along.x, if layer < 2 { 0.0 } else { 1.0 }).normalize();
+                // How far the planes' distance changes from pixel to pixel; clamped where the
+                // surface lies along the planes or is seen edge-on, and where f32
+                // resolves no finer positions in the world.
+                let change =
+                    across - s.normal * (across.dot(s.view) / s.normal.dot(s.view).max(0.1));
+                let per_px = (s.pixel_size_m * change.length().max(0.4))
+                    .max(1.5e-4 * (s.position.length() + s.depth_m));
+                (
+                    s.position.dot(across) / f64::from(self.spacing_m),
+                    f64::from(self.spacing_m) / per_px,
+                )
             }
         };
         // A position on a surface errs by a few thousandths of a pixel.
-        let distance = (position - position.floor() - 0.5).abs() * spacing_px + 64.0 * s.step_offset;
+        let distance =
+            (position - position.floor() - 0.5).abs() * spacing_px + 64.0 * s.step_offset;
         let half = 0.5 * width * spacing_px;
         let covered = ((distance + 0.5).min(half) - (distance - 0.5).max(-half)).clamp(0.0, 1.0);
         // Lines too dense for the pixels become their mean.

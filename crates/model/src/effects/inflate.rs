@@ -1,10 +1,11 @@
-//! Inflate: every vertex moves along its own normal, so that a smooth surface swells or shrinks without a tear.
+//! Inflate: every vertex moves along its own normal, so that a smooth surface swells or shrinks
+//! without a tear.
 //!
 //! A surface at a constant distance from another has the same normals, so normals stay as they are.
 
 use super::{
     BuiltIn, Effect,
-    hooks::{ROUNDING, ErrorBound, Vertex, VertexEffect},
+    hooks::{ErrorBound, ROUNDING, Vertex, VertexEffect},
 };
 use crate::params;
 
@@ -16,9 +17,13 @@ params! {
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Inflate>("inflate", "Inflate", "moves every vertex along its own normal: the model swells or shrinks")
-        .on_vertex::<Inflate>()
-        .into()
+    Effect::new::<Inflate>(
+        "inflate",
+        "Inflate",
+        "moves every vertex along its own normal: the model swells or shrinks",
+    )
+    .on_vertex::<Inflate>()
+    .into()
 });
 
 impl VertexEffect for Inflate {
@@ -32,7 +37,8 @@ impl VertexEffect for Inflate {
     fn error_bound(v: &Vertex, mut error_bound: ErrorBound, p: &Self) -> ErrorBound {
         let amount = f64::from(p.amount_m).abs();
         if amount > 0.0 {
-            error_bound.offset_m += amount * (error_bound.normal + 2.0 * ROUNDING) + ROUNDING * v.offset.abs().max_element();
+            error_bound.offset_m += amount * (error_bound.normal + 2.0 * ROUNDING)
+                + ROUNDING * v.offset.abs().max_element();
         }
         error_bound
     }

@@ -23,18 +23,39 @@ params! {
     }
 }
 
-pub static EFFECT: BuiltIn =
-    BuiltIn::new(|| Effect::surface::<Lambert>("lambert", "Lambert", "diffuse light from sun, sky, ground and a headlight").into());
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::surface::<Lambert>(
+        "lambert",
+        "Lambert",
+        "diffuse light from sun, sky, ground and a headlight",
+    )
+    .into()
+});
 
 impl SurfaceEffect for Lambert {
-    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Normal, SurfaceInput::View, SurfaceInput::Color, SurfaceInput::Glow];
+    const INPUTS: &[SurfaceInput] = &[
+        SurfaceInput::Normal,
+        SurfaceInput::View,
+        SurfaceInput::Color,
+        SurfaceInput::Glow,
+    ];
 
     fn apply(mut s: Surface, p: &Self) -> Surface {
-        let toward = DVec3::new(p.sun_direction[0].into(), p.sun_direction[1].into(), p.sun_direction[2].into());
-        let sun = s.normal.dot(toward.try_normalize().unwrap_or(DVec3::Y)).max(0.0);
+        let toward = DVec3::new(
+            p.sun_direction[0].into(),
+            p.sun_direction[1].into(),
+            p.sun_direction[2].into(),
+        );
+        let sun = s
+            .normal
+            .dot(toward.try_normalize().unwrap_or(DVec3::Y))
+            .max(0.0);
         let headlight = s.normal.dot(s.view).max(0.0) * f64::from(p.headlight);
         let up = 0.5 + 0.5 * s.normal.y;
-        let light = color(p.sun) * sun + color(p.ground) + (color(p.sky) - color(p.ground)) * up + DVec3::splat(headlight);
+        let light = color(p.sun) * sun
+            + color(p.ground)
+            + (color(p.sky) - color(p.ground)) * up
+            + DVec3::splat(headlight);
         s.color = ((s.color.truncate() - s.glow) * light + s.glow).extend(s.color.w);
         s
     }

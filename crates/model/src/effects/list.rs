@@ -22,6 +22,9 @@ impl Effect {
     /// Index in [`EFFECTS`]; an effect of a file comes after all of them.
     pub fn rank(&self) -> usize {
         let original = self.base.as_deref().unwrap_or(self);
-        EFFECTS.iter().position(|effect| **effect == *original).unwrap_or(EFFECTS.len())
+        EFFECTS
+            .iter()
+            .position(|effect| **effect == *original)
+            .unwrap_or(EFFECTS.len())
     }
 }

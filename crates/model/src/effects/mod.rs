@@ -1,7 +1,9 @@
-//! Effects: pure functions with parameters, written twice. Here in f64, the reference; in `shaders/effects/` in f32, in a file of
-//! the same name. Panel, preset settings, `--set`, uniform bytes, layout test, golden and bench row are loops over [`EFFECTS`].
+//! Effects: pure functions with parameters, written twice. Here in f64, the reference; in
+//! `shaders/effects/` in f32, in a file of the same name. Panel, preset settings, `--set`, uniform
+//! bytes, layout test, golden and bench row are loops over [`EFFECTS`].
 
-/// THE list. Adding an effect is its two files and one word here, at its place in the canonical order.
+/// THE list. Adding an effect is its two files and one word here, at its place in the canonical
+/// order.
 macro_rules! for_each_effect {
     ($callback:ident) => {
         $callback![

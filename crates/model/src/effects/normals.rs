@@ -12,11 +12,21 @@ params! {
     }
 }
 
-pub static EFFECT: BuiltIn =
-    BuiltIn::new(|| Effect::surface::<Normals>("normals", "Normals", "colors the surface by the direction it faces").into());
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::surface::<Normals>(
+        "normals",
+        "Normals",
+        "colors the surface by the direction it faces",
+    )
+    .into()
+});
 
 impl SurfaceEffect for Normals {
-    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Normal, SurfaceInput::Glow, SurfaceInput::Color];
+    const INPUTS: &[SurfaceInput] = &[
+        SurfaceInput::Normal,
+        SurfaceInput::Glow,
+        SurfaceInput::Color,
+    ];
 
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let shade = s.normal * 0.5 + DVec3::splat(0.5);

@@ -1,7 +1,9 @@
-//! Outline: lines where the integers of the picture change: at silhouettes, between objects, at steps of depth.
+//! Outline: lines where the integers of the picture change: at silhouettes, between objects, at
+//! steps of depth.
 //!
-//! Triangle ids and depth keys alone decide, so a line is the same on every adapter that has the same keys. The bits of a float
-//! are a piecewise linear logarithm: a relative step of depth is a difference of depth keys.
+//! Triangle ids and depth keys alone decide, so a line is the same on every adapter that has the
+//! same keys. The bits of a float are a piecewise linear logarithm: a relative step of depth is a
+//! difference of depth keys.
 
 use super::{
     BuiltIn, Effect,
@@ -44,9 +46,13 @@ params! {
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Outline>("outline", "Outline", "lines at silhouettes, between objects and at steps of depth")
-        .on_image::<Outline>()
-        .into()
+    Effect::new::<Outline>(
+        "outline",
+        "Outline",
+        "lines at silhouettes, between objects and at steps of depth",
+    )
+    .on_image::<Outline>()
+    .into()
 });
 
 /// Triangle id, depth key and draw of a pixel.
@@ -61,7 +67,11 @@ impl ImageEffect for Outline {
             (-reach..=reach).any(|dx| {
                 (1..=reach * reach).contains(&(dx * dx + dy * dy))
                     && picture.has(x + dx, y + dy)
-                    && p.is_edge(here, picture.at(x + dx, y + dy), || picture.has(x - dx, y - dy).then(|| picture.at(x - dx, y - dy)))
+                    && p.is_edge(here, picture.at(x + dx, y + dy), || {
+                        picture
+                            .has(x - dx, y - dy)
+                            .then(|| picture.at(x - dx, y - dy))
+                    })
             })
         });
         if is_line {
@@ -73,7 +83,8 @@ impl ImageEffect for Outline {
 }
 
 impl Outline {
-    /// Is there a line at a pixel because of its neighbor `there`? `beyond` is the neighbor on the opposite side.
+    /// Is there a line at a pixel because of its neighbor `there`? `beyond` is the neighbor on the
+    /// opposite side.
     fn is_edge(&self, here: Seen, there: Seen, beyond: impl Fn() -> Option<Seen>) -> bool {
         let side = Side::of(self.side);
         if here.0.is_none() || there.0.is_none() {
@@ -83,9 +94,14 @@ impl Outline {
         if here.2 != there.2 {
             // Equal keys: the later object counts as behind.
             let is_behind = (here.1, there.2) < (there.1, here.2);
-            return self.objects != 0 && (side == Side::Both || is_behind == (side == Side::Outside));
+            return self.objects != 0
+                && (side == Side::Both || is_behind == (side == Side::Outside));
         }
-        let Some(beyond) = beyond().filter(|beyond| self.depth != 0 && beyond.0.is_some() && beyond.2 == here.2) else { return false };
+        let Some(beyond) =
+            beyond().filter(|beyond| self.depth != 0 && beyond.0.is_some() && beyond.2 == here.2)
+        else {
+            return false;
+        };
         // The second difference: a constant slope is no jump.
         let curvature = i64::from(there.1) + i64::from(beyond.1) - 2 * i64::from(here.1);
         let jump = (f64::from(self.depth_threshold) * f64::from(1 << 23)) as i64;

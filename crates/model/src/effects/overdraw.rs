@@ -39,12 +39,17 @@ params! {
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Overdraw>("overdraw", "Overdraw", "paints how many layers each pixel has, as heat")
-        .in_slot(Slot::Visibility)
-        .into()
+    Effect::new::<Overdraw>(
+        "overdraw",
+        "Overdraw",
+        "paints how many layers each pixel has, as heat",
+    )
+    .in_slot(Slot::Visibility)
+    .into()
 });
 
-/// Colors of a palette from cold to hot at equal steps of heat, as gamma-encoded bytes: lightness rises evenly.
+/// Colors of a palette from cold to hot at equal steps of heat, as gamma-encoded bytes: lightness
+/// rises evenly.
 const EMBER: [[u8; 3]; 9] = [
     [22, 20, 58],
     [62, 26, 105],
@@ -108,7 +113,8 @@ impl Overdraw {
         };
         let position = heat.clamp(0.0, 1.0) * 8.0;
         let first = (position.floor() as usize).min(7);
-        let [low, high] = [stops[first], stops[first + 1]].map(|stop| DVec3::from_array(stop.map(f64::from)));
+        let [low, high] =
+            [stops[first], stops[first + 1]].map(|stop| DVec3::from_array(stop.map(f64::from)));
         (low + (high - low) * (position - first as f64)) / 255.0
     }
 }
@@ -120,28 +126,63 @@ mod tests {
     #[test]
     fn heat_runs_from_one_layer_to_the_full_number() {
         for scale in [Scale::Linear, Scale::Log] {
-            let heat = Overdraw { max_layers: 16, scale: scale as u32, ..Overdraw::default() };
-            assert_eq!([heat.heat(1), heat.heat(16), heat.heat(1000)], [0.0, 1.0, 1.0]);
+            let heat = Overdraw {
+                max_layers: 16,
+                scale: scale as u32,
+                ..Overdraw::default()
+            };
+            assert_eq!(
+                [heat.heat(1), heat.heat(16), heat.heat(1000)],
+                [0.0, 1.0, 1.0]
+            );
             for layers in 1..=16 {
                 assert!((heat.layers_at(heat.heat(layers)) - f64::from(layers)).abs() < 1e-9);
             }
         }
-        assert!(Overdraw { max_layers: 1, ..Overdraw::default() }.heat(2) == 1.0, "a full heat of one layer divides by nothing");
+        assert!(
+            Overdraw {
+                max_layers: 1,
+                ..Overdraw::default()
+            }
+            .heat(2)
+                == 1.0,
+            "a full heat of one layer divides by nothing"
+        );
     }
 
     #[test]
     fn every_palette_grows_lighter_evenly() {
         for palette in [Palette::Ember, Palette::Reef, Palette::Grey] {
-            let heat = Overdraw { palette: palette as u32, ..Overdraw::default() };
-            let linear = |v: f64| if v <= 0.04045 { v / 12.92 } else { libm::pow((v + 0.055) / 1.055, 2.4) };
+            let heat = Overdraw {
+                palette: palette as u32,
+                ..Overdraw::default()
+            };
+            let linear = |v: f64| {
+                if v <= 0.04045 {
+                    v / 12.92
+                } else {
+                    libm::pow((v + 0.055) / 1.055, 2.4)
+                }
+            };
             let lightness = |position: usize| {
                 let c = heat.color(position as f64 / 8.0);
                 let y = 0.2126 * linear(c.x) + 0.7152 * linear(c.y) + 0.0722 * linear(c.z);
-                if y > 216.0 / 24389.0 { 116.0 * libm::cbrt(y) - 16.0 } else { y * 24389.0 / 27.0 }
+                if y > 216.0 / 24389.0 {
+                    116.0 * libm::cbrt(y) - 16.0
+                } else {
+                    y * 24389.0 / 27.0
+                }
             };
-            let steps: Vec<f64> = (0..8).map(|position| lightness(position + 1) - lightness(position)).collect();
+            let steps: Vec<f64> = (0..8)
+                .map(|position| lightness(position + 1) - lightness(position))
+                .collect();
             let mean = steps.iter().sum::<f64>() / 8.0;
-            assert!(steps.iter().all(|step| (0.7..1.35).contains(&(step / mean))), "{palette:?}: {steps:?} L* between stops");
+            assert!(
+                steps
+                    .iter()
+                    .all(|step| (0.7..1.35).contains(&(step / mean))),
+                "{palette:?}: {steps:?} L* between stops"
+            );
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Points: draws the corners of triangles as discs instead of the triangles.
 //!
-//! Integers decide: a sample belongs to a disc when its squared distance from the snapped corner is at most the squared
-//! radius. Corners of triangles that would have to be clipped are not drawn.
+//! Integers decide: a sample belongs to a disc when its squared distance from the snapped corner is
+//! at most the squared radius. Corners of triangles that would have to be clipped are not drawn.
 
 use super::{BuiltIn, Effect, hooks::Slot};
 use crate::params;
@@ -13,8 +13,15 @@ params! {
     }
 }
 
-pub static EFFECT: BuiltIn =
-    BuiltIn::new(|| Effect::new::<Points>("points", "Points", "draws the corners of triangles as discs").in_slot(Slot::Coverage).into());
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::new::<Points>(
+        "points",
+        "Points",
+        "draws the corners of triangles as discs",
+    )
+    .in_slot(Slot::Coverage)
+    .into()
+});
 
 impl Points {
     /// Radius in units of 1/256 px.

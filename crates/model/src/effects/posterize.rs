@@ -28,16 +28,22 @@ params! {
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Posterize>("posterize", "Posterize", "few levels of color, evenly spaced to the eye")
-        .on_image::<Posterize>()
-        .in_steps()
-        .into()
+    Effect::new::<Posterize>(
+        "posterize",
+        "Posterize",
+        "few levels of color, evenly spaced to the eye",
+    )
+    .on_image::<Posterize>()
+    .in_steps()
+    .into()
 });
 
 impl ImageEffect for Posterize {
     fn finish(mut pixel: Pixel, _: &Picture, p: &Self) -> Pixel {
         let last = f64::from(p.levels - 1);
-        let level = |value: f64| (((value + pixel.step_offset) * last + 0.5).floor() / last).clamp(0.0, 1.0);
+        let level = |value: f64| {
+            (((value + pixel.step_offset) * last + 0.5).floor() / last).clamp(0.0, 1.0)
+        };
         let base = pixel.color.truncate();
         let flat = match By::of(p.by) {
             By::Channels => base.map(level),

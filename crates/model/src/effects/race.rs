@@ -1,7 +1,9 @@
-//! Race: what goes wrong without atomics, live: load the depth, compare, store depth and triangle id.
+//! Race: what goes wrong without atomics, live: load the depth, compare, store depth and triangle
+//! id.
 //!
-//! Two invocations that meet on a pixel both see the old depth, and the last store remains, near or far. The true
-//! picture is the one without the race; the oracle draws that, and the judge counts the pixels that were lost.
+//! Two invocations that meet on a pixel both see the old depth, and the last store remains, near or
+//! far. The true picture is the one without the race; the oracle draws that, and the judge counts
+//! the pixels that were lost.
 
 use super::{BuiltIn, Effect, hooks::Slot};
 use crate::params;
@@ -14,8 +16,12 @@ params! {
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Race>("race", "Race", "stores depth and triangle id without atomics: wrong, and not twice the same")
-        .in_slot(Slot::Visibility)
-        .repeatable_if(|_| false)
-        .into()
+    Effect::new::<Race>(
+        "race",
+        "Race",
+        "stores depth and triangle id without atomics: wrong, and not twice the same",
+    )
+    .in_slot(Slot::Visibility)
+    .repeatable_if(|_| false)
+    .into()
 });

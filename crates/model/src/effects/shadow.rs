@@ -1,8 +1,9 @@
 //! Shadow: a directional light with a shadow map, which the rasterizer itself draws from the light.
 //!
-//! Light does not reach a sample that is deeper than what the light sees there. A tap compares one texel with the plane of the
-//! sample's triangle at the center of that texel, moved towards the light by a bias: a constant, and a slope
-//! that grows with the tangent of the angle at which light meets the plane, both in texels.
+//! Light does not reach a sample that is deeper than what the light sees there. A tap compares one
+//! texel with the plane of the sample's triangle at the center of that texel, moved towards the
+//! light by a bias: a constant, and a slope that grows with the tangent of the angle at which light
+//! meets the plane, both in texels.
 
 use glam::DVec3;
 
@@ -10,10 +11,7 @@ use super::{
     BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
     hooks::tone::{rgb, turned},
 };
-use crate::{
-    choice, params,
-    params::Color,
-};
+use crate::{choice, params, params::Color};
 
 choice! {
     /// What the light does.
@@ -49,9 +47,13 @@ params! {
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::surface::<Shadow>("shadow", "Shadow", "a directional light whose shadows the rasterizer draws itself")
-        .in_steps()
-        .into()
+    Effect::surface::<Shadow>(
+        "shadow",
+        "Shadow",
+        "a directional light whose shadows the rasterizer draws itself",
+    )
+    .in_steps()
+    .into()
 });
 
 /// Largest tangent that counts, for the slope and for the plane of a triangle between taps.
@@ -60,8 +62,13 @@ pub const MAX_SHADOW_SLOPE: f64 = 8.0;
 impl Shadow {
     /// Unit vector towards the light.
     pub fn toward(&self) -> DVec3 {
-        let [azimuth, elevation] = [self.azimuth_deg, self.elevation_deg].map(|degrees| turned(degrees.into()));
-        DVec3::new(elevation.x * azimuth.y, elevation.y, elevation.x * azimuth.x)
+        let [azimuth, elevation] =
+            [self.azimuth_deg, self.elevation_deg].map(|degrees| turned(degrees.into()));
+        DVec3::new(
+            elevation.x * azimuth.y,
+            elevation.y,
+            elevation.x * azimuth.x,
+        )
     }
 }
 
@@ -74,10 +81,14 @@ impl SurfaceEffect for Shadow {
         let light = match Shading::of(p.shading) {
             Shading::Lambert => {
                 let up = 0.5 + 0.5 * s.normal.y;
-                rgb(p.light) * (facing * arrives) + rgb(p.ground) + (rgb(p.sky) - rgb(p.ground)) * up
+                rgb(p.light) * (facing * arrives)
+                    + rgb(p.ground)
+                    + (rgb(p.sky) - rgb(p.ground)) * up
             }
             // A surface that the light grazes was dim before.
-            Shading::Dim => DVec3::splat(1.0 - f64::from(p.strength) * (1.0 - s.lit * (4.0 * facing).min(1.0))),
+            Shading::Dim => {
+                DVec3::splat(1.0 - f64::from(p.strength) * (1.0 - s.lit * (4.0 * facing).min(1.0)))
+            }
         };
         s.color = (s.color.truncate() * light).extend(s.color.w);
         s

@@ -1,8 +1,8 @@
 //! Smear: where nothing is drawn, the previous picture remains and fades towards the background.
 //!
-//! Whole bytes fade by whole steps, so that a trail is the same on every adapter. A single picture follows
-//! `frames` earlier ones, `step_s` apart, the first of which follows plain background; the window, while time runs, uses the
-//! pictures that it showed.
+//! Whole bytes fade by whole steps, so that a trail is the same on every adapter. A single picture
+//! follows `frames` earlier ones, `step_s` apart, the first of which follows plain background; the
+//! window, while time runs, uses the pictures that it showed.
 
 use glam::DVec4;
 
@@ -24,9 +24,13 @@ params! {
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Smear>("smear", "Smear", "where nothing is drawn the picture before stays, and fades")
-        .on_image::<Smear>()
-        .into()
+    Effect::new::<Smear>(
+        "smear",
+        "Smear",
+        "where nothing is drawn the picture before stays, and fades",
+    )
+    .on_image::<Smear>()
+    .into()
 });
 
 impl ImageEffect for Smear {
@@ -39,7 +43,9 @@ impl ImageEffect for Smear {
         }
         let background = picture.background[pixel.y as usize].map(i64::from);
         let index = pixel.y as usize * picture.width as usize + pixel.x as usize;
-        let previous = picture.previous.map_or(background, |previous| previous[index].map(i64::from));
+        let previous = picture
+            .previous
+            .map_or(background, |previous| previous[index].map(i64::from));
         // In units of 2^-16; a trail that fades takes at least one step, so it ends.
         let step = (f64::from(p.fade) * 65536.0) as i64;
         let faded = |c: usize| {

@@ -35,7 +35,11 @@ pub struct EnabledEffect {
 
 impl EnabledEffect {
     pub fn new(effect: &Arc<Effect>) -> Self {
-        Self { effect: effect.clone(), words: effect.defaults.clone(), on: Scope::default() }
+        Self {
+            effect: effect.clone(),
+            words: effect.defaults.clone(),
+            on: Scope::default(),
+        }
     }
 }
 
@@ -49,15 +53,22 @@ impl Stack {
     }
 
     pub fn get_mut(&mut self, name: &str) -> Option<&mut EnabledEffect> {
-        self.0.iter_mut().find(|enabled| enabled.effect.name == name)
+        self.0
+            .iter_mut()
+            .find(|enabled| enabled.effect.name == name)
     }
 
-    /// Enables `effect` with its defaults, before the first one that follows it in the canonical order; keeps one already there.
+    /// Enables `effect` with its defaults, before the first one that follows it in the canonical
+    /// order; keeps one already there.
     pub fn enable(&mut self, effect: &Arc<Effect>) -> &mut EnabledEffect {
         let at = match self.0.iter().position(|enabled| enabled.effect == *effect) {
             Some(at) => at,
             None => {
-                let at = self.0.iter().position(|enabled| enabled.effect.rank() > effect.rank()).unwrap_or(self.0.len());
+                let at = self
+                    .0
+                    .iter()
+                    .position(|enabled| enabled.effect.rank() > effect.rank())
+                    .unwrap_or(self.0.len());
                 self.0.insert(at, EnabledEffect::new(effect));
                 at
             }
@@ -65,8 +76,8 @@ impl Stack {
         &mut self.0[at]
     }
 
-    /// The stack for a picture of `factor` times as many pixels to a side: lengths in pixels scale with it, within
-    /// their ranges and in whole pixels where they are whole.
+    /// The stack for a picture of `factor` times as many pixels to a side: lengths in pixels scale
+    /// with it, within their ranges and in whole pixels where they are whole.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let mut stack = self.clone();
@@ -77,7 +88,13 @@ impl Stack {
                 let components: Vec<f64> = field
                     .get(words)
                     .into_iter()
-                    .map(|v| if !field.value_type.is_continuous() { length(v).round() } else { length(v) })
+                    .map(|v| {
+                        if !field.value_type.is_continuous() {
+                            length(v).round()
+                        } else {
+                            length(v)
+                        }
+                    })
                     .collect();
                 field.set(words, &components).expect("within its range");
             }
@@ -85,8 +102,8 @@ impl Stack {
         stack
     }
 
-    /// Moves the effect at index `from` in front of the one that is at index `to` now; an index of the length of the stack is its end. Indices
-    /// beyond that change nothing.
+    /// Moves the effect at index `from` in front of the one that is at index `to` now; an index of
+    /// the length of the stack is its end. Indices beyond that change nothing.
     pub fn move_effect(&mut self, from: usize, to: usize) {
         if from < self.0.len() && to <= self.0.len() {
             let moved = self.0.remove(from);
@@ -98,14 +115,20 @@ impl Stack {
         self.0.retain(|enabled| enabled.effect.name != name);
     }
 
-    /// Are the effects in the canonical order? Several effects of files, or instances of one effect, have none.
+    /// Are the effects in the canonical order? Several effects of files, or instances of one
+    /// effect, have none.
     pub fn is_canonical(&self) -> bool {
-        self.0.is_sorted_by(|a, b| a.effect.rank() < b.effect.rank())
+        self.0
+            .is_sorted_by(|a, b| a.effect.rank() < b.effect.rank())
     }
 
     /// The scopes of the effects that have one, in order.
     pub fn scopes(&self) -> Vec<Scope> {
-        self.0.iter().filter(|enabled| !enabled.on.is_whole_scene()).map(|enabled| enabled.on.clone()).collect()
+        self.0
+            .iter()
+            .filter(|enabled| !enabled.on.is_whole_scene())
+            .map(|enabled| enabled.on.clone())
+            .collect()
     }
 
     /// The bit of every effect in [`Draw::scopes`]; none for an effect on the whole scene.
@@ -126,41 +149,66 @@ impl Stack {
         scoped_draws(scene, view, &self.scopes())
     }
 
-    /// Applies every surface effect in order, as far as they act on a draw with these `scopes` ([`Draw::scopes`]).
+    /// Applies every surface effect in order, as far as they act on a draw with these `scopes`
+    /// ([`Draw::scopes`]).
     pub fn shade(&self, surface: Surface, scopes: u32) -> Surface {
-        self.each_on(scopes, |hooks| hooks.surface.as_ref()).fold(surface, |surface, (apply, words)| apply(surface, words))
+        self.each_on(scopes, |hooks| hooks.surface.as_ref())
+            .fold(surface, |surface, (apply, words)| apply(surface, words))
     }
 
-    /// Does the color of a material show through the surface effects, or do they paint over it? Tried with a few triangles. Compilers leave out
-    /// what is painted over.
+    /// Does the color of a material show through the surface effects, or do they paint over it?
+    /// Tried with a few triangles. Compilers leave out what is painted over.
     pub fn shows_materials(&self) -> bool {
-        let shaded = |color, triangle| self.shade(Surface::example(color, triangle), u32::MAX).color;
-        (0..4).any(|triangle| shaded(DVec3::splat(0.2), triangle) != shaded(DVec3::splat(0.8), triangle))
+        let shaded = |color, triangle| {
+            self.shade(Surface::example(color, triangle), u32::MAX)
+                .color
+        };
+        (0..4).any(|triangle| {
+            shaded(DVec3::splat(0.2), triangle) != shaded(DVec3::splat(0.8), triangle)
+        })
     }
 
     /// Moves a vertex of a draw with these `scopes` by every vertex effect in order.
     pub fn moved(&self, vertex: hooks::Vertex, scopes: u32) -> hooks::Vertex {
-        self.each_on(scopes, |hooks| hooks.vertex.as_ref()).fold(vertex, |vertex, (hook, words)| (hook.moved)(vertex, words))
+        self.each_on(scopes, |hooks| hooks.vertex.as_ref())
+            .fold(vertex, |vertex, (hook, words)| (hook.moved)(vertex, words))
     }
 
-    /// How far the f32 side of [`Stack::moved`] may err, given the error bound of what it starts from.
-    pub fn error_bound(&self, vertex: hooks::Vertex, error_bound: hooks::ErrorBound, scopes: u32) -> hooks::ErrorBound {
+    /// How far the f32 side of [`Stack::moved`] may err, given the error bound of what it starts
+    /// from.
+    pub fn error_bound(
+        &self,
+        vertex: hooks::Vertex,
+        error_bound: hooks::ErrorBound,
+        scopes: u32,
+    ) -> hooks::ErrorBound {
         let each = self.each_on(scopes, |hooks| hooks.vertex.as_ref());
-        each.fold((vertex, error_bound), |(vertex, error_bound), (hook, words)| {
-            ((hook.moved)(vertex, words), (hook.error_bound)(&vertex, error_bound, words))
-        })
+        each.fold(
+            (vertex, error_bound),
+            |(vertex, error_bound), (hook, words)| {
+                (
+                    (hook.moved)(vertex, words),
+                    (hook.error_bound)(&vertex, error_bound, words),
+                )
+            },
+        )
         .1
     }
 
     /// How far a vertex of a model of this radius may move.
     pub fn max_displacement_m(&self, radius_m: f64) -> f64 {
         self.each(|hooks| hooks.vertex.as_ref())
-            .fold(0.0, |reach, (hook, words)| reach + (hook.max_displacement_m)(radius_m + reach, words))
+            .fold(0.0, |reach, (hook, words)| {
+                reach + (hook.max_displacement_m)(radius_m + reach, words)
+            })
     }
 
     /// Finishes a pixel by every image effect in order.
     pub fn finish(&self, pixel: Pixel, picture: &Picture) -> Pixel {
-        self.each(|hooks| hooks.image.as_ref()).fold(pixel, |pixel, (hook, words)| (hook.finish)(pixel, picture, words))
+        self.each(|hooks| hooks.image.as_ref())
+            .fold(pixel, |pixel, (hook, words)| {
+                (hook.finish)(pixel, picture, words)
+            })
     }
 
     /// Does an effect finish pixels?
@@ -170,7 +218,8 @@ impl Stack {
 
     /// Does an effect read the previous picture?
     pub fn reads_previous(&self) -> bool {
-        self.each(|hooks| hooks.image.as_ref()).any(|(hook, _)| hook.reads_previous)
+        self.each(|hooks| hooks.image.as_ref())
+            .any(|(hook, _)| hook.reads_previous)
     }
 
     /// Does an effect's color have steps?
@@ -179,15 +228,31 @@ impl Stack {
     }
 
     /// Effects with a certain hook, in order: the hook and the parameter words.
-    pub fn each<'a, H: 'a>(&'a self, hook: impl Fn(&'a Hooks) -> Option<H>) -> impl Iterator<Item = (H, &'a [u32])> {
-        self.0.iter().filter_map(move |enabled| Some((hook(&enabled.effect.hooks)?, enabled.words.as_slice())))
+    pub fn each<'a, H: 'a>(
+        &'a self,
+        hook: impl Fn(&'a Hooks) -> Option<H>,
+    ) -> impl Iterator<Item = (H, &'a [u32])> {
+        self.0.iter().filter_map(move |enabled| {
+            Some((hook(&enabled.effect.hooks)?, enabled.words.as_slice()))
+        })
     }
 
-    /// Effects with a certain hook that act on a draw with these `scopes`, in order: the hook and the parameter words.
-    fn each_on<'a, H: 'a>(&'a self, scopes: u32, hook: impl Fn(&'a Hooks) -> Option<H>) -> impl Iterator<Item = (H, &'a [u32])> {
+    /// Effects with a certain hook that act on a draw with these `scopes`, in order: the hook and
+    /// the parameter words.
+    fn each_on<'a, H: 'a>(
+        &'a self,
+        scopes: u32,
+        hook: impl Fn(&'a Hooks) -> Option<H>,
+    ) -> impl Iterator<Item = (H, &'a [u32])> {
         let acts = move |bit: Option<u32>| bit.is_none_or(|bit| scopes >> bit & 1 == 1);
-        let active = self.0.iter().zip(self.scope_bits()).filter(move |(_, bit)| acts(*bit));
-        active.filter_map(move |(enabled, _)| Some((hook(&enabled.effect.hooks)?, enabled.words.as_slice())))
+        let active = self
+            .0
+            .iter()
+            .zip(self.scope_bits())
+            .filter(move |(_, bit)| acts(*bit));
+        active.filter_map(move |(enabled, _)| {
+            Some((hook(&enabled.effect.hooks)?, enabled.words.as_slice()))
+        })
     }
 
     /// Does an effect move vertices?
@@ -197,7 +262,8 @@ impl Stack {
 
     /// Does an effect move corners by their triangle, so that triangles share none?
     pub fn unshares_vertices(&self) -> bool {
-        self.each(|hooks| hooks.vertex.as_ref()).any(|(hook, _)| hook.needs_triangle)
+        self.each(|hooks| hooks.vertex.as_ref())
+            .any(|(hook, _)| hook.needs_triangle)
     }
 
     /// The particles that an effect adds to the scene.
@@ -209,7 +275,9 @@ impl Stack {
 
     /// The effect in a slot of the rasterizer.
     pub fn in_slot(&self, slot: Slot) -> Option<&EnabledEffect> {
-        self.0.iter().find(|enabled| enabled.effect.hooks.slot == Some(slot))
+        self.0
+            .iter()
+            .find(|enabled| enabled.effect.hooks.slot == Some(slot))
     }
 
     /// What triangles cover in this stack.
@@ -228,33 +296,49 @@ impl Stack {
 
     /// The view of that light, for its shadow map of `scene` in `view`.
     pub fn light_view(&self, scene: &Scene, view: &View) -> Option<View> {
-        Some(light_view(self.light()?.toward(), scene, view, self.max_displacement_m(scene.bounds_of(scene.shadow_casters()).radius())))
+        Some(light_view(
+            self.light()?.toward(),
+            scene,
+            view,
+            self.max_displacement_m(scene.bounds_of(scene.shadow_casters()).radius()),
+        ))
     }
 
-    /// The view of the light whose shadow map a picture of `scene` needs; none if no effect needs one, or if shadows are traced.
+    /// The view of the light whose shadow map a picture of `scene` needs; none if no effect needs
+    /// one, or if shadows are traced.
     pub fn shadow_map_view(&self, scene: &Scene, view: &View) -> Option<View> {
-        if view.precision.shadow == ShadowResolution::TRACED { None } else { self.light_view(scene, view) }
+        if view.precision.shadow == ShadowResolution::TRACED {
+            None
+        } else {
+            self.light_view(scene, view)
+        }
     }
 
     /// The effects that decide which samples stop a light, and where they are.
     pub fn shadow_casters(&self) -> Self {
-        let casts = |enabled: &&EnabledEffect| enabled.effect.hooks.vertex.is_some() || enabled.effect.hooks.sample.is_some();
+        let casts = |enabled: &&EnabledEffect| {
+            enabled.effect.hooks.vertex.is_some() || enabled.effect.hooks.sample.is_some()
+        };
         Self(self.0.iter().filter(casts).cloned().collect())
     }
 
     /// Radius of discs about corners, units of 1/256 px; 0 without them.
     pub fn point_radius(&self) -> u32 {
-        self.get(&points::EFFECT.name).map_or(0, |enabled| read::<points::Points>(&enabled.words).radius())
+        self.get(&points::EFFECT.name)
+            .map_or(0, |enabled| read::<points::Points>(&enabled.words).radius())
     }
 
     /// The draw order of the stack, if it has one.
     pub fn draw_order(&self) -> Option<draw_order::DrawOrder> {
-        self.in_slot(Slot::Order).map(|enabled| read(&enabled.words))
+        self.in_slot(Slot::Order)
+            .map(|enabled| read(&enabled.words))
     }
 
     /// Is every picture of this stack the same, to the bit, on one adapter?
     pub fn is_repeatable(&self) -> bool {
-        self.0.iter().all(|enabled| (enabled.effect.is_repeatable)(&enabled.words))
+        self.0
+            .iter()
+            .all(|enabled| (enabled.effect.is_repeatable)(&enabled.words))
     }
 
     /// Parameters of the effect called `name`, if it is on; `P` must be its own.
@@ -272,11 +356,14 @@ impl Stack {
         self.params(&smear::EFFECT.name)
     }
 
-    /// What becomes of the samples of a pixel in a scene of so many triangles; none: the nearest is shown.
+    /// What becomes of the samples of a pixel in a scene of so many triangles; none: the nearest is
+    /// shown.
     pub fn layers(&self, triangles: u64) -> Option<Layers> {
         let EnabledEffect { effect, words, .. } = self.in_slot(Slot::Visibility)?;
         Some(match effect.name.as_str() {
-            "xray" => Layers::Xray { bits: read::<xray::Xray>(words).first_bits(triangles) },
+            "xray" => Layers::Xray {
+                bits: read::<xray::Xray>(words).first_bits(triangles),
+            },
             "overdraw" => Layers::Overdraw,
             _ => Layers::Race,
         })
@@ -302,29 +389,51 @@ impl Stack {
     /// The effect that enabling `effect` would conflict with: another one in its slot.
     pub fn rival_of(&self, effect: &Effect) -> Option<&Arc<Effect>> {
         let slot = effect.hooks.slot?;
-        self.in_slot(slot).map(|enabled| &enabled.effect).filter(|first| ***first != *effect)
+        self.in_slot(slot)
+            .map(|enabled| &enabled.effect)
+            .filter(|first| ***first != *effect)
     }
 
     /// The conflict that enabling `effect` would cause.
     pub fn conflict_with(&self, effect: &Effect) -> Option<Conflict> {
         let slot = effect.hooks.slot?;
         let first = self.rival_of(effect)?;
-        Some(Conflict::Slot { slot: slot.name(), first: first.name.clone(), second: effect.name.clone() })
+        Some(Conflict::Slot {
+            slot: slot.name(),
+            first: first.name.clone(),
+            second: effect.name.clone(),
+        })
     }
 
-    /// Checks that no two effects take one slot, and that at most [`MAX_SCOPES`] effects have a scope.
+    /// Checks that no two effects take one slot, and that at most [`MAX_SCOPES`] effects have a
+    /// scope.
     ///
     /// # Errors
     /// Names the effects.
     pub fn check(&self) -> Result<(), Conflict> {
-        let scoped: Vec<&EnabledEffect> = self.0.iter().filter(|enabled| !enabled.on.is_whole_scene()).collect();
+        let scoped: Vec<&EnabledEffect> = self
+            .0
+            .iter()
+            .filter(|enabled| !enabled.on.is_whole_scene())
+            .collect();
         if let Some(last) = scoped.get(MAX_SCOPES) {
-            return Err(Conflict::Scopes { count: scoped.len(), last: last.effect.name.clone() });
+            return Err(Conflict::Scopes {
+                count: scoped.len(),
+                last: last.effect.name.clone(),
+            });
         }
         for slot in Slot::ALL {
-            let mut takers = self.0.iter().map(|enabled| &enabled.effect).filter(|effect| effect.hooks.slot == Some(slot));
+            let mut takers = self
+                .0
+                .iter()
+                .map(|enabled| &enabled.effect)
+                .filter(|effect| effect.hooks.slot == Some(slot));
             if let (Some(first), Some(second)) = (takers.next(), takers.next()) {
-                return Err(Conflict::Slot { slot: slot.name(), first: first.name.clone(), second: second.name.clone() });
+                return Err(Conflict::Slot {
+                    slot: slot.name(),
+                    first: first.name.clone(),
+                    second: second.name.clone(),
+                });
             }
         }
         Ok(())
@@ -334,9 +443,17 @@ impl Stack {
 /// Effects that a stack cannot have together.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Conflict {
-    #[error("{first} and {second} both take the {slot} slot of the rasterizer; switch one of them off")]
-    Slot { slot: &'static str, first: String, second: String },
-    #[error("{count} effects are limited to parts of the scene, but at most {MAX_SCOPES} can be; remove on from {last} or another of them")]
+    #[error(
+        "{first} and {second} both take the {slot} slot of the rasterizer; switch one of them off"
+    )]
+    Slot {
+        slot: &'static str,
+        first: String,
+        second: String,
+    },
+    #[error(
+        "{count} effects are limited to parts of the scene, but at most {MAX_SCOPES} can be; remove on from {last} or another of them"
+    )]
     Scopes { count: usize, last: String },
 }
 

@@ -2,7 +2,7 @@
 
 use super::{
     BuiltIn, Effect,
-    hooks::{TriangleSetup, Sample, SampleEffect},
+    hooks::{Sample, SampleEffect, TriangleSetup},
 };
 use crate::{choice, math::hash, params, params::Flag};
 
@@ -34,9 +34,13 @@ params! {
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Stipple>("stipple", "Stipple", "screen-door transparency by an ordered matrix")
-        .on_sample::<Stipple>()
-        .into()
+    Effect::new::<Stipple>(
+        "stipple",
+        "Stipple",
+        "screen-door transparency by an ordered matrix",
+    )
+    .on_sample::<Stipple>()
+    .into()
 });
 
 impl SampleEffect for Stipple {
@@ -48,11 +52,17 @@ impl SampleEffect for Stipple {
 
     fn is_drawn(s: &Sample, p: &Self) -> bool {
         let bits = p.matrix.min(2) + 1;
-        let shift = if p.shift_per_triangle == 0 { 0 } else { hash(s.triangle ^ p.seed) };
+        let shift = if p.shift_per_triangle == 0 {
+            0
+        } else {
+            hash(s.triangle ^ p.seed)
+        };
         let x = s.x / p.cell_px.max(1) + (shift & 7);
         let y = s.y / p.cell_px.max(1) + (shift >> 3 & 7);
         // Bayer (1973): bits of x xor y and of y interleaved, the lowest first.
-        let rank = (0..bits).fold(0, |rank, i| rank << 2 | ((x ^ y) >> i & 1) << 1 | (y >> i & 1));
+        let rank = (0..bits).fold(0, |rank, i| {
+            rank << 2 | ((x ^ y) >> i & 1) << 1 | (y >> i & 1)
+        });
         let level = (f64::from(p.opacity) * f64::from(1u32 << (2 * bits))).round_ties_even() as u32;
         rank < level
     }

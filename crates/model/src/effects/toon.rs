@@ -1,7 +1,7 @@
 //! Toon: light in a few flat steps with soft edges, and a rim.
 //!
-//! The brightest channel is the tone; its square root, which is about what the eye sees, falls into steps of equal width.
-//! All channels are scaled alike, so hue and saturation stay.
+//! The brightest channel is the tone; its square root, which is about what the eye sees, falls into
+//! steps of equal width. All channels are scaled alike, so hue and saturation stay.
 
 use super::{
     BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
@@ -26,11 +26,22 @@ params! {
     }
 }
 
-pub static EFFECT: BuiltIn =
-    BuiltIn::new(|| Effect::surface::<Toon>("toon", "Toon", "light in a few flat steps with soft edges, and a rim").in_steps().into());
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::surface::<Toon>(
+        "toon",
+        "Toon",
+        "light in a few flat steps with soft edges, and a rim",
+    )
+    .in_steps()
+    .into()
+});
 
 impl SurfaceEffect for Toon {
-    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Color, SurfaceInput::Normal, SurfaceInput::View];
+    const INPUTS: &[SurfaceInput] = &[
+        SurfaceInput::Color,
+        SurfaceInput::Normal,
+        SurfaceInput::View,
+    ];
 
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let (steps, softness) = (f64::from(p.steps), f64::from(p.softness));
@@ -38,10 +49,15 @@ impl SurfaceEffect for Toon {
         let brightest = base.max_element().max(0.0);
         // The soft edge of a step is its upper end.
         let level = (brightest.sqrt().min(1.0) + s.step_offset).max(0.0) * steps;
-        let step = (level.floor() + smooth(1.0 - softness, 1.0, level - level.floor())).min(steps - 1.0);
+        let step =
+            (level.floor() + smooth(1.0 - softness, 1.0, level - level.floor())).min(steps - 1.0);
         let (shadow, light) = (f64::from(p.shadow), f64::from(p.light));
         let tone = light - (light - shadow) * (steps - 1.0 - step) / (steps - 1.0).max(1.0);
-        let flat = if brightest > 1e-6 { base * (tone * tone / brightest) } else { glam::DVec3::splat(tone * tone) };
+        let flat = if brightest > 1e-6 {
+            base * (tone * tone / brightest)
+        } else {
+            glam::DVec3::splat(tone * tone)
+        };
         let turned_away = 1.0 - s.normal.dot(s.view).clamp(0.0, 1.0);
         let inner = 1.0 - f64::from(p.rim_width);
         let rim = smooth(inner, inner + 0.5 * softness, turned_away) * f64::from(p.rim[3]);

@@ -17,11 +17,21 @@ params! {
     }
 }
 
-pub static EFFECT: BuiltIn =
-    BuiltIn::new(|| Effect::surface::<TriangleId>("triangle_id", "TriangleId", "gives every triangle its own color").into());
+pub static EFFECT: BuiltIn = BuiltIn::new(|| {
+    Effect::surface::<TriangleId>(
+        "triangle_id",
+        "TriangleId",
+        "gives every triangle its own color",
+    )
+    .into()
+});
 
 impl SurfaceEffect for TriangleId {
-    const INPUTS: &[SurfaceInput] = &[SurfaceInput::TriangleId, SurfaceInput::Glow, SurfaceInput::Color];
+    const INPUTS: &[SurfaceInput] = &[
+        SurfaceInput::TriangleId,
+        SurfaceInput::Glow,
+        SurfaceInput::Color,
+    ];
 
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let h = hash(s.triangle_id ^ p.seed.wrapping_mul(HASH_GOLDEN));

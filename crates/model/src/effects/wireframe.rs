@@ -1,11 +1,12 @@
 //! Wireframe: draws the edges of triangles at a constant width in pixels.
 //!
-//! A sample lies within w of an edge of length l when its doubled area with the edge is at most w·l: one integer is compared
-//! with another, which is computed once per triangle. Edges that clipping added are not drawn.
+//! A sample lies within w of an edge of length l when its doubled area with the edge is at most
+//! w·l: one integer is compared with another, which is computed once per triangle. Edges that
+//! clipping added are not drawn.
 
 use super::{
     BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
-    hooks::{TriangleSetup, Sample, SampleEffect},
+    hooks::{Sample, SampleEffect, TriangleSetup},
 };
 use crate::{choice, params, params::Color};
 
@@ -33,21 +34,30 @@ params! {
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Wireframe>("wireframe", "Wireframe", "draws the edges of triangles at a constant width")
-        .on_sample::<Wireframe>()
-        .on_surface::<Wireframe>()
-        .into()
+    Effect::new::<Wireframe>(
+        "wireframe",
+        "Wireframe",
+        "draws the edges of triangles at a constant width",
+    )
+    .on_sample::<Wireframe>()
+    .on_surface::<Wireframe>()
+    .into()
 });
 
 impl SampleEffect for Wireframe {
     const HAS_SETUP: bool = true;
 
-    /// How near the edge opposite each corner a sample must be, less one; 0 never. Each triangle draws half of a width.
+    /// How near the edge opposite each corner a sample must be, less one; 0 never. Each triangle
+    /// draws half of a width.
     fn sample_setup(setup: &TriangleSetup, p: &Self, first: Option<u32>) -> [u32; 4] {
         let half_width = (f64::from(p.width_px) * 128.0).round_ties_even() as u64;
         let reach = |k: usize| match setup.outline >> k & 1 {
             0 => 0,
-            _ => ((setup.squared_length(k).isqrt() * half_width) >> setup.shift()).min(0x7fff_ffff) as u32 + 1,
+            _ => {
+                ((setup.squared_length(k).isqrt() * half_width) >> setup.shift()).min(0x7fff_ffff)
+                    as u32
+                    + 1
+            }
         };
         [first.unwrap_or(reach(0)), reach(1), reach(2), 0]
     }
@@ -65,10 +75,14 @@ impl SurfaceEffect for Wireframe {
         // Where the faces are drawn too, the line ends softly, over one pixel.
         let line = match Hidden::of(p.hidden) {
             Hidden::Shown => 1.0,
-            Hidden::Removed => (0.5 * width + 0.5 - s.edge_distance_px.min_element()).clamp(0.0, 1.0),
+            Hidden::Removed => {
+                (0.5 * width + 0.5 - s.edge_distance_px.min_element()).clamp(0.0, 1.0)
+            }
         };
         let (own, alpha) = (s.color.truncate(), s.color.w);
-        let tinted = |[red, green, blue, weight]: [f32; 4]| own.lerp([red, green, blue].map(f64::from).into(), weight.into());
+        let tinted = |[red, green, blue, weight]: [f32; 4]| {
+            own.lerp([red, green, blue].map(f64::from).into(), weight.into())
+        };
         s.color = tinted(p.paper).lerp(tinted(p.ink), line).extend(alpha);
         s
     }

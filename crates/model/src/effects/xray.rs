@@ -1,7 +1,8 @@
-//! X-ray: the average of all layers on a pixel instead of the nearest, in linear light and in whole numbers.
+//! X-ray: the average of all layers on a pixel instead of the nearest, in linear light and in whole
+//! numbers.
 //!
-//! Every covered sample adds its weighted color and its weight to four integers; integers commute, so the picture does
-//! not depend on the order in which samples arrive, to the bit.
+//! Every covered sample adds its weighted color and its weight to four integers; integers commute,
+//! so the picture does not depend on the order in which samples arrive, to the bit.
 
 use glam::{DVec3, DVec4};
 
@@ -60,10 +61,19 @@ params! {
 }
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
-    Effect::new::<Xray>("xray", "Xray", "averages all layers of a pixel in whole numbers, so that no order shows")
-        .in_slot(Slot::Visibility)
-        .reading(&[SurfaceInput::Normal, SurfaceInput::View, SurfaceInput::Depth, SurfaceInput::DepthRange])
-        .into()
+    Effect::new::<Xray>(
+        "xray",
+        "Xray",
+        "averages all layers of a pixel in whole numbers, so that no order shows",
+    )
+    .in_slot(Slot::Visibility)
+    .reading(&[
+        SurfaceInput::Normal,
+        SurfaceInput::View,
+        SurfaceInput::Depth,
+        SurfaceInput::DepthRange,
+    ])
+    .into()
 });
 
 /// Bits per channel that the sums may have, most first.
@@ -83,10 +93,15 @@ pub fn fewer(bits: u32) -> Option<u32> {
 }
 
 impl Xray {
-    /// Bits per channel to begin with, in a scene of so many triangles: as many as cannot overflow, 12 where none is safe.
+    /// Bits per channel to begin with, in a scene of so many triangles: as many as cannot overflow,
+    /// 12 where none is safe.
     pub fn first_bits(&self, triangles: u64) -> u32 {
         match Bits::of(self.bits) {
-            Bits::Auto if triangles.saturating_mul(self.unit().into()) <= u64::from(capacity(16)) => 16,
+            Bits::Auto
+                if triangles.saturating_mul(self.unit().into()) <= u64::from(capacity(16)) =>
+            {
+                16
+            }
             Bits::Auto | Bits::Twelve => 12,
             Bits::Sixteen => 16,
             Bits::Ten => 10,
@@ -96,25 +111,34 @@ impl Xray {
 
     /// Weight of a layer of full weight.
     pub fn unit(&self) -> u32 {
-        if Weighting::of(self.weight) == Weighting::Equal { 1 } else { FULL_WEIGHT }
+        if Weighting::of(self.weight) == Weighting::Equal {
+            1
+        } else {
+            FULL_WEIGHT
+        }
     }
 
-    /// Weight of a layer before it is rounded, at most [`Self::unit`]; at least 1, so that every layer counts.
+    /// Weight of a layer before it is rounded, at most [`Self::unit`]; at least 1, so that every
+    /// layer counts.
     pub fn weight_of(&self, s: &Surface) -> f64 {
         let facing = s.normal.dot(s.view).abs();
         let weight = match Weighting::of(self.weight) {
             Weighting::Equal => return 1.0,
             Weighting::Facing => facing,
             Weighting::Grazing => 1.0 - facing,
-            Weighting::Near => (s.depth_range_m.y - s.depth_m) / (s.depth_range_m.y - s.depth_range_m.x),
+            Weighting::Near => {
+                (s.depth_range_m.y - s.depth_m) / (s.depth_range_m.y - s.depth_range_m.x)
+            }
         };
         (weight * f64::from(FULL_WEIGHT)).clamp(1.0, f64::from(FULL_WEIGHT))
     }
 
-    /// Least depth key that counts on a pixel whose front has the key `front`. Integers alone: kernels do the same.
+    /// Least depth key that counts on a pixel whose front has the key `front`. Integers alone:
+    /// kernels do the same.
     ///
-    /// In a perspective distances are quotients of depths: the significand times 1000/(1000 + window), of 16 bits. Where all
-    /// rays are parallel depth is linear, and the window a number of its steps of 2^-20.
+    /// In a perspective distances are quotients of depths: the significand times 1000/(1000 +
+    /// window), of 16 bits. Where all rays are parallel depth is linear, and the window a
+    /// number of its steps of 2^-20.
     pub fn threshold(&self, front: u32, is_perspective: bool) -> u32 {
         if Reach::of(self.layers) == Reach::All {
             return 1;
@@ -128,12 +152,19 @@ impl Xray {
         let significand = u64::from(front & 0x7f_ffff | 0x80_0000);
         let scaled = ((significand * u64::from(65_536_000 / (1000 + self.window))) >> 16) as u32;
         let shift = scaled.leading_zeros() - 8;
-        if exponent <= shift { 1 } else { ((exponent - shift) << 23) | ((scaled << shift) & 0x7f_ffff) }
+        if exponent <= shift {
+            1
+        } else {
+            ((exponent - shift) << 23) | ((scaled << shift) & 0x7f_ffff)
+        }
     }
 
     /// Color of a pixel: the average over the background, the denser the more layers it has.
     pub fn seen(&self, average: DVec3, background: DVec4, weight: f64) -> DVec4 {
-        let clear = libm::pow(1.0 - f64::from(self.opacity), weight / f64::from(self.unit()));
+        let clear = libm::pow(
+            1.0 - f64::from(self.opacity),
+            weight / f64::from(self.unit()),
+        );
         let color = average + (background.truncate() - average) * clear;
         color.extend(1.0 + (background.w - 1.0) * clear)
     }
@@ -151,27 +182,60 @@ mod tests {
 
     #[test]
     fn capacities_are_the_published_ones() {
-        assert_eq!(CHANNEL_BITS.map(capacity), [65_537, 1_048_832, 4_198_404, 16_843_009]);
+        assert_eq!(
+            CHANNEL_BITS.map(capacity),
+            [65_537, 1_048_832, 4_198_404, 16_843_009]
+        );
     }
 
     #[test]
     fn averages_round_halves_up() {
-        assert_eq!([average(5, 2), average(4, 3), average(0, 0), average(u64::from(u32::MAX), 65_537)], [3, 1, 0, 65_535]);
+        assert_eq!(
+            [
+                average(5, 2),
+                average(4, 3),
+                average(0, 0),
+                average(u64::from(u32::MAX), 65_537)
+            ],
+            [3, 1, 0, 65_535]
+        );
     }
 
     #[test]
     fn a_window_is_a_share_of_the_distance() {
-        let window = |window| Xray { layers: Reach::Window as u32, window, ..Xray::default() };
+        let window = |window| Xray {
+            layers: Reach::Window as u32,
+            window,
+            ..Xray::default()
+        };
         for front in [1.0f32, 0.7, 0.013, 1.0 / 3.0, 1e-6] {
-            assert_eq!(window(0).threshold(front.to_bits(), true), front.to_bits(), "nothing but the front");
+            assert_eq!(
+                window(0).threshold(front.to_bits(), true),
+                front.to_bits(),
+                "nothing but the front"
+            );
             for n in [1, 10, 333, 1000, 4000] {
                 let least = f64::from(f32::from_bits(window(n).threshold(front.to_bits(), true)));
                 let expected = f64::from(front) * 1000.0 / f64::from(1000 + n);
-                assert!((least / expected - 1.0).abs() < 1e-4, "{front} {n}: {least} for {expected}");
+                assert!(
+                    (least / expected - 1.0).abs() < 1e-4,
+                    "{front} {n}: {least} for {expected}"
+                );
             }
         }
-        assert_eq!(window(250).threshold(0.75f32.to_bits(), false), 0.5f32.to_bits());
-        assert_eq!(window(900).threshold(0.5f32.to_bits(), false), 1, "never beyond the end");
-        assert_eq!(Xray::default().threshold(1.0f32.to_bits(), true), 1, "all layers");
+        assert_eq!(
+            window(250).threshold(0.75f32.to_bits(), false),
+            0.5f32.to_bits()
+        );
+        assert_eq!(
+            window(900).threshold(0.5f32.to_bits(), false),
+            1,
+            "never beyond the end"
+        );
+        assert_eq!(
+            Xray::default().threshold(1.0f32.to_bits(), true),
+            1,
+            "all layers"
+        );
     }
 }

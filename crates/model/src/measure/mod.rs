@@ -1,4 +1,5 @@
-//! Error reports and statistics of timings. No time is reported without the error of the picture beside it.
+//! Error reports and statistics of timings. No time is reported without the error of the picture
+//! beside it.
 
 pub mod compare;
 pub mod error_map;
@@ -13,17 +14,20 @@ pub struct ErrorReport {
     pub wrong_triangles: u64,
     /// Of those, pixels whose triangle covers the sample but is not the nearest that does.
     pub wrong_nearest: u64,
-    /// Pixels that differ from the oracle's own picture only because vertices snapped apart, within their bounds.
+    /// Pixels that differ from the oracle's own picture only because vertices snapped apart,
+    /// within their bounds.
     pub explained_by_snap: u64,
     /// Pixels that differ from the oracle's own picture although no snap explains it.
     pub unexplained: u64,
     /// Pixels where two triangle ids are right: depths closer than the float key's bound.
     pub depth_band_pixels: u64,
-    /// Pixels so near a step of color that f32 and f64 may fall on different sides, where either answer is right.
+    /// Pixels so near a step of color that f32 and f64 may fall on different sides, where either
+    /// answer is right.
     pub step_band_pixels: u64,
     /// Different sets of right colors among them: a flat area on a step is one.
     pub step_band_colors: u64,
-    /// Pixels whose color only the errors of places and of interpolated normals and depths explain.
+    /// Pixels whose color only the errors of places and of interpolated normals and depths
+    /// explain.
     #[serde(skip_serializing_if = "is_zero")]
     pub interpolation_pixels: u64,
     /// Samples that a triangle covers and that were not drawn.
@@ -40,19 +44,22 @@ pub struct ErrorReport {
     pub vertices: u64,
     /// Vertices whose position depends on rounding alone; they are not judged.
     pub ill_conditioned: u64,
-    /// Vertices that snapped more than their forward error bound away from the oracle's, or with other flags.
+    /// Vertices that snapped more than their forward error bound away from the oracle's, or with
+    /// other flags.
     pub snap_outside_bound: u64,
     /// Vertices that snapped more than one unit away, whether their bound allows it or not.
     pub snap_over_one_unit: u64,
     /// Vertices whose depth or 1/w lies outside its forward error bound.
     pub attribute_outside_bound: u64,
-    /// Largest distance between a snapped vertex and the oracle's, in units of 1/256 px, among well-conditioned vertices.
+    /// Largest distance between a snapped vertex and the oracle's, in units of 1/256 px, among
+    /// well-conditioned vertices.
     pub max_snap_delta: u32,
     /// Vertices that joints or morph targets deform.
     pub deformed_vertices: u64,
     /// Deformed vertices whose position or normal lies outside its forward error bound.
     pub deformed_outside_bound: u64,
-    /// Largest distance between a deformed vertex and the oracle's, in units of the last place of its largest coordinate.
+    /// Largest distance between a deformed vertex and the oracle's, in units of the last place of
+    /// its largest coordinate.
     pub max_deform_ulp: f64,
     /// The same in the picture, in pixels, of vertices behind the near plane.
     pub max_deform_px: f64,
@@ -60,14 +67,15 @@ pub struct ErrorReport {
     pub particles: u64,
     /// Particles whose last step, or whose disc, lies outside its forward error bound.
     pub particles_outside_bound: u64,
-    /// Particles more than a pixel away from the ones that the oracle simulates from the first frame. The flow is chaotic, so this is
-    /// not judged.
+    /// Particles more than a pixel away from the ones that the oracle simulates from the first
+    /// frame. The flow is chaotic, so this is not judged.
     pub particles_diverged: u64,
     /// Largest of these distances, in pixels.
     pub max_divergence_px: f64,
     /// Mean of these distances in the scene, in meters.
     pub mean_divergence_m: f64,
-    /// Clipped triangles that run against the others of their fan, or whose outline is not the oracle's.
+    /// Clipped triangles that run against the others of their fan, or whose outline is not the
+    /// oracle's.
     #[serde(skip_serializing_if = "is_zero")]
     pub clips_wrong: u64,
     /// Sample setups outside their bound, or with words that do not follow from the first.
@@ -83,7 +91,8 @@ pub struct ErrorReport {
     pub dot_pixels_wrong: u64,
     /// Pixels whose number of layers, or sum of their weights, is wrong.
     pub layer_counts_wrong: u64,
-    /// Pixels of layers with several right colors, because a weight or the depth window lies at a step.
+    /// Pixels of layers with several right colors, because a weight or the depth window lies at a
+    /// step.
     pub ambiguous_layer_pixels: u64,
     /// Pixels where a race lost the nearest triangle; 0 without the effect `race`.
     pub race_pixels: u64,
@@ -155,7 +164,8 @@ impl From<&ErrorReport> for ErrorStats {
             max_deform_px: (a.deformed_vertices > 0).then_some(a.max_deform_px),
             max_deform_ulp: (a.deformed_vertices > 0).then_some(a.max_deform_ulp),
             max_divergence_px: (a.particles > 0).then_some(a.max_divergence_px),
-            diverged_fraction: (a.particles > 0).then(|| a.particles_diverged as f64 / a.particles as f64),
+            diverged_fraction: (a.particles > 0)
+                .then(|| a.particles_diverged as f64 / a.particles as f64),
         }
     }
 }
@@ -163,8 +173,15 @@ impl From<&ErrorReport> for ErrorStats {
 impl ErrorStats {
     /// Returns true if everything was measured and is exact, and colors differ by at most 1 of 255.
     pub fn is_exact(&self) -> bool {
-        let exact = [self.wrong_triangles, self.holes, self.double_hits, self.depth_without_id, self.overflow];
-        exact.iter().all(|count| *count == Some(0)) && self.max_color_delta.is_some_and(|delta| delta <= 1)
+        let exact = [
+            self.wrong_triangles,
+            self.holes,
+            self.double_hits,
+            self.depth_without_id,
+            self.overflow,
+        ];
+        exact.iter().all(|count| *count == Some(0))
+            && self.max_color_delta.is_some_and(|delta| delta <= 1)
     }
 }
 
@@ -172,7 +189,8 @@ impl ErrorStats {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Verdict {
     pub report: ErrorReport,
-    /// What the oracle draws from the same snapped vertices; in the step band, the right answer nearest to the picture.
+    /// What the oracle draws from the same snapped vertices; in the step band, the right answer
+    /// nearest to the picture.
     pub expected: crate::frame::Frame,
     /// Pixels in the step band; empty if no effect has steps.
     pub step_band: Vec<bool>,
@@ -185,14 +203,18 @@ pub struct Verdict {
 pub struct References {
     /// For every render scale, the exact picture and its geometry.
     pub pictures: Vec<(f64, crate::frame::Frame, crate::frame::Geometry)>,
-    /// The exact picture with eight by eight samples per pixel; none if there is only one render scale.
+    /// The exact picture with eight by eight samples per pixel; none if there is only one render
+    /// scale.
     pub smooth: Option<Vec<[u8; 4]>>,
 }
 
 impl References {
     /// The picture and geometry at a render scale.
     pub fn at(&self, factor: f64) -> Option<(&crate::frame::Frame, &crate::frame::Geometry)> {
-        self.pictures.iter().find(|(known, ..)| *known == factor).map(|(_, frame, geometry)| (frame, geometry))
+        self.pictures
+            .iter()
+            .find(|(known, ..)| *known == factor)
+            .map(|(_, frame, geometry)| (frame, geometry))
     }
 }
 
@@ -201,7 +223,8 @@ impl References {
 pub struct Budget {
     /// Largest difference of a color channel, of 255.
     pub max_color_delta: u8,
-    /// Most pixels with a wrong triangle id, and most samples not drawn or drawn too often, for presets that are not exact.
+    /// Most pixels with a wrong triangle id, and most samples not drawn or drawn too often, for
+    /// presets that are not exact.
     pub max_wrong_triangles: u64,
     /// Most pixels in the depth band.
     pub max_depth_band_pixels: u64,
@@ -209,12 +232,14 @@ pub struct Budget {
     pub max_explained: u64,
     /// Most different colors in the step band, as a fraction of the pixels.
     pub max_step_band_fraction: f64,
-    /// Most pixels whose color is one step away, as a fraction of the pixels, beside [`Budget::ROUNDING_PIXELS`].
+    /// Most pixels whose color is one step away, as a fraction of the pixels, beside
+    /// [`Budget::ROUNDING_PIXELS`].
     pub max_rounding_fraction: f64,
 }
 
 impl Default for Budget {
-    /// One step of a channel and a small fraction of pixels in the step band; other bands are counted and not limited.
+    /// One step of a channel and a small fraction of pixels in the step band; other bands are
+    /// counted and not limited.
     fn default() -> Self {
         Self {
             max_color_delta: 1,
@@ -239,37 +264,120 @@ impl ErrorReport {
     /// A phrase for each limit that is exceeded, separated by semicolons.
     pub fn within(&self, budget: &Budget) -> Result<(), String> {
         let most = [
-            (self.wrong_triangles, budget.max_wrong_triangles, "pixels have the wrong triangle id"),
-            (self.holes, budget.max_wrong_triangles, "covered samples were not drawn"),
-            (self.double_hits, budget.max_wrong_triangles, "samples were drawn more often than they are covered"),
-            (self.depth_without_id, 0, "pixels have a depth but no triangle id"),
+            (
+                self.wrong_triangles,
+                budget.max_wrong_triangles,
+                "pixels have the wrong triangle id",
+            ),
+            (
+                self.holes,
+                budget.max_wrong_triangles,
+                "covered samples were not drawn",
+            ),
+            (
+                self.double_hits,
+                budget.max_wrong_triangles,
+                "samples were drawn more often than they are covered",
+            ),
+            (
+                self.depth_without_id,
+                0,
+                "pixels have a depth but no triangle id",
+            ),
             (self.overflow, 0, "queue entries were lost"),
-            (self.key_outside_bound, 0, "depth keys lie outside their bound"),
-            (self.snap_outside_bound, 0, "vertices snapped outside their bound"),
-            (self.attribute_outside_bound, 0, "vertices have a depth or 1/w outside its bound"),
-            (self.deformed_outside_bound, 0, "deformed vertices lie outside their bound"),
-            (self.particles_outside_bound, 0, "particles took a step outside its bound"),
-            (self.unexplained, budget.max_wrong_triangles, "pixels differ from the oracle's own picture without a reason"),
-            (self.clips_wrong, 0, "clipped triangles are turned over, or have a wrong outline"),
+            (
+                self.key_outside_bound,
+                0,
+                "depth keys lie outside their bound",
+            ),
+            (
+                self.snap_outside_bound,
+                0,
+                "vertices snapped outside their bound",
+            ),
+            (
+                self.attribute_outside_bound,
+                0,
+                "vertices have a depth or 1/w outside its bound",
+            ),
+            (
+                self.deformed_outside_bound,
+                0,
+                "deformed vertices lie outside their bound",
+            ),
+            (
+                self.particles_outside_bound,
+                0,
+                "particles took a step outside its bound",
+            ),
+            (
+                self.unexplained,
+                budget.max_wrong_triangles,
+                "pixels differ from the oracle's own picture without a reason",
+            ),
+            (
+                self.clips_wrong,
+                0,
+                "clipped triangles are turned over, or have a wrong outline",
+            ),
             (self.sample_setups_wrong, 0, "sample setups are wrong"),
             (self.dots_outside_bound, 0, "dots lie outside their bound"),
-            (self.dot_pixels_wrong, 0, "pixels have a wrong strength of dots"),
-            (self.layer_counts_wrong, 0, "pixels have a wrong number of layers, or a wrong sum of weights"),
-            (self.counters_wrong, 0, "counters of rejected or degenerate triangles are wrong"),
-            (self.explained_by_snap, budget.max_explained, "pixels differ because vertices snapped apart"),
-            (self.depth_band_pixels, budget.max_depth_band_pixels, "pixels lie in the depth band"),
-            (self.step_band_colors, (self.pixels as f64 * budget.max_step_band_fraction) as u64, "colors lie in the step band"),
-            (self.max_color_delta.into(), budget.max_color_delta.into(), "of 255 is the largest color difference"),
+            (
+                self.dot_pixels_wrong,
+                0,
+                "pixels have a wrong strength of dots",
+            ),
+            (
+                self.layer_counts_wrong,
+                0,
+                "pixels have a wrong number of layers, or a wrong sum of weights",
+            ),
+            (
+                self.counters_wrong,
+                0,
+                "counters of rejected or degenerate triangles are wrong",
+            ),
+            (
+                self.explained_by_snap,
+                budget.max_explained,
+                "pixels differ because vertices snapped apart",
+            ),
+            (
+                self.depth_band_pixels,
+                budget.max_depth_band_pixels,
+                "pixels lie in the depth band",
+            ),
+            (
+                self.step_band_colors,
+                (self.pixels as f64 * budget.max_step_band_fraction) as u64,
+                "colors lie in the step band",
+            ),
+            (
+                self.max_color_delta.into(),
+                budget.max_color_delta.into(),
+                "of 255 is the largest color difference",
+            ),
             (
                 self.rounding_pixels,
-                Budget::ROUNDING_PIXELS + (self.pixels as f64 * budget.max_rounding_fraction) as u64,
+                Budget::ROUNDING_PIXELS
+                    + (self.pixels as f64 * budget.max_rounding_fraction) as u64,
                 "pixels have a color that is one step of 255 away",
             ),
         ];
         let sentence = |&(count, limit, what): &(u64, u64, &str)| {
-            (count > limit).then(|| if limit == 0 { format!("{count} {what}") } else { format!("{count} {what} (at most {limit})") })
+            (count > limit).then(|| {
+                if limit == 0 {
+                    format!("{count} {what}")
+                } else {
+                    format!("{count} {what} (at most {limit})")
+                }
+            })
         };
         let sentences: Vec<String> = most.iter().filter_map(sentence).collect();
-        if sentences.is_empty() { Ok(()) } else { Err(sentences.join("; ")) }
+        if sentences.is_empty() {
+            Ok(())
+        } else {
+            Err(sentences.join("; "))
+        }
     }
 }

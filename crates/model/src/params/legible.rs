@@ -2,15 +2,21 @@
 
 /// Most characters of a message that quotes a file.
 const MAX_CHARS: usize = 1000;
-/// Of a longer one: how many of its first and of its last characters are shown. The last say what is allowed.
+/// Of a longer one: how many of its first and of its last characters are shown. The last say what
+/// is allowed.
 const SHOWN_CHARS: [usize; 2] = [300, 500];
 
-/// A message about a file of anyone, made safe to show: characters that steer a terminal or reorder text are written as `\u{1b}`, and
-/// the middle of a long one is left out. Line breaks stay, for the line of an effect file that a message shows.
+/// A message about a file of anyone, made safe to show: characters that steer a terminal or reorder
+/// text are written as `\u{1b}`, and the middle of a long one is left out. Line breaks stay, for
+/// the line of an effect file that a message shows.
 pub fn legible(message: &str) -> String {
     let mut shown = String::with_capacity(message.len());
     for c in message.chars() {
-        if c == '\n' || !is_hidden(c) { shown.push(c) } else { shown.extend(c.escape_unicode()) }
+        if c == '\n' || !is_hidden(c) {
+            shown.push(c)
+        } else {
+            shown.extend(c.escape_unicode())
+        }
     }
     let count = shown.chars().count();
     if count <= MAX_CHARS {
@@ -39,14 +45,19 @@ mod tests {
 
     #[test]
     fn what_steers_a_terminal_or_reorders_text_is_written_out() {
-        assert_eq!(legible("a\u{1b}[2J\u{202e}b\nc é"), "a\\u{1b}[2J\\u{202e}b\nc é");
+        assert_eq!(
+            legible("a\u{1b}[2J\u{202e}b\nc é"),
+            "a\\u{1b}[2J\\u{202e}b\nc é"
+        );
         assert_eq!(legible_line("a\nb"), "a\\nb");
     }
 
     #[test]
     fn of_a_long_message_begin_and_end_are_shown() {
         let shown = legible(&format!("begin {}\0 end", "x".repeat(100_000)));
-        assert!(shown.starts_with("begin x") && shown.ends_with("x\\u{0} end") && shown.contains(" … "));
+        assert!(
+            shown.starts_with("begin x") && shown.ends_with("x\\u{0} end") && shown.contains(" … ")
+        );
         assert_eq!(shown.chars().count(), 803);
     }
 }

@@ -1,4 +1,5 @@
-//! What a parameter measures in space, from its unit: how its value changes when the scene is larger or lies elsewhere.
+//! What a parameter measures in space, from its unit: how its value changes when the scene is
+//! larger or lies elsewhere.
 
 use super::value::ValueType;
 
@@ -18,8 +19,8 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// What a parameter of this type and unit measures. Directions are points without a unit, and extents are points whose range,
-    /// which begins at `low`, has no negative numbers.
+    /// What a parameter of this type and unit measures. Directions are points without a unit, and
+    /// extents are points whose range, which begins at `low`, has no negative numbers.
     pub(super) fn of(value_type: &ValueType, unit: &str, low: f64, is_height: bool) -> Self {
         let is_point = matches!(value_type, ValueType::Point | ValueType::Position);
         let is_number = matches!(value_type, ValueType::F32 | ValueType::F64);

@@ -1,8 +1,9 @@
 //! Parameters: one registry entry for everything that a person can set.
 //!
-//! A [`Param`] says what a value is called, what it means, its type, its ranges and its unit. Effects declare theirs with
-//! [`params!`](crate::params!), which also lays the struct out as WGSL has it; settings of a preset and accuracy axes wrap the same
-//! type. Sliders, preset files, `--set`, listings, the JSON schema and uniform bytes all read these entries.
+//! A [`Param`] says what a value is called, what it means, its type, its ranges and its unit.
+//! Effects declare theirs with [`params!`](crate::params!), which also lays the struct out as WGSL
+//! has it; settings of a preset and accuracy axes wrap the same type. Sliders, preset files,
+//! `--set`, listings, the JSON schema and uniform bytes all read these entries.
 
 mod legible;
 mod measure;
@@ -22,7 +23,8 @@ pub use value::{Stored, Value, ValueError, ValueType, format_number};
 /// One parameter: what every surface of the program needs to know about it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Param {
-    /// Stable name: key in preset files, end of a `--set` path, WGSL member. A new name needs a new schema.
+    /// Stable name: key in preset files, end of a `--set` path, WGSL member. A new name needs a
+    /// new schema.
     pub name: String,
     /// Tooltip and help text.
     pub doc: String,
@@ -47,7 +49,18 @@ impl Param {
     pub fn new(name: impl Into<String>, doc: impl Into<String>, value_type: ValueType) -> Self {
         let (hard, soft) = value_type.default_ranges();
         let (name, doc, unit) = (name.into(), doc.into(), String::new());
-        Self { name, doc, value_type, hard, soft, has_slider: false, unit, log: false, height: false, when: None }
+        Self {
+            name,
+            doc,
+            value_type,
+            hard,
+            soft,
+            has_slider: false,
+            unit,
+            log: false,
+            height: false,
+            when: None,
+        }
     }
 
     pub fn hard(mut self, range: RangeInclusive<f64>) -> Self {
@@ -79,7 +92,10 @@ impl Param {
 
     /// Shown only while the choice of this name has one of these words.
     pub fn when(mut self, (choice, words): (&str, &[&str])) -> Self {
-        self.when = Some((choice.into(), words.iter().map(|&word| word.into()).collect()));
+        self.when = Some((
+            choice.into(),
+            words.iter().map(|&word| word.into()).collect(),
+        ));
         self
     }
 
@@ -103,7 +119,10 @@ impl Param {
             ValueType::Bool => "true | false".into(),
             ValueType::Choice(words) => words.join(" | "),
             ValueType::Text { max_chars } => format!("text, at most {max_chars} characters"),
-            ValueType::TextList { max_entries, max_chars } => format!("at most {max_entries} texts of {max_chars} characters"),
+            ValueType::TextList {
+                max_entries,
+                max_chars,
+            } => format!("at most {max_entries} texts of {max_chars} characters"),
             numbers if numbers.components() == 1 => format!("{low}..={high}"),
             numbers => format!("{} numbers, each {low}..={high}", numbers.components()),
         }
@@ -167,15 +186,39 @@ impl Deref for Field {
 impl Field {
     /// The parameter at `offset`. Every parameter of an effect has a slider.
     pub fn new(param: Param, wgsl: WgslType, offset: usize) -> Self {
-        Self { param: Param { has_slider: true, ..param }, wgsl, offset, group: None }
+        Self {
+            param: Param {
+                has_slider: true,
+                ..param
+            },
+            wgsl,
+            offset,
+            group: None,
+        }
     }
 
-    /// An effect's own fields, then those of a group that its struct holds at its beginning. The field `always_shown` of the group
-    /// is always shown, although the group's declaration makes it depend on a choice.
-    pub fn with_group(mut own: Vec<Self>, group: Group, shared: Vec<Self>, always_shown: &str) -> Vec<Self> {
+    /// An effect's own fields, then those of a group that its struct holds at its beginning. The
+    /// field `always_shown` of the group is always shown, although the group's declaration
+    /// makes it depend on a choice.
+    pub fn with_group(
+        mut own: Vec<Self>,
+        group: Group,
+        shared: Vec<Self>,
+        always_shown: &str,
+    ) -> Vec<Self> {
         own.extend(shared.into_iter().map(|field| {
-            let when = field.param.when.filter(|_| field.param.name != always_shown);
-            Self { param: Param { when, ..field.param }, group: Some(group), ..field }
+            let when = field
+                .param
+                .when
+                .filter(|_| field.param.name != always_shown);
+            Self {
+                param: Param {
+                    when,
+                    ..field.param
+                },
+                group: Some(group),
+                ..field
+            }
         }));
         own
     }
@@ -186,7 +229,9 @@ impl Field {
 
     /// The value in an effect's words.
     pub fn value(&self, words: &[u32]) -> Value {
-        self.value_type.value(&self.get(words)).expect("effects have no texts")
+        self.value_type
+            .value(&self.get(words))
+            .expect("effects have no texts")
     }
 
     /// The components of the value: a choice is its index, a flag 0 or 1.
@@ -222,12 +267,15 @@ impl Field {
     /// # Errors
     /// As [`Field::set_value`].
     pub fn set(&self, words: &mut [u32], components: &[f64]) -> Result<(), ValueError> {
-        // A flag or choice takes one whole number inside its range, before it becomes a value of its type.
+        // A flag or choice takes one whole number inside its range, before it becomes a value of
+        // its type.
         let numbers = Value::Numbers(components.to_vec());
         let value = match self.value_type {
             ValueType::Bool | ValueType::Choice(_) => {
                 ValueType::U32.check(&numbers, self.hard)?;
-                self.value_type.value(components).expect("one number is a flag or choice")
+                self.value_type
+                    .value(components)
+                    .expect("one number is a flag or choice")
             }
             _ => numbers,
         };
@@ -247,10 +295,15 @@ impl Field {
     /// Is the field shown for these values?
     pub fn is_shown(&self, fields: &[Arc<Self>], words: &[u32]) -> bool {
         self.when.as_ref().is_none_or(|(name, allowed)| {
-            fields.iter().find(|field| field.name == *name).is_some_and(|field| match (&field.value_type, field.value(words)) {
-                (ValueType::Choice(names), Value::Choice(index)) => names.get(index).is_some_and(|name| allowed.contains(name)),
-                _ => true,
-            })
+            fields
+                .iter()
+                .find(|field| field.name == *name)
+                .is_some_and(|field| match (&field.value_type, field.value(words)) {
+                    (ValueType::Choice(names), Value::Choice(index)) => {
+                        names.get(index).is_some_and(|name| allowed.contains(name))
+                    }
+                    _ => true,
+                })
         })
     }
 }
@@ -361,8 +414,9 @@ macro_rules! choice {
     };
 }
 
-/// Declares a parameter struct: a doc line, a type, a default and options per field. `..name: Type = default, always_shown "field";`
-/// at the beginning puts a group of parameters that several effects share into the struct.
+/// Declares a parameter struct: a doc line, a type, a default and options per field. `..name: Type
+/// = default, always_shown "field";` at the beginning puts a group of parameters that several
+/// effects share into the struct.
 #[macro_export]
 macro_rules! params {
     ($(#[$meta:meta])* pub struct $name:ident {

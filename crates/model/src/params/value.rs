@@ -92,7 +92,8 @@ impl ValueType {
         (hard, soft)
     }
 
-    /// The value that these components make: as many as [`ValueType::components`] says. None for texts.
+    /// The value that these components make: as many as [`ValueType::components`] says. None for
+    /// texts.
     pub fn value(&self, components: &[f64]) -> Option<Value> {
         match self {
             Self::Bool => Some(Value::Bool(*components.first()? != 0.0)),
@@ -114,8 +115,8 @@ impl ValueType {
         }
     }
 
-    /// Does `value` have this type and lie inside `range`? A value of an f32 type is compared as f32: a bound such as 0.1 is
-    /// no f32, and its own rounding is not outside.
+    /// Does `value` have this type and lie inside `range`? A value of an f32 type is compared as
+    /// f32: a bound such as 0.1 is no f32, and its own rounding is not outside.
     ///
     /// # Errors
     /// Completes a sentence that begins with the parameter's name.
@@ -124,16 +125,29 @@ impl ValueType {
             (Self::Bool, Value::Bool(_)) => Ok(()),
             (Self::Choice(words), Value::Choice(index)) if *index < words.len() => Ok(()),
             (Self::Text { max_chars }, Value::Text(text)) => check_text(text, *max_chars),
-            (Self::TextList { max_entries, max_chars }, Value::TextList(texts)) => {
+            (
+                Self::TextList {
+                    max_entries,
+                    max_chars,
+                },
+                Value::TextList(texts),
+            ) => {
                 if texts.len() > *max_entries {
-                    return Err(ValueError::Entries { found: texts.len(), max: *max_entries });
+                    return Err(ValueError::Entries {
+                        found: texts.len(),
+                        max: *max_entries,
+                    });
                 }
-                texts.iter().try_for_each(|text| check_text(text, *max_chars))
+                texts
+                    .iter()
+                    .try_for_each(|text| check_text(text, *max_chars))
             }
-            (Self::Bool | Self::Choice(_) | Self::Text { .. } | Self::TextList { .. }, _) => Err(self.mismatch(value)),
-            (_, Value::Numbers(numbers)) if numbers.len() == self.components() => {
-                numbers.iter().try_for_each(|number| self.check_number(*number, range))
+            (Self::Bool | Self::Choice(_) | Self::Text { .. } | Self::TextList { .. }, _) => {
+                Err(self.mismatch(value))
             }
+            (_, Value::Numbers(numbers)) if numbers.len() == self.components() => numbers
+                .iter()
+                .try_for_each(|number| self.check_number(*number, range)),
             _ => Err(self.mismatch(value)),
         }
     }
@@ -147,11 +161,22 @@ impl ValueType {
         } else {
             (low..=high).contains(&number)
         };
-        if is_inside { Ok(()) } else { Err(ValueError::Range { value: number, low, high }) }
+        if is_inside {
+            Ok(())
+        } else {
+            Err(ValueError::Range {
+                value: number,
+                low,
+                high,
+            })
+        }
     }
 
     fn mismatch(&self, value: &Value) -> ValueError {
-        ValueError::Type { expected: self.expectation(), found: value.description() }
+        ValueError::Type {
+            expected: self.expectation(),
+            found: value.description(),
+        }
     }
 }
 
@@ -159,7 +184,9 @@ fn check_text(text: &str, max_chars: usize) -> Result<(), ValueError> {
     if text.chars().count() > max_chars {
         return Err(ValueError::Length(max_chars));
     }
-    text.chars().find(|c| c.is_control() && *c != '\n').map_or(Ok(()), |control| Err(ValueError::Control(control)))
+    text.chars()
+        .find(|c| c.is_control() && *c != '\n')
+        .map_or(Ok(()), |control| Err(ValueError::Control(control)))
 }
 
 /// A value of a parameter.
@@ -225,7 +252,11 @@ pub enum ValueError {
 /// A number as text: plain or with an exponent, whichever is shorter.
 pub fn format_number(number: f64) -> String {
     let (plain, exponent) = (format!("{number}"), format!("{number:e}"));
-    if exponent.len() < plain.len() { exponent } else { plain }
+    if exponent.len() < plain.len() {
+        exponent
+    } else {
+        plain
+    }
 }
 
 /// A Rust type that a [`Value`] can be stored as.
@@ -238,7 +269,10 @@ pub trait Stored: Sized {
 }
 
 fn mismatch(expected: &str, value: &Value) -> ValueError {
-    ValueError::Type { expected: expected.into(), found: value.description() }
+    ValueError::Type {
+        expected: expected.into(),
+        found: value.description(),
+    }
 }
 
 impl Stored for bool {
@@ -247,7 +281,11 @@ impl Stored for bool {
     }
 
     fn from_value(value: &Value) -> Result<Self, ValueError> {
-        if let Value::Bool(on) = value { Ok(*on) } else { Err(mismatch("true or false", value)) }
+        if let Value::Bool(on) = value {
+            Ok(*on)
+        } else {
+            Err(mismatch("true or false", value))
+        }
     }
 }
 
@@ -257,7 +295,11 @@ impl Stored for String {
     }
 
     fn from_value(value: &Value) -> Result<Self, ValueError> {
-        if let Value::Text(text) = value { Ok(text.clone()) } else { Err(mismatch("a text", value)) }
+        if let Value::Text(text) = value {
+            Ok(text.clone())
+        } else {
+            Err(mismatch("a text", value))
+        }
     }
 }
 
@@ -267,7 +309,11 @@ impl Stored for Vec<String> {
     }
 
     fn from_value(value: &Value) -> Result<Self, ValueError> {
-        if let Value::TextList(texts) = value { Ok(texts.clone()) } else { Err(mismatch("a list of texts", value)) }
+        if let Value::TextList(texts) = value {
+            Ok(texts.clone())
+        } else {
+            Err(mismatch("a list of texts", value))
+        }
     }
 }
 
@@ -309,9 +355,21 @@ impl<T: Number, const N: usize> Stored for [T; N] {
     }
 
     fn from_value(value: &Value) -> Result<Self, ValueError> {
-        let numbers = if let Value::Numbers(numbers) = value { <[f64; N]>::try_from(numbers.as_slice()).ok() } else { None };
-        let expected = || if N == 1 { "a number".to_owned() } else { format!("a list of {N} numbers") };
-        numbers.map(|numbers| numbers.map(T::from_f64)).ok_or_else(|| mismatch(&expected(), value))
+        let numbers = if let Value::Numbers(numbers) = value {
+            <[f64; N]>::try_from(numbers.as_slice()).ok()
+        } else {
+            None
+        };
+        let expected = || {
+            if N == 1 {
+                "a number".to_owned()
+            } else {
+                format!("a list of {N} numbers")
+            }
+        };
+        numbers
+            .map(|numbers| numbers.map(T::from_f64))
+            .ok_or_else(|| mismatch(&expected(), value))
     }
 }
 
@@ -336,20 +394,56 @@ mod tests {
             assert_eq!(ValueType::F32.check(&Value::number(inside), range), Ok(()));
         }
         for outside in [0.09, 0.71, f64::NAN, f64::INFINITY, 1e39] {
-            assert!(ValueType::F32.check(&Value::number(outside), range).is_err(), "{outside}");
+            assert!(
+                ValueType::F32
+                    .check(&Value::number(outside), range)
+                    .is_err(),
+                "{outside}"
+            );
         }
-        assert!(ValueType::F64.check(&Value::number(f64::from(0.7f32)), [0.1, f64::from(0.7f32) - 1e-9]).is_err());
+        assert!(
+            ValueType::F64
+                .check(
+                    &Value::number(f64::from(0.7f32)),
+                    [0.1, f64::from(0.7f32) - 1e-9]
+                )
+                .is_err()
+        );
     }
 
     #[test]
     fn a_value_of_another_type_is_refused_in_a_sentence() {
-        let refused =
-            |value_type: ValueType, value: Value| value_type.check(&value, value_type.default_ranges().0).unwrap_err().to_string();
-        assert_eq!(refused(ValueType::Bool, Value::number(1)), "must be true or false, not a number");
-        assert_eq!(refused(ValueType::Color, Value::number(1)), "must be a list of 4 numbers, not a number");
-        assert_eq!(refused(ValueType::U32, Value::Text("1".into())), "must be a number, not a text");
-        assert_eq!(refused(ValueType::U32, Value::number(1.5)), "1.5 must be a whole number");
-        assert_eq!(refused(ValueType::Text { max_chars: 2 }, Value::Text("abc".into())), "is longer than 2 characters");
-        assert_eq!(<[u32; 2]>::from_value(&Value::number(1)).unwrap_err().to_string(), "must be a list of 2 numbers, not a number");
+        let refused = |value_type: ValueType, value: Value| {
+            value_type
+                .check(&value, value_type.default_ranges().0)
+                .unwrap_err()
+                .to_string()
+        };
+        assert_eq!(
+            refused(ValueType::Bool, Value::number(1)),
+            "must be true or false, not a number"
+        );
+        assert_eq!(
+            refused(ValueType::Color, Value::number(1)),
+            "must be a list of 4 numbers, not a number"
+        );
+        assert_eq!(
+            refused(ValueType::U32, Value::Text("1".into())),
+            "must be a number, not a text"
+        );
+        assert_eq!(
+            refused(ValueType::U32, Value::number(1.5)),
+            "1.5 must be a whole number"
+        );
+        assert_eq!(
+            refused(ValueType::Text { max_chars: 2 }, Value::Text("abc".into())),
+            "is longer than 2 characters"
+        );
+        assert_eq!(
+            <[u32; 2]>::from_value(&Value::number(1))
+                .unwrap_err()
+                .to_string(),
+            "must be a list of 2 numbers, not a number"
+        );
     }
 }

@@ -1,8 +1,9 @@
 //! Animation: parameters that follow the clock by keyframes.
 //!
-//! A [`Track`] holds the keyframes of one parameter, sorted by time, each time once, every value inside the hard range of its
-//! field. Before the first and after the last keyframe its value holds. All arithmetic is f64, and the result is clamped before
-//! it is rounded to the parameter's type, so that a track gives only values that a file may have.
+//! A [`Track`] holds the keyframes of one parameter, sorted by time, each time once, every value
+//! inside the hard range of its field. Before the first and after the last keyframe its value
+//! holds. All arithmetic is f64, and the result is clamped before it is rounded to the parameter's
+//! type, so that a track gives only values that a file may have.
 
 use std::{fmt, sync::Arc};
 
@@ -75,7 +76,8 @@ impl Easing {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Keyframe {
     pub time_s: f64,
-    /// The components of the value, rounded as the field stores them; a flag is 0 or 1, a choice its index.
+    /// The components of the value, rounded as the field stores them; a flag is 0 or 1, a choice
+    /// its index.
     pub value: Vec<f64>,
     /// How the value goes to the next keyframe.
     pub easing: Easing,
@@ -92,7 +94,9 @@ pub enum KeyframeError {
     Taken(f64),
     #[error("a parameter has 1 to {MAX_KEYFRAMES} keyframes, not {0}")]
     Count(usize),
-    #[error("easing must be hold, not {0}: whole numbers, flags and words have no values in between")]
+    #[error(
+        "easing must be hold, not {0}: whole numbers, flags and words have no values in between"
+    )]
     Steps(&'static str),
 }
 
@@ -106,7 +110,9 @@ pub struct Track {
 
 impl PartialEq for Track {
     fn eq(&self, other: &Self) -> bool {
-        self.effect == other.effect && self.field.name == other.field.name && self.keys == other.keys
+        self.effect == other.effect
+            && self.field.name == other.field.name
+            && self.keys == other.keys
     }
 }
 
@@ -120,13 +126,22 @@ impl Track {
     /// A track with these keyframes, in any order.
     ///
     /// # Errors
-    /// No keyframe or more than [`MAX_KEYFRAMES`]; a time that occurs twice or lies outside ±[`MAX_TIME_S`]; a value that the field
-    /// refuses; an easing other than hold for a field without fractions.
-    pub fn new(effect: &Arc<Effect>, field: &Arc<Field>, keys: Vec<Keyframe>) -> Result<Self, KeyframeError> {
+    /// No keyframe or more than [`MAX_KEYFRAMES`]; a time that occurs twice or lies outside
+    /// ±[`MAX_TIME_S`]; a value that the field refuses; an easing other than hold for a field
+    /// without fractions.
+    pub fn new(
+        effect: &Arc<Effect>,
+        field: &Arc<Field>,
+        keys: Vec<Keyframe>,
+    ) -> Result<Self, KeyframeError> {
         if keys.is_empty() || keys.len() > MAX_KEYFRAMES {
             return Err(KeyframeError::Count(keys.len()));
         }
-        let mut track = Self { effect: effect.clone(), field: field.clone(), keys: Vec::with_capacity(keys.len()) };
+        let mut track = Self {
+            effect: effect.clone(),
+            field: field.clone(),
+            keys: Vec::with_capacity(keys.len()),
+        };
         for key in keys {
             if track.at(key.time_s).is_some() {
                 return Err(KeyframeError::Taken(key.time_s));
@@ -156,7 +171,9 @@ impl Track {
 
     /// Does the track change the steps of the particle simulation, so that their history counts?
     pub(super) fn changes_simulation(&self) -> bool {
-        self.effect == *particles::EFFECT && self.keys.len() > 1 && !affects_only_appearance(&self.field)
+        self.effect == *particles::EFFECT
+            && self.keys.len() > 1
+            && !affects_only_appearance(&self.field)
     }
 
     /// Index of the keyframe at exactly this time.
@@ -172,7 +189,9 @@ impl Track {
         let key = checked(&self.effect, &self.field, key)?;
         match self.at(key.time_s) {
             Some(index) => self.keys[index] = key,
-            None if self.keys.len() >= MAX_KEYFRAMES => return Err(KeyframeError::Count(self.keys.len() + 1)),
+            None if self.keys.len() >= MAX_KEYFRAMES => {
+                return Err(KeyframeError::Count(self.keys.len() + 1));
+            }
             None => {
                 let index = self.keys.partition_point(|other| other.time_s < key.time_s);
                 self.keys.insert(index, key);
@@ -181,14 +200,17 @@ impl Track {
         Ok(())
     }
 
-    /// Moves a keyframe in time and returns its new index. It stays where it is if there is a keyframe at `time_s` already, or if
-    /// that is out of range.
+    /// Moves a keyframe in time and returns its new index. It stays where it is if there is a
+    /// keyframe at `time_s` already, or if that is out of range.
     pub fn move_keyframe(&mut self, index: usize, time_s: f64) -> usize {
         let is_free = self.at(time_s).is_none() && time_s.abs() <= MAX_TIME_S;
         if !is_free || index >= self.keys.len() {
             return index;
         }
-        let key = Keyframe { time_s, ..self.keys.remove(index) };
+        let key = Keyframe {
+            time_s,
+            ..self.keys.remove(index)
+        };
         let index = self.keys.partition_point(|other| other.time_s < time_s);
         self.keys.insert(index, key);
         index
@@ -212,7 +234,10 @@ impl Track {
     /// Components of the value at `time_s`: finite and inside the hard range for every time.
     pub fn value_at(&self, time_s: f64) -> Vec<f64> {
         let next = self.keys.partition_point(|key| key.time_s <= time_s);
-        let (Some(a), Some(b)) = (next.checked_sub(1).map(|before| &self.keys[before]), self.keys.get(next)) else {
+        let (Some(a), Some(b)) = (
+            next.checked_sub(1).map(|before| &self.keys[before]),
+            self.keys.get(next),
+        ) else {
             return self.keys[next.min(self.keys.len() - 1)].value.clone();
         };
         let fraction = ((time_s - a.time_s) / (b.time_s - a.time_s)).clamp(0.0, 1.0);
@@ -221,7 +246,11 @@ impl Track {
             return a.value.clone(); // Keeps the sign of -0.0, which -0.0 + 0.0 loses.
         }
         let [low, high] = self.field.hard;
-        a.value.iter().zip(&b.value).map(|(a, b)| (a + (b - a) * done).clamp(low, high)).collect()
+        a.value
+            .iter()
+            .zip(&b.value)
+            .map(|(a, b)| (a + (b - a) * done).clamp(low, high))
+            .collect()
     }
 
     /// Writes the value at `time_s` into an effect's words.
@@ -238,12 +267,20 @@ pub fn steps(field: &Field) -> bool {
 
 /// The easing of a keyframe of `field` whose file has none.
 pub fn default_easing(field: &Field) -> Easing {
-    if steps(field) { Easing::Hold } else { Easing::default() }
+    if steps(field) {
+        Easing::Hold
+    } else {
+        Easing::default()
+    }
 }
 
 /// The keyframe with its value rounded as the field stores it.
 fn checked(effect: &Effect, field: &Field, key: Keyframe) -> Result<Keyframe, KeyframeError> {
-    let Keyframe { time_s, value, easing } = key;
+    let Keyframe {
+        time_s,
+        value,
+        easing,
+    } = key;
     // -0 and 0 are one time.
     let time_s = time_s + 0.0;
     if !(-MAX_TIME_S..=MAX_TIME_S).contains(&time_s) {
@@ -254,7 +291,11 @@ fn checked(effect: &Effect, field: &Field, key: Keyframe) -> Result<Keyframe, Ke
     }
     let mut words = effect.defaults.clone();
     field.set(&mut words, &value)?;
-    Ok(Keyframe { time_s, value: field.get(&words), easing })
+    Ok(Keyframe {
+        time_s,
+        value: field.get(&words),
+        easing,
+    })
 }
 
 /// The tracks of a preset, one per parameter, in the order of effects and fields.
@@ -271,11 +312,15 @@ impl Animation {
     }
 
     pub fn get(&self, effect: &str, field: &str) -> Option<&Track> {
-        self.0.iter().find(|track| track.effect.name == effect && track.field.name == field)
+        self.0
+            .iter()
+            .find(|track| track.effect.name == effect && track.field.name == field)
     }
 
     pub fn get_mut(&mut self, effect: &str, field: &str) -> Option<&mut Track> {
-        self.0.iter_mut().find(|track| track.effect.name == effect && track.field.name == field)
+        self.0
+            .iter_mut()
+            .find(|track| track.effect.name == effect && track.field.name == field)
     }
 
     /// Adds a track, in place of one of the same parameter.
@@ -283,7 +328,10 @@ impl Animation {
         fn rank(track: &Track) -> (usize, &str, usize) {
             (track.effect.rank(), &track.effect.name, track.field.offset)
         }
-        match self.0.binary_search_by(|other| rank(other).cmp(&rank(&track))) {
+        match self
+            .0
+            .binary_search_by(|other| rank(other).cmp(&rank(&track)))
+        {
             Ok(index) => self.0[index] = track,
             Err(index) => self.0.insert(index, track),
         }
@@ -291,12 +339,19 @@ impl Animation {
 
     /// Removes the track of one parameter.
     pub fn remove(&mut self, effect: &str, field: &str) {
-        self.0.retain(|track| track.effect.name != effect || track.field.name != field);
+        self.0
+            .retain(|track| track.effect.name != effect || track.field.name != field);
     }
 
     /// The tracks for which `is_kept` is true.
     pub fn only(&self, is_kept: impl Fn(&Track) -> bool) -> Self {
-        Self(self.0.iter().filter(|track| is_kept(track)).cloned().collect())
+        Self(
+            self.0
+                .iter()
+                .filter(|track| is_kept(track))
+                .cloned()
+                .collect(),
+        )
     }
 
     /// Removes every track of an effect.
@@ -316,7 +371,10 @@ impl Animation {
     /// The parameter words of one effect at `time_s`; `words` has the values that are not animated.
     pub fn evaluate_words(&self, effect: &str, words: &[u32], time_s: f64) -> Vec<u32> {
         let mut evaluated = words.to_vec();
-        self.0.iter().filter(|track| track.effect.name == effect).for_each(|track| track.evaluate(&mut evaluated, time_s));
+        self.0
+            .iter()
+            .filter(|track| track.effect.name == effect)
+            .for_each(|track| track.evaluate(&mut evaluated, time_s));
         evaluated
     }
 }
@@ -331,18 +389,32 @@ mod tests {
     }
 
     fn key(time_s: f64, value: f64, easing: Easing) -> Keyframe {
-        Keyframe { time_s, value: vec![value], easing }
+        Keyframe {
+            time_s,
+            value: vec![value],
+            easing,
+        }
     }
 
     fn amount(keys: &[(f64, f64, Easing)]) -> Track {
-        let keys = keys.iter().map(|&(time_s, value, easing)| key(time_s, value, easing)).collect();
+        let keys = keys
+            .iter()
+            .map(|&(time_s, value, easing)| key(time_s, value, easing))
+            .collect();
         Track::new(&facet::EFFECT, field(&facet::EFFECT, "amount"), keys).expect("sound keys")
     }
 
     #[test]
     fn outside_its_keys_the_nearest_one_holds() {
         let track = amount(&[(2.0, 0.75, Easing::Linear), (1.0, 0.25, Easing::Linear)]);
-        for (time_s, wanted) in [(-1e9, 0.25), (1.0, 0.25), (1.5, 0.5), (2.0, 0.75), (1e9, 0.75), (f64::INFINITY, 0.75)] {
+        for (time_s, wanted) in [
+            (-1e9, 0.25),
+            (1.0, 0.25),
+            (1.5, 0.5),
+            (2.0, 0.75),
+            (1e9, 0.75),
+            (f64::INFINITY, 0.75),
+        ] {
             assert_eq!(track.value_at(time_s), [wanted], "{time_s}");
         }
         assert!(track.value_at(f64::NAN)[0].is_finite());
@@ -352,8 +424,13 @@ mod tests {
     fn every_easing_rises_from_key_to_key_and_meets_both() {
         for easing in Easing::ALL {
             let track = amount(&[(0.0, 0.0, easing), (1.0, 1.0, Easing::Hold)]);
-            let values: Vec<f64> = (0..=1000).map(|i| track.value_at(f64::from(i) / 1000.0)[0]).collect();
-            assert!(values.is_sorted() && values[0] == 0.0 && values[1000] == 1.0, "{easing:?}");
+            let values: Vec<f64> = (0..=1000)
+                .map(|i| track.value_at(f64::from(i) / 1000.0)[0])
+                .collect();
+            assert!(
+                values.is_sorted() && values[0] == 0.0 && values[1000] == 1.0,
+                "{easing:?}"
+            );
             let middle = [0.0, 0.5, 0.5, 0.25, 0.75][easing as usize];
             assert_eq!(values[500], middle, "{easing:?}");
         }
@@ -362,9 +439,17 @@ mod tests {
     #[test]
     fn values_without_fractions_hold() {
         let keys = vec![key(0.0, 3.0, Easing::Hold), key(1.0, 9.0, Easing::Hold)];
-        let track = Track::new(&facet::EFFECT, field(&facet::EFFECT, "seed"), keys.clone()).expect("sound keys");
-        assert_eq!((track.value_at(0.999), track.value_at(1.0)), (vec![3.0], vec![9.0]));
-        let smooth = Track::new(&facet::EFFECT, field(&facet::EFFECT, "seed"), vec![key(0.0, 3.0, Easing::Smooth)]);
+        let track = Track::new(&facet::EFFECT, field(&facet::EFFECT, "seed"), keys.clone())
+            .expect("sound keys");
+        assert_eq!(
+            (track.value_at(0.999), track.value_at(1.0)),
+            (vec![3.0], vec![9.0])
+        );
+        let smooth = Track::new(
+            &facet::EFFECT,
+            field(&facet::EFFECT, "seed"),
+            vec![key(0.0, 3.0, Easing::Smooth)],
+        );
         assert_eq!(smooth, Err(KeyframeError::Steps("smooth")));
     }
 
@@ -372,21 +457,45 @@ mod tests {
     fn what_no_file_could_say_no_track_holds() {
         let new = |keys| Track::new(&facet::EFFECT, field(&facet::EFFECT, "amount"), keys);
         assert_eq!(new(vec![]), Err(KeyframeError::Count(0)));
-        let many = (0..=MAX_KEYFRAMES as u32).map(|i| key(i.into(), 0.0, Easing::Linear)).collect();
+        let many = (0..=MAX_KEYFRAMES as u32)
+            .map(|i| key(i.into(), 0.0, Easing::Linear))
+            .collect();
         assert_eq!(new(many), Err(KeyframeError::Count(MAX_KEYFRAMES + 1)));
-        assert_eq!(new(vec![key(0.0, 0.0, Easing::Hold), key(-0.0, 1.0, Easing::Hold)]), Err(KeyframeError::Taken(-0.0)));
+        assert_eq!(
+            new(vec![
+                key(0.0, 0.0, Easing::Hold),
+                key(-0.0, 1.0, Easing::Hold)
+            ]),
+            Err(KeyframeError::Taken(-0.0))
+        );
         for time_s in [f64::NAN, f64::INFINITY, -1.1e9] {
-            assert!(matches!(new(vec![key(time_s, 0.0, Easing::Hold)]), Err(KeyframeError::Time(_))), "{time_s}");
+            assert!(
+                matches!(
+                    new(vec![key(time_s, 0.0, Easing::Hold)]),
+                    Err(KeyframeError::Time(_))
+                ),
+                "{time_s}"
+            );
         }
         for value in [f64::NAN, 1.5, -0.1] {
-            assert!(matches!(new(vec![key(0.0, value, Easing::Hold)]), Err(KeyframeError::Value(_))), "{value}");
+            assert!(
+                matches!(
+                    new(vec![key(0.0, value, Easing::Hold)]),
+                    Err(KeyframeError::Value(_))
+                ),
+                "{value}"
+            );
         }
     }
 
     #[test]
     fn keys_between_close_moments_stay_inside_the_hard_range() {
         let high = f64::from_bits(1.0f64.to_bits() + 1);
-        let track = amount(&[(1.0, 1.0, Easing::Smooth), (high, 0.0, Easing::Out), (1e9, 1.0, Easing::In)]);
+        let track = amount(&[
+            (1.0, 1.0, Easing::Smooth),
+            (high, 0.0, Easing::Out),
+            (1e9, 1.0, Easing::In),
+        ]);
         let mut stack = Stack::default();
         stack.enable(&facet::EFFECT);
         let animation = Animation(vec![track]);
@@ -400,26 +509,64 @@ mod tests {
     #[test]
     fn all_lanes_move_together_and_other_fields_stay() {
         let sun = field(&lambert::EFFECT, "sun");
-        let keys = [(0.0, vec![0.0, 0.5, 1.0, 1.0]), (2.0, vec![1.0, 0.5, 0.0, 1.0])];
-        let keys = keys.map(|(time_s, value)| Keyframe { time_s, value, easing: Easing::Linear }).to_vec();
-        let animation = Animation(vec![Track::new(&lambert::EFFECT, sun, keys).expect("sound keys")]);
+        let keys = [
+            (0.0, vec![0.0, 0.5, 1.0, 1.0]),
+            (2.0, vec![1.0, 0.5, 0.0, 1.0]),
+        ];
+        let keys = keys
+            .map(|(time_s, value)| Keyframe {
+                time_s,
+                value,
+                easing: Easing::Linear,
+            })
+            .to_vec();
+        let animation = Animation(vec![
+            Track::new(&lambert::EFFECT, sun, keys).expect("sound keys"),
+        ]);
         let mut stack = Stack::default();
         stack.enable(&lambert::EFFECT);
         let posed = animation.evaluate(&stack, 0.5);
         assert_eq!(sun.get(&posed.0[0].words), [0.25, 0.5, 0.75, 1.0]);
-        let untouched = lambert::EFFECT.fields.iter().filter(|field| field.name != "sun");
-        untouched.for_each(|field| assert!(field.same(&posed.0[0].words, &stack.0[0].words), "{}", field.name));
-        assert_eq!(animation.evaluate(&Stack::default(), 0.5), Stack::default(), "a track enables nothing");
+        let untouched = lambert::EFFECT
+            .fields
+            .iter()
+            .filter(|field| field.name != "sun");
+        untouched.for_each(|field| {
+            assert!(
+                field.same(&posed.0[0].words, &stack.0[0].words),
+                "{}",
+                field.name
+            )
+        });
+        assert_eq!(
+            animation.evaluate(&Stack::default(), 0.5),
+            Stack::default(),
+            "a track enables nothing"
+        );
     }
 
     #[test]
     fn a_key_moves_past_others_and_never_onto_one() {
-        let mut track = amount(&[(0.0, 0.0, Easing::Hold), (1.0, 0.5, Easing::Hold), (2.0, 1.0, Easing::Hold)]);
+        let mut track = amount(&[
+            (0.0, 0.0, Easing::Hold),
+            (1.0, 0.5, Easing::Hold),
+            (2.0, 1.0, Easing::Hold),
+        ]);
         assert_eq!(track.move_keyframe(0, 1.5), 1);
-        assert_eq!(track.keys().iter().map(|key| key.time_s).collect::<Vec<_>>(), [1.0, 1.5, 2.0]);
+        assert_eq!(
+            track
+                .keys()
+                .iter()
+                .map(|key| key.time_s)
+                .collect::<Vec<_>>(),
+            [1.0, 1.5, 2.0]
+        );
         assert_eq!(track.move_keyframe(0, 2.0), 0, "taken");
         assert_eq!(track.move_keyframe(0, f64::NAN), 0);
-        let track = track.without(0).and_then(|track| track.without(0)).expect("one key is left");
+        let track = track
+            .without(0)
+            .and_then(|track| track.without(0))
+            .expect("one key is left");
         assert_eq!(track.keys().len(), 1);
         assert!(track.without(0).is_none());
     }

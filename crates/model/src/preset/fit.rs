@@ -10,7 +10,8 @@ use crate::{
 /// Largest coordinate of a polyline, meters.
 const FARTHEST_M: f64 = 1e9;
 
-/// The unit of a preset's lengths and points: of its effects, their keyframes and the polyline. Cameras are always in meters.
+/// The unit of a preset's lengths and points: of its effects, their keyframes and the polyline.
+/// Cameras are always in meters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LengthUnit {
     /// Meters; points in world space.
@@ -26,7 +27,8 @@ impl LengthUnit {
     pub const WORDS: &[&str] = &["m", "scene"];
 }
 
-/// From the box of one scene to the box of another: lengths grow with the radius, points move with the center.
+/// From the box of one scene to the box of another: lengths grow with the radius, points move with
+/// the center.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
     from: DVec3,
@@ -35,22 +37,35 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// From one box to another; none if one of them has no extent, so that there is nothing to compare.
+    /// From one box to another; none if one of them has no extent, so that there is nothing to
+    /// compare.
     pub fn between(from: &Bounds, to: &Bounds) -> Option<Self> {
         let scale = to.radius() / from.radius();
-        (scale.is_finite() && scale > 0.0).then(|| Self { from: from.center(), to: to.center(), scale })
+        (scale.is_finite() && scale > 0.0).then(|| Self {
+            from: from.center(),
+            to: to.center(),
+            scale,
+        })
     }
 
     /// From the unit of a scene with this box to meters; none if the box has no extent.
     pub fn of_scene_unit(bounds: &Bounds) -> Option<Self> {
         let scale = bounds.radius();
-        (scale.is_finite() && scale > 0.0).then(|| Self { from: DVec3::ZERO, to: bounds.center(), scale })
+        (scale.is_finite() && scale > 0.0).then(|| Self {
+            from: DVec3::ZERO,
+            to: bounds.center(),
+            scale,
+        })
     }
 
     /// The way back.
     #[must_use]
     pub fn inverse(&self) -> Self {
-        Self { from: self.to, to: self.from, scale: 1.0 / self.scale }
+        Self {
+            from: self.to,
+            to: self.from,
+            scale: 1.0 / self.scale,
+        }
     }
 
     /// Where a point comes to lie.
@@ -62,7 +77,8 @@ impl Fit {
         self.from == self.to && self.scale == 1.0
     }
 
-    /// The components of a value of `field`, inside its range, and whether they had to be moved into it.
+    /// The components of a value of `field`, inside its range, and whether they had to be moved
+    /// into it.
     pub(super) fn components(&self, field: &Field, value: &[f64]) -> (Vec<f64>, bool) {
         let fitted: Vec<f64> = match (field.measure(), value) {
             (Measure::Length, _) => value.iter().map(|v| v * self.scale).collect(),
@@ -81,7 +97,10 @@ impl Fit {
     pub(super) fn polyline(&self, points: &[[f32; 3]]) -> Vec<[f32; 3]> {
         let moved = |point: &[f32; 3]| {
             let point = self.point(DVec3::from(point.map(f64::from)));
-            point.clamp(DVec3::splat(-FARTHEST_M), DVec3::splat(FARTHEST_M)).as_vec3().to_array()
+            point
+                .clamp(DVec3::splat(-FARTHEST_M), DVec3::splat(FARTHEST_M))
+                .as_vec3()
+                .to_array()
         };
         let mut fitted: Vec<[f32; 3]> = points.iter().map(moved).collect();
         fitted.dedup();

@@ -27,14 +27,16 @@ pub(super) const UNIT: Storage = Storage::State {
 };
 
 impl Preset {
-    /// Does it have lengths or points that count, so that its picture depends on the size of the scene?
+    /// Does it have lengths or points that count, so that its picture depends on the size of the
+    /// scene?
     pub fn has_lengths(&self) -> bool {
         let counts = |enabled: &EnabledEffect| measured(self, enabled).next().is_some();
         self.stack.0.iter().any(counts) || !self.polyline.is_empty()
     }
 
-    /// The preset with its lengths and points fitted to another scene, values of keyframes and the polyline too; parameters that do not
-    /// count for the picture keep their values. The sentences say which values their range did not allow.
+    /// The preset with its lengths and points fitted to another scene, values of keyframes and the
+    /// polyline too; parameters that do not count for the picture keep their values. The
+    /// sentences say which values their range did not allow.
     pub fn fitted(&self, fit: &Fit) -> (Self, Vec<String>) {
         let (mut fitted, mut warnings) = (self.clone(), Vec::new());
         if fit.is_identity() {
@@ -46,14 +48,21 @@ impl Preset {
                 let (components, is_clamped) = fit.components(field, &value);
                 let outcome = field.set(&mut after.words, &components);
                 debug_assert!(outcome.is_ok(), "{}: {outcome:?}", field.name);
-                if is_clamped && self.animation.get(&before.effect.name, &field.name).is_none() {
+                if is_clamped
+                    && self
+                        .animation
+                        .get(&before.effect.name, &field.name)
+                        .is_none()
+                {
                     warnings.push(clamped(&before.effect.name, field));
                 }
             }
         }
         fitted.animation = Animation::default();
         for track in self.animation.tracks() {
-            fitted.animation.put(fitted_track(fit, track, &mut warnings));
+            fitted
+                .animation
+                .put(fitted_track(fit, track, &mut warnings));
         }
         fitted.polyline = fit.polyline(&self.polyline).into();
         (fitted, warnings)
@@ -66,23 +75,37 @@ impl Preset {
         }
         let fit = Fit::of_scene_unit(&scene.content_bounds());
         let fitted = fit.map_or_else(|| self.clone(), |fit| self.fitted(&fit).0);
-        Cow::Owned(Self { unit: LengthUnit::Meter, ..fitted })
+        Cow::Owned(Self {
+            unit: LengthUnit::Meter,
+            ..fitted
+        })
     }
 
     /// From the unit of the preset to meters in `scene`; none where that changes nothing.
     pub fn unit_fit(&self, scene: &Scene) -> Option<Fit> {
-        if self.unit == LengthUnit::Meter { None } else { Fit::of_scene_unit(&scene.content_bounds()) }
+        if self.unit == LengthUnit::Meter {
+            None
+        } else {
+            Fit::of_scene_unit(&scene.content_bounds())
+        }
     }
 }
 
-/// The parameters of an effect that measure something and count for the picture. One that depends on a choice counts if the choice
-/// is made, or may be made by a keyframe.
-fn measured<'a>(preset: &'a Preset, enabled: &'a EnabledEffect) -> impl Iterator<Item = &'a Arc<Field>> {
+/// The parameters of an effect that measure something and count for the picture. One that depends
+/// on a choice counts if the choice is made, or may be made by a keyframe.
+fn measured<'a>(
+    preset: &'a Preset,
+    enabled: &'a EnabledEffect,
+) -> impl Iterator<Item = &'a Arc<Field>> {
     let effect = &enabled.effect;
     let is_animated = |name: &str| preset.animation.get(&effect.name, name).is_some();
     let counts = move |field: &&Arc<Field>| {
         field.measure() != Measure::None
-            && (field.is_shown(&effect.fields, &enabled.words) || field.when.as_ref().is_some_and(|(choice, _)| is_animated(choice)))
+            && (field.is_shown(&effect.fields, &enabled.words)
+                || field
+                    .when
+                    .as_ref()
+                    .is_some_and(|(choice, _)| is_animated(choice)))
     };
     effect.fields.iter().filter(counts)
 }
@@ -96,18 +119,29 @@ fn fitted_track(fit: &Fit, track: &Track, warnings: &mut Vec<String>) -> Track {
     let keys = track.keys().iter().map(|key| {
         let (value, is_clamped) = fit.components(field, &key.value);
         is_any_clamped |= is_clamped;
-        Keyframe { value, ..key.clone() }
+        Keyframe {
+            value,
+            ..key.clone()
+        }
     });
     let keys: Vec<Keyframe> = keys.collect();
     if is_any_clamped {
         warnings.push(clamped(&track.effect().name, field));
     }
-    // Times, easings and the number of keyframes are those of a track, and the values lie in their range.
+    // Times, easings and the number of keyframes are those of a track, and the values lie in their
+    // range.
     Track::new(track.effect(), field, keys).unwrap_or_else(|_| track.clone())
 }
 
 fn clamped(effect: &str, field: &Field) -> String {
     let [low, high] = field.hard.map(format_number);
-    let each = if matches!(field.value_type, ValueType::Point) { "each coordinate of it " } else { "" };
-    format!("{effect}.{}: fitted to this scene it would leave its range; {each}was kept inside {low}..={high}", field.name)
+    let each = if matches!(field.value_type, ValueType::Point) {
+        "each coordinate of it "
+    } else {
+        ""
+    };
+    format!(
+        "{effect}.{}: fitted to this scene it would leave its range; {each}was kept inside {low}..={high}",
+        field.name
+    )
 }

@@ -1,7 +1,8 @@
 //! The state of a preset: plain data that is always finite, and the view that it describes.
 //!
-//! `Clone + PartialEq`, so undo is a list of presets. Playback, window layout and overlays are no part of it.
-//! [`Preset::evaluated_stack`] is drawn, not the stack itself: keyframes change its values with the time.
+//! `Clone + PartialEq`, so undo is a list of presets. Playback, window layout and overlays are no
+//! part of it. [`Preset::evaluated_stack`] is drawn, not the stack itself: keyframes change its
+//! values with the time.
 
 pub mod animation;
 mod fit;
@@ -61,7 +62,13 @@ pub struct ClipPlayback {
 
 impl Default for ClipPlayback {
     fn default() -> Self {
-        Self { clip: String::new(), speed: 1.0, clip_time_s: None, second_clip: String::new(), blend: 0.0 }
+        Self {
+            clip: String::new(),
+            speed: 1.0,
+            clip_time_s: None,
+            second_clip: String::new(),
+            blend: 0.0,
+        }
     }
 }
 
@@ -79,7 +86,11 @@ pub struct MissingInScene {
 /// `; it has "Walk", "Run"`, or `; <none>` where there are no names.
 fn known<'a>(names: impl Iterator<Item = &'a String>, none: &str) -> String {
     let names: Vec<String> = names.take(12).map(|name| format!("{name:?}")).collect();
-    if names.is_empty() { format!("; {none}") } else { format!("; it has {}", names.join(", ")) }
+    if names.is_empty() {
+        format!("; {none}")
+    } else {
+        format!("; it has {}", names.join(", "))
+    }
 }
 
 impl ClipPlayback {
@@ -93,10 +104,21 @@ impl ClipPlayback {
     /// # Errors
     /// The first clip that is missing.
     pub fn check(&self, scene: &Scene) -> Result<(), MissingInScene> {
-        for (key, name) in [("scene.clip", &self.clip), ("scene.second_clip", &self.second_clip)] {
+        for (key, name) in [
+            ("scene.clip", &self.clip),
+            ("scene.second_clip", &self.second_clip),
+        ] {
             if !name.is_empty() && scene.rig.clip(name).is_none() {
-                let known = known(scene.rig.clips.iter().map(|clip| &clip.name), "it has no clips");
-                return Err(MissingInScene { key, what: "clip", name: name.clone(), known });
+                let known = known(
+                    scene.rig.clips.iter().map(|clip| &clip.name),
+                    "it has no clips",
+                );
+                return Err(MissingInScene {
+                    key,
+                    what: "clip",
+                    name: name.clone(),
+                    known,
+                });
             }
         }
         Ok(())
@@ -108,7 +130,8 @@ impl ClipPlayback {
 pub struct Clock {
     /// Time of the picture.
     pub time_s: f64,
-    /// Begin and end of the timeline and of a sequence; the end comes later than the begin and is not drawn.
+    /// Begin and end of the timeline and of a sequence; the end comes later than the begin and is
+    /// not drawn.
     pub range_s: [f64; 2],
     /// Starts again at the begin of the range after its end.
     pub is_looping: bool,
@@ -118,13 +141,18 @@ pub struct Clock {
 
 impl Default for Clock {
     fn default() -> Self {
-        Self { time_s: 0.0, range_s: [0.0, 4.0], is_looping: true, speed: 1.0 }
+        Self {
+            time_s: 0.0,
+            range_s: [0.0, 4.0],
+            is_looping: true,
+            speed: 1.0,
+        }
     }
 }
 
 impl Clock {
-    /// The time of the clock `passed_s` seconds of playback after `time_s`, and whether it continues from there. A time before the
-    /// range runs into it.
+    /// The time of the clock `passed_s` seconds of playback after `time_s`, and whether it
+    /// continues from there. A time before the range runs into it.
     pub fn after(&self, time_s: f64, passed_s: f64) -> (f64, bool) {
         let [from_s, to_s] = self.range_s;
         let next_s = time_s + passed_s * self.speed;
@@ -154,13 +182,20 @@ pub struct Output {
 impl Output {
     /// What pixels without a triangle show.
     pub fn backdrop(&self) -> Background {
-        Background { top: self.background, bottom: self.background_bottom.unwrap_or(self.background) }
+        Background {
+            top: self.background,
+            bottom: self.background_bottom.unwrap_or(self.background),
+        }
     }
 }
 
 impl Default for Output {
     fn default() -> Self {
-        Self { size: [320, 240], background: [0.012, 0.014, 0.02, 1.0], background_bottom: None }
+        Self {
+            size: [320, 240],
+            background: [0.012, 0.014, 0.02, 1.0],
+            background_bottom: None,
+        }
     }
 }
 
@@ -171,7 +206,8 @@ pub struct GoldenTest {
     pub max_channel: u8,
     /// Number of pixels that may differ by more.
     pub max_pixels: u32,
-    /// Number of pixels that may show another triangle than the reference, where an option that is not exact is pinned.
+    /// Number of pixels that may show another triangle than the reference, where an option that is
+    /// not exact is pinned.
     pub max_wrong_triangles: u32,
     /// Why a budget above the default is needed.
     pub why: String,
@@ -179,7 +215,12 @@ pub struct GoldenTest {
 
 impl Default for GoldenTest {
     fn default() -> Self {
-        Self { max_channel: 1, max_pixels: 0, max_wrong_triangles: 0, why: String::new() }
+        Self {
+            max_channel: 1,
+            max_pixels: 0,
+            max_wrong_triangles: 0,
+            why: String::new(),
+        }
     }
 }
 
@@ -191,7 +232,8 @@ pub struct Preset {
     pub about: String,
     pub tags: Vec<String>,
     pub scene: SceneSource,
-    /// Distance of the walls of a room around the scene, as a multiple of the scene's width; 0: no room.
+    /// Distance of the walls of a room around the scene, as a multiple of the scene's width; 0: no
+    /// room.
     pub room: f64,
     /// What the scene stands on; none: nothing.
     pub ground: Option<Ground>,
@@ -246,7 +288,8 @@ impl Default for Preset {
 pub const FRAMING_DIRECTION: DVec3 = DVec3::new(-0.45, -0.42, -1.0);
 
 impl Preset {
-    /// The stack at the time of the clock, in the unit of the preset. What is drawn is that of [`Preset::in_meters`].
+    /// The stack at the time of the clock, in the unit of the preset. What is drawn is that of
+    /// [`Preset::in_meters`].
     pub fn evaluated_stack(&self) -> Stack {
         self.stack_at(self.clock.time_s)
     }
@@ -261,15 +304,23 @@ impl Preset {
         self.animation.evaluate(&self.stack, time_s)
     }
 
-    /// The preset with its values at its time and without keyframes, except those that change the particle simulation. It gives
-    /// the same picture.
+    /// The preset with its values at its time and without keyframes, except those that change the
+    /// particle simulation. It gives the same picture.
     pub fn evaluated(&self) -> Self {
-        Self { stack: self.evaluated_stack(), animation: self.animation.only(Track::changes_simulation), ..self.clone() }
+        Self {
+            stack: self.evaluated_stack(),
+            animation: self.animation.only(Track::changes_simulation),
+            ..self.clone()
+        }
     }
 
     /// Does the picture depend on the time?
     pub fn is_moving(&self) -> bool {
-        let keyed = self.animation.tracks().iter().any(|t| t.keys().len() > 1 && self.stack.get(&t.effect().name).is_some());
+        let keyed = self
+            .animation
+            .tracks()
+            .iter()
+            .any(|t| t.keys().len() > 1 && self.stack.get(&t.effect().name).is_some());
         let has_particles = self.stack.particle_settings().is_some();
         keyed || has_particles || self.spin_deg_per_s != 0.0 || self.playback.is_moving()
     }
@@ -287,7 +338,10 @@ impl Preset {
             clip: clip(&self.playback.clip),
             other: clip(&self.playback.second_clip),
             blend: self.playback.blend,
-            time_s: self.playback.clip_time_s.unwrap_or(self.clock.time_s * self.playback.speed),
+            time_s: self
+                .playback
+                .clip_time_s
+                .unwrap_or(self.clock.time_s * self.playback.speed),
             skinning: self.accuracy.pins.option().unwrap_or_default(),
         }
     }
@@ -296,7 +350,9 @@ impl Preset {
     fn with_particles(&self, mut bounds: Bounds) -> Bounds {
         if let Some(particle_settings) = self.evaluated_stack().particle_settings() {
             let reach = particle_settings.disc_bounds();
-            [reach.min, reach.max].into_iter().for_each(|corner| bounds.include(corner));
+            [reach.min, reach.max]
+                .into_iter()
+                .for_each(|corner| bounds.include(corner));
         }
         bounds
     }
@@ -312,8 +368,16 @@ impl Preset {
     /// The first that is missing.
     pub fn check(&self, scene: &Scene) -> Result<(), MissingInScene> {
         if !self.scene_camera.is_empty() && scene.camera(&self.scene_camera).is_none() {
-            let known = known(scene.cameras.iter().map(|camera| &camera.name), "it has no cameras");
-            return Err(MissingInScene { key: "scene.camera", what: "camera", name: self.scene_camera.clone(), known });
+            let known = known(
+                scene.cameras.iter().map(|camera| &camera.name),
+                "it has no cameras",
+            );
+            return Err(MissingInScene {
+                key: "scene.camera",
+                what: "camera",
+                name: self.scene_camera.clone(),
+                known,
+            });
         }
         self.playback.check(scene)
     }
@@ -321,41 +385,79 @@ impl Preset {
     /// The camera of the preset, else that of the scene at its node, else one that frames `scene`.
     pub fn camera_for(&self, scene: &Scene, aspect: f64) -> Camera {
         let own = || {
-            let camera = scene.cameras.get(scene.camera(&self.scene_camera).unwrap_or(0))?;
-            Some(camera.node.map_or(camera.pose, |node| camera.carried(&scene_from_nodes(&scene.rig, &self.motion(scene))[node])))
+            let camera = scene
+                .cameras
+                .get(scene.camera(&self.scene_camera).unwrap_or(0))?;
+            Some(camera.node.map_or(camera.pose, |node| {
+                camera.carried(&scene_from_nodes(&scene.rig, &self.motion(scene))[node])
+            }))
         };
-        let framing = || Camera::framing(&self.in_meters(scene).with_particles(scene.bounds()), FRAMING_DIRECTION, aspect);
+        let framing = || {
+            Camera::framing(
+                &self.in_meters(scene).with_particles(scene.bounds()),
+                FRAMING_DIRECTION,
+                aspect,
+            )
+        };
         self.camera.or_else(own).unwrap_or_else(framing)
     }
 
-    /// The view and stack of every frame that this picture depends on, in order; the last is the picture itself. There are several
-    /// where an effect reads the previous picture.
+    /// The view and stack of every frame that this picture depends on, in order; the last is the
+    /// picture itself. There are several where an effect reads the previous picture.
     pub fn moments(&self, scene: &Scene, size: [u32; 2]) -> Vec<(View, Stack)> {
         let preset = self.in_meters(scene);
-        let (frames, step_s) = preset.evaluated_stack().smear().map_or((0, 0.0), |smear| (smear.frames, f64::from(smear.step_s)));
+        let (frames, step_s) = preset
+            .evaluated_stack()
+            .smear()
+            .map_or((0, 0.0), |smear| (smear.frames, f64::from(smear.step_s)));
         let moment = |before: u32| {
-            let clock = Clock { time_s: preset.clock.time_s - f64::from(before) * step_s, ..preset.clock };
-            let then = Self { clock, ..preset.clone().into_owned() };
+            let clock = Clock {
+                time_s: preset.clock.time_s - f64::from(before) * step_s,
+                ..preset.clock
+            };
+            let then = Self {
+                clock,
+                ..preset.clone().into_owned()
+            };
             (then.view(scene, size), then.evaluated_stack())
         };
         (0..=frames).rev().map(moment).collect()
     }
 
-    /// The view of `scene` on a target of `size` pixels. Its depth range holds everything that effects may move.
+    /// The view of `scene` on a target of `size` pixels. Its depth range holds everything that
+    /// effects may move.
     pub fn view(&self, scene: &Scene, [width, height]: [u32; 2]) -> View {
         let preset = self.in_meters(scene);
         let aspect = f64::from(width.max(1)) / f64::from(height.max(1));
         // Reduced before the trigonometry, so that a day of spinning costs no precision.
         let turns = preset.spin_deg_per_s * preset.clock.time_s / 360.0;
-        let spin = if turns == 0.0 { DMat4::IDENTITY } else { rotation_y(turns.fract() * std::f64::consts::TAU) };
+        let spin = if turns == 0.0 {
+            DMat4::IDENTITY
+        } else {
+            rotation_y(turns.fract() * std::f64::consts::TAU)
+        };
         let pose = preset.pose(scene);
-        let mut bounds = preset.with_particles(pose.as_ref().map_or_else(|| scene.bounds_with_ground(), |pose| pose.bounds(scene)));
-        if preset.stack.0.iter().any(|enabled| enabled.effect.hooks.has_lines) {
-            preset.polyline.iter().for_each(|point| bounds.include(DVec3::from(point.map(f64::from))));
+        let mut bounds = preset.with_particles(
+            pose.as_ref()
+                .map_or_else(|| scene.bounds_with_ground(), |pose| pose.bounds(scene)),
+        );
+        if preset
+            .stack
+            .0
+            .iter()
+            .any(|enabled| enabled.effect.hooks.has_lines)
+        {
+            preset
+                .polyline
+                .iter()
+                .for_each(|point| bounds.include(DVec3::from(point.map(f64::from))));
         }
         if !bounds.is_empty() {
             let max_displacement_m = preset.evaluated_stack().max_displacement_m(bounds.radius());
-            (bounds.min, bounds.max) = (bounds.min - max_displacement_m, bounds.max + max_displacement_m);
+            (bounds.min, bounds.max) = (
+                bounds.min - max_displacement_m,
+                bounds.max + max_displacement_m,
+            );
             if scene.walls > 0 {
                 // Walls do not turn with the scene; this box holds them at every angle.
                 let aside = DVec3::new(std::f64::consts::SQRT_2, 1.0, std::f64::consts::SQRT_2);
@@ -363,11 +465,29 @@ impl Preset {
             }
         }
         let pins = &preset.accuracy.pins;
-        let shadow = ShadowResolution::of(pins.option().unwrap_or_default(), pins.option().unwrap_or_default());
-        let scene_state =
-            SceneState { world_from_scene: spin, pose, polyline: preset.polyline.clone(), particles: preset.particle_timeline() };
-        let view = View::new(&preset.camera_for(scene, aspect), width, height, &bounds, spin, preset.output.backdrop());
-        View { scene_state, ..view }.with_shadow(shadow)
+        let shadow = ShadowResolution::of(
+            pins.option().unwrap_or_default(),
+            pins.option().unwrap_or_default(),
+        );
+        let scene_state = SceneState {
+            world_from_scene: spin,
+            pose,
+            polyline: preset.polyline.clone(),
+            particles: preset.particle_timeline(),
+        };
+        let view = View::new(
+            &preset.camera_for(scene, aspect),
+            width,
+            height,
+            &bounds,
+            spin,
+            preset.output.backdrop(),
+        );
+        View {
+            scene_state,
+            ..view
+        }
+        .with_shadow(shadow)
     }
 }
 
@@ -377,29 +497,57 @@ mod tests {
 
     #[test]
     fn a_looping_clock_stays_in_its_range_and_the_other_stops_at_its_end() {
-        let clock = Clock { range_s: [1.0, 3.0], speed: 2.0, ..Clock::default() };
+        let clock = Clock {
+            range_s: [1.0, 3.0],
+            speed: 2.0,
+            ..Clock::default()
+        };
         assert_eq!(clock.after(1.0, 0.5), (2.0, true));
         assert_eq!(clock.after(2.5, 0.5), (1.5, true));
-        assert_eq!(clock.after(-4.0, 0.5), (-3.0, true), "it runs into the range");
+        assert_eq!(
+            clock.after(-4.0, 0.5),
+            (-3.0, true),
+            "it runs into the range"
+        );
         assert!(clock.after(1e9, 1e-9).1);
-        let once = Clock { is_looping: false, ..clock };
+        let once = Clock {
+            is_looping: false,
+            ..clock
+        };
         assert_eq!(once.after(2.5, 0.5), (3.0, false));
         for start in 0..10_000 {
             let (time_s, goes_on) = clock.after(f64::from(start) * 0.377, 1.0 / 60.0);
-            assert!(goes_on && (1.0..3.0).contains(&time_s) || f64::from(start) * 0.377 < 1.0, "{start}: {time_s}");
+            assert!(
+                goes_on && (1.0..3.0).contains(&time_s) || f64::from(start) * 0.377 < 1.0,
+                "{start}: {time_s}"
+            );
         }
     }
 
     #[test]
     fn a_day_of_play_costs_no_precision() {
-        let preset = Preset { spin_deg_per_s: 90.0, ..Preset::default() };
+        let preset = Preset {
+            spin_deg_per_s: 90.0,
+            ..Preset::default()
+        };
         let scene = crate::scene::builtin::build("teapot?tess=2").expect("a scene");
         let turn = |time_s: f64| {
-            let preset = Preset { clock: Clock { time_s, ..Clock::default() }, ..preset.clone() };
+            let preset = Preset {
+                clock: Clock {
+                    time_s,
+                    ..Clock::default()
+                },
+                ..preset.clone()
+            };
             preset.view(&scene, [8, 8]).scene_state.world_from_scene
         };
         let (fresh, late) = (turn(0.37), turn(86_400.0 + 0.37));
-        let error = fresh.to_cols_array().iter().zip(late.to_cols_array()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let error = fresh
+            .to_cols_array()
+            .iter()
+            .zip(late.to_cols_array())
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max);
         // A millionth of a period is an angle of 6e-6.
         assert!(error < 1e-9, "{error}");
     }

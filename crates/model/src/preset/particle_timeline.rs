@@ -19,10 +19,21 @@ impl Preset {
         let now = words_at(self.clock.time_s);
         let particles: Particles = read(&now);
         let frame = particles::frame_at(&particles, self.clock.time_s);
-        Some(Arc::new(if self.animation.tracks().iter().any(Track::changes_simulation) {
-            particles::along((1..=frame.max(1)).map(|step| words_at(f64::from(step) / f64::from(particles.rate))), frame)
-        } else {
-            particles::constant_timeline(&now, frame)
-        }))
+        Some(Arc::new(
+            if self
+                .animation
+                .tracks()
+                .iter()
+                .any(Track::changes_simulation)
+            {
+                particles::along(
+                    (1..=frame.max(1))
+                        .map(|step| words_at(f64::from(step) / f64::from(particles.rate))),
+                    frame,
+                )
+            } else {
+                particles::constant_timeline(&now, frame)
+            },
+        ))
     }
 }

@@ -19,7 +19,8 @@ pub struct Setting {
     pub(super) storage: Storage,
 }
 
-/// A condition on a value that a range cannot say; the error completes a sentence that begins with the setting's name.
+/// A condition on a value that a range cannot say; the error completes a sentence that begins with
+/// the setting's name.
 pub type Rule = fn(&Value) -> Result<(), String>;
 
 /// Where a preset keeps the value of a setting.
@@ -47,21 +48,28 @@ impl Deref for Setting {
 impl Setting {
     /// `camera.eye`, `name`.
     pub fn path(&self) -> String {
-        if self.section.is_empty() { self.name.clone() } else { format!("{}.{}", self.section, self.name) }
+        if self.section.is_empty() {
+            self.name.clone()
+        } else {
+            format!("{}.{}", self.section, self.name)
+        }
     }
 
     /// The value in `preset`; none where the setting does not apply.
     pub fn get(&self, preset: &Preset) -> Option<Value> {
         match self.storage {
             Storage::State { get, .. } => get(preset),
-            Storage::Axis(axis) => Some(Value::Choice(preset.accuracy.pins.get(axis).map_or(0, |index| index + 1))),
+            Storage::Axis(axis) => Some(Value::Choice(
+                preset.accuracy.pins.get(axis).map_or(0, |index| index + 1),
+            )),
         }
     }
 
     /// Gives the setting a value.
     ///
     /// # Errors
-    /// The value has another type, lies outside the range or breaks the setting's rule; then nothing is changed.
+    /// The value has another type, lies outside the range or breaks the setting's rule; then
+    /// nothing is changed.
     pub fn set(&self, preset: &mut Preset, value: &Value) -> Result<(), ValueError> {
         self.check(value)?;
         match (self.storage, value) {
@@ -80,35 +88,62 @@ impl Setting {
     /// As [`Setting::set`].
     pub fn check(&self, value: &Value) -> Result<(), ValueError> {
         self.param.check(value)?;
-        self.rule.map_or(Ok(()), |rule| rule(value).map_err(ValueError::Rule))
+        self.rule
+            .map_or(Ok(()), |rule| rule(value).map_err(ValueError::Rule))
     }
 
     pub(super) fn new(name: &str, value_type: ValueType, doc: &str, storage: Storage) -> Self {
-        Self { param: Param::new(name, doc, value_type), section: "", alternative: None, rule: None, storage }
+        Self {
+            param: Param::new(name, doc, value_type),
+            section: "",
+            alternative: None,
+            rule: None,
+            storage,
+        }
     }
 
     pub(super) fn range(self, low: f64, high: f64) -> Self {
-        Self { param: self.param.hard(low..=high), ..self }
+        Self {
+            param: self.param.hard(low..=high),
+            ..self
+        }
     }
 
     pub(super) fn slider(self, low: f64, high: f64) -> Self {
-        Self { param: self.param.soft(low..=high), ..self }
+        Self {
+            param: self.param.soft(low..=high),
+            ..self
+        }
     }
 
     pub(super) fn unit(self, unit: &str) -> Self {
-        Self { param: self.param.unit(unit), ..self }
+        Self {
+            param: self.param.unit(unit),
+            ..self
+        }
     }
 
     pub(super) fn rule(self, rule: Rule) -> Self {
-        Self { rule: Some(rule), ..self }
+        Self {
+            rule: Some(rule),
+            ..self
+        }
     }
 
     pub(super) fn or(self, alternative: &'static str) -> Self {
-        Self { alternative: Some(alternative), ..self }
+        Self {
+            alternative: Some(alternative),
+            ..self
+        }
     }
 
     pub(super) fn of_axis(axis: &'static Axis) -> Self {
-        Self::new(axis.name, ValueType::choice(axis.choices), axis.about, Storage::Axis(axis))
+        Self::new(
+            axis.name,
+            ValueType::choice(axis.choices),
+            axis.about,
+            Storage::Axis(axis),
+        )
     }
 }
 

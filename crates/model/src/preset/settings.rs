@@ -1,6 +1,8 @@
-//! Settings: the registry of everything that a preset says besides its effects, in the order in which it is written.
+//! Settings: the registry of everything that a preset says besides its effects, in the order in
+//! which it is written.
 //!
-//! The reader and writer of preset files, `--set`, the JSON schema, listings and the inspector loop over [`SECTIONS`].
+//! The reader and writer of preset files, `--set`, the JSON schema, listings and the inspector loop
+//! over [`SECTIONS`].
 
 use std::{path::PathBuf, sync::LazyLock};
 
@@ -34,11 +36,16 @@ impl Setting {
         if self.get(preset).is_none() {
             return;
         }
-        if let Storage::State { clear: Some(clear), .. } = self.storage {
+        if let Storage::State {
+            clear: Some(clear), ..
+        } = self.storage
+        {
             return clear(preset);
         }
         let baseline = baseline(preset);
-        let alternative = self.alternative.and_then(|name| Section::find(self.section)?.setting(name));
+        let alternative = self
+            .alternative
+            .and_then(|name| Section::find(self.section)?.setting(name));
         for setting in std::iter::once(self).chain(alternative) {
             if let Some(default) = setting.get(&baseline) {
                 setting.set(preset, &default).expect("a default is allowed");
@@ -55,14 +62,20 @@ impl Setting {
 
 impl Section {
     pub fn find(name: &str) -> Option<&'static Self> {
-        SECTIONS.iter().copied().find(|section| section.name == name)
+        SECTIONS
+            .iter()
+            .copied()
+            .find(|section| section.name == name)
     }
 
     /// Removes an optional section, and resets every setting of another.
     pub fn reset(&self, preset: &mut Preset) {
         match &self.presence {
             Some(presence) => (presence.remove)(preset),
-            None => self.settings.iter().for_each(|setting| setting.reset(preset)),
+            None => self
+                .settings
+                .iter()
+                .for_each(|setting| setting.reset(preset)),
         }
     }
 }
@@ -70,7 +83,10 @@ impl Section {
 /// All defaults, with the optional sections that `preset` has: what sparse writing leaves out.
 pub fn baseline(preset: &Preset) -> Preset {
     let mut baseline = Preset::default();
-    let present = SECTIONS.iter().filter_map(|section| section.presence.as_ref()).filter(|presence| (presence.is_present)(preset));
+    let present = SECTIONS
+        .iter()
+        .filter_map(|section| section.presence.as_ref())
+        .filter(|presence| (presence.is_present)(preset));
     present.for_each(|presence| (presence.add)(&mut baseline));
     baseline
 }
@@ -106,8 +122,16 @@ macro_rules! option {
 macro_rules! section_field {
     ($section:ident . $field:ident) => {
         Storage::State {
-            get: |preset| preset.$section.as_ref().map(|section| section.$field.to_value()),
-            set: |preset, value| Stored::from_value(value).map(|value| preset.$section.get_or_insert_default().$field = value),
+            get: |preset| {
+                preset
+                    .$section
+                    .as_ref()
+                    .map(|section| section.$field.to_value())
+            },
+            set: |preset, value| {
+                Stored::from_value(value)
+                    .map(|value| preset.$section.get_or_insert_default().$field = value)
+            },
             clear: None,
         }
     };
@@ -117,10 +141,14 @@ const LINE: ValueType = ValueType::Text { max_chars: 200 };
 const PARAGRAPH: ValueType = ValueType::Text { max_chars: 2000 };
 
 /// The top of the file, then every table of settings.
-pub static SECTIONS: &[&Section] = &[&TOP, &SCENE, &GROUND, &CAMERA, &CLOCK, &ACCURACY, &OUTPUT, &TEST];
+pub static SECTIONS: &[&Section] = &[
+    &TOP, &SCENE, &GROUND, &CAMERA, &CLOCK, &ACCURACY, &OUTPUT, &TEST,
+];
 
 fn in_section<const N: usize>(section: &'static str, settings: [Setting; N]) -> Vec<Setting> {
-    settings.map(|setting| Setting { section, ..setting }).into()
+    settings
+        .map(|setting| Setting { section, ..setting })
+        .into()
 }
 
 pub static TOP: Section = Section {
@@ -129,8 +157,21 @@ pub static TOP: Section = Section {
     settings: LazyLock::new(|| {
         vec![
             Setting::new("name", LINE, "Shown in lists and titles", field!(name)),
-            Setting::new("about", PARAGRAPH, "One sentence about the preset", field!(about)),
-            Setting::new("tags", ValueType::TextList { max_entries: 32, max_chars: 64 }, "Words to find it by", field!(tags)),
+            Setting::new(
+                "about",
+                PARAGRAPH,
+                "One sentence about the preset",
+                field!(about),
+            ),
+            Setting::new(
+                "tags",
+                ValueType::TextList {
+                    max_entries: 32,
+                    max_chars: 64,
+                },
+                "Words to find it by",
+                field!(tags),
+            ),
         ]
     }),
     presence: None,
@@ -253,9 +294,26 @@ pub static CAMERA: Section = Section {
         in_section(
             "camera",
             [
-                Setting::new("eye", ValueType::Position, "Position of the eye", section_field!(camera.eye)).unit("m"),
-                Setting::new("target", ValueType::Position, "The point that the eye looks at", section_field!(camera.target)).unit("m"),
-                Setting::new("up", ValueType::Position, "Direction that is up in the picture, of any length", section_field!(camera.up)),
+                Setting::new(
+                    "eye",
+                    ValueType::Position,
+                    "Position of the eye",
+                    section_field!(camera.eye),
+                )
+                .unit("m"),
+                Setting::new(
+                    "target",
+                    ValueType::Position,
+                    "The point that the eye looks at",
+                    section_field!(camera.target),
+                )
+                .unit("m"),
+                Setting::new(
+                    "up",
+                    ValueType::Position,
+                    "Direction that is up in the picture, of any length",
+                    section_field!(camera.up),
+                ),
                 Setting::new("fov_y_deg", ValueType::F64, "Vertical field of view", FOV_Y)
                     .range(1.0, 179.0)
                     .slider(10.0, 120.0)
@@ -270,9 +328,14 @@ pub static CAMERA: Section = Section {
                 .range(1e-6, 1e9)
                 .unit("m")
                 .or("fov_y_deg"),
-                Setting::new("near_m", ValueType::F64, "Distance of the near plane, with perspective", section_field!(camera.near_m))
-                    .range(MIN_NEAR_M, 1e6)
-                    .unit("m"),
+                Setting::new(
+                    "near_m",
+                    ValueType::F64,
+                    "Distance of the near plane, with perspective",
+                    section_field!(camera.near_m),
+                )
+                .range(MIN_NEAR_M, 1e6)
+                .unit("m"),
             ],
         )
     }),
@@ -290,7 +353,14 @@ pub static CLOCK: Section = Section {
         in_section(
             "clock",
             [
-                Setting::new("time_s", ValueType::F64, "Time of the picture", field!(clock.time_s)).slider(0.0, 12.0).unit("s"),
+                Setting::new(
+                    "time_s",
+                    ValueType::F64,
+                    "Time of the picture",
+                    field!(clock.time_s),
+                )
+                .slider(0.0, 12.0)
+                .unit("s"),
                 Setting::new(
                     "range_s",
                     ValueType::Interval,
@@ -299,17 +369,31 @@ pub static CLOCK: Section = Section {
                 )
                 .unit("s")
                 .rule(rises),
-                Setting::new("loop", ValueType::Bool, "Starts again at the begin of the range after its end", field!(clock.is_looping)),
-                Setting::new("speed", ValueType::F64, "Seconds of the clock that pass in one second of playback", field!(clock.speed))
-                    .range(0.01, 100.0),
+                Setting::new(
+                    "loop",
+                    ValueType::Bool,
+                    "Starts again at the begin of the range after its end",
+                    field!(clock.is_looping),
+                ),
+                Setting::new(
+                    "speed",
+                    ValueType::F64,
+                    "Seconds of the clock that pass in one second of playback",
+                    field!(clock.speed),
+                )
+                .range(0.01, 100.0),
             ],
         )
     }),
     presence: None,
 };
 
-pub static ACCURACY: Section =
-    Section { name: "accuracy", doc: "How exact the picture must be", settings: LazyLock::new(accuracy_settings), presence: None };
+pub static ACCURACY: Section = Section {
+    name: "accuracy",
+    doc: "How exact the picture must be",
+    settings: LazyLock::new(accuracy_settings),
+    presence: None,
+};
 
 /// The tier, the tolerances that replace the tier's, and every axis.
 fn accuracy_settings() -> Vec<Setting> {
@@ -335,8 +419,15 @@ fn accuracy_settings() -> Vec<Setting> {
         )
         .range(0.0, 255.0),
     ];
-    let settings = tolerances.into_iter().chain(AXES.iter().map(Setting::of_axis));
-    settings.map(|setting| Setting { section: "accuracy", ..setting }).collect()
+    let settings = tolerances
+        .into_iter()
+        .chain(AXES.iter().map(Setting::of_axis));
+    settings
+        .map(|setting| Setting {
+            section: "accuracy",
+            ..setting
+        })
+        .collect()
 }
 
 pub static OUTPUT: Section = Section {
@@ -346,8 +437,19 @@ pub static OUTPUT: Section = Section {
         in_section(
             "output",
             [
-                Setting::new("size", ValueType::Size, "Width and height in pixels", field!(output.size)).range(0.0, 16_384.0),
-                Setting::new("background", ValueType::Color, "Color where there is no triangle, linear RGBA", field!(output.background)),
+                Setting::new(
+                    "size",
+                    ValueType::Size,
+                    "Width and height in pixels",
+                    field!(output.size),
+                )
+                .range(0.0, 16_384.0),
+                Setting::new(
+                    "background",
+                    ValueType::Color,
+                    "Color where there is no triangle, linear RGBA",
+                    field!(output.background),
+                ),
                 Setting::new(
                     "background_bottom",
                     ValueType::Color,
@@ -374,14 +476,24 @@ pub static TEST: Section = Section {
                     section_field!(test.max_channel),
                 )
                 .range(0.0, 255.0),
-                Setting::new("max_pixels", ValueType::U32, "Number of pixels that may differ by more", section_field!(test.max_pixels)),
+                Setting::new(
+                    "max_pixels",
+                    ValueType::U32,
+                    "Number of pixels that may differ by more",
+                    section_field!(test.max_pixels),
+                ),
                 Setting::new(
                     "max_wrong_triangles",
                     ValueType::U32,
                     "Number of pixels that may show another triangle, or none, where the preset pins an option that is not exact",
                     section_field!(test.max_wrong_triangles),
                 ),
-                Setting::new("why", PARAGRAPH, "Why a budget above the default is needed", section_field!(test.why)),
+                Setting::new(
+                    "why",
+                    PARAGRAPH,
+                    "Why a budget above the default is needed",
+                    section_field!(test.why),
+                ),
             ],
         )
     }),
@@ -397,7 +509,9 @@ const BUILTIN: Storage = Storage::State {
         SceneSource::Builtin(query) => Some(query.to_value()),
         SceneSource::File(_) => None,
     },
-    set: |preset, value| Stored::from_value(value).map(|query| preset.scene = SceneSource::Builtin(query)),
+    set: |preset, value| {
+        Stored::from_value(value).map(|query| preset.scene = SceneSource::Builtin(query))
+    },
     clear: None,
 };
 
@@ -406,7 +520,9 @@ const MODEL: Storage = Storage::State {
         SceneSource::Builtin(_) => None,
         SceneSource::File(path) => Some(path.to_string_lossy().into_owned().to_value()),
     },
-    set: |preset, value| String::from_value(value).map(|path| preset.scene = SceneSource::File(PathBuf::from(path))),
+    set: |preset, value| {
+        String::from_value(value).map(|path| preset.scene = SceneSource::File(PathBuf::from(path)))
+    },
     clear: None,
 };
 
@@ -436,7 +552,10 @@ const FOV_Y: Storage = Storage::State {
         Projection::Perspective { fov_y_deg } => Some(fov_y_deg.to_value()),
         Projection::Orthographic { .. } => None,
     },
-    set: |preset, value| Stored::from_value(value).map(|fov_y_deg| camera(preset).projection = Projection::Perspective { fov_y_deg }),
+    set: |preset, value| {
+        Stored::from_value(value)
+            .map(|fov_y_deg| camera(preset).projection = Projection::Perspective { fov_y_deg })
+    },
     clear: None,
 };
 
@@ -445,7 +564,10 @@ const ORTHOGRAPHIC_HEIGHT: Storage = Storage::State {
         Projection::Perspective { .. } => None,
         Projection::Orthographic { height_m } => Some(height_m.to_value()),
     },
-    set: |preset, value| Stored::from_value(value).map(|height_m| camera(preset).projection = Projection::Orthographic { height_m }),
+    set: |preset, value| {
+        Stored::from_value(value)
+            .map(|height_m| camera(preset).projection = Projection::Orthographic { height_m })
+    },
     clear: None,
 };
 
@@ -479,10 +601,21 @@ mod tests {
         let before = preset.clone();
         let mut paths = std::collections::BTreeSet::new();
         for setting in settings() {
-            assert!(paths.insert(setting.path()), "{} stands twice", setting.path());
-            assert!(std::ptr::eq(Setting::find(&setting.path()).expect("it is listed"), setting) || setting.section == "accuracy");
+            assert!(
+                paths.insert(setting.path()),
+                "{} stands twice",
+                setting.path()
+            );
+            assert!(
+                std::ptr::eq(
+                    Setting::find(&setting.path()).expect("it is listed"),
+                    setting
+                ) || setting.section == "accuracy"
+            );
             if let Some(default) = setting.get(&preset) {
-                setting.set(&mut preset, &default).unwrap_or_else(|error| panic!("{}: {error}", setting.path()));
+                setting
+                    .set(&mut preset, &default)
+                    .unwrap_or_else(|error| panic!("{}: {error}", setting.path()));
                 assert!(!setting.is_modified(&preset), "{}", setting.path());
             }
             assert_eq!(preset, before, "{}", setting.path());
@@ -492,11 +625,18 @@ mod tests {
     #[test]
     fn every_accuracy_axis_has_a_setting_that_pins_it() {
         for axis in AXES {
-            let setting = ACCURACY.setting(axis.name).unwrap_or_else(|| panic!("accuracy.{} is missing", axis.name));
+            let setting = ACCURACY
+                .setting(axis.name)
+                .unwrap_or_else(|| panic!("accuracy.{} is missing", axis.name));
             let mut preset = Preset::default();
             for index in 0..axis.choices.len() {
-                setting.set(&mut preset, &Value::Choice(index)).expect("a word of the axis");
-                assert_eq!((setting.get(&preset), preset.accuracy.pins.get(axis)), (Some(Value::Choice(index)), index.checked_sub(1)));
+                setting
+                    .set(&mut preset, &Value::Choice(index))
+                    .expect("a word of the axis");
+                assert_eq!(
+                    (setting.get(&preset), preset.accuracy.pins.get(axis)),
+                    (Some(Value::Choice(index)), index.checked_sub(1))
+                );
             }
             setting.reset(&mut preset);
             assert_eq!(preset, Preset::default(), "{}", axis.name);
@@ -510,7 +650,9 @@ mod tests {
         assert!(eye.set(&mut preset, &Value::number(1)).is_err());
         let path = Setting::find("scene.path").expect("a setting");
         assert_eq!(
-            path.set(&mut preset, &Value::Text("https://a.b/c.glb".into())).unwrap_err().to_string(),
+            path.set(&mut preset, &Value::Text("https://a.b/c.glb".into()))
+                .unwrap_err()
+                .to_string(),
             "must be a file, not an address"
         );
         assert_eq!(preset, Preset::default());

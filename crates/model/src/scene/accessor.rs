@@ -25,8 +25,9 @@ impl ComponentType {
 
 /// Where the elements of an attribute or of an index list lie in a byte buffer.
 ///
-/// Every constructor of a [`Scene`](super::model::Scene) guarantees (the glTF loader checks it) that `offset` and `stride` are multiples of the
-/// component size and that the last element ends inside the buffer. Reading past `count` panics or returns other bytes.
+/// Every constructor of a [`Scene`](super::model::Scene) guarantees (the glTF loader checks it)
+/// that `offset` and `stride` are multiples of the component size and that the last element ends
+/// inside the buffer. Reading past `count` panics or returns other bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Accessor {
     /// Byte at which element 0 begins, counted from the start of the buffer.
@@ -37,14 +38,16 @@ pub struct Accessor {
     pub component_type: ComponentType,
     /// Components per element: 1 to 4 in a scene (16 for the matrices that the loader reads).
     pub components: u32,
-    /// Integers are mapped to [0, 1] (unsigned) or [-1, 1] (signed), as glTF 2.0, section 3.6.2.2, defines.
+    /// Integers are mapped to [0, 1] (unsigned) or [-1, 1] (signed), as glTF 2.0, section 3.6.2.2,
+    /// defines.
     pub normalized: bool,
     /// Number of elements.
     pub count: u32,
 }
 
 impl Accessor {
-    /// `count` tightly packed f32 elements of `components` components each, which begin at byte `offset`.
+    /// `count` tightly packed f32 elements of `components` components each, which begin at byte
+    /// `offset`.
     pub fn packed_f32(offset: usize, components: u32, count: usize) -> Self {
         Self {
             offset: offset as u32,
@@ -58,11 +61,15 @@ impl Accessor {
 
     #[inline]
     fn raw<const N: usize>(&self, bytes: &[u8], element: u32, component: u32) -> [u8; N] {
-        let at = self.offset as usize + element as usize * self.stride as usize + component as usize * N;
-        bytes[at..at + N].try_into().expect("an accessor lies inside its buffer")
+        let at =
+            self.offset as usize + element as usize * self.stride as usize + component as usize * N;
+        bytes[at..at + N]
+            .try_into()
+            .expect("an accessor lies inside its buffer")
     }
 
-    /// The bits of an f32 component; of an integer component, the bits of its exact value as f32. Not normalized.
+    /// The bits of an f32 component; of an integer component, the bits of its exact value as f32.
+    /// Not normalized.
     pub fn f32_bits(&self, bytes: &[u8], element: u32, component: u32) -> u32 {
         match self.component_type {
             ComponentType::F32 => u32::from_le_bytes(self.raw(bytes, element, component)),
@@ -78,7 +85,9 @@ impl Accessor {
             ComponentType::U8 => u8::from_le_bytes(self.raw(bytes, element, component)).into(),
             ComponentType::I16 => i16::from_le_bytes(self.raw(bytes, element, component)).into(),
             ComponentType::U16 => u16::from_le_bytes(self.raw(bytes, element, component)).into(),
-            ComponentType::U32 | ComponentType::F32 => u32::from_le_bytes(self.raw(bytes, element, component)).into(),
+            ComponentType::U32 | ComponentType::F32 => {
+                u32::from_le_bytes(self.raw(bytes, element, component)).into()
+            }
         }
     }
 
@@ -88,7 +97,9 @@ impl Accessor {
         if self.component_type == ComponentType::F32 {
             // One bounds check for all three.
             let at = self.offset as usize + element as usize * self.stride as usize;
-            let [x, y, z] = bytes[at..at + 12].as_chunks::<4>().0 else { panic!("twelve bytes are three words") };
+            let [x, y, z] = bytes[at..at + 12].as_chunks::<4>().0 else {
+                panic!("twelve bytes are three words")
+            };
             return [x, y, z].map(|word| f32::from_le_bytes(*word).into());
         }
         [0, 1, 2].map(|component| self.value(bytes, element, component))

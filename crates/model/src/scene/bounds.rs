@@ -2,7 +2,8 @@
 
 use glam::{DMat4, DVec3};
 
-/// Exclusive limit of the magnitude of a matrix entry or a coordinate, 2^40: below it all products are finite in f32.
+/// Exclusive limit of the magnitude of a matrix entry or a coordinate, 2^40: below it all products
+/// are finite in f32.
 pub const MAX_MAGNITUDE: f64 = (1u64 << 40) as f64;
 
 /// Axis-aligned box in meters, both ends included. Empty when `min` exceeds `max` on any axis.
@@ -22,7 +23,10 @@ impl Default for Bounds {
 
 impl Bounds {
     /// A box without points.
-    pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+    pub const EMPTY: Self = Self {
+        min: DVec3::INFINITY,
+        max: DVec3::NEG_INFINITY,
+    };
 
     /// Returns true if the box contains no point.
     pub fn is_empty(&self) -> bool {
@@ -38,26 +42,46 @@ impl Bounds {
     /// Includes `bounds`, grown by `margin` on every side and then transformed by `matrix`.
     pub fn include_transformed(&mut self, matrix: &DMat4, bounds: &Self, margin: f64) {
         if !bounds.is_empty() {
-            let grown = Self { min: bounds.min - margin, max: bounds.max + margin };
-            grown.corners().into_iter().for_each(|corner| self.include(matrix.transform_point3(corner)));
+            let grown = Self {
+                min: bounds.min - margin,
+                max: bounds.max + margin,
+            };
+            grown
+                .corners()
+                .into_iter()
+                .for_each(|corner| self.include(matrix.transform_point3(corner)));
         }
     }
 
     /// The eight corners.
     pub fn corners(&self) -> [DVec3; 8] {
         std::array::from_fn(|i| {
-            let pick = |axis: usize| if i >> axis & 1 == 0 { self.min[axis] } else { self.max[axis] };
+            let pick = |axis: usize| {
+                if i >> axis & 1 == 0 {
+                    self.min[axis]
+                } else {
+                    self.max[axis]
+                }
+            };
             DVec3::new(pick(0), pick(1), pick(2))
         })
     }
 
     /// The center; the origin when empty.
     pub fn center(&self) -> DVec3 {
-        if self.is_empty() { DVec3::ZERO } else { (self.min + self.max) * 0.5 }
+        if self.is_empty() {
+            DVec3::ZERO
+        } else {
+            (self.min + self.max) * 0.5
+        }
     }
 
     /// Half the length of the diagonal; 0 when empty.
     pub fn radius(&self) -> f64 {
-        if self.is_empty() { 0.0 } else { (self.max - self.min).length() * 0.5 }
+        if self.is_empty() {
+            0.0
+        } else {
+            (self.max - self.min).length() * 0.5
+        }
     }
 }

@@ -24,7 +24,8 @@ pub struct Camera {
     pub target: DVec3,
     pub up: DVec3,
     pub projection: Projection,
-    /// Distance of the near plane in meters, at least [`MIN_NEAR_M`]. Only a perspective clips there.
+    /// Distance of the near plane in meters, at least [`MIN_NEAR_M`]. Only a perspective clips
+    /// there.
     pub near_m: f64,
 }
 
@@ -41,7 +42,8 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// The nearest camera that looks along `direction` at the center of `bounds` and shows all of it with a small margin.
+    /// The nearest camera that looks along `direction` at the center of `bounds` and shows all of
+    /// it with a small margin.
     pub fn framing(bounds: &Bounds, direction: DVec3, aspect: f64) -> Self {
         let fov_y_deg: f64 = 45.0;
         let tan_y = libm::tan(fov_y_deg.to_radians() * 0.5) * 0.92;
@@ -53,7 +55,11 @@ impl Camera {
             p.z + (p.x.abs() / tan_x).max(p.y.abs() / tan_y)
         };
         let shown = bounds.corners().map(needed).into_iter().fold(0.0, f64::max);
-        let distance = if bounds.is_empty() || shown <= 0.0 { 2.5 } else { shown };
+        let distance = if bounds.is_empty() || shown <= 0.0 {
+            2.5
+        } else {
+            shown
+        };
         Self {
             eye: bounds.center() - direction * distance,
             target: bounds.center(),
@@ -65,6 +71,8 @@ impl Camera {
 
     /// Unit vector from the eye to the target.
     pub fn forward(&self) -> DVec3 {
-        (self.target - self.eye).try_normalize().unwrap_or(DVec3::NEG_Z)
+        (self.target - self.eye)
+            .try_normalize()
+            .unwrap_or(DVec3::NEG_Z)
     }
 }

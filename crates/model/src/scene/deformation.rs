@@ -9,8 +9,8 @@ pub struct Deformation {
     pub influences: Vec<Influences>,
     /// Weighted by the node that shows the mesh.
     pub morph_targets: Vec<MorphTarget>,
-    /// For each joint, the object-space box of the vertices that it influences with a weight above 0. As long as the largest
-    /// joint index requires.
+    /// For each joint, the object-space box of the vertices that it influences with a weight above
+    /// 0. As long as the largest joint index requires.
     pub joint_bounds: Vec<Bounds>,
 }
 
@@ -30,7 +30,8 @@ pub struct Influences {
     pub weights: Accessor,
 }
 
-/// A morph target: the displacements that a weight of 1 adds to every vertex. In `Scene::vertex_bytes`.
+/// A morph target: the displacements that a weight of 1 adds to every vertex. In
+/// `Scene::vertex_bytes`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MorphTarget {
     /// Displacements of positions, three components.

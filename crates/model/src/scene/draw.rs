@@ -1,4 +1,5 @@
-//! Draws: every instance with its matrices and its ranges in the global lists of vertices and triangles.
+//! Draws: every instance with its matrices and its ranges in the global lists of vertices and
+//! triangles.
 
 use glam::{DMat4, DVec3, DVec4};
 
@@ -21,11 +22,11 @@ pub struct Draw {
     pub first_vertex: u32,
     /// Global id of its triangle 0.
     pub first_triangle: u32,
-    /// Subtracted from object-space positions before `clip_from_object`: in a relative view the point of the mesh's box nearest
-    /// to the eye, else 0.
+    /// Subtracted from object-space positions before `clip_from_object`: in a relative view the
+    /// point of the mesh's box nearest to the eye, else 0.
     pub origin: [f32; 3],
-    /// Columns, for positions relative to `origin`. Multiplied in f64 and rounded once, so that every renderer and the oracle
-    /// start from the same bits.
+    /// Columns, for positions relative to `origin`. Multiplied in f64 and rounded once, so that
+    /// every renderer and the oracle start from the same bits.
     pub clip_from_object: [[f32; 4]; 4],
     /// From object space to the world, with the scene's spin.
     pub world_from_object: DMat4,
@@ -49,12 +50,15 @@ impl Draw {
 
     /// Clip-space position of an object-space one.
     pub fn clip_point(&self, position: DVec3) -> DVec4 {
-        DMat4::from_cols_array_2d(&self.clip_from_object.map(|column| column.map(f64::from))) * (position - self.origin()).extend(1.0)
+        DMat4::from_cols_array_2d(&self.clip_from_object.map(|column| column.map(f64::from)))
+            * (position - self.origin()).extend(1.0)
     }
 
     /// Object-space box of its vertices after deformation.
     pub fn object_bounds(&self, primitive: &Primitive) -> Bounds {
-        self.deform.as_ref().map_or(primitive.bounds, |deform| deform.bounds(primitive))
+        self.deform
+            .as_ref()
+            .map_or(primitive.bounds, |deform| deform.bounds(primitive))
     }
 }
 
@@ -63,15 +67,25 @@ impl Draw {
 pub enum DrawError {
     #[error("the picture was canceled")]
     Canceled(#[from] Canceled),
-    #[error("{instance}: its transform or the camera has a matrix entry of {value:e}; entries must be finite and below 2^40 (1.1e12)")]
+    #[error(
+        "{instance}: its transform or the camera has a matrix entry of {value:e}; entries must be finite and below 2^40 (1.1e12)"
+    )]
     Matrix { instance: String, value: f64 },
     #[error("the scene has {count} {what}; a picture may have at most {limit}")]
-    TooMany { what: &'static str, count: u64, limit: u64 },
+    TooMany {
+        what: &'static str,
+        count: u64,
+        limit: u64,
+    },
     #[error(
         "the picture would take about {needed_gib:.1} GiB of memory, and the oracle may take {limit_gib}; draw it smaller or with fewer \
          triangles, or set {variable}"
     )]
-    OracleMemory { needed_gib: f64, limit_gib: f64, variable: &'static str },
+    OracleMemory {
+        needed_gib: f64,
+        limit_gib: f64,
+        variable: &'static str,
+    },
     #[error(
         "the oracle would compute {positions} positions of vertices and morph targets, and may compute {limit}; place the model less often"
     )]
@@ -80,22 +94,39 @@ pub enum DrawError {
         "the oracle would test {samples} samples of triangles for the {image}, and may test {limit}; take a smaller {image}, fewer triangles \
          or smaller ones"
     )]
-    OracleSamples { image: &'static str, samples: u64, limit: u64 },
+    OracleSamples {
+        image: &'static str,
+        samples: u64,
+        limit: u64,
+    },
     #[error(
         "the CPU would test {samples} samples of triangles (pictures drawn one after the other: {pictures}), and may test \
          {limit}; take fewer frames, smaller pictures or shadow maps, fewer triangles, or take a GPU"
     )]
-    SequenceSamples { pictures: u64, samples: u64, limit: u64 },
+    SequenceSamples {
+        pictures: u64,
+        samples: u64,
+        limit: u64,
+    },
     #[error(
         "the CPU would follow {count} particles over {steps} steps with {octaves} octaves, which makes {work} evaluations of the flow, and \
          may make {limit}; take fewer particles, a lower rate, fewer octaves or an earlier time, or take a GPU"
     )]
-    ParticleWork { count: u32, steps: u32, octaves: u32, work: u64, limit: u64 },
+    ParticleWork {
+        count: u32,
+        steps: u32,
+        octaves: u32,
+        work: u64,
+        limit: u64,
+    },
 }
 
 /// The point of a box nearest to `eye`, in f32; the origin if the box is empty or too large.
 fn nearest(bounds: &Bounds, eye: DVec3) -> [f32; 3] {
-    if bounds.is_empty() || !eye.is_finite() || bounds.min.abs().max(bounds.max.abs()).max_element() >= MAX_MAGNITUDE {
+    if bounds.is_empty()
+        || !eye.is_finite()
+        || bounds.min.abs().max(bounds.max.abs()).max_element() >= MAX_MAGNITUDE
+    {
         return [0.0; 3];
     }
     eye.clamp(bounds.min, bounds.max).as_vec3().to_array()
@@ -105,8 +136,11 @@ fn nearest(bounds: &Bounds, eye: DVec3) -> [f32; 3] {
 pub fn totals(scene: &Scene, draws: &[Draw]) -> [u64; 2] {
     draws.last().map_or([0; 2], |last| {
         let primitive = &scene.primitives[last.primitive];
-        [(last.first_vertex, primitive.vertex_count()), (last.first_triangle, primitive.triangle_count())]
-            .map(|(first, count)| u64::from(first) + u64::from(count))
+        [
+            (last.first_vertex, primitive.vertex_count()),
+            (last.first_triangle, primitive.triangle_count()),
+        ]
+        .map(|(first, count)| u64::from(first) + u64::from(count))
     })
 }
 
@@ -116,7 +150,8 @@ pub const MAX_TRIANGLES: u64 = (1 << 30) - 2;
 /// The draws of `scene` as `view` sees it, in instance order, for a stack without scopes.
 ///
 /// # Errors
-/// If there are more than [`MAX_TRIANGLES`] triangles or vertices, or a matrix entry reaches [`MAX_MAGNITUDE`].
+/// If there are more than [`MAX_TRIANGLES`] triangles or vertices, or a matrix entry reaches
+/// [`MAX_MAGNITUDE`].
 pub fn draws(scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
     scoped_draws(scene, view, &[])
 }
@@ -126,34 +161,82 @@ pub fn draws(scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
 /// # Errors
 /// As [`draws`].
 pub fn scoped_draws(scene: &Scene, view: &View, scopes: &[Scope]) -> Result<Vec<Draw>, DrawError> {
-    for (what, count) in [("triangles", scene.triangle_count()), ("vertices", scene.vertex_count())] {
+    for (what, count) in [
+        ("triangles", scene.triangle_count()),
+        ("vertices", scene.vertex_count()),
+    ] {
         if count > MAX_TRIANGLES {
-            return Err(DrawError::TooMany { what, count, limit: MAX_TRIANGLES });
+            return Err(DrawError::TooMany {
+                what,
+                count,
+                limit: MAX_TRIANGLES,
+            });
         }
     }
-    let at_rest = if view.scene_state.pose.is_none() { Pose::at_rest(scene) } else { None };
+    let at_rest = if view.scene_state.pose.is_none() {
+        Pose::at_rest(scene)
+    } else {
+        None
+    };
     let pose = view.scene_state.pose.as_deref().or(at_rest.as_ref());
     let turning = scene.instances.len() - scene.walls;
     // The view of a light leaves out ground and walls, which are last in the list.
-    let drawn = if view.is_light() { scene.shadow_casters() } else { &scene.instances };
-    let masks = if scopes.is_empty() { Vec::new() } else { scope_masks(scene, scopes) };
+    let drawn = if view.is_light() {
+        scene.shadow_casters()
+    } else {
+        &scene.instances
+    };
+    let masks = if scopes.is_empty() {
+        Vec::new()
+    } else {
+        scope_masks(scene, scopes)
+    };
     let (mut first_vertex, mut first_triangle, mut first_deformable) = (0, 0, 0);
     let make_draw = |(index, instance): (usize, &Instance)| {
         let primitive = &scene.primitives[instance.primitive];
         let deform = pose.and_then(|pose| pose.deform(index)).cloned();
-        let world_from_scene = if index < turning { view.scene_state.world_from_scene } else { DMat4::IDENTITY };
-        let world_from_object = world_from_scene * pose.map_or(instance.world_from_object, |pose| pose.instance_transform(index));
-        let bounds = deform.as_ref().map_or(primitive.bounds, |deform| deform.bounds(primitive));
-        let origin =
-            if view.precision.is_relative { nearest(&bounds, world_from_object.inverse().transform_point3(view.eye)) } else { [0.0; 3] };
+        let world_from_scene = if index < turning {
+            view.scene_state.world_from_scene
+        } else {
+            DMat4::IDENTITY
+        };
+        let world_from_object = world_from_scene
+            * pose.map_or(instance.world_from_object, |pose| {
+                pose.instance_transform(index)
+            });
+        let bounds = deform
+            .as_ref()
+            .map_or(primitive.bounds, |deform| deform.bounds(primitive));
+        let origin = if view.precision.is_relative {
+            nearest(
+                &bounds,
+                world_from_object.inverse().transform_point3(view.eye),
+            )
+        } else {
+            [0.0; 3]
+        };
         let moved = DMat4::from_translation(DVec3::from_array(origin.map(f64::from)));
         let clip_from_object = rounded_columns(&(view.clip_from_world * world_from_object * moved));
-        let entries = clip_from_object.iter().flatten().map(|&v| f64::from(v)).chain(world_from_object.to_cols_array());
-        let joints =
-            deform.iter().filter_map(|deform| deform.joint_transforms.as_ref()).flat_map(|joint_transforms| joint_transforms.matrices());
-        let entries = entries.chain(view.clip_from_world.to_cols_array()).chain(joints.flat_map(|joint| joint.to_cols_array()));
-        if let Some(value) = entries.into_iter().find(|v| !v.is_finite() || v.abs() >= MAX_MAGNITUDE) {
-            return Err(DrawError::Matrix { instance: primitive.name.clone(), value });
+        let entries = clip_from_object
+            .iter()
+            .flatten()
+            .map(|&v| f64::from(v))
+            .chain(world_from_object.to_cols_array());
+        let joints = deform
+            .iter()
+            .filter_map(|deform| deform.joint_transforms.as_ref())
+            .flat_map(|joint_transforms| joint_transforms.matrices());
+        let entries = entries
+            .chain(view.clip_from_world.to_cols_array())
+            .chain(joints.flat_map(|joint| joint.to_cols_array()));
+        if let Some(value) = entries
+            .into_iter()
+            .find(|v| !v.is_finite() || v.abs() >= MAX_MAGNITUDE)
+        {
+            return Err(DrawError::Matrix {
+                instance: primitive.name.clone(),
+                value,
+            });
         }
         let draw = Draw {
             primitive: instance.primitive,
@@ -163,12 +246,17 @@ pub fn scoped_draws(scene: &Scene, view: &View, scopes: &[Scope]) -> Result<Vec<
             clip_from_object,
             world_from_object,
             double_sided: scene.materials[primitive.material].double_sided || view.is_light(),
-            mirrored: (world_from_object.determinant() < 0.0) != deform.as_ref().is_some_and(Deform::mirrors),
+            mirrored: (world_from_object.determinant() < 0.0)
+                != deform.as_ref().is_some_and(Deform::mirrors),
             deform,
             first_deformable,
             scopes: masks.get(index).copied().unwrap_or_default(),
         };
-        first_deformable += if primitive.deformation.is_none() { 0 } else { primitive.vertex_count() };
+        first_deformable += if primitive.deformation.is_none() {
+            0
+        } else {
+            primitive.vertex_count()
+        };
         first_vertex += primitive.vertex_count();
         first_triangle += primitive.triangle_count();
         Ok(draw)

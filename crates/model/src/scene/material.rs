@@ -10,7 +10,8 @@ pub struct Material {
     pub base_color: [f32; 4],
     /// Multiplies the base color. Its alpha is used only with an `alpha_cutoff`.
     pub base_texture: Option<Texture>,
-    /// Samples are drawn only where the alpha of the base texture is at least this. From 0 up; nothing is drawn above 1.
+    /// Samples are drawn only where the alpha of the base texture is at least this. From 0 up;
+    /// nothing is drawn above 1.
     pub alpha_cutoff: Option<f32>,
     /// Emitted light, linear RGB, from 0 up.
     pub emission: [f32; 3],
@@ -28,14 +29,17 @@ impl Material {
         [self.base_texture.as_ref(), self.emission_texture.as_ref()]
     }
 
-    /// The smallest alpha that is drawn, in units of 2^-16 / 255. `None` where alpha discards nothing.
+    /// The smallest alpha that is drawn, in units of 2^-16 / 255. `None` where alpha discards
+    /// nothing.
     pub fn alpha_threshold(&self) -> Option<u32> {
         let alpha_cutoff = self.alpha_cutoff.filter(|_| self.base_texture.is_some())?;
-        // A cutoff of k/255 is rounded to f32, which may lift it by half a unit; an alpha byte of k must still pass.
+        // A cutoff of k/255 is rounded to f32, which may lift it by half a unit; an alpha byte of k
+        // must still pass.
         Some((f64::from(alpha_cutoff) * 255.0 * 65_536.0 - 0.5).ceil() as u32)
     }
 
-    /// Returns true if the material has a base color and nothing else: no texture, no emission, affected by light.
+    /// Returns true if the material has a base color and nothing else: no texture, no emission,
+    /// affected by light.
     pub fn is_plain(&self) -> bool {
         self.textures() == [None, None] && self.emission == [0.0; 3] && !self.unlit
     }

@@ -1,4 +1,5 @@
-//! The memory budget: how much memory opening a scene may take. It is checked before memory is taken.
+//! The memory budget: how much memory opening a scene may take. It is checked before memory is
+//! taken.
 
 use std::{
     fmt,
@@ -75,7 +76,9 @@ impl FromStr for MemoryBudget {
 /// It is no such number: what it must be, a part of a sentence.
 pub fn read_size(text: &str) -> Result<u64, String> {
     let units = [("MiB", MIB), ("GiB", GIB), ("TiB", 1024 * GIB)];
-    let read = |(unit, size): &(&str, u64)| Some(text.strip_suffix(unit)?.trim_end().parse::<f64>().ok()? * *size as f64);
+    let read = |(unit, size): &(&str, u64)| {
+        Some(text.strip_suffix(unit)?.trim_end().parse::<f64>().ok()? * *size as f64)
+    };
     match units.iter().find_map(read) {
         Some(bytes) if (0.0..=2f64.powi(60)).contains(&bytes) => Ok(bytes as u64),
         _ => Err("it must be a number with a unit, for instance 8GiB or 1500MiB".into()),
@@ -88,13 +91,18 @@ mod tests {
 
     #[test]
     fn budgets_are_read_and_shown_with_their_unit() {
-        let shown = |text: &str| text.parse::<MemoryBudget>().map(|budget| budget.to_string());
+        let shown = |text: &str| {
+            text.parse::<MemoryBudget>()
+                .map(|budget| budget.to_string())
+        };
         assert_eq!(shown("8GiB"), Ok("8 GiB".into()));
         assert_eq!(shown("1500 MiB"), Ok("1500 MiB".into()));
         assert_eq!(shown("2.5GiB"), Ok("2.5 GiB".into()));
         assert_eq!(shown("1TiB"), Ok("1024 GiB".into()));
         assert_eq!(shown("1MiB"), Err("it must be at least 1280 MiB".into()));
-        for wrong in ["", "8", "GiB", "8GB", "NaNGiB", "infGiB", "-8GiB", "1e30TiB"] {
+        for wrong in [
+            "", "8", "GiB", "8GB", "NaNGiB", "infGiB", "-8GiB", "1e30TiB",
+        ] {
             assert!(shown(wrong).is_err(), "{wrong}");
         }
     }

@@ -44,19 +44,22 @@ impl MeshBuilder {
     /// Adds a vertex and returns its index. `normal` is normalized; it must not be zero.
     pub fn vertex(&mut self, position: DVec3, normal: DVec3) -> u32 {
         self.positions.push(position.as_vec3().into());
-        self.normals.push(normal.normalize_or(DVec3::Y).as_vec3().into());
+        self.normals
+            .push(normal.normalize_or(DVec3::Y).as_vec3().into());
         self.positions.len() as u32 - 1
     }
 
-    /// Adds a vertex with a linear color, each channel in [0, 1]. Either all vertices of a mesh have a color, or none.
+    /// Adds a vertex with a linear color, each channel in [0, 1]. Either all vertices of a mesh
+    /// have a color, or none.
     pub fn colored_vertex(&mut self, position: DVec3, normal: DVec3, color: [f64; 3]) -> u32 {
         let byte = |channel: f64| (channel.clamp(0.0, 1.0) * 255.0).round() as u8;
-        self.colors.push([byte(color[0]), byte(color[1]), byte(color[2]), 255]);
+        self.colors
+            .push([byte(color[0]), byte(color[1]), byte(color[2]), 255]);
         self.vertex(position, normal)
     }
 
-    /// Adds a vertex with texture coordinates: 0 at the left and top edges of the image, 1 at the right and bottom ones. Either
-    /// all vertices of a mesh have them, or none.
+    /// Adds a vertex with texture coordinates: 0 at the left and top edges of the image, 1 at the
+    /// right and bottom ones. Either all vertices of a mesh have them, or none.
     pub fn textured_vertex(&mut self, position: DVec3, normal: DVec3, texcoords: [f64; 2]) -> u32 {
         self.texcoords.push(texcoords.map(|v| v as f32));
         self.vertex(position, normal)
@@ -90,16 +93,18 @@ impl MeshBuilder {
         Ring { first, count }
     }
 
-    /// Triangulates the band between two loops, `upper` above `lower`, both counter-clockwise seen from above. Their counts may
-    /// differ. A pole makes a fan, so no triangle is degenerate.
+    /// Triangulates the band between two loops, `upper` above `lower`, both counter-clockwise seen
+    /// from above. Their counts may differ. A pole makes a fan, so no triangle is degenerate.
     pub fn band(&mut self, lower: Ring, upper: Ring) {
         let (mut i, mut j) = (0, 0);
         let last = |ring: Ring| if ring.count == 1 { 0 } else { ring.count };
         let at = |ring: Ring, i: u32| ring.first + if i == ring.count { 0 } else { i };
         while i < last(lower) || j < last(upper) {
             let (a, b) = (at(lower, i), at(upper, j));
-            // Advance on the loop whose next edge has its midpoint further back: this keeps the diagonals short.
-            let behind = u64::from(2 * i + 1) * u64::from(upper.count) <= u64::from(2 * j + 1) * u64::from(lower.count);
+            // Advance on the loop whose next edge has its midpoint further back: this keeps the
+            // diagonals short.
+            let behind = u64::from(2 * i + 1) * u64::from(upper.count)
+                <= u64::from(2 * j + 1) * u64::from(lower.count);
             if j == last(upper) || (i < last(lower) && behind) {
                 i += 1;
                 self.triangle([a, at(lower, i), b]);
@@ -112,19 +117,37 @@ impl MeshBuilder {
 
     /// Appends the mesh to `scene` as a primitive and returns its index.
     pub fn append(self, scene: &mut Scene, name: &str, material: usize) -> usize {
-        let Self { positions, normals, colors, texcoords, indices } = self;
+        let Self {
+            positions,
+            normals,
+            colors,
+            texcoords,
+            indices,
+        } = self;
         let (bounds, longest_edge) = (bounds(&positions), longest_edge(&positions, &indices));
         let start = scene.vertex_bytes.len();
-        scene.vertex_bytes.reserve_exact(positions.len() * if colors.is_empty() { 24 } else { 28 });
-        scene.vertex_bytes.extend_from_slice(bytemuck::cast_slice(&positions));
+        scene
+            .vertex_bytes
+            .reserve_exact(positions.len() * if colors.is_empty() { 24 } else { 28 });
+        scene
+            .vertex_bytes
+            .extend_from_slice(bytemuck::cast_slice(&positions));
         let normals_at = scene.vertex_bytes.len();
-        scene.vertex_bytes.extend_from_slice(bytemuck::cast_slice(&normals));
+        scene
+            .vertex_bytes
+            .extend_from_slice(bytemuck::cast_slice(&normals));
         let colors_at = scene.vertex_bytes.len();
-        scene.vertex_bytes.extend_from_slice(bytemuck::cast_slice(&colors));
+        scene
+            .vertex_bytes
+            .extend_from_slice(bytemuck::cast_slice(&colors));
         let coords_at = scene.vertex_bytes.len();
-        scene.vertex_bytes.extend_from_slice(bytemuck::cast_slice(&texcoords));
+        scene
+            .vertex_bytes
+            .extend_from_slice(bytemuck::cast_slice(&texcoords));
         let indices_at = scene.index_bytes.len();
-        scene.index_bytes.extend_from_slice(bytemuck::cast_slice(&indices));
+        scene
+            .index_bytes
+            .extend_from_slice(bytemuck::cast_slice(&indices));
         let byte_color = Accessor {
             offset: colors_at as u32,
             stride: 4,
@@ -148,7 +171,11 @@ impl MeshBuilder {
             positions: Accessor::packed_f32(start, 3, positions.len()),
             normals: Accessor::packed_f32(normals_at, 3, normals.len()),
             colors: (!colors.is_empty()).then_some(byte_color),
-            texcoords: [(!texcoords.is_empty()).then_some(Accessor::packed_f32(coords_at, 2, texcoords.len())); 2],
+            texcoords: [(!texcoords.is_empty()).then_some(Accessor::packed_f32(
+                coords_at,
+                2,
+                texcoords.len(),
+            )); 2],
             material,
             bounds,
             longest_edge,
@@ -157,14 +184,18 @@ impl MeshBuilder {
         });
         let index = scene.primitives.len() - 1;
         // The scene of canceled work is thrown away.
-        scene.primitives[index].normals_agree = scene.primitives[index].normals_agree(scene).unwrap_or_default();
+        scene.primitives[index].normals_agree = scene.primitives[index]
+            .normals_agree(scene)
+            .unwrap_or_default();
         index
     }
 }
 
 fn bounds(positions: &[[f32; 3]]) -> Bounds {
     let mut bounds = Bounds::EMPTY;
-    positions.iter().for_each(|&p| bounds.include(p.map(f64::from).into()));
+    positions
+        .iter()
+        .for_each(|&p| bounds.include(p.map(f64::from).into()));
     bounds
 }
 
@@ -172,7 +203,15 @@ fn longest_edge(positions: &[[f32; 3]], indices: &[u32]) -> f64 {
     let at = |i: u32| DVec3::from(positions[i as usize].map(f64::from));
     let edge = |&[a, b, c]: &[u32; 3]| {
         let (a, b, c) = (at(a), at(b), at(c));
-        a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a))
+        a.distance_squared(b)
+            .max(b.distance_squared(c))
+            .max(c.distance_squared(a))
     };
-    indices.as_chunks().0.iter().map(edge).fold(0.0, f64::max).sqrt()
+    indices
+        .as_chunks()
+        .0
+        .iter()
+        .map(edge)
+        .fold(0.0, f64::max)
+        .sqrt()
 }

@@ -1,8 +1,9 @@
-//! Meshlets: clusters of a mesh's triangles that can be culled as a whole, with bounds that are conservative after rounding.
+//! Meshlets: clusters of a mesh's triangles that can be culled as a whole, with bounds that are
+//! conservative after rounding.
 //!
-//! A meshlet lists triangles by their index in the primitive, so triangle ids and their order do not change. Clusters grow
-//! from a seed over shared vertices, which keeps them round. Seeds are taken in Morton order (Morton 1966), which keeps
-//! left-over and unconnected triangles together.
+//! A meshlet lists triangles by their index in the primitive, so triangle ids and their order do
+//! not change. Clusters grow from a seed over shared vertices, which keeps them round. Seeds are
+//! taken in Morton order (Morton 1966), which keeps left-over and unconnected triangles together.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -34,8 +35,8 @@ pub struct Meshlet {
     /// Cosine of the cone's half angle, rounded down, and its sine, rounded up.
     pub cos: f32,
     pub sin: f32,
-    /// The smallest altitude of a triangle, rounded down. 0 where the cone cannot cull: a triangle has no area, or two face away
-    /// from each other.
+    /// The smallest altitude of a triangle, rounded down. 0 where the cone cannot cull: a triangle
+    /// has no area, or two face away from each other.
     pub altitude: f32,
 }
 
@@ -54,12 +55,19 @@ impl Meshlets {
     /// Divides a primitive into meshlets.
     pub fn of(scene: &Scene, primitive: &Primitive) -> Self {
         let last = primitive.vertex_count().max(1) - 1;
-        let corners: Vec<[u32; 3]> =
-            (0..primitive.triangle_count()).into_par_iter().map(|t| primitive.corners(scene, t).map(|vertex| vertex.min(last))).collect();
-        let positions: Vec<[f32; 3]> =
-            (0..primitive.vertex_count()).into_par_iter().map(|vertex| primitive.position(scene, vertex)).collect();
-        let builder =
-            Builder { positions: &positions, corners: &corners, is_exact: primitive.positions.component_type == ComponentType::F32 };
+        let corners: Vec<[u32; 3]> = (0..primitive.triangle_count())
+            .into_par_iter()
+            .map(|t| primitive.corners(scene, t).map(|vertex| vertex.min(last)))
+            .collect();
+        let positions: Vec<[f32; 3]> = (0..primitive.vertex_count())
+            .into_par_iter()
+            .map(|vertex| primitive.position(scene, vertex))
+            .collect();
+        let builder = Builder {
+            positions: &positions,
+            corners: &corners,
+            is_exact: primitive.positions.component_type == ComponentType::F32,
+        };
         let mut meshlets = Self::default();
         let mut stamps = vec![u32::MAX; positions.len()];
         for cluster in builder.clusters(&primitive.bounds) {
@@ -81,7 +89,11 @@ fn to_f64(position: [f32; 3]) -> DVec3 {
 /// The smallest f32 that is not below `value`.
 pub fn rounded_up(value: f64) -> f32 {
     let near = value as f32;
-    if f64::from(near) < value { near.next_up() } else { near }
+    if f64::from(near) < value {
+        near.next_up()
+    } else {
+        near
+    }
 }
 
 /// Center and half extents of a box, grown by `margin` times its coordinates and rounded outwards.
@@ -91,7 +103,10 @@ pub fn center_and_half(bounds: &Bounds, fraction: f64) -> ([f32; 3], [f32; 3]) {
     }
     // Coordinates beyond this limit are not drawn.
     let limit = DVec3::splat(MAX_MAGNITUDE);
-    let (min, max) = (bounds.min.clamp(-limit, limit), bounds.max.clamp(-limit, limit));
+    let (min, max) = (
+        bounds.min.clamp(-limit, limit),
+        bounds.max.clamp(-limit, limit),
+    );
     let center = ((min + max) * 0.5).as_vec3();
     let middle = center.as_dvec3();
     let half = (max - middle).max(middle - min) + min.abs().max(max.abs()) * (fraction + 1e-15);
@@ -116,8 +131,13 @@ impl Builder<'_> {
             if is_taken[seed as usize] {
                 continue;
             }
-            if cluster.len() == MESHLET_TRIANGLES || cluster.len() >= MESHLET_TRIANGLES / 4 && self.is_far(&cluster, seed) {
-                clusters.push(std::mem::replace(&mut cluster, Vec::with_capacity(MESHLET_TRIANGLES)));
+            if cluster.len() == MESHLET_TRIANGLES
+                || cluster.len() >= MESHLET_TRIANGLES / 4 && self.is_far(&cluster, seed)
+            {
+                clusters.push(std::mem::replace(
+                    &mut cluster,
+                    Vec::with_capacity(MESHLET_TRIANGLES),
+                ));
                 grown = 0;
             }
             is_taken[seed as usize] = true;
@@ -125,7 +145,8 @@ impl Builder<'_> {
             // Breadth-first: the cluster is its own queue.
             while grown < cluster.len() {
                 for vertex in self.corners[cluster[grown] as usize] {
-                    let [first, end] = [vertex, vertex + 1].map(|vertex| first_triangles[vertex as usize] as usize);
+                    let [first, end] = [vertex, vertex + 1]
+                        .map(|vertex| first_triangles[vertex as usize] as usize);
                     for &neighbor in &triangles_around[first..end] {
                         if cluster.len() < MESHLET_TRIANGLES && !is_taken[neighbor as usize] {
                             is_taken[neighbor as usize] = true;
@@ -142,10 +163,14 @@ impl Builder<'_> {
         clusters
     }
 
-    /// The triangles around each vertex: the first index of each vertex's list, and all lists concatenated.
+    /// The triangles around each vertex: the first index of each vertex's list, and all lists
+    /// concatenated.
     fn triangles_around(&self) -> (Vec<u32>, Vec<u32>) {
         let mut first_triangles = vec![0u32; self.positions.len() + 2];
-        self.corners.iter().flatten().for_each(|&vertex| first_triangles[vertex as usize + 2] += 1);
+        self.corners
+            .iter()
+            .flatten()
+            .for_each(|&vertex| first_triangles[vertex as usize + 2] += 1);
         for vertex in 2..first_triangles.len() {
             first_triangles[vertex] += first_triangles[vertex - 1];
         }
@@ -168,7 +193,8 @@ impl Builder<'_> {
             .par_iter()
             .enumerate()
             .map(|(triangle, corners)| {
-                let position = (to_f64(self.positions[corners[0] as usize]) - bounds.min) / sides * f64::from((1 << 21) - 1);
+                let position = (to_f64(self.positions[corners[0] as usize]) - bounds.min) / sides
+                    * f64::from((1 << 21) - 1);
                 // NaN becomes 0.
                 let bits = [position.x, position.y, position.z].map(|v| spread(v as u64));
                 (bits[0] | bits[1] << 1 | bits[2] << 2, triangle as u32)
@@ -181,7 +207,10 @@ impl Builder<'_> {
     /// Returns true if a triangle is farther from the cluster than the cluster is wide.
     fn is_far(&self, cluster: &[u32], triangle: u32) -> bool {
         let mut hull = Bounds::EMPTY;
-        cluster.iter().flat_map(|&t| self.corners[t as usize]).for_each(|vertex| hull.include(to_f64(self.positions[vertex as usize])));
+        cluster
+            .iter()
+            .flat_map(|&t| self.corners[t as usize])
+            .for_each(|vertex| hull.include(to_f64(self.positions[vertex as usize])));
         let position = to_f64(self.positions[self.corners[triangle as usize][0] as usize]);
         (position.clamp(hull.min, hull.max) - position).length() > 2.0 * hull.radius()
     }
@@ -192,7 +221,10 @@ impl Builder<'_> {
         let (number, first_vertex) = (meshlets.list.len() as u32, meshlets.vertices.len() as u32);
         let mut bounds = Bounds::EMPTY;
         let mut faces = Faces::default();
-        for corners in cluster.iter().map(|&triangle| self.corners[triangle as usize]) {
+        for corners in cluster
+            .iter()
+            .map(|&triangle| self.corners[triangle as usize])
+        {
             for vertex in corners {
                 if stamps[vertex as usize] != number {
                     stamps[vertex as usize] = number;
@@ -201,11 +233,20 @@ impl Builder<'_> {
             }
             let positions = corners.map(|vertex| self.positions[vertex as usize]);
             if positions.into_iter().all(is_drawable) {
-                positions.into_iter().for_each(|position| bounds.include(to_f64(position)));
+                positions
+                    .into_iter()
+                    .for_each(|position| bounds.include(to_f64(position)));
                 faces.add(positions);
             }
         }
-        let (center, half) = center_and_half(&bounds, if self.is_exact { 0.0 } else { 1.0 / f64::from(1 << 20) });
+        let (center, half) = center_and_half(
+            &bounds,
+            if self.is_exact {
+                0.0
+            } else {
+                1.0 / f64::from(1 << 20)
+            },
+        );
         let (axis, cos, sin, altitude) = faces.cone();
         meshlets.list.push(Meshlet {
             first_triangle: meshlets.triangles.len() as u32,
@@ -243,7 +284,10 @@ struct Faces {
 impl Faces {
     fn add(&mut self, positions: [[f32; 3]; 3]) {
         // A triangle with two equal corners never has an area.
-        if positions[0] == positions[1] || positions[1] == positions[2] || positions[2] == positions[0] {
+        if positions[0] == positions[1]
+            || positions[1] == positions[2]
+            || positions[2] == positions[0]
+        {
             return;
         }
         let [a, b, c] = positions.map(to_f64);
@@ -257,14 +301,29 @@ impl Faces {
     /// Axis of the normal cone, cosine and sine of its half angle, and the smallest altitude.
     fn cone(&self) -> ([f32; 3], f32, f32, f32) {
         const NONE: ([f32; 3], f32, f32, f32) = ([0.0; 3], 0.0, 1.0, 0.0);
-        let axis = self.normals.iter().sum::<DVec3>().normalize_or_zero().as_vec3();
+        let axis = self
+            .normals
+            .iter()
+            .sum::<DVec3>()
+            .normalize_or_zero()
+            .as_vec3();
         let exact = axis.as_dvec3().normalize_or_zero();
-        let least = self.normals.iter().map(|normal| normal.dot(exact)).fold(1.0, f64::min) - 1e-6;
+        let least = self
+            .normals
+            .iter()
+            .map(|normal| normal.dot(exact))
+            .fold(1.0, f64::min)
+            - 1e-6;
         let altitude = self.altitude.unwrap_or(0.0) * (1.0 - 1e-6);
         // Smaller altitudes could underflow in products.
         if self.normals.is_empty() || least <= 0.0 || altitude < 1e-18 {
             return NONE;
         }
-        (axis.into(), (least as f32).next_down(), rounded_up((1.0 - least * least).max(0.0).sqrt()), (altitude as f32).next_down())
+        (
+            axis.into(),
+            (least as f32).next_down(),
+            rounded_up((1.0 - least * least).max(0.0).sqrt()),
+            (altitude as f32).next_down(),
+        )
     }
 }

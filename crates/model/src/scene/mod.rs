@@ -1,7 +1,9 @@
-//! Scenes as plain data: meshes, materials, instances, cameras, skeletons and clips, and the bytes that hold their attributes.
+//! Scenes as plain data: meshes, materials, instances, cameras, skeletons and clips, and the bytes
+//! that hold their attributes.
 //!
-//! Attribute and index bytes are never repacked. An [`Accessor`] says where a value lies, and the vertex shaders and the
-//! oracle both read it from there. Attributes that a file lacks (normals) are appended as more bytes by the loader.
+//! Attribute and index bytes are never repacked. An [`Accessor`] says where a value lies, and the
+//! vertex shaders and the oracle both read it from there. Attributes that a file lacks (normals)
+//! are appended as more bytes by the loader.
 
 pub mod accessor;
 pub mod background;

@@ -13,7 +13,8 @@ use super::{
 };
 use crate::work::{Canceled, map_parts};
 
-/// How consecutive corners form triangles. A corner is a position in the index list, or in the vertex list without indices.
+/// How consecutive corners form triangles. A corner is a position in the index list, or in the
+/// vertex list without indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum Topology {
@@ -50,7 +51,8 @@ pub struct Primitive {
     pub mesh: String,
     /// How corners form triangles.
     pub topology: Topology,
-    /// One unsigned integer component, in `Scene::index_bytes`. `None`: the corners are the vertices in order.
+    /// One unsigned integer component, in `Scene::index_bytes`. `None`: the corners are the
+    /// vertices in order.
     pub indices: Option<Accessor>,
     /// Object space, three components, in `Scene::vertex_bytes` as all attributes are.
     pub positions: Accessor,
@@ -58,8 +60,8 @@ pub struct Primitive {
     pub normals: Accessor,
     /// Linear RGB or RGBA, three or four components.
     pub colors: Option<Accessor>,
-    /// Texture coordinates of the base color and of the emission, two components each. Present wherever the material has
-    /// that texture.
+    /// Texture coordinates of the base color and of the emission, two components each. Present
+    /// wherever the material has that texture.
     pub texcoords: [Option<Accessor>; 2],
     /// Index into `Scene::materials`.
     pub material: usize,
@@ -67,7 +69,8 @@ pub struct Primitive {
     pub bounds: Bounds,
     /// Length of the longest triangle edge in object space, or an upper bound of it.
     pub longest_edge: f64,
-    /// True if no interpolated normal can be near zero ([`Primitive::normals_agree`]). False is always safe.
+    /// True if no interpolated normal can be near zero ([`Primitive::normals_agree`]). False is
+    /// always safe.
     pub normals_agree: bool,
     /// Joint influences and morph targets, if it has any.
     pub deformation: Deformation,
@@ -81,7 +84,10 @@ impl Primitive {
 
     /// The number of triangles.
     pub fn triangle_count(&self) -> u32 {
-        self.topology.triangles(self.indices.map_or(self.positions.count, |indices| indices.count))
+        self.topology.triangles(
+            self.indices
+                .map_or(self.positions.count, |indices| indices.count),
+        )
     }
 
     /// The three vertex indices of triangle `t`.
@@ -94,8 +100,9 @@ impl Primitive {
         }
     }
 
-    /// Returns true if all normals are finite, have a length between 1/2 and 2, and lie within 90 degrees of each other in every
-    /// triangle. Their interpolations are then at least 1/4 long and never need a substitute.
+    /// Returns true if all normals are finite, have a length between 1/2 and 2, and lie within 90
+    /// degrees of each other in every triangle. Their interpolations are then at least 1/4 long
+    /// and never need a substitute.
     ///
     /// # Errors
     /// The work was canceled.
@@ -104,9 +111,18 @@ impl Primitive {
         let is_sound = |n: DVec3| (0.25..=4.0).contains(&n.length_squared());
         let agree = |t: u32| {
             let [a, b, c] = self.corners(scene, t).map(normal);
-            is_sound(a) && is_sound(b) && is_sound(c) && a.dot(b) >= 0.0 && b.dot(c) >= 0.0 && c.dot(a) >= 0.0
+            is_sound(a)
+                && is_sound(b)
+                && is_sound(c)
+                && a.dot(b) >= 0.0
+                && b.dot(c) >= 0.0
+                && c.dot(a) >= 0.0
         };
-        Ok(map_parts(self.triangle_count(), |mut part| part.all(agree))?.into_iter().all(|agree| agree))
+        Ok(
+            map_parts(self.triangle_count(), |mut part| part.all(agree))?
+                .into_iter()
+                .all(|agree| agree),
+        )
     }
 
     /// The box of all positions that can be drawn: finite, and below the largest magnitude.
@@ -115,16 +131,21 @@ impl Primitive {
         if known.is_empty() || known.min.abs().max(known.max.abs()).max_element() < MAX_MAGNITUDE {
             return *known;
         }
-        let places = (0..self.vertex_count()).map(|vertex| DVec3::from(self.position(scene, vertex).map(f64::from)));
+        let places = (0..self.vertex_count())
+            .map(|vertex| DVec3::from(self.position(scene, vertex).map(f64::from)));
         let mut bounds = Bounds::EMPTY;
-        places.filter(|place| place.is_finite() && place.abs().max_element() < MAX_MAGNITUDE).for_each(|place| bounds.include(place));
+        places
+            .filter(|place| place.is_finite() && place.abs().max_element() < MAX_MAGNITUDE)
+            .for_each(|place| bounds.include(place));
         bounds
     }
 
     /// Position of a vertex in object space as it is stored, normalized where the accessor says so.
     #[inline]
     pub fn position(&self, scene: &Scene, vertex: u32) -> [f32; 3] {
-        self.positions.vector(&scene.vertex_bytes, vertex).map(|value| value as f32)
+        self.positions
+            .vector(&scene.vertex_bytes, vertex)
+            .map(|value| value as f32)
     }
 }
 
@@ -135,7 +156,8 @@ pub struct Instance {
     pub primitive: usize,
     /// Transform in the rest pose. The identity if it has a skin, whose joints place the vertices.
     pub world_from_object: DMat4,
-    /// The node of `Scene::rig` whose transform and morph weights it uses. `None`: no clip moves it.
+    /// The node of `Scene::rig` whose transform and morph weights it uses. `None`: no clip moves
+    /// it.
     pub node: Option<usize>,
     /// The skin of `Scene::rig` whose joints move its vertices.
     pub skin: Option<usize>,
@@ -146,7 +168,13 @@ pub struct Instance {
 impl Instance {
     /// An instance without a node or a skin.
     pub fn fixed(primitive: usize, world_from_object: DMat4) -> Self {
-        Self { primitive, world_from_object, node: None, skin: None, named_node: None }
+        Self {
+            primitive,
+            world_from_object,
+            node: None,
+            skin: None,
+            named_node: None,
+        }
     }
 }
 
@@ -169,16 +197,29 @@ pub struct SceneCamera {
 }
 
 impl SceneCamera {
-    /// The same lens at the transform of its node: it looks along -z, +y is up, and the distance of the target is kept.
+    /// The same lens at the transform of its node: it looks along -z, +y is up, and the distance of
+    /// the target is kept.
     pub fn carried(&self, scene_from_node: &DMat4) -> Camera {
         let eye = scene_from_node.w_axis.truncate();
-        let forward = (-scene_from_node.z_axis.truncate()).try_normalize().unwrap_or_else(|| self.pose.forward());
-        let up = scene_from_node.y_axis.truncate().try_normalize().unwrap_or(self.pose.up);
-        Camera { eye, target: eye + forward * (self.pose.target - self.pose.eye).length(), up, ..self.pose }
+        let forward = (-scene_from_node.z_axis.truncate())
+            .try_normalize()
+            .unwrap_or_else(|| self.pose.forward());
+        let up = scene_from_node
+            .y_axis
+            .truncate()
+            .try_normalize()
+            .unwrap_or(self.pose.up);
+        Camera {
+            eye,
+            target: eye + forward * (self.pose.target - self.pose.eye).length(),
+            up,
+            ..self.pose
+        }
     }
 }
 
-/// Everything that can be drawn. Built by [`gltf::load`](super::gltf::load) or [`builtin::build`](super::builtin::build).
+/// Everything that can be drawn. Built by [`gltf::load`](super::gltf::load) or
+/// [`builtin::build`](super::builtin::build).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
     /// Shown to people: the file name without its extension, or the name of the built-in scene.
@@ -195,9 +236,11 @@ pub struct Scene {
     pub images: Vec<Image>,
     /// What is drawn, in order.
     pub instances: Vec<Instance>,
-    /// The number of instances at the end of the list that are walls around the others. Walls cast no shadow and do not spin.
+    /// The number of instances at the end of the list that are walls around the others. Walls cast
+    /// no shadow and do not spin.
     pub walls: usize,
-    /// The number of instances before the walls that are a ground under the others. It casts no shadow.
+    /// The number of instances before the walls that are a ground under the others. It casts no
+    /// shadow.
     pub grounds: usize,
     /// The box of what the walls surround; none without walls.
     pub content: Option<Bounds>,
@@ -218,39 +261,70 @@ pub struct Scene {
 impl Scene {
     /// The index of the camera called `name`. `#2` is the camera at index 2, under any name.
     pub fn camera(&self, name: &str) -> Option<usize> {
-        let by_index = || name.strip_prefix('#')?.parse().ok().filter(|&index: &usize| index < self.cameras.len());
-        self.cameras.iter().position(|camera| camera.name == name).or_else(by_index)
+        let by_index = || {
+            name.strip_prefix('#')?
+                .parse()
+                .ok()
+                .filter(|&index: &usize| index < self.cameras.len())
+        };
+        self.cameras
+            .iter()
+            .position(|camera| camera.name == name)
+            .or_else(by_index)
     }
 
     /// Bytes of its attributes, index lists and images.
     pub fn byte_count(&self) -> u64 {
-        let texels: usize = self.images.iter().flat_map(|image| &image.levels).map(|level| level.texels.len()).sum();
+        let texels: usize = self
+            .images
+            .iter()
+            .flat_map(|image| &image.levels)
+            .map(|level| level.texels.len())
+            .sum();
         (self.vertex_bytes.len() + self.index_bytes.len() + 4 * texels) as u64
     }
 
     /// The number of triangles of all instances.
     pub fn triangle_count(&self) -> u64 {
-        self.instances.iter().map(|instance| u64::from(self.primitives[instance.primitive].triangle_count())).sum()
+        self.instances
+            .iter()
+            .map(|instance| u64::from(self.primitives[instance.primitive].triangle_count()))
+            .sum()
     }
 
     /// The number of vertices of all instances.
     pub fn vertex_count(&self) -> u64 {
-        self.instances.iter().map(|instance| u64::from(self.primitives[instance.primitive].vertex_count())).sum()
+        self.instances
+            .iter()
+            .map(|instance| u64::from(self.primitives[instance.primitive].vertex_count()))
+            .sum()
     }
 
     /// Returns true if an alpha cutoff can discard samples of any instance.
     pub fn is_masked(&self) -> bool {
-        let materials = self.instances.iter().map(|instance| &self.materials[self.primitives[instance.primitive].material]);
-        materials.into_iter().any(|material| material.alpha_threshold().is_some())
+        let materials = self
+            .instances
+            .iter()
+            .map(|instance| &self.materials[self.primitives[instance.primitive].material]);
+        materials
+            .into_iter()
+            .any(|material| material.alpha_threshold().is_some())
     }
 
-    /// The number of vertices of all instances whose primitives have joint influences or morph targets.
+    /// The number of vertices of all instances whose primitives have joint influences or morph
+    /// targets.
     pub fn deformable_vertex_count(&self) -> u64 {
-        let soft = self.instances.iter().map(|instance| &self.primitives[instance.primitive]).filter(|p| !p.deformation.is_none());
-        soft.map(|primitive| u64::from(primitive.vertex_count())).sum()
+        let soft = self
+            .instances
+            .iter()
+            .map(|instance| &self.primitives[instance.primitive])
+            .filter(|p| !p.deformation.is_none());
+        soft.map(|primitive| u64::from(primitive.vertex_count()))
+            .sum()
     }
 
-    /// World-space box of all instances but the ground. Of a scene with a rig, [`Rig::motion_bounds`].
+    /// World-space box of all instances but the ground. Of a scene with a rig,
+    /// [`Rig::motion_bounds`].
     pub fn bounds(&self) -> Bounds {
         if !self.rig.is_empty() {
             return self.rig.motion_bounds;
@@ -268,7 +342,11 @@ impl Scene {
     pub fn bounds_of<'a>(&self, instances: impl IntoIterator<Item = &'a Instance>) -> Bounds {
         let mut bounds = Bounds::EMPTY;
         for instance in instances {
-            bounds.include_transformed(&instance.world_from_object, &self.primitives[instance.primitive].bounds, 0.0);
+            bounds.include_transformed(
+                &instance.world_from_object,
+                &self.primitives[instance.primitive].bounds,
+                0.0,
+            );
         }
         bounds
     }

@@ -1,6 +1,7 @@
 //! Needs: what a scene in a view requires of the kernels. The planner omits what is not needed.
 //!
-//! Bounds are conservative: they may require a path that no triangle takes, and never omit one that a triangle takes.
+//! Bounds are conservative: they may require a path that no triangle takes, and never omit one that
+//! a triangle takes.
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
@@ -63,12 +64,14 @@ pub struct Needs {
     pub largest_px: f64,
     /// How large triangles are, from a sample of them.
     pub sizes: TriangleSizes,
-    /// The most pixels that the box of a primitive spans on an axis; infinite where it may cross the near plane.
+    /// The most pixels that the box of a primitive spans on an axis; infinite where it may cross
+    /// the near plane.
     pub box_px: f64,
-    /// How far rounding may move a corner in the picture, pixels: from stored positions, and from positions relative to the eye. A bound
-    /// at the boxes of a sample of the instances.
+    /// How far rounding may move a corner in the picture, pixels: from stored positions, and from
+    /// positions relative to the eye. A bound at the boxes of a sample of the instances.
     pub rounding_px: [f64; 2],
-    /// Distances of the nearest and farthest corner of the scene's box along the viewing direction.
+    /// Distances of the nearest and farthest corner of the scene's box along the viewing
+    /// direction.
     pub depth_m: [f64; 2],
     /// Distance of the near plane, where there is one.
     pub near_m: f64,
@@ -81,19 +84,34 @@ impl Needs {
     pub fn of(scene: &Scene, draws: &[Draw], view: &View) -> Self {
         let drawn = || draws.iter().map(|draw| &scene.primitives[draw.primitive]);
         // Deformed vertices are stored as f32, in place of any other format.
-        let unbent = || draws.iter().filter(|draw| draw.deform.is_none()).map(|draw| &scene.primitives[draw.primitive]);
-        let mut painted: Vec<usize> = drawn().map(|p| p.material).filter(|&material| !scene.materials[material].is_plain()).collect();
+        let unbent = || {
+            draws
+                .iter()
+                .filter(|draw| draw.deform.is_none())
+                .map(|draw| &scene.primitives[draw.primitive])
+        };
+        let mut painted: Vec<usize> = drawn()
+            .map(|p| p.material)
+            .filter(|&material| !scene.materials[material].is_plain())
+            .collect();
         painted.sort_unstable();
         painted.dedup();
-        let all_f32 = |pick: fn(&Primitive) -> ComponentType| unbent().all(|p| pick(p) == ComponentType::F32);
-        let largest_px = draws.iter().map(|draw| largest_px(&scene.primitives[draw.primitive], draw, view)).fold(0.0, f64::max);
+        let all_f32 =
+            |pick: fn(&Primitive) -> ComponentType| unbent().all(|p| pick(p) == ComponentType::F32);
+        let largest_px = draws
+            .iter()
+            .map(|draw| largest_px(&scene.primitives[draw.primitive], draw, view))
+            .fold(0.0, f64::max);
         Self {
             size: [view.width, view.height],
             triangles: scene.triangle_count(),
             vertices: scene.vertex_count(),
             draws: draws.len(),
             indexed: drawn().any(|p| p.indices.is_some()),
-            u32_indices: drawn().all(|p| p.indices.is_some_and(|i| i.component_type == ComponentType::U32 && i.stride == 4)),
+            u32_indices: drawn().all(|p| {
+                p.indices
+                    .is_some_and(|i| i.component_type == ComponentType::U32 && i.stride == 4)
+            }),
             has_strips_or_fans: drawn().any(|p| p.topology != Topology::List),
             f32_positions: all_f32(|p| p.positions.component_type),
             f32_normals: all_f32(|p| p.normals.component_type),
@@ -101,13 +119,20 @@ impl Needs {
             is_light: view.is_light(),
             colors: drawn().any(|p| p.colors.is_some()),
             material_count: painted.len(),
-            textured: painted.iter().filter(|material| scene.materials[**material].textures() != [None, None]).count(),
-            masked: drawn().any(|p| scene.materials[p.material].alpha_threshold().is_some()),
-            morph_targets: draws
+            textured: painted
                 .iter()
-                .any(|draw| draw.deform.as_ref().is_some_and(|deform| deform.weights.iter().any(|weight| *weight != 0.0))),
+                .filter(|material| scene.materials[**material].textures() != [None, None])
+                .count(),
+            masked: drawn().any(|p| scene.materials[p.material].alpha_threshold().is_some()),
+            morph_targets: draws.iter().any(|draw| {
+                draw.deform
+                    .as_ref()
+                    .is_some_and(|deform| deform.weights.iter().any(|weight| *weight != 0.0))
+            }),
             particle_discs: scene.particle_discs.is_some(),
-            skinning: draws.iter().find_map(|draw| Some(draw.deform.as_ref()?.joint_transforms.as_ref()?.skinning())),
+            skinning: draws
+                .iter()
+                .find_map(|draw| Some(draw.deform.as_ref()?.joint_transforms.as_ref()?.skinning())),
             moves: !scene.rig.is_empty(),
             joints: if draws.iter().any(|draw| draw.deform.is_some()) {
                 scene.rig.skins.iter().map(|skin| skin.joints.len()).sum()
@@ -121,7 +146,10 @@ impl Needs {
             clipping: largest_px.is_infinite(),
             largest_px,
             sizes: TriangleSizes::of(scene, draws, view),
-            box_px: draws.iter().map(|draw| box_px(&scene.primitives[draw.primitive], draw, view)).fold(0.0, f64::max),
+            box_px: draws
+                .iter()
+                .map(|draw| box_px(&scene.primitives[draw.primitive], draw, view))
+                .fold(0.0, f64::max),
             rounding_px: rounding_px(scene, draws, view),
             depth_m: view.depth_range_m,
             near_m: view.clip_from_world.w_axis.z.abs(),
@@ -131,15 +159,24 @@ impl Needs {
 
     /// Meters that one unit of the depth buffer spans at a distance.
     pub fn depth_unit_m(&self, at_m: f64) -> f64 {
-        if self.perspective { at_m * at_m / self.near_m.max(f64::MIN_POSITIVE) } else { self.depth_m[1] - self.depth_m[0] }
+        if self.perspective {
+            at_m * at_m / self.near_m.max(f64::MIN_POSITIVE)
+        } else {
+            self.depth_m[1] - self.depth_m[0]
+        }
     }
 
     /// Meters that a depth twice as far spans from a distance on: what a logarithm divides evenly.
     pub fn doubling_span_m(&self, at_m: f64) -> f64 {
-        if self.perspective { at_m } else { self.depth_m[1] - self.depth_m[0] }
+        if self.perspective {
+            at_m
+        } else {
+            self.depth_m[1] - self.depth_m[0]
+        }
     }
 
-    /// As if the scene might hold anything its bytes allow: nothing that depends on bounds or formats can be left out.
+    /// As if the scene might hold anything its bytes allow: nothing that depends on bounds or
+    /// formats can be left out.
     pub fn everything(&self) -> Self {
         Self {
             draws: self.draws.max(2),
@@ -163,20 +200,25 @@ fn box_px(primitive: &Primitive, draw: &Draw, view: &View) -> f64 {
     if bounds.is_empty() {
         return 0.0;
     }
-    let nearest = bounds.corners().map(|corner| draw.clip_point(corner).w).into_iter().fold(f64::INFINITY, f64::min);
+    let nearest = bounds
+        .corners()
+        .map(|corner| draw.clip_point(corner).w)
+        .into_iter()
+        .fold(f64::INFINITY, f64::min);
     if nearest <= 0.0 {
         return f64::INFINITY;
     }
     let column = |axis: usize| draw.clip_from_object[axis].map(f64::from);
     let widest = |axis: usize| {
         let across = |row: usize, pixels: u32| column(axis)[row].abs() * f64::from(pixels) * 0.5;
-        (bounds.max - bounds.min)[axis] * across(0, view.width).max(across(1, view.height)) / nearest
+        (bounds.max - bounds.min)[axis] * across(0, view.width).max(across(1, view.height))
+            / nearest
     };
     [0, 1, 2].map(widest).into_iter().fold(0.0, f64::max)
 }
 
-/// See [`Needs::rounding_px`]: the forward error bound of the vertex stage at the corners and middles of boxes, where they are
-/// in the picture.
+/// See [`Needs::rounding_px`]: the forward error bound of the vertex stage at the corners and
+/// middles of boxes, where they are in the picture.
 fn rounding_px(scene: &Scene, draws: &[Draw], view: &View) -> [f64; 2] {
     const ULP: f64 = 1.0 / (1 << 23) as f64;
     let size = [f64::from(view.width), f64::from(view.height)];
@@ -187,7 +229,11 @@ fn rounding_px(scene: &Scene, draws: &[Draw], view: &View) -> [f64; 2] {
         }
         let m = view.clip_from_world * draw.world_from_object;
         let eye = draw.world_from_object.inverse().transform_point3(view.eye);
-        let origin = if eye.is_finite() { eye.clamp(bounds.min, bounds.max) } else { DVec3::ZERO };
+        let origin = if eye.is_finite() {
+            eye.clamp(bounds.min, bounds.max)
+        } else {
+            DVec3::ZERO
+        };
         let moved = m * DMat4::from_translation(origin);
         let points = bounds.corners().into_iter().chain([bounds.center()]);
         let bound = |m: &DMat4, point: DVec3, clip: DVec4| {
@@ -197,24 +243,32 @@ fn rounding_px(scene: &Scene, draws: &[Draw], view: &View) -> [f64; 2] {
             };
             let w = clip.w;
             let along = |axis: usize| {
-                let bound = 4.0 * sums(axis) / w + (4.0 * sums(3) / w + 4.5) * (clip[axis] / w).abs();
+                let bound =
+                    4.0 * sums(axis) / w + (4.0 * sums(3) / w + 4.5) * (clip[axis] / w).abs();
                 0.5 * size[axis] * ULP * bound
             };
             along(0).max(along(1))
         };
         points.fold([0.0f64; 2], |[stored, relative], point| {
             let clip = m * point.extend(1.0);
-            let is_seen = clip.w > 0.0 && clip.z <= clip.w && clip.x.abs() <= 1.5 * clip.w && clip.y.abs() <= 1.5 * clip.w;
+            let is_seen = clip.w > 0.0
+                && clip.z <= clip.w
+                && clip.x.abs() <= 1.5 * clip.w
+                && clip.y.abs() <= 1.5 * clip.w;
             if !is_seen {
                 return [stored, relative];
             }
-            [stored.max(bound(&m, point, clip)), relative.max(bound(&moved, point - origin, clip))]
+            [
+                stored.max(bound(&m, point, clip)),
+                relative.max(bound(&moved, point - origin, clip)),
+            ]
         })
     };
     // Of many draws, a sample is enough.
     const SAMPLED: usize = 1024;
     let some = draws.iter().step_by(draws.len().div_ceil(SAMPLED).max(1));
-    some.map(of_draw).fold([0.0; 2], |[a, b], [c, d]| [a.max(c), b.max(d)])
+    some.map(of_draw)
+        .fold([0.0; 2], |[a, b], [c, d]| [a.max(c), b.max(d)])
 }
 
 /// A triangle of so many pixels that lies along the viewing direction, as near as the scene comes.
@@ -226,25 +280,35 @@ fn w_ratio(largest_px: f64, view: &View) -> f64 {
 /// Is the placement far enough from singular that a normal keeps a direction?
 fn keeps_normals(draw: &Draw) -> bool {
     let m = DMat3::from_mat4(draw.world_from_object);
-    let largest = m.to_cols_array().iter().fold(0.0, |max: f64, v| max.max(v.abs()));
+    let largest = m
+        .to_cols_array()
+        .iter()
+        .fold(0.0, |max: f64, v| max.max(v.abs()));
     largest > 0.0 && (m * (1.0 / largest)).determinant().abs() > 1e-9
 }
 
 /// Upper bound of the extent of a draw's triangles in pixels; infinite if one may need clipping.
 ///
-/// On a segment of object-space length l, clip x changes by at most |row 0| l and w by |row 3| l, hence x/w by at most
-/// (|row 0| + max|x/w| |row 3|) l / min w. Both extrema of the box are at its corners while w stays positive.
+/// On a segment of object-space length l, clip x changes by at most |row 0| l and w by |row 3| l,
+/// hence x/w by at most (|row 0| + max|x/w| |row 3|) l / min w. Both extrema of the box are at its
+/// corners while w stays positive.
 fn largest_px(primitive: &Primitive, draw: &Draw, view: &View) -> f64 {
     let bounds = draw.object_bounds(primitive);
     if bounds.is_empty() {
         return 0.0;
     }
     // No edge of a deformed mesh is longer than its box.
-    let longest_edge = if draw.deform.is_some() { 2.0 * bounds.radius() } else { primitive.longest_edge };
-    let clip_from_object = DMat4::from_cols_array_2d(&draw.clip_from_object.map(|column| column.map(f64::from)));
+    let longest_edge = if draw.deform.is_some() {
+        2.0 * bounds.radius()
+    } else {
+        primitive.longest_edge
+    };
+    let clip_from_object =
+        DMat4::from_cols_array_2d(&draw.clip_from_object.map(|column| column.map(f64::from)));
     let corners = bounds.corners().map(|corner| draw.clip_point(corner));
     let error_bound = 1.0 + 1e-4;
-    let is_before_near = |c: &DVec4| c.w <= 0.0 || c.z * error_bound > c.w && view.linear_depth_m.is_none();
+    let is_before_near =
+        |c: &DVec4| c.w <= 0.0 || c.z * error_bound > c.w && view.linear_depth_m.is_none();
     if corners.iter().any(is_before_near) {
         return f64::INFINITY;
     }
@@ -252,12 +316,17 @@ fn largest_px(primitive: &Primitive, draw: &Draw, view: &View) -> f64 {
     let linear_row = |i: usize| clip_from_object.row(i).truncate().length();
     [(0, view.width), (1, view.height)]
         .map(|(axis, pixels)| {
-            let reach = corners.iter().fold(0.0, |max: f64, c| max.max((c[axis] / c.w).abs()));
+            let reach = corners
+                .iter()
+                .fold(0.0, |max: f64, c| max.max((c[axis] / c.w).abs()));
             let half = f64::from(pixels) * 0.5;
-            if (reach + 1.0) * half * f64::from(view.units_per_pixel()) * error_bound > f64::from(GUARD_BAND) {
+            if (reach + 1.0) * half * f64::from(view.units_per_pixel()) * error_bound
+                > f64::from(GUARD_BAND)
+            {
                 return f64::INFINITY;
             }
-            (linear_row(axis) + reach * linear_row(3)) * longest_edge / min_w * half * error_bound + 1.0 / 128.0
+            (linear_row(axis) + reach * linear_row(3)) * longest_edge / min_w * half * error_bound
+                + 1.0 / 128.0
         })
         .into_iter()
         .fold(0.0, f64::max)

@@ -1,5 +1,6 @@
-//! Particle discs: discs beside a scene's meshes. Each is a triangle that faces the viewer, of which only the ellipse is
-//! drawn that touches the middles of its sides; a pass writes the corners for every picture.
+//! Particle discs: discs beside a scene's meshes. Each is a triangle that faces the viewer, of
+//! which only the ellipse is drawn that touches the middles of its sides; a pass writes the corners
+//! for every picture.
 
 use std::{borrow::Cow, sync::Arc};
 
@@ -16,7 +17,8 @@ use super::{
 /// Name of the material, mesh and node of the discs.
 pub const PARTICLES: &str = "particles";
 
-/// Bytes of a corner: position as three floats, color as three normalized u16, normal as three normalized i16.
+/// Bytes of a corner: position as three floats, color as three normalized u16, normal as three
+/// normalized i16.
 pub const CORNER_BYTES: u32 = 24;
 
 /// Words of a disc.
@@ -36,8 +38,19 @@ impl ParticleSettings {
     /// Box that holds every corner.
     pub fn disc_bounds(&self) -> Bounds {
         // Corners lie two radii away; the other term covers the rounding of floats.
-        let margin = 2.0 * self.radius_m + 1e-5 * (self.bounds.min.abs().max(self.bounds.max.abs()).max_element() + self.radius_m);
-        Bounds { min: self.bounds.min - margin, max: self.bounds.max + margin }
+        let margin = 2.0 * self.radius_m
+            + 1e-5
+                * (self
+                    .bounds
+                    .min
+                    .abs()
+                    .max(self.bounds.max.abs())
+                    .max_element()
+                    + self.radius_m);
+        Bounds {
+            min: self.bounds.min - margin,
+            max: self.bounds.max + margin,
+        }
     }
 }
 
@@ -46,7 +59,8 @@ impl ParticleSettings {
 pub struct ParticleTimeline {
     /// Steps since the beginning.
     pub frame: u32,
-    /// Parameter words of every step from the first on, `stride` each; the last hold for all later ones.
+    /// Parameter words of every step from the first on, `stride` each; the last hold for all later
+    /// ones.
     pub step_params: Arc<Vec<u32>>,
     pub stride: usize,
 }
@@ -76,15 +90,20 @@ impl ParticleTimeline {
 }
 
 impl Scene {
-    /// The scene with particles beside its meshes, as its last instance but for ground and walls. Their bytes are zeros until a pass writes them.
+    /// The scene with particles beside its meshes, as its last instance but for ground and walls.
+    /// Their bytes are zeros until a pass writes them.
     pub fn with_particles(&self, particle_settings: Option<&ParticleSettings>) -> Cow<'_, Self> {
-        let Some(particle_settings) = particle_settings.filter(|particle_settings| particle_settings.count > 0) else {
+        let Some(particle_settings) =
+            particle_settings.filter(|particle_settings| particle_settings.count > 0)
+        else {
             return Cow::Borrowed(self);
         };
         let mut scene = self.clone();
         let first = scene.vertex_bytes.len();
         let corners = 3 * particle_settings.count as usize;
-        scene.vertex_bytes.resize(first + corners * CORNER_BYTES as usize, 0);
+        scene
+            .vertex_bytes
+            .resize(first + corners * CORNER_BYTES as usize, 0);
         let accessor = |offset: usize, component_type, normalized| Accessor {
             offset: (first + offset) as u32,
             stride: CORNER_BYTES,
@@ -97,7 +116,13 @@ impl Scene {
         // Ground and walls come last, since they cast no shadows.
         let index = scene.shadow_casters().len();
         let named_node = Some(scene.add_named_node(PARTICLES));
-        scene.instances.insert(index, Instance { named_node, ..Instance::fixed(scene.primitives.len(), DMat4::IDENTITY) });
+        scene.instances.insert(
+            index,
+            Instance {
+                named_node,
+                ..Instance::fixed(scene.primitives.len(), DMat4::IDENTITY)
+            },
+        );
         scene.primitives.push(Primitive {
             name: PARTICLES.into(),
             mesh: PARTICLES.into(),
@@ -109,14 +134,21 @@ impl Scene {
             texcoords: [None, None],
             material: scene.materials.len(),
             bounds: particle_settings.disc_bounds(),
-            longest_edge: 2.0 * 3f64.sqrt() * particle_settings.radius_m * (1.0 + 1e-5) + 1e-5 * particle_settings.disc_bounds().radius(),
+            longest_edge: 2.0 * 3f64.sqrt() * particle_settings.radius_m * (1.0 + 1e-5)
+                + 1e-5 * particle_settings.disc_bounds().radius(),
             normals_agree: true,
             deformation: Deformation::default(),
         });
-        scene.materials.push(Material { name: PARTICLES.into(), double_sided: true, ..Material::default() });
+        scene.materials.push(Material {
+            name: PARTICLES.into(),
+            double_sided: true,
+            ..Material::default()
+        });
         if !scene.rig.is_empty() {
             let bounds = particle_settings.disc_bounds();
-            [bounds.min, bounds.max].into_iter().for_each(|corner: DVec3| scene.rig.motion_bounds.include(corner));
+            [bounds.min, bounds.max]
+                .into_iter()
+                .for_each(|corner: DVec3| scene.rig.motion_bounds.include(corner));
         }
         Cow::Owned(scene)
     }

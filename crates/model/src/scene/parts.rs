@@ -1,7 +1,8 @@
-//! Parts: the materials, nodes and meshes of a scene by name, and the patterns by which an effect is limited to some of them.
+//! Parts: the materials, nodes and meshes of a scene by name, and the patterns by which an effect
+//! is limited to some of them.
 //!
-//! Every instance is drawn with one material, so each kind of part is a set of instances and one bit per draw answers whether a
-//! [`Scope`] contains it.
+//! Every instance is drawn with one material, so each kind of part is a set of instances and one
+//! bit per draw answers whether a [`Scope`] contains it.
 
 use std::{collections::BTreeMap, fmt, str::FromStr, sync::Arc};
 
@@ -45,8 +46,8 @@ impl PartKind {
     }
 }
 
-/// A pattern for names of one kind of part: `material:Lens*`. `*` stands for any characters and `?` for one; letters match in their own
-/// case alone.
+/// A pattern for names of one kind of part: `material:Lens*`. `*` stands for any characters and `?`
+/// for one; letters match in their own case alone.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PartPattern {
     pub kind: PartKind,
@@ -68,16 +69,33 @@ impl FromStr for PartPattern {
 
     fn from_str(text: &str) -> Result<Self, PatternError> {
         let shown = || text.chars().take(MAX_NAME_CHARS).collect();
-        let wrong = |reason: String| Err(PatternError { pattern: shown(), reason });
-        let Some((kind, glob)) = text.split_once(':') else { return wrong("which has no kind before a colon".into()) };
+        let wrong = |reason: String| {
+            Err(PatternError {
+                pattern: shown(),
+                reason,
+            })
+        };
+        let Some((kind, glob)) = text.split_once(':') else {
+            return wrong("which has no kind before a colon".into());
+        };
         let Some(kind) = PartKind::ALL.into_iter().find(|known| known.name() == kind) else {
-            return wrong(format!("where {:?} is no kind of part", kind.chars().take(MAX_NAME_CHARS).collect::<String>()));
+            return wrong(format!(
+                "where {:?} is no kind of part",
+                kind.chars().take(MAX_NAME_CHARS).collect::<String>()
+            ));
         };
         match glob {
             "" => wrong("which has no name after the colon".into()),
-            glob if glob.chars().count() > MAX_NAME_CHARS => wrong(format!("whose name is longer than {MAX_NAME_CHARS} characters")),
-            glob if glob.chars().any(char::is_control) => wrong("which has a control character".into()),
-            glob => Ok(Self { kind, glob: glob.into() }),
+            glob if glob.chars().count() > MAX_NAME_CHARS => wrong(format!(
+                "whose name is longer than {MAX_NAME_CHARS} characters"
+            )),
+            glob if glob.chars().any(char::is_control) => {
+                wrong("which has a control character".into())
+            }
+            glob => Ok(Self {
+                kind,
+                glob: glob.into(),
+            }),
         }
     }
 }
@@ -89,7 +107,8 @@ impl fmt::Display for PartPattern {
 }
 
 impl PartPattern {
-    /// The narrowest pattern that matches parts of this name: `?` stands for a character with a meaning of its own.
+    /// The narrowest pattern that matches parts of this name: `?` stands for a character with a
+    /// meaning of its own.
     pub fn of_name(kind: PartKind, name: &str) -> Self {
         let plain = |c: char| if c == '*' || c.is_control() { '?' } else { c };
         let mut glob: String = name.chars().map(plain).take(MAX_NAME_CHARS).collect();
@@ -121,7 +140,10 @@ impl PartPattern {
                     name.next();
                 }
                 (None, None) => return true,
-                _ => match retry.as_mut().and_then(|(after, taken)| taken.next().map(|_| (after.clone(), taken.clone()))) {
+                _ => match retry
+                    .as_mut()
+                    .and_then(|(after, taken)| taken.next().map(|_| (after.clone(), taken.clone())))
+                {
                     Some(rest) => (glob, name) = rest,
                     None => return false,
                 },
@@ -130,7 +152,8 @@ impl PartPattern {
     }
 }
 
-/// The parts of a scene to which an effect is limited. Without patterns: the whole scene. Clones share the patterns.
+/// The parts of a scene to which an effect is limited. Without patterns: the whole scene. Clones
+/// share the patterns.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Scope(Option<Arc<[PartPattern]>>);
 
@@ -158,14 +181,23 @@ impl Scope {
     /// The scope with a pattern, or without it.
     #[must_use]
     pub fn with(&self, pattern: &PartPattern, is_inside: bool) -> Self {
-        let others = self.patterns().iter().filter(|other| *other != pattern).cloned();
+        let others = self
+            .patterns()
+            .iter()
+            .filter(|other| *other != pattern)
+            .cloned();
         Self::new(others.chain(is_inside.then(|| pattern.clone())))
     }
 
     /// The patterns of `scene` that match no part of it.
     pub fn unmatched(&self, scene: &Scene) -> Vec<&PartPattern> {
-        let is_used = |pattern: &PartPattern| used_names(scene, pattern.kind).any(|name| pattern.matches(name));
-        self.patterns().iter().filter(|pattern| !is_used(pattern)).collect()
+        let is_used = |pattern: &PartPattern| {
+            used_names(scene, pattern.kind).any(|name| pattern.matches(name))
+        };
+        self.patterns()
+            .iter()
+            .filter(|pattern| !is_used(pattern))
+            .collect()
     }
 }
 
@@ -179,20 +211,40 @@ impl fmt::Display for Scope {
     }
 }
 
-/// For every instance of `scene` a mask: bit k is set if scope k contains it. There are at most [`MAX_SCOPES`] scopes.
+/// For every instance of `scene` a mask: bit k is set if scope k contains it. There are at most
+/// [`MAX_SCOPES`] scopes.
 pub fn scope_masks(scene: &Scene, scopes: &[Scope]) -> Vec<u32> {
     let mut masks = vec![0; scene.instances.len()];
     for (scope, bit) in scopes.iter().zip((0..MAX_SCOPES).map(|k| 1u32 << k)) {
-        let matches = |kind: PartKind, name: &str| scope.patterns().iter().any(|pattern| pattern.kind == kind && pattern.matches(name));
-        let materials: Vec<bool> = scene.materials.iter().map(|material| matches(PartKind::Material, &material.name)).collect();
-        let primitives: Vec<bool> =
-            scene.primitives.iter().map(|primitive| materials[primitive.material] || matches(PartKind::Mesh, &primitive.mesh)).collect();
+        let matches = |kind: PartKind, name: &str| {
+            scope
+                .patterns()
+                .iter()
+                .any(|pattern| pattern.kind == kind && pattern.matches(name))
+        };
+        let materials: Vec<bool> = scene
+            .materials
+            .iter()
+            .map(|material| matches(PartKind::Material, &material.name))
+            .collect();
+        let primitives: Vec<bool> = scene
+            .primitives
+            .iter()
+            .map(|primitive| {
+                materials[primitive.material] || matches(PartKind::Mesh, &primitive.mesh)
+            })
+            .collect();
         let mut nodes: Vec<bool> = Vec::with_capacity(scene.named_nodes.len());
         for node in &scene.named_nodes {
-            nodes.push(node.parent.is_some_and(|parent| nodes[parent]) || matches(PartKind::Node, &node.name));
+            nodes.push(
+                node.parent.is_some_and(|parent| nodes[parent])
+                    || matches(PartKind::Node, &node.name),
+            );
         }
         for (mask, instance) in masks.iter_mut().zip(&scene.instances) {
-            let is_inside = scope.is_whole_scene() || primitives[instance.primitive] || instance.named_node.is_some_and(|node| nodes[node]);
+            let is_inside = scope.is_whole_scene()
+                || primitives[instance.primitive]
+                || instance.named_node.is_some_and(|node| nodes[node]);
             *mask |= if is_inside { bit } else { 0 };
         }
     }
@@ -219,7 +271,8 @@ impl Part {
     }
 }
 
-/// The parts of a scene that are drawn: materials and meshes in the order of their first instance, nodes with parents before children.
+/// The parts of a scene that are drawn: materials and meshes in the order of their first instance,
+/// nodes with parents before children.
 pub fn parts(scene: &Scene) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
     for kind in PartKind::ALL {
@@ -236,7 +289,13 @@ pub fn parts(scene: &Scene) -> Vec<Part> {
                 depths.push(depth);
                 if is_shown && !known.contains_key(node.name.as_str()) {
                     known.insert(&node.name, parts.len());
-                    parts.push(Part { kind, name: node.name.clone(), depth, instances: 0, triangles: 0 });
+                    parts.push(Part {
+                        kind,
+                        name: node.name.clone(),
+                        depth,
+                        instances: 0,
+                        triangles: 0,
+                    });
                 }
             }
         }
@@ -248,7 +307,13 @@ pub fn parts(scene: &Scene) -> Vec<Part> {
             names.dedup();
             for name in names {
                 let index = *known.entry(name).or_insert_with(|| {
-                    parts.push(Part { kind, name: name.into(), depth: 0, instances: 0, triangles: 0 });
+                    parts.push(Part {
+                        kind,
+                        name: name.into(),
+                        depth: 0,
+                        instances: 0,
+                        triangles: 0,
+                    });
                     parts.len() - 1
                 });
                 debug_assert!(index >= first);
@@ -266,13 +331,18 @@ pub fn names_of<'a>(scene: &'a Scene, instance: &Instance, kind: PartKind) -> Ve
     match kind {
         PartKind::Material => vec![&scene.materials[primitive.material].name],
         PartKind::Mesh => vec![&primitive.mesh],
-        PartKind::Node => ancestors(scene, instance).map(|node| scene.named_nodes[node].name.as_str()).collect(),
+        PartKind::Node => ancestors(scene, instance)
+            .map(|node| scene.named_nodes[node].name.as_str())
+            .collect(),
     }
 }
 
 /// Names of one kind that some instance has; a name may come several times.
 fn used_names(scene: &Scene, kind: PartKind) -> impl Iterator<Item = &str> {
-    scene.instances.iter().flat_map(move |instance| names_of(scene, instance, kind))
+    scene
+        .instances
+        .iter()
+        .flat_map(move |instance| names_of(scene, instance, kind))
 }
 
 /// The node of an instance and its ancestors, from the node up.
@@ -283,24 +353,50 @@ fn ancestors<'a>(scene: &'a Scene, instance: &Instance) -> impl Iterator<Item = 
 impl Scene {
     /// Adds a node without a parent and returns its index in `named_nodes`.
     pub(super) fn add_named_node(&mut self, name: impl Into<String>) -> usize {
-        self.named_nodes.push(NamedNode { name: name.into(), parent: None });
+        self.named_nodes.push(NamedNode {
+            name: name.into(),
+            parent: None,
+        });
         self.named_nodes.len() - 1
     }
 
-    /// Names the nodes of a scene that came without names: after the nodes of its rig, or after its meshes and their number.
+    /// Names the nodes of a scene that came without names: after the nodes of its rig, or after its
+    /// meshes and their number.
     pub(super) fn name_nodes(&mut self) {
         if !self.rig.is_empty() {
-            self.named_nodes = self.rig.nodes.iter().map(|node| NamedNode { name: node.name.clone(), parent: node.parent }).collect();
-            self.instances.iter_mut().for_each(|instance| instance.named_node = instance.node);
+            self.named_nodes = self
+                .rig
+                .nodes
+                .iter()
+                .map(|node| NamedNode {
+                    name: node.name.clone(),
+                    parent: node.parent,
+                })
+                .collect();
+            self.instances
+                .iter_mut()
+                .for_each(|instance| instance.named_node = instance.node);
             return;
         }
         let mut counts: BTreeMap<String, usize> = BTreeMap::new();
-        let is_single =
-            |scene: &Self, mesh: &str| scene.instances.iter().filter(|i| scene.primitives[i.primitive].mesh == mesh).count() == 1;
+        let is_single = |scene: &Self, mesh: &str| {
+            scene
+                .instances
+                .iter()
+                .filter(|i| scene.primitives[i.primitive].mesh == mesh)
+                .count()
+                == 1
+        };
         for index in 0..self.instances.len() {
-            let mesh = self.primitives[self.instances[index].primitive].mesh.clone();
+            let mesh = self.primitives[self.instances[index].primitive]
+                .mesh
+                .clone();
             let count = counts.entry(mesh.clone()).or_default();
-            let name = if *count == 0 && is_single(self, &mesh) { mesh.clone() } else { format!("{mesh} {count}") };
+            let name = if *count == 0 && is_single(self, &mesh) {
+                mesh.clone()
+            } else {
+                format!("{mesh} {count}")
+            };
             *count += 1;
             self.instances[index].named_node = Some(self.add_named_node(name));
         }
@@ -353,30 +449,72 @@ mod tests {
     fn a_faulty_pattern_says_what_a_pattern_is() {
         for text in ["Lens", "", "materiel:x", "node:", "Node:x", "mesh:a\nb"] {
             let error = text.parse::<PartPattern>().expect_err(text).to_string();
-            assert!(error.contains(&format!("{text:?}")) && error.contains("material:NAME, node:NAME or mesh:NAME"), "{error}");
+            assert!(
+                error.contains(&format!("{text:?}"))
+                    && error.contains("material:NAME, node:NAME or mesh:NAME"),
+                "{error}"
+            );
         }
-        assert!(format!("mesh:{}", "x".repeat(121)).parse::<PartPattern>().is_err());
+        assert!(
+            format!("mesh:{}", "x".repeat(121))
+                .parse::<PartPattern>()
+                .is_err()
+        );
     }
 
     #[test]
     fn builtin_scenes_have_parts_and_a_node_takes_in_its_descendants() {
-        let scene = super::super::builtin::build("walker?tess=1&instances=3").expect("a scene").in_room(1.0);
-        let names = |kind: PartKind| -> Vec<String> { parts(&scene).into_iter().filter(|p| p.kind == kind).map(|p| p.name).collect() };
+        let scene = super::super::builtin::build("walker?tess=1&instances=3")
+            .expect("a scene")
+            .in_room(1.0);
+        let names = |kind: PartKind| -> Vec<String> {
+            parts(&scene)
+                .into_iter()
+                .filter(|p| p.kind == kind)
+                .map(|p| p.name)
+                .collect()
+        };
         assert_eq!(names(PartKind::Material), ["hide", "plaster"]);
         assert_eq!(names(PartKind::Mesh), ["walker", "room"]);
-        assert_eq!(names(PartKind::Node), ["walker 0", "walker 1", "walker 2", "room"]);
+        assert_eq!(
+            names(PartKind::Node),
+            ["walker 0", "walker 1", "walker 2", "room"]
+        );
         let masks = |text: &str| scope_masks(&scene, &[Scope::new([pattern(text)])]);
         assert_eq!(masks("node:walker 1"), [0, 1, 0, 0]);
         assert_eq!(masks("node:walker ?"), [1, 1, 1, 0]);
         assert_eq!(masks("material:plaster"), [0, 0, 0, 1]);
         assert_eq!(masks("mesh:*"), [1; 4]);
         let mut nested = scene.clone();
-        nested.named_nodes.insert(0, NamedNode { name: "herd".into(), parent: None });
+        nested.named_nodes.insert(
+            0,
+            NamedNode {
+                name: "herd".into(),
+                parent: None,
+            },
+        );
         for node in &mut nested.named_nodes[1..] {
             node.parent = Some(node.parent.map_or(0, |parent| parent + 1));
         }
-        nested.instances.iter_mut().for_each(|instance| instance.named_node = instance.named_node.map(|node| node + 1));
-        assert_eq!(scope_masks(&nested, &[Scope::new([pattern("node:herd")]), Scope::new([pattern("node:walker 2")])]), [1, 1, 3, 1]);
-        assert_eq!(Scope::new([pattern("node:herd"), pattern("mesh:cube")]).unmatched(&scene).len(), 2);
+        nested
+            .instances
+            .iter_mut()
+            .for_each(|instance| instance.named_node = instance.named_node.map(|node| node + 1));
+        assert_eq!(
+            scope_masks(
+                &nested,
+                &[
+                    Scope::new([pattern("node:herd")]),
+                    Scope::new([pattern("node:walker 2")])
+                ]
+            ),
+            [1, 1, 3, 1]
+        );
+        assert_eq!(
+            Scope::new([pattern("node:herd"), pattern("mesh:cube")])
+                .unmatched(&scene)
+                .len(),
+            2
+        );
     }
 }

@@ -9,22 +9,30 @@ use super::{
     view::View,
 };
 
-/// The world-space point nearest to the eye on the ray through `screen` (0 to 1, right and down). `None` if the ray hits
-/// nothing or the scene cannot be drawn. Effects are ignored, and both sides of triangles are hit.
+/// The world-space point nearest to the eye on the ray through `screen` (0 to 1, right and down).
+/// `None` if the ray hits nothing or the scene cannot be drawn. Effects are ignored, and both sides
+/// of triangles are hit.
 pub fn pick(scene: &Scene, view: &View, screen: DVec2) -> Option<DVec3> {
     let ray = Ray::through(view, screen);
     let draws = draws(scene, view).ok()?;
-    let nearest = draws.iter().filter_map(|draw| ray.nearest(scene, draw, Sides::Both)).fold(f64::INFINITY, f64::min);
+    let nearest = draws
+        .iter()
+        .filter_map(|draw| ray.nearest(scene, draw, Sides::Both))
+        .fold(f64::INFINITY, f64::min);
     nearest.is_finite().then(|| ray.from + ray.along * nearest)
 }
 
-/// The index of the instance that is seen at `screen` (0 to 1, right and down). `None` if nothing is there or the scene cannot be drawn.
-/// Effects and alpha masks are ignored.
+/// The index of the instance that is seen at `screen` (0 to 1, right and down). `None` if nothing
+/// is there or the scene cannot be drawn. Effects and alpha masks are ignored.
 pub fn pick_instance(scene: &Scene, view: &View, screen: DVec2) -> Option<usize> {
     let ray = Ray::through(view, screen);
     let draws = draws(scene, view).ok()?;
-    let hits = draws.iter().enumerate().filter_map(|(index, draw)| Some((index, ray.nearest(scene, draw, Sides::Drawn)?)));
-    hits.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(index, _)| index)
+    let hits = draws
+        .iter()
+        .enumerate()
+        .filter_map(|(index, draw)| Some((index, ray.nearest(scene, draw, Sides::Drawn)?)));
+    hits.min_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(index, _)| index)
 }
 
 /// Which sides of triangles a ray hits.
@@ -43,10 +51,17 @@ struct Ray {
 
 impl Ray {
     fn through(view: &View, screen: DVec2) -> Self {
-        let aside = view.ndc_axes[0] * (2.0 * screen.x - 1.0) + view.ndc_axes[1] * (1.0 - 2.0 * screen.y);
+        let aside =
+            view.ndc_axes[0] * (2.0 * screen.x - 1.0) + view.ndc_axes[1] * (1.0 - 2.0 * screen.y);
         match view.linear_depth_m {
-            None => Self { from: view.eye, along: view.forward + aside },
-            Some(_) => Self { from: view.eye + aside, along: view.forward },
+            None => Self {
+                from: view.eye,
+                along: view.forward + aside,
+            },
+            Some(_) => Self {
+                from: view.eye + aside,
+                along: view.forward,
+            },
         }
     }
 
@@ -61,15 +76,19 @@ impl Ray {
             draw.world_from_object.transform_point3(position)
         };
         let hit = |triangle: u32| {
-            let (distance, is_front) = self.meets(primitive.corners(scene, triangle).map(corner))?;
+            let (distance, is_front) =
+                self.meets(primitive.corners(scene, triangle).map(corner))?;
             let is_shown = sides == Sides::Both || draw.double_sided || is_front != draw.mirrored;
             is_shown.then_some(distance)
         };
-        (0..primitive.triangle_count()).into_par_iter().filter_map(hit).reduce_with(f64::min)
+        (0..primitive.triangle_count())
+            .into_par_iter()
+            .filter_map(hit)
+            .reduce_with(f64::min)
     }
 
-    /// Distance along the ray to a triangle, and whether its corners run counterclockwise as seen from the ray's beginning (Möller and
-    /// Trumbore 1997).
+    /// Distance along the ray to a triangle, and whether its corners run counterclockwise as seen
+    /// from the ray's beginning (Möller and Trumbore 1997).
     fn meets(&self, [a, b, c]: [DVec3; 3]) -> Option<(f64, bool)> {
         let (ab, ac) = (b - a, c - a);
         let across = self.along.cross(ac);
@@ -80,7 +99,8 @@ impl Ray {
         let v = self.along.dot(turned) / determinant;
         let t = ac.dot(turned) / determinant;
         // Comparisons with NaN, which a ray in the triangle's plane produces, are false.
-        (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t.is_finite()).then_some((t, determinant > 0.0))
+        (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t.is_finite())
+            .then_some((t, determinant > 0.0))
     }
 }
 
@@ -92,13 +112,19 @@ mod tests {
     use crate::scene::{builtin, camera::Camera};
 
     #[test]
-    fn the_middle_of_a_sphere_is_picked_in_front_of_its_center_and_its_corner_of_the_picture_is_empty() {
+    fn the_middle_of_a_sphere_is_picked_in_front_of_its_center_and_its_corner_of_the_picture_is_empty()
+     {
         let scene = builtin::build("sphere?triangles=2000").unwrap();
         let camera = Camera::framing(&scene.bounds(), DVec3::new(-0.4, -0.4, -1.0), 4.0 / 3.0);
         let view = View::new(&camera, 64, 48, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
         let point = pick(&scene, &view, DVec2::splat(0.5)).expect("something is there");
-        let (near, far) = (view.eye.distance(point), view.eye.distance(scene.bounds().center()));
-        assert!(near < far && point.distance(scene.bounds().center()) < scene.bounds().radius() * 1.01);
+        let (near, far) = (
+            view.eye.distance(point),
+            view.eye.distance(scene.bounds().center()),
+        );
+        assert!(
+            near < far && point.distance(scene.bounds().center()) < scene.bounds().radius() * 1.01
+        );
         // It projects to the position that was picked.
         let clip = view.clip_from_world * point.extend(1.0);
         assert!((clip.x / clip.w).abs() < 1e-9 && (clip.y / clip.w).abs() < 1e-9);
@@ -112,12 +138,20 @@ mod tests {
 
     #[test]
     fn the_instance_that_is_seen_is_picked_through_the_back_of_a_wall() {
-        let scene = builtin::build("cube-wall?columns=2&rows=1").unwrap().in_room(1.0);
+        let scene = builtin::build("cube-wall?columns=2&rows=1")
+            .unwrap()
+            .in_room(1.0);
         // From outside the room, whose walls show their insides alone.
-        let camera = Camera { eye: DVec3::new(0.0, 1.0, 12.0), target: DVec3::ZERO, ..Camera::default() };
+        let camera = Camera {
+            eye: DVec3::new(0.0, 1.0, 12.0),
+            target: DVec3::ZERO,
+            ..Camera::default()
+        };
         let view = View::new(&camera, 48, 48, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
         let mut picked = [0; 3];
-        rays().filter_map(|at| pick_instance(&scene, &view, at)).for_each(|index| picked[index] += 1);
+        rays()
+            .filter_map(|at| pick_instance(&scene, &view, at))
+            .for_each(|index| picked[index] += 1);
         assert!(picked.iter().all(|&pixels| pixels > 0), "{picked:?}");
     }
 
@@ -130,7 +164,11 @@ mod tests {
             let view = View::new(&camera, 48, 48, &scene.bounds(), DMat4::IDENTITY, [0.0; 4]);
             let mut hits = 0;
             for at in rays() {
-                assert_eq!(pick_instance(&scene, &view, at).is_some(), pick(&scene, &view, at).is_some(), "{at}");
+                assert_eq!(
+                    pick_instance(&scene, &view, at).is_some(),
+                    pick(&scene, &view, at).is_some(),
+                    "{at}"
+                );
                 hits += usize::from(pick(&scene, &view, at).is_some());
             }
             assert!((40..140).contains(&hits), "{hits}");

@@ -1,7 +1,8 @@
-//! Poses: the transform of every instance, the joint transforms and the morph weights of a scene at a time of its clips.
+//! Poses: the transform of every instance, the joint transforms and the morph weights of a scene at
+//! a time of its clips.
 //!
-//! A pose is a pure function of scene, clips and time, computed in f64 and rounded once. Renderers and the oracle start from
-//! these rounded bits, and each deforms the vertices with its own code.
+//! A pose is a pure function of scene, clips and time, computed in f64 and rounded once. Renderers
+//! and the oracle start from these rounded bits, and each deforms the vertices with its own code.
 
 use std::sync::Arc;
 
@@ -57,27 +58,52 @@ impl Pose {
         let state = State::of(rig, motion);
         let scene_from_node = state.node_transforms(rig);
         let joint_transforms = |skin: &Skin| {
-            let matrices = skin.joints.iter().zip(&skin.joint_from_mesh).map(|(&node, inverse)| scene_from_node[node] * *inverse);
+            let matrices = skin
+                .joints
+                .iter()
+                .zip(&skin.joint_from_mesh)
+                .map(|(&node, inverse)| scene_from_node[node] * *inverse);
             match motion.skinning {
-                Skinning::Linear => JointTransforms::Linear(matrices.map(|matrix| rounded_rows(&matrix)).collect()),
-                Skinning::Dual => JointTransforms::Dual(matrices.map(|matrix| DualQuaternionJoint::of(&matrix)).collect()),
+                Skinning::Linear => {
+                    JointTransforms::Linear(matrices.map(|matrix| rounded_rows(&matrix)).collect())
+                }
+                Skinning::Dual => JointTransforms::Dual(
+                    matrices
+                        .map(|matrix| DualQuaternionJoint::of(&matrix))
+                        .collect(),
+                ),
             }
         };
-        let joints_of_skins: Vec<JointTransforms> = rig.skins.iter().map(joint_transforms).collect();
+        let joints_of_skins: Vec<JointTransforms> =
+            rig.skins.iter().map(joint_transforms).collect();
         let deform = |instance: &Instance| {
-            let morph_targets = scene.primitives[instance.primitive].deformation.morph_targets.len();
+            let morph_targets = scene.primitives[instance.primitive]
+                .deformation
+                .morph_targets
+                .len();
             let joint_transforms = instance.skin.map(|skin| joints_of_skins[skin].clone());
             let given = instance.node.map_or(&[][..], |node| &state.weights[node]);
-            let weights: Arc<[f32]> = (0..morph_targets).map(|morph_target| given.get(morph_target).copied().unwrap_or(0.0)).collect();
-            (joint_transforms.is_some() || weights.iter().any(|&weight| weight != 0.0)).then_some(Deform { joint_transforms, weights })
+            let weights: Arc<[f32]> = (0..morph_targets)
+                .map(|morph_target| given.get(morph_target).copied().unwrap_or(0.0))
+                .collect();
+            (joint_transforms.is_some() || weights.iter().any(|&weight| weight != 0.0)).then_some(
+                Deform {
+                    joint_transforms,
+                    weights,
+                },
+            )
         };
         let transform = |instance: &Instance| match (instance.skin, instance.node) {
-            // The joints alone place a skinned mesh; its node is ignored (glTF 2.0, section 3.7.3.2).
+            // The joints alone place a skinned mesh; its node is ignored (glTF 2.0, section
+            // 3.7.3.2).
             (Some(_), _) => DMat4::IDENTITY,
             (None, Some(node)) => scene_from_node[node],
             (None, None) => instance.world_from_object,
         };
-        Self { instance_transforms: scene.instances.iter().map(transform).collect(), deforms: scene.instances.iter().map(deform).collect() }
+        Self {
+            instance_transforms: scene.instances.iter().map(transform).collect(),
+            deforms: scene.instances.iter().map(deform).collect(),
+        }
     }
 
     /// The rest pose. `None` for a scene without a rig, whose instance transforms are constant.
@@ -88,7 +114,10 @@ impl Pose {
     /// The transform of an instance, before the scene's spin.
     pub fn instance_transform(&self, instance: usize) -> DMat4 {
         // Instances that were added after the pose was computed (particle discs) do not move.
-        self.instance_transforms.get(instance).copied().unwrap_or(DMat4::IDENTITY)
+        self.instance_transforms
+            .get(instance)
+            .copied()
+            .unwrap_or(DMat4::IDENTITY)
     }
 
     /// What deforms an instance, if anything does.
@@ -104,9 +133,15 @@ impl Pose {
     /// A box of `first`, the leading instances of `scene`.
     pub fn bounds_of(&self, scene: &Scene, first: &[Instance]) -> Bounds {
         let mut bounds = Bounds::EMPTY;
-        for ((instance, transform), deform) in first.iter().zip(&self.instance_transforms).zip(&self.deforms) {
+        for ((instance, transform), deform) in first
+            .iter()
+            .zip(&self.instance_transforms)
+            .zip(&self.deforms)
+        {
             let primitive = &scene.primitives[instance.primitive];
-            let object = deform.as_ref().map_or(primitive.bounds, |deform| deform.bounds(primitive));
+            let object = deform
+                .as_ref()
+                .map_or(primitive.bounds, |deform| deform.bounds(primitive));
             bounds.include_transformed(transform, &object, 0.0);
         }
         bounds
@@ -118,33 +153,44 @@ pub fn scene_from_nodes(rig: &Rig, motion: &Motion) -> Vec<DMat4> {
     State::of(rig, motion).node_transforms(rig)
 }
 
-/// A box of `scene` in its rest pose and at eight times of each clip. Of large scenes only some vertices and clips are
-/// sampled, so it is good for framing and not a strict bound.
+/// A box of `scene` in its rest pose and at eight times of each clip. Of large scenes only some
+/// vertices and clips are sampled, so it is good for framing and not a strict bound.
 pub fn motion_bounds(scene: &Scene) -> Bounds {
     const TIMES_PER_CLIP: usize = 8;
     const MAX_NODES: usize = 1_000_000;
     const MAX_VERTICES: usize = 2_000_000;
     // Of thousands of clips over thousands of nodes only the first are sampled.
-    let most = (MAX_NODES / (TIMES_PER_CLIP * (scene.rig.nodes.len() + scene.instances.len()).max(1))).max(1);
+    let most = (MAX_NODES
+        / (TIMES_PER_CLIP * (scene.rig.nodes.len() + scene.instances.len()).max(1)))
+    .max(1);
     let motion = |clip: usize, time: usize| Motion {
         clip: Some(clip),
         time_s: scene.rig.clips[clip].duration_s * (time as f64 + 0.5) / TIMES_PER_CLIP as f64,
         ..Motion::default()
     };
-    let times = (0..scene.rig.clips.len().min(most)).flat_map(|clip| (0..TIMES_PER_CLIP).map(move |time| motion(clip, time)));
+    let times = (0..scene.rig.clips.len().min(most))
+        .flat_map(|clip| (0..TIMES_PER_CLIP).map(move |time| motion(clip, time)));
     let motions: Vec<Motion> = std::iter::once(Motion::default()).chain(times).collect();
-    let stride = (scene.deformable_vertex_count() as usize * motions.len()).div_ceil(MAX_VERTICES).max(1);
+    let stride = (scene.deformable_vertex_count() as usize * motions.len())
+        .div_ceil(MAX_VERTICES)
+        .max(1);
     let mut bounds = Bounds::EMPTY;
     for motion in &motions {
         let pose = Pose::at(scene, motion);
         for (index, instance) in scene.instances.iter().enumerate() {
-            let (primitive, transform) = (&scene.primitives[instance.primitive], pose.instance_transform(index));
+            let (primitive, transform) = (
+                &scene.primitives[instance.primitive],
+                pose.instance_transform(index),
+            );
             let Some(deform) = pose.deform(index) else {
                 bounds.include_transformed(&transform, &primitive.bounds, 0.0);
                 continue;
             };
             let vertices = (0..primitive.vertex_count()).step_by(stride);
-            vertices.for_each(|vertex| bounds.include(transform.transform_point3(deform.position(scene, primitive, vertex))));
+            vertices.for_each(|vertex| {
+                bounds
+                    .include(transform.transform_point3(deform.position(scene, primitive, vertex)))
+            });
         }
     }
     bounds
@@ -153,11 +199,17 @@ pub fn motion_bounds(scene: &Scene) -> Bounds {
 impl Deform {
     /// Returns true if every joint transform mirrors (has a negative determinant).
     pub fn mirrors(&self) -> bool {
-        self.joint_transforms.as_ref().is_some_and(|joint_transforms| joint_transforms.matrices().all(|matrix| matrix.determinant() < 0.0))
+        self.joint_transforms
+            .as_ref()
+            .is_some_and(|joint_transforms| {
+                joint_transforms
+                    .matrices()
+                    .all(|matrix| matrix.determinant() < 0.0)
+            })
     }
 
-    /// A box of the deformed mesh. A linearly skinned vertex lies between the positions that its joints give it; by dual
-    /// quaternions it may bulge beyond them by the radius of their box.
+    /// A box of the deformed mesh. A linearly skinned vertex lies between the positions that its
+    /// joints give it; by dual quaternions it may bulge beyond them by the radius of their box.
     pub fn bounds(&self, primitive: &Primitive) -> Bounds {
         let deformation = &primitive.deformation;
         let margin = self
@@ -174,7 +226,9 @@ impl Deform {
         joint_transforms
             .matrices()
             .zip(&deformation.joint_bounds)
-            .for_each(|(matrix, joint_bounds)| bounds.include_transformed(&matrix, joint_bounds, margin));
+            .for_each(|(matrix, joint_bounds)| {
+                bounds.include_transformed(&matrix, joint_bounds, margin)
+            });
         if matches!(joint_transforms, JointTransforms::Dual(_)) && !bounds.is_empty() {
             let bulge = bounds.radius();
             (bounds.min, bounds.max) = (bounds.min - bulge, bounds.max + bulge);
@@ -182,22 +236,33 @@ impl Deform {
         bounds
     }
 
-    /// The deformed position of a vertex: morph targets, then linear skinning. For estimates; the picture uses other code.
+    /// The deformed position of a vertex: morph targets, then linear skinning. For estimates; the
+    /// picture uses other code.
     pub fn position(&self, scene: &Scene, primitive: &Primitive, vertex: u32) -> DVec3 {
         let bytes = &scene.vertex_bytes;
-        let vector = |accessor: &Accessor| DVec3::from([0, 1, 2].map(|component| accessor.value(bytes, vertex, component)));
+        let vector = |accessor: &Accessor| {
+            DVec3::from([0, 1, 2].map(|component| accessor.value(bytes, vertex, component)))
+        };
         let morph_targets = self
             .weights
             .iter()
             .zip(&primitive.deformation.morph_targets)
             .filter_map(|(w, morph_target)| Some((w, morph_target.positions.as_ref()?)));
-        let morphed = morph_targets
-            .fold(vector(&primitive.positions), |position, (&weight, morph_target)| position + vector(morph_target) * f64::from(weight));
-        let Some(joint_transforms) = &self.joint_transforms else { return morphed };
+        let morphed = morph_targets.fold(
+            vector(&primitive.positions),
+            |position, (&weight, morph_target)| position + vector(morph_target) * f64::from(weight),
+        );
+        let Some(joint_transforms) = &self.joint_transforms else {
+            return morphed;
+        };
         let sets = primitive.deformation.influences.iter();
         let influences = sets.flat_map(|set| {
-            [0, 1, 2, 3]
-                .map(|component| (set.joints.integer(bytes, vertex, component) as usize, set.weights.value(bytes, vertex, component)))
+            [0, 1, 2, 3].map(|component| {
+                (
+                    set.joints.integer(bytes, vertex, component) as usize,
+                    set.weights.value(bytes, vertex, component),
+                )
+            })
         });
         let (mut sum, mut total, mut first) = (DVec3::ZERO, 0.0, None);
         for (joint, weight) in influences {
@@ -205,7 +270,13 @@ impl Deform {
             sum += joint_transforms.matrix(joint).transform_point3(morphed) * weight;
             total += weight;
         }
-        if total > 0.0 { sum / total } else { first.map_or(morphed, |joint| joint_transforms.matrix(joint).transform_point3(morphed)) }
+        if total > 0.0 {
+            sum / total
+        } else {
+            first.map_or(morphed, |joint| {
+                joint_transforms.matrix(joint).transform_point3(morphed)
+            })
+        }
     }
 }
 
@@ -219,7 +290,10 @@ impl State {
     fn of(rig: &Rig, motion: &Motion) -> Self {
         let mut state = Self::at(rig, motion.clip, motion.time_s);
         if let Some(other) = motion.other.filter(|_| motion.blend > 0.0) {
-            state.blend(&Self::at(rig, Some(other), motion.time_s), motion.blend.min(1.0));
+            state.blend(
+                &Self::at(rig, Some(other), motion.time_s),
+                motion.blend.min(1.0),
+            );
         }
         state
     }
@@ -228,7 +302,9 @@ impl State {
     fn node_transforms(&self, rig: &Rig) -> Vec<DMat4> {
         let mut scene_from_node: Vec<DMat4> = Vec::with_capacity(rig.nodes.len());
         for (node, local) in rig.nodes.iter().zip(&self.locals) {
-            let parent = node.parent.map_or(DMat4::IDENTITY, |parent| scene_from_node[parent]);
+            let parent = node
+                .parent
+                .map_or(DMat4::IDENTITY, |parent| scene_from_node[parent]);
             scene_from_node.push(parent * local.matrix());
         }
         scene_from_node
@@ -239,9 +315,15 @@ impl State {
             locals: rig.nodes.iter().map(|node| node.rest).collect(),
             weights: rig.nodes.iter().map(|n| n.weights.clone()).collect(),
         };
-        let Some(clip) = clip.and_then(|clip| rig.clips.get(clip)) else { return state };
+        let Some(clip) = clip.and_then(|clip| rig.clips.get(clip)) else {
+            return state;
+        };
         let inside = (0.0..=clip.duration_s).contains(&time_s);
-        let time_s = if inside || clip.duration_s <= 0.0 { time_s } else { time_s.rem_euclid(clip.duration_s) };
+        let time_s = if inside || clip.duration_s <= 0.0 {
+            time_s
+        } else {
+            time_s.rem_euclid(clip.duration_s)
+        };
         for channel in &clip.channels {
             let sampler = &rig.samplers[channel.sampler];
             if channel.property == Property::Weights {
@@ -249,8 +331,11 @@ impl State {
                 state.weights[channel.node] = (0..sampler.components).map(value).collect();
                 continue;
             }
-            let LocalTransform::Trs(parts) = &mut state.locals[channel.node] else { continue };
-            let vector = || DVec3::from([0, 1, 2].map(|component| sampler.value(component, time_s)));
+            let LocalTransform::Trs(parts) = &mut state.locals[channel.node] else {
+                continue;
+            };
+            let vector =
+                || DVec3::from([0, 1, 2].map(|component| sampler.value(component, time_s)));
             match channel.property {
                 Property::Translation => parts.translation = vector(),
                 Property::Scale => parts.scale = vector(),
@@ -271,17 +356,24 @@ impl State {
                 };
             }
         }
-        for (a, b) in self.weights.iter_mut().flatten().zip(other.weights.iter().flatten()) {
+        for (a, b) in self
+            .weights
+            .iter_mut()
+            .flatten()
+            .zip(other.weights.iter().flatten())
+        {
             *a = (f64::from(*a) + (f64::from(*b) - f64::from(*a)) * fraction) as f32;
         }
     }
 }
 
 impl Sampler {
-    /// The keyframe at or before `time_s`, and the fraction of the way to the next one with the seconds between them. Outside
-    /// the keyframes only the nearest one.
+    /// The keyframe at or before `time_s`, and the fraction of the way to the next one with the
+    /// seconds between them. Outside the keyframes only the nearest one.
     fn segment(&self, time_s: f64) -> (usize, Option<(f64, f64)>) {
-        let next = self.times.partition_point(|&time| f64::from(time) <= time_s);
+        let next = self
+            .times
+            .partition_point(|&time| f64::from(time) <= time_s);
         if next == 0 || next == self.times.len() {
             return (next.saturating_sub(1), None);
         }
@@ -291,7 +383,11 @@ impl Sampler {
 
     /// A number of a keyframe: `part` 0 is the in-tangent, 1 the value, 2 the out-tangent.
     fn number(&self, key: usize, part: usize, component: usize) -> f64 {
-        let at = if self.interpolation == Interpolation::Cubic { 3 * key + part } else { key };
+        let at = if self.interpolation == Interpolation::Cubic {
+            3 * key + part
+        } else {
+            key
+        };
         self.values[at * self.components + component].into()
     }
 
@@ -299,13 +395,18 @@ impl Sampler {
     pub fn value(&self, component: usize, time_s: f64) -> f64 {
         let (key, segment) = self.segment(time_s);
         let a = self.number(key, 1, component);
-        let Some((t, seconds)) = segment else { return a };
+        let Some((t, seconds)) = segment else {
+            return a;
+        };
         match self.interpolation {
             Interpolation::Step => a,
             Interpolation::Linear => a + (self.number(key + 1, 1, component) - a) * t,
             Interpolation::Cubic => {
-                let (out, into, b) =
-                    (self.number(key, 2, component), self.number(key + 1, 0, component), self.number(key + 1, 1, component));
+                let (out, into, b) = (
+                    self.number(key, 2, component),
+                    self.number(key + 1, 0, component),
+                    self.number(key + 1, 1, component),
+                );
                 let (t2, t3) = (t * t, t * t * t);
                 (2.0 * t3 - 3.0 * t2 + 1.0) * a
                     + seconds * (t3 - 2.0 * t2 + t) * out
@@ -320,7 +421,8 @@ impl Sampler {
         let (key, segment) = self.segment(time_s);
         match (self.interpolation, segment) {
             (Interpolation::Linear, Some((fraction, _))) => {
-                let [a, b] = [key, key + 1].map(|key| unit([0, 1, 2, 3].map(|component| self.number(key, 1, component))));
+                let [a, b] = [key, key + 1]
+                    .map(|key| unit([0, 1, 2, 3].map(|component| self.number(key, 1, component))));
                 slerp(a, b, fraction)
             }
             _ => unit([0, 1, 2, 3].map(|component| self.value(component, time_s))),
@@ -333,7 +435,12 @@ mod tests {
     use super::*;
 
     fn sampler(interpolation: Interpolation, components: usize, values: &[f32]) -> Sampler {
-        Sampler { interpolation, times: vec![1.0, 3.0], values: values.into(), components }
+        Sampler {
+            interpolation,
+            times: vec![1.0, 3.0],
+            values: values.into(),
+            components,
+        }
     }
 
     #[test]
@@ -347,7 +454,11 @@ mod tests {
         ] {
             let sampler = sampler(interpolation, 1, values);
             let at = |time_s| sampler.value(0, time_s);
-            assert_eq!([at(-1.0), at(1.0), at(2.0), at(3.0), at(9.0)], [2.0, 2.0, middle, 6.0, 6.0], "{interpolation:?}");
+            assert_eq!(
+                [at(-1.0), at(1.0), at(2.0), at(3.0), at(9.0)],
+                [2.0, 2.0, middle, 6.0, 6.0],
+                "{interpolation:?}"
+            );
         }
     }
 
@@ -355,13 +466,27 @@ mod tests {
     fn a_rotation_goes_the_short_way_at_one_speed_and_stays_a_unit() {
         let (sin, cos) = libm::sincos(0.6);
         // The same rotation as (sin, 0, 0, cos), named by its opposite, and three times as long.
-        let turn = [0.0, 0.0, 0.0, 1.0, -3.0 * sin as f32, 0.0, 0.0, -3.0 * cos as f32];
+        let turn = [
+            0.0,
+            0.0,
+            0.0,
+            1.0,
+            -3.0 * sin as f32,
+            0.0,
+            0.0,
+            -3.0 * cos as f32,
+        ];
         let sampler = sampler(Interpolation::Linear, 4, &turn);
         for step in 0..=8 {
             let fraction = f64::from(step) / 8.0;
             let q = sampler.rotation(1.0 + 2.0 * fraction);
             let (sin, cos) = libm::sincos(0.6 * fraction);
-            assert!((q.x.abs() - sin).abs() < 1e-7 && (q.w.abs() - cos).abs() < 1e-7 && q.x * q.w >= 0.0, "{fraction}: {q}");
+            assert!(
+                (q.x.abs() - sin).abs() < 1e-7
+                    && (q.w.abs() - cos).abs() < 1e-7
+                    && q.x * q.w >= 0.0,
+                "{fraction}: {q}"
+            );
             assert!((q.length_squared() - 1.0).abs() < 1e-14);
         }
     }

@@ -15,7 +15,8 @@ pub struct Rig {
     pub clips: Vec<Clip>,
     /// Keyframes. Several channels may share a sampler.
     pub samplers: Vec<Sampler>,
-    /// World-space box of sampled vertices in the rest pose and in the clips. Used to frame the camera; not a strict bound.
+    /// World-space box of sampled vertices in the rest pose and in the clips. Used to frame the
+    /// camera; not a strict bound.
     pub motion_bounds: Bounds,
 }
 
@@ -27,8 +28,16 @@ impl Rig {
 
     /// The index of the clip called `name`. `#2` is the clip at index 2, under any name.
     pub fn clip(&self, name: &str) -> Option<usize> {
-        let by_index = || name.strip_prefix('#')?.parse().ok().filter(|&index: &usize| index < self.clips.len());
-        self.clips.iter().position(|clip| clip.name == name).or_else(by_index)
+        let by_index = || {
+            name.strip_prefix('#')?
+                .parse()
+                .ok()
+                .filter(|&index: &usize| index < self.clips.len())
+        };
+        self.clips
+            .iter()
+            .position(|clip| clip.name == name)
+            .or_else(by_index)
     }
 }
 
@@ -66,7 +75,11 @@ pub struct Trs {
 
 impl Default for Trs {
     fn default() -> Self {
-        Self { translation: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: DVec3::ONE }
+        Self {
+            translation: DVec3::ZERO,
+            rotation: DQuat::IDENTITY,
+            scale: DVec3::ONE,
+        }
     }
 }
 
@@ -75,7 +88,11 @@ impl LocalTransform {
     pub fn matrix(&self) -> DMat4 {
         match self {
             Self::Matrix(matrix) => *matrix,
-            Self::Trs(Trs { translation, rotation, scale }) => DMat4::from_scale_rotation_translation(*scale, *rotation, *translation),
+            Self::Trs(Trs {
+                translation,
+                rotation,
+                scale,
+            }) => DMat4::from_scale_rotation_translation(*scale, *rotation, *translation),
         }
     }
 }

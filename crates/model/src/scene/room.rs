@@ -1,4 +1,5 @@
-//! A room: six walls around a scene, visible from the inside. They receive light and shadows and cast no shadow.
+//! A room: six walls around a scene, visible from the inside. They receive light and shadows and
+//! cast no shadow.
 
 use glam::{DMat4, DVec3};
 
@@ -12,11 +13,13 @@ use super::{
 /// Quads along each side of a wall, so that effects meet triangles of medium size.
 const CELLS: u32 = 8;
 
-/// Distance of the floor below the scene, as a fraction of the scene's height, so that nothing lies in the floor's plane.
+/// Distance of the floor below the scene, as a fraction of the scene's height, so that nothing lies
+/// in the floor's plane.
 const GAP: f64 = 1e-3;
 
 impl Scene {
-    /// Adds a room `times` as wide as the scene. The room stands still while the scene spins about its vertical axis.
+    /// Adds a room `times` as wide as the scene. The room stands still while the scene spins about
+    /// its vertical axis.
     #[must_use]
     pub fn in_room(mut self, times: f64) -> Self {
         let bounds = self.bounds();
@@ -28,12 +31,22 @@ impl Scene {
         let height = (bounds.max.y - bounds.min.y).max(1e-3 * half);
         let floor = bounds.min.y - GAP * height;
         let ceiling = floor + (2.0 * half).min(height * (1.0 + times)).max(height * 1.1);
-        let room = Bounds { min: DVec3::new(-half, floor, -half), max: DVec3::new(half, ceiling, half) };
-        self.materials.push(Material { name: "plaster".into(), base_color: [0.62, 0.6, 0.57, 1.0], ..Material::default() });
+        let room = Bounds {
+            min: DVec3::new(-half, floor, -half),
+            max: DVec3::new(half, ceiling, half),
+        };
+        self.materials.push(Material {
+            name: "plaster".into(),
+            base_color: [0.62, 0.6, 0.57, 1.0],
+            ..Material::default()
+        });
         let material = self.materials.len() - 1;
         let primitive = walls(&room).append(&mut self, "room", material);
         let named_node = Some(self.add_named_node("room"));
-        self.instances.push(Instance { named_node, ..Instance::fixed(primitive, DMat4::IDENTITY) });
+        self.instances.push(Instance {
+            named_node,
+            ..Instance::fixed(primitive, DMat4::IDENTITY)
+        });
         self.walls += 1;
         self.content = self.content.or(Some(bounds));
         if !self.rig.is_empty() {
@@ -56,12 +69,19 @@ fn walls(room: &Bounds) -> MeshBuilder {
     for axis in 0..3 {
         for side in [-1.0, 1.0] {
             let inward = DVec3::AXES[axis] * -side;
-            let (u, v) = (DVec3::AXES[(axis + 1) % 3], inward.cross(DVec3::AXES[(axis + 1) % 3]));
+            let (u, v) = (
+                DVec3::AXES[(axis + 1) % 3],
+                inward.cross(DVec3::AXES[(axis + 1) % 3]),
+            );
             let at = |i: u32, j: u32| {
                 let fraction = |k: u32| 2.0 * f64::from(k) / f64::from(CELLS) - 1.0;
                 center + (u * fraction(i) + v * fraction(j) - inward) * half
             };
-            let row = |mesh: &mut MeshBuilder, j: u32| (0..=CELLS).map(|i| mesh.vertex(at(i, j), inward)).collect::<Vec<_>>();
+            let row = |mesh: &mut MeshBuilder, j: u32| {
+                (0..=CELLS)
+                    .map(|i| mesh.vertex(at(i, j), inward))
+                    .collect::<Vec<_>>()
+            };
             let rows: Vec<Vec<u32>> = (0..=CELLS).map(|j| row(&mut mesh, j)).collect();
             for (below, above) in rows.iter().zip(&rows[1..]) {
                 for i in 0..CELLS as usize {
@@ -93,14 +113,20 @@ mod tests {
             for corner in alone.bounds().corners() {
                 for turn in 0..12 {
                     let turned = crate::math::rotation_y(f64::from(turn)).transform_point3(corner);
-                    assert!(turned.cmpgt(room.bounds.min).all() && turned.cmplt(room.bounds.max).all(), "{query}: {turned}");
+                    assert!(
+                        turned.cmpgt(room.bounds.min).all() && turned.cmplt(room.bounds.max).all(),
+                        "{query}: {turned}"
+                    );
                 }
             }
             let at = |vertex: u32| glam::Vec3::from(room.position(&scene, vertex)).as_dvec3();
             for triangle in 0..room.triangle_count() {
                 let [a, b, c] = room.corners(&scene, triangle).map(at);
                 let normal = (b - a).cross(c - a);
-                assert!(normal.dot(room.bounds.center() - a) > 0.0, "{query}: triangle {triangle} looks outwards");
+                assert!(
+                    normal.dot(room.bounds.center() - a) > 0.0,
+                    "{query}: triangle {triangle} looks outwards"
+                );
             }
         }
     }

@@ -37,13 +37,23 @@ impl ShadowResolution {
 
     /// The resolution that these options select.
     pub const fn of(map: ShadowMapSize, taps: ShadowTaps) -> Self {
-        Self { side: map.side(), taps: taps.side() }
+        Self {
+            side: map.side(),
+            taps: taps.side(),
+        }
     }
 
     /// The accuracy options of this resolution; their defaults where it is none.
     pub fn options(&self) -> (ShadowMapSize, ShadowTaps) {
-        let map = ShadowMapSize::ALL.iter().find(|option| option.side() == self.side);
-        let taps = ShadowTaps::ALL.iter().find(|option| option.side() == self.taps);
-        (map.copied().unwrap_or_default(), taps.copied().unwrap_or_default())
+        let map = ShadowMapSize::ALL
+            .iter()
+            .find(|option| option.side() == self.side);
+        let taps = ShadowTaps::ALL
+            .iter()
+            .find(|option| option.side() == self.taps);
+        (
+            map.copied().unwrap_or_default(),
+            taps.copied().unwrap_or_default(),
+        )
     }
 }

@@ -1,7 +1,8 @@
 //! Textures as plain data: images with their mip levels, and how a material samples them.
 //!
-//! Texels stay the sRGB-encoded bytes of the file. Filtering happens in linear light, so each reader decodes before it
-//! blends. The mip levels are computed here once, so that every renderer and the oracle start from the same bytes.
+//! Texels stay the sRGB-encoded bytes of the file. Filtering happens in linear light, so each
+//! reader decodes before it blends. The mip levels are computed here once, so that every renderer
+//! and the oracle start from the same bytes.
 
 use glam::DVec2;
 
@@ -13,7 +14,8 @@ use crate::math::linear_light;
 pub struct Image {
     /// Shown to people.
     pub name: String,
-    /// The picture, followed by its mip levels down to one texel; only the picture where no sampler uses mip levels.
+    /// The picture, followed by its mip levels down to one texel; only the picture where no
+    /// sampler uses mip levels.
     pub levels: Vec<Level>,
 }
 
@@ -32,8 +34,14 @@ impl Image {
     /// # Panics
     /// If there are not `width * height` texels, or none.
     pub fn new(name: &str, size: [u32; 2], texels: Vec<[u8; 4]>) -> Self {
-        assert!(!texels.is_empty() && texels.len() == size[0] as usize * size[1] as usize, "an image of {size:?} has texels");
-        Self { name: name.into(), levels: vec![Level { size, texels }] }
+        assert!(
+            !texels.is_empty() && texels.len() == size[0] as usize * size[1] as usize,
+            "an image of {size:?} has texels"
+        );
+        Self {
+            name: name.into(),
+            levels: vec![Level { size, texels }],
+        }
     }
 
     /// The same image with all mip levels.
@@ -52,23 +60,30 @@ impl Image {
 
     /// Bytes of all levels.
     pub fn bytes(&self) -> u64 {
-        self.levels.iter().map(|level| 4 * level.texels.len() as u64).sum()
+        self.levels
+            .iter()
+            .map(|level| 4 * level.texels.len() as u64)
+            .sum()
     }
 }
 
 impl Level {
-    /// The next mip level: half as wide and high, rounded down. Each texel is the area-weighted mean of what it covers, in
-    /// linear light. `None` for a single texel.
+    /// The next mip level: half as wide and high, rounded down. Each texel is the area-weighted
+    /// mean of what it covers, in linear light. `None` for a single texel.
     fn halved(&self) -> Option<Self> {
         if self.size == [1, 1] {
             return None;
         }
         let light: [f64; 256] = std::array::from_fn(|byte| linear_light(byte as f64 / 255.0));
         // The smallest linear value that rounds to each byte.
-        let least: [f64; 256] = std::array::from_fn(|byte| linear_light((byte as f64 - 0.5).max(0.0) / 255.0));
+        let least: [f64; 256] =
+            std::array::from_fn(|byte| linear_light((byte as f64 - 0.5).max(0.0) / 255.0));
         let size = self.size.map(|side| (side / 2).max(1));
-        let covered_texels =
-            [0, 1].map(|axis| (0..size[axis]).map(|at| covered_texels(at, size[axis], self.size[axis])).collect::<Vec<_>>());
+        let covered_texels = [0, 1].map(|axis| {
+            (0..size[axis])
+                .map(|at| covered_texels(at, size[axis], self.size[axis]))
+                .collect::<Vec<_>>()
+        });
         let texel = |x: usize, y: usize| {
             let mut sum = [0.0; 4];
             for &(row, high) in &covered_texels[1][y] {
@@ -79,9 +94,17 @@ impl Level {
                 }
             }
             let encoded = |value: f64| (least.partition_point(|&least| least <= value) - 1) as u8;
-            [encoded(sum[0]), encoded(sum[1]), encoded(sum[2]), (sum[3] + 0.5).floor() as u8]
+            [
+                encoded(sum[0]),
+                encoded(sum[1]),
+                encoded(sum[2]),
+                (sum[3] + 0.5).floor() as u8,
+            ]
         };
-        let texels = (0..size[1] as usize).flat_map(|y| (0..size[0] as usize).map(move |x| (x, y))).map(|(x, y)| texel(x, y)).collect();
+        let texels = (0..size[1] as usize)
+            .flat_map(|y| (0..size[0] as usize).map(move |x| (x, y)))
+            .map(|(x, y)| texel(x, y))
+            .collect();
         Some(Self { size, texels })
     }
 }
@@ -92,7 +115,10 @@ fn covered_texels(at: u32, side: u32, of: u32) -> Vec<(usize, f64)> {
     let (from, to) = (f64::from(at) * scale, f64::from(at + 1) * scale);
     let part = |texel: u32| ((f64::from(texel) + 1.0).min(to) - f64::from(texel).max(from)) / scale;
     let range = from.floor() as u32..(to.ceil() as u32).min(of);
-    range.map(|texel| (texel as usize, part(texel))).filter(|(_, fraction)| *fraction > 1e-9).collect()
+    range
+        .map(|texel| (texel as usize, part(texel)))
+        .filter(|(_, fraction)| *fraction > 1e-9)
+        .collect()
 }
 
 /// How coordinates beyond the edges of an image are wrapped.
@@ -147,8 +173,8 @@ pub struct Texture {
     pub mip_filter: MipFilter,
     /// The set of texture coordinates: n of `TEXCOORD_n`.
     pub set: u32,
-    /// Rows of the affine map from stored texture coordinates to image coordinates, in which 0 and 1 are the left and right
-    /// edges, or the top and bottom ones.
+    /// Rows of the affine map from stored texture coordinates to image coordinates, in which 0 and
+    /// 1 are the left and right edges, or the top and bottom ones.
     pub image_from_texcoord: [[f32; 3]; 2],
 }
 
@@ -182,18 +208,24 @@ pub const UNITS_PER_TEXEL: f64 = 256.0;
 pub const MAX_REPEATS: f64 = 65_536.0;
 
 impl Texture {
-    /// Stored texture coordinates in units of 1/256 texel of an image of this size, from which integer decisions are made.
-    /// Clamped to ±2^29 units, two million texels.
+    /// Stored texture coordinates in units of 1/256 texel of an image of this size, from which
+    /// integer decisions are made. Clamped to ±2^29 units, two million texels.
     pub fn units(&self, size: [u32; 2], texcoord: DVec2) -> [i32; 2] {
         const MAX_UNITS: f64 = (1 << 29) as f64;
-        let units = self.image_coordinates(texcoord) * DVec2::from(size.map(f64::from)) * UNITS_PER_TEXEL;
-        units.to_array().map(|v| v.clamp(-MAX_UNITS, MAX_UNITS).round_ties_even() as i32)
+        let units =
+            self.image_coordinates(texcoord) * DVec2::from(size.map(f64::from)) * UNITS_PER_TEXEL;
+        units
+            .to_array()
+            .map(|v| v.clamp(-MAX_UNITS, MAX_UNITS).round_ties_even() as i32)
     }
 }
 
 /// The texture coordinates of a vertex as they are stored.
 pub fn texcoord(texcoords: &Accessor, bytes: &[u8], vertex: u32) -> DVec2 {
-    DVec2::new(texcoords.value(bytes, vertex, 0), texcoords.value(bytes, vertex, 1))
+    DVec2::new(
+        texcoords.value(bytes, vertex, 0),
+        texcoords.value(bytes, vertex, 1),
+    )
 }
 
 #[cfg(test)]
@@ -205,18 +237,31 @@ mod tests {
     fn mip_levels_halve_down_to_a_texel_and_keep_the_mean_of_their_light() {
         for size in [[1, 1], [8, 8], [7, 3], [1, 9], [16, 5]] {
             let noise = |i: u32| hash(i).to_le_bytes();
-            let image = Image::new("noise", size, (0..size[0] * size[1]).map(noise).collect()).with_mipmaps();
+            let image = Image::new("noise", size, (0..size[0] * size[1]).map(noise).collect())
+                .with_mipmaps();
             let sizes: Vec<_> = image.levels.iter().map(|level| level.size).collect();
             assert_eq!((sizes[0], *sizes.last().expect("a level")), (size, [1, 1]));
-            assert!(sizes.windows(2).all(|pair| pair[1] == pair[0].map(|side| (side / 2).max(1))), "{sizes:?}");
+            assert!(
+                sizes
+                    .windows(2)
+                    .all(|pair| pair[1] == pair[0].map(|side| (side / 2).max(1))),
+                "{sizes:?}"
+            );
             let mean = |level: &Level, c: usize| {
                 let light = |texel: &[u8; 4]| linear_light(f64::from(texel[c]) / 255.0);
                 level.texels.iter().map(light).sum::<f64>() / level.texels.len() as f64
             };
-            for (level, c) in image.levels.iter().flat_map(|level| (0..3).map(move |c| (level, c))) {
+            for (level, c) in image
+                .levels
+                .iter()
+                .flat_map(|level| (0..3).map(move |c| (level, c)))
+            {
                 let (kept, whole) = (srgb(mean(level, c)), srgb(mean(&image.levels[0], c)));
                 // A rounding a level.
-                assert!((kept - whole).abs() < 0.6 / 255.0 * image.levels.len() as f64, "{size:?} {c}: {kept} for {whole}");
+                assert!(
+                    (kept - whole).abs() < 0.6 / 255.0 * image.levels.len() as f64,
+                    "{size:?} {c}: {kept} for {whole}"
+                );
             }
         }
     }

@@ -1,4 +1,5 @@
-//! Views: a camera, a picture size and a scene's bounds as the matrices that a renderer needs, in f64.
+//! Views: a camera, a picture size and a scene's bounds as the matrices that a renderer needs, in
+//! f64.
 
 use std::sync::Arc;
 
@@ -14,8 +15,8 @@ use super::{
 };
 use crate::math::{SUBPIXEL_BITS, view_from_world};
 
-/// A camera, the size of the picture that it takes, and the moment and the precision in which it takes it: all that a renderer
-/// needs beside a scene and a stack.
+/// A camera, the size of the picture that it takes, and the moment and the precision in which it
+/// takes it: all that a renderer needs beside a scene and a stack.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
     /// Size of the picture in pixels; either may be 0.
@@ -26,16 +27,19 @@ pub struct View {
     pub eye: DVec3,
     /// Unit vector along the viewing direction, world space.
     pub forward: DVec3,
-    /// The world-space vectors of one unit of normalized device x and y: per meter of depth for a perspective.
+    /// The world-space vectors of one unit of normalized device x and y: per meter of depth for a
+    /// perspective.
     pub ndc_axes: [DVec3; 2],
-    /// Meters at depth 1 and at depth 0 of a linear (orthographic) depth; none for a perspective, whose w is meters.
+    /// Meters at depth 1 and at depth 0 of a linear (orthographic) depth; none for a perspective,
+    /// whose w is meters.
     pub linear_depth_m: Option<[f64; 2]>,
-    /// Nearest and farthest distance along `forward` of the scene's box; in a perspective not nearer than the near plane.
+    /// Nearest and farthest distance along `forward` of the scene's box; in a perspective not
+    /// nearer than the near plane.
     pub depth_range_m: [f64; 2],
     /// What pixels without a triangle show.
     pub background: Background,
-    /// Positions in the picture for which this view, a light's, draws a shadow map; none in a picture itself. A light sees back
-    /// faces too, since they stop it as well.
+    /// Positions in the picture for which this view, a light's, draws a shadow map; none in a
+    /// picture itself. A light sees back faces too, since they stop it as well.
     pub picture_from_world: Option<DMat4>,
     pub scene_state: SceneState,
     pub precision: ViewPrecision,
@@ -66,12 +70,17 @@ pub struct ViewPrecision {
 
 impl Default for ViewPrecision {
     fn default() -> Self {
-        Self { subpixel_bits: SUBPIXEL_BITS, is_relative: false, shadow: ShadowResolution::default() }
+        Self {
+            subpixel_bits: SUBPIXEL_BITS,
+            is_relative: false,
+            shadow: ShadowResolution::default(),
+        }
     }
 }
 
 impl View {
-    /// The view of `camera` with `width` x `height` pixels, given the scene's world-space box before its spin.
+    /// The view of `camera` with `width` x `height` pixels, given the scene's world-space box
+    /// before its spin.
     pub fn new(
         camera: &Camera,
         width: u32,
@@ -80,14 +89,26 @@ impl View {
         world_from_scene: DMat4,
         background: impl Into<Background>,
     ) -> Self {
-        let aspect = if height == 0 || width == 0 { 1.0 } else { f64::from(width) / f64::from(height) };
+        let aspect = if height == 0 || width == 0 {
+            1.0
+        } else {
+            f64::from(width) / f64::from(height)
+        };
         let forward = camera.forward();
-        let distances = bounds.corners().map(|c| (world_from_scene.transform_point3(c) - camera.eye).dot(forward));
-        let (mut nearest, mut farthest) = distances.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(n, f), d| (n.min(*d), f.max(*d)));
+        let distances = bounds
+            .corners()
+            .map(|c| (world_from_scene.transform_point3(c) - camera.eye).dot(forward));
+        let (mut nearest, mut farthest) = distances
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(n, f), d| {
+                (n.min(*d), f.max(*d))
+            });
         if bounds.is_empty() || !(nearest.is_finite() && farthest.is_finite()) {
             (nearest, farthest) = (camera.near_m, camera.near_m + 1.0);
         }
-        let margin = ((farthest - nearest) * 0.01).max(1e-3 * farthest.abs()).max(1e-6);
+        let margin = ((farthest - nearest) * 0.01)
+            .max(1e-3 * farthest.abs())
+            .max(1e-6);
         let (clip_from_view, linear_depth_m) = match camera.projection {
             Projection::Perspective { fov_y_deg } => {
                 let focal = 1.0 / libm::tan(fov_y_deg.to_radians() * 0.5);
@@ -96,13 +117,24 @@ impl View {
             Projection::Orthographic { height_m } => {
                 let (near, far) = (nearest - margin, farthest + margin);
                 let y = 2.0 / height_m;
-                (orthographic_reverse(y / aspect, y, near, far), Some([near, far]))
+                (
+                    orthographic_reverse(y / aspect, y, near, far),
+                    Some([near, far]),
+                )
             }
         };
-        let clip_from_world = clip_from_view * view_from_world(camera.eye, camera.target, camera.up);
-        // A row of the matrix is an axis times its scale, so the inverse axis is the row over its squared length.
-        let ndc_axes = [0, 1].map(|i| clip_from_world.row(i).truncate()).map(|row| row / row.length_squared());
-        let from = if linear_depth_m.is_none() { nearest.max(camera.near_m) } else { nearest };
+        let clip_from_world =
+            clip_from_view * view_from_world(camera.eye, camera.target, camera.up);
+        // A row of the matrix is an axis times its scale, so the inverse axis is the row over its
+        // squared length.
+        let ndc_axes = [0, 1]
+            .map(|i| clip_from_world.row(i).truncate())
+            .map(|row| row / row.length_squared());
+        let from = if linear_depth_m.is_none() {
+            nearest.max(camera.near_m)
+        } else {
+            nearest
+        };
         Self {
             width,
             height,
@@ -114,7 +146,10 @@ impl View {
             depth_range_m: [from, farthest.max(from + margin)],
             background: background.into(),
             picture_from_world: None,
-            scene_state: SceneState { world_from_scene, ..SceneState::default() },
+            scene_state: SceneState {
+                world_from_scene,
+                ..SceneState::default()
+            },
             precision: ViewPrecision::default(),
         }
     }
@@ -127,20 +162,46 @@ impl View {
     /// The same view in `factor` times as many pixels to a side, at least one.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
-        let side = |side: u32| if side == 0 { 0 } else { (f64::from(side) * factor).ceil().min(f64::from(u32::MAX)).max(1.0) as u32 };
-        Self { width: side(self.width), height: side(self.height), ..self.clone() }
+        let side = |side: u32| {
+            if side == 0 {
+                0
+            } else {
+                (f64::from(side) * factor)
+                    .ceil()
+                    .min(f64::from(u32::MAX))
+                    .max(1.0) as u32
+            }
+        };
+        Self {
+            width: side(self.width),
+            height: side(self.height),
+            ..self.clone()
+        }
     }
 
     /// The same view on another grid of snapped positions, relative to the eye or not.
     #[must_use]
     pub fn with_grid(&self, subpixel_bits: u32, is_relative: bool) -> Self {
-        Self { precision: ViewPrecision { subpixel_bits, is_relative, ..self.precision }, ..self.clone() }
+        Self {
+            precision: ViewPrecision {
+                subpixel_bits,
+                is_relative,
+                ..self.precision
+            },
+            ..self.clone()
+        }
     }
 
     /// The same view with shadows of another resolution.
     #[must_use]
     pub fn with_shadow(&self, shadow: ShadowResolution) -> Self {
-        Self { precision: ViewPrecision { shadow, ..self.precision }, ..self.clone() }
+        Self {
+            precision: ViewPrecision {
+                shadow,
+                ..self.precision
+            },
+            ..self.clone()
+        }
     }
 
     /// Distance from the eye along `forward`, in meters, of a reversed depth above 0.
@@ -165,13 +226,23 @@ impl View {
 
 /// z_c = near, w_c = -z_view: depth is near / w, 1 on the near plane and 0 at infinity.
 fn infinite_reverse(x: f64, y: f64, near: f64) -> DMat4 {
-    DMat4::from_cols(DVec4::X * x, DVec4::Y * y, DVec4::new(0.0, 0.0, 0.0, -1.0), DVec4::new(0.0, 0.0, near, 0.0))
+    DMat4::from_cols(
+        DVec4::X * x,
+        DVec4::Y * y,
+        DVec4::new(0.0, 0.0, 0.0, -1.0),
+        DVec4::new(0.0, 0.0, near, 0.0),
+    )
 }
 
 /// Depth falls linearly from 1 at `near` to 0 at `far`; w is 1.
 fn orthographic_reverse(x: f64, y: f64, near: f64, far: f64) -> DMat4 {
     let depth = 1.0 / (far - near);
-    DMat4::from_cols(DVec4::X * x, DVec4::Y * y, DVec4::Z * depth, DVec4::new(0.0, 0.0, far * depth, 1.0))
+    DMat4::from_cols(
+        DVec4::X * x,
+        DVec4::Y * y,
+        DVec4::Z * depth,
+        DVec4::new(0.0, 0.0, far * depth, 1.0),
+    )
 }
 
 #[cfg(test)]
@@ -179,26 +250,44 @@ mod tests {
     use super::*;
 
     fn unit_box() -> Bounds {
-        Bounds { min: DVec3::NEG_ONE, max: DVec3::ONE }
+        Bounds {
+            min: DVec3::NEG_ONE,
+            max: DVec3::ONE,
+        }
     }
 
     #[test]
     fn framing_shows_every_corner_of_the_box() {
         for (aspect, width, height) in [(2.0, 200, 100), (0.5, 100, 200)] {
             let camera = Camera::framing(&unit_box(), DVec3::new(-1.0, -0.5, -2.0), aspect);
-            let view = View::new(&camera, width, height, &unit_box(), DMat4::IDENTITY, [0.0; 4]);
+            let view = View::new(
+                &camera,
+                width,
+                height,
+                &unit_box(),
+                DMat4::IDENTITY,
+                [0.0; 4],
+            );
             for corner in unit_box().corners() {
                 let clip = view.clip_from_world * corner.extend(1.0);
-                assert!(clip.x.abs() < clip.w && clip.y.abs() < clip.w && clip.z < clip.w, "{clip}");
+                assert!(
+                    clip.x.abs() < clip.w && clip.y.abs() < clip.w && clip.z < clip.w,
+                    "{clip}"
+                );
             }
         }
     }
 
     #[test]
     fn orthographic_depth_runs_from_one_to_zero_through_the_scene() {
-        let camera = Camera { projection: Projection::Orthographic { height_m: 4.0 }, ..Camera::default() };
+        let camera = Camera {
+            projection: Projection::Orthographic { height_m: 4.0 },
+            ..Camera::default()
+        };
         let view = View::new(&camera, 64, 64, &unit_box(), DMat4::IDENTITY, [0.0; 4]);
-        let depths = unit_box().corners().map(|c| (view.clip_from_world * c.extend(1.0)).z);
+        let depths = unit_box()
+            .corners()
+            .map(|c| (view.clip_from_world * c.extend(1.0)).z);
         assert!(depths.iter().all(|d| (0.0..=1.0).contains(d)), "{depths:?}");
     }
 }

@@ -1,13 +1,18 @@
-//! f32 arithmetic with flush-to-zero (`docs/exactness.md` §10): every operation rounds to nearest, ties to even; operands and
-//! results below 2^-126 become zero and keep their sign.
+//! f32 arithmetic with flush-to-zero (`docs/exactness.md` §10): every operation rounds to nearest,
+//! ties to even; operands and results below 2^-126 become zero and keep their sign.
 //!
-//! Rust's f32 operations are IEEE 754 operations that the compiler neither fuses nor reorders, so this module adds only the
-//! flushing. A result is flushed if its value, rounded to 24 bits with an unbounded exponent, is below 2^-126: directly below
-//! 2^-126 that is finer than the spacing of subnormals.
+//! Rust's f32 operations are IEEE 754 operations that the compiler neither fuses nor reorders, so
+//! this module adds only the flushing. A result is flushed if its value, rounded to 24 bits with an
+//! unbounded exponent, is below 2^-126: directly below 2^-126 that is finer than the spacing of
+//! subnormals.
 
 /// Replaces a subnormal number by zero of the same sign.
 pub fn operand(a: f32) -> f32 {
-    if a.abs() < f32::MIN_POSITIVE { 0f32.copysign(a) } else { a }
+    if a.abs() < f32::MIN_POSITIVE {
+        0f32.copysign(a)
+    } else {
+        a
+    }
 }
 
 pub fn sum(a: f32, b: f32) -> f32 {
@@ -39,7 +44,11 @@ pub fn round(a: f32) -> i32 {
 fn flushed(rounded: f32, value: f64) -> f32 {
     const UP: f64 = (1u64 << 62) as f64;
     let is_below = ((value * UP) as f32).abs() < f32::MIN_POSITIVE * UP as f32;
-    if is_below { 0f32.copysign(rounded) } else { rounded }
+    if is_below {
+        0f32.copysign(rounded)
+    } else {
+        rounded
+    }
 }
 
 #[cfg(test)]
@@ -64,6 +73,9 @@ mod tests {
 
     #[test]
     fn halves_round_to_even() {
-        assert_eq!([-1.5, -0.5, 0.5, 1.5, 2.5, 3e9].map(round), [-2, 0, 0, 2, 2, 16_777_216]);
+        assert_eq!(
+            [-1.5, -0.5, 0.5, 1.5, 2.5, 3e9].map(round),
+            [-2, 0, 0, 2, 2, 16_777_216]
+        );
     }
 }

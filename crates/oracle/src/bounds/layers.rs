@@ -1,6 +1,7 @@
-//! Which pictures of layers are right. An adapter sums f32 colors and weights rounded to whole numbers. Where either answer of a
-//! rounding is right, or a float key may lie on either side of the depth window, a pixel has an interval of right answers
-//! (`docs/exactness.md` §9). Whether a wider search is worth its time depends on the adapter's answer; what it finds does not.
+//! Which pictures of layers are right. An adapter sums f32 colors and weights rounded to whole
+//! numbers. Where either answer of a rounding is right, or a float key may lie on either side of
+//! the depth window, a pixel has an interval of right answers (`docs/exactness.md` §9). Whether a
+//! wider search is worth its time depends on the adapter's answer; what it finds does not.
 
 use glam::{DVec3, DVec4};
 
@@ -11,7 +12,10 @@ use super::{
             background::background,
             coverage::{Hit, scatter},
             draw_order::ranks,
-            layers::{LayerImage, LayerInput, LayerMode, fixed_color, fixed_weight, is_front, steps, window_depth, xray_color},
+            layers::{
+                LayerImage, LayerInput, LayerMode, fixed_color, fixed_weight, is_front, steps,
+                window_depth, xray_color,
+            },
             shadow::Light,
             surface::SurfaceTriangle,
         },
@@ -39,28 +43,51 @@ pub struct LayerBounds {
     pub counted: Vec<[u64; 2]>,
 }
 
-/// The right answers round `image`, without those that only a [wider search](LayerBounds::widen) finds.
+/// The right answers round `image`, without those that only a [wider search](LayerBounds::widen)
+/// finds.
 ///
 /// # Errors
 /// The work was canceled.
 pub fn layer_bounds(input: &LayerInput, image: &LayerImage) -> Result<LayerBounds, Canceled> {
     let LayerMode::Xray { params, bits } = &image.mode else {
         let colors = image.colors.iter().map(|&color| [color; 2]).collect();
-        return Ok(LayerBounds { colors, counted: image.counted.iter().map(|&layers| [layers.into(); 2]).collect() });
+        return Ok(LayerBounds {
+            colors,
+            counted: image
+                .counted
+                .iter()
+                .map(|&layers| [layers.into(); 2])
+                .collect(),
+        });
     };
     let sums = sums(input, params, *bits, None)?;
     let rows = Rows::of(input);
     let color = |(i, sum): (usize, &SumBounds)| sum.pixel(i, image, &rows, params, *bits);
-    Ok(LayerBounds { colors: sums.iter().enumerate().map(color).collect(), counted: sums.iter().map(SumBounds::weights).collect() })
+    Ok(LayerBounds {
+        colors: sums.iter().enumerate().map(color).collect(),
+        counted: sums.iter().map(SumBounds::weights).collect(),
+    })
 }
 
 impl LayerBounds {
-    /// Adds the answers at these pixels that are right where interpolated normals and depths err so far that colors do not change in
-    /// proportion: hundreds of shades a layer, which are not computed where the adapter's answer is known to be right without them.
-    pub fn widen(&mut self, input: &LayerInput, image: &LayerImage, pixels: &[bool]) -> Result<(), Canceled> {
-        let LayerMode::Xray { params, bits } = &image.mode else { return Ok(()) };
+    /// Adds the answers at these pixels that are right where interpolated normals and depths err so
+    /// far that colors do not change in proportion: hundreds of shades a layer, which are not
+    /// computed where the adapter's answer is known to be right without them.
+    pub fn widen(
+        &mut self,
+        input: &LayerInput,
+        image: &LayerImage,
+        pixels: &[bool],
+    ) -> Result<(), Canceled> {
+        let LayerMode::Xray { params, bits } = &image.mode else {
+            return Ok(());
+        };
         let rows = Rows::of(input);
-        for (i, sum) in sums(input, params, *bits, Some(pixels))?.iter().enumerate().filter(|(i, _)| pixels[*i]) {
+        for (i, sum) in sums(input, params, *bits, Some(pixels))?
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| pixels[*i])
+        {
             self.colors[i] = sum.pixel(i, image, &rows, params, *bits);
             self.counted[i] = sum.weights();
         }
@@ -76,7 +103,10 @@ struct Rows {
 
 impl Rows {
     fn of(input: &LayerInput) -> Self {
-        Self { background: background(input.shot.view), width: input.shot.view.width as usize }
+        Self {
+            background: background(input.shot.view),
+            width: input.shot.view.width as usize,
+        }
     }
 }
 
@@ -106,13 +136,25 @@ struct Layer {
 }
 
 /// Bounds of the sums of every pixel; of a wider search, at the pixels for which it is asked.
-fn sums(input: &LayerInput, params: &Xray, bits: u32, wider_at: Option<&[bool]>) -> Result<Vec<SumBounds>, Canceled> {
+fn sums(
+    input: &LayerInput,
+    params: &Xray,
+    bits: u32,
+    wider_at: Option<&[bool]>,
+) -> Result<Vec<SumBounds>, Canceled> {
     let (view, stack) = (input.shot.view, input.shot.stack);
     let mut sums: Vec<SumBounds> = (0..view.pixels()).map(|_| SumBounds::default()).collect();
-    let (ranks, light) = (ranks(&input.shot, input.geometry)?, Light::of(&input.shot, input.geometry));
+    let (ranks, light) = (
+        ranks(&input.shot, input.geometry)?,
+        Light::of(&input.shot, input.geometry),
+    );
     let perturbations = of_layers(input.shot.scene, view, stack);
     let (ranks, light, perturbations) = (&ranks, light.as_ref(), &perturbations);
-    let search = if wider_at.is_some() { Search::Wide } else { Search::Quick };
+    let search = if wider_at.is_some() {
+        Search::Wide
+    } else {
+        Search::Quick
+    };
     scatter(input.tests, input.triangles, view, &mut sums, |triangle| {
         let mut surface: Option<Option<(SurfaceTriangle<'_>, CornerErrors)>> = None;
         let rank = ranks.get(triangle.id as usize).copied().unwrap_or(0.0);
@@ -123,35 +165,70 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32, wider_at: Option<&[bool]>)
             }
             let threshold = window_depth(input, params, pixel);
             // A depth too small for a normal float has key 1.
-            let [low, high] = depth_interval(triangle, &hit).map(|depth| depth.max(f64::from(f32::from_bits(1))));
+            let [low, high] =
+                depth_interval(triangle, &hit).map(|depth| depth.max(f64::from(f32::from_bits(1))));
             let is_front = is_front(input, pixel, triangle.id, high);
             if high < threshold && !is_front {
                 return;
             }
             let of_triangle = || {
                 let known = SurfaceTriangle::new(&input.shot, input.geometry, triangle.id)?;
-                Some((known, CornerErrors::of(&input.shot, triangle.id, input.geometry.packed_bits)))
+                Some((
+                    known,
+                    CornerErrors::of(&input.shot, triangle.id, input.geometry.packed_bits),
+                ))
             };
-            let Some((known, errors)) = surface.get_or_insert_with(of_triangle) else { return };
+            let Some((known, errors)) = surface.get_or_insert_with(of_triangle) else {
+                return;
+            };
             let lit_point = known.lit_point(&known.surface(x, y, &Perturbation::default()));
             let errors = errors.at(known, x, y);
-            let mut shaded = perturbations.iter().copied().chain(interpolations(stack, errors, search)).map(|perturbation| {
-                let step = perturbation.color_step;
-                let lit = light.map_or(0.0, |light| light.arrives(&lit_point, triangle.id, step));
-                let surface = Surface { rank, lit, step_offset: step, ..known.surface(x, y, &perturbation) };
-                stack.shade(surface, known.scopes)
-            });
+            let mut shaded = perturbations
+                .iter()
+                .copied()
+                .chain(interpolations(stack, errors, search))
+                .map(|perturbation| {
+                    let step = perturbation.color_step;
+                    let lit =
+                        light.map_or(0.0, |light| light.arrives(&lit_point, triangle.id, step));
+                    let surface = Surface {
+                        rank,
+                        lit,
+                        step_offset: step,
+                        ..known.surface(x, y, &perturbation)
+                    };
+                    stack.shade(surface, known.scopes)
+                });
             let exact = shaded.next().expect("the first perturbation is none");
             let color = exact.color.truncate();
             let weight = params.weight_of(&exact);
-            let (colors, weights) = shaded.fold(([color; 2], [weight; 2]), |([least, most], [lightest, heaviest]), shaded| {
-                let (color, weight) = (shaded.color.truncate(), params.weight_of(&shaded));
-                ([least.min(color), most.max(color)], [lightest.min(weight), heaviest.max(weight)])
-            });
-            let slack = if errors.doubt() == Doubt::Wide { WIDE_SLACK } else { 0.0 };
-            let (color_slack, weight_slack) = ((colors[1] - colors[0]) * slack, (weights[1] - weights[0]) * slack);
-            let colors = [(colors[0] - color_slack).max(DVec3::ZERO), colors[1] + color_slack];
-            let weights = [(weights[0] - weight_slack).max(0.0), (weights[1] + weight_slack).min(f64::from(params.unit()))];
+            let (colors, weights) = shaded.fold(
+                ([color; 2], [weight; 2]),
+                |([least, most], [lightest, heaviest]), shaded| {
+                    let (color, weight) = (shaded.color.truncate(), params.weight_of(&shaded));
+                    (
+                        [least.min(color), most.max(color)],
+                        [lightest.min(weight), heaviest.max(weight)],
+                    )
+                },
+            );
+            let slack = if errors.doubt() == Doubt::Wide {
+                WIDE_SLACK
+            } else {
+                0.0
+            };
+            let (color_slack, weight_slack) = (
+                (colors[1] - colors[0]) * slack,
+                (weights[1] - weights[0]) * slack,
+            );
+            let colors = [
+                (colors[0] - color_slack).max(DVec3::ZERO),
+                colors[1] + color_slack,
+            ];
+            let weights = [
+                (weights[0] - weight_slack).max(0.0),
+                (weights[1] + weight_slack).min(f64::from(params.unit())),
+            ];
             // On a clipped triangle f32 has a sample's position only to some 2^-16 of its distance.
             let weight_error = match (params.unit() > 1, triangle.is_clipped()) {
                 (false, _) => 0.0,
@@ -162,7 +239,8 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32, wider_at: Option<&[bool]>)
                 &Layer {
                     colors,
                     weight: 0.5 * (weights[0] + weights[1]),
-                    weight_error: weight_error + 0.5 * (weights[1] - weights[0]) / f64::from(xray::FULL_WEIGHT),
+                    weight_error: weight_error
+                        + 0.5 * (weights[1] - weights[0]) / f64::from(xray::FULL_WEIGHT),
                     is_certain: is_front || low >= threshold,
                 },
                 bits,
@@ -176,38 +254,71 @@ impl SumBounds {
     fn add(&mut self, layer: &Layer, bits: u32) {
         let error = layer.weight_error * f64::from(xray::FULL_WEIGHT);
         let [low, high] = [-error, error].map(|error| fixed_weight(layer.weight, error));
-        let colors = [fixed_color(layer.colors[0], -COLOR_ERROR, bits), fixed_color(layer.colors[1], COLOR_ERROR, bits)];
+        let colors = [
+            fixed_color(layer.colors[0], -COLOR_ERROR, bits),
+            fixed_color(layer.colors[1], COLOR_ERROR, bits),
+        ];
         if layer.is_certain && low == high {
             for (sums, color) in self.certain.iter_mut().zip(colors) {
                 (0..3).for_each(|c| sums[c] += color[c] * low);
             }
             self.certain_weight += low;
         } else {
-            self.ambiguous.push(AmbiguousLayer { colors, weights: [if layer.is_certain { low } else { 0 }, high] });
+            self.ambiguous.push(AmbiguousLayer {
+                colors,
+                weights: [if layer.is_certain { low } else { 0 }, high],
+            });
         }
     }
 
     /// Colors of a pixel between which every right answer lies.
-    fn pixel(&self, i: usize, image: &LayerImage, rows: &Rows, params: &Xray, bits: u32) -> [DVec4; 2] {
-        if image.counted[i] == 0 { [image.colors[i]; 2] } else { self.colors(rows.background[i / rows.width], params, bits) }
+    fn pixel(
+        &self,
+        i: usize,
+        image: &LayerImage,
+        rows: &Rows,
+        params: &Xray,
+        bits: u32,
+    ) -> [DVec4; 2] {
+        if image.counted[i] == 0 {
+            [image.colors[i]; 2]
+        } else {
+            self.colors(rows.background[i / rows.width], params, bits)
+        }
     }
 
     /// Smallest and largest sum of weights.
     fn weights(&self) -> [u64; 2] {
-        [0, 1].map(|end| self.certain_weight + self.ambiguous.iter().map(|layer| layer.weights[end]).sum::<u64>())
+        [0, 1].map(|end| {
+            self.certain_weight
+                + self
+                    .ambiguous
+                    .iter()
+                    .map(|layer| layer.weights[end])
+                    .sum::<u64>()
+        })
     }
 
-    /// Colors between which every right answer lies: both ends of the average with both ends of the weight.
+    /// Colors between which every right answer lies: both ends of the average with both ends of the
+    /// weight.
     fn colors(&self, background: DVec4, params: &Xray, bits: u32) -> [DVec4; 2] {
-        let average = |end: End| DVec3::from_array([0, 1, 2].map(|channel| self.average(channel, end) / steps(bits)));
-        let corners = [End::Least, End::Most].map(|end| self.weights().map(|weight| xray_color(background, params, average(end), weight)));
+        let average = |end: End| {
+            DVec3::from_array([0, 1, 2].map(|channel| self.average(channel, end) / steps(bits)))
+        };
+        let corners = [End::Least, End::Most].map(|end| {
+            self.weights()
+                .map(|weight| xray_color(background, params, average(end), weight))
+        });
         let all = corners.as_flattened();
-        let fold = |pick: fn(DVec4, DVec4) -> DVec4| all.iter().copied().reduce(pick).expect("four corners");
+        let fold = |pick: fn(DVec4, DVec4) -> DVec4| {
+            all.iter().copied().reduce(pick).expect("four corners")
+        };
         [fold(DVec4::min), fold(DVec4::max)]
     }
 
-    /// Smallest or largest average of a channel, in steps. For the largest, layers above the average weigh as much and those below
-    /// as little as they may; for the smallest, the other way round. The average is found by iteration (Dinkelbach 1967).
+    /// Smallest or largest average of a channel, in steps. For the largest, layers above the
+    /// average weigh as much and those below as little as they may; for the smallest, the other
+    /// way round. The average is found by iteration (Dinkelbach 1967).
     fn average(&self, channel: usize, end: End) -> f64 {
         let certain = self.certain[end as usize][channel];
         let mut average = certain as f64 / self.certain_weight.max(1) as f64;
@@ -215,7 +326,8 @@ impl SumBounds {
             let (mut sum, mut weight) = (certain, self.certain_weight);
             for layer in &self.ambiguous {
                 let color = layer.colors[end as usize][channel];
-                let taken = layer.weights[usize::from((color as f64 > average) == (end == End::Most))];
+                let taken =
+                    layer.weights[usize::from((color as f64 > average) == (end == End::Most))];
                 (sum, weight) = (sum + color * taken, weight + taken);
             }
             let next = sum as f64 / weight.max(1) as f64;
@@ -228,7 +340,11 @@ impl SumBounds {
         if self.ambiguous.is_empty() && self.certain[0][channel] == self.certain[1][channel] {
             return xray::average(self.certain[0][channel], self.certain_weight) as f64;
         }
-        if end == End::Most { (average + 0.5).floor() } else { (average - 0.5).ceil() }
+        if end == End::Most {
+            (average + 0.5).floor()
+        } else {
+            (average - 0.5).ceil()
+        }
     }
 }
 

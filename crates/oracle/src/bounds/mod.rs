@@ -1,5 +1,6 @@
-//! Bounds how far the picture of an f32 renderer may be from the exact one (`docs/exactness.md` §9). Every file belongs to one of
-//! `render` and bounds what that computes, for any rounding, order and fusion of operations that WGSL allows.
+//! Bounds how far the picture of an f32 renderer may be from the exact one (`docs/exactness.md`
+//! §9). Every file belongs to one of `render` and bounds what that computes, for any rounding,
+//! order and fusion of operations that WGSL allows.
 
 pub mod colors;
 pub mod coverage;

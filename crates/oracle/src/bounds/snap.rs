@@ -1,5 +1,5 @@
-//! Forward error bounds of snapped records: how far a float renderer's position, depth and 1/w may be from the exact ones
-//! (`docs/exactness.md` §9).
+//! Forward error bounds of snapped records: how far a float renderer's position, depth and 1/w may
+//! be from the exact ones (`docs/exactness.md` §9).
 
 use glam::DVec3;
 
@@ -23,26 +23,41 @@ impl ClipErrors {
     }
 }
 
-/// Bound of a snapped position before it is rounded, in sub-pixel units; none if w is not known to a sixteenth, so that rounding
-/// may move the position anywhere.
-pub fn snap_bound(position: &ClipPosition, [ex, ey, _, ew]: [f64; 4], view: &View) -> Option<[f64; 2]> {
+/// Bound of a snapped position before it is rounded, in sub-pixel units; none if w is not known to
+/// a sixteenth, so that rounding may move the position anywhere.
+pub fn snap_bound(
+    position: &ClipPosition,
+    [ex, ey, _, ew]: [f64; 4],
+    view: &View,
+) -> Option<[f64; 2]> {
     let w = position.w.abs();
     let [half_x, half_y] = half_size(view).map(f64::from);
-    let bound = |half: f64, e: f64, c: f64| half * (e / w + (ew / w + 4.5 * ROUNDING) * (c / w).abs());
+    let bound =
+        |half: f64, e: f64, c: f64| half * (e / w + (ew / w + 4.5 * ROUNDING) * (c / w).abs());
     (ew <= w / 16.0).then(|| [bound(half_x, ex, position.x), bound(half_y, ey, position.y)])
 }
 
-/// The largest distance in whole units between two snapped positions whose values before rounding differ by a [`snap_bound`].
+/// The largest distance in whole units between two snapped positions whose values before rounding
+/// differ by a [`snap_bound`].
 pub fn whole_units(bound: f64) -> f64 {
-    if bound < 1.0 { 1.0 } else { (1.0 + bound).floor() }
+    if bound < 1.0 {
+        1.0
+    } else {
+        (1.0 + bound).floor()
+    }
 }
 
 /// Returns true if the depth and 1/w of a record lie within their bounds.
-pub fn attributes_fit(record: &SnappedVertex, position: &ClipPosition, bounds: &ClipErrors) -> bool {
+pub fn attributes_fit(
+    record: &SnappedVertex,
+    position: &ClipPosition,
+    bounds: &ClipErrors,
+) -> bool {
     let ([_, _, ez, ew], [_, _, sz, sw]) = (bounds.errors, bounds.magnitudes);
     let w = position.w.abs();
     let w_error = (ew + ROUNDING * sw) / w + 4.5 * ROUNDING;
-    let depth_error = (ez + ROUNDING * sz) / w + (position.z / w).abs() * w_error + f64::from(f32::MIN_POSITIVE);
+    let depth_error =
+        (ez + ROUNDING * sz) / w + (position.z / w).abs() * w_error + f64::from(f32::MIN_POSITIVE);
     (f64::from(record.inv_w) * position.w - 1.0).abs() <= w_error
         && (f64::from(record.depth) - position.z / position.w).abs() <= depth_error
 }

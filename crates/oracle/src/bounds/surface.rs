@@ -1,8 +1,9 @@
-//! Bounds of the errors of what a float renderer interpolates from a triangle's corners: its normal and, where it was clipped, its depth
-//! and its color.
+//! Bounds of the errors of what a float renderer interpolates from a triangle's corners: its normal
+//! and, where it was clipped, its depth and its color.
 //!
-//! They follow from the bounds of the corners ([`VertexBounds`]) and of their weights. A quotient of sums Σ bₖxₖ / Σ bₖ errs, to first
-//! order, by Σ δₖ (xₖ - x) / Σ bₖ, where bₖ errs by δₖ and x is the quotient.
+//! They follow from the bounds of the corners ([`VertexBounds`]) and of their weights. A quotient
+//! of sums Σ bₖxₖ / Σ bₖ errs, to first order, by Σ δₖ (xₖ - x) / Σ bₖ, where bₖ errs by δₖ and x
+//! is the quotient.
 
 use glam::{DVec3, DVec4};
 
@@ -70,15 +71,21 @@ impl SampleErrors {
         }
     }
 
-    /// Returns true if the color that the corners' mix may err by so much that the bound of a shaded color does not contain it. On an
-    /// unclipped triangle it errs by 2^-19 of their differences at most.
+    /// Returns true if the color that the corners' mix may err by so much that the bound of a
+    /// shaded color does not contain it. On an unclipped triangle it errs by 2^-19 of their
+    /// differences at most.
     pub fn has_doubtful_color(&self) -> bool {
         self.color.max_element() > 1.0 / f64::from(1 << 18)
     }
 
-    /// The normals turned, the depth stretched and the color moved by so many of these bounds: x, y and z of world space, and the depth;
-    /// red, green, blue and alpha. Of corners that lie far before and far behind the eye a renderer may mix a depth of either sign.
-    pub fn times(&self, [turn @ .., stretch]: [f64; 4], tint: [f64; 4]) -> InterpolatedPerturbation {
+    /// The normals turned, the depth stretched and the color moved by so many of these bounds: x, y
+    /// and z of world space, and the depth; red, green, blue and alpha. Of corners that lie far
+    /// before and far behind the eye a renderer may mix a depth of either sign.
+    pub fn times(
+        &self,
+        [turn @ .., stretch]: [f64; 4],
+        tint: [f64; 4],
+    ) -> InterpolatedPerturbation {
         let turn = DVec3::from(turn);
         InterpolatedPerturbation {
             normal: turn * self.normal,
@@ -98,14 +105,25 @@ impl CornerErrors {
         let corners = evaluator.triangle_corners(id - draw.first_triangle);
         let moved = corners.map(|corner| bounds.moved(corner));
         let clip = [0, 1, 2].map(|k| bounds.clip_apart(corners[k], &moved[k]));
-        Self { clip, offsets_m: moved.map(|bound| bound.offset_m), normals: moved.map(|bound| bound.normal) }
+        Self {
+            clip,
+            offsets_m: moved.map(|bound| bound.offset_m),
+            normals: moved.map(|bound| bound.normal),
+        }
     }
 
     /// At the center of a pixel of the same triangle.
     ///
-    /// However far the weights err, a renderer clamps them from 0 to 1 with a sum of 1, so what they mix lies between the corners'.
+    /// However far the weights err, a renderer clamps them from 0 to 1 with a sum of 1, so what
+    /// they mix lies between the corners'.
     pub fn at(&self, triangle: &SurfaceTriangle, x: usize, y: usize) -> SampleErrors {
-        let Interpolation { weights, depths, normals, colors, displaced } = triangle.interpolation(x, y);
+        let Interpolation {
+            weights,
+            depths,
+            normals,
+            colors,
+            displaced,
+        } = triangle.interpolation(x, y);
         let errors = triangle.weight_errors(x, y, &self.clip);
         let mixed = |differences: [f64; 3]| {
             let sum: f64 = (0..3).map(|k| errors[k] * differences[k]).sum();
@@ -114,8 +132,14 @@ impl CornerErrors {
         let normal = normals.map_or(0.0, |normals| {
             let middle = (0..3).map(|k| normals[k] * weights[k]).sum::<DVec3>();
             let own = [0, 1, 2].map(|k| normals[k].length() * (self.normals[k] + 8.0 * ROUNDING));
-            let of_corners = (0..3).map(|k| (weights[k].abs() + errors[k]) * own[k]).sum::<f64>().min(largest(own));
-            relative(mixed(normals.map(|normal| (normal - middle).length())) + of_corners, middle.length())
+            let of_corners = (0..3)
+                .map(|k| (weights[k].abs() + errors[k]) * own[k])
+                .sum::<f64>()
+                .min(largest(own));
+            relative(
+                mixed(normals.map(|normal| (normal - middle).length())) + of_corners,
+                middle.length(),
+            )
         });
         let plane = displaced.map_or(0.0, |corners| self.plane(corners));
         let color = (0..3).map(|k| colors[k] * weights[k]).sum::<DVec4>();
@@ -123,15 +147,22 @@ impl CornerErrors {
             normal,
             plane,
             depth: mixed(depths.map(|depth| (depth - 1.0).abs())),
-            color: [0, 1, 2, 3].map(|channel| mixed(colors.map(|corner| (corner[channel] - color[channel]).abs()))).into(),
+            color: [0, 1, 2, 3]
+                .map(|channel| mixed(colors.map(|corner| (corner[channel] - color[channel]).abs())))
+                .into(),
         }
     }
 
     /// Of the direction of the plane through the displaced corners.
     fn plane(&self, [a, b, c]: [DVec3; 3]) -> f64 {
         let (ab, ac) = (b - a, c - a);
-        let error = |k: usize, edge: DVec3| self.offsets_m[0] + self.offsets_m[k] + 8.0 * ROUNDING * edge.length();
-        relative(ab.length() * error(2, ac) + ac.length() * error(1, ab), ab.cross(ac).length())
+        let error = |k: usize, edge: DVec3| {
+            self.offsets_m[0] + self.offsets_m[k] + 8.0 * ROUNDING * edge.length()
+        };
+        relative(
+            ab.length() * error(2, ac) + ac.length() * error(1, ab),
+            ab.cross(ac).length(),
+        )
     }
 }
 
@@ -141,5 +172,9 @@ fn largest(values: [f64; 3]) -> f64 {
 
 /// Bound of the error of the direction of a vector of this length.
 fn relative(error: f64, length: f64) -> f64 {
-    if error < 0.5 * length { error / (length - error) } else { ANY_DIRECTION }
+    if error < 0.5 * length {
+        error / (length - error)
+    } else {
+        ANY_DIRECTION
+    }
 }

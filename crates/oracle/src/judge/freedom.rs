@@ -24,8 +24,16 @@ pub enum Freedom {
 
 impl Freedom {
     /// Of a stack, given the tests without a draw limit and the triangles that are drawn.
-    pub fn of(shot: &Shot, tests: &SampleTests, triangles: &[OrientedTriangle]) -> Result<Self, Canceled> {
-        let limit = if is_free(shot.stack) { draw_limit(shot.stack, tests, triangles, shot.view)? } else { None };
+    pub fn of(
+        shot: &Shot,
+        tests: &SampleTests,
+        triangles: &[OrientedTriangle],
+    ) -> Result<Self, Canceled> {
+        let limit = if is_free(shot.stack) {
+            draw_limit(shot.stack, tests, triangles, shot.view)?
+        } else {
+            None
+        };
         Ok(match limit {
             Some(limit) => Self::Scheduled { limit: limit.limit },
             None if shot.stack.is_racing() => Self::Racing,

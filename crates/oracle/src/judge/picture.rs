@@ -1,8 +1,9 @@
 //! The verdict about one picture.
 //!
-//! Vertices are judged from the matrix bits with a forward error bound, coverage and triangle ids from the adapter's snapped
-//! vertices and clipped triangles, colors from the adapter's triangle ids. Finally the whole picture is compared with the
-//! oracle's own, where only what a snapped vertex explains may differ.
+//! Vertices are judged from the matrix bits with a forward error bound, coverage and triangle ids
+//! from the adapter's snapped vertices and clipped triangles, colors from the adapter's triangle
+//! ids. Finally the whole picture is compared with the oracle's own, where only what a snapped
+//! vertex explains may differ.
 
 use super::{
     super::{
@@ -57,14 +58,29 @@ pub const JUDGE_STAGES: u32 = 5;
 ///
 /// # Panics
 /// If an image or the geometry has another size than the view and the scene ask for.
-pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture) -> Result<Verdict, DrawError> {
+pub fn judge(
+    scene: &Scene,
+    view: &View,
+    stack: &Stack,
+    picture: &AdapterPicture,
+) -> Result<Verdict, DrawError> {
     let geometry = picture.geometry;
     let (view, stack) = (&drawn_view(view, geometry), &stack.scaled(geometry.scale));
     if view.pixels() == 0 {
         stack.draws(scene, view)?;
-        return Ok(Verdict { expected: Frame { width: view.width, height: view.height, ..Frame::default() }, ..Verdict::default() });
+        return Ok(Verdict {
+            expected: Frame {
+                width: view.width,
+                height: view.height,
+                ..Frame::default()
+            },
+            ..Verdict::default()
+        });
     }
-    let words = geometry.particle_readback.as_ref().map(|readback| readback.words.as_slice());
+    let words = geometry
+        .particle_readback
+        .as_ref()
+        .map(|readback| readback.words.as_slice());
     if words.is_none() {
         check_particles(view, stack)?;
     }
@@ -76,7 +92,10 @@ pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture
     let own = own_geometry(&shot, geometry.bit_exact)?;
     check_sizes(&shot, picture, &own);
 
-    let mut report = ErrorReport { pixels: view.pixels() as u64, ..Default::default() };
+    let mut report = ErrorReport {
+        pixels: view.pixels() as u64,
+        ..Default::default()
+    };
     let vertices = vertex_errors(&shot, geometry, &own)?;
     count_vertices(&mut report, &vertices);
     let dots = dot_strengths(view, stack, &geometry.dots, &picture.frame.depth_key);
@@ -88,16 +107,33 @@ pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture
     let tests = SampleTests::new(&shot, geometry);
     check_samples("picture", &triangles, &tests, view)?;
     let freedom = Freedom::of(&shot, &tests, &triangles)?;
-    let tests = if freedom.is_scheduled() { tests } else { limited(tests, stack, &triangles, view)? };
+    let tests = if freedom.is_scheduled() {
+        tests
+    } else {
+        limited(tests, stack, &triangles, view)?
+    };
     let coverage = cover_claims(&tests, &triangles, view, &picture.frame.triangle_id)?;
-    let end_to_end = EndToEnd { shot: &shot, own: &own, adapter: geometry, limit: tests.limit(), vertices: &vertices };
+    let end_to_end = EndToEnd {
+        shot: &shot,
+        own: &own,
+        adapter: geometry,
+        limit: tests.limit(),
+        vertices: &vertices,
+    };
     judge_samples(&mut report, &coverage, picture, freedom);
     judge_counters(&mut report, &counters, picture.frame);
     stage("the whole picture")?;
     end_to_end.judge(&mut report, &coverage, picture.frame, freedom)?;
 
     let (triangle_ids, keys) = (&picture.frame.triangle_id, &picture.frame.depth_key);
-    let layer_input = LayerInput { shot, geometry, tests: &tests, triangles: &triangles, triangle_ids, depth_keys: keys };
+    let layer_input = LayerInput {
+        shot,
+        geometry,
+        tests: &tests,
+        triangles: &triangles,
+        triangle_ids,
+        depth_keys: keys,
+    };
     stage("colors")?;
     let colors = JudgedColors::new(&layer_input, &coverage, picture, &dots, freedom)?;
     let nearest = colors.judge(&mut report, &shot, &coverage, picture, freedom);
@@ -107,27 +143,59 @@ pub fn judge(scene: &Scene, view: &View, stack: &Stack, picture: &AdapterPicture
     let (expected_colors, counted) = colors.expected(&shot, &coverage, picture, nearest)?;
     faults.compare_again(&picture.frame.color, &expected_colors);
     let expected = expected_frame(view, &coverage, expected_colors, counted, counters);
-    Ok(Verdict { report, expected, step_band, error_map: faults })
+    Ok(Verdict {
+        report,
+        expected,
+        step_band,
+        error_map: faults,
+    })
 }
 
 /// The geometry that the oracle computes under the same promises.
 fn own_geometry(shot: &Shot, exact: BitExact) -> Result<Geometry, Canceled> {
-    let geometry = if exact.vertices { project_strict(shot) } else { project(shot)? };
-    let geometry = Geometry { bit_exact: exact, ..geometry };
-    Ok(Geometry { sample_setups: sample_setups(shot, &geometry), ..geometry })
+    let geometry = if exact.vertices {
+        project_strict(shot)
+    } else {
+        project(shot)?
+    };
+    let geometry = Geometry {
+        bit_exact: exact,
+        ..geometry
+    };
+    Ok(Geometry {
+        sample_setups: sample_setups(shot, &geometry),
+        ..geometry
+    })
 }
 
 fn check_sizes(shot: &Shot, picture: &AdapterPicture, own: &Geometry) {
     let (frame, geometry) = (picture.frame, picture.geometry);
-    let sizes = [frame.triangle_id.len(), frame.depth_key.len(), frame.color.len()];
+    let sizes = [
+        frame.triangle_id.len(),
+        frame.depth_key.len(),
+        frame.color.len(),
+    ];
     assert_eq!(sizes, [shot.view.pixels(); 3], "the frame has another size");
     let records = |geometry: &Geometry| (geometry.vertices.len(), geometry.has_unshared_vertices);
-    assert_eq!(records(geometry), records(own), "the geometry is of another scene or stack");
-    assert_eq!(geometry.shadow_map.is_some(), shot.stack.light().is_some(), "there is a shadow map if and only if there is a light");
+    assert_eq!(
+        records(geometry),
+        records(own),
+        "the geometry is of another scene or stack"
+    );
+    assert_eq!(
+        geometry.shadow_map.is_some(),
+        shot.stack.light().is_some(),
+        "there is a shadow map if and only if there is a light"
+    );
 }
 
 /// Judges everything between the scene and coverage except the vertex records.
-fn judge_geometry(report: &mut ErrorReport, shot: &Shot, picture: &AdapterPicture, dots: &[u32]) -> Result<(), DrawError> {
+fn judge_geometry(
+    report: &mut ErrorReport,
+    shot: &Shot,
+    picture: &AdapterPicture,
+    dots: &[u32],
+) -> Result<(), DrawError> {
     let geometry = picture.geometry;
     if let Some(readback) = &geometry.particle_readback {
         judge_particles(report, shot.view, shot.stack, readback)?;
@@ -135,7 +203,11 @@ fn judge_geometry(report: &mut ErrorReport, shot: &Shot, picture: &AdapterPictur
     judge_deformed(report, shot, &geometry.deformed);
     judge_dots(report, shot, &geometry.dots, &picture.frame.dots, dots)?;
     // Setups that follow from packed positions are approximate too.
-    report.sample_setups_wrong = if geometry.packed_bits.is_some() { 0 } else { wrong_setups(shot, geometry) };
+    report.sample_setups_wrong = if geometry.packed_bits.is_some() {
+        0
+    } else {
+        wrong_setups(shot, geometry)
+    };
     match &geometry.shadow_map {
         Some(map) => judge_shadow_map(report, shot, map),
         None => Ok(()),
@@ -144,19 +216,28 @@ fn judge_geometry(report: &mut ErrorReport, shot: &Shot, picture: &AdapterPictur
 
 fn judge_counters(report: &mut ErrorReport, reference: &Counters, frame: &Frame) {
     let judged = |c: &Counters| [c.rejected_nonfinite, c.rejected_range, c.degenerate];
-    report.counters_wrong = judged(reference).iter().zip(judged(&frame.counters)).filter(|(a, b)| *a != b).count() as u64;
+    report.counters_wrong = judged(reference)
+        .iter()
+        .zip(judged(&frame.counters))
+        .filter(|(a, b)| *a != b)
+        .count() as u64;
     report.overflow += u64::from(frame.counters.overflow);
-    report.depth_without_id = report.depth_without_id.max(frame.counters.depth_without_id.into());
+    report.depth_without_id = report
+        .depth_without_id
+        .max(frame.counters.depth_without_id.into());
 }
 
-/// Pixels where the adapter's color or its count of layers is not among the right answers that are known.
+/// Pixels where the adapter's color or its count of layers is not among the right answers that are
+/// known.
 fn doubtful_pixels(accepted: &AcceptedColors, bounds: &LayerBounds, frame: &Frame) -> Vec<bool> {
     let is_counted_wrong = |i: usize| {
         let [least, most] = bounds.counted[i];
         !(least..=most).contains(&frame.layer_sums.get(i).map_or(least, |&count| count.into()))
     };
     let nearest = accepted.nearest(&frame.color);
-    (0..nearest.len()).map(|i| nearest[i] != frame.color[i] || is_counted_wrong(i)).collect()
+    (0..nearest.len())
+        .map(|i| nearest[i] != frame.color[i] || is_counted_wrong(i))
+        .collect()
 }
 
 /// The colors that are right for a picture, given its triangle ids.
@@ -174,11 +255,24 @@ impl JudgedColors {
         dots: &[u32],
         freedom: Freedom,
     ) -> Result<Self, Canceled> {
-        let resolve = ResolveInput { triangle_ids: input.triangle_ids, depth_keys: input.depth_keys, dots, previous: picture.previous };
-        let layers = || coverage.samples.iter().map(|sample| sample.nearest.layers).collect();
+        let resolve = ResolveInput {
+            triangle_ids: input.triangle_ids,
+            depth_keys: input.depth_keys,
+            dots,
+            previous: picture.previous,
+        };
+        let layers = || {
+            coverage
+                .samples
+                .iter()
+                .map(|sample| sample.nearest.layers)
+                .collect()
+        };
         let with_bounds = |image| layer_bounds(input, &image).map(|bounds| (image, bounds));
         let mut layers = layer_image(input, layers)?.map(with_bounds).transpose()?;
-        let of_layers = |(image, bounds): &(LayerImage, LayerBounds)| AcceptedColors::of_layers(&input.shot, &resolve, image, bounds);
+        let of_layers = |(image, bounds): &(LayerImage, LayerBounds)| {
+            AcceptedColors::of_layers(&input.shot, &resolve, image, bounds)
+        };
         let accepted = match &mut layers {
             Some(layers) => {
                 let accepted = of_layers(layers)?;
@@ -191,12 +285,8 @@ impl JudgedColors {
                     of_layers(layers)?
                 }
             }
-            None => AcceptedColors::of_surfaces(&input.shot, &resolve, input.geometry)?.with_interpolations(
-                &input.shot,
-                &resolve,
-                input.geometry,
-                &picture.frame.color,
-            )?,
+            None => AcceptedColors::of_surfaces(&input.shot, &resolve, input.geometry)?
+                .with_interpolations(&input.shot, &resolve, input.geometry, &picture.frame.color)?,
         };
         Ok(Self { accepted, layers })
     }
@@ -212,11 +302,16 @@ impl JudgedColors {
     ) -> Vec<[u8; 4]> {
         let frame = picture.frame;
         // Only the adapter's scheduler knows which layers it drew.
-        let nearest =
-            if freedom.is_scheduled() && self.layers.is_some() { frame.color.clone() } else { self.accepted.nearest(&frame.color) };
+        let nearest = if freedom.is_scheduled() && self.layers.is_some() {
+            frame.color.clone()
+        } else {
+            self.accepted.nearest(&frame.color)
+        };
         if let Some((_, bounds)) = &self.layers {
             match freedom {
-                Freedom::Scheduled { limit } => judge_scheduled_layers(report, bounds, picture, coverage, limit),
+                Freedom::Scheduled { limit } => {
+                    judge_scheduled_layers(report, bounds, picture, coverage, limit)
+                }
                 Freedom::Exact | Freedom::Racing => judge_layers(report, bounds, picture),
             }
         }
@@ -224,12 +319,20 @@ impl JudgedColors {
         (report.max_color_delta, report.rms_color_delta) = (delta.max_delta, delta.rms);
         report.rounding_pixels = delta.pixels_over_tolerance - beyond.pixels_over_tolerance;
         report.interpolation_pixels = self.accepted.unsure_pixels();
-        report.step_band_colors = self.accepted.step_band_colors(shot, picture.geometry, &frame.triangle_id);
-        report.step_band_pixels = self.accepted.step_band().iter().filter(|is_band| **is_band).count() as u64;
+        report.step_band_colors =
+            self.accepted
+                .step_band_colors(shot, picture.geometry, &frame.triangle_id);
+        report.step_band_pixels = self
+            .accepted
+            .step_band()
+            .iter()
+            .filter(|is_band| **is_band)
+            .count() as u64;
         nearest
     }
 
-    /// Colors and counts of the picture with the oracle's triangle ids; `nearest` are the colors with the adapter's.
+    /// Colors and counts of the picture with the oracle's triangle ids; `nearest` are the colors
+    /// with the adapter's.
     fn expected(
         self,
         shot: &Shot,
@@ -245,14 +348,39 @@ impl JudgedColors {
             return Ok((nearest, Vec::new()));
         }
         let dots = &dot_strengths(shot.view, shot.stack, &picture.geometry.dots, keys);
-        let input = ResolveInput { triangle_ids, depth_keys: keys, dots, previous: picture.previous };
+        let input = ResolveInput {
+            triangle_ids,
+            depth_keys: keys,
+            dots,
+            previous: picture.previous,
+        };
         let adapter = &picture.frame.color;
         let accepted = AcceptedColors::of_surfaces(shot, &input, picture.geometry)?;
-        Ok((accepted.with_interpolations(shot, &input, picture.geometry, adapter)?.nearest(adapter), Vec::new()))
+        Ok((
+            accepted
+                .with_interpolations(shot, &input, picture.geometry, adapter)?
+                .nearest(adapter),
+            Vec::new(),
+        ))
     }
 }
 
-fn expected_frame(view: &View, coverage: &BoundedCoverage, color: Vec<[u8; 4]>, counted: Vec<u32>, counters: Counters) -> Frame {
+fn expected_frame(
+    view: &View,
+    coverage: &BoundedCoverage,
+    color: Vec<[u8; 4]>,
+    counted: Vec<u32>,
+    counters: Counters,
+) -> Frame {
     let (triangle_id, key) = (coverage.triangle_ids(), coverage.depth_keys());
-    Frame { width: view.width, height: view.height, triangle_id, depth_key: key, color, layer_sums: counted, counters, ..Frame::default() }
+    Frame {
+        width: view.width,
+        height: view.height,
+        triangle_id,
+        depth_key: key,
+        color,
+        layer_sums: counted,
+        counters,
+        ..Frame::default()
+    }
 }

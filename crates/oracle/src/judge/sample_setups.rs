@@ -17,30 +17,52 @@ use crate::{
     scene::draw::totals,
 };
 
-/// Number of setups that are wrong: a first word is outside its bound, or another word does not follow from it.
+/// Number of setups that are wrong: a first word is outside its bound, or another word does not
+/// follow from it.
 ///
 /// # Panics
 /// If `geometry` has setups of another scene or stack.
 pub fn wrong_setups(shot: &Shot, geometry: &Geometry) -> u64 {
-    let (effects, masks) = (effects_with_setup(shot.stack), mask_records(shot.scene, shot.stack));
+    let (effects, masks) = (
+        effects_with_setup(shot.stack),
+        mask_records(shot.scene, shot.stack),
+    );
     let records = effects.len() + masks;
     if records == 0 {
         return 0;
     }
-    let entries_of_scene = totals(shot.scene, shot.draws)[1] as usize + geometry.clipped_triangles.len();
-    assert_eq!(geometry.sample_setups.len(), records * entries_of_scene, "the sample setups are of another scene");
+    let entries_of_scene =
+        totals(shot.scene, shot.draws)[1] as usize + geometry.clipped_triangles.len();
+    assert_eq!(
+        geometry.sample_setups.len(),
+        records * entries_of_scene,
+        "the sample setups are of another scene"
+    );
     let wrong = |(entry, given): (Option<SetupEntry>, &[[u32; 4]])| {
-        let Some(SetupEntry { setup, mask }) = entry else { return 0 };
+        let Some(SetupEntry { setup, mask }) = entry else {
+            return 0;
+        };
         let setup = with_center_error(shot, setup);
         let mask_is_wrong = match (masks, mask) {
             (0, _) => false,
             (_, None) => given[records - 1][2] != 0,
-            (_, Some((_, coords))) => !mask::allows(&coords, &clip_errors(shot, setup.triangle), &given[effects.len()..]),
+            (_, Some((_, coords))) => !mask::allows(
+                &coords,
+                &clip_errors(shot, setup.triangle),
+                &given[effects.len()..],
+            ),
         };
-        let wrong = effects.iter().zip(given).filter(|(effect, given)| is_wrong(&setup, effect, **given)).count();
+        let wrong = effects
+            .iter()
+            .zip(given)
+            .filter(|(effect, given)| is_wrong(&setup, effect, **given))
+            .count();
         (wrong + usize::from(mask_is_wrong)) as u64
     };
-    entries(shot, geometry).zip(geometry.sample_setups.par_chunks(records)).map(wrong).sum()
+    entries(shot, geometry)
+        .zip(geometry.sample_setups.par_chunks(records))
+        .map(wrong)
+        .sum()
 }
 
 /// Bounds of the errors of a triangle's corners in x, y and w of clip space.
@@ -48,7 +70,9 @@ fn clip_errors(shot: &Shot, id: u32) -> [DVec3; 3] {
     let draw = shot.draw_of(id).expect("a triangle of the shot");
     let evaluator = VertexEvaluator::new(shot.scene, draw, shot.view, shot.stack);
     let bounds = VertexBounds::new(&evaluator, None);
-    evaluator.triangle_corners(id - draw.first_triangle).map(|corner| bounds.clip(corner).homogeneous())
+    evaluator
+        .triangle_corners(id - draw.first_triangle)
+        .map(|corner| bounds.clip(corner).homogeneous())
 }
 
 fn is_wrong(setup: &TriangleSetup, (hook, words): &(&SampleHook, &[u32]), given: [u32; 4]) -> bool {

@@ -1,4 +1,5 @@
-//! Judges triangle ids, depth keys and counted layers, sample by sample, from the adapter's own geometry.
+//! Judges triangle ids, depth keys and counted layers, sample by sample, from the adapter's own
+//! geometry.
 
 use super::{
     super::{
@@ -28,14 +29,25 @@ impl Hits {
     pub fn at(picture: &AdapterPicture, pixel: usize, sample: &BoundedSample) -> Self {
         let layers = sample.nearest.layers;
         match picture.layers {
-            Some(counted) => Self { drawn: counted[pixel], expected: layers },
-            None => Self { drawn: u32::from(picture.frame.triangle_id[pixel] != NO_TRIANGLE), expected: layers.min(1) },
+            Some(counted) => Self {
+                drawn: counted[pixel],
+                expected: layers,
+            },
+            None => Self {
+                drawn: u32::from(picture.frame.triangle_id[pixel] != NO_TRIANGLE),
+                expected: layers.min(1),
+            },
         }
     }
 }
 
 /// Compares every sample with `coverage`.
-pub fn judge_samples(report: &mut ErrorReport, coverage: &BoundedCoverage, picture: &AdapterPicture, freedom: Freedom) {
+pub fn judge_samples(
+    report: &mut ErrorReport,
+    coverage: &BoundedCoverage,
+    picture: &AdapterPicture,
+    freedom: Freedom,
+) {
     let frame = picture.frame;
     for (pixel, sample) in coverage.samples.iter().enumerate() {
         let (triangle_id, key) = (frame.triangle_id[pixel], frame.depth_key[pixel]);
@@ -44,7 +56,12 @@ pub fn judge_samples(report: &mut ErrorReport, coverage: &BoundedCoverage, pictu
         report.wrong_triangles += u64::from(is_wrong);
         // In a race the key may be that of another triangle.
         let has_key = !freedom.is_contested(sample) && !frame.depth_keys_are_approximate;
-        report.key_outside_bound += u64::from(has_key && sample.claimed.is_some_and(|bound| !key_fits(key, &frame.depth_rounding, bound)));
+        report.key_outside_bound += u64::from(
+            has_key
+                && sample
+                    .claimed
+                    .is_some_and(|bound| !key_fits(key, &frame.depth_rounding, bound)),
+        );
         if freedom.is_scheduled() {
             let drawn = picture.layers.map_or(0, |layers| layers[pixel]);
             report.double_hits += u64::from(drawn.saturating_sub(sample.nearest.layers));
@@ -54,7 +71,8 @@ pub fn judge_samples(report: &mut ErrorReport, coverage: &BoundedCoverage, pictu
         report.holes += u64::from(expected.saturating_sub(drawn));
         report.double_hits += u64::from(drawn.saturating_sub(expected));
         report.depth_band_pixels += u64::from(sample.is_band());
-        report.race_pixels += u64::from(freedom.is_contested(sample) && !sample.allows(triangle_id));
+        report.race_pixels +=
+            u64::from(freedom.is_contested(sample) && !sample.allows(triangle_id));
         report.wrong_nearest += u64::from(is_wrong && sample.claimed.is_some());
     }
     if let (Freedom::Scheduled { limit }, Some(layers)) = (freedom, picture.layers) {
@@ -69,15 +87,25 @@ pub fn judge_samples(report: &mut ErrorReport, coverage: &BoundedCoverage, pictu
 /// If the counts have another size.
 pub fn judge_layers(report: &mut ErrorReport, bounds: &LayerBounds, picture: &AdapterPicture) {
     let counted = &picture.frame.layer_sums;
-    assert_eq!(counted.len(), bounds.counted.len(), "the counts of layers have another size");
-    let is_wrong = |(count, [least, most]): &(&u32, &[u64; 2])| !(*least..=*most).contains(&u64::from(**count));
+    assert_eq!(
+        counted.len(),
+        bounds.counted.len(),
+        "the counts of layers have another size"
+    );
+    let is_wrong = |(count, [least, most]): &(&u32, &[u64; 2])| {
+        !(*least..=*most).contains(&u64::from(**count))
+    };
     report.layer_counts_wrong = counted.iter().zip(&bounds.counted).filter(is_wrong).count() as u64;
     report.overflow += u64::from(picture.frame.counters.full_pixels);
-    report.ambiguous_layer_pixels = bounds.colors.iter().filter(|ends| bytes(ends[0]) != bytes(ends[1])).count() as u64;
+    report.ambiguous_layer_pixels = bounds
+        .colors
+        .iter()
+        .filter(|ends| bytes(ends[0]) != bytes(ends[1]))
+        .count() as u64;
 }
 
-/// Judges the counts of a picture whose layers the scheduler chooses: none holds more than all layers, and where each layer counts 1, all
-/// together are as many as are drawn.
+/// Judges the counts of a picture whose layers the scheduler chooses: none holds more than all
+/// layers, and where each layer counts 1, all together are as many as are drawn.
 ///
 /// # Panics
 /// If the counts have another size.
@@ -89,10 +117,22 @@ pub fn judge_scheduled_layers(
     limit: u64,
 ) {
     let counted = &picture.frame.layer_sums;
-    assert_eq!(counted.len(), bounds.counted.len(), "the counts of layers have another size");
-    report.layer_counts_wrong = counted.iter().zip(&bounds.counted).filter(|(count, [_, most])| u64::from(**count) > *most).count() as u64;
+    assert_eq!(
+        counted.len(),
+        bounds.counted.len(),
+        "the counts of layers have another size"
+    );
+    report.layer_counts_wrong = counted
+        .iter()
+        .zip(&bounds.counted)
+        .filter(|(count, [_, most])| u64::from(**count) > *most)
+        .count() as u64;
     report.overflow += u64::from(picture.frame.counters.full_pixels);
-    let counts_each = bounds.counted.iter().zip(&coverage.samples).all(|(counts, sample)| *counts == [u64::from(sample.nearest.layers); 2]);
+    let counts_each = bounds
+        .counted
+        .iter()
+        .zip(&coverage.samples)
+        .all(|(counts, sample)| *counts == [u64::from(sample.nearest.layers); 2]);
     if counts_each {
         let all: u64 = counted.iter().map(|&count| u64::from(count)).sum();
         report.holes += all.abs_diff(limit);

@@ -26,20 +26,31 @@ use crate::{
     scene::{Scene, draw::DrawError, view::View},
 };
 
-/// Compares the depths of a shadow map with those of the adapter's own records, and these records with their bounds.
+/// Compares the depths of a shadow map with those of the adapter's own records, and these records
+/// with their bounds.
 ///
 /// # Errors
 /// [`DrawError`] if a transform or the number of triangles is out of range.
 ///
 /// # Panics
 /// If the map is of another scene or stack.
-pub fn judge_shadow_map(report: &mut ErrorReport, shot: &Shot, map: &ShadowMap) -> Result<(), DrawError> {
-    let Some(view) = shot.stack.light_view(shot.scene, shot.view) else { return Ok(()) };
+pub fn judge_shadow_map(
+    report: &mut ErrorReport,
+    shot: &Shot,
+    map: &ShadowMap,
+) -> Result<(), DrawError> {
+    let Some(view) = shot.stack.light_view(shot.scene, shot.view) else {
+        return Ok(());
+    };
     let casting = shot.stack.shadow_casters();
     let draws = casting.draws(shot.scene, &view)?;
     let shot = Shot::new(shot.scene, &draws, &view, &casting);
     let own = project(&shot)?;
-    assert_eq!(map.geometry.vertices.len(), own.vertices.len(), "the shadow map is of another scene or stack");
+    assert_eq!(
+        map.geometry.vertices.len(),
+        own.vertices.len(),
+        "the shadow map is of another scene or stack"
+    );
     let (triangles, _) = triangles(&shot, &map.geometry)?;
     let tests = SampleTests::new(&shot, &map.geometry);
     check_samples("shadow map", &triangles, &tests, &view)?;
@@ -48,15 +59,18 @@ pub fn judge_shadow_map(report: &mut ErrorReport, shot: &Shot, map: &ShadowMap) 
         let is_covered = interval[1] > f64::NEG_INFINITY;
         report.holes += u64::from(is_covered && key == 0);
         report.double_hits += u64::from(!is_covered && key != 0);
-        report.key_outside_bound += u64::from(is_covered && key != 0 && !key_fits(key, &DepthRounding::default(), *interval));
+        report.key_outside_bound += u64::from(
+            is_covered && key != 0 && !key_fits(key, &DepthRounding::default(), *interval),
+        );
     }
     count_vertices(report, &bounded_errors(&shot, &map.geometry, &own)?);
     report.sample_setups_wrong += wrong_setups(&shot, &map.geometry);
     Ok(())
 }
 
-/// How far the light that arrives by the map of `geometry` is from what rays find, over all pixels with a triangle that faces the
-/// light. None without a light, or if effects leave samples out, of which rays know nothing.
+/// How far the light that arrives by the map of `geometry` is from what rays find, over all pixels
+/// with a triangle that faces the light. None without a light, or if effects leave samples out, of
+/// which rays know nothing.
 ///
 /// # Errors
 /// [`DrawError`] if a transform or the number of triangles is out of range.
@@ -70,15 +84,26 @@ pub fn shadow_errors(
     let (view, stack) = (&drawn_view(view, geometry), &stack.scaled(geometry.scale));
     let draws = stack.draws(scene, view)?;
     let shot = Shot::new(scene, &draws, view, stack);
-    let (Some(mapped), false) = (Light::of(&shot, geometry), leaves_samples_out(stack)) else { return Ok(None) };
-    let (Some(rays), Some(light)) = (Rays::of(&shot), stack.light()) else { return Ok(None) };
+    let (Some(mapped), false) = (Light::of(&shot, geometry), leaves_samples_out(stack)) else {
+        return Ok(None);
+    };
+    let (Some(rays), Some(light)) = (Rays::of(&shot), stack.light()) else {
+        return Ok(None);
+    };
     let toward = light.toward();
-    let errors = each_surface(&shot, triangle_ids, geometry, &Perturbation::default(), |_, found| {
-        let (triangle, surface) = found.filter(|(_, surface)| surface.normal.dot(toward) > 0.0)?;
-        let point = triangle.lit_point(&surface);
-        let reference = f64::from(u8::from(rays.reach(point.on_triangle, surface.triangle_id)));
-        Some(mapped.arrives(&point, surface.triangle_id, 0.0) - reference)
-    })?;
+    let errors = each_surface(
+        &shot,
+        triangle_ids,
+        geometry,
+        &Perturbation::default(),
+        |_, found| {
+            let (triangle, surface) =
+                found.filter(|(_, surface)| surface.normal.dot(toward) > 0.0)?;
+            let point = triangle.lit_point(&surface);
+            let reference = f64::from(u8::from(rays.reach(point.on_triangle, surface.triangle_id)));
+            Some(mapped.arrives(&point, surface.triangle_id, 0.0) - reference)
+        },
+    )?;
     let errors: Vec<f64> = errors.into_iter().flatten().collect();
     let squares: f64 = errors.iter().map(|error| error * error).sum();
     Ok(Some(ShadowErrors {

@@ -26,31 +26,51 @@ pub struct VertexError {
     pub delta: u32,
     pub snap_is_outside: bool,
     pub attribute_is_outside: bool,
-    /// Bound of the error of x or y plus that of w, in clip space: how far the error of this corner may move the outline of a clipped
-    /// triangle at w = 1, in halves of the picture.
+    /// Bound of the error of x or y plus that of w, in clip space: how far the error of this
+    /// corner may move the outline of a clipped triangle at w = 1, in halves of the picture.
     pub clip_error: f64,
 }
 
 /// Compares an adapter's records with the oracle's.
-pub fn vertex_errors(shot: &Shot, adapter: &Geometry, own: &Geometry) -> Result<Vec<VertexError>, Canceled> {
+pub fn vertex_errors(
+    shot: &Shot,
+    adapter: &Geometry,
+    own: &Geometry,
+) -> Result<Vec<VertexError>, Canceled> {
     let pairs = adapter.vertices.iter().zip(&own.vertices);
     if adapter.bit_exact.vertices {
-        return Ok(pairs.map(|(adapter, own)| strict_error(adapter, own)).collect());
+        return Ok(pairs
+            .map(|(adapter, own)| strict_error(adapter, own))
+            .collect());
     }
     bounded_errors(shot, adapter, own)
 }
 
 /// Compares an adapter's records with the bounds of float vertices.
-pub fn bounded_errors(shot: &Shot, adapter: &Geometry, own: &Geometry) -> Result<Vec<VertexError>, Canceled> {
+pub fn bounded_errors(
+    shot: &Shot,
+    adapter: &Geometry,
+    own: &Geometry,
+) -> Result<Vec<VertexError>, Canceled> {
     let mut errors = Vec::with_capacity(own.vertices.len());
     for draw in shot.draws {
         let evaluator = VertexEvaluator::new(shot.scene, draw, shot.view, shot.stack);
         let bounds = VertexBounds::new(&evaluator, adapter.packed_bits);
         let error = |(i, corner)| {
             let at = evaluator.first_record() + i;
-            bounded_error(&evaluator, &bounds, shot, corner, &adapter.vertices[at], &own.vertices[at])
+            bounded_error(
+                &evaluator,
+                &bounds,
+                shot,
+                corner,
+                &adapter.vertices[at],
+                &own.vertices[at],
+            )
         };
-        errors.extend(map_each(evaluator.corners().into_par_iter().enumerate(), error)?);
+        errors.extend(map_each(
+            evaluator.corners().into_par_iter().enumerate(),
+            error,
+        )?);
     }
     Ok(errors)
 }
@@ -70,9 +90,18 @@ pub fn count_vertices(report: &mut ErrorReport, errors: &[VertexError]) {
 /// A record of strict vertices must be equal, bit by bit.
 fn strict_error(adapter: &SnappedVertex, own: &SnappedVertex) -> VertexError {
     let bits = |v: &SnappedVertex| [v.depth.to_bits(), v.inv_w.to_bits()];
-    let delta = if own.flags == 0 { distance(adapter, own) } else { 0 };
+    let delta = if own.flags == 0 {
+        distance(adapter, own)
+    } else {
+        0
+    };
     let snap_is_outside = adapter.flags != own.flags || delta > 0;
-    VertexError { delta, snap_is_outside, attribute_is_outside: bits(adapter) != bits(own), ..Default::default() }
+    VertexError {
+        delta,
+        snap_is_outside,
+        attribute_is_outside: bits(adapter) != bits(own),
+        ..Default::default()
+    }
 }
 
 /// The larger of the distances in x and y.
@@ -89,39 +118,75 @@ fn bounded_error(
     adapter: &SnappedVertex,
     own: &SnappedVertex,
 ) -> VertexError {
-    let Ok(position) = evaluator.clip(corner) else { return rejected_error(adapter, own) };
+    let Ok(position) = evaluator.clip(corner) else {
+        return rejected_error(adapter, own);
+    };
     let errors = bounds.clip(corner);
     let [ex, ey, ez, ew] = errors.errors;
     let clip_error = ex.max(ey) + ew;
-    let ill_conditioned = VertexError { is_ill_conditioned: true, clip_error, ..Default::default() };
-    let Some(snap_bounds) = snap_bound(&position, errors.errors, shot.view).map(|bounds| bounds.map(whole_units)) else {
+    let ill_conditioned = VertexError {
+        is_ill_conditioned: true,
+        clip_error,
+        ..Default::default()
+    };
+    let Some(snap_bounds) =
+        snap_bound(&position, errors.errors, shot.view).map(|bounds| bounds.map(whole_units))
+    else {
         return ill_conditioned;
     };
     if adapter.flags != own.flags {
         let may_cross_near = (position.w - position.z).abs() <= ez + ew;
         let is_explained = may_cross_near || guard_explains(adapter, own, snap_bounds);
-        return if is_explained { ill_conditioned } else { VertexError { snap_is_outside: true, clip_error, ..Default::default() } };
+        return if is_explained {
+            ill_conditioned
+        } else {
+            VertexError {
+                snap_is_outside: true,
+                clip_error,
+                ..Default::default()
+            }
+        };
     }
     if own.flags == 0 {
         let [dx, dy] = [adapter.x.abs_diff(own.x), adapter.y.abs_diff(own.y)];
         let snap_is_outside = f64::from(dx) > snap_bounds[0] || f64::from(dy) > snap_bounds[1];
         let attribute_is_outside = !attributes_fit(adapter, &position, &errors);
-        return VertexError { delta: dx.max(dy), snap_is_outside, attribute_is_outside, clip_error, ..Default::default() };
+        return VertexError {
+            delta: dx.max(dy),
+            snap_is_outside,
+            attribute_is_outside,
+            clip_error,
+            ..Default::default()
+        };
     }
     let is_near = own.flags & vertex_flags::NEAR != 0;
-    VertexError { attribute_is_outside: !is_near && !attributes_fit(adapter, &position, &errors), clip_error, ..Default::default() }
+    VertexError {
+        attribute_is_outside: !is_near && !attributes_fit(adapter, &position, &errors),
+        clip_error,
+        ..Default::default()
+    }
 }
 
 /// A vertex that the oracle rejects must be rejected, for the same reason.
 fn rejected_error(adapter: &SnappedVertex, own: &SnappedVertex) -> VertexError {
     let is_nonfinite = |v: &SnappedVertex| v.flags & vertex_flags::NONFINITE != 0;
-    let is_right = adapter.flags & vertex_flags::REJECTED != 0 && is_nonfinite(adapter) == is_nonfinite(own);
-    VertexError { snap_is_outside: !is_right, ..Default::default() }
+    let is_right =
+        adapter.flags & vertex_flags::REJECTED != 0 && is_nonfinite(adapter) == is_nonfinite(own);
+    VertexError {
+        snap_is_outside: !is_right,
+        ..Default::default()
+    }
 }
 
-/// Returns true if two records have different flags only because they lie near a side of the guard band.
-fn guard_explains(adapter: &SnappedVertex, own: &SnappedVertex, [bound_x, bound_y]: [f64; 2]) -> bool {
-    let is_near_guard = |at: i32, bound: f64| f64::from(at.abs().abs_diff(GUARD_BAND)) <= bound + 1.0;
+/// Returns true if two records have different flags only because they lie near a side of the guard
+/// band.
+fn guard_explains(
+    adapter: &SnappedVertex,
+    own: &SnappedVertex,
+    [bound_x, bound_y]: [f64; 2],
+) -> bool {
+    let is_near_guard =
+        |at: i32, bound: f64| f64::from(at.abs().abs_diff(GUARD_BAND)) <= bound + 1.0;
     let differs = adapter.flags ^ own.flags;
     let [left, right, top, bottom] = vertex_flags::GUARD;
     let x_explains = differs & (left | right) == 0 || is_near_guard(own.x, bound_x);

@@ -1,8 +1,8 @@
-//! Clipping in homogeneous space (Sutherland and Hodgman 1974): the near plane, then the four sides of the guard band
-//! (`docs/exactness.md` §2).
+//! Clipping in homogeneous space (Sutherland and Hodgman 1974): the near plane, then the four sides
+//! of the guard band (`docs/exactness.md` §2).
 //!
-//! Every cut edge is interpolated from its inside to its outside end, so triangles that share the edge find the same point, and
-//! the coordinate that a plane fixes is set, not computed.
+//! Every cut edge is interpolated from its inside to its outside end, so triangles that share the
+//! edge find the same point, and the coordinate that a plane fixes is set, not computed.
 
 use rayon::prelude::*;
 
@@ -18,15 +18,22 @@ use crate::{
 };
 
 /// The planes in the order of clipping, each by its vertex flag.
-const PLANES: [u32; 5] =
-    [vertex_flags::NEAR, vertex_flags::GUARD[0], vertex_flags::GUARD[1], vertex_flags::GUARD[2], vertex_flags::GUARD[3]];
+const PLANES: [u32; 5] = [
+    vertex_flags::NEAR,
+    vertex_flags::GUARD[0],
+    vertex_flags::GUARD[1],
+    vertex_flags::GUARD[2],
+    vertex_flags::GUARD[3],
+];
 
-/// Returns true if a triangle with these corner flags must be clipped: no corner is rejected, one is beyond a plane, and they are
-/// not all beyond the same one.
+/// Returns true if a triangle with these corner flags must be clipped: no corner is rejected, one
+/// is beyond a plane, and they are not all beyond the same one.
 pub fn is_cut(flags: [u32; 3]) -> bool {
     let any = flags[0] | flags[1] | flags[2];
     let all = flags[0] & flags[1] & flags[2];
-    any & vertex_flags::REJECTED == 0 && any & vertex_flags::CLIPPED != 0 && all & vertex_flags::CLIPPED == 0
+    any & vertex_flags::REJECTED == 0
+        && any & vertex_flags::CLIPPED != 0
+        && all & vertex_flags::CLIPPED == 0
 }
 
 /// A point in clip space, in f64 or in f32 with a fixed order of operations.
@@ -34,15 +41,17 @@ pub trait Point: Copy + Send + Sync {
     /// Returns true on `plane` and on its inner side.
     fn is_inside(&self, plane: u32, view: &View) -> bool;
 
-    /// Where the edge from this inside point to `outside` meets `plane`; `on` has the flags of all planes at that point.
+    /// Where the edge from this inside point to `outside` meets `plane`; `on` has the flags of all
+    /// planes at that point.
     fn cut(&self, outside: &Self, plane: u32, on: u32, view: &View) -> Self;
 
-    /// The record of an intersection with the planes `on`, except for the coordinates that these planes fix.
+    /// The record of an intersection with the planes `on`, except for the coordinates that these
+    /// planes fix.
     fn snapped(&self, on: u32, view: &View) -> SnappedVertex;
 }
 
-/// Triangles that clipping makes of a draw, by rising parent; each polygon is a fan from its first corner. `position` evaluates
-/// corners.
+/// Triangles that clipping makes of a draw, by rising parent; each polygon is a fan from its first
+/// corner. `position` evaluates corners.
 pub fn clipped_triangles<P: Point>(
     shot: &Shot,
     draw: &Draw,
@@ -58,25 +67,46 @@ pub fn clipped_triangles<P: Point>(
         }
         let vertices = primitive.corners(shot.scene, triangle);
         let corner = |i: usize| Corner {
-            point: position(vertex::Corner { vertex: vertices[i], triangle }),
+            point: position(vertex::Corner {
+                vertex: vertices[i],
+                triangle,
+            }),
             on: 0,
             record: Some(records[i]),
             leads_along_edge: true,
         };
-        fan(parent, &polygon([0, 1, 2].map(corner), shot.view), shot.view)
+        fan(
+            parent,
+            &polygon([0, 1, 2].map(corner), shot.view),
+            shot.view,
+        )
     };
-    (0..primitive.triangle_count()).into_par_iter().flat_map_iter(fan).collect()
+    (0..primitive.triangle_count())
+        .into_par_iter()
+        .flat_map_iter(fan)
+        .collect()
 }
 
 /// The triangles of a convex polygon.
 fn fan<P: Point>(parent: u32, polygon: &[Corner<P>], view: &View) -> Vec<ClippedTriangle> {
-    let corners: Vec<(SnappedVertex, bool)> = polygon.iter().map(|corner| (corner.snapped(view), corner.leads_along_edge)).collect();
+    let corners: Vec<(SnappedVertex, bool)> = polygon
+        .iter()
+        .map(|corner| (corner.snapped(view), corner.leads_along_edge))
+        .collect();
     let triangle = |i: usize| {
         let [(a, a_leads), (b, b_leads), (c, c_leads)] = [corners[0], corners[i], corners[i + 1]];
         // The other edges are diagonals of the fan.
-        let outline = [b_leads, i + 2 == corners.len() && c_leads, i == 1 && a_leads];
+        let outline = [
+            b_leads,
+            i + 2 == corners.len() && c_leads,
+            i == 1 && a_leads,
+        ];
         let outline = (0..3).fold(0, |bits, k| bits | u32::from(outline[k]) << k);
-        ClippedTriangle { parent, corners: [a, b, c], outline }
+        ClippedTriangle {
+            parent,
+            corners: [a, b, c],
+            outline,
+        }
     };
     (1..corners.len().saturating_sub(1)).map(triangle).collect()
 }
@@ -94,23 +124,29 @@ struct Corner<P> {
 
 /// The part of a triangle inside all planes.
 fn polygon<P: Point>(triangle: [Corner<P>; 3], view: &View) -> Vec<Corner<P>> {
-    PLANES.into_iter().fold(triangle.to_vec(), |polygon, plane| {
-        let mut inside = Vec::with_capacity(polygon.len() + 1);
-        for (i, a) in polygon.iter().enumerate() {
-            let b = &polygon[(i + 1) % polygon.len()];
-            let (a_is_inside, b_is_inside) = (a.is_inside(plane, view), b.is_inside(plane, view));
-            if a_is_inside {
-                inside.push(*a);
+    PLANES
+        .into_iter()
+        .fold(triangle.to_vec(), |polygon, plane| {
+            let mut inside = Vec::with_capacity(polygon.len() + 1);
+            for (i, a) in polygon.iter().enumerate() {
+                let b = &polygon[(i + 1) % polygon.len()];
+                let (a_is_inside, b_is_inside) =
+                    (a.is_inside(plane, view), b.is_inside(plane, view));
+                if a_is_inside {
+                    inside.push(*a);
+                }
+                match (a_is_inside, b_is_inside) {
+                    (true, false) => inside.push(a.cut(b, plane, view)),
+                    // Back inside, the outline continues along the same edge.
+                    (false, true) => inside.push(Corner {
+                        leads_along_edge: a.leads_along_edge,
+                        ..b.cut(a, plane, view)
+                    }),
+                    _ => {}
+                }
             }
-            match (a_is_inside, b_is_inside) {
-                (true, false) => inside.push(a.cut(b, plane, view)),
-                // Back inside, the outline continues along the same edge.
-                (false, true) => inside.push(Corner { leads_along_edge: a.leads_along_edge, ..b.cut(a, plane, view) }),
-                _ => {}
-            }
-        }
-        inside
-    })
+            inside
+        })
 }
 
 impl<P: Point> Corner<P> {
@@ -125,7 +161,12 @@ impl<P: Point> Corner<P> {
     /// Where the edge from this inside corner to `outside` meets `plane`.
     fn cut(&self, outside: &Self, plane: u32, view: &View) -> Self {
         let on = self.on & outside.on | plane;
-        Self { point: self.point.cut(&outside.point, plane, on, view), on, record: None, leads_along_edge: false }
+        Self {
+            point: self.point.cut(&outside.point, plane, on, view),
+            on,
+            record: None,
+            leads_along_edge: false,
+        }
     }
 
     /// The record of this corner of a clipped polygon, inside the guard band and ready to be drawn.
@@ -140,7 +181,11 @@ impl<P: Point> Corner<P> {
             (_, true) => GUARD_BAND,
             _ => at.clamp(-GUARD_BAND, GUARD_BAND),
         };
-        (v.x, v.y, v.flags) = (coordinate(v.x, left, right), coordinate(v.y, top, bottom), 0);
+        (v.x, v.y, v.flags) = (
+            coordinate(v.x, left, right),
+            coordinate(v.y, top, bottom),
+            0,
+        );
         v
     }
 }
@@ -152,9 +197,18 @@ impl Point for ClipPosition {
 
     fn cut(&self, outside: &Self, plane: u32, on: u32, view: &View) -> Self {
         let (from, to) = (distance(self, plane, view), distance(outside, plane, view));
-        let t = if from > to { (from / (from - to)).clamp(0.0, 1.0) } else { 0.0 };
+        let t = if from > to {
+            (from / (from - to)).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
         let mix = |a: f64, b: f64| a + t * (b - a);
-        let mut point = Self { x: mix(self.x, outside.x), y: mix(self.y, outside.y), z: mix(self.z, outside.z), w: mix(self.w, outside.w) };
+        let mut point = Self {
+            x: mix(self.x, outside.x),
+            y: mix(self.y, outside.y),
+            z: mix(self.z, outside.z),
+            w: mix(self.w, outside.w),
+        };
         if on & vertex_flags::NEAR != 0 {
             point.z = point.w;
         }
@@ -166,10 +220,11 @@ impl Point for ClipPosition {
     }
 }
 
-/// Signed distance to the inside of `plane`, in units that differ from plane to plane; correct for w > 0.
+/// Signed distance to the inside of `plane`, in units that differ from plane to plane; correct for
+/// w > 0.
 ///
-/// The sides: X = half + half·x/w stays within ±[`GUARD_BAND`] iff half·x lies between -(guard + half)·w and
-/// (guard - half)·w; Y runs downwards.
+/// The sides: X = half + half·x/w stays within ±[`GUARD_BAND`] iff half·x lies between -(guard +
+/// half)·w and (guard - half)·w; Y runs downwards.
 fn distance(p: &ClipPosition, plane: u32, view: &View) -> f64 {
     let [half_x, half_y] = half_size(view).map(f64::from);
     let guard = f64::from(GUARD_BAND);

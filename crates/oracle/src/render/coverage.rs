@@ -1,6 +1,8 @@
-//! What covers each sample: exact integer coverage, and the depth that chooses among triangles (`docs/exactness.md` §3 and §6).
+//! What covers each sample: exact integer coverage, and the depth that chooses among triangles
+//! (`docs/exactness.md` §3 and §6).
 //!
-//! Every pixel of a triangle's bounding box is evaluated on its own, so nothing depends on the order of evaluation.
+//! Every pixel of a triangle's bounding box is evaluated on its own, so nothing depends on the
+//! order of evaluation.
 
 use std::ops::Range;
 
@@ -33,7 +35,11 @@ pub struct Sample {
 }
 
 impl Sample {
-    pub const EMPTY: Self = Self { triangle_id: NO_TRIANGLE, depth_key: 0, layers: 0 };
+    pub const EMPTY: Self = Self {
+        triangle_id: NO_TRIANGLE,
+        depth_key: 0,
+        layers: 0,
+    };
 
     /// Adds a triangle that covers the sample; returns true if it is the nearest so far.
     pub fn add(&mut self, id: u32, depth: f64) -> bool {
@@ -55,7 +61,10 @@ pub struct Coverage {
 
 impl Coverage {
     pub fn triangle_ids(&self) -> Vec<u32> {
-        self.samples.iter().map(|sample| sample.triangle_id).collect()
+        self.samples
+            .iter()
+            .map(|sample| sample.triangle_id)
+            .collect()
     }
 
     pub fn depth_keys(&self) -> Vec<u32> {
@@ -79,7 +88,11 @@ pub fn cover(triangles: &[OrientedTriangle], view: &View) -> Result<Coverage, Ca
 ///
 /// # Errors
 /// The work was canceled.
-pub fn cover_with(tests: &SampleTests, triangles: &[OrientedTriangle], view: &View) -> Result<Coverage, Canceled> {
+pub fn cover_with(
+    tests: &SampleTests,
+    triangles: &[OrientedTriangle],
+    view: &View,
+) -> Result<Coverage, Canceled> {
     let mut samples = vec![Sample::EMPTY; view.pixels()];
     scatter(tests, triangles, view, &mut samples, |triangle| {
         move |sample: &mut Sample, _, _, hit: Hit| _ = sample.add(triangle.id, hit.depth)
@@ -88,9 +101,15 @@ pub fn cover_with(tests: &SampleTests, triangles: &[OrientedTriangle], view: &Vi
 }
 
 /// The nearest depth at every sample of `view`; negative infinity where nothing is.
-pub fn nearest_depths(tests: &SampleTests, triangles: &[OrientedTriangle], view: &View) -> Result<Vec<f64>, Canceled> {
+pub fn nearest_depths(
+    tests: &SampleTests,
+    triangles: &[OrientedTriangle],
+    view: &View,
+) -> Result<Vec<f64>, Canceled> {
     let mut depths = vec![f64::NEG_INFINITY; view.pixels()];
-    scatter(tests, triangles, view, &mut depths, |_| |depth: &mut f64, _, _, hit: Hit| *depth = depth.max(hit.depth))?;
+    scatter(tests, triangles, view, &mut depths, |_| {
+        |depth: &mut f64, _, _, hit: Hit| *depth = depth.max(hit.depth)
+    })?;
     Ok(depths)
 }
 
@@ -102,8 +121,9 @@ pub struct Hit {
     pub is_interpolated: bool,
 }
 
-/// Visits every drawn sample of `view`, triangle by triangle, with the cell of its pixel; `visitor` makes the visitor of a
-/// triangle. Parallel by bands of rows, so a triangle may have several visitors, each sample one visit.
+/// Visits every drawn sample of `view`, triangle by triangle, with the cell of its pixel; `visitor`
+/// makes the visitor of a triangle. Parallel by bands of rows, so a triangle may have several
+/// visitors, each sample one visit.
 ///
 /// # Errors
 /// The work was canceled.
@@ -123,30 +143,38 @@ pub fn scatter<'a, T: Send, V: FnMut(&mut T, usize, usize, Hit)>(
     for triangle in triangles {
         let (_, rows) = triangle.bounds(view, tests);
         if !rows.is_empty() {
-            bands[rows.start / ROWS..=(rows.end - 1) / ROWS].iter_mut().for_each(|band| band.push(triangle));
+            bands[rows.start / ROWS..=(rows.end - 1) / ROWS]
+                .iter_mut()
+                .for_each(|band| band.push(triangle));
         }
     }
     let checkpoint = checkpoint();
-    cells.par_chunks_mut(ROWS * width).zip(bands).enumerate().try_for_each(|(band, (cells, triangles))| {
-        let first_row = band * ROWS;
-        for triangle in triangles {
-            checkpoint.pass()?;
-            let (columns, rows) = triangle.bounds(view, tests);
-            let mut visit = visitor(triangle);
-            for y in rows.start.max(first_row)..rows.end.min(first_row + ROWS) {
-                for x in columns.clone() {
-                    let Some(hit) = triangle.at(x, y, tests) else { continue };
-                    visit(&mut cells[(y - first_row) * width + x], x, y, hit);
+    cells
+        .par_chunks_mut(ROWS * width)
+        .zip(bands)
+        .enumerate()
+        .try_for_each(|(band, (cells, triangles))| {
+            let first_row = band * ROWS;
+            for triangle in triangles {
+                checkpoint.pass()?;
+                let (columns, rows) = triangle.bounds(view, tests);
+                let mut visit = visitor(triangle);
+                for y in rows.start.max(first_row)..rows.end.min(first_row + ROWS) {
+                    for x in columns.clone() {
+                        let Some(hit) = triangle.at(x, y, tests) else {
+                            continue;
+                        };
+                        visit(&mut cells[(y - first_row) * width + x], x, y, hit);
+                    }
                 }
             }
-        }
-        Ok(())
-    })
+            Ok(())
+        })
 }
 
 impl OrientedTriangle {
-    /// Columns and rows of the pixels whose samples may be covered, within the view. None for a clipped triangle if corners are
-    /// drawn as points.
+    /// Columns and rows of the pixels whose samples may be covered, within the view. None for a
+    /// clipped triangle if corners are drawn as points.
     pub fn bounds(&self, view: &View, tests: &SampleTests) -> (Range<usize>, Range<usize>) {
         if tests.shape == Shape::Points && self.is_clipped() {
             return (0..0, 0..0);
@@ -154,12 +182,17 @@ impl OrientedTriangle {
         // Samples lie at the centers of pixels.
         let unit = tests.unit;
         let range = |at: [i32; 3], pixels: u32| {
-            let [low, high] = [at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2])].map(i64::from);
+            let [low, high] =
+                [at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2])].map(i64::from);
             let first = (low - tests.radius + unit / 2 - 1).div_euclid(unit).max(0);
-            let end = ((high + tests.radius - unit / 2).div_euclid(unit) + 1).min(i64::from(pixels));
+            let end =
+                ((high + tests.radius - unit / 2).div_euclid(unit) + 1).min(i64::from(pixels));
             first as usize..end.max(first) as usize
         };
-        (range(self.corners.map(|c| c.x), view.width), range(self.corners.map(|c| c.y), view.height))
+        (
+            range(self.corners.map(|c| c.x), view.width),
+            range(self.corners.map(|c| c.y), view.height),
+        )
     }
 
     /// The triangle at the center of a pixel; none if it is not drawn there.
@@ -168,48 +201,87 @@ impl OrientedTriangle {
         let [px, py] = [x, y].map(|k| tests.unit * k as i64 + tests.unit / 2);
         let opposite = [(b, c), (c, a), (a, b)];
         let weights = opposite.map(|(from, to)| edge(from, to, px, py));
-        let exact = |depth: f32| Hit { depth: depth.into(), is_interpolated: false };
+        let exact = |depth: f32| Hit {
+            depth: depth.into(),
+            is_interpolated: false,
+        };
         let hit = match tests.shape {
             Shape::Triangles => {
-                let inside = |i: usize| owns(weights[i], opposite[i].1.x - opposite[i].0.x, opposite[i].1.y - opposite[i].0.y);
+                let inside = |i: usize| {
+                    owns(
+                        weights[i],
+                        opposite[i].1.x - opposite[i].0.x,
+                        opposite[i].1.y - opposite[i].0.y,
+                    )
+                };
                 if !(inside(0) && inside(1) && inside(2)) {
                     return None;
                 }
                 if tests.has_integer_keys {
                     // The key holds the bits of a float.
-                    exact(f32::from_bits(integer_key(self.corners.map(|corner| corner.depth), weights)))
+                    exact(f32::from_bits(integer_key(
+                        self.corners.map(|corner| corner.depth),
+                        weights,
+                    )))
                 } else {
-                    Hit { depth: self.depth(weights), is_interpolated: true }
+                    Hit {
+                        depth: self.depth(weights),
+                        is_interpolated: true,
+                    }
                 }
             }
-            Shape::Boxes => self.fills_box(px, py).then(|| exact(self.corners.iter().fold(0.0, |nearest, c| c.depth.max(nearest))))?,
+            Shape::Boxes => self.fills_box(px, py).then(|| {
+                exact(
+                    self.corners
+                        .iter()
+                        .fold(0.0, |nearest, c| c.depth.max(nearest)),
+                )
+            })?,
             Shape::Points => exact(self.corners[self.corner_under(px, py, tests.radius)?].depth),
         };
-        tests.is_drawn(self, x as u32, y as u32, weights).then_some(hit)
+        tests
+            .is_drawn(self, x as u32, y as u32, weights)
+            .then_some(hit)
     }
 
-    /// Returns true in the bounding box, including its left and top borders and excluding the right and bottom ones.
+    /// Returns true in the bounding box, including its left and top borders and excluding the right
+    /// and bottom ones.
     fn fills_box(&self, x: i64, y: i64) -> bool {
-        let within = |at: [i32; 3], p: i64| at.iter().any(|&k| i64::from(k) <= p) && at.iter().any(|&k| p < i64::from(k));
+        let within = |at: [i32; 3], p: i64| {
+            at.iter().any(|&k| i64::from(k) <= p) && at.iter().any(|&k| p < i64::from(k))
+        };
         within(self.corners.map(|c| c.x), x) && within(self.corners.map(|c| c.y), y)
     }
 
-    /// The nearest corner whose disc contains a point; of equally near ones the first in the order of the file.
+    /// The nearest corner whose disc contains a point; of equally near ones the first in the order
+    /// of the file.
     pub fn corner_under(&self, x: i64, y: i64, radius: i64) -> Option<usize> {
         let contains = |corner: &SnappedVertex| {
             let (dx, dy) = (x - i64::from(corner.x), y - i64::from(corner.y));
             dx * dx + dy * dy <= radius * radius
         };
-        let under = self.in_file_order([0, 1, 2]).into_iter().filter(|&k| contains(&self.corners[k]));
-        under.reduce(|nearest, k| if self.corners[k].depth > self.corners[nearest].depth { k } else { nearest })
+        let under = self
+            .in_file_order([0, 1, 2])
+            .into_iter()
+            .filter(|&k| contains(&self.corners[k]));
+        under.reduce(|nearest, k| {
+            if self.corners[k].depth > self.corners[nearest].depth {
+                k
+            } else {
+                nearest
+            }
+        })
     }
 
-    /// Depth is linear on the screen: corner depths weighted by the doubled areas opposite them, clamped to their range.
+    /// Depth is linear on the screen: corner depths weighted by the doubled areas opposite them,
+    /// clamped to their range.
     fn depth(&self, weights: [i64; 3]) -> f64 {
         let z = self.corners.map(|corner| f64::from(corner.depth));
         let [low, high] = self.depth_range();
         let [e0, e1, e2] = weights.map(|e| e as f64);
-        ((e0 * z[0] + e1 * z[1] + e2 * z[2]) / (e0 + e1 + e2)).max(low).min(high)
+        ((e0 * z[0] + e1 * z[1] + e2 * z[2]) / (e0 + e1 + e2))
+            .max(low)
+            .min(high)
     }
 
     /// Smallest and largest depth of the corners.

@@ -1,5 +1,5 @@
-//! Deformation in f64: morph targets first, then joints (glTF 2.0, sections 3.7.2.2 and 3.7.3), by linear blend skinning or by
-//! dual quaternions (Kavan et al. 2007).
+//! Deformation in f64: morph targets first, then joints (glTF 2.0, sections 3.7.2.2 and 3.7.3), by
+//! linear blend skinning or by dual quaternions (Kavan et al. 2007).
 
 use glam::{DMat3, DQuat, DVec3};
 use rayon::prelude::*;
@@ -19,50 +19,80 @@ use crate::{
 /// Position of a vertex of `draw` in object space, deformed.
 ///
 /// # Errors
-/// The flags of all components that were refused, or [`vertex_flags::OUT_OF_RANGE`] if deformation takes the vertex out of range.
+/// The flags of all components that were refused, or [`vertex_flags::OUT_OF_RANGE`] if deformation
+/// takes the vertex out of range.
 pub fn position(scene: &Scene, draw: &Draw, vertex: u32) -> Result<DVec3, u32> {
     let stored = stored_position(scene, draw, vertex)?;
-    let Some(deform) = &draw.deform else { return Ok(stored) };
+    let Some(deform) = &draw.deform else {
+        return Ok(stored);
+    };
     let primitive = &scene.primitives[draw.primitive];
     let morphed = morphed(scene, primitive, deform, vertex, stored, morph_positions);
     let deformed = match &deform.joint_transforms {
         None => morphed,
-        Some(JointTransforms::Linear(joints)) => LinearBlend::of(joints, &joint_weights(scene, primitive, vertex)).position(morphed),
-        Some(JointTransforms::Dual(joints)) => DualQuaternionBlend::of(joints, &joint_weights(scene, primitive, vertex)).position(morphed),
+        Some(JointTransforms::Linear(joints)) => {
+            LinearBlend::of(joints, &joint_weights(scene, primitive, vertex)).position(morphed)
+        }
+        Some(JointTransforms::Dual(joints)) => {
+            DualQuaternionBlend::of(joints, &joint_weights(scene, primitive, vertex))
+                .position(morphed)
+        }
     };
-    if deformed.abs().max_element() >= MAX_MAGNITUDE { Err(vertex_flags::OUT_OF_RANGE) } else { Ok(deformed) }
+    if deformed.abs().max_element() >= MAX_MAGNITUDE {
+        Err(vertex_flags::OUT_OF_RANGE)
+    } else {
+        Ok(deformed)
+    }
 }
 
-/// Normal of a vertex in object space, none if a component is refused. As stored and of any length if nothing deforms the
-/// vertex; a deformed one is a unit vector, or zero.
+/// Normal of a vertex in object space, none if a component is refused. As stored and of any length
+/// if nothing deforms the vertex; a deformed one is a unit vector, or zero.
 pub fn normal(scene: &Scene, draw: &Draw, vertex: u32) -> Option<DVec3> {
     let stored = stored_normal(scene, draw, vertex)?;
-    let Some(deform) = &draw.deform else { return Some(stored) };
+    let Some(deform) = &draw.deform else {
+        return Some(stored);
+    };
     let primitive = &scene.primitives[draw.primitive];
     let morphed = morphed(scene, primitive, deform, vertex, stored, morph_normals);
     Some(vector::direction(match &deform.joint_transforms {
         None => morphed,
-        Some(JointTransforms::Linear(joints)) => LinearBlend::of(joints, &joint_weights(scene, primitive, vertex)).normal(morphed),
-        Some(JointTransforms::Dual(joints)) => DualQuaternionBlend::of(joints, &joint_weights(scene, primitive, vertex)).normal(morphed),
+        Some(JointTransforms::Linear(joints)) => {
+            LinearBlend::of(joints, &joint_weights(scene, primitive, vertex)).normal(morphed)
+        }
+        Some(JointTransforms::Dual(joints)) => {
+            DualQuaternionBlend::of(joints, &joint_weights(scene, primitive, vertex))
+                .normal(morphed)
+        }
     }))
 }
 
-/// Position and normal of every vertex of a draw that deforms, rounded to f32: what an adapter keeps. Empty for other draws.
+/// Position and normal of every vertex of a draw that deforms, rounded to f32: what an adapter
+/// keeps. Empty for other draws.
 pub fn vertices(scene: &Scene, draw: &Draw) -> Vec<[f32; 6]> {
     let vertex = |vertex| {
-        let (p, n) = (position(scene, draw, vertex).unwrap_or(DVec3::INFINITY), normal(scene, draw, vertex).unwrap_or(DVec3::INFINITY));
+        let (p, n) = (
+            position(scene, draw, vertex).unwrap_or(DVec3::INFINITY),
+            normal(scene, draw, vertex).unwrap_or(DVec3::INFINITY),
+        );
         [p.x, p.y, p.z, n.x, n.y, n.z].map(|component| component as f32)
     };
-    (0..vertex_count(scene, draw)).into_par_iter().map(vertex).collect()
+    (0..vertex_count(scene, draw))
+        .into_par_iter()
+        .map(vertex)
+        .collect()
 }
 
 /// Number of vertices of a draw that deform: all or none.
 pub fn vertex_count(scene: &Scene, draw: &Draw) -> u32 {
-    if draw.deform.is_some() { scene.primitives[draw.primitive].vertex_count() } else { 0 }
+    if draw.deform.is_some() {
+        scene.primitives[draw.primitive].vertex_count()
+    } else {
+        0
+    }
 }
 
-/// Volume that the deformed meshes of a picture enclose, in cubic meters, by the divergence theorem: skinning may lose some of
-/// it. Of a mesh with holes the value means nothing.
+/// Volume that the deformed meshes of a picture enclose, in cubic meters, by the divergence
+/// theorem: skinning may lose some of it. Of a mesh with holes the value means nothing.
 pub fn volume(scene: &Scene, draws: &[Draw]) -> f64 {
     let of_draw = |draw: &Draw| {
         let primitive = &scene.primitives[draw.primitive];
@@ -73,7 +103,11 @@ pub fn volume(scene: &Scene, draws: &[Draw]) -> f64 {
         };
         (0..primitive.triangle_count()).map(triangle).sum::<f64>()
     };
-    draws.iter().filter(|draw| draw.deform.is_some()).map(of_draw).sum()
+    draws
+        .iter()
+        .filter(|draw| draw.deform.is_some())
+        .map(of_draw)
+        .sum()
 }
 
 /// Position of a vertex as the file has it.
@@ -84,7 +118,10 @@ pub fn stored_position(scene: &Scene, draw: &Draw, vertex: u32) -> Result<DVec3,
     let positions = &scene.primitives[draw.primitive].positions;
     match components(scene, positions, vertex) {
         [Ok(x), Ok(y), Ok(z)] => Ok(DVec3::new(x, y, z)),
-        refused => Err(refused.iter().filter_map(|component| component.err()).fold(0, |all, flag| all | flag)),
+        refused => Err(refused
+            .iter()
+            .filter_map(|component| component.err())
+            .fold(0, |all, flag| all | flag)),
     }
 }
 
@@ -114,12 +151,20 @@ pub fn morph_normals(shape: &MorphTarget) -> Option<&Accessor> {
 }
 
 /// A stored vector plus the weighted vectors of all morph targets.
-pub fn morphed(scene: &Scene, primitive: &Primitive, deform: &Deform, vertex: u32, stored: DVec3, attribute: MorphAttribute) -> DVec3 {
-    morph_terms(scene, primitive, deform, vertex, attribute).fold(stored, |sum, (term, _)| sum + term)
+pub fn morphed(
+    scene: &Scene,
+    primitive: &Primitive,
+    deform: &Deform,
+    vertex: u32,
+    stored: DVec3,
+    attribute: MorphAttribute,
+) -> DVec3 {
+    morph_terms(scene, primitive, deform, vertex, attribute)
+        .fold(stored, |sum, (term, _)| sum + term)
 }
 
-/// What the morph targets with a weight add to a vertex, each with the accessor it comes from. A target with a component that is
-/// refused adds nothing.
+/// What the morph targets with a weight add to a vertex, each with the accessor it comes from. A
+/// target with a component that is refused adds nothing.
 pub fn morph_terms<'a>(
     scene: &'a Scene,
     primitive: &'a Primitive,
@@ -127,23 +172,41 @@ pub fn morph_terms<'a>(
     vertex: u32,
     attribute: MorphAttribute,
 ) -> impl Iterator<Item = (DVec3, &'a Accessor)> {
-    deform.weights.iter().zip(&primitive.deformation.morph_targets).filter_map(move |(&weight, shape)| {
-        let accessor = attribute(shape).filter(|_| weight != 0.0)?;
-        let [Ok(x), Ok(y), Ok(z)] = components(scene, accessor, vertex) else { return None };
-        Some((DVec3::new(x, y, z) * f64::from(weight), accessor))
-    })
+    deform
+        .weights
+        .iter()
+        .zip(&primitive.deformation.morph_targets)
+        .filter_map(move |(&weight, shape)| {
+            let accessor = attribute(shape).filter(|_| weight != 0.0)?;
+            let [Ok(x), Ok(y), Ok(z)] = components(scene, accessor, vertex) else {
+                return None;
+            };
+            Some((DVec3::new(x, y, z) * f64::from(weight), accessor))
+        })
 }
 
-/// Joints of a vertex with their weights, which sum to 1. The first joint holds a vertex that no weight holds.
+/// Joints of a vertex with their weights, which sum to 1. The first joint holds a vertex that no
+/// weight holds.
 pub fn joint_weights(scene: &Scene, primitive: &Primitive, vertex: u32) -> Vec<(usize, f64)> {
     let bytes = &scene.vertex_bytes;
     let sets = primitive.deformation.influences.iter();
     let mut weights: Vec<(usize, f64)> = sets
-        .flat_map(|set| [0, 1, 2, 3].map(|i| (set.joints.integer(bytes, vertex, i) as usize, set.weights.value(bytes, vertex, i))))
+        .flat_map(|set| {
+            [0, 1, 2, 3].map(|i| {
+                (
+                    set.joints.integer(bytes, vertex, i) as usize,
+                    set.weights.value(bytes, vertex, i),
+                )
+            })
+        })
         .collect();
     let sum: f64 = weights.iter().map(|(_, weight)| weight).sum();
     for (index, (_, weight)) in weights.iter_mut().enumerate() {
-        *weight = if sum > 0.0 { *weight / sum } else { f64::from(u8::from(index == 0)) };
+        *weight = if sum > 0.0 {
+            *weight / sum
+        } else {
+            f64::from(u8::from(index == 0))
+        };
     }
     weights
 }
@@ -156,7 +219,10 @@ pub struct LinearBlend {
 
 impl LinearBlend {
     pub fn of(joints: &[JointMatrix], weights: &[(usize, f64)]) -> Self {
-        let mut blend = Self { matrix: DMat3::ZERO, origin: DVec3::ZERO };
+        let mut blend = Self {
+            matrix: DMat3::ZERO,
+            origin: DVec3::ZERO,
+        };
         for &(joint, weight) in weights {
             let [x, y, z, origin] = weighted_columns(&joints[joint], weight);
             blend.matrix += DMat3::from_cols(x, y, z);
@@ -176,11 +242,13 @@ impl LinearBlend {
 
 /// Columns of a joint's matrix, the last of them the translation, times a weight.
 pub fn weighted_columns(joint: &JointMatrix, weight: f64) -> [DVec3; 4] {
-    [0, 1, 2, 3].map(|c: usize| DVec3::new(joint[0][c].into(), joint[1][c].into(), joint[2][c].into()) * weight)
+    [0, 1, 2, 3].map(|c: usize| {
+        DVec3::new(joint[0][c].into(), joint[1][c].into(), joint[2][c].into()) * weight
+    })
 }
 
-/// Dual quaternion blend skinning: the joints' stretches are averaged as matrices, their rigid motions as dual quaternions, so
-/// that lengths are preserved.
+/// Dual quaternion blend skinning: the joints' stretches are averaged as matrices, their rigid
+/// motions as dual quaternions, so that lengths are preserved.
 pub struct DualQuaternionBlend {
     stretch: DMat3,
     /// A unit quaternion.
@@ -202,15 +270,28 @@ impl DualQuaternionBlend {
             let [x, y, z] = weighted_rows(joint, weight);
             stretch += DMat3::from_cols(x, y, z).transpose();
             // q and -q are the same rotation: take the one nearer to the first joint's.
-            let signed = if pivot.dot(quaternion(joint.real)) < 0.0 { -weight } else { weight };
+            let signed = if pivot.dot(quaternion(joint.real)) < 0.0 {
+                -weight
+            } else {
+                weight
+            };
             real += quaternion(joint.real) * signed;
             dual += quaternion(joint.dual) * signed;
         }
         let length = real.length();
         let (rotation, dual) = (real * (1.0 / length), dual * (1.0 / length));
-        let (r, d) = (DVec3::new(rotation.x, rotation.y, rotation.z), DVec3::new(dual.x, dual.y, dual.z));
+        let (r, d) = (
+            DVec3::new(rotation.x, rotation.y, rotation.z),
+            DVec3::new(dual.x, dual.y, dual.z),
+        );
         let translation = 2.0 * (rotation.w * d - dual.w * r + r.cross(d));
-        Self { stretch, rotation, dual, translation, length }
+        Self {
+            stretch,
+            rotation,
+            dual,
+            translation,
+            length,
+        }
     }
 
     pub fn stretched(&self, position: DVec3) -> DVec3 {
@@ -237,7 +318,9 @@ impl DualQuaternionBlend {
 
 /// Rows of a joint's stretch, times a weight.
 pub fn weighted_rows(joint: &DualQuaternionJoint, weight: f64) -> [DVec3; 3] {
-    joint.stretch.map(|row| DVec3::new(row[0].into(), row[1].into(), row[2].into()) * weight)
+    joint
+        .stretch
+        .map(|row| DVec3::new(row[0].into(), row[1].into(), row[2].into()) * weight)
 }
 
 /// A stored quaternion.

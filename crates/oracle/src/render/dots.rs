@@ -1,4 +1,5 @@
-//! Dots along lines: where each one lies, how strong it is, and which part of each pixel it covers (`docs/exactness.md` §7).
+//! Dots along lines: where each one lies, how strong it is, and which part of each pixel it covers
+//! (`docs/exactness.md` §7).
 
 use rayon::prelude::*;
 
@@ -42,16 +43,28 @@ impl<'a> DotPlacement<'a> {
     /// # Errors
     /// [`DrawError::TooMany`] for more than [`MAX_DOTS`] dots.
     pub fn new(shot: &Shot<'a>, dots: &Dots) -> Result<Self, DrawError> {
-        let Shot { scene, draws, view, stack } = *shot;
+        let Shot {
+            scene,
+            draws,
+            view,
+            stack,
+        } = *shot;
         let lines = match LineSource::of(dots.lines) {
             LineSource::Edges => Lines::edges(scene, None)?,
             LineSource::Creases => Lines::edges(scene, Some(dots.crease_deg.into()))?,
             LineSource::Polyline => Lines::polyline(&view.scene_state.polyline),
         };
-        let count = |line: &[Segment]| line.last().map_or(0, |last| dots.count(last.start_m + last.length_m));
+        let count = |line: &[Segment]| {
+            line.last()
+                .map_or(0, |last| dots.count(last.start_m + last.length_m))
+        };
         let all: u64 = lines.each().map(|(_, line)| count(line)).sum();
         if all > MAX_DOTS {
-            return Err(DrawError::TooMany { what: "dots", count: all, limit: MAX_DOTS });
+            return Err(DrawError::TooMany {
+                what: "dots",
+                count: all,
+                limit: MAX_DOTS,
+            });
         }
         let mut placed = Vec::with_capacity(all as usize);
         for (first, line) in lines.each() {
@@ -59,20 +72,40 @@ impl<'a> DotPlacement<'a> {
                 let at_m = dot as f64 * f64::from(dots.spacing_m);
                 let segment = line.partition_point(|segment| segment.start_m <= at_m) - 1;
                 let fraction = (at_m - line[segment].start_m) / line[segment].length_m;
-                Dot { segment: (first + segment) as u32, fraction: fraction.min(1.0) }
+                Dot {
+                    segment: (first + segment) as u32,
+                    fraction: fraction.min(1.0),
+                }
             }));
         }
         let clip_from_scene =
-            rounded_columns(&(view.clip_from_world * view.scene_state.world_from_scene)).map(|column| column.map(f64::from));
-        let evaluators = draws.iter().map(|draw| VertexEvaluator::new(scene, draw, view, stack)).collect();
-        Ok(Self { evaluators, lines, clip_from_scene, dots: placed })
+            rounded_columns(&(view.clip_from_world * view.scene_state.world_from_scene))
+                .map(|column| column.map(f64::from));
+        let evaluators = draws
+            .iter()
+            .map(|draw| VertexEvaluator::new(scene, draw, view, stack))
+            .collect();
+        Ok(Self {
+            evaluators,
+            lines,
+            clip_from_scene,
+            dots: placed,
+        })
     }
 
     /// Both ends of every segment; none if one of them is refused.
     fn ends(&self) -> Vec<Option<[ClipPosition; 2]>> {
         let of = |segment: &Segment| match segment.ends {
-            SegmentEnds::Edge { draw, vertices, triangle } => {
-                let [a, b] = vertices.map(|vertex| self.evaluators[draw as usize].clip(Corner { vertex, triangle }).ok());
+            SegmentEnds::Edge {
+                draw,
+                vertices,
+                triangle,
+            } => {
+                let [a, b] = vertices.map(|vertex| {
+                    self.evaluators[draw as usize]
+                        .clip(Corner { vertex, triangle })
+                        .ok()
+                });
                 a.zip(b).map(|(a, b)| [a, b])
             }
             SegmentEnds::Points(points) => Some(points.map(|point| self.point(point))),
@@ -90,21 +123,38 @@ impl<'a> DotPlacement<'a> {
     pub fn point_terms(&self, [x, y, z]: [f32; 3]) -> [[f64; 4]; 4] {
         [0, 1, 2, 3].map(|row| {
             let m = |column: usize| self.clip_from_scene[column][row];
-            [m(0) * f64::from(x), m(1) * f64::from(y), m(2) * f64::from(z), m(3)]
+            [
+                m(0) * f64::from(x),
+                m(1) * f64::from(y),
+                m(2) * f64::from(z),
+                m(3),
+            ]
         })
     }
 
     /// Every dot in clip space; none if an end of its segment is refused.
     pub fn positions(&self) -> Vec<Option<ClipPosition>> {
         let ends = self.ends();
-        self.dots.par_iter().map(|dot| ends[dot.segment as usize].as_ref().map(|ends| between(ends, dot.fraction))).collect()
+        self.dots
+            .par_iter()
+            .map(|dot| {
+                ends[dot.segment as usize]
+                    .as_ref()
+                    .map(|ends| between(ends, dot.fraction))
+            })
+            .collect()
     }
 }
 
 /// A point between two.
 fn between([a, b]: &[ClipPosition; 2], fraction: f64) -> ClipPosition {
     let mix = |a: f64, b: f64| a + (b - a) * fraction;
-    ClipPosition { x: mix(a.x, b.x), y: mix(a.y, b.y), z: mix(a.z, b.z), w: mix(a.w, b.w) }
+    ClipPosition {
+        x: mix(a.x, b.x),
+        y: mix(a.y, b.y),
+        z: mix(a.z, b.z),
+        w: mix(a.w, b.w),
+    }
 }
 
 /// The view with the grid of dots, which is that of 1/256 px even if triangles snap to another.
@@ -116,7 +166,10 @@ pub fn dot_grid(view: &View) -> View {
 pub fn snapped(dot: Option<&ClipPosition>, grid: &View) -> SnappedVertex {
     match dot {
         Some(dot) if dot.z <= dot.w && dot.w > 0.0 && dot.z >= 0.0 => snap_inside(dot, grid),
-        _ => SnappedVertex { flags: vertex_flags::NEAR, ..SnappedVertex::default() },
+        _ => SnappedVertex {
+            flags: vertex_flags::NEAR,
+            ..SnappedVertex::default()
+        },
     }
 }
 
@@ -125,14 +178,28 @@ pub fn snapped(dot: Option<&ClipPosition>, grid: &View) -> SnappedVertex {
 /// # Errors
 /// [`DrawError::TooMany`] for more than [`MAX_DOTS`] dots.
 pub fn dot_records(shot: &Shot) -> Result<Vec<SnappedVertex>, DrawError> {
-    let Some(dots) = shot.stack.dots() else { return Ok(Vec::new()) };
+    let Some(dots) = shot.stack.dots() else {
+        return Ok(Vec::new());
+    };
     let grid = dot_grid(shot.view);
-    Ok(DotPlacement::new(shot, &dots)?.positions().par_iter().map(|dot| snapped(dot.as_ref(), &grid)).collect())
+    Ok(DotPlacement::new(shot, &dots)?
+        .positions()
+        .par_iter()
+        .map(|dot| snapped(dot.as_ref(), &grid))
+        .collect())
 }
 
-/// Strength of the strongest dot on every pixel, given the records of all dots and the nearest depth keys; empty without dots.
-pub fn dot_strengths(view: &View, stack: &Stack, records: &[SnappedVertex], keys: &[u32]) -> Vec<u32> {
-    let Some(dots) = stack.dots() else { return Vec::new() };
+/// Strength of the strongest dot on every pixel, given the records of all dots and the nearest
+/// depth keys; empty without dots.
+pub fn dot_strengths(
+    view: &View,
+    stack: &Stack,
+    records: &[SnappedVertex],
+    keys: &[u32],
+) -> Vec<u32> {
+    let Some(dots) = stack.dots() else {
+        return Vec::new();
+    };
     let (fade_from, reach) = (dots.fade_from(view), i64::from(dots.radius()) + 128);
     let mut strengths = vec![0; view.pixels()];
     for (number, record) in records.iter().enumerate() {
@@ -142,12 +209,16 @@ pub fn dot_strengths(view: &View, stack: &Stack, records: &[SnappedVertex], keys
         }
         let (x, y) = (i64::from(record.x), i64::from(record.y));
         // One pixel more on each side than a dot reaches.
-        let pixels = |at: i64, side: u32| ((at - reach) / 256 - 1).max(0)..=((at + reach) / 256 + 1).min(i64::from(side) - 1);
+        let pixels = |at: i64, side: u32| {
+            ((at - reach) / 256 - 1).max(0)..=((at + reach) / 256 + 1).min(i64::from(side) - 1)
+        };
         for py in pixels(y, view.height) {
             for px in pixels(x, view.width) {
                 let (dx, dy) = ((256 * px + 128).abs_diff(x), (256 * py + 128).abs_diff(y));
                 let at = py as usize * view.width as usize + px as usize;
-                let is_seen = keys[at] == 0 || u64::from(record.depth.to_bits()) + u64::from(dots.bias_steps()) >= u64::from(keys[at]);
+                let is_seen = keys[at] == 0
+                    || u64::from(record.depth.to_bits()) + u64::from(dots.bias_steps())
+                        >= u64::from(keys[at]);
                 let opacity = if is_seen { FULL } else { dots.hidden_share() };
                 let covered = strength * dots.cover(dx * dx + dy * dy) / FULL;
                 strengths[at] = strengths[at].max(covered * opacity / FULL);

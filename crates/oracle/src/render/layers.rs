@@ -1,5 +1,5 @@
-//! Layers: pictures in which a pixel shows more than its nearest triangle (`docs/exactness.md` §7). Every covered sample is shaded
-//! in f64, rounded to whole steps, and summed in u64.
+//! Layers: pictures in which a pixel shows more than its nearest triangle (`docs/exactness.md` §7).
+//! Every covered sample is shaded in f64, rounded to whole steps, and summed in u64.
 
 use glam::{DVec3, DVec4};
 
@@ -48,13 +48,21 @@ pub struct LayerInput<'a> {
     pub depth_keys: &'a [u32],
 }
 
-/// The picture that the effect in the visibility slot makes, given the number of layers per pixel; none if the nearest triangle is
-/// shown.
-pub fn layer_image(input: &LayerInput, layers: impl FnOnce() -> Vec<u32>) -> Result<Option<LayerImage>, Canceled> {
+/// The picture that the effect in the visibility slot makes, given the number of layers per pixel;
+/// none if the nearest triangle is shown.
+pub fn layer_image(
+    input: &LayerInput,
+    layers: impl FnOnce() -> Vec<u32>,
+) -> Result<Option<LayerImage>, Canceled> {
     let stack = input.shot.stack;
     Ok(match stack.layers(input.shot.scene.triangle_count()) {
-        Some(Layers::Xray { bits }) => stack.params("xray").map(|params| averaged(input, params, bits)).transpose()?,
-        Some(Layers::Overdraw) => stack.params("overdraw").map(|params| heat(input, layers(), &params)),
+        Some(Layers::Xray { bits }) => stack
+            .params("xray")
+            .map(|params| averaged(input, params, bits))
+            .transpose()?,
+        Some(Layers::Overdraw) => stack
+            .params("overdraw")
+            .map(|params| heat(input, layers(), &params)),
         Some(Layers::Race) | None => None,
     })
 }
@@ -66,7 +74,11 @@ fn heat(input: &LayerInput, layers: Vec<u32>, params: &Overdraw) -> LayerImage {
         0 => background[pixel / width],
         _ => params.color(params.heat(layers)).extend(1.0),
     };
-    LayerImage { colors: layers.iter().enumerate().map(color).collect(), counted: layers, mode: LayerMode::Overdraw }
+    LayerImage {
+        colors: layers.iter().enumerate().map(color).collect(),
+        counted: layers,
+        mode: LayerMode::Overdraw,
+    }
 }
 
 fn averaged(input: &LayerInput, params: Xray, bits: u32) -> Result<LayerImage, Canceled> {
@@ -80,21 +92,36 @@ fn averaged(input: &LayerInput, params: Xray, bits: u32) -> Result<LayerImage, C
     let pixel = |(pixel, sum): (usize, &LayerSum)| match sum.weight {
         0 => background[pixel / width],
         weight => {
-            let average = sum.sums.map(|channel| xray::average(channel, weight) as f64 / steps(bits));
-            xray_color(background[pixel / width], &params, DVec3::from_array(average), weight)
+            let average = sum
+                .sums
+                .map(|channel| xray::average(channel, weight) as f64 / steps(bits));
+            xray_color(
+                background[pixel / width],
+                &params,
+                DVec3::from_array(average),
+                weight,
+            )
         }
     };
     Ok(LayerImage {
         colors: sums.iter().enumerate().map(pixel).collect(),
-        counted: sums.iter().map(|sum| u32::try_from(sum.weight).unwrap_or(u32::MAX)).collect(),
+        counted: sums
+            .iter()
+            .map(|sum| u32::try_from(sum.weight).unwrap_or(u32::MAX))
+            .collect(),
         mode: LayerMode::Xray { params, bits },
     })
 }
 
-/// The gamma-encoded color of a pixel whose layers have this average and sum of weights, over a gamma-encoded background.
+/// The gamma-encoded color of a pixel whose layers have this average and sum of weights, over a
+/// gamma-encoded background.
 pub fn xray_color(background: DVec4, params: &Xray, average: DVec3, weight: u64) -> DVec4 {
     let [red, green, blue] = [background.x, background.y, background.z].map(linear_light);
-    encoded(params.seen(average, DVec4::new(red, green, blue, background.w), weight as f64))
+    encoded(params.seen(
+        average,
+        DVec4::new(red, green, blue, background.w),
+        weight as f64,
+    ))
 }
 
 /// Largest value of a channel in fixed point.
@@ -104,14 +131,18 @@ pub fn steps(bits: u32) -> f64 {
 
 /// Smallest depth that the depth window of a pixel contains.
 pub fn window_depth(input: &LayerInput, params: &Xray, pixel: usize) -> f64 {
-    f64::from(f32::from_bits(params.threshold(input.depth_keys[pixel], input.shot.view.linear_depth_m.is_none())))
+    f64::from(f32::from_bits(params.threshold(
+        input.depth_keys[pixel],
+        input.shot.view.linear_depth_m.is_none(),
+    )))
 }
 
 /// How far the depth of the front may lie above the exact one, as a fraction of it.
 const FRONT: f64 = 1.0 / 1024.0;
 
-/// Returns true for the hit whose depth is that of a pixel's front, which the depth window always contains; `depth` is the largest that a
-/// renderer may compute for it. A clipped triangle that is drawn as boxes may have other hits, farther behind.
+/// Returns true for the hit whose depth is that of a pixel's front, which the depth window always
+/// contains; `depth` is the largest that a renderer may compute for it. A clipped triangle that is
+/// drawn as boxes may have other hits, farther behind.
 pub fn is_front(input: &LayerInput, pixel: usize, id: u32, depth: f64) -> bool {
     input.triangle_ids[pixel] == id && depth >= f64::from(f32::from_bits(input.depth_keys[pixel]))
 }
@@ -126,20 +157,38 @@ struct LayerSum {
 fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Result<Vec<LayerSum>, Canceled> {
     let Shot { view, stack, .. } = input.shot;
     let mut sums = vec![LayerSum::default(); view.pixels()];
-    let (ranks, light) = (ranks(&input.shot, input.geometry)?, Light::of(&input.shot, input.geometry));
+    let (ranks, light) = (
+        ranks(&input.shot, input.geometry)?,
+        Light::of(&input.shot, input.geometry),
+    );
     let (ranks, light) = (&ranks, light.as_ref());
     scatter(input.tests, input.triangles, view, &mut sums, |triangle| {
         let mut surface: Option<Option<SurfaceTriangle<'_>>> = None;
         let rank = ranks.get(triangle.id as usize).copied().unwrap_or(0.0);
         move |sum: &mut LayerSum, x: usize, y: usize, hit: Hit| {
             let pixel = y * view.width as usize + x;
-            if hit.depth < window_depth(input, params, pixel) && !is_front(input, pixel, triangle.id, hit.depth * (1.0 + FRONT)) {
+            if hit.depth < window_depth(input, params, pixel)
+                && !is_front(input, pixel, triangle.id, hit.depth * (1.0 + FRONT))
+            {
                 return;
             }
-            let Some(known) = surface.get_or_insert_with(|| SurfaceTriangle::new(&input.shot, input.geometry, triangle.id)) else { return };
+            let Some(known) = surface.get_or_insert_with(|| {
+                SurfaceTriangle::new(&input.shot, input.geometry, triangle.id)
+            }) else {
+                return;
+            };
             let surface = known.surface(x, y, &Perturbation::default());
-            let lit = light.map_or(0.0, |light| light.arrives(&known.lit_point(&surface), triangle.id, 0.0));
-            let shaded = stack.shade(Surface { rank, lit, ..surface }, known.scopes);
+            let lit = light.map_or(0.0, |light| {
+                light.arrives(&known.lit_point(&surface), triangle.id, 0.0)
+            });
+            let shaded = stack.shade(
+                Surface {
+                    rank,
+                    lit,
+                    ..surface
+                },
+                known.scopes,
+            );
             let weight = fixed_weight(params.weight_of(&shaded), 0.0);
             let color = fixed_color(shaded.color.truncate(), 0.0, bits);
             (0..3).for_each(|c| sum.sums[c] += color[c] * weight);
@@ -151,7 +200,9 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Result<Vec<LayerSum>, C
 
 /// A color plus an error, rounded to whole steps.
 pub fn fixed_color(color: DVec3, error: f64, bits: u32) -> [u64; 3] {
-    color.to_array().map(|c| ((c + error).clamp(0.0, 1.0) * steps(bits) + 0.5).floor() as u64)
+    color
+        .to_array()
+        .map(|c| ((c + error).clamp(0.0, 1.0) * steps(bits) + 0.5).floor() as u64)
 }
 
 /// A weight plus an error, rounded to a whole number, at least 1.

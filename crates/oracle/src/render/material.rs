@@ -46,10 +46,17 @@ impl<'a> TriangleMaterial<'a> {
             return None;
         }
         let lookup = |slot: usize| {
-            let (texture, texcoords) = material.textures()[slot].zip(primitive.texcoords[slot].as_ref())?;
+            let (texture, texcoords) =
+                material.textures()[slot].zip(primitive.texcoords[slot].as_ref())?;
             let at = corners.map(|corner| texcoord(texcoords, &scene.vertex_bytes, corner));
-            let magnitudes = texture.image_from_texcoord.map(|row| row.map(|v| f64::from(v).abs()));
-            let terms = at.map(|at| DVec2::from(magnitudes.map(|[u, v, offset]| u * at.x.abs() + v * at.y.abs() + offset)));
+            let magnitudes = texture
+                .image_from_texcoord
+                .map(|row| row.map(|v| f64::from(v).abs()));
+            let terms = at.map(|at| {
+                DVec2::from(
+                    magnitudes.map(|[u, v, offset]| u * at.x.abs() + v * at.y.abs() + offset),
+                )
+            });
             Some(TextureLookup {
                 texture,
                 corners: at.map(|at| texture.image_coordinates(at)),
@@ -57,13 +64,27 @@ impl<'a> TriangleMaterial<'a> {
             })
         };
         let emission = DVec3::from(material.emission.map(f64::from));
-        Some(Self { scene, base: lookup(0), emission, emissive: lookup(1), is_unlit: material.unlit })
+        Some(Self {
+            scene,
+            base: lookup(0),
+            emission,
+            emissive: lookup(1),
+            is_unlit: material.unlit,
+        })
     }
 
     /// Color of a surface with the base color `base`, and the part of it that no light changes.
-    pub fn color(&self, base: DVec3, at: &SampleWeights, perturbation: TexturePerturbation) -> (DVec3, DVec3) {
-        let looked_up =
-            |lookup: &Option<TextureLookup>| lookup.as_ref().map_or(DVec3::ONE, |lookup| lookup.color(self.scene, at, perturbation));
+    pub fn color(
+        &self,
+        base: DVec3,
+        at: &SampleWeights,
+        perturbation: TexturePerturbation,
+    ) -> (DVec3, DVec3) {
+        let looked_up = |lookup: &Option<TextureLookup>| {
+            lookup.as_ref().map_or(DVec3::ONE, |lookup| {
+                lookup.color(self.scene, at, perturbation)
+            })
+        };
         let color = base * looked_up(&self.base);
         if self.is_unlit {
             return (color, color);
@@ -77,16 +98,25 @@ impl TextureLookup<'_> {
     fn color(&self, scene: &Scene, at: &SampleWeights, perturbation: TexturePerturbation) -> DVec3 {
         let levels = &scene.images[self.texture.image].levels;
         let size = DVec2::from(levels[0].size.map(f64::from));
-        let mixed = |k: [f64; 3]| self.corners[0] * k[0] + self.corners[1] * k[1] + self.corners[2] * k[2];
+        let mixed =
+            |k: [f64; 3]| self.corners[0] * k[0] + self.corners[1] * k[1] + self.corners[2] * k[2];
         let spans = at.slopes.map(|slope| (mixed(slope) * size).length());
         let detail = libm::log2(spans[0].max(spans[1]).max(1e-15));
         let uv = mixed(at.weights);
-        let from_weights: DVec2 = (0..3).map(|k| (self.corners[k] - uv).abs() * at.errors[k]).sum();
-        // Corners err by a few roundings; the level of detail by the errors of the weights and by those of its logarithm.
+        let from_weights: DVec2 = (0..3)
+            .map(|k| (self.corners[k] - uv).abs() * at.errors[k])
+            .sum();
+        // Corners err by a few roundings; the level of detail by the errors of the weights and by
+        // those of its logarithm.
         let uv_error = (from_weights + self.terms / f64::from(1 << 21)).max(DVec2::splat(1e-7));
-        let detail_error = (1.0 / f64::from(1 << 10) + 4.0 * at.errors.iter().sum::<f64>()).min(1.0);
+        let detail_error =
+            (1.0 / f64::from(1 << 10) + 4.0 * at.errors.iter().sum::<f64>()).min(1.0);
         let [across, down, level] = perturbation;
-        self.filtered(levels, uv + uv_error * DVec2::new(across, down), detail + level * detail_error)
+        self.filtered(
+            levels,
+            uv + uv_error * DVec2::new(across, down),
+            detail + level * detail_error,
+        )
     }
 
     /// The filtered color at texture coordinates `uv`, where a pixel spans 2^detail texels.
@@ -116,7 +146,10 @@ impl TextureLookup<'_> {
                 // Texels lie at the centers of their squares.
                 let (x, y) = (at.x - 0.5, at.y - 0.5);
                 let (left, top) = (x.floor(), y.floor());
-                let row = |row: f64| self.texel(level, left, row).lerp(self.texel(level, left + 1.0, row), x - left);
+                let row = |row: f64| {
+                    self.texel(level, left, row)
+                        .lerp(self.texel(level, left + 1.0, row), x - left)
+                };
                 row(top).lerp(row(top + 1.0), y - top)
             }
         }
@@ -125,7 +158,10 @@ impl TextureLookup<'_> {
     fn texel(&self, level: &Level, x: f64, y: f64) -> DVec3 {
         let [width, height] = level.size;
         let [across, down] = self.texture.wrap;
-        let (x, y) = (wrapped(x as i64, width.into(), across), wrapped(y as i64, height.into(), down));
+        let (x, y) = (
+            wrapped(x as i64, width.into(), across),
+            wrapped(y as i64, height.into(), down),
+        );
         let [red, green, blue, _] = level.texels[(y * i64::from(width) + x) as usize];
         DVec3::from([red, green, blue].map(|byte| linear_light(f64::from(byte) / 255.0)))
     }

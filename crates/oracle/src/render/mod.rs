@@ -1,4 +1,5 @@
-//! Draws exact pictures. Files in the order of the pipeline: vertices, triangles, samples, colors, pictures.
+//! Draws exact pictures. Files in the order of the pipeline: vertices, triangles, samples, colors,
+//! pictures.
 
 pub mod deform;
 pub mod particles;

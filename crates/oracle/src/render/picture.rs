@@ -28,7 +28,8 @@ use crate::{
 /// The exact picture of `scene`, the first of its sequence; empty if `view` has no pixels.
 ///
 /// # Errors
-/// [`DrawError`] if a transform or the number of triangles is out of range, or the picture takes more memory or work than it may.
+/// [`DrawError`] if a transform or the number of triangles is out of range, or the picture takes
+/// more memory or work than it may.
 pub fn render(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawError> {
     render_next(scene, view, stack, None)
 }
@@ -37,10 +38,19 @@ pub fn render(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawEr
 ///
 /// # Errors
 /// As [`render`].
-pub fn render_next(scene: &Scene, view: &View, stack: &Stack, previous: Option<&[[u8; 4]]>) -> Result<Frame, DrawError> {
+pub fn render_next(
+    scene: &Scene,
+    view: &View,
+    stack: &Stack,
+    previous: Option<&[[u8; 4]]>,
+) -> Result<Frame, DrawError> {
     if view.pixels() == 0 {
         stack.draws(scene, view)?;
-        return Ok(Frame { width: view.width, height: view.height, ..Frame::default() });
+        return Ok(Frame {
+            width: view.width,
+            height: view.height,
+            ..Frame::default()
+        });
     }
     check_particles(view, stack)?;
     let scene = &*scene_with_particles(scene, view, stack, None)?;
@@ -59,8 +69,20 @@ pub fn render_next(scene: &Scene, view: &View, stack: &Stack, previous: Option<&
     let (triangle_id, depth_key) = (coverage.triangle_ids(), coverage.depth_keys());
     let (triangle_ids, depth_keys) = (&*triangle_id, &*depth_key);
     let dots = dot_strengths(view, stack, &geometry.dots, depth_keys);
-    let input = ResolveInput { triangle_ids, depth_keys, dots: &dots, previous };
-    let layer_input = LayerInput { shot, geometry: &geometry, tests: &tests, triangles: &triangles, triangle_ids, depth_keys };
+    let input = ResolveInput {
+        triangle_ids,
+        depth_keys,
+        dots: &dots,
+        previous,
+    };
+    let layer_input = LayerInput {
+        shot,
+        geometry: &geometry,
+        tests: &tests,
+        triangles: &triangles,
+        triangle_ids,
+        depth_keys,
+    };
     let (color, counted) = match layer_image(&layer_input, || coverage.layers())? {
         Some(image) => (finish(&shot, &input, &image.colors, 0.0)?, image.counted),
         None => (shade(&shot, &input, &geometry)?, Vec::new()),
@@ -88,23 +110,36 @@ pub fn render_next(scene: &Scene, view: &View, stack: &Stack, previous: Option<&
 pub fn render_sequence(scene: &Scene, sequence: &[(View, Stack)]) -> Result<Frame, DrawError> {
     let mut last: Option<Frame> = None;
     for (view, stack) in sequence {
-        last = Some(render_next(scene, view, stack, last.as_ref().map(|frame| frame.color.as_slice()))?);
+        last = Some(render_next(
+            scene,
+            view,
+            stack,
+            last.as_ref().map(|frame| frame.color.as_slice()),
+        )?);
     }
     Ok(last.expect("a sequence has a picture"))
 }
 
-/// Triangle id and depth key of every pixel with strict vertices and integer keys, which every adapter must match to the bit
-/// (`docs/exactness.md` §10); `stack` must move no vertices.
+/// Triangle id and depth key of every pixel with strict vertices and integer keys, which every
+/// adapter must match to the bit (`docs/exactness.md` §10); `stack` must move no vertices.
 ///
 /// # Errors
 /// As [`render`].
-pub fn strict_frame(scene: &Scene, view: &View, stack: &Stack) -> Result<(Vec<u32>, Vec<u32>), DrawError> {
+pub fn strict_frame(
+    scene: &Scene,
+    view: &View,
+    stack: &Stack,
+) -> Result<(Vec<u32>, Vec<u32>), DrawError> {
     let draws = stack.draws(scene, view)?;
     let shot = Shot::new(scene, &draws, view, stack);
     let mut geometry = project_strict(&shot);
     geometry.bit_exact.depth_keys = true;
     geometry.sample_setups = sample_setups(&shot, &geometry);
     let (triangles, _) = triangles(&shot, &geometry)?;
-    let coverage = cover_with(&limited(SampleTests::new(&shot, &geometry), stack, &triangles, view)?, &triangles, view)?;
+    let coverage = cover_with(
+        &limited(SampleTests::new(&shot, &geometry), stack, &triangles, view)?,
+        &triangles,
+        view,
+    )?;
     Ok((coverage.triangle_ids(), coverage.depth_keys()))
 }

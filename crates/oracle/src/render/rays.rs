@@ -1,5 +1,6 @@
-//! Shadow rays: whether anything blocks the way from a sample to a directional light, in f64. This is the reference that shadow
-//! maps are measured against. Triangles are neither snapped nor culled by facing; a bounding volume hierarchy finds them.
+//! Shadow rays: whether anything blocks the way from a sample to a directional light, in f64. This
+//! is the reference that shadow maps are measured against. Triangles are neither snapped nor culled
+//! by facing; a bounding volume hierarchy finds them.
 
 use std::ops::Range;
 
@@ -45,9 +46,12 @@ pub struct Rays {
 const LEAF: usize = 4;
 
 impl Rays {
-    /// The shadow casters for the light of the shot's stack; none without a light, or with a matrix that is out of range.
+    /// The shadow casters for the light of the shot's stack; none without a light, or with a matrix
+    /// that is out of range.
     pub fn of(shot: &Shot) -> Option<Self> {
-        let Shot { scene, view, stack, .. } = *shot;
+        let Shot {
+            scene, view, stack, ..
+        } = *shot;
         let toward = stack.light()?.toward();
         let light_view = stack.light_view(scene, &view.with_shadow(ShadowResolution::default()))?;
         let draws = stack.draws(scene, &light_view).ok()?;
@@ -58,7 +62,12 @@ impl Rays {
             let all = 0..casters.len();
             build(&mut casters, all, &mut nodes);
         }
-        Some(Self { casters, nodes, toward, min_distance_m: 1e-7 * radius })
+        Some(Self {
+            casters,
+            nodes,
+            toward,
+            min_distance_m: 1e-7 * radius,
+        })
     }
 
     /// Returns true if light reaches `origin`, a point on the triangle `id`.
@@ -66,11 +75,20 @@ impl Rays {
         let inverse = self.toward.recip();
         let mut pending = vec![0u32];
         while let Some(at) = pending.pop() {
-            let Some(node) = self.nodes.get(at as usize) else { continue };
-            let (a, b) = ((node.low - origin) * inverse, (node.high - origin) * inverse);
+            let Some(node) = self.nodes.get(at as usize) else {
+                continue;
+            };
+            let (a, b) = (
+                (node.low - origin) * inverse,
+                (node.high - origin) * inverse,
+            );
             // A ray parallel to an axis makes NaN on the faces of that axis; min and max ignore it.
-            let enters = [a.x.min(b.x), a.y.min(b.y), a.z.min(b.z)].into_iter().fold(0.0, f64::max);
-            let leaves = [a.x.max(b.x), a.y.max(b.y), a.z.max(b.z)].into_iter().fold(f64::INFINITY, f64::min);
+            let enters = [a.x.min(b.x), a.y.min(b.y), a.z.min(b.z)]
+                .into_iter()
+                .fold(0.0, f64::max);
+            let leaves = [a.x.max(b.x), a.y.max(b.y), a.z.max(b.z)]
+                .into_iter()
+                .fold(f64::INFINITY, f64::min);
             if enters > leaves * (1.0 + 1e-12) {
                 continue;
             }
@@ -79,7 +97,10 @@ impl Rays {
                 continue;
             }
             let casters = &self.casters[node.leaf.start as usize..node.leaf.end as usize];
-            if casters.iter().any(|caster| caster.id != id && self.meets(origin, caster)) {
+            if casters
+                .iter()
+                .any(|caster| caster.id != id && self.meets(origin, caster))
+            {
                 return false;
             }
         }
@@ -105,41 +126,72 @@ impl Rays {
 
 /// Triangles of a draw after all vertex effects, except those with a rejected corner.
 fn casters(shot: &Shot, draw: &Draw) -> Vec<Caster> {
-    let Shot { scene, view, stack, .. } = *shot;
+    let Shot {
+        scene, view, stack, ..
+    } = *shot;
     let evaluator = VertexEvaluator::new(scene, draw, view, stack);
     let primitive = &scene.primitives[draw.primitive];
     let caster = |triangle: u32| {
         let corners = evaluator.triangle_corners(triangle);
-        if corners.iter().any(|corner| evaluator.clip(*corner).is_err()) {
+        if corners
+            .iter()
+            .any(|corner| evaluator.clip(*corner).is_err())
+        {
             return None;
         }
         let corners = corners.map(|corner| {
             let moved = evaluator.moved(corner);
             evaluator.unmoved(corner).position + moved.offset
         });
-        Some(Caster { corners, id: draw.first_triangle + triangle })
+        Some(Caster {
+            corners,
+            id: draw.first_triangle + triangle,
+        })
     };
-    (0..primitive.triangle_count()).into_par_iter().filter_map(caster).collect()
+    (0..primitive.triangle_count())
+        .into_par_iter()
+        .filter_map(caster)
+        .collect()
 }
 
-/// Splits a run of triangles at the median along the longest side of their centers' bounding box until it fits a leaf.
+/// Splits a run of triangles at the median along the longest side of their centers' bounding box
+/// until it fits a leaf.
 fn build(casters: &mut [Caster], run: Range<usize>, nodes: &mut Vec<Node>) {
     let bounds = |points: &mut dyn Iterator<Item = DVec3>| {
-        points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), point| (low.min(point), high.max(point)))
+        points.fold(
+            (DVec3::INFINITY, DVec3::NEG_INFINITY),
+            |(low, high), point| (low.min(point), high.max(point)),
+        )
     };
-    let (low, high) = bounds(&mut casters[run.clone()].iter().flat_map(|caster| caster.corners));
+    let (low, high) = bounds(
+        &mut casters[run.clone()]
+            .iter()
+            .flat_map(|caster| caster.corners),
+    );
     let (first, last) = bounds(&mut casters[run.clone()].iter().map(Caster::center));
     let sides = last - first;
     let at = nodes.len();
     let is_leaf = run.len() <= LEAF || sides.max_element() <= 0.0;
-    let leaf = if is_leaf { run.start as u32..run.end as u32 } else { 0..0 };
-    nodes.push(Node { low, high, leaf, second: 0 });
+    let leaf = if is_leaf {
+        run.start as u32..run.end as u32
+    } else {
+        0..0
+    };
+    nodes.push(Node {
+        low,
+        high,
+        leaf,
+        second: 0,
+    });
     if is_leaf {
         return;
     }
-    let axis = (0..3).max_by(|&a, &b| sides[a].total_cmp(&sides[b])).expect("three axes");
+    let axis = (0..3)
+        .max_by(|&a, &b| sides[a].total_cmp(&sides[b]))
+        .expect("three axes");
     let half = run.len() / 2;
-    casters[run.clone()].select_nth_unstable_by(half, |a, b| a.center()[axis].total_cmp(&b.center()[axis]));
+    casters[run.clone()]
+        .select_nth_unstable_by(half, |a, b| a.center()[axis].total_cmp(&b.center()[axis]));
     build(casters, run.start..run.start + half, nodes);
     nodes[at].second = nodes.len() as u32;
     build(casters, run.start + half..run.end, nodes);

@@ -1,4 +1,5 @@
-//! Reference pictures, against which accuracy options are measured: on the finest grid, with traced shadows, at every render scale.
+//! Reference pictures, against which accuracy options are measured: on the finest grid, with traced
+//! shadows, at every render scale.
 
 use glam::{DMat4, DVec4};
 use rayon::prelude::*;
@@ -18,33 +19,47 @@ use crate::{
     scene::{Scene, draw::DrawError, shadow_resolution::ShadowResolution, view::View},
 };
 
-/// The exact picture of the last of `sequence`, drawn with `factor` times as many pixels along a side and shown at the size of its
-/// view.
+/// The exact picture of the last of `sequence`, drawn with `factor` times as many pixels along a
+/// side and shown at the size of its view.
 ///
 /// # Errors
 /// As [`render`].
 ///
 /// # Panics
 /// If `sequence` is empty.
-pub fn render_scaled(scene: &Scene, sequence: &[(View, Stack)], factor: f64) -> Result<Frame, DrawError> {
+pub fn render_scaled(
+    scene: &Scene,
+    sequence: &[(View, Stack)],
+    factor: f64,
+) -> Result<Frame, DrawError> {
     let (view, _) = sequence.last().expect("a sequence has a picture");
     if factor == 1.0 || view.pixels() == 0 {
         return render_sequence(scene, sequence);
     }
-    let drawn: Vec<_> = sequence.iter().map(|(view, stack)| (view.scaled(factor), stack.scaled(factor))).collect();
+    let drawn: Vec<_> = sequence
+        .iter()
+        .map(|(view, stack)| (view.scaled(factor), stack.scaled(factor)))
+        .collect();
     let frame = render_sequence(scene, &drawn)?;
     let size = [view.width, view.height];
-    Ok(frame.shown(size, resampled(&frame.color, [frame.width, frame.height], size)))
+    Ok(frame.shown(
+        size,
+        resampled(&frame.color, [frame.width, frame.height], size),
+    ))
 }
 
-/// The largest number of sub-pixel bits, at most 12, with which every pixel of `view` lies inside the guard band.
+/// The largest number of sub-pixel bits, at most 12, with which every pixel of `view` lies inside
+/// the guard band.
 pub fn finest_bits(view: &View) -> u32 {
     let side = i64::from(view.width.max(view.height)).max(1);
-    (SUBPIXEL_BITS..=12).rev().find(|bits| side << bits <= i64::from(GUARD_BAND)).unwrap_or(SUBPIXEL_BITS)
+    (SUBPIXEL_BITS..=12)
+        .rev()
+        .find(|bits| side << bits <= i64::from(GUARD_BAND))
+        .unwrap_or(SUBPIXEL_BITS)
 }
 
-/// The exact picture on the finest grid that holds it, with positions relative to the eye before any rounding: the reference for
-/// coarser grids and rounded positions.
+/// The exact picture on the finest grid that holds it, with positions relative to the eye before
+/// any rounding: the reference for coarser grids and rounded positions.
 ///
 /// # Errors
 /// As [`render`].
@@ -58,11 +73,16 @@ pub fn render_finest(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame,
 /// As [`render`].
 pub fn project_finest(scene: &Scene, view: &View, stack: &Stack) -> Result<Geometry, DrawError> {
     let view = finest(view, stack);
-    Ok(project(&Shot::new(scene, &stack.draws(scene, &view)?, &view, stack))?)
+    Ok(project(&Shot::new(
+        scene,
+        &stack.draws(scene, &view)?,
+        &view,
+        stack,
+    ))?)
 }
 
-/// The picture of [`render_finest`] with traced shadows: the reference for shadow maps. If effects leave samples out, of which rays
-/// know nothing, shadows come from the map of `view`.
+/// The picture of [`render_finest`] with traced shadows: the reference for shadow maps. If effects
+/// leave samples out, of which rays know nothing, shadows come from the map of `view`.
 ///
 /// # Errors
 /// As [`render`].
@@ -72,48 +92,89 @@ pub fn render_reference(scene: &Scene, view: &View, stack: &Stack) -> Result<Fra
 
 fn finest(view: &View, stack: &Stack) -> View {
     // Sample effects measure triangles in 1/256 px.
-    let is_measured = stack.each(|hooks| hooks.sample.as_ref()).next().is_some() || stack.point_radius() > 0;
-    let subpixel_bits = if is_measured { SUBPIXEL_BITS } else { finest_bits(view) };
+    let is_measured =
+        stack.each(|hooks| hooks.sample.as_ref()).next().is_some() || stack.point_radius() > 0;
+    let subpixel_bits = if is_measured {
+        SUBPIXEL_BITS
+    } else {
+        finest_bits(view)
+    };
     view.with_grid(subpixel_bits, true)
 }
 
 fn traced(view: &View, stack: &Stack) -> View {
     let has_rays = stack.light().is_some() && !leaves_samples_out(stack);
-    view.with_shadow(if has_rays { ShadowResolution::TRACED } else { view.precision.shadow })
+    view.with_shadow(if has_rays {
+        ShadowResolution::TRACED
+    } else {
+        view.precision.shadow
+    })
 }
 
-/// The references of a picture: exact pictures and geometry on the finest grid for every render scale in `factors`, and, if there
-/// are several, the picture with 64 samples per pixel.
+/// The references of a picture: exact pictures and geometry on the finest grid for every render
+/// scale in `factors`, and, if there are several, the picture with 64 samples per pixel.
 ///
 /// # Errors
 /// As [`render`].
-pub fn references(scene: &Scene, view: &View, stack: &Stack, factors: &[f64]) -> Result<References, DrawError> {
+pub fn references(
+    scene: &Scene,
+    view: &View,
+    stack: &Stack,
+    factors: &[f64],
+) -> Result<References, DrawError> {
     let view = &traced(view, stack);
     let at = |&factor: &f64| {
         let (view, stack) = (view.scaled(factor), stack.scaled(factor));
-        Ok((factor, render_finest(scene, &view, &stack)?, project_finest(scene, &view, &stack)?))
+        Ok((
+            factor,
+            render_finest(scene, &view, &stack)?,
+            project_finest(scene, &view, &stack)?,
+        ))
     };
-    let pictures = factors.iter().map(at).collect::<Result<Vec<_>, DrawError>>()?;
-    let smooth = if factors.len() > 1 { Some(supersampled(scene, view, stack)?) } else { None };
+    let pictures = factors
+        .iter()
+        .map(at)
+        .collect::<Result<Vec<_>, DrawError>>()?;
+    let smooth = if factors.len() > 1 {
+        Some(supersampled(scene, view, stack)?)
+    } else {
+        None
+    };
     Ok(References { pictures, smooth })
 }
 
 /// Samples along a side of a pixel.
 const SAMPLES: u32 = 8;
 
-/// The mean of 64 pictures, each shifted by a fraction of a pixel: eight by eight samples per pixel, with image effects as large as
-/// in a single picture.
+/// The mean of 64 pictures, each shifted by a fraction of a pixel: eight by eight samples per
+/// pixel, with image effects as large as in a single picture.
 fn supersampled(scene: &Scene, view: &View, stack: &Stack) -> Result<Vec<[u8; 4]>, DrawError> {
     let light = linear_bytes();
     let mut sums = vec![LightSum::default(); view.pixels()];
     for sample in 0..SAMPLES * SAMPLES {
-        let [x, y] = [sample % SAMPLES, sample / SAMPLES].map(|i| 0.5 - (f64::from(i) + 0.5) / f64::from(SAMPLES));
+        let [x, y] = [sample % SAMPLES, sample / SAMPLES]
+            .map(|i| 0.5 - (f64::from(i) + 0.5) / f64::from(SAMPLES));
         // Pixels to the right and down, in normalized device coordinates.
-        let shift = DVec4::new(2.0 * x / f64::from(view.width), -2.0 * y / f64::from(view.height), 0.0, 1.0);
-        let clip_from_world = DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::Z, shift) * view.clip_from_world;
-        let frame = render_finest(scene, &View { clip_from_world, ..view.clone() }, stack)?;
+        let shift = DVec4::new(
+            2.0 * x / f64::from(view.width),
+            -2.0 * y / f64::from(view.height),
+            0.0,
+            1.0,
+        );
+        let clip_from_world =
+            DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::Z, shift) * view.clip_from_world;
+        let frame = render_finest(
+            scene,
+            &View {
+                clip_from_world,
+                ..view.clone()
+            },
+            stack,
+        )?;
         let weight = 1.0 / f64::from(SAMPLES * SAMPLES);
-        sums.par_iter_mut().zip(&frame.color).for_each(|(sum, color)| sum.add(color, weight, &light));
+        sums.par_iter_mut()
+            .zip(&frame.color)
+            .for_each(|(sum, color)| sum.add(color, weight, &light));
     }
     Ok(sums.iter().map(LightSum::bytes).collect())
 }

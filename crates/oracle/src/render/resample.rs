@@ -4,15 +4,17 @@ use rayon::prelude::*;
 
 use crate::math::{linear_light, srgb_byte};
 
-/// A picture at another size, in linear light: the mean of square blocks of pixels if it shrinks by a whole factor, otherwise
-/// bilinear.
+/// A picture at another size, in linear light: the mean of square blocks of pixels if it shrinks by
+/// a whole factor, otherwise bilinear.
 pub fn resampled(color: &[[u8; 4]], from: [u32; 2], to: [u32; 2]) -> Vec<[u8; 4]> {
     let light = linear_bytes();
     let side = from[0] / to[0].max(1);
     let is_whole = side > 1 && [0, 1].iter().all(|&axis| from[axis] == side * to[axis]);
     let pixel = |x: u32, y: u32| {
         let mut sum = LightSum::default();
-        let mut add = |x: u32, y: u32, weight: f64| sum.add(&color[(y * from[0] + x) as usize], weight, &light);
+        let mut add = |x: u32, y: u32, weight: f64| {
+            sum.add(&color[(y * from[0] + x) as usize], weight, &light)
+        };
         if is_whole {
             let weight = 1.0 / f64::from(side * side);
             (0..side * side).for_each(|i| add(x * side + i % side, y * side + i / side, weight));
@@ -22,21 +24,36 @@ pub fn resampled(color: &[[u8; 4]], from: [u32; 2], to: [u32; 2]) -> Vec<[u8; 4]
                 let at = (f64::from(at) + 0.5) * f64::from(from[axis]) / f64::from(to[axis]) - 0.5;
                 let clamped = |at: f64| at.clamp(0.0, f64::from(from[axis] - 1)) as u32;
                 let fraction = at - at.floor();
-                [(clamped(at.floor()), 1.0 - fraction), (clamped(at.floor() + 1.0), fraction)]
+                [
+                    (clamped(at.floor()), 1.0 - fraction),
+                    (clamped(at.floor() + 1.0), fraction),
+                ]
             };
             let columns = nearest(x, 0);
             for (y, by_row) in nearest(y, 1) {
-                columns.iter().for_each(|&(x, by_column)| add(x, y, by_row * by_column));
+                columns
+                    .iter()
+                    .for_each(|&(x, by_column)| add(x, y, by_row * by_column));
             }
         }
         sum.bytes()
     };
-    (0..to[1]).into_par_iter().flat_map_iter(|y| (0..to[0]).map(move |x| (x, y)).map(|(x, y)| pixel(x, y)).collect::<Vec<_>>()).collect()
+    (0..to[1])
+        .into_par_iter()
+        .flat_map_iter(|y| {
+            (0..to[0])
+                .map(move |x| (x, y))
+                .map(|(x, y)| pixel(x, y))
+                .collect::<Vec<_>>()
+        })
+        .collect()
 }
 
 /// Linear light of every byte.
 pub fn linear_bytes() -> Vec<f64> {
-    (0..=255u8).map(|byte| linear_light(f64::from(byte) / 255.0)).collect()
+    (0..=255u8)
+        .map(|byte| linear_light(f64::from(byte) / 255.0))
+        .collect()
 }
 
 /// A weighted sum of pixels in linear light.
@@ -62,8 +79,17 @@ impl LightSum {
 
     /// The sum as a gamma-encoded pixel; without alpha it has the colors of its transparent pixels.
     pub fn bytes(&self) -> [u8; 4] {
-        let [r, g, b] = if self.alpha > 0.0 { self.opaque.map(|v| v / self.alpha) } else { self.plain };
-        [srgb_byte(r), srgb_byte(g), srgb_byte(b), (self.alpha.min(1.0) * 255.0 + 0.5) as u8]
+        let [r, g, b] = if self.alpha > 0.0 {
+            self.opaque.map(|v| v / self.alpha)
+        } else {
+            self.plain
+        };
+        [
+            srgb_byte(r),
+            srgb_byte(g),
+            srgb_byte(b),
+            (self.alpha.min(1.0) * 255.0 + 0.5) as u8,
+        ]
     }
 }
 
@@ -74,25 +100,49 @@ mod tests {
     #[test]
     fn an_even_picture_does_not_change_and_means_are_taken_in_linear_light() {
         let even = vec![[10, 200, 77, 255]; 12];
-        assert_eq!(resampled(&even, [4, 3], [9, 2]), vec![[10, 200, 77, 255]; 18]);
-        let halves = vec![[0, 0, 0, 255], [255, 255, 255, 255], [0, 0, 0, 255], [255, 255, 255, 255]];
+        assert_eq!(
+            resampled(&even, [4, 3], [9, 2]),
+            vec![[10, 200, 77, 255]; 18]
+        );
+        let halves = vec![
+            [0, 0, 0, 255],
+            [255, 255, 255, 255],
+            [0, 0, 0, 255],
+            [255, 255, 255, 255],
+        ];
         // Half of the light is encoded as 188, not as 128.
         assert_eq!(resampled(&halves, [2, 2], [1, 1]), [[188, 188, 188, 255]]);
     }
 
     #[test]
     fn transparent_pixels_add_no_color() {
-        let edge = vec![[255, 0, 0, 255], [0, 255, 0, 0], [255, 0, 0, 255], [0, 255, 0, 0]];
+        let edge = vec![
+            [255, 0, 0, 255],
+            [0, 255, 0, 0],
+            [255, 0, 0, 255],
+            [0, 255, 0, 0],
+        ];
         assert_eq!(resampled(&edge, [2, 2], [1, 1]), [[255, 0, 0, 128]]);
-        assert_eq!(resampled(&[[9, 8, 7, 0]; 4], [2, 2], [1, 1]), [[9, 8, 7, 0]]);
+        assert_eq!(
+            resampled(&[[9, 8, 7, 0]; 4], [2, 2], [1, 1]),
+            [[9, 8, 7, 0]]
+        );
     }
 
     #[test]
     fn between_two_pixels_light_changes_evenly() {
         let [a, b] = [[0, 0, 0, 255], [255, 255, 255, 255]];
         let wide = resampled(&[a, b], [2, 1], [8, 1]);
-        let light: Vec<f64> = wide.iter().map(|pixel| linear_light(f64::from(pixel[0]) / 255.0)).collect();
+        let light: Vec<f64> = wide
+            .iter()
+            .map(|pixel| linear_light(f64::from(pixel[0]) / 255.0))
+            .collect();
         assert_eq!((wide[0], wide[7]), (a, b));
-        assert!(light.windows(2).all(|pair| (0.0..0.26).contains(&(pair[1] - pair[0]))), "{light:?}");
+        assert!(
+            light
+                .windows(2)
+                .all(|pair| (0.0..0.26).contains(&(pair[1] - pair[0]))),
+            "{light:?}"
+        );
     }
 }

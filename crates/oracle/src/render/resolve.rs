@@ -1,4 +1,5 @@
-//! Resolve: from surface colors to the bytes of the picture. Dots, image effects, and the one rounding.
+//! Resolve: from surface colors to the bytes of the picture. Dots, image effects, and the one
+//! rounding.
 
 use glam::DVec4;
 use rayon::prelude::*;
@@ -30,14 +31,19 @@ pub struct ResolveInput<'a> {
     pub previous: Option<&'a [[u8; 4]]>,
 }
 
-/// A color that is this close to the middle between two bytes, 1/1024 of a step, may be either in f32.
+/// A color that is this close to the middle between two bytes, 1/1024 of a step, may be either in
+/// f32.
 const TIE: f64 = 1.0 / (255.0 * 1024.0);
 
 /// Bytes of all pixels, row-major, gamma-encoded.
 ///
 /// # Errors
 /// The work was canceled.
-pub fn shade(shot: &Shot, input: &ResolveInput, geometry: &Geometry) -> Result<Vec<[u8; 4]>, Canceled> {
+pub fn shade(
+    shot: &Shot,
+    input: &ResolveInput,
+    geometry: &Geometry,
+) -> Result<Vec<[u8; 4]>, Canceled> {
     shade_perturbed(shot, input, geometry, &Perturbation::default())
 }
 
@@ -55,15 +61,35 @@ pub fn shade_perturbed(
     finish(shot, input, &colors, perturbation.color_step)
 }
 
-/// Bytes of a picture from its gamma-encoded surface colors: dots and image effects, whose steps are moved by `color_step`.
-pub fn finish(shot: &Shot, input: &ResolveInput, colors: &[DVec4], color_step: f64) -> Result<Vec<[u8; 4]>, Canceled> {
-    finished_each(shot, input, colors, |finish, i, color| finish.pixel(i, color, color_step))
+/// Bytes of a picture from its gamma-encoded surface colors: dots and image effects, whose steps
+/// are moved by `color_step`.
+pub fn finish(
+    shot: &Shot,
+    input: &ResolveInput,
+    colors: &[DVec4],
+    color_step: f64,
+) -> Result<Vec<[u8; 4]>, Canceled> {
+    finished_each(shot, input, colors, |finish, i, color| {
+        finish.pixel(i, color, color_step)
+    })
 }
 
-/// The same with both bytes of each channel whose color lies in the middle between two: all lower ones, and all upper ones.
-pub fn finish_at_ties(shot: &Shot, input: &ResolveInput, colors: &[DVec4], color_step: f64) -> Result<[Vec<[u8; 4]>; 2], Canceled> {
-    let both = finished_each(shot, input, colors, |finish, i, color| finish.pixel_at_ties(i, color, color_step))?;
-    Ok(both.into_iter().map(|[lower, upper]| (lower, upper)).unzip::<_, _, Vec<_>, Vec<_>>().into())
+/// The same with both bytes of each channel whose color lies in the middle between two: all lower
+/// ones, and all upper ones.
+pub fn finish_at_ties(
+    shot: &Shot,
+    input: &ResolveInput,
+    colors: &[DVec4],
+    color_step: f64,
+) -> Result<[Vec<[u8; 4]>; 2], Canceled> {
+    let both = finished_each(shot, input, colors, |finish, i, color| {
+        finish.pixel_at_ties(i, color, color_step)
+    })?;
+    Ok(both
+        .into_iter()
+        .map(|[lower, upper]| (lower, upper))
+        .unzip::<_, _, Vec<_>, Vec<_>>()
+        .into())
 }
 
 /// What `pixel` makes of every pixel's gamma-encoded color.
@@ -75,7 +101,9 @@ fn finished_each<T: Send>(
 ) -> Result<Vec<T>, Canceled> {
     let tables = PictureTables::of(shot);
     let finish = Finish::new(shot, input, &tables);
-    map_each(colors.par_iter().enumerate(), |(i, &color)| pixel(&finish, i, color))
+    map_each(colors.par_iter().enumerate(), |(i, &color)| {
+        pixel(&finish, i, color)
+    })
 }
 
 /// What image effects read beside the images.
@@ -89,7 +117,10 @@ pub struct PictureTables {
 impl PictureTables {
     pub fn of(shot: &Shot) -> Self {
         let draws = shot.draws.iter().map(|draw| draw.first_triangle).collect();
-        Self { draws, background: shot.view.background.rows(shot.view.height) }
+        Self {
+            draws,
+            background: shot.view.background.rows(shot.view.height),
+        }
     }
 }
 
@@ -114,7 +145,12 @@ impl<'a> Finish<'a> {
             background: &tables.background,
         };
         let dots = shot.stack.dots().filter(|_| !input.dots.is_empty());
-        Self { stack: shot.stack, dots, strengths: input.dots, picture }
+        Self {
+            stack: shot.stack,
+            dots,
+            strengths: input.dots,
+            picture,
+        }
     }
 
     /// Bytes of the pixel with this index, from its gamma-encoded surface color.
@@ -131,20 +167,37 @@ impl<'a> Finish<'a> {
     /// The color before it is rounded.
     fn color(&self, i: usize, color: DVec4, color_step: f64) -> DVec4 {
         let (x, y) = (i as u32 % self.picture.width, i as u32 / self.picture.width);
-        let color = self.dots.as_ref().map_or(color, |dots| dotted(dots, color, self.picture.background(y), self.strengths[i]));
-        let pixel = Pixel { color, x, y, step_offset: color_step };
-        if self.stack.finishes() { self.stack.finish(pixel, &self.picture).color } else { color }
+        let color = self.dots.as_ref().map_or(color, |dots| {
+            dotted(dots, color, self.picture.background(y), self.strengths[i])
+        });
+        let pixel = Pixel {
+            color,
+            x,
+            y,
+            step_offset: color_step,
+        };
+        if self.stack.finishes() {
+            self.stack.finish(pixel, &self.picture).color
+        } else {
+            color
+        }
     }
 }
 
 /// A pixel with a dot over its surface, or over the background if the effect hides the model.
 fn dotted(dots: &Dots, color: DVec4, background: DVec4, strength: u32) -> DVec4 {
-    let beneath = if dots.show_model != 0 { color } else { background };
+    let beneath = if dots.show_model != 0 {
+        color
+    } else {
+        background
+    };
     let opacity = f64::from(strength) / f64::from(FULL) * f64::from(dots.color[3]);
     beneath + (encoded(dots.color).truncate().extend(1.0) - beneath) * opacity
 }
 
 /// Rounds to bytes, halves away from zero.
 pub fn bytes(color: DVec4) -> [u8; 4] {
-    color.to_array().map(|c| (255.0 * c.clamp(0.0, 1.0) + 0.5).floor() as u8)
+    color
+        .to_array()
+        .map(|c| (255.0 * c.clamp(0.0, 1.0) + 0.5).floor() as u8)
 }

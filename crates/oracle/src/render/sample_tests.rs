@@ -1,5 +1,5 @@
-//! Sample tests: which covered samples are drawn, by the sample effects of the stack, masks, discs and the draw order. Integers
-//! alone decide.
+//! Sample tests: which covered samples are drawn, by the sample effects of the stack, masks, discs
+//! and the draw order. Integers alone decide.
 
 use std::ops::Range;
 
@@ -88,8 +88,16 @@ impl<'a> SampleTests<'a> {
     pub fn new(shot: &Shot<'a>, geometry: &'a Geometry) -> Self {
         let masked = mask::is_masked(shot.scene, shot.stack).then_some((shot.scene, shot.draws));
         let tests = Self::of_effects(shot.stack, geometry);
-        let scoped = tests.effects.iter().any(|effect| effect.scope.is_some()).then_some((shot.scene, shot.draws));
-        Self { masked, scoped, ..tests }
+        let scoped = tests
+            .effects
+            .iter()
+            .any(|effect| effect.scope.is_some())
+            .then_some((shot.scene, shot.draws));
+        Self {
+            masked,
+            scoped,
+            ..tests
+        }
     }
 
     /// The tests of a stack alone, without masks and without effects that have a scope.
@@ -103,7 +111,12 @@ impl<'a> SampleTests<'a> {
                 let hook = enabled.effect.hooks.sample.as_ref()?;
                 let setup = hook.has_setup.then_some(effect_setups);
                 effect_setups += usize::from(hook.has_setup);
-                Some(EffectTest { hook, words: &enabled.words, setup, scope })
+                Some(EffectTest {
+                    hook,
+                    words: &enabled.words,
+                    setup,
+                    scope,
+                })
             })
             .collect();
         Self {
@@ -113,7 +126,11 @@ impl<'a> SampleTests<'a> {
             shape: stack.shape(),
             radius: stack.point_radius().into(),
             // Boxes and points replace triangles, so there are no discs.
-            discs: if stack.shape() == Shape::Triangles { geometry.particle_discs.clone() } else { 0..0 },
+            discs: if stack.shape() == Shape::Triangles {
+                geometry.particle_discs.clone()
+            } else {
+                0..0
+            },
             unit: 1 << geometry.subpixel_bits,
             has_integer_keys: geometry.bit_exact.depth_keys,
             ..Self::default()
@@ -122,7 +139,10 @@ impl<'a> SampleTests<'a> {
 
     /// The same tests up to a draw limit, in a picture `width` pixels wide.
     pub fn up_to(self, limit: Option<DrawLimit>, width: u32) -> Self {
-        Self { limit: limit.map(|limit| (limit, width)), ..self }
+        Self {
+            limit: limit.map(|limit| (limit, width)),
+            ..self
+        }
     }
 
     /// Where a draw order stops.
@@ -137,7 +157,8 @@ impl<'a> SampleTests<'a> {
         })
     }
 
-    /// Returns true if a covered sample is drawn. `weights` are the doubled areas opposite the corners of the oriented triangle.
+    /// Returns true if a covered sample is drawn. `weights` are the doubled areas opposite the
+    /// corners of the oriented triangle.
     pub fn is_drawn(&self, triangle: &OrientedTriangle, x: u32, y: u32, weights: [i64; 3]) -> bool {
         if !self.is_within_limit(triangle.id, x, y) {
             return false;
@@ -153,27 +174,49 @@ impl<'a> SampleTests<'a> {
         if is_disc && (triangle.is_clipped() || !is_in_disc(parts)) {
             return false;
         }
-        let records = self.effect_setups + if self.masked.is_some() { mask::RECORDS } else { 0 };
+        let records = self.effect_setups
+            + if self.masked.is_some() {
+                mask::RECORDS
+            } else {
+                0
+            };
         let setups = &self.sample_setups[triangle.entry * records..][..records];
-        let scopes = self.scoped.map_or(0, |(scene, draws)| draw_of(scene, draws, triangle.id).map_or(0, |draw| draw.scopes));
+        let scopes = self.scoped.map_or(0, |(scene, draws)| {
+            draw_of(scene, draws, triangle.id).map_or(0, |draw| draw.scopes)
+        });
         let passes = |effect: &EffectTest| {
             if effect.scope.is_some_and(|bit| scopes >> bit & 1 == 0) {
                 return true;
             }
             let setup = effect.setup.map_or([0; 4], |index| setups[index]);
-            (effect.hook.is_drawn)(&Sample { x, y, triangle: triangle.id, areas: parts, setup }, effect.words)
+            (effect.hook.is_drawn)(
+                &Sample {
+                    x,
+                    y,
+                    triangle: triangle.id,
+                    areas: parts,
+                    setup,
+                },
+                effect.words,
+            )
         };
         let passes_mask = |(scene, draws): (&Scene, &[Draw])| {
             let draw = draw_of(scene, draws, triangle.id).expect("a triangle belongs to a draw");
-            mask::is_drawn(scene, &scene.primitives[draw.primitive], triangle, parts, &setups[self.effect_setups..])
+            mask::is_drawn(
+                scene,
+                &scene.primitives[draw.primitive],
+                triangle,
+                parts,
+                &setups[self.effect_setups..],
+            )
         };
         self.effects.iter().all(passes) && self.masked.is_none_or(passes_mask)
     }
 }
 
-/// Returns true in the ellipse that touches the sides of a triangle at their midpoints, given the areas opposite the corners.
-/// The fractions a, b, c of the whole are then at most as unequal as at such a midpoint, 1/2, 1/2 and 0:
-/// a² + b² + c² <= (a + b + c)² / 2.
+/// Returns true in the ellipse that touches the sides of a triangle at their midpoints, given the
+/// areas opposite the corners. The fractions a, b, c of the whole are then at most as unequal as at
+/// such a midpoint, 1/2, 1/2 and 0: a² + b² + c² <= (a + b + c)² / 2.
 fn is_in_disc(parts: [u32; 3]) -> bool {
     let squares: u128 = parts.iter().map(|&part| u128::from(part).pow(2)).sum();
     let whole: u128 = parts.iter().map(|&part| u128::from(part)).sum();

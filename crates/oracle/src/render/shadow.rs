@@ -1,13 +1,16 @@
-//! Shadows: the shadow map in f64, and the fraction of a directional light that arrives at a sample.
+//! Shadows: the shadow map in f64, and the fraction of a directional light that arrives at a
+//! sample.
 //!
-//! The map holds, for the center of every texel, the depth of the nearest triangle as the light sees the scene. A tap finds a texel
-//! lit if the plane of the sample's triangle, at the center of that texel and moved towards the light by bias + slope · tan, is not
-//! behind the depth in the map; tan, of the angle between light and normal, counts up to [`MAX_SHADOW_SLOPE`]. With n taps a side the
-//! sample uses those round its own texel; the weights of the outermost are 1 - f and f, where f is the sample's position in its
-//! texel, and those of the others 1.
+//! The map holds, for the center of every texel, the depth of the nearest triangle as the light
+//! sees the scene. A tap finds a texel lit if the plane of the sample's triangle, at the center of
+//! that texel and moved towards the light by bias + slope · tan, is not behind the depth in the
+//! map; tan, of the angle between light and normal, counts up to [`MAX_SHADOW_SLOPE`]. With n taps
+//! a side the sample uses those round its own texel; the weights of the outermost are 1 - f and f,
+//! where f is the sample's position in its texel, and those of the others 1.
 //!
-//! In f32 the sample's position has an error, so it may meet another texel or pass a depth comparison by a hair. A perturbation to
-//! either side gives the least and the most light that may then arrive.
+//! In f32 the sample's position has an error, so it may meet another texel or pass a depth
+//! comparison by a hair. A perturbation to either side gives the least and the most light that may
+//! then arrive.
 
 use glam::{DVec2, DVec3};
 
@@ -31,12 +34,20 @@ use crate::{
     scene::{Scene, draw::DrawError, shadow_resolution::ShadowResolution, view::View},
 };
 
-/// The shadow map of `scene` for the light of `stack`; none if no effect needs one, or if shadows are traced.
+/// The shadow map of `scene` for the light of `stack`; none if no effect needs one, or if shadows
+/// are traced.
 ///
 /// # Errors
-/// [`DrawError`] if a transform or the number of triangles is out of range, or the map takes more work than it may.
-pub fn shadow_map(scene: &Scene, view: &View, stack: &Stack) -> Result<Option<Box<ShadowMap>>, DrawError> {
-    let Some(view) = stack.shadow_map_view(scene, view) else { return Ok(None) };
+/// [`DrawError`] if a transform or the number of triangles is out of range, or the map takes more
+/// work than it may.
+pub fn shadow_map(
+    scene: &Scene,
+    view: &View,
+    stack: &Stack,
+) -> Result<Option<Box<ShadowMap>>, DrawError> {
+    let Some(view) = stack.shadow_map_view(scene, view) else {
+        return Ok(None);
+    };
     let casting = stack.shadow_casters();
     let draws = casting.draws(scene, &view)?;
     let shot = Shot::new(scene, &draws, &view, &casting);
@@ -46,8 +57,20 @@ pub fn shadow_map(scene: &Scene, view: &View, stack: &Stack) -> Result<Option<Bo
     let tests = SampleTests::new(&shot, &geometry);
     check_samples("shadow map", &triangles, &tests, &view)?;
     let depths = nearest_depths(&tests, &triangles, &view)?;
-    let keys = depths.iter().map(|depth| if depth.is_finite() { depth_key(*depth) } else { 0 }).collect();
-    Ok(Some(Box::new(ShadowMap { depth_keys: keys, geometry })))
+    let keys = depths
+        .iter()
+        .map(|depth| {
+            if depth.is_finite() {
+                depth_key(*depth)
+            } else {
+                0
+            }
+        })
+        .collect();
+    Ok(Some(Box::new(ShadowMap {
+        depth_keys: keys,
+        geometry,
+    })))
 }
 
 /// A sample whose illumination is computed.
@@ -78,8 +101,8 @@ impl<'a> Light<'a> {
         ShadowLookup::of(shot, geometry).map(|lookup| Self::Mapped(Box::new(lookup)))
     }
 
-    /// Fraction of the light that arrives at a sample of the triangle `id`: the least that f32 may find if `step` is negative, the
-    /// most if it is positive.
+    /// Fraction of the light that arrives at a sample of the triangle `id`: the least that f32 may
+    /// find if `step` is negative, the most if it is positive.
     pub fn arrives(&self, point: &LitPoint, id: u32, step: f64) -> f64 {
         match self {
             Self::Mapped(lookup) => lookup.arrives(point, step),
@@ -107,9 +130,16 @@ pub struct ShadowLookup<'a> {
 
 impl<'a> ShadowLookup<'a> {
     fn of(shot: &Shot, geometry: &'a Geometry) -> Option<Self> {
-        let (params, keys) = (shot.stack.light()?, &geometry.shadow_map.as_ref()?.depth_keys);
+        let (params, keys) = (
+            shot.stack.light()?,
+            &geometry.shadow_map.as_ref()?.depth_keys,
+        );
         let view = shot.stack.light_view(shot.scene, shot.view)?;
-        assert_eq!(keys.len(), view.pixels(), "the shadow map is of another view");
+        assert_eq!(
+            keys.len(),
+            view.pixels(),
+            "the shadow map is of another view"
+        );
         let rows = [0, 1, 2].map(|row| view.clip_from_world.row(row).truncate());
         let [right, up, near] = rows.map(DVec3::normalize);
         Some(Self {
@@ -130,27 +160,51 @@ impl<'a> ShadowLookup<'a> {
         let at = DVec2::new((1.0 + clip.x) * half, (1.0 - clip.y) * half);
         let [right, down, along] = self.axes.map(|axis| axis.dot(point.flat_normal));
         // The slope of a plane that the light sees edge-on is unbounded.
-        let along = if along < 0.0 { along.min(-1e-3) } else { along.max(1e-3) };
+        let along = if along < 0.0 {
+            along.min(-1e-3)
+        } else {
+            along.max(1e-3)
+        };
         let slant = DVec2::new(right, down) / along;
         let tangent = slant.length();
         let slope = tangent.min(MAX_SHADOW_SLOPE);
         let texel_depth = self.texel_m / self.depth_range_m;
-        let fall = if tangent > 0.0 { -slant * (slope / tangent * texel_depth) } else { DVec2::ZERO };
+        let fall = if tangent > 0.0 {
+            -slant * (slope / tangent * texel_depth)
+        } else {
+            DVec2::ZERO
+        };
         let bias = f64::from(self.params.bias) + f64::from(self.params.slope) * slope;
         let depth = clip.z + bias * texel_depth;
         if step == 0.0 {
             return self.filtered(at, depth, fall);
         }
-        // Rounding of the position and of the product with the matrix; that of the normal grows with the square of the tangent.
+        // Rounding of the position and of the product with the matrix; that of the normal grows
+        // with the square of the tangent.
         let across = point.error_m / self.texel_m + 4.0 * ROUNDING * self.side as f64;
-        let deep = (point.error_m + self.texel_m * (1.0 + slope * slope) / f64::from(1 << 14)) / self.depth_range_m + 4.0 * ROUNDING;
-        let ends = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [0.0, 0.0]];
-        let fractions = ends.map(|[x, y]| self.filtered(at + DVec2::new(x, y) * across, depth + step.signum() * deep, fall));
+        let deep = (point.error_m + self.texel_m * (1.0 + slope * slope) / f64::from(1 << 14))
+            / self.depth_range_m
+            + 4.0 * ROUNDING;
+        let ends = [
+            [-1.0, -1.0],
+            [1.0, -1.0],
+            [-1.0, 1.0],
+            [1.0, 1.0],
+            [0.0, 0.0],
+        ];
+        let fractions = ends.map(|[x, y]| {
+            self.filtered(
+                at + DVec2::new(x, y) * across,
+                depth + step.signum() * deep,
+                fall,
+            )
+        });
         let pick = if step < 0.0 { f64::min } else { f64::max };
         fractions.into_iter().reduce(pick).expect("five ends")
     }
 
-    /// Weighted mean of the taps round a position in the map, in texels; `fall` is the slope of the triangle's depth there.
+    /// Weighted mean of the taps round a position in the map, in texels; `fall` is the slope of the
+    /// triangle's depth there.
     fn filtered(&self, at: DVec2, depth: f64, fall: DVec2) -> f64 {
         let (first, reach) = (at.floor(), self.reach);
         let inside = at - first;
@@ -164,7 +218,11 @@ impl<'a> ShadowLookup<'a> {
         for y in -reach..=reach {
             for x in -reach..=reach {
                 let offset = DVec2::new(x as f64, y as f64) + 0.5 - inside;
-                if self.is_lit(first.x as i64 + x, first.y as i64 + y, depth + fall.dot(offset)) {
+                if self.is_lit(
+                    first.x as i64 + x,
+                    first.y as i64 + y,
+                    depth + fall.dot(offset),
+                ) {
                     sum += weight(x, inside.x) * weight(y, inside.y);
                 }
             }
@@ -173,7 +231,8 @@ impl<'a> ShadowLookup<'a> {
         sum / (whole * whole)
     }
 
-    /// Returns true if nothing in the texel is nearer to the light than this depth. Outside the map there is nothing.
+    /// Returns true if nothing in the texel is nearer to the light than this depth. Outside the map
+    /// there is nothing.
     fn is_lit(&self, x: i64, y: i64, depth: f64) -> bool {
         if !(0..self.side).contains(&x) || !(0..self.side).contains(&y) {
             return true;
@@ -183,7 +242,9 @@ impl<'a> ShadowLookup<'a> {
     }
 }
 
-/// Returns true if an effect leaves samples out or shows only parts of triangles, of which rays know nothing.
+/// Returns true if an effect leaves samples out or shows only parts of triangles, of which rays
+/// know nothing.
 pub fn leaves_samples_out(stack: &Stack) -> bool {
-    stack.each(|hooks| hooks.sample.as_ref()).next().is_some() || stack.particle_settings().is_some()
+    stack.each(|hooks| hooks.sample.as_ref()).next().is_some()
+        || stack.particle_settings().is_some()
 }

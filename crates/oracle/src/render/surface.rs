@@ -1,4 +1,5 @@
-//! Shading in f64: what is known of the surface at a sample, and the surface effects on it (`docs/exactness.md` §7).
+//! Shading in f64: what is known of the surface at a sample, and the surface effects on it
+//! (`docs/exactness.md` §7).
 
 use glam::{DMat3, DVec2, DVec3, DVec4};
 use rayon::prelude::*;
@@ -33,28 +34,63 @@ use crate::{
     work::{Canceled, checkpoint},
 };
 
-/// Surface colors of all pixels, given the triangle of each; the background without one. Row-major, gamma-encoded.
+/// Surface colors of all pixels, given the triangle of each; the background without one. Row-major,
+/// gamma-encoded.
 ///
-/// `geometry` supplies the snapped corners from which weights follow; triangles that were clipped are weighted in clip space.
-pub fn surface_colors(shot: &Shot, triangle_ids: &[u32], geometry: &Geometry, perturbation: &Perturbation) -> Result<Vec<DVec4>, Canceled> {
+/// `geometry` supplies the snapped corners from which weights follow; triangles that were clipped
+/// are weighted in clip space.
+pub fn surface_colors(
+    shot: &Shot,
+    triangle_ids: &[u32],
+    geometry: &Geometry,
+    perturbation: &Perturbation,
+) -> Result<Vec<DVec4>, Canceled> {
     let background = background(shot.view);
     let ranks = ranks(shot, geometry)?;
     let light = Light::of(shot, geometry);
     each_surface(shot, triangle_ids, geometry, perturbation, |y, found| {
-        let Some((triangle, surface)) = found else { return background[y] };
+        let Some((triangle, surface)) = found else {
+            return background[y];
+        };
         let id = surface.triangle_id;
         let rank = ranks.get(id as usize).copied().unwrap_or(0.0);
-        shaded(shot, triangle, Surface { rank, ..surface }, light.as_ref(), perturbation.color_step)
+        shaded(
+            shot,
+            triangle,
+            Surface { rank, ..surface },
+            light.as_ref(),
+            perturbation.color_step,
+        )
     })
 }
 
 /// The gamma-encoded color of a surface of `triangle`, whose steps are moved by `color_step`.
-pub fn shaded(shot: &Shot, triangle: &SurfaceTriangle, surface: Surface, light: Option<&Light>, color_step: f64) -> DVec4 {
-    let lit = light.map_or(0.0, |light| light.arrives(&triangle.lit_point(&surface), triangle.id, color_step));
-    encoded(shot.stack.shade(Surface { lit, step_offset: color_step, ..surface }, triangle.scopes).color)
+pub fn shaded(
+    shot: &Shot,
+    triangle: &SurfaceTriangle,
+    surface: Surface,
+    light: Option<&Light>,
+    color_step: f64,
+) -> DVec4 {
+    let lit = light.map_or(0.0, |light| {
+        light.arrives(&triangle.lit_point(&surface), triangle.id, color_step)
+    });
+    encoded(
+        shot.stack
+            .shade(
+                Surface {
+                    lit,
+                    step_offset: color_step,
+                    ..surface
+                },
+                triangle.scopes,
+            )
+            .color,
+    )
 }
 
-/// Visits the row and the surface of every pixel before any surface effect, given the triangle of each; none without one. Row-major.
+/// Visits the row and the surface of every pixel before any surface effect, given the triangle of
+/// each; none without one. Row-major.
 pub fn each_surface<T: Send>(
     shot: &Shot,
     triangle_ids: &[u32],
@@ -72,11 +108,20 @@ pub fn each_surface<T: Send>(
             if triangle.as_ref().is_none_or(|triangle| triangle.id != id) {
                 triangle = SurfaceTriangle::new(shot, geometry, id);
             }
-            visit(y, triangle.as_ref().map(|triangle| (triangle, triangle.surface(x, y, perturbation))))
+            visit(
+                y,
+                triangle
+                    .as_ref()
+                    .map(|triangle| (triangle, triangle.surface(x, y, perturbation))),
+            )
         };
         Ok(ids.iter().enumerate().map(pixel).collect::<Vec<_>>())
     };
-    let rows = triangle_ids.par_chunks(width).enumerate().map(row).collect::<Result<Vec<_>, Canceled>>()?;
+    let rows = triangle_ids
+        .par_chunks(width)
+        .enumerate()
+        .map(row)
+        .collect::<Result<Vec<_>, Canceled>>()?;
     let mut all = Vec::with_capacity(triangle_ids.len());
     rows.into_iter().for_each(|row| all.extend(row));
     Ok(all)
@@ -84,7 +129,12 @@ pub fn each_surface<T: Send>(
 
 /// Linear RGBA as sRGB, each channel from 0 to 1; alpha is not gamma-encoded.
 pub fn encoded(color: DVec4) -> DVec4 {
-    DVec4::new(srgb(color.x), srgb(color.y), srgb(color.z), color.w.clamp(0.0, 1.0))
+    DVec4::new(
+        srgb(color.x),
+        srgb(color.y),
+        srgb(color.z),
+        color.w.clamp(0.0, 1.0),
+    )
 }
 
 /// Everything about a triangle's surface that does not change from sample to sample.
@@ -110,7 +160,8 @@ pub struct SurfaceTriangle<'a> {
     /// None behind the eye: then each sample uses its own position.
     center_screen: Option<DVec2>,
     shape: Shape,
-    /// If corners are drawn as points: their records, and the radius of their discs in sub-pixel units.
+    /// If corners are drawn as points: their records, and the radius of their discs in sub-pixel
+    /// units.
     points: Option<([SnappedVertex; 3], i64)>,
     /// The plane is that of displaced corners.
     is_deformed: bool,
@@ -130,16 +181,22 @@ pub struct Interpolation {
 }
 
 impl<'a> SurfaceTriangle<'a> {
-    /// Triangle `id`; none if there is no such triangle, or if it has a rejected corner and so covers nothing.
+    /// Triangle `id`; none if there is no such triangle, or if it has a rejected corner and so
+    /// covers nothing.
     pub fn new(shot: &Shot<'a>, geometry: &Geometry, id: u32) -> Option<Self> {
-        let Shot { scene, view, stack, .. } = *shot;
+        let Shot {
+            scene, view, stack, ..
+        } = *shot;
         let draw = shot.draw_of(id)?;
         let evaluator = VertexEvaluator::new(scene, draw, view, stack);
         let primitive = &scene.primitives[draw.primitive];
         let material = &scene.materials[primitive.material];
         let triangle = id - draw.first_triangle;
         let vertices = primitive.corners(scene, triangle);
-        let [Ok(a), Ok(b), Ok(c)] = vertices.map(|vertex| deform::position(scene, draw, vertex)) else { return None };
+        let [Ok(a), Ok(b), Ok(c)] = vertices.map(|vertex| deform::position(scene, draw, vertex))
+        else {
+            return None;
+        };
         let object = [a, b, c];
 
         let records = shot.corner_records(draw, geometry, id);
@@ -147,26 +204,38 @@ impl<'a> SurfaceTriangle<'a> {
         let screen = ScreenTriangle::of(&evaluator, view, &records, corners);
 
         let base = DVec4::from_array(material.base_color.map(f64::from));
-        let color = |vertex| base * primitive.colors.map_or(DVec4::ONE, |colors| color(scene, &colors, vertex));
+        let color = |vertex| {
+            base * primitive
+                .colors
+                .map_or(DVec4::ONE, |colors| color(scene, &colors, vertex))
+        };
         let [n0, n1, n2] = vertices.map(|vertex| deform::normal(scene, draw, vertex));
-        let side = if material.double_sided && screen.is_back { -1.0 } else { 1.0 };
+        let side = if material.double_sided && screen.is_back {
+            -1.0
+        } else {
+            1.0
+        };
         let world_from_normal = evaluator.world_from_normal * side;
         let mut triangle = Self {
             id,
             scopes: draw.scopes,
             view,
             weights: screen.weights,
-            center: draw.world_from_object.transform_point3(object.iter().sum::<DVec3>() / 3.0),
+            center: draw
+                .world_from_object
+                .transform_point3(object.iter().sum::<DVec3>() / 3.0),
             positions: object.map(|position| draw.world_from_object.transform_point3(position)),
             colors: vertices.map(color),
             material: TriangleMaterial::of(scene, primitive, vertices),
             normals: n0.zip(n1).zip(n2).map(|((n0, n1), n2)| [n0, n1, n2]),
             world_from_normal,
-            flat_normal: plane_normal(object).and_then(|normal| (world_from_normal * normal).try_normalize()),
+            flat_normal: plane_normal(object)
+                .and_then(|normal| (world_from_normal * normal).try_normalize()),
             depths_m: screen.depths_m,
             center_screen: screen.center,
             shape: stack.shape(),
-            points: (stack.shape() == Shape::Points).then_some((records, stack.point_radius().into())),
+            points: (stack.shape() == Shape::Points)
+                .then_some((records, stack.point_radius().into())),
             is_deformed: false,
         };
         if evaluator.moves {
@@ -178,14 +247,22 @@ impl<'a> SurfaceTriangle<'a> {
     /// Have all corners the same normal and the same color, and is there no image?
     pub fn is_flat(&self) -> bool {
         let has_one_normal = self.normals.is_some_and(|[a, b, c]| a == b && b == c);
-        has_one_normal && self.colors.iter().all(|color| *color == self.colors[0]) && self.material.is_none()
+        has_one_normal
+            && self.colors.iter().all(|color| *color == self.colors[0])
+            && self.material.is_none()
     }
 
-    /// Moves positions and normals as the vertex effects do; `side` turns normals to the viewer. The center does not move, so that
-    /// the fronts of several effects meet.
+    /// Moves positions and normals as the vertex effects do; `side` turns normals to the viewer.
+    /// The center does not move, so that the fronts of several effects meet.
     ///
-    /// A triangle whose corners are displaced alike keeps its plane, and normals that no effect changes keep their bits.
-    fn apply_vertex_effects(&mut self, evaluator: &VertexEvaluator, corners: [Corner; 3], side: f64) {
+    /// A triangle whose corners are displaced alike keeps its plane, and normals that no effect
+    /// changes keep their bits.
+    fn apply_vertex_effects(
+        &mut self,
+        evaluator: &VertexEvaluator,
+        corners: [Corner; 3],
+        side: f64,
+    ) {
         let moved = corners.map(|corner| evaluator.moved(corner));
         for (position, vertex) in self.positions.iter_mut().zip(&moved) {
             *position += vertex.offset;
@@ -193,12 +270,19 @@ impl<'a> SurfaceTriangle<'a> {
         if moved.iter().any(|vertex| vertex.offset != moved[0].offset) {
             self.is_deformed = true;
             let side = if evaluator.draw.mirrored { -side } else { side };
-            self.flat_normal = plane_normal(self.positions).and_then(|normal| (normal * side).try_normalize());
+            self.flat_normal =
+                plane_normal(self.positions).and_then(|normal| (normal * side).try_normalize());
         }
-        let has_new_normals = moved.iter().zip(corners).any(|(vertex, corner)| vertex.normal != evaluator.unmoved(corner).normal);
+        let has_new_normals = moved
+            .iter()
+            .zip(corners)
+            .any(|(vertex, corner)| vertex.normal != evaluator.unmoved(corner).normal);
         if has_new_normals && self.normals.is_some() {
             // The lengths of the file's normals weigh them in interpolation, so they are kept.
-            self.normals = Some([0, 1, 2].map(|k| moved[k].normal * evaluator.world_normal(corners[k].vertex).length()));
+            self.normals = Some(
+                [0, 1, 2]
+                    .map(|k| moved[k].normal * evaluator.world_normal(corners[k].vertex).length()),
+            );
             self.world_from_normal = DMat3::from_diagonal(DVec3::splat(side));
         }
     }
@@ -219,20 +303,30 @@ impl<'a> SurfaceTriangle<'a> {
         };
         // Not the weighted mean of the corners: snapping moves that by up to half a sub-pixel unit.
         let position = on_ray(view, point.screen, depth_m);
-        let position = position + DVec3::new(x, y, z) * (view.eye.abs() + (position - view.eye).abs());
+        let position =
+            position + DVec3::new(x, y, z) * (view.eye.abs() + (position - view.eye).abs());
         let toward_eye = match view.linear_depth_m {
             Some(_) => -view.forward,
-            // Not from the position: where a clipped triangle covers a sample outside its plane's visible part, that lies behind the eye.
+            // Not from the position: where a clipped triangle covers a sample outside its plane's
+            // visible part, that lies behind the eye.
             None => -(view.forward + across(view, point.screen)).normalize(),
         };
-        let smooth = self.normals.and_then(|normals| self.smooth_normal(weights, normals));
+        let smooth = self
+            .normals
+            .and_then(|normals| self.smooth_normal(weights, normals));
         let flat_normal = self.flat_normal.map(|normal| turned(normal, moved.plane));
-        let normal = smooth.map(|normal| turned(normal, moved.normal)).or(flat_normal).unwrap_or(toward_eye);
+        let normal = smooth
+            .map(|normal| turned(normal, moved.normal))
+            .or(flat_normal)
+            .unwrap_or(toward_eye);
         let base = self.base_color(weights, moved.color);
-        let textured = self
-            .material
-            .as_ref()
-            .map(|material| material.color(base.truncate(), &self.sample_weights(weights, &point), perturbation.texture));
+        let textured = self.material.as_ref().map(|material| {
+            material.color(
+                base.truncate(),
+                &self.sample_weights(weights, &point),
+                perturbation.texture,
+            )
+        });
         let (color, glow) = textured.unwrap_or((base.truncate(), DVec3::ZERO));
         let across_m = view.ndc_axes[1].length() * 2.0 / f64::from(view.height);
         Surface {
@@ -249,7 +343,12 @@ impl<'a> SurfaceTriangle<'a> {
             barycentrics,
             edge_distance_px,
             depth_m,
-            pixel_size_m: across_m * if view.linear_depth_m.is_some() { 1.0 } else { depth_m },
+            pixel_size_m: across_m
+                * if view.linear_depth_m.is_some() {
+                    1.0
+                } else {
+                    depth_m
+                },
             flat_depth_m: self.depths_m.iter().sum::<f64>() / 3.0,
             depth_range_m: DVec2::from_array(view.depth_range_m),
             triangle_id: self.id,
@@ -267,13 +366,16 @@ impl<'a> SurfaceTriangle<'a> {
         Interpolation {
             weights,
             depths: self.depths_m.map(|depth| depth / depth_m),
-            normals: self.normals.map(|normals| normals.map(|normal| self.world_from_normal * normal)),
+            normals: self
+                .normals
+                .map(|normals| normals.map(|normal| self.world_from_normal * normal)),
             colors: self.colors,
             displaced: self.is_deformed.then_some(self.positions),
         }
     }
 
-    /// The color that the corners' mix, moved by `offset`. Whatever the weights are, it lies between theirs.
+    /// The color that the corners' mix, moved by `offset`. Whatever the weights are, it lies
+    /// between theirs.
     fn base_color(&self, weights: [f64; 3], offset: DVec4) -> DVec4 {
         let [a, b, c] = self.colors;
         match (mixed(weights, self.colors), offset) {
@@ -282,26 +384,44 @@ impl<'a> SurfaceTriangle<'a> {
         }
     }
 
-    /// How far the weights at the center of a pixel may err, where the corners err by so much in x, y and w of clip space: in any
-    /// direction, and along one.
+    /// How far the weights at the center of a pixel may err, where the corners err by so much in x,
+    /// y and w of clip space: in any direction, and along one.
     pub fn weight_errors(&self, x: usize, y: usize, clip_errors: &[[DVec3; 2]; 3]) -> [f64; 3] {
         let point = self.sample_point(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
-        self.weights.errors_from(clip_errors, self.weights.at(&point), &point)
+        self.weights
+            .errors_from(clip_errors, self.weights.at(&point), &point)
     }
 
     fn sample_point(&self, pixel: DVec2) -> SamplePoint {
         let screen = pixel / DVec2::new(self.view.width.into(), self.view.height.into());
         let corner = self.points.and_then(|(records, radius)| {
             let at = pixel * f64::from(self.view.units_per_pixel());
-            OrientedTriangle::clockwise(self.id, records).corner_under(at.x as i64, at.y as i64, radius)
+            OrientedTriangle::clockwise(self.id, records).corner_under(
+                at.x as i64,
+                at.y as i64,
+                radius,
+            )
         });
-        SamplePoint { pixel, screen, shape: self.shape, corner }
+        SamplePoint {
+            pixel,
+            screen,
+            shape: self.shape,
+            corner,
+        }
     }
 
     /// Weights for texture lookups. In boxes and discs they are taken to be constant.
     fn sample_weights(&self, weights: [f64; 3], point: &SamplePoint) -> SampleWeights {
-        let slopes = if self.shape == Shape::Triangles { self.weights.slopes(weights, point, self.view) } else { [[0.0; 3]; 2] };
-        SampleWeights { weights, slopes, errors: self.weights.errors(weights, point) }
+        let slopes = if self.shape == Shape::Triangles {
+            self.weights.slopes(weights, point, self.view)
+        } else {
+            [[0.0; 3]; 2]
+        };
+        SampleWeights {
+            weights,
+            slopes,
+            errors: self.weights.errors(weights, point),
+        }
     }
 
     /// Where a sample with this surface lies, for a light.
@@ -309,30 +429,49 @@ impl<'a> SurfaceTriangle<'a> {
         let on_ray = surface.position;
         let on_triangle = match self.shape {
             Shape::Triangles => {
-                let point = SamplePoint { pixel: surface.pixel, screen: surface.screen, shape: self.shape, corner: None };
+                let point = SamplePoint {
+                    pixel: surface.pixel,
+                    screen: surface.screen,
+                    shape: self.shape,
+                    corner: None,
+                };
                 mixed(self.weights.at(&point), self.positions)
             }
             // Outside the triangle only the ray of the pixel is defined.
             Shape::Boxes | Shape::Points => on_ray,
         };
-        LitPoint { on_ray, on_triangle, flat_normal: surface.flat_normal, error_m: self.weights.position_error_m(self.view, on_ray) }
+        LitPoint {
+            on_ray,
+            on_triangle,
+            flat_normal: surface.flat_normal,
+            error_m: self.weights.position_error_m(self.view, on_ray),
+        }
     }
 
     /// Interpolated in object space; none if the corner normals cancel out.
     fn smooth_normal(&self, weights: [f64; 3], normals: [DVec3; 3]) -> Option<DVec3> {
-        let largest = normals.iter().map(|normal| normal.abs().max_element()).fold(0.0, f64::max);
+        let largest = normals
+            .iter()
+            .map(|normal| normal.abs().max_element())
+            .fold(0.0, f64::max);
         let normal = mixed(weights, normals) / largest;
         // A division by zero makes NaN, for which the comparison is false.
-        if normal.length_squared() >= DEGENERATE { (self.world_from_normal * normal).try_normalize() } else { None }
+        if normal.length_squared() >= DEGENERATE {
+            (self.world_from_normal * normal).try_normalize()
+        } else {
+            None
+        }
     }
 }
 
-/// From the middle of the picture to a point of it (as a fraction), in world space; at a depth of 1 in perspective.
+/// From the middle of the picture to a point of it (as a fraction), in world space; at a depth of 1
+/// in perspective.
 fn across(view: &View, screen: DVec2) -> DVec3 {
     view.ndc_axes[0] * (2.0 * screen.x - 1.0) + view.ndc_axes[1] * (1.0 - 2.0 * screen.y)
 }
 
-/// The point at a depth along the viewing direction, on the ray through a point of the picture (as a fraction of it).
+/// The point at a depth along the viewing direction, on the ray through a point of the picture (as
+/// a fraction of it).
 fn on_ray(view: &View, screen: DVec2, depth_m: f64) -> DVec3 {
     let across = across(view, screen);
     match view.linear_depth_m {
@@ -341,13 +480,22 @@ fn on_ray(view: &View, screen: DVec2, depth_m: f64) -> DVec3 {
     }
 }
 
-fn mixed<T: std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>>(weights: [f64; 3], [a, b, c]: [T; 3]) -> T {
+fn mixed<T: std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>>(
+    weights: [f64; 3],
+    [a, b, c]: [T; 3],
+) -> T {
     a * weights[0] + b * weights[1] + c * weights[2]
 }
 
 /// Linear RGBA of a vertex, opaque if it has three components; white if a component is refused.
 fn color(scene: &Scene, colors: &Accessor, vertex: u32) -> DVec4 {
-    let component = |i: u32| if i < colors.components { bits::component(&scene.vertex_bytes, colors, vertex, i) } else { Ok(1.0) };
+    let component = |i: u32| {
+        if i < colors.components {
+            bits::component(&scene.vertex_bytes, colors, vertex, i)
+        } else {
+            Ok(1.0)
+        }
+    };
     match [0, 1, 2, 3].map(component) {
         [Ok(r), Ok(g), Ok(b), Ok(a)] => DVec4::new(r, g, b, a),
         _ => DVec4::ONE,

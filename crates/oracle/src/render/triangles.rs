@@ -1,4 +1,5 @@
-//! Triangle assembly: which triangles and clipped triangles are drawn, oriented clockwise (`docs/exactness.md` §3).
+//! Triangle assembly: which triangles and clipped triangles are drawn, oriented clockwise
+//! (`docs/exactness.md` §3).
 
 use rayon::prelude::*;
 
@@ -27,7 +28,12 @@ pub struct OrientedTriangle {
 impl OrientedTriangle {
     /// A whole triangle whose corners already run clockwise.
     pub fn clockwise(id: u32, corners: [SnappedVertex; 3]) -> Self {
-        Self { id, corners, entry: id as usize, is_turned: false }
+        Self {
+            id,
+            corners,
+            entry: id as usize,
+            is_turned: false,
+        }
     }
 
     /// Returns true for a triangle that clipping made.
@@ -35,7 +41,8 @@ impl OrientedTriangle {
         self.entry != self.id as usize
     }
 
-    /// Values of the corners in the order of the file, given those of the oriented corners; the same the other way round.
+    /// Values of the corners in the order of the file, given those of the oriented corners; the
+    /// same the other way round.
     pub fn in_file_order<T>(&self, mut corners: [T; 3]) -> [T; 3] {
         if self.is_turned {
             corners.swap(1, 2);
@@ -44,32 +51,50 @@ impl OrientedTriangle {
     }
 }
 
-/// The triangles and clipped triangles to be drawn, and counts of those that are not, decided from the records alone.
+/// The triangles and clipped triangles to be drawn, and counts of those that are not, decided from
+/// the records alone.
 ///
-/// Clipped triangles replace their parent. One that has no area, or that runs against the sum of its parent's clipped
-/// triangles, flipped in the snap and is dropped.
+/// Clipped triangles replace their parent. One that has no area, or that runs against the sum of
+/// its parent's clipped triangles, flipped in the snap and is dropped.
 ///
 /// # Errors
 /// The work was canceled.
-pub fn triangles(shot: &Shot, geometry: &Geometry) -> Result<(Vec<OrientedTriangle>, Counters), Canceled> {
+pub fn triangles(
+    shot: &Shot,
+    geometry: &Geometry,
+) -> Result<(Vec<OrientedTriangle>, Counters), Canceled> {
     const CHUNK: u32 = 1 << 16;
-    let mut clipped: Vec<(usize, &ClippedTriangle)> = geometry.clipped_triangles.iter().enumerate().collect();
+    let mut clipped: Vec<(usize, &ClippedTriangle)> =
+        geometry.clipped_triangles.iter().enumerate().collect();
     clipped.sort_by_key(|(_, triangle)| triangle.parent);
     let clipped_entries = totals(shot.scene, shot.draws)[1] as usize;
     let mut drawn = Vec::new();
     let mut counters = Counters::default();
     let checkpoint = checkpoint();
     for draw in shot.draws {
-        let ids = draw.first_triangle..draw.first_triangle + shot.scene.primitives[draw.primitive].triangle_count();
+        let ids = draw.first_triangle
+            ..draw.first_triangle + shot.scene.primitives[draw.primitive].triangle_count();
         let starts: Vec<u32> = ids.clone().step_by(CHUNK as usize).collect();
         let chunk = |start: u32| {
             checkpoint.pass()?;
             let (drawn, counters) = (Vec::new(), Counters::default());
-            let mut assembly = Assembly { shot, draw, geometry, clipped: &clipped, clipped_entries, drawn, counters };
+            let mut assembly = Assembly {
+                shot,
+                draw,
+                geometry,
+                clipped: &clipped,
+                clipped_entries,
+                drawn,
+                counters,
+            };
             (start..ids.end.min(start.saturating_add(CHUNK))).for_each(|id| assembly.triangle(id));
             Ok((assembly.drawn, assembly.counters))
         };
-        for (triangles, counts) in starts.into_par_iter().map(chunk).collect::<Result<Vec<_>, Canceled>>()? {
+        for (triangles, counts) in starts
+            .into_par_iter()
+            .map(chunk)
+            .collect::<Result<Vec<_>, Canceled>>()?
+        {
             drawn.extend(triangles);
             counters.rejected_nonfinite += counts.rejected_nonfinite;
             counters.rejected_range += counts.rejected_range;
@@ -116,10 +141,21 @@ impl Assembly<'_> {
 
     /// Draws the clipped triangles of `parent`.
     fn clipped(&mut self, parent: u32) {
-        let from = self.clipped.partition_point(|(_, triangle)| triangle.parent < parent);
-        let fan = self.clipped[from..].iter().take_while(|(_, triangle)| triangle.parent == parent);
-        let areas: Vec<_> =
-            fan.map(|(index, triangle)| (self.clipped_entries + index, triangle.corners, doubled_area(&triangle.corners))).collect();
+        let from = self
+            .clipped
+            .partition_point(|(_, triangle)| triangle.parent < parent);
+        let fan = self.clipped[from..]
+            .iter()
+            .take_while(|(_, triangle)| triangle.parent == parent);
+        let areas: Vec<_> = fan
+            .map(|(index, triangle)| {
+                (
+                    self.clipped_entries + index,
+                    triangle.corners,
+                    doubled_area(&triangle.corners),
+                )
+            })
+            .collect();
         let facing = areas.iter().map(|(_, _, area)| area).sum::<i64>().signum();
         for (entry, corners, area) in areas {
             if area == 0 || area.signum() != facing {
@@ -135,14 +171,19 @@ impl Assembly<'_> {
         if is_back(area, self.draw) && !self.draw.double_sided {
             return;
         }
-        let mut triangle = OrientedTriangle { id, corners, entry, is_turned: area < 0 };
+        let mut triangle = OrientedTriangle {
+            id,
+            corners,
+            entry,
+            is_turned: area < 0,
+        };
         triangle.corners = triangle.in_file_order(corners);
         self.drawn.push(triangle);
     }
 }
 
-/// Returns true for the back of a triangle. The front of a glTF triangle runs counterclockwise on the screen, unless its
-/// transform mirrors it.
+/// Returns true for the back of a triangle. The front of a glTF triangle runs counterclockwise on
+/// the screen, unless its transform mirrors it.
 pub fn is_back(area: i64, draw: &Draw) -> bool {
     (area > 0) != draw.mirrored
 }

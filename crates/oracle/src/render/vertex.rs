@@ -17,15 +17,16 @@ use crate::{
     },
 };
 
-/// A corner of a draw's triangle, both counted within the draw. For vertices that triangles share, any of these triangles will
-/// do.
+/// A corner of a draw's triangle, both counted within the draw. For vertices that triangles share,
+/// any of these triangles will do.
 #[derive(Clone, Copy, Debug)]
 pub struct Corner {
     pub vertex: u32,
     pub triangle: u32,
 }
 
-/// A matrix whose entries have been rounded to f32 once, so that every renderer starts from the same bits.
+/// A matrix whose entries have been rounded to f32 once, so that every renderer starts from the
+/// same bits.
 pub type RoundedMatrix = [[f64; 4]; 4];
 
 /// Evaluates the vertex stage at the corners of one draw.
@@ -53,13 +54,17 @@ impl<'a> VertexEvaluator<'a> {
             moves: stack.moves(),
             has_unshared_vertices: stack.unshares_vertices(),
             clip_from_world: rounded(&view.clip_from_world),
-            world_from_normal: if draw.mirrored { -normal_matrix } else { normal_matrix },
+            world_from_normal: if draw.mirrored {
+                -normal_matrix
+            } else {
+                normal_matrix
+            },
             picture_from_world: view.picture_from_world.as_ref().map(rounded),
         }
     }
 
-    /// Where a point of the world lies in the picture that a light's view is drawn for, from 0 to 1; the middle if it is behind
-    /// the eye. None in a view that is itself a picture.
+    /// Where a point of the world lies in the picture that a light's view is drawn for, from 0 to
+    /// 1; the middle if it is behind the eye. None in a view that is itself a picture.
     pub fn in_picture(&self, point: DVec3) -> Option<DVec2> {
         Some(in_unit_square(self.picture_rows(point, Terms::Signed)?))
     }
@@ -67,27 +72,45 @@ impl<'a> VertexEvaluator<'a> {
     /// That picture's matrix times a point.
     pub fn picture_rows(&self, p: DVec3, terms: Terms) -> Option<[f64; 4]> {
         let m = self.picture_from_world?;
-        Some([0, 1, 2, 3].map(|r| terms.of(m[0][r] * p.x) + terms.of(m[1][r] * p.y) + terms.of(m[2][r] * p.z) + terms.of(m[3][r])))
+        Some([0, 1, 2, 3].map(|r| {
+            terms.of(m[0][r] * p.x)
+                + terms.of(m[1][r] * p.y)
+                + terms.of(m[2][r] * p.z)
+                + terms.of(m[3][r])
+        }))
     }
 
     /// The corner of every record of this draw, in order.
     pub fn corners(&self) -> Vec<Corner> {
         let primitive = &self.scene.primitives[self.draw.primitive];
         if !self.has_unshared_vertices {
-            return (0..primitive.vertex_count()).map(|vertex| Corner { vertex, triangle: 0 }).collect();
+            return (0..primitive.vertex_count())
+                .map(|vertex| Corner {
+                    vertex,
+                    triangle: 0,
+                })
+                .collect();
         }
-        (0..primitive.triangle_count()).flat_map(|triangle| self.triangle_corners(triangle)).collect()
+        (0..primitive.triangle_count())
+            .flat_map(|triangle| self.triangle_corners(triangle))
+            .collect()
     }
 
     /// The corners of the draw's triangle with this index.
     pub fn triangle_corners(&self, triangle: u32) -> [Corner; 3] {
         let primitive = &self.scene.primitives[self.draw.primitive];
-        primitive.corners(self.scene, triangle).map(|vertex| Corner { vertex, triangle })
+        primitive
+            .corners(self.scene, triangle)
+            .map(|vertex| Corner { vertex, triangle })
     }
 
     /// Index of this draw's first record in the geometry.
     pub fn first_record(&self) -> usize {
-        if self.has_unshared_vertices { 3 * self.draw.first_triangle as usize } else { self.draw.first_vertex as usize }
+        if self.has_unshared_vertices {
+            3 * self.draw.first_triangle as usize
+        } else {
+            self.draw.first_vertex as usize
+        }
     }
 
     /// Position in clip space after all effects.
@@ -101,9 +124,20 @@ impl<'a> VertexEvaluator<'a> {
             return Ok(ClipPosition { x, y, z, w });
         }
         let o = self.moved(corner).offset;
-        let row = |r: usize| [0, 1, 2].map(|axis| self.clip_from_world[axis][r] * o[axis]).iter().sum::<f64>();
-        // A corner moved behind the far plane of parallel rays stays on it: there are no negative depths.
-        Ok(ClipPosition { x: x + row(0), y: y + row(1), z: (z + row(2)).max(0.0), w: w + row(3) })
+        let row = |r: usize| {
+            [0, 1, 2]
+                .map(|axis| self.clip_from_world[axis][r] * o[axis])
+                .iter()
+                .sum::<f64>()
+        };
+        // A corner moved behind the far plane of parallel rays stays on it: there are no negative
+        // depths.
+        Ok(ClipPosition {
+            x: x + row(0),
+            y: y + row(1),
+            z: (z + row(2)).max(0.0),
+            w: w + row(3),
+        })
     }
 
     /// The draw's clip matrix times a point relative to the draw's origin.
@@ -135,7 +169,11 @@ impl<'a> VertexEvaluator<'a> {
             center_screen: DVec2::ZERO,
             triangle: 0,
         };
-        if self.has_unshared_vertices { self.with_triangle(vertex, corner, object) } else { vertex }
+        if self.has_unshared_vertices {
+            self.with_triangle(vertex, corner, object)
+        } else {
+            vertex
+        }
     }
 
     /// Adds what effects may know about a corner's triangle.
@@ -145,9 +183,14 @@ impl<'a> VertexEvaluator<'a> {
         let center = clamped(self.draw.world_from_object.transform_point3(middle));
         let own = in_unit_square(self.clip_rows(middle - self.draw.origin(), Terms::Signed));
         Vertex {
-            flat_normal: plane_normal(corners).map_or(DVec3::ZERO, |normal| direction(self.world_from_normal * normal)),
+            flat_normal: plane_normal(corners).map_or(DVec3::ZERO, |normal| {
+                direction(self.world_from_normal * normal)
+            }),
             center,
-            arm: self.draw.world_from_object.transform_vector3(object - middle),
+            arm: self
+                .draw
+                .world_from_object
+                .transform_vector3(object - middle),
             center_screen: self.in_picture(center).unwrap_or(own),
             triangle: self.draw.first_triangle + corner.triangle,
             ..vertex
@@ -157,7 +200,9 @@ impl<'a> VertexEvaluator<'a> {
     /// The three corners of a corner's triangle in object space.
     pub fn triangle_positions(&self, corner: Corner) -> [DVec3; 3] {
         let primitive = &self.scene.primitives[self.draw.primitive];
-        primitive.corners(self.scene, corner.triangle).map(|vertex| self.object_position(vertex))
+        primitive
+            .corners(self.scene, corner.triangle)
+            .map(|vertex| self.object_position(vertex))
     }
 
     /// A vertex in object space, deformed; the origin if it is refused.
@@ -182,7 +227,11 @@ pub enum Terms {
 
 impl Terms {
     fn of(self, term: f64) -> f64 {
-        if self == Self::Magnitudes { term.abs() } else { term }
+        if self == Self::Magnitudes {
+            term.abs()
+        } else {
+            term
+        }
     }
 }
 
@@ -190,9 +239,14 @@ fn rounded(matrix: &DMat4) -> RoundedMatrix {
     rounded_columns(matrix).map(|column| column.map(f64::from))
 }
 
-/// A clip-space position as a fraction of the picture, from the top left; its middle if it is behind the eye.
+/// A clip-space position as a fraction of the picture, from the top left; its middle if it is
+/// behind the eye.
 fn in_unit_square([x, y, _, w]: [f64; 4]) -> DVec2 {
-    if w > 0.0 { DVec2::new(0.5 + 0.5 * x / w, 0.5 - 0.5 * y / w) } else { DVec2::splat(0.5) }
+    if w > 0.0 {
+        DVec2::new(0.5 + 0.5 * x / w, 0.5 - 0.5 * y / w)
+    } else {
+        DVec2::splat(0.5)
+    }
 }
 
 /// Clamped to ±2^40 m per axis, so that no later product overflows a float.

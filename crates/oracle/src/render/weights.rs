@@ -1,5 +1,6 @@
-//! Weights of a triangle's corners at a sample: perspective-correct interpolation (`docs/exactness.md` §3), from snapped corners,
-//! or in homogeneous space for triangles that were clipped (Olano and Greer 1997).
+//! Weights of a triangle's corners at a sample: perspective-correct interpolation
+//! (`docs/exactness.md` §3), from snapped corners, or in homogeneous space for triangles that were
+//! clipped (Olano and Greer 1997).
 
 use glam::{DVec2, DVec3};
 
@@ -15,7 +16,8 @@ pub enum Weights {
     Snapped([DVec3; 3]),
     /// In clip space, valid even for w <= 0.
     Homogeneous {
-        /// Cross products of the other two corners' (x, y, w), with the sign that makes them positive inside.
+        /// Cross products of the other two corners' (x, y, w), with the sign that makes them
+        /// positive inside.
         rows: [DVec3; 3],
         /// Sums of the magnitudes of their terms.
         terms: [DVec3; 3],
@@ -45,8 +47,8 @@ impl SamplePoint {
 }
 
 impl Weights {
-    /// Perspective-correct weights at a sample, which sum to 1; equal weights if the triangle has no extent. In a box no weight is
-    /// negative, and a disc belongs completely to its corner.
+    /// Perspective-correct weights at a sample, which sum to 1; equal weights if the triangle has
+    /// no extent. In a box no weight is negative, and a disc belongs completely to its corner.
     pub fn at(&self, point: &SamplePoint) -> [f64; 3] {
         let terms = match self {
             Self::Snapped(corners) => {
@@ -55,13 +57,18 @@ impl Weights {
             }
             Self::Homogeneous { rows, .. } => {
                 let p = point.ndc();
-                // A snapped clipped triangle may cover a sample slightly outside, where the sum vanishes near a horizon.
+                // A snapped clipped triangle may cover a sample slightly outside, where the sum
+                // vanishes near a horizon.
                 rows.map(|row| p.dot(row).max(0.0))
             }
         };
         let sum: f64 = terms.iter().sum();
         let weights = terms.map(|term| term / sum);
-        if weights.iter().all(|weight| weight.is_finite()) { weights } else { [1.0 / 3.0; 3] }
+        if weights.iter().all(|weight| weight.is_finite()) {
+            weights
+        } else {
+            [1.0 / 3.0; 3]
+        }
     }
 
     /// Bounds of the errors of `weights` in f32.
@@ -73,28 +80,41 @@ impl Weights {
             Self::Homogeneous { rows, terms, .. } => {
                 let p = point.ndc();
                 let sum: f64 = rows.iter().map(|row| p.dot(*row)).sum();
-                // The terms have either sign: an error is proportional to their magnitudes, not to their sum.
+                // The terms have either sign: an error is proportional to their magnitudes, not to
+                // their sum.
                 terms.map(|terms| p.abs().dot(terms) / sum.abs() / f64::from(1 << 20))
             }
         }
     }
 
-    /// As [`errors`](Self::errors), where the corners' (x, y, w) err by `clip`, in any direction and along one; large where nothing is
-    /// known.
-    pub fn errors_from(&self, clip: &[[DVec3; 2]; 3], weights: [f64; 3], point: &SamplePoint) -> [f64; 3] {
+    /// As [`errors`](Self::errors), where the corners' (x, y, w) err by `clip`, in any direction
+    /// and along one; large where nothing is known.
+    pub fn errors_from(
+        &self,
+        clip: &[[DVec3; 2]; 3],
+        weights: [f64; 3],
+        point: &SamplePoint,
+    ) -> [f64; 3] {
         const UNKNOWN: f64 = 1e30;
-        let Self::Homogeneous { rows, corners, .. } = self else { return self.errors(weights, point) };
+        let Self::Homogeneous { rows, corners, .. } = self else {
+            return self.errors(weights, point);
+        };
         let p = point.ndc();
         let sum = rows.iter().map(|row| p.dot(*row)).sum::<f64>().abs();
         let given = given_errors(p, corners, clip).map(|error| error / sum);
         let rounded = self.errors(weights, point);
         let errors = [0, 1, 2].map(|k| rounded[k] + given[k]);
         let whole = 1.0 - errors.iter().sum::<f64>();
-        if whole > 0.0 { errors.map(|error| error / whole) } else { [UNKNOWN; 3] }
+        if whole > 0.0 {
+            errors.map(|error| error / whole)
+        } else {
+            [UNKNOWN; 3]
+        }
     }
 
-    /// Bound of the error in f32 of a sample's position in meters. Weights of small triangles err by 9 steps of 2^-23, those of large
-    /// ones by 15, and the point on the ray by a few more; on a clipped triangle the error is 2^-15 of the distance.
+    /// Bound of the error in f32 of a sample's position in meters. Weights of small triangles err
+    /// by 9 steps of 2^-23, those of large ones by 15, and the point on the ray by a few more;
+    /// on a clipped triangle the error is 2^-15 of the distance.
     pub fn position_error_m(&self, view: &View, position: DVec3) -> f64 {
         let (from_eye, from_origin) = ((position - view.eye).length(), view.eye.length());
         match self {
@@ -103,8 +123,8 @@ impl Weights {
         }
     }
 
-    /// Differences of `weights` to the next pixel on the right and to the next one below: the derivative of a quotient whose
-    /// numerator and denominator are linear on the screen.
+    /// Differences of `weights` to the next pixel on the right and to the next one below: the
+    /// derivative of a quotient whose numerator and denominator are linear on the screen.
     pub fn slopes(&self, weights: [f64; 3], point: &SamplePoint, view: &View) -> [[f64; 3]; 2] {
         let (terms, steps) = match self {
             Self::Snapped(corners) => {
@@ -114,21 +134,30 @@ impl Weights {
                     DVec3::from([0, 1, 2].map(|k| areas[k] * corners[k].z))
                 };
                 let here = at(point.pixel);
-                (here, [DVec2::X, DVec2::Y].map(|step| at(point.pixel + step) - here))
+                (
+                    here,
+                    [DVec2::X, DVec2::Y].map(|step| at(point.pixel + step) - here),
+                )
             }
             Self::Homogeneous { rows, .. } => {
                 let p = point.ndc();
                 let terms = DVec3::from(rows.map(|row| p.dot(row)));
                 let right = DVec3::from(rows.map(|row| row.x * 2.0 / f64::from(view.width)));
-                (terms, [right, DVec3::from(rows.map(|row| row.y * -2.0 / f64::from(view.height)))])
+                (
+                    terms,
+                    [
+                        right,
+                        DVec3::from(rows.map(|row| row.y * -2.0 / f64::from(view.height))),
+                    ],
+                )
             }
         };
         let (weights, sum) = (DVec3::from(weights), terms.element_sum());
         steps.map(|step| ((step - weights * step.element_sum()) / sum).to_array())
     }
 
-    /// Barycentric coordinates on the screen (of a clipped triangle: on its plane), and the distances of a sample from the edges
-    /// opposite the corners, in pixels.
+    /// Barycentric coordinates on the screen (of a clipped triangle: on its plane), and the
+    /// distances of a sample from the edges opposite the corners, in pixels.
     pub fn on_screen(&self, point: &SamplePoint, view: &View) -> (DVec3, DVec3) {
         match self {
             Self::Snapped(corners) => {
@@ -137,13 +166,20 @@ impl Weights {
                 let lengths = [(b, c), (c, a), (a, b)].map(|(from, to)| (to - from).length());
                 let sum: f64 = areas.iter().sum();
                 let edge_distance_px = [0, 1, 2].map(|k| areas[k] / lengths[k]);
-                (DVec3::from_array(areas) / sum, DVec3::from_array(edge_distance_px))
+                (
+                    DVec3::from_array(areas) / sum,
+                    DVec3::from_array(edge_distance_px),
+                )
             }
             Self::Homogeneous { rows, .. } => {
                 let p = point.ndc();
                 let steps = DVec2::new(2.0 / f64::from(view.width), 2.0 / f64::from(view.height));
-                let edge_distance_px = rows.map(|row| p.dot(row).abs() / (row.truncate() * steps).length().max(1e-30));
-                (DVec3::from_array(self.at(point)), DVec3::from_array(edge_distance_px))
+                let edge_distance_px =
+                    rows.map(|row| p.dot(row).abs() / (row.truncate() * steps).length().max(1e-30));
+                (
+                    DVec3::from_array(self.at(point)),
+                    DVec3::from_array(edge_distance_px),
+                )
             }
         }
     }
@@ -154,12 +190,21 @@ fn given_errors(p: DVec3, corners: &[DVec3; 3], clip: &[[DVec3; 2]; 3]) -> [f64;
     let (aside, along) = (clip.map(|[aside, _]| aside), clip.map(|[_, along]| along));
     let moved = [0, 1, 2].map(|k| corners[k].abs() + along[k].abs());
     let aside = cross_errors(&moved, &aside);
-    // Of a triangle that is long in the direction of the errors these products cancel, those of magnitudes do not.
+    // Of a triangle that is long in the direction of the errors these products cancel, those of
+    // magnitudes do not.
     let along = |i: usize, j: usize| {
-        let products = [along[i].cross(corners[j]), corners[i].cross(along[j]), along[i].cross(along[j])];
-        products.iter().map(|product| p.dot(*product).abs()).sum::<f64>()
+        let products = [
+            along[i].cross(corners[j]),
+            corners[i].cross(along[j]),
+            along[i].cross(along[j]),
+        ];
+        products
+            .iter()
+            .map(|product| p.dot(*product).abs())
+            .sum::<f64>()
     };
-    [(0, 1, 2), (1, 2, 0), (2, 0, 1)].map(|(k, i, j): (usize, usize, usize)| p.abs().dot(aside[k]) + along(i, j))
+    [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
+        .map(|(k, i, j): (usize, usize, usize)| p.abs().dot(aside[k]) + along(i, j))
 }
 
 /// Doubled areas opposite the corners at a sample, positive inside for either winding.

@@ -1,4 +1,5 @@
-//! How much work a picture is for a CPU, counted before it is drawn: samples in the bounding boxes of triangles, and steps of particles.
+//! How much work a picture is for a CPU, counted before it is drawn: samples in the bounding boxes
+//! of triangles, and steps of particles.
 
 use super::{
     super::{
@@ -15,26 +16,38 @@ use crate::{
     scene::{Scene, draw::DrawError, view::View},
 };
 
-/// Most samples that are tested for one image: those of every triangle's bounding box. Two cores take about 40 s for them (2026-11-25).
+/// Most samples that are tested for one image: those of every triangle's bounding box. Two cores
+/// take about 40 s for them (2026-11-25).
 const MAX_SAMPLES: u64 = 1 << 31;
 
 /// Most samples that are tested for all pictures on which one depends.
 const MAX_SEQUENCE_SAMPLES: u64 = 1 << 32;
 
-/// Most triangles whose samples are counted for a sequence: more are small ones, as a rule, and counting them would take long itself.
+/// Most triangles whose samples are counted for a sequence: more are small ones, as a rule, and
+/// counting them would take long itself.
 const MAX_COUNTED_TRIANGLES: u64 = 1 << 16;
 
-/// Refuses an image, "picture" or "shadow map", for which more samples would be tested than the oracle may test.
+/// Refuses an image, "picture" or "shadow map", for which more samples would be tested than the
+/// oracle may test.
 ///
 /// # Errors
 /// [`DrawError::OracleSamples`].
-pub fn check_samples(image: &'static str, triangles: &[OrientedTriangle], tests: &SampleTests, view: &View) -> Result<(), DrawError> {
+pub fn check_samples(
+    image: &'static str,
+    triangles: &[OrientedTriangle],
+    tests: &SampleTests,
+    view: &View,
+) -> Result<(), DrawError> {
     within_samples(image, samples(triangles, tests, view))
 }
 
 fn within_samples(image: &'static str, samples: u64) -> Result<(), DrawError> {
     if samples > MAX_SAMPLES {
-        return Err(DrawError::OracleSamples { image, samples, limit: MAX_SAMPLES });
+        return Err(DrawError::OracleSamples {
+            image,
+            samples,
+            limit: MAX_SAMPLES,
+        });
     }
     Ok(())
 }
@@ -48,8 +61,9 @@ fn samples(triangles: &[OrientedTriangle], tests: &SampleTests, view: &View) -> 
     triangles.iter().map(of_triangle).sum()
 }
 
-/// Can a picture of `scene` at so many times the size of `view` be judged? A measurement that needs verdicts asks before it begins.
-/// Particles are left out, since only an adapter knows where it drew them.
+/// Can a picture of `scene` at so many times the size of `view` be judged? A measurement that needs
+/// verdicts asks before it begins. Particles are left out, since only an adapter knows where it
+/// drew them.
 ///
 /// # Errors
 /// As [`judge`](crate::judge).
@@ -62,25 +76,41 @@ pub fn can_judge(scene: &Scene, view: &View, stack: &Stack, scale: f64) -> Resul
     within_samples("shadow map", shadow_map)
 }
 
-/// Can a CPU draw `sequence`, views and stacks of which each needs the picture before it, at so many times their size? Each is
-/// taken to be as much work as the last. The rasterizer of a CPU adapter takes about as long for a sample as the oracle.
+/// Can a CPU draw `sequence`, views and stacks of which each needs the picture before it, at so
+/// many times their size? Each is taken to be as much work as the last. The rasterizer of a CPU
+/// adapter takes about as long for a sample as the oracle.
 ///
 /// # Errors
-/// [`DrawError`] if a transform or the number of triangles is out of range, or if too many samples would be tested or particles followed.
-pub fn can_draw_sequence(scene: &Scene, sequence: &[(View, Stack)], scale: f64) -> Result<(), DrawError> {
-    let Some((view, stack)) = sequence.last() else { return Ok(()) };
+/// [`DrawError`] if a transform or the number of triangles is out of range, or if too many samples
+/// would be tested or particles followed.
+pub fn can_draw_sequence(
+    scene: &Scene,
+    sequence: &[(View, Stack)],
+    scale: f64,
+) -> Result<(), DrawError> {
+    let Some((view, stack)) = sequence.last() else {
+        return Ok(());
+    };
     check_particle_work(view, stack, MAX_PARTICLE_WORK_OF_CPU_ADAPTER)?;
     let (view, stack) = (&view.scaled(scale), &stack.scaled(scale));
     let pictures = sequence.len() as u64;
-    let texels = stack.shadow_map_view(scene, view).map_or(0, |light| light.pixels());
+    let texels = stack
+        .shadow_map_view(scene, view)
+        .map_or(0, |light| light.pixels());
     // Most pictures need no look at their triangles.
     let most = (view.pixels() + texels) as u64 * scene.triangle_count();
-    if pictures.saturating_mul(most) <= MAX_SEQUENCE_SAMPLES || scene.triangle_count() > MAX_COUNTED_TRIANGLES {
+    if pictures.saturating_mul(most) <= MAX_SEQUENCE_SAMPLES
+        || scene.triangle_count() > MAX_COUNTED_TRIANGLES
+    {
         return Ok(());
     }
     let samples = pictures * samples_of_images(scene, view, stack)?.iter().sum::<u64>();
     if samples > MAX_SEQUENCE_SAMPLES {
-        return Err(DrawError::SequenceSamples { pictures, samples, limit: MAX_SEQUENCE_SAMPLES });
+        return Err(DrawError::SequenceSamples {
+            pictures,
+            samples,
+            limit: MAX_SEQUENCE_SAMPLES,
+        });
     }
     Ok(())
 }
@@ -94,8 +124,15 @@ fn samples_of_images(scene: &Scene, view: &View, stack: &Stack) -> Result<[u64; 
         let draws = stack.draws(scene, view)?;
         let shot = Shot::new(scene, &draws, view, stack);
         let geometry = project(&shot)?;
-        Ok(samples(&triangles(&shot, &geometry)?.0, &SampleTests::of_effects(stack, &geometry), view))
+        Ok(samples(
+            &triangles(&shot, &geometry)?.0,
+            &SampleTests::of_effects(stack, &geometry),
+            view,
+        ))
     };
     let light = stack.shadow_map_view(scene, view);
-    Ok([count(view, stack)?, light.map_or(Ok(0), |light| count(&light, &stack.shadow_casters()))?])
+    Ok([
+        count(view, stack)?,
+        light.map_or(Ok(0), |light| count(&light, &stack.shadow_casters()))?,
+    ])
 }

@@ -49,7 +49,8 @@ enum Dialog {
     NewEffect(NewEffect),
     /// May the code that a preset brings run?
     Code(Box<PresetFile>, CodeUse),
-    /// Keep unsaved changes, or take what the preset's file has now, or both? It is saved to the path afterwards.
+    /// Keep unsaved changes, or take what the preset's file has now, or both? It is saved to the
+    /// path afterwards.
     Changed(Box<PresetFile>, Option<PathBuf>),
     /// Go on with the session that a crash ended?
     Restore(Box<Restored>),
@@ -73,19 +74,39 @@ impl Dialogs {
         matches!(self.open, Some(Dialog::Path(_) | Dialog::NewEffect(_)))
     }
 
-    /// Asks for a path. `presets_dir` is the folder of presets from the command line; a picture is exported at `size` pixels
-    /// unless another size is typed.
-    pub fn ask_path(&mut self, purpose: Purpose, session: &Session, presets_dir: Option<&Path>, size: [u32; 2]) {
+    /// Asks for a path. `presets_dir` is the folder of presets from the command line; a picture is
+    /// exported at `size` pixels unless another size is typed.
+    pub fn ask_path(
+        &mut self,
+        purpose: Purpose,
+        session: &Session,
+        presets_dir: Option<&Path>,
+        size: [u32; 2],
+    ) {
         let id = &session.preset_file.id;
         let text = match purpose {
-            Purpose::Open => presets_dir.map_or_else(String::new, |folder| format!("{}/", folder.display())),
+            Purpose::Open => {
+                presets_dir.map_or_else(String::new, |folder| format!("{}/", folder.display()))
+            }
             Purpose::SaveAs => {
                 let id = if id.is_empty() { "preset" } else { id };
-                let is_builtin = session.preset_file.path.is_none() && session.preset_file.read_only;
-                let name = if is_builtin { format!("my-{id}") } else { id.to_owned() };
-                save_folder(session, presets_dir).join(format!("{name}.toml")).display().to_string()
+                let is_builtin =
+                    session.preset_file.path.is_none() && session.preset_file.read_only;
+                let name = if is_builtin {
+                    format!("my-{id}")
+                } else {
+                    id.to_owned()
+                };
+                save_folder(session, presets_dir)
+                    .join(format!("{name}.toml"))
+                    .display()
+                    .to_string()
             }
-            Purpose::Export => std::env::current_dir().unwrap_or_default().join(format!("{id}.png")).display().to_string(),
+            Purpose::Export => std::env::current_dir()
+                .unwrap_or_default()
+                .join(format!("{id}.png"))
+                .display()
+                .to_string(),
         };
         self.open = Some(Dialog::Path(PathDialog::new(purpose, text, size)));
     }
@@ -100,15 +121,21 @@ impl Dialogs {
         self.open = Some(Dialog::Unsaved);
     }
 
-    /// Asks for the name of a new effect, and for its hook unless it is a duplicate of `duplicated`.
+    /// Asks for the name of a new effect, and for its hook unless it is a duplicate of
+    /// `duplicated`.
     pub fn ask_new_effect(&mut self, duplicated: Option<Arc<Effect>>, catalog: &Catalog) {
         self.open = Some(Dialog::NewEffect(NewEffect::new(duplicated, catalog)));
     }
 
-    /// Asks what becomes of unsaved changes and of `theirs`, the open preset as its file has it now. The outcome is saved to `saving`. A
-    /// file that changes once more while that is asked leaves the question as it is, with the newer file.
+    /// Asks what becomes of unsaved changes and of `theirs`, the open preset as its file has it
+    /// now. The outcome is saved to `saving`. A file that changes once more while that is asked
+    /// leaves the question as it is, with the newer file.
     pub fn ask_changed(&mut self, theirs: Box<PresetFile>, saving: Option<PathBuf>) {
-        let asked = if let Some(Dialog::Changed(_, asked)) = self.open.take() { asked } else { None };
+        let asked = if let Some(Dialog::Changed(_, asked)) = self.open.take() {
+            asked
+        } else {
+            None
+        };
         self.open = Some(Dialog::Changed(theirs, saving.or(asked)));
     }
 
@@ -127,13 +154,18 @@ impl Dialogs {
         matches!(self.open, Some(Dialog::Restore(_)))
     }
 
-    /// A save to `path` failed: shows its dialog again, with the path and the reason. Returns false if another dialog is open.
+    /// A save to `path` failed: shows its dialog again, with the path and the reason. Returns false
+    /// if another dialog is open.
     pub fn save_failed(&mut self, purpose: Purpose, path: &Path, reason: &str) -> bool {
         if self.is_open() {
             return false;
         }
-        let kept = self.saving.take().filter(|saving| saving.purpose == purpose && saving.path() == path);
-        let mut dialog = kept.unwrap_or_else(|| PathDialog::new(purpose, path.display().to_string(), [1, 1]));
+        let kept = self
+            .saving
+            .take()
+            .filter(|saving| saving.purpose == purpose && saving.path() == path);
+        let mut dialog =
+            kept.unwrap_or_else(|| PathDialog::new(purpose, path.display().to_string(), [1, 1]));
         (dialog.error, dialog.replace) = (Some(reason.to_owned()), None);
         self.open = Some(Dialog::Path(dialog));
         true
@@ -147,8 +179,16 @@ impl Dialogs {
     }
 
     /// Takes the answer of the system's dialog.
-    pub fn path_arrived(&mut self, purpose: Purpose, answer: Answer, open: &PresetFile, commands: &Commands) {
-        let Some(Dialog::Path(dialog)) = &mut self.open else { return };
+    pub fn path_arrived(
+        &mut self,
+        purpose: Purpose,
+        answer: Answer,
+        open: &PresetFile,
+        commands: &Commands,
+    ) {
+        let Some(Dialog::Path(dialog)) = &mut self.open else {
+            return;
+        };
         if dialog.purpose != purpose {
             return;
         }
@@ -164,13 +204,17 @@ impl Dialogs {
         }
     }
 
-    /// Carries out the choice of a button. The dialog stays open if the choice leads to another question in it.
+    /// Carries out the choice of a button. The dialog stays open if the choice leads to another
+    /// question in it.
     fn choose(&mut self, choice: Choice, open: &PresetFile, commands: &Commands) {
         let file = |command| commands.send(Command::File(command));
         match (choice, self.open.take()) {
             (Choice::Cancel, _) | (_, None) => {}
             (Choice::Browse, Some(Dialog::Path(mut dialog))) => {
-                file(FileCommand::Browse(dialog.purpose, PathBuf::from(&dialog.text)));
+                file(FileCommand::Browse(
+                    dialog.purpose,
+                    PathBuf::from(&dialog.text),
+                ));
                 dialog.is_browsing = true;
                 self.open = Some(Dialog::Path(dialog));
             }
@@ -181,24 +225,47 @@ impl Dialogs {
                     self.open = Some(Dialog::Path(dialog));
                 }
             }
-            (Choice::KeepMuted, Some(Dialog::Muted { path })) => file(FileCommand::Write { path, drops_muted: false }),
-            (Choice::DropMuted, Some(Dialog::Muted { path })) => file(FileCommand::Write { path, drops_muted: true }),
+            (Choice::KeepMuted, Some(Dialog::Muted { path })) => file(FileCommand::Write {
+                path,
+                drops_muted: false,
+            }),
+            (Choice::DropMuted, Some(Dialog::Muted { path })) => file(FileCommand::Write {
+                path,
+                drops_muted: true,
+            }),
             (Choice::Save, Some(Dialog::Unsaved)) => file(FileCommand::Save),
             (Choice::Keep, Some(Dialog::Unsaved)) => file(FileCommand::Quit { keeps_edits: true }),
-            (Choice::Discard, Some(Dialog::Unsaved)) => file(FileCommand::Quit { keeps_edits: false }),
-            (Choice::Restore, Some(Dialog::Restore(restored))) => file(FileCommand::Restore(restored)),
+            (Choice::Discard, Some(Dialog::Unsaved)) => {
+                file(FileCommand::Quit { keeps_edits: false })
+            }
+            (Choice::Restore, Some(Dialog::Restore(restored))) => {
+                file(FileCommand::Restore(restored))
+            }
             (Choice::Discard, Some(Dialog::Restore(_))) => {}
             (Choice::Accept, Some(Dialog::NewEffect(mut dialog))) => {
                 if dialog.check(&open.effects) {
-                    file(FileCommand::NewEffect { name: dialog.name, origin: dialog.origin });
+                    file(FileCommand::NewEffect {
+                        name: dialog.name,
+                        origin: dialog.origin,
+                    });
                 } else {
                     self.open = Some(Dialog::NewEffect(dialog));
                 }
             }
             (Choice::Run | Choice::OpenWithout, Some(Dialog::Code(preset_file, then))) => {
-                file(FileCommand::UseCode { preset_file, then, runs: choice == Choice::Run });
+                file(FileCommand::UseCode {
+                    preset_file,
+                    then,
+                    runs: choice == Choice::Run,
+                });
             }
-            (Choice::Side(side), Some(Dialog::Changed(theirs, saving))) => file(FileCommand::Resolve { theirs, side, saving }),
+            (Choice::Side(side), Some(Dialog::Changed(theirs, saving))) => {
+                file(FileCommand::Resolve {
+                    theirs,
+                    side,
+                    saving,
+                })
+            }
             (_, dialog) => self.open = dialog,
         }
     }
@@ -212,18 +279,37 @@ impl Panel for Dialogs {
         }
         let mut chosen = None;
         let frame = egui::Frame::window(&ui.ctx().global_style()).inner_margin(16.0);
-        let modal = egui::Modal::new(egui::Id::unique("dialog")).frame(frame).show(ui.ctx(), |ui| {
-            ui.set_width(460.0f32.min(ui.ctx().content_rect().width() - 64.0));
-            chosen = match dialog {
-                Dialog::Path(dialog) => path_ui(ui, dialog, &state.settings.recents, &state.files.missing_files),
-                Dialog::Muted { .. } => muted_ui(ui, &state.session.muted.iter().map(String::as_str).collect::<Vec<_>>()),
-                Dialog::Unsaved => unsaved_ui(ui, state.session.title(), state.closing.keeps_session),
-                Dialog::NewEffect(dialog) => new_effect_ui(ui, dialog),
-                Dialog::Changed(theirs, saving) => changed_ui(ui, theirs.title(), saving.is_some()),
-                Dialog::Code(preset_file, _) => brought_ui(ui, preset_file),
-                Dialog::Restore(restored) => restore_ui(ui, restored),
-            };
-        });
+        let modal = egui::Modal::new(egui::Id::unique("dialog"))
+            .frame(frame)
+            .show(ui.ctx(), |ui| {
+                ui.set_width(460.0f32.min(ui.ctx().content_rect().width() - 64.0));
+                chosen = match dialog {
+                    Dialog::Path(dialog) => path_ui(
+                        ui,
+                        dialog,
+                        &state.settings.recents,
+                        &state.files.missing_files,
+                    ),
+                    Dialog::Muted { .. } => muted_ui(
+                        ui,
+                        &state
+                            .session
+                            .muted
+                            .iter()
+                            .map(String::as_str)
+                            .collect::<Vec<_>>(),
+                    ),
+                    Dialog::Unsaved => {
+                        unsaved_ui(ui, state.session.title(), state.closing.keeps_session)
+                    }
+                    Dialog::NewEffect(dialog) => new_effect_ui(ui, dialog),
+                    Dialog::Changed(theirs, saving) => {
+                        changed_ui(ui, theirs.title(), saving.is_some())
+                    }
+                    Dialog::Code(preset_file, _) => brought_ui(ui, preset_file),
+                    Dialog::Restore(restored) => restore_ui(ui, restored),
+                };
+            });
         // What a crash left is not thrown away by a click beside the question.
         if chosen.is_none() && modal.should_close() && !matches!(dialog, Dialog::Restore(_)) {
             chosen = Some(Choice::Cancel);
@@ -237,15 +323,37 @@ impl Panel for Dialogs {
 /// The folder that presets are saved to by default.
 fn save_folder(session: &Session, presets_dir: Option<&Path>) -> PathBuf {
     let open = &session.preset_file;
-    let own = open.path.as_deref().and_then(Path::parent).filter(|_| !open.read_only).map(Path::to_owned);
-    own.or_else(|| presets_dir.map(Path::to_owned)).or_else(preset_file::user_folder).unwrap_or_default()
+    let own = open
+        .path
+        .as_deref()
+        .and_then(Path::parent)
+        .filter(|_| !open.read_only)
+        .map(Path::to_owned);
+    own.or_else(|| presets_dir.map(Path::to_owned))
+        .or_else(preset_file::user_folder)
+        .unwrap_or_default()
 }
 
 fn new_effect_ui(ui: &mut Ui, dialog: &mut NewEffect) -> Option<Choice> {
     let is_entered = fields_ui(ui, dialog);
-    let verb = if matches!(dialog.origin, Origin::Duplicate(_)) { "Duplicate" } else { "Create" };
-    let choice = buttons(ui, &[(verb, Choice::Accept, true), ("Cancel", Choice::Cancel, false)], |_| None);
-    if is_entered { Some(Choice::Accept) } else { choice }
+    let verb = if matches!(dialog.origin, Origin::Duplicate(_)) {
+        "Duplicate"
+    } else {
+        "Create"
+    };
+    let choice = buttons(
+        ui,
+        &[
+            (verb, Choice::Accept, true),
+            ("Cancel", Choice::Cancel, false),
+        ],
+        |_| None,
+    );
+    if is_entered {
+        Some(Choice::Accept)
+    } else {
+        choice
+    }
 }
 
 #[cfg(test)]
@@ -253,12 +361,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_that_changes_while_a_save_asks_does_not_turn_the_question_into_one_that_saves_nothing() {
+    fn a_file_that_changes_while_a_save_asks_does_not_turn_the_question_into_one_that_saves_nothing()
+     {
         let mut dialogs = Dialogs::default();
-        let theirs = |name: &str| Box::new(preset_file::open(name, &preset_file::Folders::default()).expect("a built-in preset"));
+        let theirs = |name: &str| {
+            Box::new(
+                preset_file::open(name, &preset_file::Folders::default())
+                    .expect("a built-in preset"),
+            )
+        };
         dialogs.ask_changed(theirs("facet"), Some("mine.toml".into()));
         dialogs.ask_changed(theirs("fog"), None);
-        let Some(Dialog::Changed(theirs, Some(path))) = dialogs.open else { panic!("nothing is saved any more") };
+        let Some(Dialog::Changed(theirs, Some(path))) = dialogs.open else {
+            panic!("nothing is saved any more")
+        };
         assert_eq!((theirs.id.as_str(), path), ("fog", "mine.toml".into()));
     }
 }

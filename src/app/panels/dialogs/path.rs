@@ -1,5 +1,5 @@
-//! The dialog for paths: a field that completes what is typed, a list of the files that match, and recent files. It needs no service of the
-//! desktop; the system's dialog is one button of it.
+//! The dialog for paths: a field that completes what is typed, a list of the files that match, and
+//! recent files. It needs no service of the desktop; the system's dialog is one button of it.
 
 use std::{
     collections::HashSet,
@@ -44,7 +44,9 @@ impl Purpose {
                 ModelFormat::names(", ")
             ),
             Self::SaveAs => "Presets in the suggested folder appear in the list on the left".into(),
-            Self::Export => "The picture contains the preset: open the picture to get it back".into(),
+            Self::Export => {
+                "The picture contains the preset: open the picture to get it back".into()
+            }
         }
     }
 
@@ -99,8 +101,8 @@ pub struct PathDialog {
 
 impl PathDialog {
     pub fn new(purpose: Purpose, text: String, size: [u32; 2]) -> Self {
-        let no_system_dialog =
-            (!system_dialog::may_exist()).then(|| "no desktop service for dialogs runs, and zenity is not installed".to_owned());
+        let no_system_dialog = (!system_dialog::may_exist())
+            .then(|| "no desktop service for dialogs runs, and zenity is not installed".to_owned());
         Self {
             purpose,
             text,
@@ -119,10 +121,14 @@ impl PathDialog {
 
     /// The file that the dialog names.
     pub fn path(&self) -> PathBuf {
-        with_extension(&completion::expanded(self.text.trim()), self.purpose.extension())
+        with_extension(
+            &completion::expanded(self.text.trim()),
+            self.purpose.extension(),
+        )
     }
 
-    /// Sends the command of the dialog with its path. Returns false, with an error in the dialog, if the path cannot be used.
+    /// Sends the command of the dialog with its path. Returns false, with an error in the dialog,
+    /// if the path cannot be used.
     pub fn accept(&mut self, own_path: Option<&Path>, commands: &Commands) -> bool {
         let typed = self.text.trim();
         if typed.is_empty() {
@@ -131,22 +137,33 @@ impl PathDialog {
         }
         let path = self.path();
         if self.purpose != Purpose::Open {
-            let is_unnamed = completion::name_of(typed).is_empty() || completion::expanded(typed).is_dir();
+            let is_unnamed =
+                completion::name_of(typed).is_empty() || completion::expanded(typed).is_dir();
             if is_unnamed {
-                self.error = Some(format!("{typed} is a folder. Type a name for the file behind it."));
+                self.error = Some(format!(
+                    "{typed} is a folder. Type a name for the file behind it."
+                ));
                 return false;
             }
             if path.exists() && self.replace.as_deref() != Some(&path) && own_path != Some(&path) {
-                self.error = Some(format!("{} exists. Press Replace to replace it.", path.display()));
+                self.error = Some(format!(
+                    "{} exists. Press Replace to replace it.",
+                    path.display()
+                ));
                 self.replace = Some(path);
                 return false;
             }
         }
         commands.send(Command::File(match self.purpose {
-            Purpose::Open if typed.starts_with('~') => FileCommand::Open(path.to_string_lossy().into_owned()),
+            Purpose::Open if typed.starts_with('~') => {
+                FileCommand::Open(path.to_string_lossy().into_owned())
+            }
             Purpose::Open => FileCommand::Open(typed.to_owned()),
             Purpose::SaveAs => FileCommand::SaveTo(path),
-            Purpose::Export => FileCommand::Export { path, size: self.size },
+            Purpose::Export => FileCommand::Export {
+                path,
+                size: self.size,
+            },
         }));
         true
     }
@@ -180,8 +197,18 @@ impl PathDialog {
         }
         if let Some(listing) = &self.listing {
             // A name that came with the dialog is a proposal; it does not narrow the list.
-            let typed = if self.purpose != Purpose::Open && self.names_a_file() { self.folder_text() } else { self.text.as_str() };
-            rows.extend(listing.matches(typed, &system_dialog::extensions(self.purpose)).into_iter().cloned().map(Row::Entry));
+            let typed = if self.purpose != Purpose::Open && self.names_a_file() {
+                self.folder_text()
+            } else {
+                self.text.as_str()
+            };
+            rows.extend(
+                listing
+                    .matches(typed, &system_dialog::extensions(self.purpose))
+                    .into_iter()
+                    .cloned()
+                    .map(Row::Entry),
+            );
         }
         rows
     }
@@ -191,18 +218,28 @@ impl PathDialog {
     }
 
     fn names_a_file(&self) -> bool {
-        self.purpose
-            .extension()
-            .is_some_and(|extension| Path::new(&self.text).extension().is_some_and(|there| there.eq_ignore_ascii_case(extension)))
+        self.purpose.extension().is_some_and(|extension| {
+            Path::new(&self.text)
+                .extension()
+                .is_some_and(|there| there.eq_ignore_ascii_case(extension))
+        })
     }
 
-    /// Carries out the row that was clicked or entered. A file of *Open* is opened at once; returns true then.
+    /// Carries out the row that was clicked or entered. A file of *Open* is opened at once; returns
+    /// true then.
     fn take(&mut self, row: &Row) -> bool {
         match row {
             Row::Recent(path) => self.set_text(path.to_string_lossy().into_owned()),
             Row::Entry(entry) => self.set_text(completion::with_entry(&self.text, entry)),
         }
-        self.purpose == Purpose::Open && !matches!(row, Row::Entry(Entry { is_folder: true, .. }))
+        self.purpose == Purpose::Open
+            && !matches!(
+                row,
+                Row::Entry(Entry {
+                    is_folder: true,
+                    ..
+                })
+            )
     }
 }
 
@@ -214,8 +251,18 @@ enum Row {
 }
 
 /// Shows the dialog. Returns the button that was pressed.
-pub fn path_ui(ui: &mut Ui, dialog: &mut PathDialog, recents: &Recents, missing: &HashSet<PathBuf>) -> Option<Choice> {
-    ui.label(RichText::new(dialog.purpose.title()).size(15.0).color(theme::text_strong()).strong());
+pub fn path_ui(
+    ui: &mut Ui,
+    dialog: &mut PathDialog,
+    recents: &Recents,
+    missing: &HashSet<PathBuf>,
+) -> Option<Choice> {
+    ui.label(
+        RichText::new(dialog.purpose.title())
+            .size(15.0)
+            .color(theme::text_strong())
+            .strong(),
+    );
     ui.label(theme::weak(dialog.purpose.hint()));
     ui.add_space(theme::HALF);
     let id = ui.scope_id().with("path");
@@ -226,7 +273,11 @@ pub fn path_ui(ui: &mut Ui, dialog: &mut PathDialog, recents: &Recents, missing:
     }
     let before = dialog.text.clone();
     // The field keeps Tab for completion.
-    let edit = egui::TextEdit::singleline(&mut dialog.text).id(id).hint_text("Path").desired_width(f32::INFINITY).lock_focus(true);
+    let edit = egui::TextEdit::singleline(&mut dialog.text)
+        .id(id)
+        .hint_text("Path")
+        .desired_width(f32::INFINITY)
+        .lock_focus(true);
     let field = ui.add(edit).accessible_name("Path");
     if dialog.text != before {
         (dialog.error, dialog.chosen) = (None, None);
@@ -250,7 +301,12 @@ pub fn path_ui(ui: &mut Ui, dialog: &mut PathDialog, recents: &Recents, missing:
         ui.horizontal(|ui| {
             ui.label("Size");
             for (side, name) in dialog.size.iter_mut().zip(["Width", "Height"]) {
-                ui.add(egui::DragValue::new(side).range(1..=MAX_EXPORT_SIDE).suffix(" px")).accessible_name(name);
+                ui.add(
+                    egui::DragValue::new(side)
+                        .range(1..=MAX_EXPORT_SIDE)
+                        .suffix(" px"),
+                )
+                .accessible_name(name);
             }
         });
     }
@@ -258,34 +314,71 @@ pub fn path_ui(ui: &mut Ui, dialog: &mut PathDialog, recents: &Recents, missing:
         theme::notice(ui, theme::amber(), error);
     }
     if let Some(reason) = &dialog.no_system_dialog {
-        let text = format!("The system's file dialog is not available: {reason}. Type a path or choose from the list; Tab completes.");
+        let text = format!(
+            "The system's file dialog is not available: {reason}. Type a path or choose from the list; Tab completes."
+        );
         ui.label(theme::weak(text).size(12.0));
     }
     ui.add_space(theme::HALF);
-    let verb = if dialog.replace.is_some() && dialog.error.is_some() { "Replace" } else { dialog.purpose.verb() };
-    let choice = buttons(ui, &[(verb, Choice::Accept, true), ("Cancel", Choice::Cancel, false)], |ui| {
-        if dialog.no_system_dialog.is_some() {
-            return None;
-        }
-        let text = if dialog.is_browsing { "Waiting for the system's dialog" } else { "Browse…" };
-        ui.add_enabled(!dialog.is_browsing, egui::Button::new(text)).clicked().then_some(Choice::Browse)
-    });
-    if is_accepted { Some(Choice::Accept) } else { choice }
+    let verb = if dialog.replace.is_some() && dialog.error.is_some() {
+        "Replace"
+    } else {
+        dialog.purpose.verb()
+    };
+    let choice = buttons(
+        ui,
+        &[
+            (verb, Choice::Accept, true),
+            ("Cancel", Choice::Cancel, false),
+        ],
+        |ui| {
+            if dialog.no_system_dialog.is_some() {
+                return None;
+            }
+            let text = if dialog.is_browsing {
+                "Waiting for the system's dialog"
+            } else {
+                "Browse…"
+            };
+            ui.add_enabled(!dialog.is_browsing, egui::Button::new(text))
+                .clicked()
+                .then_some(Choice::Browse)
+        },
+    );
+    if is_accepted {
+        Some(Choice::Accept)
+    } else {
+        choice
+    }
 }
 
-/// The first edit of a proposed path: an absolute path, or one of the home folder, in place of the selected name begins anew.
+/// The first edit of a proposed path: an absolute path, or one of the home folder, in place of the
+/// selected name begins anew.
 fn begin_anew(ctx: &egui::Context, id: egui::Id, dialog: &mut PathDialog, before: &str) {
     if !std::mem::take(&mut dialog.is_proposed) {
         return;
     }
     let folder = &before[..before.len() - completion::name_of(before).len()];
-    let is_path = |behind: &&str| behind.starts_with(is_separator) || behind.starts_with('~') || Path::new(behind).is_absolute();
-    let Some(behind) = dialog.text.strip_prefix(folder).filter(is_path).map(str::to_owned) else { return };
+    let is_path = |behind: &&str| {
+        behind.starts_with(is_separator)
+            || behind.starts_with('~')
+            || Path::new(behind).is_absolute()
+    };
+    let Some(behind) = dialog
+        .text
+        .strip_prefix(folder)
+        .filter(is_path)
+        .map(str::to_owned)
+    else {
+        return;
+    };
     dialog.text = behind;
     let mut state = TextEditState::load(ctx, id).unwrap_or_default();
     if let Some(range) = state.cursor.char_range() {
         let at = range.primary.index.0.saturating_sub(folder.chars().count());
-        state.cursor.set_char_range(Some(CCursorRange::one(CCursor::new(at))));
+        state
+            .cursor
+            .set_char_range(Some(CCursorRange::one(CCursor::new(at))));
         state.store(ctx, id);
     }
 }
@@ -293,12 +386,19 @@ fn begin_anew(ctx: &egui::Context, id: egui::Id, dialog: &mut PathDialog, before
 /// Tab completes, the arrows choose a row.
 fn keys(ui: &Ui, dialog: &mut PathDialog, rows: &[Row]) {
     if ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Tab)) {
-        let entries: Vec<&Entry> =
-            dialog.listing.iter().flat_map(|listing| listing.matches(&dialog.text, &system_dialog::extensions(dialog.purpose))).collect();
+        let entries: Vec<&Entry> = dialog
+            .listing
+            .iter()
+            .flat_map(|listing| {
+                listing.matches(&dialog.text, &system_dialog::extensions(dialog.purpose))
+            })
+            .collect();
         match completion::completed(&dialog.text, &entries) {
             Some(completed) => dialog.set_text(completed),
             // Nothing to add: Tab goes on to the buttons.
-            None if entries.len() < 2 => ui.memory_mut(|memory| memory.move_focus(egui::FocusDirection::Next)),
+            None if entries.len() < 2 => {
+                ui.memory_mut(|memory| memory.move_focus(egui::FocusDirection::Next))
+            }
             None => {}
         }
     }
@@ -314,7 +414,9 @@ fn keys(ui: &Ui, dialog: &mut PathDialog, rows: &[Row]) {
 /// Goes into the folder that is typed. False if none is.
 fn enter_folder(dialog: &mut PathDialog) -> bool {
     let typed = dialog.text.trim();
-    let is_folder = !typed.is_empty() && !completion::name_of(typed).is_empty() && completion::expanded(typed).is_dir();
+    let is_folder = !typed.is_empty()
+        && !completion::name_of(typed).is_empty()
+        && completion::expanded(typed).is_dir();
     if is_folder {
         let text = format!("{typed}{}", std::path::MAIN_SEPARATOR);
         dialog.set_text(text);
@@ -322,13 +424,16 @@ fn enter_folder(dialog: &mut PathDialog) -> bool {
     is_folder
 }
 
-/// Puts the cursor at the end of the text; the name of a file to be written is selected, so that typing replaces it.
+/// Puts the cursor at the end of the text; the name of a file to be written is selected, so that
+/// typing replaces it.
 fn place_cursor(ctx: &egui::Context, id: egui::Id, dialog: &PathDialog) {
     let end = dialog.text.chars().count();
     let mut range = CCursorRange::one(CCursor::new(end));
     if dialog.names_a_file() {
         let folder = dialog.folder_text().chars().count();
-        let stem = Path::new(completion::name_of(&dialog.text)).file_stem().map_or(0, |stem| stem.to_string_lossy().chars().count());
+        let stem = Path::new(completion::name_of(&dialog.text))
+            .file_stem()
+            .map_or(0, |stem| stem.to_string_lossy().chars().count());
         range = CCursorRange::two(CCursor::new(folder), CCursor::new(folder + stem));
     }
     let mut state = TextEditState::load(ctx, id).unwrap_or_default();
@@ -342,17 +447,25 @@ fn list_ui(ui: &mut Ui, dialog: &mut PathDialog, rows: &[Row], missing: &HashSet
     if let Some(Err(error)) = dialog.listing.as_ref().map(|listing| &listing.entries) {
         ui.label(theme::weak(error.clone()));
     }
-    let frame = egui::Frame::new().fill(theme::well()).corner_radius(4.0).inner_margin(4.0);
+    let frame = egui::Frame::new()
+        .fill(theme::well())
+        .corner_radius(4.0)
+        .inner_margin(4.0);
     frame.show(ui, |ui| {
         let height = ROW * ROWS;
-        egui::ScrollArea::vertical().id_salt("matches").auto_shrink(false).max_height(height).min_scrolled_height(height).show_rows(
-            ui,
-            ROW,
-            rows.len().max(1),
-            |ui, range| {
+        egui::ScrollArea::vertical()
+            .id_salt("matches")
+            .auto_shrink(false)
+            .max_height(height)
+            .min_scrolled_height(height)
+            .show_rows(ui, ROW, rows.len().max(1), |ui, range| {
                 ui.spacing_mut().item_spacing.y = 0.0;
                 if rows.is_empty() {
-                    let text = if dialog.listing.is_some() { "Nothing here matches." } else { "Reading the folder" };
+                    let text = if dialog.listing.is_some() {
+                        "Nothing here matches."
+                    } else {
+                        "Reading the folder"
+                    };
                     ui.label(theme::weak(text));
                 }
                 for at in range {
@@ -362,8 +475,7 @@ fn list_ui(ui: &mut Ui, dialog: &mut PathDialog, rows: &[Row], missing: &HashSet
                         taken = Some(row.clone());
                     }
                 }
-            },
-        );
+            });
     });
     let Some(row) = taken else { return false };
     // The next letter goes on with the path.
@@ -379,10 +491,24 @@ fn row_ui(ui: &mut Ui, row: &Row, is_chosen: bool, is_missing: bool) -> egui::Re
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
     let (name, detail) = match row {
         Row::Recent(path) => {
-            let folder = path.parent().map_or_else(String::new, |folder| folder.display().to_string());
-            (path.file_name().unwrap_or_default().to_string_lossy().into_owned(), format!("recent · {folder}"))
+            let folder = path
+                .parent()
+                .map_or_else(String::new, |folder| folder.display().to_string());
+            (
+                path.file_name()
+                    .unwrap_or_default()
+                    .to_string_lossy()
+                    .into_owned(),
+                format!("recent · {folder}"),
+            )
         }
-        Row::Entry(Entry { name, is_folder: true }) => (format!("{name}{}", std::path::MAIN_SEPARATOR), "folder".into()),
+        Row::Entry(Entry {
+            name,
+            is_folder: true,
+        }) => (
+            format!("{name}{}", std::path::MAIN_SEPARATOR),
+            "folder".into(),
+        ),
         Row::Entry(Entry { name, .. }) => (name.clone(), String::new()),
     };
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_chosen, &name));
@@ -393,18 +519,39 @@ fn row_ui(ui: &mut Ui, row: &Row, is_chosen: bool, is_missing: bool) -> egui::Re
         ui.painter().rect_filled(rect, 3.0, theme::raised());
     }
     let font = egui::TextStyle::Body.resolve(ui.style());
-    let color = if is_missing { theme::text_weak().gamma_multiply(0.6) } else { theme::text_strong() };
+    let color = if is_missing {
+        theme::text_weak().gamma_multiply(0.6)
+    } else {
+        theme::text_strong()
+    };
     let painter = ui.painter_at(rect);
-    let drawn = painter.text(rect.left_center() + vec2(6.0, 0.0), Align2::LEFT_CENTER, &name, font.clone(), color);
+    let drawn = painter.text(
+        rect.left_center() + vec2(6.0, 0.0),
+        Align2::LEFT_CENTER,
+        &name,
+        font.clone(),
+        color,
+    );
     let rest = egui::Rect::from_min_max(egui::pos2(drawn.right() + 12.0, rect.top()), rect.max);
     let weak = if is_missing { "missing".into() } else { detail };
-    ui.painter_at(rest).text(rest.right_center() - vec2(6.0, 0.0), Align2::RIGHT_CENTER, weak, font, theme::text_weak());
+    ui.painter_at(rest).text(
+        rest.right_center() - vec2(6.0, 0.0),
+        Align2::RIGHT_CENTER,
+        weak,
+        font,
+        theme::text_weak(),
+    );
     response
 }
 
 fn with_extension(path: &Path, extension: Option<&str>) -> PathBuf {
-    let Some(extension) = extension else { return path.to_owned() };
-    let has = |path: &Path| path.extension().is_some_and(|there| there.eq_ignore_ascii_case(extension));
+    let Some(extension) = extension else {
+        return path.to_owned();
+    };
+    let has = |path: &Path| {
+        path.extension()
+            .is_some_and(|there| there.eq_ignore_ascii_case(extension))
+    };
     match path.file_stem() {
         // Typed in place of the selected name, in front of the extension that stayed.
         Some(stem) if has(path) && has(Path::new(stem)) => path.with_file_name(stem),
@@ -424,19 +571,38 @@ mod tests {
 
     #[test]
     fn a_typed_name_gets_its_extension_once() {
-        assert_eq!(with_extension(Path::new("a/preset"), Some("toml")), Path::new("a/preset.toml"));
-        assert_eq!(with_extension(Path::new("preset.v2"), Some("toml")), Path::new("preset.v2.toml"));
-        assert_eq!(with_extension(Path::new("preset.TOML"), Some("toml")), Path::new("preset.TOML"));
-        assert_eq!(with_extension(Path::new("a/mine.toml.toml"), Some("toml")), Path::new("a/mine.toml"));
+        assert_eq!(
+            with_extension(Path::new("a/preset"), Some("toml")),
+            Path::new("a/preset.toml")
+        );
+        assert_eq!(
+            with_extension(Path::new("preset.v2"), Some("toml")),
+            Path::new("preset.v2.toml")
+        );
+        assert_eq!(
+            with_extension(Path::new("preset.TOML"), Some("toml")),
+            Path::new("preset.TOML")
+        );
+        assert_eq!(
+            with_extension(Path::new("a/mine.toml.toml"), Some("toml")),
+            Path::new("a/mine.toml")
+        );
     }
 
     #[test]
     fn a_folder_is_no_name_to_save_under() {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        for text in [format!("{}/", folder.path().display()), folder.path().display().to_string()] {
+        for text in [
+            format!("{}/", folder.path().display()),
+            folder.path().display().to_string(),
+        ] {
             let mut dialog = PathDialog::new(Purpose::SaveAs, text, [1, 1]);
             assert!(!dialog.accept(None, &Commands::default()));
-            assert!(dialog.error.is_some_and(|error| error.contains("is a folder")));
+            assert!(
+                dialog
+                    .error
+                    .is_some_and(|error| error.contains("is a folder"))
+            );
         }
     }
 }

@@ -23,8 +23,16 @@ pub enum Group {
 }
 
 impl Group {
-    pub const ALL: [Self; 8] =
-        [Self::Surface, Self::Vertex, Self::Sample, Self::Layers, Self::Lines, Self::Image, Self::Scene, Self::Inspect];
+    pub const ALL: [Self; 8] = [
+        Self::Surface,
+        Self::Vertex,
+        Self::Sample,
+        Self::Layers,
+        Self::Lines,
+        Self::Image,
+        Self::Scene,
+        Self::Inspect,
+    ];
 
     pub const fn name(self) -> &'static str {
         match self {
@@ -79,13 +87,22 @@ impl Group {
     }
 }
 
-/// Does a built-in effect paint the same color whatever the material's is? Then it shows something else than the material.
+/// Does a built-in effect paint the same color whatever the material's is? Then it shows something
+/// else than the material.
 fn shows_data(effect: &Effect) -> bool {
-    let Some(apply) = effect.hooks.surface.as_ref().filter(|_| effect.source.is_none()) else { return false };
+    let Some(apply) = effect
+        .hooks
+        .surface
+        .as_ref()
+        .filter(|_| effect.source.is_none())
+    else {
+        return false;
+    };
     let words = &effect.defaults;
     // Lines and dots are somewhere in the picture, so several pixels are asked.
     (0..32).all(|index| {
-        let [dark, bright] = [0.0, 1.0].map(|tone| apply(surface(f64::from(index), tone), words).color);
+        let [dark, bright] =
+            [0.0, 1.0].map(|tone| apply(surface(f64::from(index), tone), words).color);
         dark == bright
     })
 }
@@ -116,21 +133,49 @@ fn surface(index: f64, tone: f64) -> Surface {
     }
 }
 
-/// The effects that answer `search` and `is_kept`, in their groups. Within a group the best answers come first.
-pub fn grouped<'a>(effects: &[&'a Arc<Effect>], search: &str, is_kept: impl Fn(&Effect) -> bool) -> Vec<(Group, Vec<&'a Arc<Effect>>)> {
-    let about = |effect: &Effect| format!("{} {} {}", effect.about, Group::of(effect).name(), effect.hooks.names());
+/// The effects that answer `search` and `is_kept`, in their groups. Within a group the best answers
+/// come first.
+pub fn grouped<'a>(
+    effects: &[&'a Arc<Effect>],
+    search: &str,
+    is_kept: impl Fn(&Effect) -> bool,
+) -> Vec<(Group, Vec<&'a Arc<Effect>>)> {
+    let about = |effect: &Effect| {
+        format!(
+            "{} {} {}",
+            effect.about,
+            Group::of(effect).name(),
+            effect.hooks.names()
+        )
+    };
     let mut found: Vec<(Group, i32, &Arc<Effect>)> = effects
         .iter()
         .filter(|effect| is_kept(effect))
-        .filter_map(|effect| Some((Group::of(effect), -fuzzy::score(search, &effect.name, &about(effect))?, *effect)))
+        .filter_map(|effect| {
+            Some((
+                Group::of(effect),
+                -fuzzy::score(search, &effect.name, &about(effect))?,
+                *effect,
+            ))
+        })
         .collect();
     found.sort_by_key(|(group, score, _)| (*group, *score));
-    let of = |group: Group| found.iter().filter(move |(other, ..)| *other == group).map(|(.., effect)| *effect).collect::<Vec<_>>();
-    Group::ALL.into_iter().map(|group| (group, of(group))).filter(|(_, effects)| !effects.is_empty()).collect()
+    let of = |group: Group| {
+        found
+            .iter()
+            .filter(move |(other, ..)| *other == group)
+            .map(|(.., effect)| *effect)
+            .collect::<Vec<_>>()
+    };
+    Group::ALL
+        .into_iter()
+        .map(|group| (group, of(group)))
+        .filter(|(_, effects)| !effects.is_empty())
+        .collect()
 }
 
-/// The other effects of `stack` for which the place of `effect` in the stack matters: both change vertices, surfaces, or the picture. Tests
-/// of samples may stand in any order.
+/// The other effects of `stack` for which the place of `effect` in the stack matters: both change
+/// vertices, surfaces, or the picture. Tests of samples may stand in any order.
 pub fn depends_on_order<'a>(effect: &Effect, stack: &[&'a Arc<Effect>]) -> Vec<&'a str> {
     let shares = |other: &&&Arc<Effect>| {
         let (a, b) = (&effect.hooks, &other.hooks);
@@ -138,7 +183,12 @@ pub fn depends_on_order<'a>(effect: &Effect, stack: &[&'a Arc<Effect>]) -> Vec<&
             || (a.surface.is_some() && b.surface.is_some())
             || (a.image.is_some() && b.image.is_some())
     };
-    stack.iter().filter(|other| other.name != effect.name).filter(shares).map(|other| other.name.as_str()).collect()
+    stack
+        .iter()
+        .filter(|other| other.name != effect.name)
+        .filter(shares)
+        .map(|other| other.name.as_str())
+        .collect()
 }
 
 #[cfg(test)]
@@ -153,16 +203,32 @@ mod tests {
     #[test]
     fn every_built_in_effect_is_in_the_group_of_what_it_does() {
         let of = |group: Group| -> Vec<&str> {
-            EFFECTS.iter().filter(|effect| Group::of(effect) == group).map(|effect| effect.name.as_str()).collect()
+            EFFECTS
+                .iter()
+                .filter(|effect| Group::of(effect) == group)
+                .map(|effect| effect.name.as_str())
+                .collect()
         };
-        assert_eq!(of(Group::Inspect), ["draw_order", "triangle_id", "normals", "depth"]);
+        assert_eq!(
+            of(Group::Inspect),
+            ["draw_order", "triangle_id", "normals", "depth"]
+        );
         assert_eq!(of(Group::Layers), ["xray", "overdraw", "race"]);
         assert_eq!(of(Group::Lines), ["dots"]);
         assert_eq!(of(Group::Scene), ["particles"]);
         assert_eq!(of(Group::Vertex), ["explode", "inflate", "wobble"]);
-        assert_eq!(of(Group::Sample), ["boxes", "points", "dissolve", "stipple", "wireframe"]);
-        assert_eq!(of(Group::Surface), ["facet", "lambert", "shadow", "toon", "hatch", "fog"]);
-        assert_eq!(of(Group::Image), ["posterize", "smear", "outline", "dither"]);
+        assert_eq!(
+            of(Group::Sample),
+            ["boxes", "points", "dissolve", "stipple", "wireframe"]
+        );
+        assert_eq!(
+            of(Group::Surface),
+            ["facet", "lambert", "shadow", "toon", "hatch", "fog"]
+        );
+        assert_eq!(
+            of(Group::Image),
+            ["posterize", "smear", "outline", "dither"]
+        );
         assert_eq!(Group::ALL.map(of).concat().len(), EFFECTS.len());
     }
 
@@ -170,11 +236,19 @@ mod tests {
     fn search_finds_names_descriptions_and_groups() {
         let all: Vec<&'static Arc<Effect>> = EFFECTS.iter().collect();
         let names = |search: &str| -> Vec<&str> {
-            grouped(&all, search, |_| true).into_iter().flat_map(|(_, e)| e).map(|e| e.name.as_str()).collect()
+            grouped(&all, search, |_| true)
+                .into_iter()
+                .flat_map(|(_, e)| e)
+                .map(|e| e.name.as_str())
+                .collect()
         };
         assert_eq!(names("toon"), ["toon"]);
         assert_eq!(
-            names("layers").into_iter().collect::<std::collections::BTreeSet<_>>().into_iter().collect::<Vec<_>>(),
+            names("layers")
+                .into_iter()
+                .collect::<std::collections::BTreeSet<_>>()
+                .into_iter()
+                .collect::<Vec<_>>(),
             ["overdraw", "race", "xray"]
         );
         assert!(names("vertex").contains(&"wobble") && names("ink").contains(&"hatch"));
@@ -186,7 +260,10 @@ mod tests {
     #[test]
     fn order_matters_among_effects_of_one_hook() {
         let stack = ["dissolve", "facet", "toon", "outline", "wobble"].map(effect);
-        assert_eq!(depends_on_order(effect("toon"), &stack), ["dissolve", "facet"]);
+        assert_eq!(
+            depends_on_order(effect("toon"), &stack),
+            ["dissolve", "facet"]
+        );
         assert!(depends_on_order(effect("wobble"), &stack).is_empty());
         assert_eq!(depends_on_order(effect("posterize"), &stack), ["outline"]);
         assert!(depends_on_order(effect("stipple"), &stack).is_empty());

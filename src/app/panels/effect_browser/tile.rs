@@ -38,17 +38,33 @@ pub struct Responses {
 
 /// Size of a tile in a browser that is `width` points wide, and how many stand side by side.
 pub fn tile_size(width: f32) -> (egui::Vec2, usize) {
-    let columns = ((width + theme::HALF) / (TILE + theme::HALF)).floor().max(1.0);
+    let columns = ((width + theme::HALF) / (TILE + theme::HALF))
+        .floor()
+        .max(1.0);
     let tile = (width - (columns - 1.0) * theme::HALF) / columns;
     let [w, h] = effect_picture::THUMBNAIL.map(|side| side as f32);
-    (vec2(tile, (tile - 4.0) * h / w + NAME + 2.0), columns as usize)
+    (
+        vec2(tile, (tile - 4.0) * h / w + NAME + 2.0),
+        columns as usize,
+    )
 }
 
 /// Shows a tile in `rect`.
 pub fn tile_ui(ui: &mut Ui, tile: &Tile<'_>, rect: Rect) -> Responses {
     let name = &tile.effect.name;
-    let response = ui.interact(rect, egui::Id::unique(("effect", name)), Sense::click_and_drag());
-    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, tile.is_enabled, format!("Effect {name}")));
+    let response = ui.interact(
+        rect,
+        egui::Id::unique(("effect", name)),
+        Sense::click_and_drag(),
+    );
+    response.widget_info(|| {
+        egui::WidgetInfo::selected(
+            egui::Role::Button,
+            true,
+            tile.is_enabled,
+            format!("Effect {name}"),
+        )
+    });
     let is_near = ui.rect_contains_pointer(rect) || response.has_focus();
     if tile.is_enabled {
         ui.painter().rect_filled(rect, 5.0, theme::accent_ground());
@@ -59,14 +75,38 @@ pub fn tile_ui(ui: &mut Ui, tile: &Tile<'_>, rect: Rect) -> Responses {
     match tile.picture {
         Some(texture) => {
             let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-            egui::Image::from_texture((texture.id(), picture.size())).uv(whole).corner_radius(3.0).paint_at(ui, picture);
+            egui::Image::from_texture((texture.id(), picture.size()))
+                .uv(whole)
+                .corner_radius(3.0)
+                .paint_at(ui, picture);
         }
         None => drop(ui.painter().rect_filled(picture, 3.0, theme::well())),
     }
-    let text = Rect::from_min_max(pos2(picture.left() + 2.0, picture.bottom()), rect.max - vec2(2.0, 0.0));
-    let ink = if tile.is_enabled || is_near { theme::text_strong() } else { theme::text() };
-    ui.painter_at(text).text(text.left_center(), Align2::LEFT_CENTER, name.replace('_', " "), FontId::proportional(12.0), ink);
-    let star = star_ui(ui, tile, Rect::from_min_size(pos2(picture.right() - STAR, picture.top()), vec2(STAR, STAR)), is_near);
+    let text = Rect::from_min_max(
+        pos2(picture.left() + 2.0, picture.bottom()),
+        rect.max - vec2(2.0, 0.0),
+    );
+    let ink = if tile.is_enabled || is_near {
+        theme::text_strong()
+    } else {
+        theme::text()
+    };
+    ui.painter_at(text).text(
+        text.left_center(),
+        Align2::LEFT_CENTER,
+        name.replace('_', " "),
+        FontId::proportional(12.0),
+        ink,
+    );
+    let star = star_ui(
+        ui,
+        tile,
+        Rect::from_min_size(
+            pos2(picture.right() - STAR, picture.top()),
+            vec2(STAR, STAR),
+        ),
+        is_near,
+    );
     let response = response.on_hover_ui(|ui| {
         ui.label(RichText::new(name).color(theme::text_strong()));
         ui.label(&tile.effect.about);
@@ -78,22 +118,53 @@ pub fn tile_ui(ui: &mut Ui, tile: &Tile<'_>, rect: Rect) -> Responses {
         };
         ui.label(theme::weak(action));
     });
-    Responses { tile: response, star }
+    Responses {
+        tile: response,
+        star,
+    }
 }
 
 fn star_ui(ui: &Ui, tile: &Tile<'_>, rect: Rect, is_near: bool) -> Response {
     let name = &tile.effect.name;
-    let response = ui.interact(rect, egui::Id::unique(("star of effect", name)), Sense::click());
-    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, tile.is_favorite, format!("Favorite effect {name}")));
+    let response = ui.interact(
+        rect,
+        egui::Id::unique(("star of effect", name)),
+        Sense::click(),
+    );
+    response.widget_info(|| {
+        egui::WidgetInfo::selected(
+            egui::Role::CheckBox,
+            true,
+            tile.is_favorite,
+            format!("Favorite effect {name}"),
+        )
+    });
     if tile.is_favorite || is_near || response.has_focus() {
-        ui.painter().circle_filled(rect.center(), STAR / 2.0 - 1.0, theme::panel().gamma_multiply(0.75));
-        let icon = if tile.is_favorite { Icon::StarFull } else { Icon::Star };
+        ui.painter().circle_filled(
+            rect.center(),
+            STAR / 2.0 - 1.0,
+            theme::panel().gamma_multiply(0.75),
+        );
+        let icon = if tile.is_favorite {
+            Icon::StarFull
+        } else {
+            Icon::Star
+        };
         let ink = match (tile.is_favorite, response.hovered()) {
             (true, _) => theme::amber(),
             (false, true) => theme::text_strong(),
             (false, false) => theme::text(),
         };
-        paint(ui.painter(), icon, Rect::from_center_size(rect.center(), vec2(10.0, 10.0)), ink);
+        paint(
+            ui.painter(),
+            icon,
+            Rect::from_center_size(rect.center(), vec2(10.0, 10.0)),
+            ink,
+        );
     }
-    response.on_hover_text(if tile.is_favorite { "Remove it from the favorites" } else { "Make it a favorite" })
+    response.on_hover_text(if tile.is_favorite {
+        "Remove it from the favorites"
+    } else {
+        "Make it a favorite"
+    })
 }

@@ -1,5 +1,6 @@
-//! The folder of accuracy: one slider from draft to strict, what each tier was measured to cost and judged to err by on the open picture, and
-//! below it, folded, the axes that the picture can use, each with the option that the planner took and why.
+//! The folder of accuracy: one slider from draft to strict, what each tier was measured to cost and
+//! judged to err by on the open picture, and below it, folded, the axes that the picture can use,
+//! each with the option that the planner took and why.
 
 use eframe::egui::{self, Align2, Color32, RichText, Sense, Ui, pos2, vec2};
 
@@ -51,7 +52,9 @@ const fn about(tier: Tier) -> &'static str {
 
 /// The slider: five marks with their names.
 fn tier_ui(ui: &mut Ui, commands: &Commands, tier: Tier) {
-    let Some(setting) = Setting::find(TIER) else { return };
+    let Some(setting) = Setting::find(TIER) else {
+        return;
+    };
     let mut index = tier as usize;
     ui.horizontal(|ui| {
         ui.add_space(theme::GAP);
@@ -78,7 +81,10 @@ fn tier_ui(ui: &mut Ui, commands: &Commands, tier: Tier) {
 fn names_ui(ui: &mut Ui, setting: &'static Setting, commands: &Commands, chosen: Tier) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
     // The handle of a slider stays half its height inside the rail.
-    let [left, right] = [rect.left() + theme::GAP + 9.0, rect.right() - theme::GAP - 9.0];
+    let [left, right] = [
+        rect.left() + theme::GAP + 9.0,
+        rect.right() - theme::GAP - 9.0,
+    ];
     let last = (Tier::ALL.len() - 1) as f32;
     for (index, tier) in Tier::ALL.into_iter().enumerate() {
         let t = index as f32 / last;
@@ -87,26 +93,61 @@ fn names_ui(ui: &mut Ui, setting: &'static Setting, commands: &Commands, chosen:
             _ if t == 1.0 => (Align2::RIGHT_CENTER, right + 9.0),
             _ => (Align2::CENTER_CENTER, left + t * (right - left)),
         };
-        let color = if tier == chosen { theme::text_strong() } else { theme::text_weak() };
-        let at = ui.painter().text(pos2(x, rect.center().y), align, tier.name(), egui::FontId::proportional(11.5), color);
-        let response = ui.interact(at.expand(2.0), egui::Id::unique(("tier", index)), Sense::click());
-        response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, tier == chosen, format!("Tier {}", tier.name())));
+        let color = if tier == chosen {
+            theme::text_strong()
+        } else {
+            theme::text_weak()
+        };
+        let at = ui.painter().text(
+            pos2(x, rect.center().y),
+            align,
+            tier.name(),
+            egui::FontId::proportional(11.5),
+            color,
+        );
+        let response = ui.interact(
+            at.expand(2.0),
+            egui::Id::unique(("tier", index)),
+            Sense::click(),
+        );
+        response.widget_info(|| {
+            egui::WidgetInfo::selected(
+                egui::Role::Button,
+                true,
+                tier == chosen,
+                format!("Tier {}", tier.name()),
+            )
+        });
         if response.on_hover_text(about(tier)).clicked() && tier != chosen {
             commands.edit(Edit::Setting(setting, Value::Choice(index)));
         }
     }
 }
 
-/// What each tier costs and errs by on the open picture. While this is looked at, tiers are measured.
+/// What each tier costs and errs by on the open picture. While this is looked at, tiers are
+/// measured.
 fn tiers_ui(ui: &mut Ui, state: &State, commands: &Commands, chosen: Tier) {
     let shown = ui.vertical(|ui| {
         for tier in Tier::ALL {
             let text = match tier_times::numbers(state, tier) {
-                Some(numbers) => format!("{}, {}", time_text(numbers.time, state.picture.screen.gpu.caps.timestamps), error_text(&numbers)),
+                Some(numbers) => format!(
+                    "{}, {}",
+                    time_text(numbers.time, state.picture.screen.gpu.caps.timestamps),
+                    error_text(&numbers)
+                ),
                 None if state.picture.screen.plan().is_none() => "not measured yet".into(),
                 None => "this picture cannot be drawn so".into(),
             };
-            line_ui(ui, tier.name(), text, if tier == chosen { theme::text_strong() } else { theme::text_weak() });
+            line_ui(
+                ui,
+                tier.name(),
+                text,
+                if tier == chosen {
+                    theme::text_strong()
+                } else {
+                    theme::text_weak()
+                },
+            );
         }
     });
     let hint = "Milliseconds of a frame, measured on this picture while the window is at rest. Wrong pixels per million and the largest \
@@ -137,24 +178,46 @@ fn time_text(time: TierTime, has_timer: bool) -> String {
 /// `0 ppm, 17 true, Δ 1`, or what the options may err by: `≤ 400 ppm, Δ ≤ 2`.
 fn error_text(numbers: &TierNumbers) -> String {
     if let Some(judged) = numbers.judged {
-        let against_true = judged.true_ppm.map_or_else(String::new, |ppm| format!(", {} true", short(ppm)));
-        return format!("{} ppm{against_true}, Δ {}", short(judged.wrong_ppm), judged.channel);
+        let against_true = judged
+            .true_ppm
+            .map_or_else(String::new, |ppm| format!(", {} true", short(ppm)));
+        return format!(
+            "{} ppm{against_true}, Δ {}",
+            short(judged.wrong_ppm),
+            judged.channel
+        );
     }
-    format!("≤ {} ppm, Δ ≤ {}", short(numbers.bound.wrong_ppm.min(1e6)), short(numbers.bound.channel.min(255.0)))
+    format!(
+        "≤ {} ppm, Δ ≤ {}",
+        short(numbers.bound.wrong_ppm.min(1e6)),
+        short(numbers.bound.channel.min(255.0))
+    )
 }
 
 /// `12.34 ms GPU, color Δ 0` and `wrong ppm: 0 snapped, 17 true`.
 fn measured_texts(time: &str, findings: &Findings) -> (String, String) {
     let report = &findings.accuracy;
     let ppm = |count: u64| short(count as f64 * 1e6 / (report.pixels as f64).max(1.0));
-    let against_true = findings.wrong_against_true().map_or_else(String::new, |count| format!(", {} true", ppm(count)));
-    (format!("{time}, color Δ {}", report.max_color_delta), format!("wrong ppm: {} snapped{against_true}", ppm(report.wrong_triangles)))
+    let against_true = findings
+        .wrong_against_true()
+        .map_or_else(String::new, |count| format!(", {} true", ppm(count)));
+    (
+        format!("{time}, color Δ {}", report.max_color_delta),
+        format!(
+            "wrong ppm: {} snapped{against_true}",
+            ppm(report.wrong_triangles)
+        ),
+    )
 }
 
 /// Milliseconds and error of the picture that is shown.
 fn numbers_ui(ui: &mut Ui, state: &State) {
     let time = time_line(Some(&state.picture.screen)).0;
-    let (measured, wrong) = match state.picture.verification.verdict_on(state.picture.screen.drawn()) {
+    let (measured, wrong) = match state
+        .picture
+        .verification
+        .verdict_on(state.picture.screen.drawn())
+    {
         Some(verdict) => measured_texts(&time, &verdict.findings),
         None => (time, "error not measured (V)".to_owned()),
     };
@@ -165,32 +228,59 @@ fn numbers_ui(ui: &mut Ui, state: &State) {
 /// The axes that decide about something in the picture, and those that the preset pins.
 fn axes_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     let pins = &state.session.preset().accuracy.pins;
-    let reason = |axis: &Axis| state.picture.screen.plan().and_then(|plan| plan.reason(axis));
-    let shown: Vec<(&Axis, Option<String>)> = AXES.iter().map(|axis| (axis, reason(axis))).collect();
-    let shown: Vec<_> = shown.into_iter().filter(|(axis, reason)| reason.is_some() || pins.get(axis).is_some()).collect();
+    let reason = |axis: &Axis| {
+        state
+            .picture
+            .screen
+            .plan()
+            .and_then(|plan| plan.reason(axis))
+    };
+    let shown: Vec<(&Axis, Option<String>)> =
+        AXES.iter().map(|axis| (axis, reason(axis))).collect();
+    let shown: Vec<_> = shown
+        .into_iter()
+        .filter(|(axis, reason)| reason.is_some() || pins.get(axis).is_some())
+        .collect();
     let pinned = AXES.iter().filter(|axis| pins.get(axis).is_some()).count();
     let title = match pinned {
         0 => format!("Axes ({})", shown.len()),
         _ => format!("Axes ({}, {pinned} pinned)", shown.len()),
     };
     ui.add_space(theme::HALF);
-    egui::CollapsingHeader::new(theme::weak(title)).id_salt("accuracy axes").show_unindented(ui, |ui| {
-        for (axis, reason) in shown {
-            setting_ui(ui, state, commands, &format!("accuracy.{}", axis.name));
-            let why = reason.unwrap_or_else(|| "pinned, and this picture has nothing that it decides about".into());
-            ui.horizontal(|ui| {
-                ui.add_space(2.0 * theme::GAP);
-                let text = if anti_aliasing::is_automatic(axis, state.session.preset(), state.picture.screen.requested()) {
-                    "2×2 anti-aliasing, a viewing aid that is not saved".to_owned()
-                } else {
-                    why
-                };
-                ui.add(egui::Label::new(theme::weak(text).size(11.0)).wrap());
-            });
-        }
-        let others = AXES.len() - AXES.iter().filter(|axis| reason(axis).is_some() || pins.get(axis).is_some()).count();
-        if others > 0 {
-            ui.label(theme::weak(format!("{others} more axes decide about nothing in this picture.")).size(11.0));
-        }
-    });
+    egui::CollapsingHeader::new(theme::weak(title))
+        .id_salt("accuracy axes")
+        .show_unindented(ui, |ui| {
+            for (axis, reason) in shown {
+                setting_ui(ui, state, commands, &format!("accuracy.{}", axis.name));
+                let why = reason.unwrap_or_else(|| {
+                    "pinned, and this picture has nothing that it decides about".into()
+                });
+                ui.horizontal(|ui| {
+                    ui.add_space(2.0 * theme::GAP);
+                    let text = if anti_aliasing::is_automatic(
+                        axis,
+                        state.session.preset(),
+                        state.picture.screen.requested(),
+                    ) {
+                        "2×2 anti-aliasing, a viewing aid that is not saved".to_owned()
+                    } else {
+                        why
+                    };
+                    ui.add(egui::Label::new(theme::weak(text).size(11.0)).wrap());
+                });
+            }
+            let others = AXES.len()
+                - AXES
+                    .iter()
+                    .filter(|axis| reason(axis).is_some() || pins.get(axis).is_some())
+                    .count();
+            if others > 0 {
+                ui.label(
+                    theme::weak(format!(
+                        "{others} more axes decide about nothing in this picture."
+                    ))
+                    .size(11.0),
+                );
+            }
+        });
 }

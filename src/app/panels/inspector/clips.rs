@@ -1,4 +1,5 @@
-//! The folder of the clips: which clip of the scene plays, how fast, and which second one is blended in.
+//! The folder of the clips: which clip of the scene plays, how fast, and which second one is
+//! blended in.
 
 use eframe::egui::{self, ComboBox, Ui};
 
@@ -17,16 +18,36 @@ use crate::{
 
 /// Nothing for a scene without clips.
 pub fn clips_ui(ui: &mut Ui, state: &State, commands: &Commands) {
-    let Some(scene) = state.session.scene().filter(|scene| !scene.rig.clips.is_empty()) else { return };
+    let Some(scene) = state
+        .session
+        .scene()
+        .filter(|scene| !scene.rig.clips.is_empty())
+    else {
+        return;
+    };
     let preset = state.session.preset();
     let mut play = preset.playback.clone();
     folder(ui, "Clips", true, |ui| {
         clip_ui(ui, "scene.clip", "at rest", scene, &mut play.clip);
-        let Some(clip) = scene.rig.clip(&play.clip) else { return };
+        let Some(clip) = scene.rig.clip(&play.clip) else {
+            return;
+        };
         setting_ui(ui, state, commands, "scene.clip_speed");
-        hold_ui(ui, commands, &scene.rig.clips[clip], &preset.clock, &mut play);
+        hold_ui(
+            ui,
+            commands,
+            &scene.rig.clips[clip],
+            &preset.clock,
+            &mut play,
+        );
         if scene.rig.clips.len() > 1 {
-            clip_ui(ui, "scene.second_clip", "no second clip", scene, &mut play.second_clip);
+            clip_ui(
+                ui,
+                "scene.second_clip",
+                "no second clip",
+                scene,
+                &mut play.second_clip,
+            );
         }
         if !play.second_clip.is_empty() {
             setting_ui(ui, state, commands, "scene.clip_blend");
@@ -44,20 +65,39 @@ fn hold_ui(ui: &mut Ui, commands: &Commands, clip: &Clip, clock: &Clock, play: &
         ui.set_min_height(theme::ROW);
         ui.add_space(theme::GAP);
         let mut is_held = play.clip_time_s.is_some();
-        let hold = ui.checkbox(&mut is_held, "Hold").on_hover_text("Show one time of the clip, whatever the clock shows");
+        let hold = ui
+            .checkbox(&mut is_held, "Hold")
+            .on_hover_text("Show one time of the clip, whatever the clock shows");
         if hold.accessible_name("Hold the clip").clicked() {
             let now_s = clock.time_s * speed;
-            let now_s = if duration_s > 0.0 { now_s.rem_euclid(duration_s) } else { 0.0 };
+            let now_s = if duration_s > 0.0 {
+                now_s.rem_euclid(duration_s)
+            } else {
+                0.0
+            };
             play.clip_time_s = is_held.then_some(now_s);
         }
         if let Some(clip_time_s) = &mut play.clip_time_s {
-            let slider = egui::Slider::new(clip_time_s, 0.0..=duration_s).suffix(" s").fixed_decimals(2);
-            ui.add(slider).on_hover_text("Time of the clip").accessible_name("scene.pose_s");
+            let slider = egui::Slider::new(clip_time_s, 0.0..=duration_s)
+                .suffix(" s")
+                .fixed_decimals(2);
+            ui.add(slider)
+                .on_hover_text("Time of the clip")
+                .accessible_name("scene.pose_s");
             return;
         }
-        let range_s = [0.0, if speed == 0.0 { 0.0 } else { duration_s / speed.abs() }];
+        let range_s = [
+            0.0,
+            if speed == 0.0 {
+                0.0
+            } else {
+                duration_s / speed.abs()
+            },
+        ];
         if range_s[1] > 0.0 && clock.range_s != range_s {
-            let button = ui.button("Clock spans the clip").on_hover_text(format!("The timeline runs from 0 to {:.2} s", range_s[1]));
+            let button = ui
+                .button("Clock spans the clip")
+                .on_hover_text(format!("The timeline runs from 0 to {:.2} s", range_s[1]));
             if button.clicked() {
                 commands.edit(Edit::Clock(Clock { range_s, ..*clock }));
             }
@@ -69,17 +109,24 @@ fn hold_ui(ui: &mut Ui, commands: &Commands, clip: &Clip, clock: &Clock, play: &
 
 /// A menu of the scene's clips; `none` is the label of the empty name.
 fn clip_ui(ui: &mut Ui, name: &str, none: &str, scene: &Scene, chosen: &mut String) {
-    let shown = if chosen.is_empty() { none.to_owned() } else { chosen.clone() };
+    let shown = if chosen.is_empty() {
+        none.to_owned()
+    } else {
+        chosen.clone()
+    };
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         ui.add_space(theme::GAP);
-        let menu = ComboBox::from_id_salt(name).selected_text(shown).width(ui.available_width() - theme::GAP);
+        let menu = ComboBox::from_id_salt(name)
+            .selected_text(shown)
+            .width(ui.available_width() - theme::GAP);
         let menu = menu.show_ui(ui, |ui| {
             ui.selectable_value(chosen, String::new(), none);
             for (index, clip) in scene.rig.clips.iter().enumerate() {
                 let id = crate::app::files::scene_loader::clip_id(scene, index);
                 let about = format!("{:.2} s, {} channels", clip.duration_s, clip.channels.len());
-                ui.selectable_value(chosen, id.clone(), id).on_hover_text(about);
+                ui.selectable_value(chosen, id.clone(), id)
+                    .on_hover_text(about);
             }
         });
         menu.response.accessible_name(name);

@@ -29,25 +29,36 @@ pub fn menu_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Eff
     let duplicated = duplicate(effect, "duplicate");
     let button = ui.add_enabled(duplicated.is_ok(), entry("Duplicate as my own…"));
     let button = match &duplicated {
-        Ok(_) => button.on_hover_text("Write its text as a WGSL file of yours, and use that in its place"),
+        Ok(_) => button
+            .on_hover_text("Write its text as a WGSL file of yours, and use that in its place"),
         Err(reason) => button.on_disabled_hover_text(format!("{} {reason}.", effect.name)),
     };
     if button.clicked() {
-        chosen = Some(Command::File(FileCommand::AskNewEffect(Some(effect.clone()))));
+        chosen = Some(Command::File(FileCommand::AskNewEffect(Some(
+            effect.clone(),
+        ))));
     }
     let file = effect.source.as_ref().and_then(|source| {
         let mut custom = state.session.preset_file.effects.custom();
-        custom.find(|(name, _)| *name == source.stem).and_then(|(_, found)| found.path.clone())
+        custom
+            .find(|(name, _)| *name == source.stem)
+            .and_then(|(_, found)| found.path.clone())
     });
     if let Some(path) = file
-        && ui.add(entry("Open in my editor")).on_hover_text(path.display().to_string()).clicked()
+        && ui
+            .add(entry("Open in my editor"))
+            .on_hover_text(path.display().to_string())
+            .clicked()
     {
         chosen = Some(Command::File(FileCommand::Edit(path)));
     }
-    if state.session.preset().stack.get(&effect.name).is_some() && ui.add(entry("Reset all parameters")).clicked() {
+    if state.session.preset().stack.get(&effect.name).is_some()
+        && ui.add(entry("Reset all parameters")).clicked()
+    {
         chosen = Some(Command::Row(RowCommand::ResetGroup(effect.name.clone())));
     }
-    if state.session.preset().stack.get(&effect.name).is_some() && ui.add(entry("Remove")).clicked() {
+    if state.session.preset().stack.get(&effect.name).is_some() && ui.add(entry("Remove")).clicked()
+    {
         chosen = Some(Command::Edit(Edit::Disable(effect.clone())));
     }
     if let Some(command) = chosen {
@@ -61,28 +72,61 @@ fn values_ui(ui: &mut Ui, state: &State, effect: &Arc<Effect>) -> Option<Command
     let mut chosen = None;
     let is_enabled = state.session.preset().stack.get(&effect.name).is_some();
     let copy = ui.add_enabled(is_enabled, entry("Copy effect"));
-    if copy.on_hover_text("Put the effect with its values and keyframes on the clipboard, for another preset").clicked() {
+    if copy
+        .on_hover_text(
+            "Put the effect with its values and keyframes on the clipboard, for another preset",
+        )
+        .clicked()
+    {
         chosen = Some(Command::Library(LibraryCommand::CopyEffect(effect.clone())));
     }
-    if ui.add(entry("Paste effect")).on_hover_text("Enable the effect that is on the clipboard, with its values").clicked() {
+    if ui
+        .add(entry("Paste effect"))
+        .on_hover_text("Enable the effect that is on the clipboard, with its values")
+        .clicked()
+    {
         chosen = Some(Command::Perform(Action::PastePreset));
     }
-    let mut saved = state.files.values.iter().filter(|saved| saved.effect == effect.name).peekable();
+    let mut saved = state
+        .files
+        .values
+        .iter()
+        .filter(|saved| saved.effect == effect.name)
+        .peekable();
     if is_enabled || saved.peek().is_some() {
         let menu = ui.menu_button("Saved values", |ui| {
             for saved in saved {
                 ui.horizontal(|ui| {
-                    if ui.add(entry(&saved.name)).accessible_name(format!("Use {} for {}", saved.name, effect.name)).clicked() {
-                        chosen = Some(Command::Library(LibraryCommand::UseValues(saved.path.clone())));
+                    if ui
+                        .add(entry(&saved.name))
+                        .accessible_name(format!("Use {} for {}", saved.name, effect.name))
+                        .clicked()
+                    {
+                        chosen = Some(Command::Library(LibraryCommand::UseValues(
+                            saved.path.clone(),
+                        )));
                     }
-                    if icon_button(ui, Icon::Cross, &format!("Delete {} of {}", saved.name, effect.name)).clicked() {
-                        chosen = Some(Command::Library(LibraryCommand::DeleteValues(saved.path.clone())));
+                    if icon_button(
+                        ui,
+                        Icon::Cross,
+                        &format!("Delete {} of {}", saved.name, effect.name),
+                    )
+                    .clicked()
+                    {
+                        chosen = Some(Command::Library(LibraryCommand::DeleteValues(
+                            saved.path.clone(),
+                        )));
                     }
                 });
             }
             let save = ui.add_enabled(is_enabled, entry("Save these values…"));
-            if save.on_hover_text("Keep the effect's values under a name, for every preset").clicked() {
-                chosen = Some(Command::Library(LibraryCommand::AskName(Naming::Values(effect.clone()))));
+            if save
+                .on_hover_text("Keep the effect's values under a name, for every preset")
+                .clicked()
+            {
+                chosen = Some(Command::Library(LibraryCommand::AskName(Naming::Values(
+                    effect.clone(),
+                ))));
             }
         });
         menu.response.accessible_name("Saved values");

@@ -1,4 +1,5 @@
-//! The effects of the inspector: the stack in order, with the parameters of each, then every effect that is not in it.
+//! The effects of the inspector: the stack in order, with the parameters of each, then every effect
+//! that is not in it.
 
 use std::sync::Arc;
 
@@ -37,14 +38,28 @@ pub fn effects_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             }
         });
     });
-    let stack: Vec<&Arc<Effect>> = state.session.preset().stack.0.iter().map(|enabled| &enabled.effect).collect();
+    let stack: Vec<&Arc<Effect>> = state
+        .session
+        .preset()
+        .stack
+        .0
+        .iter()
+        .map(|enabled| &enabled.effect)
+        .collect();
     if stack.is_empty() {
-        ui.label(theme::weak("No effect is enabled, so the picture shows plain base colors. Enable one below."));
+        ui.label(theme::weak(
+            "No effect is enabled, so the picture shows plain base colors. Enable one below.",
+        ));
         ui.add_space(theme::HALF);
     }
     let top = ui.cursor().top();
-    let rects: Vec<Rect> = (0..stack.len()).map(|index| enabled_ui(ui, state, commands, &stack, index)).collect();
-    let area = Rect::from_x_y_ranges(ui.max_rect().x_range(), top..=rects.last().map_or(top, |last| last.bottom()));
+    let rects: Vec<Rect> = (0..stack.len())
+        .map(|index| enabled_ui(ui, state, commands, &stack, index))
+        .collect();
+    let area = Rect::from_x_y_ranges(
+        ui.max_rect().x_range(),
+        top..=rects.last().map_or(top, |last| last.bottom()),
+    );
     let names: Vec<&str> = stack.iter().map(|effect| effect.name.as_str()).collect();
     drop_ui(ui, commands, &names, &rects, area);
     ui.add_space(theme::HALF);
@@ -55,18 +70,28 @@ pub fn effects_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     ui.add_space(theme::GAP);
 }
 
-/// The effects of files that are not in the stack, files that are faulty, and a button for a new one.
+/// The effects of files that are not in the stack, files that are faulty, and a button for a new
+/// one.
 fn own_effects_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&Arc<Effect>]) {
     ui.add_space(theme::HALF);
     ui.horizontal(|ui| {
         ui.label(theme::weak("Your effects"));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if ui.small_button("New effect…").on_hover_text("Write an effect of your own, in one WGSL file").clicked() {
+            if ui
+                .small_button("New effect…")
+                .on_hover_text("Write an effect of your own, in one WGSL file")
+                .clicked()
+            {
                 commands.send(Command::File(FileCommand::AskNewEffect(None)));
             }
         });
     });
-    let own = state.session.preset_file.effects.effects().filter(|effect| effect.source.is_some() || effect.base.is_some());
+    let own = state
+        .session
+        .preset_file
+        .effects
+        .effects()
+        .filter(|effect| effect.source.is_some() || effect.base.is_some());
     for effect in own.filter(|effect| !stack.iter().any(|enabled| enabled.name == effect.name)) {
         ui.horizontal(|ui| disabled_ui(ui, state, commands, effect));
     }
@@ -74,7 +99,8 @@ fn own_effects_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&Arc
         ui.horizontal(|ui| {
             ui.set_min_height(theme::ROW);
             ui.add_space(theme::GAP);
-            let label = ui.label(RichText::new(format!("{name}.wgsl is faulty")).color(theme::red()));
+            let label =
+                ui.label(RichText::new(format!("{name}.wgsl is faulty")).color(theme::red()));
             label.on_hover_text(RichText::new(error).monospace());
         });
     }
@@ -86,15 +112,30 @@ fn fold_id(effect: &Effect) -> egui::Id {
 }
 
 /// The effect of `stack` at `index`. Returns where it is.
-fn enabled_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&Arc<Effect>], index: usize) -> Rect {
+fn enabled_ui(
+    ui: &mut Ui,
+    state: &State,
+    commands: &Commands,
+    stack: &[&Arc<Effect>],
+    index: usize,
+) -> Rect {
     let effect = stack[index];
-    let frame =
-        egui::Frame::new().fill(theme::bar()).corner_radius(6.0).inner_margin(egui::Margin { left: 8, right: 4, top: 3, bottom: 5 });
+    let frame = egui::Frame::new()
+        .fill(theme::bar())
+        .corner_radius(6.0)
+        .inner_margin(egui::Margin {
+            left: 8,
+            right: 4,
+            top: 3,
+            bottom: 5,
+        });
     let is_muted = state.session.muted.contains(&effect.name);
     if reveal::is_within(ui.ctx(), &effect.name) {
         ui.data_mut(|data| data.insert_temp(fold_id(effect), false));
     }
-    let is_folded = ui.data(|data| data.get_temp(fold_id(effect))).unwrap_or(false);
+    let is_folded = ui
+        .data(|data| data.get_temp(fold_id(effect)))
+        .unwrap_or(false);
     let shown = frame.show(ui, |ui| {
         ui.set_min_width(ui.available_width());
         header_ui(ui, state, commands, stack, index, (is_muted, is_folded));
@@ -112,7 +153,14 @@ fn enabled_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&Arc<Eff
     shown.response.rect
 }
 
-fn header_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&Arc<Effect>], index: usize, (is_muted, is_folded): (bool, bool)) {
+fn header_ui(
+    ui: &mut Ui,
+    state: &State,
+    commands: &Commands,
+    stack: &[&Arc<Effect>],
+    index: usize,
+    (is_muted, is_folded): (bool, bool),
+) {
     let (effect, count) = (stack[index], stack.len());
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
@@ -120,25 +168,46 @@ fn header_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&Arc<Effe
             grip_ui(ui, stack, index);
         }
         let mut on = true;
-        if ui.checkbox(&mut on, "").on_hover_text("Take it out of the stack").accessible_name(&effect.name).clicked() {
+        if ui
+            .checkbox(&mut on, "")
+            .on_hover_text("Take it out of the stack")
+            .accessible_name(&effect.name)
+            .clicked()
+        {
             commands.edit(Edit::Disable(effect.clone()));
         }
-        let text = RichText::new(title(effect)).strong().color(theme::text_strong());
-        let fold = ui.add(egui::Button::new(text).frame(false)).on_hover_text(&effect.about);
+        let text = RichText::new(title(effect))
+            .strong()
+            .color(theme::text_strong());
+        let fold = ui
+            .add(egui::Button::new(text).frame(false))
+            .on_hover_text(&effect.about);
         let verb = if is_folded { "Unfold" } else { "Fold" };
-        if fold.accessible_name(format!("{verb} {}", effect.name)).clicked() {
+        if fold
+            .accessible_name(format!("{verb} {}", effect.name))
+            .clicked()
+        {
             ui.data_mut(|data| data.insert_temp(fold_id(effect), !is_folded));
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
             let more = icon_button(ui, Icon::More, &format!("More of {}", effect.name));
             egui::Popup::menu(&more).show(|ui| effect_menu::menu_ui(ui, state, commands, effect));
-            let (icon, verb) = if is_muted { (Icon::EyeShut, "Show") } else { (Icon::Eye, "Mute") };
+            let (icon, verb) = if is_muted {
+                (Icon::EyeShut, "Show")
+            } else {
+                (Icon::Eye, "Mute")
+            };
             if icon_button(ui, icon, &format!("{verb} {}", effect.name)).clicked() {
                 commands.send(Command::Mute(effect.clone(), !is_muted));
             }
-            for (icon, verb, to) in [(Icon::Down, "later", index + 1), (Icon::Up, "earlier", index.wrapping_sub(1))] {
-                let button = ui.add_enabled_ui(to < count, |ui| icon_button(ui, icon, &format!("Apply {} {verb}", effect.name)));
+            for (icon, verb, to) in [
+                (Icon::Down, "later", index + 1),
+                (Icon::Up, "earlier", index.wrapping_sub(1)),
+            ] {
+                let button = ui.add_enabled_ui(to < count, |ui| {
+                    icon_button(ui, icon, &format!("Apply {} {verb}", effect.name))
+                });
                 if button.inner.clicked() {
                     commands.edit(Edit::Swap(index, to));
                 }
@@ -151,26 +220,56 @@ fn header_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&Arc<Effe
 fn grip_ui(ui: &mut Ui, stack: &[&Arc<Effect>], index: usize) {
     let effect = stack[index];
     let (rect, grip) = ui.allocate_exact_size(vec2(10.0, theme::ROW - 4.0), Sense::drag());
-    grip.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Drag {}", effect.name)));
-    let ink = if grip.hovered() || grip.dragged() { theme::text_strong() } else { theme::text_weak() };
-    paint(ui.painter(), Icon::Grip, Rect::from_center_size(rect.center(), vec2(12.0, 12.0)), ink);
+    grip.widget_info(|| {
+        egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Drag {}", effect.name))
+    });
+    let ink = if grip.hovered() || grip.dragged() {
+        theme::text_strong()
+    } else {
+        theme::text_weak()
+    };
+    paint(
+        ui.painter(),
+        Icon::Grip,
+        Rect::from_center_size(rect.center(), vec2(12.0, 12.0)),
+        ink,
+    );
     grip.dnd_set_drag_payload(StackDrag::Move(index));
     let others = depends_on_order(effect, stack);
     grip.on_hover_text(if others.is_empty() {
         "Drag to another place of the stack. No other effect depends on it.".into()
     } else {
-        format!("Drag to another place of the stack. It matters whether it comes before or after {}.", others.join(", "))
+        format!(
+            "Drag to another place of the stack. It matters whether it comes before or after {}.",
+            others.join(", ")
+        )
     });
 }
 
 fn parameters_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effect>) {
-    let Some(words) = state.session.shown_words(effect) else { return };
-    for field in effect.fields.iter().filter(|field| field.is_shown(&effect.fields, &words)) {
-        let row = Row::of_parameter((effect.clone(), field.clone()), &words).keyed(state.session.keying(effect, field));
-        let row = if state.session.preset().unit == LengthUnit::Scene { row.in_radii() } else { row };
+    let Some(words) = state.session.shown_words(effect) else {
+        return;
+    };
+    for field in effect
+        .fields
+        .iter()
+        .filter(|field| field.is_shown(&effect.fields, &words))
+    {
+        let row = Row::of_parameter((effect.clone(), field.clone()), &words)
+            .keyed(state.session.keying(effect, field));
+        let row = if state.session.preset().unit == LengthUnit::Scene {
+            row.in_radii()
+        } else {
+            row
+        };
         row_ui(ui, commands, &row, &field.value(&words));
         if field.measure() == Measure::Point {
-            pick_ui(ui, state.picture.picking.as_ref(), commands, (effect.clone(), field.clone()));
+            pick_ui(
+                ui,
+                state.picture.picking.as_ref(),
+                commands,
+                (effect.clone(), field.clone()),
+            );
         }
     }
 }
@@ -182,10 +281,19 @@ fn pick_ui(ui: &mut Ui, picking: Option<&Picking>, commands: &Commands, paramete
     let is_picking = picking == Some(&pick);
     ui.horizontal(|ui| {
         ui.add_space(theme::GAP);
-        let button = ui.selectable_label(is_picking, if is_picking { "Click on the model" } else { "Pick on the model" });
+        let button = ui.selectable_label(
+            is_picking,
+            if is_picking {
+                "Click on the model"
+            } else {
+                "Pick on the model"
+            },
+        );
         let button = button.on_hover_text("The next click in the picture sets this point");
         if button.accessible_name(format!("Pick {path}")).clicked() {
-            commands.send(Command::View(ViewCommand::Pick((!is_picking).then_some(pick))));
+            commands.send(Command::View(ViewCommand::Pick(
+                (!is_picking).then_some(pick),
+            )));
         }
     });
 }
@@ -195,7 +303,10 @@ fn disabled_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Eff
     ui.set_min_height(theme::ROW);
     ui.add_space(theme::GAP);
     let mut on = false;
-    let box_ui = ui.checkbox(&mut on, title(effect)).on_hover_text(&effect.about).accessible_name(&effect.name);
+    let box_ui = ui
+        .checkbox(&mut on, title(effect))
+        .on_hover_text(&effect.about)
+        .accessible_name(&effect.name);
     box_ui.context_menu(|ui| effect_menu::menu_ui(ui, state, commands, effect));
     let clicked = box_ui.clicked();
     let stack = &state.session.preset().stack;
@@ -209,8 +320,13 @@ fn disabled_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Eff
         commands.send(Command::Notify(Level::Warning, conflict.to_string()));
     }
     let (name, other) = (&effect.name, &rival.name);
-    let instead = ui.small_button(format!("instead of {other}")).accessible_name(format!("{name} instead of {other}"));
-    if instead.on_hover_text(format!("Disable {other} and enable {name}")).clicked() {
+    let instead = ui
+        .small_button(format!("instead of {other}"))
+        .accessible_name(format!("{name} instead of {other}"));
+    if instead
+        .on_hover_text(format!("Disable {other} and enable {name}"))
+        .clicked()
+    {
         commands.edit(Edit::Replace(other.clone(), effect.clone()));
     }
 }

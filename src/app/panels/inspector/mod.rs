@@ -1,4 +1,5 @@
-//! The inspector: every value of the preset in folders, from the registry that preset files and the command line use too.
+//! The inspector: every value of the preset in folders, from the registry that preset files and the
+//! command line use too.
 
 mod accuracy;
 mod clips;
@@ -31,21 +32,31 @@ pub struct Inspector;
 
 impl Panel for Inspector {
     fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
-        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            ui.spacing_mut().item_spacing.y = 2.0;
-            effects::effects_ui(ui, state, commands);
-            scene::scene_ui(ui, state, commands);
-            clips::clips_ui(ui, state, commands);
-            camera_ui(ui, state, commands);
-            let clock = ["clock.time_s", "clock.range_s", "clock.loop", "clock.speed"];
-            settings_folder(ui, state, commands, ("Clock", false), &clock);
-            accuracy::accuracy_ui(ui, state, commands);
-            folder(ui, "Overlays", false, |ui| overlays::overlays_ui(ui, state, commands));
-            folder(ui, "Timing", true, |ui| report::timing_ui(ui, state));
-            folder(ui, "Kernel", false, |ui| report::kernel_ui(ui, state));
-            settings_folder(ui, state, commands, ("Preset", false), &["name", "about", "output.size"]);
-            ui.add_space(16.0);
-        });
+        egui::ScrollArea::vertical()
+            .auto_shrink(false)
+            .show(ui, |ui| {
+                ui.spacing_mut().item_spacing.y = 2.0;
+                effects::effects_ui(ui, state, commands);
+                scene::scene_ui(ui, state, commands);
+                clips::clips_ui(ui, state, commands);
+                camera_ui(ui, state, commands);
+                let clock = ["clock.time_s", "clock.range_s", "clock.loop", "clock.speed"];
+                settings_folder(ui, state, commands, ("Clock", false), &clock);
+                accuracy::accuracy_ui(ui, state, commands);
+                folder(ui, "Overlays", false, |ui| {
+                    overlays::overlays_ui(ui, state, commands)
+                });
+                folder(ui, "Timing", true, |ui| report::timing_ui(ui, state));
+                folder(ui, "Kernel", false, |ui| report::kernel_ui(ui, state));
+                settings_folder(
+                    ui,
+                    state,
+                    commands,
+                    ("Preset", false),
+                    &["name", "about", "output.size"],
+                );
+                ui.add_space(16.0);
+            });
     }
 }
 
@@ -60,7 +71,10 @@ fn camera_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             }
             return;
         }
-        let settings = CAMERA.settings.iter().filter(|setting| setting.name != "up");
+        let settings = CAMERA
+            .settings
+            .iter()
+            .filter(|setting| setting.name != "up");
         settings.for_each(|setting| setting_ui(ui, state, commands, &setting.path()));
         ui.horizontal(|ui| {
             if ui.button("Frame scene").clicked() {
@@ -68,7 +82,9 @@ fn camera_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             }
             if ui
                 .button("Automatic")
-                .on_hover_text("Remove the camera from the preset, so that the scene is framed automatically")
+                .on_hover_text(
+                    "Remove the camera from the preset, so that the scene is framed automatically",
+                )
                 .clicked()
             {
                 commands.edit(Edit::Camera(None));

@@ -22,7 +22,12 @@ pub fn overlays_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             ui.spacing_mut().item_spacing.x = 6.0;
             let mut on = state.picture.overlays.contains(overlay);
             let label = format!("Overlay {}", overlay.name().to_lowercase());
-            if ui.checkbox(&mut on, overlay.name()).on_hover_text(overlay.doc()).accessible_name(label).clicked() {
+            if ui
+                .checkbox(&mut on, overlay.name())
+                .on_hover_text(overlay.doc())
+                .accessible_name(label)
+                .clicked()
+            {
                 commands.send(Command::View(ViewCommand::ShowOverlay(overlay, on)));
             }
             swatch(ui, overlay.color());
@@ -34,19 +39,34 @@ pub fn overlays_ui(ui: &mut Ui, state: &State, commands: &Commands) {
                 let is_bad = overlay.is_error() && overlay.fault().is_some() && count > 0;
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     let text = RichText::new(grouped(count)).monospace();
-                    ui.label(text.color(if is_bad { theme::red() } else { theme::text_weak() })).on_hover_text("pixels");
+                    ui.label(text.color(if is_bad {
+                        theme::red()
+                    } else {
+                        theme::text_weak()
+                    }))
+                    .on_hover_text("pixels");
                 });
             }
         });
     }
     if findings.is_none() {
-        ui.label(theme::weak("To count pixels, show an overlay or press Verify."));
+        ui.label(theme::weak(
+            "To count pixels, show an overlay or press Verify.",
+        ));
     }
 }
 
 fn gain_ui(ui: &mut Ui, mut gain: u8, commands: &Commands) {
-    let drag = egui::DragValue::new(&mut gain).range(1..=255).prefix("× ").speed(0.3);
-    if ui.add(drag).accessible_name("Overlay gain").on_hover_text("Factor of the color difference").changed() {
+    let drag = egui::DragValue::new(&mut gain)
+        .range(1..=255)
+        .prefix("× ")
+        .speed(0.3);
+    if ui
+        .add(drag)
+        .accessible_name("Overlay gain")
+        .on_hover_text("Factor of the color difference")
+        .changed()
+    {
         commands.send(Command::View(ViewCommand::OverlayGain(gain)));
     }
 }

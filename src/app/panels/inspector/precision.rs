@@ -45,25 +45,45 @@ fn errors_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effec
         ui.label(theme::weak(text).size(11.0));
         return;
     };
-    let found = measured.effects.iter().find(|(known, _)| known == effect).map_or(&[][..], |(_, errors)| errors);
+    let found = measured
+        .effects
+        .iter()
+        .find(|(known, _)| known == effect)
+        .map_or(&[][..], |(_, errors)| errors);
     let [width, height] = measured.size;
-    let about = format!("The effect's text in f32 against f64, on the oracle's picture of {width}x{height} pixels.");
+    let about = format!(
+        "The effect's text in f32 against f64, on the oracle's picture of {width}x{height} pixels."
+    );
     if found.is_empty() {
-        ui.label(theme::weak("f32 error: none").size(11.0)).on_hover_text(&about);
+        ui.label(theme::weak("f32 error: none").size(11.0))
+            .on_hover_text(&about);
     }
     for error in found {
         let text = format!("f32 error: {}", words(error));
         let [x, y] = error.uv.unwrap_or_default();
         let place = match error.uv {
-            Some(_) => format!("It is largest at {:.0}, {:.0}. Click to mark the place.", x * f64::from(width), y * f64::from(height)),
+            Some(_) => format!(
+                "It is largest at {:.0}, {:.0}. Click to mark the place.",
+                x * f64::from(width),
+                y * f64::from(height)
+            ),
             None => "The place lies outside the picture.".into(),
         };
-        let button = egui::Button::new(theme::weak(&text).size(11.0)).frame(false).small();
+        let button = egui::Button::new(theme::weak(&text).size(11.0))
+            .frame(false)
+            .small();
         let button = ui.add_enabled(error.uv.is_some(), button);
-        if button.on_hover_text(format!("{about} {place}")).accessible_name(&text).clicked()
+        if button
+            .on_hover_text(format!("{about} {place}"))
+            .accessible_name(&text)
+            .clicked()
             && let Some(of) = requested
         {
-            let marker = Marker { of: of.clone(), uv: [x as f32, y as f32], text: format!("{}: {}", effect.name, words(error)) };
+            let marker = Marker {
+                of: of.clone(),
+                uv: [x as f32, y as f32],
+                text: format!("{}: {}", effect.name, words(error)),
+            };
             commands.send(Command::View(ViewCommand::Mark(Some(Box::new(marker)))));
         }
     }
@@ -90,10 +110,19 @@ mod tests {
 
     #[test]
     fn an_error_is_said_in_its_unit() {
-        let said = |quantity, error| words(&Error { quantity, error, uv: None });
+        let said = |quantity, error| {
+            words(&Error {
+                quantity,
+                error,
+                uv: None,
+            })
+        };
         assert_eq!(said(Quantity::Color, 1.5), "1.50 of 255");
         assert_eq!(said(Quantity::Color, 0.000_123), "1.2e-4 of 255");
         assert_eq!(said(Quantity::Vertex, 3.1e-7), "3.1e-7 m");
-        assert_eq!(said(Quantity::Color, f64::INFINITY), "f32 is not finite, f64 is");
+        assert_eq!(
+            said(Quantity::Color, f64::INFINITY),
+            "f32 is not finite, f64 is"
+        );
     }
 }

@@ -24,7 +24,10 @@ pub fn timing_ui(ui: &mut Ui, state: &State) {
         ui.label(theme::weak("Times appear with the first frame."));
         return;
     };
-    let drawn = state.picture.verification.verdict_on(state.picture.screen.drawn());
+    let drawn = state
+        .picture
+        .verification
+        .verdict_on(state.picture.screen.drawn());
     let mut main = vec![("frame".to_owned(), time_line(Some(&state.picture.screen)).0)];
     main.extend(error_lines(drawn.map(|verdict| &*verdict.findings)));
     let main_count = main.len();
@@ -32,27 +35,54 @@ pub fn timing_ui(ui: &mut Ui, state: &State) {
         Cost::Settled(summary) => Some(summary),
         _ => None,
     };
-    egui::Grid::new("timing").num_columns(2).spacing([16.0, 4.0]).min_col_width(96.0).show(ui, |ui| {
-        for (index, (name, value)) in main.into_iter().chain(lines(report, summary)).enumerate() {
-            let is_main = index < main_count;
-            ui.label(RichText::new(name).color(if is_main { theme::text_strong() } else { theme::text_weak() }));
-            ui.label(RichText::new(value).monospace().color(if is_main { theme::text_strong() } else { theme::text() }));
-            ui.end_row();
-        }
-    });
+    egui::Grid::new("timing")
+        .num_columns(2)
+        .spacing([16.0, 4.0])
+        .min_col_width(96.0)
+        .show(ui, |ui| {
+            for (index, (name, value)) in main.into_iter().chain(lines(report, summary)).enumerate()
+            {
+                let is_main = index < main_count;
+                ui.label(RichText::new(name).color(if is_main {
+                    theme::text_strong()
+                } else {
+                    theme::text_weak()
+                }));
+                ui.label(RichText::new(value).monospace().color(if is_main {
+                    theme::text_strong()
+                } else {
+                    theme::text()
+                }));
+                ui.end_row();
+            }
+        });
     if state.picture.screen.gpu.summary.software {
-        ui.label(RichText::new("Compare software-adapter timings only with each other.").color(theme::amber()));
+        ui.label(
+            RichText::new("Compare software-adapter timings only with each other.")
+                .color(theme::amber()),
+        );
     }
 }
 
-/// The error of the picture, a row for each number: one long row would make the inspector wider, and so the picture another one.
+/// The error of the picture, a row for each number: one long row would make the inspector wider,
+/// and so the picture another one.
 fn error_lines(findings: Option<&Findings>) -> Vec<(String, String)> {
-    let Some(findings) = findings else { return vec![("error".into(), "not measured".into())] };
-    let against_true = findings.wrong_against_true().map_or_else(|| "not known".into(), grouped);
+    let Some(findings) = findings else {
+        return vec![("error".into(), "not measured".into())];
+    };
+    let against_true = findings
+        .wrong_against_true()
+        .map_or_else(|| "not known".into(), grouped);
     vec![
-        ("wrong (snapped)".into(), grouped(findings.accuracy.wrong_triangles)),
+        (
+            "wrong (snapped)".into(),
+            grouped(findings.accuracy.wrong_triangles),
+        ),
         ("wrong (true)".into(), against_true),
-        ("max Δ".into(), format!("{} of 255", findings.accuracy.max_color_delta)),
+        (
+            "max Δ".into(),
+            format!("{} of 255", findings.accuracy.max_color_delta),
+        ),
     ]
 }
 
@@ -60,7 +90,11 @@ fn error_lines(findings: Option<&Findings>) -> Vec<(String, String)> {
 fn lines(report: &Report, summary: Option<&Summary>) -> Vec<(String, String)> {
     let mut lines = Vec::new();
     if let Some(Summary { passes, rest, .. }) = summary {
-        lines.extend(passes.iter().map(|(name, spread)| (name.clone(), format!("{:.3} ms", spread.median))));
+        lines.extend(
+            passes
+                .iter()
+                .map(|(name, spread)| (name.clone(), format!("{:.3} ms", spread.median))),
+        );
         lines.push(("rest".into(), format!("{:.3} ms", rest.median)));
     }
     if let Some(culled) = report.culled {
@@ -77,27 +111,47 @@ fn lines(report: &Report, summary: Option<&Summary>) -> Vec<(String, String)> {
         ("overflow", c.overflow),
         ("depth without id", c.depth_without_id),
     ];
-    lines.extend(counters.into_iter().filter(|(_, count)| *count != 0).map(|(name, count)| (name.to_owned(), count.to_string())));
+    lines.extend(
+        counters
+            .into_iter()
+            .filter(|(_, count)| *count != 0)
+            .map(|(name, count)| (name.to_owned(), count.to_string())),
+    );
     lines
 }
 
 /// Which passes and buffers the newest picture has, and why.
 pub fn kernel_ui(ui: &mut Ui, state: &State) {
-    let Some(Explanation { key, passes, buffers, reasons, omitted, .. }) = state.picture.screen.explanation() else {
+    let Some(Explanation {
+        key,
+        passes,
+        buffers,
+        reasons,
+        omitted,
+        ..
+    }) = state.picture.screen.explanation()
+    else {
         ui.label(theme::weak("The kernel appears with the first frame."));
         return;
     };
     ui.label(RichText::new(key).monospace().color(theme::text_strong()));
     let bytes: u64 = buffers.iter().map(|buffer| buffer.bytes).sum();
     ui.add_space(theme::HALF);
-    ui.label(theme::weak(format!("{} passes; {} buffers, {} in total", passes.len(), buffers.len(), text::bytes(bytes))));
+    ui.label(theme::weak(format!(
+        "{} passes; {} buffers, {} in total",
+        passes.len(),
+        buffers.len(),
+        text::bytes(bytes)
+    )));
     for pass in passes {
-        ui.label(RichText::new(&pass.name).monospace()).on_hover_text(&pass.why);
+        ui.label(RichText::new(&pass.name).monospace())
+            .on_hover_text(&pass.why);
     }
     ui.add_space(theme::HALF);
     for buffer in buffers {
         ui.horizontal(|ui| {
-            ui.label(RichText::new(&buffer.name).monospace()).on_hover_text(&buffer.why);
+            ui.label(RichText::new(&buffer.name).monospace())
+                .on_hover_text(&buffer.why);
             ui.label(theme::weak(text::bytes(buffer.bytes)));
         });
     }

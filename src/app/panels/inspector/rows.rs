@@ -28,8 +28,20 @@ const FOLDERS: &[(&str, &[&str])] = &[
             "ground.cells",
         ],
     ),
-    ("Camera", &["camera.eye", "camera.target", "camera.fov_y_deg", "camera.orthographic_height_m", "camera.near_m"]),
-    ("Clock", &["clock.time_s", "clock.range_s", "clock.loop", "clock.speed"]),
+    (
+        "Camera",
+        &[
+            "camera.eye",
+            "camera.target",
+            "camera.fov_y_deg",
+            "camera.orthographic_height_m",
+            "camera.near_m",
+        ],
+    ),
+    (
+        "Clock",
+        &["clock.time_s", "clock.range_s", "clock.loop", "clock.speed"],
+    ),
     ("Preset", &["name", "about", "output.size"]),
 ];
 
@@ -40,9 +52,14 @@ pub fn has_row(path: &str) -> bool {
 
 /// A folder of the inspector; `open` at the start.
 pub fn folder(ui: &mut Ui, title: &str, open: bool, contents: impl FnOnce(&mut Ui)) {
-    let mut paths = FOLDERS.iter().filter(|(folder, _)| *folder == title).flat_map(|(_, paths)| *paths);
+    let mut paths = FOLDERS
+        .iter()
+        .filter(|(folder, _)| *folder == title)
+        .flat_map(|(_, paths)| *paths);
     let is_revealed = paths.any(|path| reveal::is_within(ui.ctx(), path));
-    let header = egui::CollapsingHeader::new(theme::heading(title)).default_open(open).open(is_revealed.then_some(true));
+    let header = egui::CollapsingHeader::new(theme::heading(title))
+        .default_open(open)
+        .open(is_revealed.then_some(true));
     header.show_unindented(ui, |ui| {
         ui.add_space(2.0);
         contents(ui);
@@ -51,14 +68,28 @@ pub fn folder(ui: &mut Ui, title: &str, open: bool, contents: impl FnOnce(&mut U
 }
 
 /// A folder of settings, by their paths.
-pub fn settings_folder(ui: &mut Ui, state: &State, commands: &Commands, (title, open): (&str, bool), paths: &[&str]) {
-    folder(ui, title, open, |ui| paths.iter().for_each(|path| setting_ui(ui, state, commands, path)));
+pub fn settings_folder(
+    ui: &mut Ui,
+    state: &State,
+    commands: &Commands,
+    (title, open): (&str, bool),
+    paths: &[&str],
+) {
+    folder(ui, title, open, |ui| {
+        paths
+            .iter()
+            .for_each(|path| setting_ui(ui, state, commands, path))
+    });
 }
 
 /// The row of a setting; nothing if it does not apply to the preset.
 pub fn setting_ui(ui: &mut Ui, state: &State, commands: &Commands, path: &str) {
-    let Some(setting) = Setting::find(path) else { return };
+    let Some(setting) = Setting::find(path) else {
+        return;
+    };
     let preset = state.session.preset();
-    let Some(value) = setting.get(preset) else { return };
+    let Some(value) = setting.get(preset) else {
+        return;
+    };
     row_ui(ui, commands, &Row::of_setting(setting, preset), &value);
 }

@@ -28,11 +28,21 @@ pub fn scene_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         gradient_ui(ui, preset, commands);
         setting_ui(ui, state, commands, BOTTOM);
         ground_ui(ui, preset, commands);
-        GROUND.settings.iter().for_each(|setting| setting_ui(ui, state, commands, &setting.path()));
-        if preset.stack.0.iter().any(|enabled| enabled.effect.hooks.has_lines) {
+        GROUND
+            .settings
+            .iter()
+            .for_each(|setting| setting_ui(ui, state, commands, &setting.path()));
+        if preset
+            .stack
+            .0
+            .iter()
+            .any(|enabled| enabled.effect.hooks.has_lines)
+        {
             setting_ui(ui, state, commands, "scene.polyline");
         }
-        let Some(scene) = state.session.scene() else { return };
+        let Some(scene) = state.session.scene() else {
+            return;
+        };
         if !scene.cameras.is_empty() {
             cameras_ui(ui, scene, preset, commands);
         }
@@ -43,7 +53,11 @@ pub fn scene_ui(ui: &mut Ui, state: &State, commands: &Commands) {
                 ui.label(theme::weak(text)).on_hover_ui(|ui| {
                     for image in &scene.images {
                         let [width, height] = image.size();
-                        ui.label(format!("{}: {width} x {height}, {}", image.name, text::bytes(image.bytes())));
+                        ui.label(format!(
+                            "{}: {width} x {height}, {}",
+                            image.name,
+                            text::bytes(image.bytes())
+                        ));
                     }
                 });
             });
@@ -56,15 +70,21 @@ const BOTTOM: &str = "output.background_bottom";
 
 /// The tick of the gradient, which adds the color at the bottom or removes it.
 fn gradient_ui(ui: &mut Ui, preset: &Preset, commands: &Commands) {
-    let Some(setting) = Setting::find(BOTTOM) else { return };
+    let Some(setting) = Setting::find(BOTTOM) else {
+        return;
+    };
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         ui.add_space(theme::GAP);
         let mut is_on = preset.output.background_bottom.is_some();
-        let tick =
-            ui.checkbox(&mut is_on, "gradient").on_hover_text("The background changes from this color at the top to another at the bottom");
+        let tick = ui.checkbox(&mut is_on, "gradient").on_hover_text(
+            "The background changes from this color at the top to another at the bottom",
+        );
         if tick.changed() && is_on {
-            commands.edit(Edit::Setting(setting, first_bottom(preset.output.background).to_value()));
+            commands.edit(Edit::Setting(
+                setting,
+                first_bottom(preset.output.background).to_value(),
+            ));
         } else if tick.changed() {
             commands.send(Command::Row(RowCommand::Reset(BOTTOM.into())));
         }
@@ -77,7 +97,9 @@ fn ground_ui(ui: &mut Ui, preset: &Preset, commands: &Commands) {
         ui.set_min_height(theme::ROW);
         ui.add_space(theme::GAP);
         let mut is_on = preset.ground.is_some();
-        let tick = ui.checkbox(&mut is_on, "ground").on_hover_text("The scene stands on a disc or a square that receives its shadow");
+        let tick = ui
+            .checkbox(&mut is_on, "ground")
+            .on_hover_text("The scene stands on a disc or a square that receives its shadow");
         if tick.changed() && is_on {
             // Any setting of the table adds it.
             let first = &GROUND.settings[0];
@@ -88,10 +110,17 @@ fn ground_ui(ui: &mut Ui, preset: &Preset, commands: &Commands) {
     });
 }
 
-/// The color at the bottom of a new gradient: darker than that of a light background, lighter than that of a dark one.
+/// The color at the bottom of a new gradient: darker than that of a light background, lighter than
+/// that of a dark one.
 fn first_bottom([r, g, b, alpha]: [f32; 4]) -> [f32; 4] {
     let is_light = 0.2126 * r + 0.7152 * g + 0.0722 * b > 0.18;
-    let [r, g, b] = [r, g, b].map(|c| if is_light { 0.3 * c } else { c + 0.25 * (1.0 - c) });
+    let [r, g, b] = [r, g, b].map(|c| {
+        if is_light {
+            0.3 * c
+        } else {
+            c + 0.25 * (1.0 - c)
+        }
+    });
     [r, g, b, alpha]
 }
 
@@ -100,24 +129,45 @@ fn cameras_ui(ui: &mut Ui, scene: &Scene, preset: &Preset, commands: &Commands) 
     let id = |index: usize| {
         let name = &scene.cameras[index].name;
         // Of cameras with the same name, all but the first go by their index.
-        if scene.camera(name) == Some(index) { name.clone() } else { format!("#{index}") }
+        if scene.camera(name) == Some(index) {
+            name.clone()
+        } else {
+            format!("#{index}")
+        }
     };
-    let chosen = preset.camera.is_none().then(|| scene.camera(&preset.scene_camera).unwrap_or(0));
+    let chosen = preset
+        .camera
+        .is_none()
+        .then(|| scene.camera(&preset.scene_camera).unwrap_or(0));
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         ui.add_space(theme::GAP);
-        let shown = chosen.map_or_else(|| "the preset's own camera".to_owned(), |index| format!("camera {}", id(index)));
-        let menu = ComboBox::from_id_salt("scene.camera").selected_text(shown).width(ui.available_width() - theme::GAP);
+        let shown = chosen.map_or_else(
+            || "the preset's own camera".to_owned(),
+            |index| format!("camera {}", id(index)),
+        );
+        let menu = ComboBox::from_id_salt("scene.camera")
+            .selected_text(shown)
+            .width(ui.available_width() - theme::GAP);
         let menu = menu.show_ui(ui, |ui| {
             for index in 0..scene.cameras.len() {
-                if ui.selectable_label(chosen == Some(index), id(index)).clicked() {
+                if ui
+                    .selectable_label(chosen == Some(index), id(index))
+                    .clicked()
+                {
                     // The first camera is the default, so it needs no name.
-                    commands.edit(Edit::SceneCamera(if index == 0 { String::new() } else { id(index) }));
+                    commands.edit(Edit::SceneCamera(if index == 0 {
+                        String::new()
+                    } else {
+                        id(index)
+                    }));
                 }
             }
         });
         menu.response
-            .on_hover_text("Cameras of the scene. Moving the camera in the picture gives the preset its own.")
+            .on_hover_text(
+                "Cameras of the scene. Moving the camera in the picture gives the preset its own.",
+            )
             .accessible_name("scene.camera");
     });
 }

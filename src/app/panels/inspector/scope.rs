@@ -1,4 +1,5 @@
-//! The row "On" of an effect: the parts of the scene that it changes, chosen from a list or by a click on the model.
+//! The row "On" of an effect: the parts of the scene that it changes, chosen from a list or by a
+//! click on the model.
 
 use std::sync::Arc;
 
@@ -23,7 +24,8 @@ use crate::{
 const LIST_WIDTH: f32 = 240.0;
 const LIST_HEIGHT: f32 = 260.0;
 
-/// An entry of the list: a part of the scene, or a pattern of the scope that is not the name of one.
+/// An entry of the list: a part of the scene, or a pattern of the scope that is not the name of
+/// one.
 #[derive(Clone)]
 struct Entry {
     pattern: PartPattern,
@@ -49,21 +51,40 @@ struct Missing {
 
 /// The row of an effect that can be limited to parts.
 pub fn scope_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effect>) {
-    let Some(enabled) = state.session.preset().stack.get(&effect.name).filter(|enabled| enabled.effect.has_scope()) else { return };
+    let Some(enabled) = state
+        .session
+        .preset()
+        .stack
+        .get(&effect.name)
+        .filter(|enabled| enabled.effect.has_scope())
+    else {
+        return;
+    };
     let on = enabled.on.clone();
-    let is_picking = matches!(&state.picture.picking, Some(Picking::Part(picking, _)) if picking == effect);
+    let is_picking =
+        matches!(&state.picture.picking, Some(Picking::Part(picking, _)) if picking == effect);
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         ui.label(theme::weak("On"));
-        let button = ui.button(if is_picking { "click on the model".to_owned() } else { format!("{}…", summary(&on)) });
-        let button = button.on_hover_text(format!("{}.on: {on}", effect.name)).accessible_name(format!("Parts of {}", effect.name));
+        let button = ui.button(if is_picking {
+            "click on the model".to_owned()
+        } else {
+            format!("{}…", summary(&on))
+        });
+        let button = button
+            .on_hover_text(format!("{}.on: {on}", effect.name))
+            .accessible_name(format!("Parts of {}", effect.name));
         let popup = Popup::menu(&button).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
         popup.show(|ui| picker_ui(ui, state, commands, effect, &on));
     });
     if let Some(scene) = state.session.scene().filter(|_| !on.is_whole_scene()) {
         let prefix = format!("effects.{}.on: ", effect.name);
         for sentence in missing(ui, state, scene, effect, &on).iter() {
-            theme::notice(ui, theme::amber(), sentence.strip_prefix(&prefix).unwrap_or(sentence));
+            theme::notice(
+                ui,
+                theme::amber(),
+                sentence.strip_prefix(&prefix).unwrap_or(sentence),
+            );
         }
     }
 }
@@ -85,8 +106,11 @@ fn picker_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effec
     ui.set_width(LIST_WIDTH);
     let id = egui::Id::unique(("search of parts", &effect.name));
     let mut search: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
-    let field = TextEdit::singleline(&mut search).hint_text("Search parts, or write a pattern: mesh:Lens*").desired_width(f32::INFINITY);
-    ui.add(field).accessible_name(format!("Search parts for {}", effect.name));
+    let field = TextEdit::singleline(&mut search)
+        .hint_text("Search parts, or write a pattern: mesh:Lens*")
+        .desired_width(f32::INFINITY);
+    ui.add(field)
+        .accessible_name(format!("Search parts for {}", effect.name));
     ui.data_mut(|data| data.insert_temp(id, search.clone()));
     let mut changed: Option<Scope> = None;
     // A pattern in the search field that is no name of the list.
@@ -96,20 +120,37 @@ fn picker_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effec
     {
         changed = Some(on.with(&pattern, true));
     }
-    let entries = state.session.scene().map_or_else(|| Arc::from([]), |scene| entries(ui, scene));
-    let own = on.patterns().iter().filter(|pattern| !entries.iter().any(|entry| entry.pattern == **pattern));
-    let own: Vec<Entry> = own.map(|pattern| Entry { pattern: pattern.clone(), text: pattern.to_string(), indent: 0.0 }).collect();
+    let entries = state
+        .session
+        .scene()
+        .map_or_else(|| Arc::from([]), |scene| entries(ui, scene));
+    let own = on
+        .patterns()
+        .iter()
+        .filter(|pattern| !entries.iter().any(|entry| entry.pattern == **pattern));
+    let own: Vec<Entry> = own
+        .map(|pattern| Entry {
+            pattern: pattern.clone(),
+            text: pattern.to_string(),
+            indent: 0.0,
+        })
+        .collect();
     let needle = search.trim().to_lowercase();
-    let is_found = |entry: &&Entry| needle.is_empty() || entry.pattern.to_string().to_lowercase().contains(&needle);
+    let is_found = |entry: &&Entry| {
+        needle.is_empty() || entry.pattern.to_string().to_lowercase().contains(&needle)
+    };
     let listed: Vec<&Entry> = own.iter().chain(entries.iter().filter(is_found)).collect();
-    ScrollArea::vertical().max_height(LIST_HEIGHT).auto_shrink([false, true]).show_rows(ui, theme::ROW, listed.len(), |ui, rows| {
-        for (index, entry) in listed.iter().enumerate().take(rows.end).skip(rows.start) {
-            let is_first = index == 0 || listed[index - 1].pattern.kind != entry.pattern.kind;
-            if let Some(is_on) = entry_ui(ui, on, entry, is_first) {
-                changed = Some(on.with(&entry.pattern, is_on));
+    ScrollArea::vertical()
+        .max_height(LIST_HEIGHT)
+        .auto_shrink([false, true])
+        .show_rows(ui, theme::ROW, listed.len(), |ui, rows| {
+            for (index, entry) in listed.iter().enumerate().take(rows.end).skip(rows.start) {
+                let is_first = index == 0 || listed[index - 1].pattern.kind != entry.pattern.kind;
+                if let Some(is_on) = entry_ui(ui, on, entry, is_first) {
+                    changed = Some(on.with(&entry.pattern, is_on));
+                }
             }
-        }
-    });
+        });
     if listed.is_empty() {
         ui.label(theme::weak("No part has this name."));
     }
@@ -117,14 +158,26 @@ fn picker_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effec
     ui.horizontal(|ui| {
         ui.label(theme::weak("Pick a"));
         for kind in PartKind::ALL {
-            let button = ui.button(kind.name()).on_hover_text(format!("The next click on the model adds its {}", kind.name()));
-            if button.accessible_name(format!("Pick a {} for {}", kind.name(), effect.name)).clicked() {
-                commands.send(Command::View(ViewCommand::Pick(Some(Picking::Part(effect.clone(), kind)))));
+            let button = ui.button(kind.name()).on_hover_text(format!(
+                "The next click on the model adds its {}",
+                kind.name()
+            ));
+            if button
+                .accessible_name(format!("Pick a {} for {}", kind.name(), effect.name))
+                .clicked()
+            {
+                commands.send(Command::View(ViewCommand::Pick(Some(Picking::Part(
+                    effect.clone(),
+                    kind,
+                )))));
                 ui.close();
             }
         }
         let whole = ui.add_enabled(!on.is_whole_scene(), egui::Button::new("Whole scene"));
-        if whole.on_hover_text("Remove all parts from the list").clicked() {
+        if whole
+            .on_hover_text("Remove all parts from the list")
+            .clicked()
+        {
             changed = Some(Scope::default());
         }
     });
@@ -140,7 +193,9 @@ fn entry_ui(ui: &mut Ui, on: &Scope, entry: &Entry, shows_kind: bool) -> Option<
         ui.add_space(entry.indent);
         let mut is_on = on.patterns().contains(&entry.pattern);
         let text = RichText::new(&entry.text);
-        let box_ui = ui.checkbox(&mut is_on, text).accessible_name(entry.pattern.to_string());
+        let box_ui = ui
+            .checkbox(&mut is_on, text)
+            .accessible_name(entry.pattern.to_string());
         if shows_kind {
             ui.label(theme::weak(entry.pattern.kind.plural()));
         }
@@ -154,30 +209,76 @@ fn entries(ui: &Ui, scene: &Arc<Scene>) -> Arc<[Entry]> {
     const INDENT: f32 = 10.0;
     const MAX_DEPTH: usize = 6;
     let id = egui::Id::unique("parts of the scene");
-    if let Some(known) = ui.data(|data| data.get_temp::<Known>(id)).filter(|known| Arc::ptr_eq(&known.scene, scene)) {
+    if let Some(known) = ui
+        .data(|data| data.get_temp::<Known>(id))
+        .filter(|known| Arc::ptr_eq(&known.scene, scene))
+    {
         return known.entries;
     }
     let entry = |part: crate::scene::parts::Part| {
-        let draws = if part.instances == 1 { String::new() } else { format!("  ×{}", part.instances) };
+        let draws = if part.instances == 1 {
+            String::new()
+        } else {
+            format!("  ×{}", part.instances)
+        };
         let short: String = part.name.chars().take(28).collect();
-        let end = if short.len() < part.name.len() { "…" } else { "" };
-        Entry { pattern: part.pattern(), text: format!("{short}{end}{draws}"), indent: INDENT * part.depth.min(MAX_DEPTH) as f32 }
+        let end = if short.len() < part.name.len() {
+            "…"
+        } else {
+            ""
+        };
+        Entry {
+            pattern: part.pattern(),
+            text: format!("{short}{end}{draws}"),
+            indent: INDENT * part.depth.min(MAX_DEPTH) as f32,
+        }
     };
     let entries: Arc<[Entry]> = parts(scene).into_iter().map(entry).collect();
-    ui.data_mut(|data| data.insert_temp(id, Known { scene: scene.clone(), entries: entries.clone() }));
+    ui.data_mut(|data| {
+        data.insert_temp(
+            id,
+            Known {
+                scene: scene.clone(),
+                entries: entries.clone(),
+            },
+        )
+    });
     entries
 }
 
 /// Warnings about the patterns of an effect that match nothing.
-fn missing(ui: &Ui, state: &State, scene: &Arc<Scene>, effect: &Effect, on: &Scope) -> Arc<[String]> {
+fn missing(
+    ui: &Ui,
+    state: &State,
+    scene: &Arc<Scene>,
+    effect: &Effect,
+    on: &Scope,
+) -> Arc<[String]> {
     let id = egui::Id::unique(("missing parts", &effect.name));
     let is_known = |known: &Missing| Arc::ptr_eq(&known.scene, scene) && known.on == *on;
-    if let Some(known) = ui.data(|data| data.get_temp::<Missing>(id)).filter(is_known) {
+    if let Some(known) = ui
+        .data(|data| data.get_temp::<Missing>(id))
+        .filter(is_known)
+    {
         return known.sentences;
     }
     let of_effect = format!("effects.{}.on: ", effect.name);
-    let sentences = state.session.preset().missing_parts(scene).into_iter().filter(|sentence| sentence.starts_with(&of_effect));
+    let sentences = state
+        .session
+        .preset()
+        .missing_parts(scene)
+        .into_iter()
+        .filter(|sentence| sentence.starts_with(&of_effect));
     let sentences: Arc<[String]> = sentences.collect();
-    ui.data_mut(|data| data.insert_temp(id, Missing { scene: scene.clone(), on: on.clone(), sentences: sentences.clone() }));
+    ui.data_mut(|data| {
+        data.insert_temp(
+            id,
+            Missing {
+                scene: scene.clone(),
+                on: on.clone(),
+                sentences: sentences.clone(),
+            },
+        )
+    });
     sentences
 }

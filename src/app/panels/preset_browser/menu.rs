@@ -19,12 +19,17 @@ pub fn menu_ui(ui: &mut Ui, entry: &GalleryEntry, commands: &Commands) {
     let title = entry.title();
     let mut chosen = None;
     let with_scene = ui.add_enabled(entry.preset_file.is_ok(), button("Open with its scene"));
-    if with_scene.on_hover_text("Its own scene in place of the open one").clicked() {
+    if with_scene
+        .on_hover_text("Its own scene in place of the open one")
+        .clicked()
+    {
         commands.send(opening(entry, Manner::WithScene));
         ui.close();
     }
     ui.separator();
-    let why = format!("{title} is built in, so it cannot be renamed or deleted. Duplicate it, and change the copy.");
+    let why = format!(
+        "{title} is built in, so it cannot be renamed or deleted. Duplicate it, and change the copy."
+    );
     let file_entry = |ui: &mut Ui, text: &str| {
         let button = ui.add_enabled(entry.path.is_some(), button(text));
         button.on_disabled_hover_text(&why).clicked()
@@ -32,10 +37,14 @@ pub fn menu_ui(ui: &mut Ui, entry: &GalleryEntry, commands: &Commands) {
     if file_entry(ui, "Rename…")
         && let Some(path) = &entry.path
     {
-        chosen = Some(LibraryCommand::AskName(Naming::Preset { path: path.clone(), title: title.into() }));
+        chosen = Some(LibraryCommand::AskName(Naming::Preset {
+            path: path.clone(),
+            title: title.into(),
+        }));
     }
     let duplicate = ui.add_enabled(entry.preset_file.is_ok(), button("Duplicate"));
-    let duplicate = duplicate.on_disabled_hover_text("A preset that cannot be read cannot be duplicated");
+    let duplicate =
+        duplicate.on_disabled_hover_text("A preset that cannot be read cannot be duplicated");
     if duplicate.clicked()
         && let Ok(found) = &entry.preset_file
     {

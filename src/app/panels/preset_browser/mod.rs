@@ -92,7 +92,11 @@ impl PresetBrowser {
 
     /// What the panel shows, and how it lists presets, for the next start.
     pub fn browsing(&self) -> Browsing {
-        Browsing { tab: self.tab, layout: self.layout, sort: self.filter.sort }
+        Browsing {
+            tab: self.tab,
+            layout: self.layout,
+            sort: self.filter.sort,
+        }
     }
 
     /// Shows what was shown at the end of the last session.
@@ -122,26 +126,41 @@ impl PresetBrowser {
         self.effects.close();
     }
 
-    /// The preset whose thumbnail is to be drawn next, and its size in pixels; none while one is being drawn.
+    /// The preset whose thumbnail is to be drawn next, and its size in pixels; none while one is
+    /// being drawn.
     pub fn next_thumbnail(&mut self, ctx: &egui::Context) -> Option<(PresetFile, [u32; 2])> {
         self.pictures.next(ctx, &self.entries)
     }
 
     /// The same on the scene of `key`, the user's own.
-    pub fn next_on_model(&mut self, ctx: &egui::Context, key: &SceneKey) -> Option<(PresetFile, [u32; 2])> {
+    pub fn next_on_model(
+        &mut self,
+        ctx: &egui::Context,
+        key: &SceneKey,
+    ) -> Option<(PresetFile, [u32; 2])> {
         self.pictures.next_on_model(ctx, key, &self.entries)
     }
 
-    /// The preset `step` entries after the one called `id` in the list, wrapping round; the first if `id` is not listed. Where nothing is
-    /// listed, every preset counts.
+    /// The preset `step` entries after the one called `id` in the list, wrapping round; the first
+    /// if `id` is not listed. Where nothing is listed, every preset counts.
     pub fn neighbor(&self, id: &str, step: isize) -> Option<&PresetFile> {
-        let listed = self.listed.iter().filter_map(|index| self.entries.get(*index));
-        let mut good: Vec<&GalleryEntry> = listed.filter(|entry| entry.preset_file.is_ok()).collect();
+        let listed = self
+            .listed
+            .iter()
+            .filter_map(|index| self.entries.get(*index));
+        let mut good: Vec<&GalleryEntry> =
+            listed.filter(|entry| entry.preset_file.is_ok()).collect();
         if good.is_empty() {
-            good = self.entries.iter().filter(|entry| entry.preset_file.is_ok()).collect();
+            good = self
+                .entries
+                .iter()
+                .filter(|entry| entry.preset_file.is_ok())
+                .collect();
         }
         let here = good.iter().position(|entry| entry.id == id);
-        let there = here.map_or(0, |here| (here as isize + step).rem_euclid(good.len() as isize) as usize);
+        let there = here.map_or(0, |here| {
+            (here as isize + step).rem_euclid(good.len() as isize) as usize
+        });
         good.get(there)?.preset_file.as_ref().ok()
     }
 
@@ -149,12 +168,25 @@ impl PresetBrowser {
         self.mark_favorites(&state.files.favorites);
         let chips = tags(&self.items, &self.filter);
         self.pictures.switch_ui(ui, &state.session);
-        toolbar::toolbar_ui(ui, &mut self.filter, &mut self.layout, &mut self.shows_all_tags, &chips);
+        toolbar::toolbar_ui(
+            ui,
+            &mut self.filter,
+            &mut self.layout,
+            &mut self.shows_all_tags,
+            &chips,
+        );
         self.listed = arrange(&self.items, &self.filter);
         count_ui(ui, &mut self.filter, self.listed.len(), self.entries.len());
         let has_undo = !state.files.deleted.is_empty();
-        let footer = if has_undo { theme::ROW + theme::GAP } else { 0.0 };
-        let area = egui::ScrollArea::vertical().id_salt("presets").auto_shrink(false).max_height(ui.available_height() - footer);
+        let footer = if has_undo {
+            theme::ROW + theme::GAP
+        } else {
+            0.0
+        };
+        let area = egui::ScrollArea::vertical()
+            .id_salt("presets")
+            .auto_shrink(false)
+            .max_height(ui.available_height() - footer);
         area.show(ui, |ui| self.gallery_ui(ui, state, commands));
         if let Some(deleted) = state.files.deleted.last() {
             ui.horizontal(|ui| {
@@ -163,12 +195,20 @@ impl PresetBrowser {
                     if icon_button(ui, Icon::Cross, "Keep it in the trash").clicked() {
                         commands.send(Command::Library(LibraryCommand::ForgetDeleted));
                     }
-                    let undo = ui.button("Undo").on_hover_text(format!("Put {} back", deleted.path.display()));
+                    let undo = ui
+                        .button("Undo")
+                        .on_hover_text(format!("Put {} back", deleted.path.display()));
                     if undo.accessible_name("Undo the deletion").clicked() {
                         commands.send(Command::Library(LibraryCommand::Restore));
                     }
                     ui.with_layout(egui::Layout::left_to_right(Align::Center), |ui| {
-                        ui.add(egui::Label::new(theme::weak(format!("{} was deleted", deleted.name()))).truncate());
+                        ui.add(
+                            egui::Label::new(theme::weak(format!(
+                                "{} was deleted",
+                                deleted.name()
+                            )))
+                            .truncate(),
+                        );
                     });
                 });
             });
@@ -186,13 +226,23 @@ impl PresetBrowser {
         let opened = FileId::of(open);
         let is_other = self.shown.as_ref() != Some(&opened);
         let (size, columns) = entry_size(self.layout, ui.available_width());
-        let quality = if self.layout == Layout::Grid { Size::Large } else { Size::Small };
-        let gap = if self.layout == Layout::Grid { theme::GAP } else { theme::HALF };
+        let quality = if self.layout == Layout::Grid {
+            Size::Large
+        } else {
+            Size::Small
+        };
+        let gap = if self.layout == Layout::Grid {
+            theme::GAP
+        } else {
+            theme::HALF
+        };
         for row in self.listed.chunks(columns) {
-            let (line, _) = ui.allocate_exact_size(vec2(ui.available_width(), size.y), egui::Sense::hover());
+            let (line, _) =
+                ui.allocate_exact_size(vec2(ui.available_width(), size.y), egui::Sense::hover());
             for (column, index) in row.iter().enumerate() {
                 let entry = &self.entries[*index];
-                let rect = Rect::from_min_size(line.min + vec2(column as f32 * (size.x + gap), 0.0), size);
+                let rect =
+                    Rect::from_min_size(line.min + vec2(column as f32 * (size.x + gap), 0.0), size);
                 let is_open = open.is_look_of(&entry.id, entry.path.as_deref());
                 if is_open && is_other {
                     ui.scroll_to_rect(rect, None);
@@ -200,19 +250,37 @@ impl PresetBrowser {
                 }
                 let shown = Shown {
                     entry,
-                    picture: self.pictures.picture(entry, &state.session, quality, ui.is_rect_visible(rect)),
+                    picture: self.pictures.picture(
+                        entry,
+                        &state.session,
+                        quality,
+                        ui.is_rect_visible(rect),
+                    ),
                     is_open,
                     is_modified: is_open && state.session.is_modified(),
                     is_favorite: self.items[*index].is_favorite,
                 };
                 let responses = entry_ui(ui, &shown, self.layout, rect);
-                responses.entry.context_menu(|ui| menu_ui(ui, entry, commands));
+                responses
+                    .entry
+                    .context_menu(|ui| menu_ui(ui, entry, commands));
                 if responses.star.clicked() {
-                    commands.send(Command::Library(LibraryCommand::Star(Starred::Preset, entry.id.clone(), !shown.is_favorite)));
+                    commands.send(Command::Library(LibraryCommand::Star(
+                        Starred::Preset,
+                        entry.id.clone(),
+                        !shown.is_favorite,
+                    )));
                 }
                 if responses.entry.clicked() {
                     let with_scene = ui.input(|i| i.modifiers.shift || i.modifiers.alt);
-                    commands.send(opening(entry, if with_scene { Manner::WithScene } else { Manner::Look }));
+                    commands.send(opening(
+                        entry,
+                        if with_scene {
+                            Manner::WithScene
+                        } else {
+                            Manner::Look
+                        },
+                    ));
                 }
             }
             ui.add_space(gap - ui.spacing().item_spacing.y);
@@ -227,12 +295,21 @@ fn count_ui(ui: &mut Ui, filter: &mut Filter, listed: usize, all: usize) {
             keys if keys.is_empty() => "with File › Save".to_owned(),
             keys => format!("with {keys}"),
         };
-        ui.label(theme::weak(format!("No presets found. Build one on the right and save it {save}.")));
+        ui.label(theme::weak(format!(
+            "No presets found. Build one on the right and save it {save}."
+        )));
     } else if !filter.is_empty() {
         ui.horizontal(|ui| {
-            ui.label(theme::weak(if listed == 0 { "No preset answers.".into() } else { format!("{listed} of {all}") }));
+            ui.label(theme::weak(if listed == 0 {
+                "No preset answers.".into()
+            } else {
+                format!("{listed} of {all}")
+            }));
             if ui.small_button("Show all").clicked() {
-                *filter = Filter { sort: filter.sort, ..Filter::default() };
+                *filter = Filter {
+                    sort: filter.sort,
+                    ..Filter::default()
+                };
             }
         });
     }
@@ -240,15 +317,37 @@ fn count_ui(ui: &mut Ui, filter: &mut Filter, listed: usize, all: usize) {
 
 /// What the search knows of an entry.
 fn item(entry: &GalleryEntry) -> Item {
-    let changed: Option<SystemTime> = entry.path.as_ref().and_then(|path| path.metadata().ok()?.modified().ok());
+    let changed: Option<SystemTime> = entry
+        .path
+        .as_ref()
+        .and_then(|path| path.metadata().ok()?.modified().ok());
     let (title, about, tags, effects) = match &entry.preset_file {
         Ok(found) => {
-            let effects = found.preset.stack.0.iter().map(|enabled| enabled.effect.name.to_owned()).collect();
-            (found.title().to_owned(), found.preset.about.clone(), found.preset.tags.clone(), effects)
+            let effects = found
+                .preset
+                .stack
+                .0
+                .iter()
+                .map(|enabled| enabled.effect.name.to_owned())
+                .collect();
+            (
+                found.title().to_owned(),
+                found.preset.about.clone(),
+                found.preset.tags.clone(),
+                effects,
+            )
         }
         Err(_) => (entry.id.clone(), String::new(), Vec::new(), Vec::new()),
     };
-    Item { id: entry.id.clone(), title, about, tags, effects, changed, is_favorite: false }
+    Item {
+        id: entry.id.clone(),
+        title,
+        about,
+        tags,
+        effects,
+        changed,
+        is_favorite: false,
+    }
 }
 
 impl Panel for PresetBrowser {
@@ -257,7 +356,8 @@ impl Panel for PresetBrowser {
             ui.spacing_mut().item_spacing.x = 2.0;
             for tab in Tab::ALL {
                 let button =
-                    egui::Button::selectable(self.tab == tab, RichText::new(tab.label()).strong()).min_size(vec2(72.0, theme::ROW));
+                    egui::Button::selectable(self.tab == tab, RichText::new(tab.label()).strong())
+                        .min_size(vec2(72.0, theme::ROW));
                 if ui.add(button).clicked() {
                     self.tab = tab;
                 }
@@ -272,7 +372,9 @@ impl Panel for PresetBrowser {
             Tab::Presets => self.presets_ui(ui, state, commands),
             Tab::Effects => self.effects.ui(ui, state, commands),
             Tab::Scene => {
-                let area = egui::ScrollArea::vertical().id_salt("scenes").auto_shrink(false);
+                let area = egui::ScrollArea::vertical()
+                    .id_salt("scenes")
+                    .auto_shrink(false);
                 area.show(ui, |ui| scenes::scenes_ui(ui, state, commands));
             }
         }

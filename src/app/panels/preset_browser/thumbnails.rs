@@ -1,4 +1,5 @@
-//! Thumbnails of presets: which are drawn, which are to be drawn, and which has to be drawn again. Only what is in view is drawn.
+//! Thumbnails of presets: which are drawn, which are to be drawn, and which has to be drawn again.
+//! Only what is in view is drawn.
 
 use std::collections::{HashMap, HashSet};
 
@@ -52,16 +53,30 @@ impl Thumbnails {
     pub fn picture(&mut self, id: &str, size: Size, is_in_view: bool) -> Option<&TextureHandle> {
         let key = (id.to_owned(), size);
         let is_drawn = self.drawn.contains_key(&key) && !self.stale.contains(&key);
-        if is_in_view && !is_drawn && !self.failed.contains(&key) && self.drawing.as_ref() != Some(&key) {
+        if is_in_view
+            && !is_drawn
+            && !self.failed.contains(&key)
+            && self.drawing.as_ref() != Some(&key)
+        {
             self.wanted.push(key.clone());
         }
-        let other = (key.0.clone(), if size == Size::Small { Size::Large } else { Size::Small });
+        let other = (
+            key.0.clone(),
+            if size == Size::Small {
+                Size::Large
+            } else {
+                Size::Small
+            },
+        );
         self.drawn.get(&key).or_else(|| self.drawn.get(&other))
     }
 
     /// The preset `id` is another one now.
     pub fn changed(&mut self, id: &str) {
-        self.outdated |= self.drawing.as_ref().is_some_and(|(drawing, _)| drawing == id);
+        self.outdated |= self
+            .drawing
+            .as_ref()
+            .is_some_and(|(drawing, _)| drawing == id);
         for key in [Size::Small, Size::Large].map(|size| (id.to_owned(), size)) {
             self.failed.remove(&key);
             self.stale.insert(key);
@@ -95,14 +110,17 @@ impl Thumbnails {
 
     /// Takes the picture that was drawn; none if it cannot be drawn.
     pub fn arrived(&mut self, ctx: &egui::Context, id: &str, image: Option<egui::ColorImage>) {
-        let Some(key) = self.drawing.take_if(|(drawing, _)| drawing == id) else { return };
+        let Some(key) = self.drawing.take_if(|(drawing, _)| drawing == id) else {
+            return;
+        };
         if std::mem::take(&mut self.outdated) {
             return;
         }
         self.stale.remove(&key);
         match image {
             Some(image) => {
-                let texture = ctx.load_texture(format!("preset {id}"), image, egui::TextureOptions::LINEAR);
+                let texture =
+                    ctx.load_texture(format!("preset {id}"), image, egui::TextureOptions::LINEAR);
                 self.drawn.insert(key, texture);
             }
             None => drop(self.failed.insert(key)),
@@ -137,7 +155,10 @@ mod tests {
     fn only_what_is_in_view_is_drawn_one_at_a_time_and_once() {
         let (ctx, mut thumbnails) = (egui::Context::default(), Thumbnails::default());
         thumbnails.begin_frame();
-        assert!(thumbnails.picture("a", Size::Small, true).is_none() && thumbnails.picture("b", Size::Small, false).is_none());
+        assert!(
+            thumbnails.picture("a", Size::Small, true).is_none()
+                && thumbnails.picture("b", Size::Small, false).is_none()
+        );
         thumbnails.picture("c", Size::Small, true);
         assert_eq!(thumbnails.next(), Some(("a".into(), Size::Small)));
         assert_eq!(thumbnails.next(), None, "one at a time");
@@ -146,9 +167,18 @@ mod tests {
         thumbnails.arrived(&ctx, "c", None);
         assert!(!thumbnails.is_busy());
         thumbnails.begin_frame();
-        assert!(thumbnails.picture("a", Size::Small, true).is_some() && thumbnails.picture("c", Size::Small, true).is_none());
-        assert!(!thumbnails.is_busy(), "what is drawn or cannot be drawn is not drawn again");
-        assert!(thumbnails.picture("a", Size::Large, true).is_some(), "the small one until the large one is there");
+        assert!(
+            thumbnails.picture("a", Size::Small, true).is_some()
+                && thumbnails.picture("c", Size::Small, true).is_none()
+        );
+        assert!(
+            !thumbnails.is_busy(),
+            "what is drawn or cannot be drawn is not drawn again"
+        );
+        assert!(
+            thumbnails.picture("a", Size::Large, true).is_some(),
+            "the small one until the large one is there"
+        );
         assert_eq!(thumbnails.next(), Some(("a".into(), Size::Large)));
     }
 

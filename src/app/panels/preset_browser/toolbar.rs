@@ -15,10 +15,18 @@ use crate::app::{
 const FEW_TAGS: usize = 7;
 
 /// Shows the head of the gallery. `tags` are those of the listed presets, with their numbers.
-pub fn toolbar_ui(ui: &mut Ui, filter: &mut Filter, layout: &mut Layout, shows_all_tags: &mut bool, tags: &[(String, usize)]) {
+pub fn toolbar_ui(
+    ui: &mut Ui,
+    filter: &mut Filter,
+    layout: &mut Layout,
+    shows_all_tags: &mut bool,
+    tags: &[(String, usize)],
+) {
     search_ui(ui, &mut filter.search, "Search presets");
     ui.horizontal(|ui| {
-        let menu = ComboBox::from_id_salt("sort presets").width(112.0).selected_text(filter.sort.label());
+        let menu = ComboBox::from_id_salt("sort presets")
+            .width(112.0)
+            .selected_text(filter.sort.label());
         let menu = menu.show_ui(ui, |ui| {
             for sort in Sort::ALL {
                 ui.selectable_value(&mut filter.sort, sort, sort.label());
@@ -27,13 +35,26 @@ pub fn toolbar_ui(ui: &mut Ui, filter: &mut Filter, layout: &mut Layout, shows_a
         menu.response.accessible_name("Order of the presets");
         ui.with_layout(egui::Layout::right_to_left(Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
-            for (icon, to, name) in [(Icon::Grid, Layout::Grid, "Large pictures"), (Icon::List, Layout::List, "List")] {
-                if toggle_button(ui, icon, *layout == to, name).on_hover_text(name).clicked() {
+            for (icon, to, name) in [
+                (Icon::Grid, Layout::Grid, "Large pictures"),
+                (Icon::List, Layout::List, "List"),
+            ] {
+                if toggle_button(ui, icon, *layout == to, name)
+                    .on_hover_text(name)
+                    .clicked()
+                {
                     *layout = to;
                 }
             }
-            let star = if filter.only_favorites { Icon::StarFull } else { Icon::Star };
-            if toggle_button(ui, star, filter.only_favorites, "Favorites only").on_hover_text("Favorites only").clicked() {
+            let star = if filter.only_favorites {
+                Icon::StarFull
+            } else {
+                Icon::Star
+            };
+            if toggle_button(ui, star, filter.only_favorites, "Favorites only")
+                .on_hover_text("Favorites only")
+                .clicked()
+            {
                 filter.only_favorites = !filter.only_favorites;
             }
         });
@@ -44,8 +65,15 @@ pub fn toolbar_ui(ui: &mut Ui, filter: &mut Filter, layout: &mut Layout, shows_a
 /// A field for a search, with a button that clears it.
 pub fn search_ui(ui: &mut Ui, search: &mut String, name: &str) {
     ui.horizontal(|ui| {
-        let clear = if search.is_empty() { 0.0 } else { ui.spacing().interact_size.y + ui.spacing().item_spacing.x };
-        let field = TextEdit::singleline(search).hint_text(name).char_limit(120).desired_width(ui.available_width() - clear);
+        let clear = if search.is_empty() {
+            0.0
+        } else {
+            ui.spacing().interact_size.y + ui.spacing().item_spacing.x
+        };
+        let field = TextEdit::singleline(search)
+            .hint_text(name)
+            .char_limit(120)
+            .desired_width(ui.available_width() - clear);
         let field = ui.add(field).accessible_name(name);
         if field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Escape)) {
             search.clear();
@@ -63,18 +91,39 @@ fn tags_ui(ui: &mut Ui, filter: &mut Filter, shows_all: &mut bool, tags: &[(Stri
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
         ui.spacing_mut().button_padding = vec2(7.0, 1.0);
-        let count = if *shows_all { tags.len() } else { FEW_TAGS.max(filter.tags.len()) };
+        let count = if *shows_all {
+            tags.len()
+        } else {
+            FEW_TAGS.max(filter.tags.len())
+        };
         for (tag, number) in tags.iter().take(count) {
             let is_chosen = filter.tags.contains(tag);
-            let text = RichText::new(tag).size(11.5).color(if is_chosen { theme::text_strong() } else { theme::text() });
-            let fill = if is_chosen { theme::accent_ground() } else { theme::raised() };
-            let chip = ui.add(Button::new(text).fill(fill).corner_radius(9.0).min_size(vec2(0.0, 18.0)));
+            let text = RichText::new(tag).size(11.5).color(if is_chosen {
+                theme::text_strong()
+            } else {
+                theme::text()
+            });
+            let fill = if is_chosen {
+                theme::accent_ground()
+            } else {
+                theme::raised()
+            };
+            let chip = ui.add(
+                Button::new(text)
+                    .fill(fill)
+                    .corner_radius(9.0)
+                    .min_size(vec2(0.0, 18.0)),
+            );
             let hint = if is_chosen {
                 format!("Show presets without the tag {tag}, too")
             } else {
                 format!("{number} listed presets have the tag {tag}")
             };
-            if chip.on_hover_text(hint).accessible_name(format!("Tag {tag}")).clicked() {
+            if chip
+                .on_hover_text(hint)
+                .accessible_name(format!("Tag {tag}"))
+                .clicked()
+            {
                 match is_chosen {
                     true => filter.tags.retain(|chosen| chosen != tag),
                     false => filter.tags.push(tag.clone()),
@@ -82,9 +131,21 @@ fn tags_ui(ui: &mut Ui, filter: &mut Filter, shows_all: &mut bool, tags: &[(Stri
             }
         }
         if tags.len() > FEW_TAGS {
-            let text = if *shows_all { "fewer".to_owned() } else { format!("{} more", tags.len() - count.min(tags.len())) };
+            let text = if *shows_all {
+                "fewer".to_owned()
+            } else {
+                format!("{} more", tags.len() - count.min(tags.len()))
+            };
             let more = Button::new(theme::weak(text).size(11.5)).frame(false);
-            if ui.add(more).accessible_name(if *shows_all { "Fewer tags" } else { "More tags" }).clicked() {
+            if ui
+                .add(more)
+                .accessible_name(if *shows_all {
+                    "Fewer tags"
+                } else {
+                    "More tags"
+                })
+                .clicked()
+            {
                 *shows_all = !*shows_all;
             }
         }

@@ -1,4 +1,5 @@
-//! What the timeline says while nothing is animated: how to animate a value, or which clips the scene has.
+//! What the timeline says while nothing is animated: how to animate a value, or which clips the
+//! scene has.
 
 use eframe::egui::{self, Label, Ui, vec2};
 
@@ -22,16 +23,28 @@ pub fn hint_ui(ui: &mut Ui, session: &Session, commands: &Commands) {
         return clips_ui(ui, scene, session, commands);
     }
     let (before, after) = if session.preset().stack.0.is_empty() {
-        ("Nothing is animated. Enable an effect on the right; the", "beside each of its values sets a key at this time.")
+        (
+            "Nothing is animated. Enable an effect on the right; the",
+            "beside each of its values sets a key at this time.",
+        )
     } else {
-        ("Nothing is animated. The", "beside a value sets a key at this time. Set another key at another time, and the value moves.")
+        (
+            "Nothing is animated. The",
+            "beside a value sets a key at this time. Set another key at another time, and the value moves.",
+        )
     };
     ui.horizontal(|ui| {
         ui.set_height(TRACK);
         ui.spacing_mut().item_spacing.x = 6.0;
         ui.label(theme::weak(before));
         let (rect, _) = ui.allocate_exact_size(vec2(10.0, TRACK), egui::Sense::hover());
-        paint_diamond(ui.painter(), rect.center(), 4.5, egui::Color32::TRANSPARENT, theme::text());
+        paint_diamond(
+            ui.painter(),
+            rect.center(),
+            4.5,
+            egui::Color32::TRANSPARENT,
+            theme::text(),
+        );
         ui.add(Label::new(theme::weak(after)).truncate());
     });
 }

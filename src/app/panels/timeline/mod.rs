@@ -1,4 +1,5 @@
-//! Timeline: play, step, scrub, loop and speed, and below them the keyframes of every animated parameter.
+//! Timeline: play, step, scrub, loop and speed, and below them the keyframes of every animated
+//! parameter.
 
 mod hints;
 mod ruler;
@@ -49,7 +50,8 @@ pub struct Timeline {
     pub selected: Option<KeyId>,
     /// Tracks whose curve is shown, by path.
     open: BTreeSet<String>,
-    /// What is shown from left to right, seconds. Fixed while a button is down, so that a drag does not change its own scale.
+    /// What is shown from left to right, seconds. Fixed while a button is down, so that a drag
+    /// does not change its own scale.
     span_s: Option<[f64; 2]>,
     /// Time of the dragged keyframe when the drag began, seconds.
     grabbed_s: Option<f64>,
@@ -58,14 +60,26 @@ pub struct Timeline {
 /// Tracks of the enabled effects.
 fn animated(session: &Session) -> Vec<&Track> {
     let preset = session.preset();
-    preset.animation.tracks().iter().filter(|track| preset.stack.get(&track.effect().name).is_some()).collect()
+    preset
+        .animation
+        .tracks()
+        .iter()
+        .filter(|track| preset.stack.get(&track.effect().name).is_some())
+        .collect()
 }
 
 impl Timeline {
     /// Height of the whole panel, points.
     pub fn height(&self, session: &Session) -> f32 {
-        let heights = animated(session).into_iter().map(|track| tracks::height(self.open.contains(&track.path()))).sum::<f32>();
-        let tracks = if heights == 0.0 { tracks::TRACK } else { heights.min(MAX_TRACKS) };
+        let heights = animated(session)
+            .into_iter()
+            .map(|track| tracks::height(self.open.contains(&track.path())))
+            .sum::<f32>();
+        let tracks = if heights == 0.0 {
+            tracks::TRACK
+        } else {
+            heights.min(MAX_TRACKS)
+        };
         // Margins, the line above, and the gaps between the three.
         12.0 + 1.0 + TRANSPORT + RULER + tracks + 2.0 * theme::HALF
     }
@@ -73,14 +87,23 @@ impl Timeline {
     /// Time and easing of the selected keyframe.
     fn selection_ui(&self, ui: &mut Ui, state: &State, commands: &Commands) {
         let Some(key) = &self.selected else { return };
-        let Some((track, index)) = key.find(state.session.preset()) else { return };
+        let Some((track, index)) = key.find(state.session.preset()) else {
+            return;
+        };
         let (easing, is_stepped) = (track.keys()[index].easing, steps(track.field()));
         ui.spacing_mut().item_spacing.x = 6.0;
         ui.separator();
         ui.add(egui::Label::new(RichText::new(key.path()).color(theme::text_strong())).truncate());
         let mut time_s = key.time_s;
-        let drag = DragValue::new(&mut time_s).speed(0.01).max_decimals(3).suffix(" s").update_while_editing(false);
-        let response = ui.add_sized([72.0, theme::ROW - 2.0], drag).accessible_name("Key time").on_hover_text("Time of this key");
+        let drag = DragValue::new(&mut time_s)
+            .speed(0.01)
+            .max_decimals(3)
+            .suffix(" s")
+            .update_while_editing(false);
+        let response = ui
+            .add_sized([72.0, theme::ROW - 2.0], drag)
+            .accessible_name("Key time")
+            .on_hover_text("Time of this key");
         if response.changed() {
             commands.send(Command::Keyframe(KeyframeEdit::Move(key.clone(), time_s)));
         }
@@ -91,13 +114,16 @@ impl Timeline {
                 .width(74.0)
                 .show_ui(ui, |ui| {
                     for easing in Easing::ALL {
-                        ui.selectable_value(&mut chosen, easing, easing.name()).on_hover_text(easing.about());
+                        ui.selectable_value(&mut chosen, easing, easing.name())
+                            .on_hover_text(easing.about());
                     }
                 })
                 .response
                 .accessible_name("Key easing")
                 .on_hover_text("How the value moves to the next key")
-                .on_disabled_hover_text("A whole number or a choice keeps its value until the next key")
+                .on_disabled_hover_text(
+                    "A whole number or a choice keeps its value until the next key",
+                )
         });
         if chosen != easing {
             commands.send(Command::Keyframe(KeyframeEdit::Ease(key.clone(), chosen)));
@@ -112,24 +138,33 @@ impl Panel for Timeline {
     fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
         let session = &state.session;
         ui.spacing_mut().item_spacing.y = theme::HALF;
-        self.selected = self.selected.take().filter(|key| key.find(session.preset()).is_some());
+        self.selected = self
+            .selected
+            .take()
+            .filter(|key| key.find(session.preset()).is_some());
         ui.horizontal(|ui| {
             ui.set_height(TRANSPORT);
             transport_ui(ui, session, commands);
             time_ui(ui, session, commands);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 range_ui(ui, session, commands);
-                ui.with_layout(Layout::left_to_right(Align::Center), |ui| self.selection_ui(ui, state, commands));
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    self.selection_ui(ui, state, commands)
+                });
             });
         });
         let tracks = animated(session);
         if self.span_s.is_none() || !ui.input(|i| i.pointer.any_down()) {
             self.span_s = Some(span::extent(session.preset().clock.range_s, &tracks));
         }
-        let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), RULER), egui::Sense::hover());
+        let (rect, _) =
+            ui.allocate_exact_size(vec2(ui.available_width(), RULER), egui::Sense::hover());
         let left = rect.left() + GUTTER.min(rect.width() * 0.4);
         let rail = Rect::from_min_max(pos2(left, rect.top()), rect.max);
-        let span = Span::new(self.span_s.unwrap_or([0.0, 1.0]), rail.shrink2(vec2(10.0, 0.0)));
+        let span = Span::new(
+            self.span_s.unwrap_or([0.0, 1.0]),
+            rail.shrink2(vec2(10.0, 0.0)),
+        );
         ruler::ruler_ui(ui, rail, &span, session, commands);
         let below = ui.available_rect_before_wrap();
         if tracks.is_empty() {
@@ -149,9 +184,15 @@ impl Panel for Timeline {
                 selected: &mut self.selected,
                 grabbed_s: &mut self.grabbed_s,
             };
-            scroll.show(ui, |ui| tracks.iter().for_each(|track| view.track_ui(ui, track)));
+            scroll.show(ui, |ui| {
+                tracks.iter().for_each(|track| view.track_ui(ui, track))
+            });
         }
-        let under = if tracks.is_empty() { rail } else { Rect::from_min_max(pos2(left, below.top()), below.max) };
+        let under = if tracks.is_empty() {
+            rail
+        } else {
+            Rect::from_min_max(pos2(left, below.top()), below.max)
+        };
         ruler::playhead_ui(ui, rail.union(under), &span, session.shown_time_s());
     }
 }
@@ -159,7 +200,11 @@ impl Panel for Timeline {
 /// Back, step, play, step, loop, speed.
 fn transport_ui(ui: &mut Ui, session: &Session, commands: &Commands) {
     ui.spacing_mut().item_spacing.x = 2.0;
-    let play = if session.playback.playing { Icon::Pause } else { Icon::Play };
+    let play = if session.playback.playing {
+        Icon::Pause
+    } else {
+        Icon::Play
+    };
     for (icon, action) in [
         (Icon::ToStart, Action::Rewind),
         (Icon::StepBack, Action::StepBack),
@@ -171,30 +216,57 @@ fn transport_ui(ui: &mut Ui, session: &Session, commands: &Commands) {
         }
     }
     let clock = session.preset().clock;
-    let hint = if clock.is_looping { "Loop: on. Playing starts again at the end" } else { "Loop: off. Playing stops at the end" };
-    if toggle_button(ui, Icon::Loop, clock.is_looping, "Loop").on_hover_text(hint).clicked() {
-        commands.edit(Edit::Clock(Clock { is_looping: !clock.is_looping, ..clock }));
+    let hint = if clock.is_looping {
+        "Loop: on. Playing starts again at the end"
+    } else {
+        "Loop: off. Playing stops at the end"
+    };
+    if toggle_button(ui, Icon::Loop, clock.is_looping, "Loop")
+        .on_hover_text(hint)
+        .clicked()
+    {
+        commands.edit(Edit::Clock(Clock {
+            is_looping: !clock.is_looping,
+            ..clock
+        }));
     }
     ui.add_space(theme::HALF);
-    clock_value(ui, session, commands, ("clock.speed", 0), |drag| drag.speed(0.01).max_decimals(2).suffix(" ×"));
+    clock_value(ui, session, commands, ("clock.speed", 0), |drag| {
+        drag.speed(0.01).max_decimals(2).suffix(" ×")
+    });
     ui.add_space(theme::GAP);
 }
 
 /// The time that is shown, and the way back to the preset's own.
 fn time_ui(ui: &mut Ui, session: &Session, commands: &Commands) {
     let mut now_s = session.shown_time_s();
-    let drag = DragValue::new(&mut now_s).speed(0.01).fixed_decimals(3).suffix(" s").update_while_editing(false);
-    let response = ui.add_sized([96.0, theme::ROW], drag).accessible_name("Time").on_hover_text("The time that is shown");
+    let drag = DragValue::new(&mut now_s)
+        .speed(0.01)
+        .fixed_decimals(3)
+        .suffix(" s")
+        .update_while_editing(false);
+    let response = ui
+        .add_sized([96.0, theme::ROW], drag)
+        .accessible_name("Time")
+        .on_hover_text("The time that is shown");
     if response.changed() {
         commands.send(Command::Time(TimeCommand::Show(now_s)));
     }
     if session.is_off_its_time() {
         ui.spacing_mut().item_spacing.x = 2.0;
         let own_s = session.preset().clock.time_s;
-        if ui.small_button("Keep").on_hover_text("Make this the preset's own time, which saved pictures show").clicked() {
+        if ui
+            .small_button("Keep")
+            .on_hover_text("Make this the preset's own time, which saved pictures show")
+            .clicked()
+        {
             commands.send(Command::Time(TimeCommand::Keep));
         }
-        if ui.small_button("Back").on_hover_text(format!("Show the preset's own time, {own_s:.3} s")).clicked() {
+        if ui
+            .small_button("Back")
+            .on_hover_text(format!("Show the preset's own time, {own_s:.3} s"))
+            .clicked()
+        {
             commands.send(Command::Time(TimeCommand::ShowOwn));
         }
     }
@@ -204,7 +276,13 @@ fn time_ui(ui: &mut Ui, session: &Session, commands: &Commands) {
 fn range_ui(ui: &mut Ui, session: &Session, commands: &Commands) {
     ui.spacing_mut().item_spacing.x = 6.0;
     for (component, word) in [(1, "to"), (0, "from")] {
-        clock_value(ui, session, commands, ("clock.range_s", component), |drag| drag.speed(0.02).max_decimals(3).suffix(" s"));
+        clock_value(
+            ui,
+            session,
+            commands,
+            ("clock.range_s", component),
+            |drag| drag.speed(0.02).max_decimals(3).suffix(" s"),
+        );
         ui.label(theme::weak(word));
     }
 }
@@ -217,15 +295,26 @@ fn clock_value(
     (path, component): (&str, usize),
     styled: impl FnOnce(DragValue<'_>) -> DragValue<'_>,
 ) {
-    let Some(setting) = Setting::find(path) else { return };
-    let Some(Value::Numbers(mut numbers)) = setting.get(session.preset()) else { return };
+    let Some(setting) = Setting::find(path) else {
+        return;
+    };
+    let Some(Value::Numbers(mut numbers)) = setting.get(session.preset()) else {
+        return;
+    };
     let name = match setting.value_type.component_names().get(component) {
         Some(component) => format!("{path} {component}"),
         None => path.to_owned(),
     };
     let [low, high] = setting.hard;
-    let drag = styled(DragValue::new(&mut numbers[component]).range(low..=high).update_while_editing(false));
-    let response = ui.add_sized([72.0, theme::ROW - 2.0], drag).accessible_name(name).on_hover_text(&setting.doc);
+    let drag = styled(
+        DragValue::new(&mut numbers[component])
+            .range(low..=high)
+            .update_while_editing(false),
+    );
+    let response = ui
+        .add_sized([72.0, theme::ROW - 2.0], drag)
+        .accessible_name(name)
+        .on_hover_text(&setting.doc);
     if response.changed() {
         commands.edit(Edit::Setting(setting, Value::Numbers(numbers)));
     }

@@ -42,8 +42,13 @@ impl Span {
 
 /// What the timeline shows: the range, and every keyframe outside it.
 pub fn extent([from_s, to_s]: [f64; 2], tracks: &[&Track]) -> [f64; 2] {
-    let times = tracks.iter().flat_map(|track| track.keys()).map(|key| key.time_s);
-    times.fold([from_s, to_s], |[low, high], time_s| [low.min(time_s), high.max(time_s)])
+    let times = tracks
+        .iter()
+        .flat_map(|track| track.keys())
+        .map(|key| key.time_s);
+    times.fold([from_s, to_s], |[low, high], time_s| {
+        [low.min(time_s), high.max(time_s)]
+    })
 }
 
 #[cfg(test)]
@@ -54,9 +59,15 @@ mod tests {
 
     #[test]
     fn a_position_maps_back_to_its_time() {
-        let span = Span::new([-1.0, 3.0], Rect::from_min_max(pos2(100.0, 0.0), pos2(900.0, 10.0)));
+        let span = Span::new(
+            [-1.0, 3.0],
+            Rect::from_min_max(pos2(100.0, 0.0), pos2(900.0, 10.0)),
+        );
         for time_s in [-1.0, 0.0, 1.234, 3.0] {
-            assert!((span.time_s(span.x(time_s)) - time_s).abs() < 1e-3, "{time_s}");
+            assert!(
+                (span.time_s(span.x(time_s)) - time_s).abs() < 1e-3,
+                "{time_s}"
+            );
         }
     }
 }

@@ -1,5 +1,5 @@
-//! The panel Trade: choose axes, measure every combination of their options, and see the error over the time as a plot and a table.
-//! A click pins the options of a combination.
+//! The panel Trade: choose axes, measure every combination of their options, and see the error over
+//! the time as a plot and a table. A click pins the options of a combination.
 
 mod plot;
 mod table;
@@ -69,7 +69,8 @@ impl Workload {
         let factors = factors(&request.preset, &request.axes);
         let shown = request.size.into_iter().map(f64::from).product::<f64>();
         let squares: f64 = factors.iter().map(|factor| factor * factor).sum();
-        // Where sizes are compared, the oracle also draws 64 pictures for the mean of 64 samples per pixel.
+        // Where sizes are compared, the oracle also draws 64 pictures for the mean of 64 samples
+        // per pixel.
         let supersampled = if factors.len() > 1 { 64.0 } else { 0.0 };
         Self {
             combinations: request.combinations(),
@@ -80,7 +81,14 @@ impl Workload {
     }
 
     fn pace(&self, rates: &Rates) -> Pace {
-        Pace::of(self.combinations, SAMPLES, self.pixels, self.reference_pixels, self.frame_ms, rates)
+        Pace::of(
+            self.combinations,
+            SAMPLES,
+            self.pixels,
+            self.reference_pixels,
+            self.frame_ms,
+            rates,
+        )
     }
 }
 
@@ -99,14 +107,29 @@ pub struct TradePanel {
 impl Default for TradePanel {
     fn default() -> Self {
         let chosen = AXES.iter().map(|axis| axis.name == "coverage").collect();
-        Self { chosen, metric: Metric::default(), running: None, rates: Rates::default(), measured: None, error: None }
+        Self {
+            chosen,
+            metric: Metric::default(),
+            running: None,
+            rates: Rates::default(),
+            measured: None,
+            error: None,
+        }
     }
 }
 
-/// The preset without its accuracy options and names: two presets that draw the same picture are equal.
+/// The preset without its accuracy options and names: two presets that draw the same picture are
+/// equal.
 fn picture_of(preset: &Preset) -> Preset {
     let accuracy = AccuracyRequest::default();
-    Preset { accuracy, test: None, name: String::new(), about: String::new(), tags: Vec::new(), ..preset.evaluated() }
+    Preset {
+        accuracy,
+        test: None,
+        name: String::new(),
+        about: String::new(),
+        tags: Vec::new(),
+        ..preset.evaluated()
+    }
 }
 
 impl TradePanel {
@@ -123,22 +146,40 @@ impl TradePanel {
 
     /// Number of points of the newest measurement.
     pub fn points(&self) -> usize {
-        self.measured.as_ref().map_or(0, |measured| measured.points.len())
+        self.measured
+            .as_ref()
+            .map_or(0, |measured| measured.points.len())
     }
 
     fn axes(&self) -> Vec<&'static Axis> {
-        AXES.iter().zip(&self.chosen).filter(|(_, chosen)| **chosen).map(|(axis, _)| axis).collect()
+        AXES.iter()
+            .zip(&self.chosen)
+            .filter(|(_, chosen)| **chosen)
+            .map(|(axis, _)| axis)
+            .collect()
     }
 
-    /// Takes the points of the measurement that has ended. One that was canceled keeps those that were timed. Returns the whole message
-    /// of an error.
+    /// Takes the points of the measurement that has ended. One that was canceled keeps those that
+    /// were timed. Returns the whole message of an error.
     pub fn arrived(&mut self, points: Result<Vec<Point>, String>) -> Option<String> {
-        let Running { request, progress, workload } = self.running.take()?;
-        let Workload { pixels, reference_pixels, frame_ms, .. } = workload;
-        self.rates = progress.pace().rates(pixels, reference_pixels, frame_ms, &self.rates);
+        let Running {
+            request,
+            progress,
+            workload,
+        } = self.running.take()?;
+        let Workload {
+            pixels,
+            reference_pixels,
+            frame_ms,
+            ..
+        } = workload;
+        self.rates = progress
+            .pace()
+            .rates(pixels, reference_pixels, frame_ms, &self.rates);
         self.error = None;
         match points {
-            Ok(points) if progress.is_canceled() && points.iter().all(|point| point.ms.is_none()) => {}
+            Ok(points)
+                if progress.is_canceled() && points.iter().all(|point| point.ms.is_none()) => {}
             Ok(points) => self.measured = Some(Measured { request, points }),
             Err(_) if progress.is_canceled() => {}
             Err(error) => {
@@ -158,9 +199,16 @@ impl TradePanel {
                     commands.perform(Action::Trade);
                 }
                 if let Some(Measured { request, points }) = &self.measured {
-                    if ui.small_button("Copy as CSV").on_hover_text("Copy the whole table").clicked() {
+                    if ui
+                        .small_button("Copy as CSV")
+                        .on_hover_text("Copy the whole table")
+                        .clicked()
+                    {
                         ui.copy_text(csv(points, &request.axes));
-                        commands.send(Command::Notify(Level::Info, "Copied the table as CSV".into()));
+                        commands.send(Command::Notify(
+                            Level::Info,
+                            "Copied the table as CSV".into(),
+                        ));
                     }
                     ui.add_space(theme::GAP);
                     plot::legend_ui(ui);
@@ -178,25 +226,34 @@ impl TradePanel {
         }
         ui.add_space(theme::HALF);
         let is_measuring = self.is_measuring();
-        egui::ScrollArea::vertical().id_salt("axes").auto_shrink(false).show(ui, |ui| {
-            ui.spacing_mut().item_spacing.y = 1.0;
-            for (axis, chosen) in AXES.iter().zip(&mut self.chosen) {
-                ui.horizontal(|ui| {
-                    let hint = format!("{}\n{}", axis.about.trim(), axis.words.join(", "));
-                    let checkbox = egui::Checkbox::new(chosen, axis.name.replace('_', " "));
-                    ui.add_enabled(!is_measuring, checkbox).on_hover_text(hint).accessible_name(format!("Measure {}", axis.name));
-                    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                        ui.label(theme::weak(format!("{} options", axis.words.len())).size(11.0));
+        egui::ScrollArea::vertical()
+            .id_salt("axes")
+            .auto_shrink(false)
+            .show(ui, |ui| {
+                ui.spacing_mut().item_spacing.y = 1.0;
+                for (axis, chosen) in AXES.iter().zip(&mut self.chosen) {
+                    ui.horizontal(|ui| {
+                        let hint = format!("{}\n{}", axis.about.trim(), axis.words.join(", "));
+                        let checkbox = egui::Checkbox::new(chosen, axis.name.replace('_', " "));
+                        ui.add_enabled(!is_measuring, checkbox)
+                            .on_hover_text(hint)
+                            .accessible_name(format!("Measure {}", axis.name));
+                        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                            ui.label(
+                                theme::weak(format!("{} options", axis.words.len())).size(11.0),
+                            );
+                        });
                     });
-                });
-            }
-        });
+                }
+            });
     }
 
     /// The button that measures `count` combinations.
     fn measure_ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands, count: usize) {
         let shown = state.session.scene().and(state.picture.screen.requested());
-        let request = shown.filter(|_| count <= MAX_COMBINATIONS).map(|inputs| self.request(state, inputs));
+        let request = shown
+            .filter(|_| count <= MAX_COMBINATIONS)
+            .map(|inputs| self.request(state, inputs));
         ui.horizontal(|ui| {
             let is_ready = request.is_some() && count >= 2;
             let button = egui::Button::new("Measure").fill(theme::accent_ground()).min_size(egui::vec2(84.0, theme::ROW));
@@ -234,14 +291,24 @@ impl TradePanel {
             title: state.session.title().to_owned(),
         };
         // Without a timer, a frame of a software adapter.
-        let frame_ms = state.picture.screen.timings().cost_ms().or(state.picture.screen.timings().newest_ms()).unwrap_or(30.0);
+        let frame_ms = state
+            .picture
+            .screen
+            .timings()
+            .cost_ms()
+            .or(state.picture.screen.timings().newest_ms())
+            .unwrap_or(30.0);
         let workload = Workload::of(&request, frame_ms);
         (request, workload)
     }
 
     fn start(&mut self, commands: &Commands, request: Request, workload: Workload) {
         let progress = Arc::new(Progress::new(workload.pace(&self.rates)));
-        self.running = Some(Running { request: request.clone(), progress: progress.clone(), workload });
+        self.running = Some(Running {
+            request: request.clone(),
+            progress: progress.clone(),
+            workload,
+        });
         // A picture that plays keeps the device busy, so the measurement would wait for it.
         commands.send(Command::Time(TimeCommand::Pause));
         commands.send(Command::MeasureTrade(Box::new(request), progress));
@@ -265,29 +332,54 @@ impl TradePanel {
         let metric = self.metric;
         let options = state.picture.screen.options();
         let axes = &request.axes;
-        let is_current =
-            |point: &Point| options.is_some_and(|options| axes.iter().all(|axis| point.pins.get(axis) == Some(options.get(axis))));
+        let is_current = |point: &Point| {
+            options.is_some_and(|options| {
+                axes.iter()
+                    .all(|axis| point.pins.get(axis) == Some(options.get(axis)))
+            })
+        };
         let height = ui.available_height();
         let table = (ui.available_width() * 0.48).clamp(300.0, 560.0);
-        let plot = egui::vec2((ui.available_width() - table - 2.0 * theme::GAP).max(160.0), height);
+        let plot = egui::vec2(
+            (ui.available_width() - table - 2.0 * theme::GAP).max(160.0),
+            height,
+        );
         let mut clicked = None;
         ui.allocate_ui_with_layout(plot, egui::Layout::top_down(egui::Align::Min), |ui| {
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
                 for metric in Metric::of(points) {
-                    ui.selectable_value(&mut self.metric, metric, RichText::new(metric.name()).size(12.0));
+                    ui.selectable_value(
+                        &mut self.metric,
+                        metric,
+                        RichText::new(metric.name()).size(12.0),
+                    );
                 }
             });
-            clicked = plot::plot_ui(ui, &plot::Shown { points, metric, current: &is_current });
+            clicked = plot::plot_ui(
+                ui,
+                &plot::Shown {
+                    points,
+                    metric,
+                    current: &is_current,
+                },
+            );
         });
         ui.vertical(|ui| {
             let [width, height] = request.size;
-            let is_stale = picture_of(&request.preset) != picture_of(&state.session.visible_preset());
-            let software =
-                if state.picture.screen.gpu.summary.software { "; compare software-adapter timings only with each other" } else { "" };
+            let is_stale =
+                picture_of(&request.preset) != picture_of(&state.session.visible_preset());
+            let software = if state.picture.screen.gpu.summary.software {
+                "; compare software-adapter timings only with each other"
+            } else {
+                ""
+            };
             let of = format!("{}, {width} × {height} px{software}", request.title);
             let (color, text) = if is_stale {
-                (theme::amber(), format!("stale: measured on an earlier picture of {of}"))
+                (
+                    theme::amber(),
+                    format!("stale: measured on an earlier picture of {of}"),
+                )
             } else {
                 (theme::text_weak(), of)
             };
@@ -304,14 +396,21 @@ impl Panel for TradePanel {
         ui.add_space(theme::HALF);
         let height = ui.available_height();
         ui.horizontal_top(|ui| {
-            ui.allocate_ui_with_layout(egui::vec2(AXES_WIDTH, height), egui::Layout::top_down(egui::Align::Min), |ui| {
-                ui.set_width(AXES_WIDTH);
-                self.axes_ui(ui, state, commands);
-            });
+            ui.allocate_ui_with_layout(
+                egui::vec2(AXES_WIDTH, height),
+                egui::Layout::top_down(egui::Align::Min),
+                |ui| {
+                    ui.set_width(AXES_WIDTH);
+                    self.axes_ui(ui, state, commands);
+                },
+            );
             ui.separator();
             let clicked = self.points_ui(ui, state);
             if let (Some(index), Some(Measured { request, points })) = (clicked, &self.measured) {
-                commands.send(Command::PinOptions(points[index].pins, request.axes.clone()));
+                commands.send(Command::PinOptions(
+                    points[index].pins,
+                    request.axes.clone(),
+                ));
             }
         });
     }
@@ -328,9 +427,15 @@ fn progress_ui(ui: &mut Ui, progress: &Progress) {
     };
     ui.horizontal(|ui| {
         let text = RichText::new(format!("{:.0} %  {state}", 100.0 * fraction)).size(11.0);
-        let bar = egui::ProgressBar::new(fraction as f32).desired_width(AXES_WIDTH - 76.0).text(text);
+        let bar = egui::ProgressBar::new(fraction as f32)
+            .desired_width(AXES_WIDTH - 76.0)
+            .text(text);
         ui.add(bar.fill(theme::accent_ground()));
-        if ui.add_enabled(!is_canceled, egui::Button::new("Cancel")).on_hover_text("Keep what has been timed").clicked() {
+        if ui
+            .add_enabled(!is_canceled, egui::Button::new("Cancel"))
+            .on_hover_text("Keep what has been timed")
+            .clicked()
+        {
             progress.cancel();
         }
     });

@@ -1,5 +1,6 @@
-//! The plot: error over milliseconds, both logarithmic, with a line for exact pictures below. egui_plot has no such axes, so
-//! points are plotted by their logarithms and ticks are labeled with the values themselves.
+//! The plot: error over milliseconds, both logarithmic, with a line for exact pictures below.
+//! egui_plot has no such axes, so points are plotted by their logarithms and ticks are labeled with
+//! the values themselves.
 
 use eframe::egui::{self, Pos2, Rect, RichText, Sense, Ui, Vec2, vec2};
 use egui_plot::{GridMark, HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints};
@@ -25,25 +26,54 @@ struct Span {
 }
 
 impl Span {
-    /// The ranges of points that stand at a time and an error; `bars` are the ends of their spreads.
+    /// The ranges of points that stand at a time and an error; `bars` are the ends of their
+    /// spreads.
     fn of(positions: &[[f64; 2]], bars: &[[f64; 2]]) -> Self {
         let ends = |values: &mut dyn Iterator<Item = f64>| {
-            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
+                [low.min(v), high.max(v)]
+            })
         };
         let widened = |[low, high]: [f64; 2], least: f64| {
             let air = (0.07 * (high - low)).max((least - (high - low)).max(0.0) / 2.0);
             [low - air, high + air]
         };
-        let times = positions.iter().map(|position| position[0]).chain(bars.iter().flatten().copied());
+        let times = positions
+            .iter()
+            .map(|position| position[0])
+            .chain(bars.iter().flatten().copied());
         let x = ends(&mut times.filter(|ms| *ms > 0.0).map(f64::log10));
-        let errors = ends(&mut positions.iter().filter(|position| position[1] > 0.0).map(|position| position[1].log10()));
-        let [low, high] = if errors[0].is_finite() { errors } else { [0.0, 0.0] };
+        let errors = ends(
+            &mut positions
+                .iter()
+                .filter(|position| position[1] > 0.0)
+                .map(|position| position[1].log10()),
+        );
+        let [low, high] = if errors[0].is_finite() {
+            errors
+        } else {
+            [0.0, 0.0]
+        };
         let exact = low - DROP;
-        Self { x: widened(x, 0.25), y: [exact - 0.12 * (high - exact).max(1.0), high + 0.12 * (high - exact).max(1.0)], exact }
+        Self {
+            x: widened(x, 0.25),
+            y: [
+                exact - 0.12 * (high - exact).max(1.0),
+                high + 0.12 * (high - exact).max(1.0),
+            ],
+            exact,
+        }
     }
 
     fn at(&self, [ms, error]: [f64; 2]) -> [f64; 2] {
-        [ms.log10(), if error > 0.0 { error.log10() } else { self.exact }]
+        [
+            ms.log10(),
+            if error > 0.0 {
+                error.log10()
+            } else {
+                self.exact
+            },
+        ]
     }
 }
 
@@ -57,18 +87,34 @@ fn ticks(low: f64, high: f64) -> Vec<f64> {
             12.0..2e3 => &[1.0, 2.0, 5.0],
             _ => &[1.0],
         };
-        return decades(low, high).flat_map(|e| digits.iter().map(move |d| d * 10f64.powi(e))).filter(within).collect();
+        return decades(low, high)
+            .flat_map(|e| digits.iter().map(move |d| d * 10f64.powi(e)))
+            .filter(within)
+            .collect();
     }
     let rough = (high - low) / 4.0;
     let unit = 10f64.powf(rough.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|digit| digit * unit).find(|step| *step >= rough).unwrap_or(rough);
+    let step = [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .map(|digit| digit * unit)
+        .find(|step| *step >= rough)
+        .unwrap_or(rough);
     let first = (low / step).ceil() as i64;
-    (first..).map(|k| k as f64 * step).take_while(within).collect()
+    (first..)
+        .map(|k| k as f64 * step)
+        .take_while(within)
+        .collect()
 }
 
 fn marks(span: [f64; 2]) -> Vec<GridMark> {
     let step_size = (span[1] - span[0]) / 4.0;
-    ticks(10f64.powf(span[0]), 10f64.powf(span[1])).into_iter().map(|v| GridMark { value: v.log10(), step_size }).collect()
+    ticks(10f64.powf(span[0]), 10f64.powf(span[1]))
+        .into_iter()
+        .map(|v| GridMark {
+            value: v.log10(),
+            step_size,
+        })
+        .collect()
 }
 
 /// What a frame of the plot shows.
@@ -92,19 +138,42 @@ struct Plotted {
 
 /// Draws the plot into the available space. Returns the index of the point that was clicked.
 pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
-    let Shown { points, metric, current } = *shown;
-    let found = points.iter().enumerate().filter_map(|(i, point)| Some((i, point.position(metric)?)));
-    let plotted: Vec<Plotted> = found.map(|(i, (ms, error))| Plotted { i, at: [ms.p50, error], bar: [ms.p5, ms.p95] }).collect();
+    let Shown {
+        points,
+        metric,
+        current,
+    } = *shown;
+    let found = points
+        .iter()
+        .enumerate()
+        .filter_map(|(i, point)| Some((i, point.position(metric)?)));
+    let plotted: Vec<Plotted> = found
+        .map(|(i, (ms, error))| Plotted {
+            i,
+            at: [ms.p50, error],
+            bar: [ms.p5, ms.p95],
+        })
+        .collect();
     if plotted.is_empty() {
         let text = format!("No combination has both a time and its {}.", metric.name());
         ui.centered_and_justified(|ui| ui.label(theme::weak(text)));
         return None;
     }
-    let span = Span::of(&plotted.iter().map(|p| p.at).collect::<Vec<_>>(), &plotted.iter().map(|p| p.bar).collect::<Vec<_>>());
+    let span = Span::of(
+        &plotted.iter().map(|p| p.at).collect::<Vec<_>>(),
+        &plotted.iter().map(|p| p.bar).collect::<Vec<_>>(),
+    );
     let standings = standings(points, metric);
-    let mut front: Vec<[f64; 2]> = plotted.iter().filter(|p| standings[p.i] == Some(Standing::Front)).map(|p| p.at).collect();
+    let mut front: Vec<[f64; 2]> = plotted
+        .iter()
+        .filter(|p| standings[p.i] == Some(Standing::Front))
+        .map(|p| p.at)
+        .collect();
     front.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let along: PlotPoints<'_> = front.into_iter().map(|position| span.at(position)).collect();
+    let along: PlotPoints<'_> = front
+        .into_iter()
+        .map(|position| span.at(position))
+        .collect();
     let style = |i: usize| match standings[i] {
         Some(Standing::Front) => (theme::accent(), true, 4.5),
         Some(Standing::Tied) => (theme::text(), true, 3.5),
@@ -130,32 +199,52 @@ pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
         .y_grid_spacer(|_| {
             let above = [span.exact + 0.5 * DROP, span.y[1]];
             let mut marks = marks(above);
-            marks.push(GridMark { value: span.exact, step_size: 10.0 });
+            marks.push(GridMark {
+                value: span.exact,
+                step_size: 10.0,
+            });
             marks
         })
         .x_axis_formatter(|mark, _| short(10f64.powf(mark.value)))
-        .y_axis_formatter(
-            move |mark, _| {
-                if (mark.value - span.exact).abs() < 1e-9 { "exact".into() } else { short(10f64.powf(mark.value)) }
-            },
-        )
+        .y_axis_formatter(move |mark, _| {
+            if (mark.value - span.exact).abs() < 1e-9 {
+                "exact".into()
+            } else {
+                short(10f64.powf(mark.value))
+            }
+        })
         .y_axis_min_width(46.0)
         .show(ui, |plot| {
             plot.set_plot_bounds_x(span.x[0]..=span.x[1]);
             plot.set_plot_bounds_y(span.y[0]..=span.y[1]);
-            let line = HLine::new("exact", span.exact).color(theme::green().gamma_multiply(0.7)).width(1.0);
+            let line = HLine::new("exact", span.exact)
+                .color(theme::green().gamma_multiply(0.7))
+                .width(1.0);
             plot.hline(line.style(LineStyle::dashed_dense()).allow_hover(false));
-            plot.line(Line::new("front", along).color(theme::accent().gamma_multiply(0.7)).width(1.5).allow_hover(false));
+            plot.line(
+                Line::new("front", along)
+                    .color(theme::accent().gamma_multiply(0.7))
+                    .width(1.5)
+                    .allow_hover(false),
+            );
             for &Plotted { i, at, bar } in &plotted {
-                let ends: PlotPoints<'_> = bar.iter().map(|ms| [ms.log10(), span.at(at)[1]]).collect();
-                plot.line(Line::new("", ends).color(style(i).0.gamma_multiply(0.6)).width(1.5).allow_hover(false));
+                let ends: PlotPoints<'_> =
+                    bar.iter().map(|ms| [ms.log10(), span.at(at)[1]]).collect();
+                plot.line(
+                    Line::new("", ends)
+                        .color(style(i).0.gamma_multiply(0.6))
+                        .width(1.5)
+                        .allow_hover(false),
+                );
             }
         });
     let true_places: Vec<Pos2> = plotted
         .iter()
         .map(|p| {
             let [x, y] = span.at(p.at);
-            response.transform.position_from_point(&PlotPoint::new(x, y))
+            response
+                .transform
+                .position_from_point(&PlotPoint::new(x, y))
         })
         .collect();
     let places = spread(&true_places);
@@ -173,35 +262,58 @@ pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
     }
     let mut clicked = None;
     for (&Plotted { i, .. }, &at) in plotted.iter().zip(&places) {
-        let handle = ui.interact(Rect::from_center_size(at, Vec2::splat(APART)), egui::Id::unique(("trade point", i)), Sense::click());
+        let handle = ui.interact(
+            Rect::from_center_size(at, Vec2::splat(APART)),
+            egui::Id::unique(("trade point", i)),
+            Sense::click(),
+        );
         let words = points[i].pins.words();
-        handle.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Point {words}")));
+        handle.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Point {words}"))
+        });
         if handle.hovered() || handle.has_focus() {
-            ui.painter().circle_stroke(at, 7.0, (1.5, theme::text_strong()));
+            ui.painter()
+                .circle_stroke(at, 7.0, (1.5, theme::text_strong()));
             ui.set_cursor_icon(egui::CursorIcon::PointingHand);
         }
         let role = match () {
             () if current(&points[i]) => "used by this preset",
-            () if standings[i] == Some(Standing::Front) => "on the Pareto front: every point that is as exact is slower. Click to use it.",
-            () if standings[i] == Some(Standing::Tied) => "as quick as another that is as exact, within the noise. Click to use it.",
+            () if standings[i] == Some(Standing::Front) => {
+                "on the Pareto front: every point that is as exact is slower. Click to use it."
+            }
+            () if standings[i] == Some(Standing::Tied) => {
+                "as quick as another that is as exact, within the noise. Click to use it."
+            }
             () => "dominated: another is as exact and quicker. Click to use it.",
         };
-        if handle.on_hover_ui(|ui| details_ui(ui, &points[i], role)).clicked() {
+        if handle
+            .on_hover_ui(|ui| details_ui(ui, &points[i], role))
+            .clicked()
+        {
             clicked = Some(i);
         }
     }
     clicked
 }
 
-/// Where points are shown that stand at `places`: those that would lie over each other are pushed apart, so that each can be clicked. The
-/// first of them keeps its place.
+/// Where points are shown that stand at `places`: those that would lie over each other are pushed
+/// apart, so that each can be clicked. The first of them keeps its place.
 fn spread(places: &[Pos2]) -> Vec<Pos2> {
     let mut shown: Vec<Pos2> = Vec::with_capacity(places.len());
     for &place in places {
-        // Rings round the place, each with room for one more than the last; the first free place is taken.
-        let ring = |ring: u32| (0..6 * ring).map(move |k| (ring, std::f32::consts::TAU * k as f32 / (6 * ring) as f32));
-        let mut around = (1..).flat_map(ring).map(|(ring, angle)| place + ring as f32 * APART * Vec2::angled(angle));
-        let is_free = |at: &Pos2| shown.iter().all(|other| other.distance(*at) >= 0.98 * APART);
+        // Rings round the place, each with room for one more than the last; the first free place is
+        // taken.
+        let ring = |ring: u32| {
+            (0..6 * ring).map(move |k| (ring, std::f32::consts::TAU * k as f32 / (6 * ring) as f32))
+        };
+        let mut around = (1..)
+            .flat_map(ring)
+            .map(|(ring, angle)| place + ring as f32 * APART * Vec2::angled(angle));
+        let is_free = |at: &Pos2| {
+            shown
+                .iter()
+                .all(|other| other.distance(*at) >= 0.98 * APART)
+        };
         let free = std::iter::once(place).chain(around.by_ref()).find(is_free);
         shown.extend(free);
     }
@@ -210,13 +322,28 @@ fn spread(places: &[Pos2]) -> Vec<Pos2> {
 
 /// Options and numbers of a point.
 fn details_ui(ui: &mut Ui, point: &Point, role: &str) {
-    ui.label(RichText::new(point.pins.words().replace(' ', "\n")).monospace().color(theme::text_strong()));
+    ui.label(
+        RichText::new(point.pins.words().replace(' ', "\n"))
+            .monospace()
+            .color(theme::text_strong()),
+    );
     ui.label(point.ms.map_or_else(
         || "not timed".to_owned(),
-        |ms| format!("{} ms median, {} to {} ms from 5 to 95 %, {} samples", short(ms.p50), short(ms.p5), short(ms.p95), point.samples),
+        |ms| {
+            format!(
+                "{} ms median, {} to {} ms from 5 to 95 %, {} samples",
+                short(ms.p50),
+                short(ms.p5),
+                short(ms.p95),
+                point.samples
+            )
+        },
     ));
     for metric in Metric::of(std::slice::from_ref(point)) {
-        let error = point.error(metric).map_or_else(|| "not measured".into(), |error| format!("{} {}", short(error), metric.unit()));
+        let error = point.error(metric).map_or_else(
+            || "not measured".into(),
+            |error| format!("{} {}", short(error), metric.unit()),
+        );
         ui.label(format!("{}: {error}", metric.name()));
     }
     for (name, value) in &point.more {
@@ -242,7 +369,9 @@ pub fn legend_ui(ui: &mut Ui) {
         let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), Sense::hover());
         match filled {
             true => ui.painter().circle_filled(rect.center(), radius, color),
-            false => ui.painter().circle_stroke(rect.center(), radius, (1.2, color)),
+            false => ui
+                .painter()
+                .circle_stroke(rect.center(), radius, (1.2, color)),
         };
         ui.add_space(theme::HALF);
     }
@@ -257,37 +386,71 @@ mod tests {
         assert_eq!(ticks(0.8, 130.0), [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]);
         assert_eq!(ticks(66.0, 440.0), [70.0, 100.0, 200.0, 300.0]);
         assert_eq!(ticks(0.5, 20_000.0), [1.0, 10.0, 100.0, 1_000.0, 10_000.0]);
-        for (low, high) in [(3.9, 5.3), (0.011, 0.012), (91.0, 180.0), (1.0, 11.0), (999.0, 1001.0)] {
+        for (low, high) in [
+            (3.9, 5.3),
+            (0.011, 0.012),
+            (91.0, 180.0),
+            (1.0, 11.0),
+            (999.0, 1001.0),
+        ] {
             let ticks = ticks(low, high);
-            assert!((2..=8).contains(&ticks.len()) && ticks.iter().all(|t| (low..=high).contains(t)), "{low}..{high}: {ticks:?}");
+            assert!(
+                (2..=8).contains(&ticks.len()) && ticks.iter().all(|t| (low..=high).contains(t)),
+                "{low}..{high}: {ticks:?}"
+            );
         }
     }
 
     #[test]
     fn points_at_one_place_are_spread_and_others_stay() {
         let one = Pos2::new(40.0, 30.0);
-        let places = [vec![one; 20], vec![Pos2::new(400.0, 30.0), Pos2::new(405.0, 31.0)]].concat();
+        let places = [
+            vec![one; 20],
+            vec![Pos2::new(400.0, 30.0), Pos2::new(405.0, 31.0)],
+        ]
+        .concat();
         let shown = spread(&places);
-        assert_eq!((shown.len(), shown[0], shown[20]), (22, places[0], places[20]));
+        assert_eq!(
+            (shown.len(), shown[0], shown[20]),
+            (22, places[0], places[20])
+        );
         for (at, place) in shown.iter().enumerate() {
             assert!(place.distance(places[at]) <= 4.0 * APART, "{at}: {place}");
             for other in &shown[..at] {
-                assert!(place.distance(*other) >= 0.9 * APART, "{place} and {other} lie over each other");
+                assert!(
+                    place.distance(*other) >= 0.9 * APART,
+                    "{place} and {other} lie over each other"
+                );
             }
         }
     }
 
     #[test]
     fn exact_is_below_the_least_error_and_everything_is_finite() {
-        for positions in [vec![[2.0, 0.0]], vec![[2.0, 0.0], [1.0, 50.0], [0.5, 9e5]], vec![[1e-3, 1e-9], [1e4, 1.0]]] {
+        for positions in [
+            vec![[2.0, 0.0]],
+            vec![[2.0, 0.0], [1.0, 50.0], [0.5, 9e5]],
+            vec![[1e-3, 1e-9], [1e4, 1.0]],
+        ] {
             let span = Span::of(&positions, &[[1e-3, 2.0]]);
             let ends = [span.x, span.y].concat();
-            assert!(ends.iter().all(|v| v.is_finite()) && span.x[0] < span.x[1] && span.y[0] < span.y[1], "{span:?}");
+            assert!(
+                ends.iter().all(|v| v.is_finite())
+                    && span.x[0] < span.x[1]
+                    && span.y[0] < span.y[1],
+                "{span:?}"
+            );
             for position in positions {
                 let [x, y] = span.at(position);
                 assert!(span.x[0] < -3.0, "the bar is inside");
-                assert!((span.x[0]..=span.x[1]).contains(&x) && (span.y[0]..=span.y[1]).contains(&y), "{position:?} in {span:?}");
-                assert!(position[1] == 0.0 && y == span.exact || y > span.exact, "{position:?} in {span:?}");
+                assert!(
+                    (span.x[0]..=span.x[1]).contains(&x) && (span.y[0]..=span.y[1]).contains(&y),
+                    "{position:?} in {span:?}"
+                );
+                assert!(
+                    position[1] == 0.0 && y == span.exact || y > span.exact,
+                    "{position:?} in {span:?}"
+                );
             }
         }
     }

@@ -11,30 +11,54 @@ use crate::{
 };
 
 /// Returns the index of the point that was clicked.
-pub fn table_ui(ui: &mut Ui, points: &[Point], axes: &[&'static Axis], metric: Metric, current: &dyn Fn(&Point) -> bool) -> Option<usize> {
+pub fn table_ui(
+    ui: &mut Ui,
+    points: &[Point],
+    axes: &[&'static Axis],
+    metric: Metric,
+    current: &dyn Fn(&Point) -> bool,
+) -> Option<usize> {
     let mut clicked = None;
     let (standings, metrics) = (standings(points, metric), Metric::of(points));
     let mut order: Vec<usize> = (0..points.len()).collect();
     let ms = |i: &usize| points[*i].ms.map_or(f64::INFINITY, |ms| ms.p50);
     order.sort_by(|a, b| ms(a).total_cmp(&ms(b)));
-    egui::ScrollArea::both().id_salt("trade table").auto_shrink(false).show(ui, |ui| {
-        egui::Grid::new("trade table").num_columns(5 + metrics.len()).spacing([14.0, 3.0]).show(ui, |ui| {
-            let options = if let [one] = axes { one.name.replace('_', " ") } else { "options".to_owned() };
-            let errors = ["wrong ppm", "color", "holes+doubles", "light ppm"];
-            for heading in
-                [options.as_str(), "ms", "5 %", "95 %"].into_iter().chain(metrics.iter().map(|metric| errors[*metric as usize])).chain([""])
-            {
-                ui.label(theme::weak(heading).size(11.0));
-            }
-            ui.end_row();
-            for i in order {
-                if row_ui(ui, &points[i], axes, &metrics, (standings[i], current(&points[i]))) {
-                    clicked = Some(i);
-                }
-                ui.end_row();
-            }
+    egui::ScrollArea::both()
+        .id_salt("trade table")
+        .auto_shrink(false)
+        .show(ui, |ui| {
+            egui::Grid::new("trade table")
+                .num_columns(5 + metrics.len())
+                .spacing([14.0, 3.0])
+                .show(ui, |ui| {
+                    let options = if let [one] = axes {
+                        one.name.replace('_', " ")
+                    } else {
+                        "options".to_owned()
+                    };
+                    let errors = ["wrong ppm", "color", "holes+doubles", "light ppm"];
+                    for heading in [options.as_str(), "ms", "5 %", "95 %"]
+                        .into_iter()
+                        .chain(metrics.iter().map(|metric| errors[*metric as usize]))
+                        .chain([""])
+                    {
+                        ui.label(theme::weak(heading).size(11.0));
+                    }
+                    ui.end_row();
+                    for i in order {
+                        if row_ui(
+                            ui,
+                            &points[i],
+                            axes,
+                            &metrics,
+                            (standings[i], current(&points[i])),
+                        ) {
+                            clicked = Some(i);
+                        }
+                        ui.end_row();
+                    }
+                });
         });
-    });
     clicked
 }
 
@@ -46,7 +70,10 @@ fn row_ui(
     (standing, is_current): (Option<Standing>, bool),
 ) -> bool {
     let is_front = standing == Some(Standing::Front);
-    let words: Vec<&str> = axes.iter().filter_map(|axis| Some(axis.words[point.pins.get(axis)?])).collect();
+    let words: Vec<&str> = axes
+        .iter()
+        .filter_map(|axis| Some(axis.words[point.pins.get(axis)?]))
+        .collect();
     let ink = match (point.ms.is_some(), is_current, is_front) {
         (false, ..) => theme::text_weak(),
         (_, true, _) => theme::amber(),
@@ -54,15 +81,33 @@ fn row_ui(
         _ => theme::text(),
     };
     let name = RichText::new(words.join(" · ")).size(12.0).color(ink);
-    let button = ui.add_enabled(point.ms.is_some(), egui::Button::new(name).small().frame(false));
+    let button = ui.add_enabled(
+        point.ms.is_some(),
+        egui::Button::new(name).small().frame(false),
+    );
     let button = button.on_hover_text(format!("Switch the preset to {}", point.pins.words()));
-    let clicked = button.accessible_name(format!("Use {}", point.pins.words())).clicked();
+    let clicked = button
+        .accessible_name(format!("Use {}", point.pins.words()))
+        .clicked();
     let cell = |ui: &mut Ui, value: Option<f64>| {
         let text = value.map_or_else(|| "not measured".into(), short);
-        ui.label(RichText::new(text).monospace().size(11.5).color(if value.is_some() { theme::text() } else { theme::text_weak() }));
+        ui.label(
+            RichText::new(text)
+                .monospace()
+                .size(11.5)
+                .color(if value.is_some() {
+                    theme::text()
+                } else {
+                    theme::text_weak()
+                }),
+        );
     };
-    [0, 1, 2].into_iter().for_each(|i| cell(ui, point.ms.map(|ms| [ms.p50, ms.p5, ms.p95][i])));
-    metrics.iter().for_each(|metric| cell(ui, point.error(*metric)));
+    [0, 1, 2]
+        .into_iter()
+        .for_each(|i| cell(ui, point.ms.map(|ms| [ms.p50, ms.p5, ms.p95][i])));
+    metrics
+        .iter()
+        .for_each(|metric| cell(ui, point.error(*metric)));
     let remark = match standing {
         _ if is_current => RichText::new("this preset").color(theme::amber()),
         Some(Standing::Front) => RichText::new("on the front").color(theme::accent()),

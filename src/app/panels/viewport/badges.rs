@@ -7,7 +7,11 @@ use crate::app::{files::live::Subject, shell::state::State, widgets::theme};
 /// Shows the badges at the lower left of `rect`.
 pub fn badges_ui(ui: &mut Ui, state: &State, rect: Rect) {
     let stack = &state.session.preset().stack;
-    let faults: Vec<(&Subject, &str)> = state.files.live.shown_faults(|name| stack.get(name).is_some()).collect();
+    let faults: Vec<(&Subject, &str)> = state
+        .files
+        .live
+        .shown_faults(|name| stack.get(name).is_some())
+        .collect();
     if faults.is_empty() {
         return;
     }
@@ -28,10 +32,20 @@ pub fn badges_ui(ui: &mut Ui, state: &State, rect: Rect) {
 
 fn title(subject: &Subject) -> String {
     match subject {
-        Subject::Effect(name) => format!("{name}.wgsl is faulty; the picture shows the last good version"),
-        Subject::Pipelines => "An effect cannot be compiled; the picture shows the last good version".into(),
-        Subject::Preset => "The preset's file is faulty; the picture shows the last good version".into(),
-        Subject::Model => "The model's file is faulty; the picture shows the last good version".into(),
-        Subject::Shaders => "The shaders are faulty; the picture shows the last good version".into(),
+        Subject::Effect(name) => {
+            format!("{name}.wgsl is faulty; the picture shows the last good version")
+        }
+        Subject::Pipelines => {
+            "An effect cannot be compiled; the picture shows the last good version".into()
+        }
+        Subject::Preset => {
+            "The preset's file is faulty; the picture shows the last good version".into()
+        }
+        Subject::Model => {
+            "The model's file is faulty; the picture shows the last good version".into()
+        }
+        Subject::Shaders => {
+            "The shaders are faulty; the picture shows the last good version".into()
+        }
     }
 }

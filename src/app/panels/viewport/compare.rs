@@ -1,6 +1,7 @@
-//! Compare: A, the most exact picture of this preset or a picture that was kept, beside B, the preset as it is. Both have the
-//! same camera and time. They are shown with a divider that can be dragged, side by side, one instead of the other, or as
-//! their difference; below each are its time and its error.
+//! Compare: A, the most exact picture of this preset or a picture that was kept, beside B, the
+//! preset as it is. Both have the same camera and time. They are shown with a divider that can be
+//! dragged, side by side, one instead of the other, or as their difference; below each are its time
+//! and its error.
 
 use eframe::egui::Rect;
 
@@ -51,7 +52,15 @@ pub struct Compare {
 
 impl Default for Compare {
     fn default() -> Self {
-        Self { mode: None, split: 0.5, kept: None, screen: None, verdict: None, gain: 16, difference: None }
+        Self {
+            mode: None,
+            split: 0.5,
+            kept: None,
+            screen: None,
+            verdict: None,
+            gain: 16,
+            difference: None,
+        }
     }
 }
 
@@ -67,7 +76,11 @@ impl Compare {
 
     /// The part of `rect` that B is fitted into.
     pub fn side_b(&self, rect: Rect) -> Rect {
-        if self.mode == Some(Mode::SideBySide) { rect.split_left_right_at_fraction(0.5).1 } else { rect }
+        if self.mode == Some(Mode::SideBySide) {
+            rect.split_left_right_at_fraction(0.5).1
+        } else {
+            rect
+        }
     }
 
     /// True if B cannot be seen.
@@ -87,7 +100,11 @@ impl Compare {
 
     /// Shows A instead of B, or B instead of A.
     pub fn flip(&mut self) {
-        self.mode = Some(if self.mode == Some(Mode::A) { Mode::B } else { Mode::A });
+        self.mode = Some(if self.mode == Some(Mode::A) {
+            Mode::B
+        } else {
+            Mode::A
+        });
     }
 
     /// Draws A's next picture with the shaders as they are now.
@@ -97,7 +114,12 @@ impl Compare {
 
     /// Drops A's renderer with all that it holds.
     pub fn close(&mut self) {
-        *self = Self { split: self.split, gain: self.gain, kept: self.kept.take(), ..Self::default() };
+        *self = Self {
+            split: self.split,
+            gain: self.gain,
+            kept: self.kept.take(),
+            ..Self::default()
+        };
     }
 
     /// What A shows, as `A` is labeled.
@@ -114,9 +136,11 @@ impl Compare {
         self.shown().is_some_and(Screen::is_waiting)
     }
 
-    /// True while a picture of A is still to come, other than the next moment of a preset that plays.
+    /// True while a picture of A is still to come, other than the next moment of a preset that
+    /// plays.
     pub fn is_awaited(&self, is_playing: bool) -> bool {
-        self.shown().is_some_and(|screen| screen.is_awaited(is_playing))
+        self.shown()
+            .is_some_and(|screen| screen.is_awaited(is_playing))
     }
 
     /// True while the cost of A is to be measured.
@@ -141,12 +165,16 @@ impl Compare {
 
     /// A's picture, unless only B is shown.
     fn shown(&self) -> Option<&Screen> {
-        self.screen.as_ref().filter(|_| !matches!(self.mode, None | Some(Mode::B)))
+        self.screen
+            .as_ref()
+            .filter(|_| !matches!(self.mode, None | Some(Mode::B)))
     }
 
     /// Time of A's newest frame, milliseconds; 0 if there is none.
     pub fn ms(&self) -> f64 {
-        self.shown().and_then(|screen| screen.timings().newest_ms()).unwrap_or(0.0)
+        self.shown()
+            .and_then(|screen| screen.timings().newest_ms())
+            .unwrap_or(0.0)
     }
 
     /// The inputs that were requested for A, at full size.
@@ -157,7 +185,10 @@ impl Compare {
     /// The picture of A, if it has no verdict yet.
     pub fn unjudged(&self) -> Option<Inputs> {
         let judged = self.verdict.as_ref().map(|verdict| &verdict.of);
-        self.mode.and(self.requested()).filter(|requested| judged != Some(requested)).cloned()
+        self.mode
+            .and(self.requested())
+            .filter(|requested| judged != Some(requested))
+            .cloned()
     }
 
     /// Keeps a verdict if it is on A. Returns true if so.
@@ -169,22 +200,49 @@ impl Compare {
         is_ours
     }
 
-    /// What A shows at full size, under the camera of `live`: the preset's effects with the most exact options, or the kept
-    /// preset.
+    /// What A shows at full size, under the camera of `live`: the preset's effects with the most
+    /// exact options, or the kept preset.
     fn inputs(&self, state: &State, live: &Inputs) -> Inputs {
         let full = [live.view.width, live.view.height];
         let session = &state.session;
         let Some(kept) = &self.kept else {
             // Both sides have the same samples for each pixel, or every edge would be a difference.
-            let scale = live.accuracy.pins.option::<RenderScale>().filter(|scale| *scale >= RenderScale::Full);
+            let scale = live
+                .accuracy
+                .pins
+                .option::<RenderScale>()
+                .filter(|scale| *scale >= RenderScale::Full);
             let pins = scale.map_or_else(PinnedOptions::default, PinnedOptions::of);
-            let accuracy = AccuracyRequest { tier: Tier::Reference, pins, ..AccuracyRequest::default() };
-            return Inputs { view: session.view_at(&live.scene, full), accuracy, ..live.clone() };
+            let accuracy = AccuracyRequest {
+                tier: Tier::Reference,
+                pins,
+                ..AccuracyRequest::default()
+            };
+            return Inputs {
+                view: session.view_at(&live.scene, full),
+                accuracy,
+                ..live.clone()
+            };
         };
-        let Preset { stack, animation, accuracy, .. } = kept.in_meters(&live.scene).into_owned();
-        let preset = Preset { stack, animation, accuracy, ..session.metric_preset() };
+        let Preset {
+            stack,
+            animation,
+            accuracy,
+            ..
+        } = kept.in_meters(&live.scene).into_owned();
+        let preset = Preset {
+            stack,
+            animation,
+            accuracy,
+            ..session.metric_preset()
+        };
         let stack = preset.evaluated_stack();
-        Inputs { view: session.view_of(preset, &live.scene, full), stack, accuracy, scene: live.scene.clone() }
+        Inputs {
+            view: session.view_of(preset, &live.scene, full),
+            stack,
+            accuracy,
+            scene: live.scene.clone(),
+        }
     }
 
     /// Draws A at the size of B.
@@ -192,13 +250,20 @@ impl Compare {
         if matches!(self.mode, None | Some(Mode::B)) {
             return;
         }
-        let Some(live) = state.picture.screen.requested() else { return };
+        let Some(live) = state.picture.screen.requested() else {
+            return;
+        };
         let inputs = self.inputs(state, live);
-        let screen = self.screen.get_or_insert_with(|| state.picture.screen.sibling());
+        let screen = self
+            .screen
+            .get_or_insert_with(|| state.picture.screen.sibling());
         let polled = screen.poll();
         screen.show(inputs, state.picture.screen.divisor());
         if let Err(error) = polled {
-            state.notify(Level::Error, format!("The comparison cannot be drawn: {error}"));
+            state.notify(
+                Level::Error,
+                format!("The comparison cannot be drawn: {error}"),
+            );
         }
     }
 }

@@ -13,20 +13,35 @@ use crate::{
 };
 
 /// The modes that show both at once.
-const MODES: [(Mode, &str); 3] = [(Mode::Wipe, "Wipe"), (Mode::SideBySide, "Side by side"), (Mode::Difference, "Difference")];
+const MODES: [(Mode, &str); 3] = [
+    (Mode::Wipe, "Wipe"),
+    (Mode::SideBySide, "Side by side"),
+    (Mode::Difference, "Difference"),
+];
 
 /// Height of the bar, points.
 const BAR: f32 = 30.0;
 
-/// From the lower edge of the picture up to the bar and to the labels, points: above the plates of both sides.
+/// From the lower edge of the picture up to the bar and to the labels, points: above the plates of
+/// both sides.
 const UP_TO_BAR: f32 = 106.0;
 const UP_TO_LABELS: f32 = 114.0;
 
 /// A label in the picture on each side; `name` is that of A.
 pub fn labels_ui(ui: &Ui, name: &str, sides: [Rect; 2], is_difference: bool) {
-    let first = if is_difference { "|A \u{2212} B|".to_owned() } else { format!("A \u{b7} {name}") };
-    for (side, text, align) in [(sides[0], first, Align2::LEFT_BOTTOM), (sides[1], "B \u{b7} this preset".to_owned(), Align2::RIGHT_BOTTOM)]
-    {
+    let first = if is_difference {
+        "|A \u{2212} B|".to_owned()
+    } else {
+        format!("A \u{b7} {name}")
+    };
+    for (side, text, align) in [
+        (sides[0], first, Align2::LEFT_BOTTOM),
+        (
+            sides[1],
+            "B \u{b7} this preset".to_owned(),
+            Align2::RIGHT_BOTTOM,
+        ),
+    ] {
         // A side that is too narrow for its label has none.
         if side.width() < 140.0 || !side.is_positive() {
             continue;
@@ -35,7 +50,11 @@ pub fn labels_ui(ui: &Ui, name: &str, sides: [Rect; 2], is_difference: bool) {
         let painter = ui.painter_at(side);
         let label = painter.layout_no_wrap(text, FontId::proportional(13.0), theme::text_strong());
         let rect = align.anchor_size(corner, label.size());
-        painter.rect_filled(rect.expand2(vec2(7.0, 4.0)), 5.0, theme::bar().gamma_multiply(0.88));
+        painter.rect_filled(
+            rect.expand2(vec2(7.0, 4.0)),
+            5.0,
+            theme::bar().gamma_multiply(0.88),
+        );
         painter.galley(rect.min, label, theme::text_strong());
     }
 }
@@ -47,32 +66,56 @@ pub fn bar_ui(ui: &mut Ui, compare: &mut Compare, state: &State, rect: Rect) {
     let corner = pos2(rect.center().x - width / 2.0, rect.bottom() - UP_TO_BAR);
     let rect = Rect::from_min_size(corner, vec2(width, BAR));
     let mut bar = ui.new_child(egui::UiBuilder::new().id_salt("compare bar").max_rect(rect));
-    theme::toast_frame(theme::line()).inner_margin(egui::Margin::symmetric(8, 3)).show(&mut bar, |ui| {
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 6.0;
-            for (mode, name) in MODES {
-                let button = egui::Button::new(name).small().selected(compare.mode == Some(mode));
-                if ui.add(button).accessible_name(format!("Compare: {}", name.to_lowercase())).clicked() {
-                    compare.mode = Some(mode);
+    theme::toast_frame(theme::line())
+        .inner_margin(egui::Margin::symmetric(8, 3))
+        .show(&mut bar, |ui| {
+            ui.horizontal(|ui| {
+                ui.spacing_mut().item_spacing.x = 6.0;
+                for (mode, name) in MODES {
+                    let button = egui::Button::new(name)
+                        .small()
+                        .selected(compare.mode == Some(mode));
+                    if ui
+                        .add(button)
+                        .accessible_name(format!("Compare: {}", name.to_lowercase()))
+                        .clicked()
+                    {
+                        compare.mode = Some(mode);
+                    }
                 }
-            }
-            if compare.mode == Some(Mode::Difference) {
-                let gain = egui::DragValue::new(&mut compare.gain).range(1..=255).prefix("\u{d7} ").speed(0.3);
-                ui.add(gain).accessible_name("Difference gain").on_hover_text("Factor of the difference");
-            }
-            ui.separator();
-            let label = egui::Label::new(RichText::new(&text).size(12.0).color(theme::text())).truncate();
-            ui.add(label).on_hover_text("A against B, pixel by pixel. Verify (V) measures both.");
+                if compare.mode == Some(Mode::Difference) {
+                    let gain = egui::DragValue::new(&mut compare.gain)
+                        .range(1..=255)
+                        .prefix("\u{d7} ")
+                        .speed(0.3);
+                    ui.add(gain)
+                        .accessible_name("Difference gain")
+                        .on_hover_text("Factor of the difference");
+                }
+                ui.separator();
+                let label = egui::Label::new(RichText::new(&text).size(12.0).color(theme::text()))
+                    .truncate();
+                ui.add(label)
+                    .on_hover_text("A against B, pixel by pixel. Verify (V) measures both.");
+            });
         });
-    });
 }
 
 /// `max \u{394} 12, RMS 0.31, 5 other triangles`, if both pictures have a verdict.
 fn difference_text(compare: &mut Compare, state: &State) -> String {
-    let on = |verdict: Option<&Verdict>, requested: Option<&Inputs>| verdict.filter(|verdict| requested == Some(&verdict.of)).cloned();
+    let on = |verdict: Option<&Verdict>, requested: Option<&Inputs>| {
+        verdict
+            .filter(|verdict| requested == Some(&verdict.of))
+            .cloned()
+    };
     let a = on(compare.verdict.as_ref(), compare.requested());
-    let b = on(state.picture.verification.verdict(), state.picture.screen.requested());
-    let Some((a, b)) = a.zip(b) else { return "A and B not compared yet".into() };
+    let b = on(
+        state.picture.verification.verdict(),
+        state.picture.screen.requested(),
+    );
+    let Some((a, b)) = a.zip(b) else {
+        return "A and B not compared yet".into();
+    };
     let is_known = |known: &&Difference| known.of[0].of == a.of && known.of[1].of == b.of;
     if let Some(known) = compare.difference.as_ref().filter(is_known) {
         return known.text.clone();
@@ -82,11 +125,19 @@ fn difference_text(compare: &mut Compare, state: &State) -> String {
         let colors = pictures(&found_a.color, &found_b.color, 0);
         let others = triangle_ids(&found_a.triangle_ids, &found_b.triangle_ids).different;
         let word = if others == 1 { "triangle" } else { "triangles" };
-        format!("max \u{394} {}, RMS {:.3}, {} other {word}", colors.max_delta, colors.rms, grouped(others))
+        format!(
+            "max \u{394} {}, RMS {:.3}, {} other {word}",
+            colors.max_delta,
+            colors.rms,
+            grouped(others)
+        )
     } else {
         let ([w, h], [v, g]) = (found_a.size, found_b.size);
         format!("A has {w} x {h} pixels, B has {v} x {g}")
     };
-    compare.difference = Some(Difference { of: [a, b], text: text.clone() });
+    compare.difference = Some(Difference {
+        of: [a, b],
+        text: text.clone(),
+    });
     text
 }

@@ -22,54 +22,111 @@ use crate::{
 const PLATE: egui::Vec2 = vec2(312.0, 54.0);
 
 /// Shows the plates in `rect`. Returns what they do not cover of B's side.
-pub fn plates_ui(ui: &mut Ui, compare: &mut Compare, state: &State, rect: Rect, mode: Mode) -> Rect {
+pub fn plates_ui(
+    ui: &mut Ui,
+    compare: &mut Compare,
+    state: &State,
+    rect: Rect,
+    mode: Mode,
+) -> Rect {
     let size = vec2(((rect.width() - 36.0) / 2.0).min(PLATE.x), PLATE.y);
     let corner = rect.left_bottom() + vec2(12.0, -12.0 - size.y);
-    let builder = |x: f32| egui::UiBuilder::new().max_rect(Rect::from_min_size(pos2(x, corner.y), size));
+    let builder =
+        |x: f32| egui::UiBuilder::new().max_rect(Rect::from_min_size(pos2(x, corner.y), size));
     if mode != Mode::B {
-        plate_a_ui(&mut ui.new_child(builder(corner.x).id_salt("A")), compare, state);
+        plate_a_ui(
+            &mut ui.new_child(builder(corner.x).id_salt("A")),
+            compare,
+            state,
+        );
     }
     let mut left = rect.left();
     if mode != Mode::A {
         left = rect.right() - 12.0 - size.x;
-        plate_b_ui(&mut ui.new_child(builder(left).id_salt("B")), compare, state);
+        plate_b_ui(
+            &mut ui.new_child(builder(left).id_salt("B")),
+            compare,
+            state,
+        );
     }
-    Rect::from_min_max(pos2(left - 12.0, rect.top()), pos2(rect.right(), corner.y + 4.0))
+    Rect::from_min_max(
+        pos2(left - 12.0, rect.top()),
+        pos2(rect.right(), corner.y + 4.0),
+    )
 }
 
 fn plate_a_ui(ui: &mut Ui, compare: &mut Compare, state: &State) {
     let (color, error, hint) = match compare.screen.as_ref().is_some_and(Screen::is_refused) {
-        true => (theme::red(), "cannot be drawn".into(), "See the log.".into()),
+        true => (
+            theme::red(),
+            "cannot be drawn".into(),
+            "See the log.".into(),
+        ),
         false => error_line(compare.verdict.as_ref(), compare.requested()),
     };
     let time = time_line(compare.screen.as_ref());
     let is_kept = compare.kept.is_some();
-    let doc = if is_kept { "The preset as it was kept" } else { "This preset with the most exact option on every axis" };
-    plate(ui, &format!("A · {}", compare.name()), doc, ((&time.0, &time.1), (&error, color, &hint)), |ui| {
-        if ui.small_button("Keep B").on_hover_text("Keep the preset as it is now, and show it as A").clicked() {
-            let session = &state.session;
-            // Without muted effects the preset keeps its movement too.
-            let kept = match session.muted.is_empty() {
-                true => session.preset().clone(),
-                false => Preset { animation: Animation::default(), ..session.visible_preset() },
-            };
-            compare.kept = Some(Box::new(kept));
-        }
-        if is_kept && ui.small_button("Reference").on_hover_text("Show the most exact options as A again").clicked() {
-            compare.kept = None;
-        }
-    });
+    let doc = if is_kept {
+        "The preset as it was kept"
+    } else {
+        "This preset with the most exact option on every axis"
+    };
+    plate(
+        ui,
+        &format!("A · {}", compare.name()),
+        doc,
+        ((&time.0, &time.1), (&error, color, &hint)),
+        |ui| {
+            if ui
+                .small_button("Keep B")
+                .on_hover_text("Keep the preset as it is now, and show it as A")
+                .clicked()
+            {
+                let session = &state.session;
+                // Without muted effects the preset keeps its movement too.
+                let kept = match session.muted.is_empty() {
+                    true => session.preset().clone(),
+                    false => Preset {
+                        animation: Animation::default(),
+                        ..session.visible_preset()
+                    },
+                };
+                compare.kept = Some(Box::new(kept));
+            }
+            if is_kept
+                && ui
+                    .small_button("Reference")
+                    .on_hover_text("Show the most exact options as A again")
+                    .clicked()
+            {
+                compare.kept = None;
+            }
+        },
+    );
 }
 
 fn plate_b_ui(ui: &mut Ui, compare: &mut Compare, state: &State) {
-    let (color, error, hint) = error_line(state.picture.verification.verdict(), state.picture.screen.requested());
+    let (color, error, hint) = error_line(
+        state.picture.verification.verdict(),
+        state.picture.screen.requested(),
+    );
     let time = time_line(Some(&state.picture.screen));
-    let key = state.picture.screen.explanation().map_or(String::new(), |explanation| explanation.key.clone());
-    plate(ui, "B · this preset", &key, ((&time.0, &time.1), (&error, color, &hint)), |ui| {
-        if icon_button(ui, Icon::Cross, "Close the comparison").clicked() {
-            compare.close();
-        }
-    });
+    let key = state
+        .picture
+        .screen
+        .explanation()
+        .map_or(String::new(), |explanation| explanation.key.clone());
+    plate(
+        ui,
+        "B · this preset",
+        &key,
+        ((&time.0, &time.1), (&error, color, &hint)),
+        |ui| {
+            if icon_button(ui, Icon::Cross, "Close the comparison").clicked() {
+                compare.close();
+            }
+        },
+    );
 }
 
 /// Title and buttons of a side, and below them its time and its error.
@@ -80,18 +137,26 @@ fn plate(
     ((time, time_hint), (error, color, hint)): ((&str, &str), (&str, Color32, &str)),
     buttons: impl FnOnce(&mut Ui),
 ) {
-    theme::toast_frame(theme::line()).inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
-        ui.set_min_width(ui.available_width());
-        ui.spacing_mut().item_spacing.y = 2.0;
-        ui.horizontal(|ui| {
-            ui.add(egui::Label::new(RichText::new(title).strong().color(theme::text_strong())).truncate()).on_hover_text(doc);
-            buttons(ui);
+    theme::toast_frame(theme::line())
+        .inner_margin(egui::Margin::symmetric(10, 6))
+        .show(ui, |ui| {
+            ui.set_min_width(ui.available_width());
+            ui.spacing_mut().item_spacing.y = 2.0;
+            ui.horizontal(|ui| {
+                ui.add(
+                    egui::Label::new(RichText::new(title).strong().color(theme::text_strong()))
+                        .truncate(),
+                )
+                .on_hover_text(doc);
+                buttons(ui);
+            });
+            ui.horizontal(|ui| {
+                ui.spacing_mut().item_spacing.x = 6.0;
+                ui.label(RichText::new(time).size(12.0).color(theme::text()))
+                    .on_hover_text(time_hint);
+                ui.label(theme::weak("·"));
+                ui.add(egui::Label::new(RichText::new(error).size(12.0).color(color)).truncate())
+                    .on_hover_text(hint);
+            });
         });
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 6.0;
-            ui.label(RichText::new(time).size(12.0).color(theme::text())).on_hover_text(time_hint);
-            ui.label(theme::weak("·"));
-            ui.add(egui::Label::new(RichText::new(error).size(12.0).color(color)).truncate()).on_hover_text(hint);
-        });
-    });
 }

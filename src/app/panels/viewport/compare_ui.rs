@@ -11,9 +11,15 @@ use super::{
 };
 use crate::app::{picture::screen::Screen, shell::state::State, widgets::theme};
 
-/// Shows A over B, the overlays of B, the divider, the bar and the plates. `rect` is the whole viewport and `at` where B
-/// is. Returns what they do not cover.
-pub fn compare_ui(ui: &mut Ui, compare: &mut Compare, state: &State, (rect, at): (Rect, Rect), overlays: &mut OverlayPainter) -> Rect {
+/// Shows A over B, the overlays of B, the divider, the bar and the plates. `rect` is the whole
+/// viewport and `at` where B is. Returns what they do not cover.
+pub fn compare_ui(
+    ui: &mut Ui,
+    compare: &mut Compare,
+    state: &State,
+    (rect, at): (Rect, Rect),
+    overlays: &mut OverlayPainter,
+) -> Rect {
     let Some(mode) = compare.mode else {
         overlays.paint(ui, state, at, rect);
         return rect;
@@ -29,24 +35,45 @@ pub fn compare_ui(ui: &mut Ui, compare: &mut Compare, state: &State, (rect, at):
     let picture = compare.screen.as_ref().and_then(Screen::picture);
     if let Some((blit, size)) = picture.filter(|_| side_a.width() >= 1.0) {
         let blit = match mode {
-            Mode::Difference => compare.screen.as_ref().and_then(|a| a.difference(&state.picture.screen, compare.gain)),
+            Mode::Difference => compare
+                .screen
+                .as_ref()
+                .and_then(|a| a.difference(&state.picture.screen, compare.gain)),
             _ => Some(blit.clone()),
         };
-        let target = fitted(if mode == Mode::SideBySide { half_a } else { rect }, size);
+        let target = fitted(
+            if mode == Mode::SideBySide {
+                half_a
+            } else {
+                rect
+            },
+            size,
+        );
         if mode == Mode::SideBySide {
-            ui.painter_at(half_a).rect_filled(half_a, 0.0, theme::view());
+            ui.painter_at(half_a)
+                .rect_filled(half_a, 0.0, theme::view());
         }
-        ui.painter_at(side_a).extend(blit.map(|blit| blit.shape(target)));
+        ui.painter_at(side_a)
+            .extend(blit.map(|blit| blit.shape(target)));
     }
     if side_b.is_positive() {
         overlays.paint(ui, state, at, side_b);
     }
     match mode {
         Mode::Wipe => divider_ui(ui, &mut compare.split, at),
-        Mode::SideBySide => drop(ui.painter().vline(half_a.right(), rect.y_range(), (1.5, theme::line()))),
+        Mode::SideBySide => drop(ui.painter().vline(
+            half_a.right(),
+            rect.y_range(),
+            (1.5, theme::line()),
+        )),
         Mode::Difference | Mode::A | Mode::B => {}
     }
-    labels_ui(ui, compare.name(), [side_a, side_b], mode == Mode::Difference);
+    labels_ui(
+        ui,
+        compare.name(),
+        [side_a, side_b],
+        mode == Mode::Difference,
+    );
     bar_ui(ui, compare, state, rect);
     plates_ui(ui, compare, state, rect, mode)
 }
@@ -55,7 +82,9 @@ pub fn compare_ui(ui: &mut Ui, compare: &mut Compare, state: &State, (rect, at):
 fn divider_ui(ui: &Ui, split: &mut f32, at: Rect) {
     let x = (at.left() + at.width() * *split).round();
     let grip = Rect::from_min_max(pos2(x - 7.0, at.top()), pos2(x + 7.0, at.bottom()));
-    let response = ui.interact(grip, egui::Id::unique("wipe"), Sense::click_and_drag()).on_hover_cursor(CursorIcon::ResizeHorizontal);
+    let response = ui
+        .interact(grip, egui::Id::unique("wipe"), Sense::click_and_drag())
+        .on_hover_cursor(CursorIcon::ResizeHorizontal);
     response.widget_info(|| egui::WidgetInfo::slider(true, f64::from(*split), "Wipe divider"));
     if response.dragged()
         && let Some(pointer) = response.interact_pointer_pos()
@@ -67,14 +96,26 @@ fn divider_ui(ui: &Ui, split: &mut f32, at: Rect) {
         *split = 0.5;
     }
     if response.has_focus() {
-        let arrows = egui::EventFilter { horizontal_arrows: true, ..Default::default() };
+        let arrows = egui::EventFilter {
+            horizontal_arrows: true,
+            ..Default::default()
+        };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
         let presses = |key| ui.input(|i| i.num_presses(key)) as f32;
         *split += 0.02 * (presses(egui::Key::ArrowRight) - presses(egui::Key::ArrowLeft));
     }
     *split = split.clamp(0.0, 1.0);
     let is_near = response.hovered() || response.dragged() || response.has_focus();
-    paint_divider(ui, at, x, if is_near { theme::accent() } else { theme::text_strong() });
+    paint_divider(
+        ui,
+        at,
+        x,
+        if is_near {
+            theme::accent()
+        } else {
+            theme::text_strong()
+        },
+    );
 }
 
 /// A line with dark edges, visible on any picture, and a knob with two arrows.
@@ -86,7 +127,15 @@ fn paint_divider(ui: &Ui, at: Rect, x: f32, color: Color32) {
     painter.circle(knob, 12.0, theme::bar(), (1.5, color));
     for side in [-1.0, 1.0] {
         let tip = knob + vec2(7.0 * side, 0.0);
-        let points: [Pos2; 3] = [tip, tip + vec2(-4.0 * side, -4.0), tip + vec2(-4.0 * side, 4.0)];
-        painter.add(egui::Shape::convex_polygon(points.to_vec(), color, egui::Stroke::NONE));
+        let points: [Pos2; 3] = [
+            tip,
+            tip + vec2(-4.0 * side, -4.0),
+            tip + vec2(-4.0 * side, 4.0),
+        ];
+        painter.add(egui::Shape::convex_polygon(
+            points.to_vec(),
+            color,
+            egui::Stroke::NONE,
+        ));
     }
 }

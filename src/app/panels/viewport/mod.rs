@@ -74,7 +74,8 @@ pub struct Interaction {
 }
 
 impl Viewport {
-    /// Takes pointer and keys over the picture. What they change must be applied before [`Viewport::draw`].
+    /// Takes pointer and keys over the picture. What they change must be applied before
+    /// [`Viewport::draw`].
     pub fn interact(&mut self, ui: &mut Ui, state: &State, commands: &Commands) -> Interaction {
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
@@ -92,9 +93,19 @@ impl Viewport {
             commands.edit(Edit::Camera(camera));
         }
         if let Some(picking) = &state.picture.picking {
-            pick_input::pick(&response, self.compare.side_b(rect), picking, state, commands);
+            pick_input::pick(
+                &response,
+                self.compare.side_b(rect),
+                picking,
+                state,
+                commands,
+            );
         }
-        Interaction { response, size, is_moved }
+        Interaction {
+            response,
+            size,
+            is_moved,
+        }
     }
 
     /// Draws the preset, at a lower resolution while it moves on a slow adapter.
@@ -104,30 +115,58 @@ impl Viewport {
             state.log.add(Level::Error, error); // Words stay in the picture as long as this is so.
         }
         // While the scene of another preset is shown there is nothing to draw.
-        let Some(scene) = state.session.scenes.shown_for(&SceneKey::of(&state.session.preset_file)).cloned() else { return };
+        let Some(scene) = state
+            .session
+            .scenes
+            .shown_for(&SceneKey::of(&state.session.preset_file))
+            .cloned()
+        else {
+            return;
+        };
         let file = &state.session.preset_file;
-        if self.measured.resets((FileId::of(file), SceneKey::of(file)), interaction.size) {
+        if self
+            .measured
+            .resets((FileId::of(file), SceneKey::of(file)), interaction.size)
+        {
             state.picture.screen.reset_timings();
             state.picture.verification.reset();
             self.compare.reset_measurements();
         }
         let stack = state.session.visible_stack();
         let accuracy = self.accuracy(state, &scene, &stack, interaction.size);
-        let requested = Inputs { view: state.session.view_at(&scene, interaction.size), scene, stack, accuracy };
+        let requested = Inputs {
+            view: state.session.view_at(&scene, interaction.size),
+            scene,
+            stack,
+            accuracy,
+        };
         let is_held = ctx.input(|i| i.pointer.any_down());
-        let is_changed = state.picture.screen.requested().is_some_and(|before| *before != requested);
+        let is_changed = state
+            .picture
+            .screen
+            .requested()
+            .is_some_and(|before| *before != requested);
         if interaction.is_moved || state.session.playback.playing || (is_changed && is_held) {
             self.last_motion_s = now_s;
         }
-        let rest_in_s = self.rest_in_s(now_s).filter(|_| state.picture.screen.requested().is_some());
-        let divisor = if rest_in_s.is_some() { self.divisor(state, interaction.size) } else { 1 };
+        let rest_in_s = self
+            .rest_in_s(now_s)
+            .filter(|_| state.picture.screen.requested().is_some());
+        let divisor = if rest_in_s.is_some() {
+            self.divisor(state, interaction.size)
+        } else {
+            1
+        };
         if divisor > 1 {
             ctx.request_repaint_after_secs(rest_in_s.unwrap_or(0.0) as f32 + 0.01);
         }
         state.picture.screen.show(requested, divisor);
         self.compare.draw(state);
         // What else runs would be measured, too.
-        let is_busy = is_held || state.session.playback.playing || state.jobs.is_computing() || self.compare.is_waiting();
+        let is_busy = is_held
+            || state.session.playback.playing
+            || state.jobs.is_computing()
+            || self.compare.is_waiting();
         if rest_in_s.is_none() && !is_busy {
             state.picture.screen.measure();
             if !state.picture.screen.is_measuring() {
@@ -137,15 +176,29 @@ impl Viewport {
     }
 
     /// The preset's accuracy, with automatic anti-aliasing where the card can afford it.
-    fn accuracy(&mut self, state: &State, scene: &Arc<Scene>, stack: &Stack, size: [u32; 2]) -> AccuracyRequest {
+    fn accuracy(
+        &mut self,
+        state: &State,
+        scene: &Arc<Scene>,
+        stack: &Stack,
+        size: [u32; 2],
+    ) -> AccuracyRequest {
         let screen = &state.picture.screen;
-        let newest = screen.options().zip(screen.drawn().filter(|drawn| screen.requested().is_some_and(|next| next.shares_kernels(drawn))));
+        let newest = screen.options().zip(screen.drawn().filter(|drawn| {
+            screen
+                .requested()
+                .is_some_and(|next| next.shares_kernels(drawn))
+        }));
         let finished = newest.map(|(options, drawn)| {
             let is_full_size = [drawn.view.width, drawn.view.height] == size;
             Finished::new(options, screen.timings().cost_ms(), is_full_size)
         });
-        let accuracy = state.picture.tier_times.informed(state.session.preset().accuracy);
-        self.anti_aliasing.applied(accuracy, (scene, stack, size), &screen.gpu.caps, finished)
+        let accuracy = state
+            .picture
+            .tier_times
+            .informed(state.session.preset().accuracy);
+        self.anti_aliasing
+            .applied(accuracy, (scene, stack, size), &screen.gpu.caps, finished)
     }
 
     /// Seconds until the picture counts as at rest; none when it does.
@@ -154,15 +207,21 @@ impl Viewport {
         (self.last_motion_s > 0.0 && rest_s > 0.0).then_some(rest_s)
     }
 
-    /// By how much a moving picture of `full` pixels must be smaller along a side to stay smooth, from the time of the last one.
+    /// By how much a moving picture of `full` pixels must be smaller along a side to stay smooth,
+    /// from the time of the last one.
     fn divisor(&self, state: &State, full: [u32; 2]) -> u32 {
         let screen = &state.picture.screen;
-        let Some(ms) = screen.timings().newest_ms().map(|ms| ms + self.compare.ms()) else {
+        let Some(ms) = screen
+            .timings()
+            .newest_ms()
+            .map(|ms| ms + self.compare.ms())
+        else {
             return if screen.gpu.summary.software { 2 } else { 1 };
         };
         let [width, height] = screen.picture().map_or(full, |(_, size)| size);
         let pixels = |w: u32, h: u32| f64::from(w.max(1)) * f64::from(h.max(1));
-        // The part of the time that does not depend on the size is unknown; half is assumed to shrink.
+        // The part of the time that does not depend on the size is unknown; half is assumed to
+        // shrink.
         let scale = 0.5 + 0.5 * pixels(full[0], full[1]) / pixels(width, height);
         match ms * scale {
             ms if ms <= SMOOTH_MS => 1,
@@ -171,14 +230,20 @@ impl Viewport {
         }
     }
 
-    /// True if overlays are shown and the picture is at rest but not judged; repaints when it comes to rest.
+    /// True if overlays are shown and the picture is at rest but not judged; repaints when it comes
+    /// to rest.
     pub fn needs_verdict(&self, ctx: &egui::Context, state: &State) -> bool {
-        if state.picture.overlays_are_ready() || state.picture.verification.is_running() || state.session.playback.playing {
+        if state.picture.overlays_are_ready()
+            || state.picture.verification.is_running()
+            || state.session.playback.playing
+        {
             return false;
         }
         let screen = &state.picture.screen;
-        let is_drawn =
-            screen.requested().is_some() && screen.drawn() == screen.requested() && !screen.is_waiting() && !screen.is_measuring();
+        let is_drawn = screen.requested().is_some()
+            && screen.drawn() == screen.requested()
+            && !screen.is_waiting()
+            && !screen.is_measuring();
         if !is_drawn || ctx.input(|i| i.pointer.any_down()) {
             return false; // The event that ends this state repaints.
         }
@@ -192,7 +257,8 @@ impl Viewport {
     /// Shows the picture in `rect`, and everything over it.
     pub fn show(&mut self, ui: &mut Ui, state: &State, commands: &Commands, rect: Rect) {
         let at = picture_ui(ui, state, self.compare.side_b(rect));
-        let free = compare_ui::compare_ui(ui, &mut self.compare, state, (rect, at), &mut self.overlays);
+        let free =
+            compare_ui::compare_ui(ui, &mut self.compare, state, (rect, at), &mut self.overlays);
         chips::chips_ui(ui, state, commands, rect, self.compare.is_open());
         if !self.compare.hides_b() {
             marker::marker_ui(ui, state, at);
@@ -204,7 +270,11 @@ impl Viewport {
         if state.open.handles && !self.compare.is_open() {
             light::light_ui(ui, &state.session, commands, at);
         }
-        let free = if self.compare.hides_b() { free } else { overlay_legend::legend_ui(ui, state, free, at) };
+        let free = if self.compare.hides_b() {
+            free
+        } else {
+            overlay_legend::legend_ui(ui, state, free, at)
+        };
         if let Some(params) = state.session.visible_stack().params("overdraw") {
             heat_legend::heat_ui(ui, free, &params);
         }
@@ -216,7 +286,12 @@ impl Viewport {
 /// The newest picture, or why there is none. Returns where the picture is.
 fn picture_ui(ui: &Ui, state: &State, rect: Rect) -> Rect {
     let painter = ui.painter_at(rect);
-    if let Some((blit, size)) = state.picture.screen.picture().filter(|(_, size)| size.iter().all(|&side| side > 0)) {
+    if let Some((blit, size)) = state
+        .picture
+        .screen
+        .picture()
+        .filter(|(_, size)| size.iter().all(|&side| side > 0))
+    {
         let at = fitted(rect, size);
         if at != rect {
             painter.rect_filled(rect, 0.0, theme::view());
@@ -229,13 +304,28 @@ fn picture_ui(ui: &Ui, state: &State, rect: Rect) -> Rect {
     let (title, detail) = if let Some(compiling) = &compiling {
         (compiling.as_str(), "The first picture takes longest.")
     } else if state.session.scenes.has_failed() {
-        ("This scene cannot be shown", "See the log. Choose another scene on the left, or drop a model here.")
+        (
+            "This scene cannot be shown",
+            "See the log. Choose another scene on the left, or drop a model here.",
+        )
     } else if state.picture.screen.is_refused() {
         ("This picture cannot be drawn", "See the log.")
     } else {
         ("Loading the scene", "Large scenes take a moment.")
     };
-    painter.text(rect.center() - vec2(0.0, 12.0), Align2::CENTER_CENTER, title, FontId::proportional(17.0), theme::text());
-    painter.text(rect.center() + vec2(0.0, 12.0), Align2::CENTER_CENTER, detail, FontId::proportional(13.0), theme::text_weak());
+    painter.text(
+        rect.center() - vec2(0.0, 12.0),
+        Align2::CENTER_CENTER,
+        title,
+        FontId::proportional(17.0),
+        theme::text(),
+    );
+    painter.text(
+        rect.center() + vec2(0.0, 12.0),
+        Align2::CENTER_CENTER,
+        detail,
+        FontId::proportional(13.0),
+        theme::text_weak(),
+    );
     rect
 }

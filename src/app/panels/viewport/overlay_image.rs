@@ -21,21 +21,43 @@ const MAX_RINGS: usize = 48;
 pub fn image(found: &Findings, shown: &[Overlay], gain: u8) -> ColorImage {
     let [width, height] = found.size.map(|side| side as usize);
     let is_opaque = |overlay: &&Overlay| matches!(overlay, Overlay::TriangleIds | Overlay::Layers);
-    let dims = shown.iter().any(|overlay| overlay.is_error() && found.count(*overlay) > 0) && !shown.iter().any(|o| is_opaque(&o));
-    let ground = if dims { Color32::from_black_alpha(255 - DIMMED) } else { Color32::TRANSPARENT };
+    let dims = shown
+        .iter()
+        .any(|overlay| overlay.is_error() && found.count(*overlay) > 0)
+        && !shown.iter().any(|o| is_opaque(&o));
+    let ground = if dims {
+        Color32::from_black_alpha(255 - DIMMED)
+    } else {
+        Color32::TRANSPARENT
+    };
     let heat = Overdraw::default();
     let texel = |i: usize| {
-        let layers = Overlay::ALL.iter().filter(|overlay| shown.contains(overlay));
-        layers.filter_map(|overlay| color(found, *overlay, i, gain, &heat)).fold(ground, Color32::blend)
+        let layers = Overlay::ALL
+            .iter()
+            .filter(|overlay| shown.contains(overlay));
+        layers
+            .filter_map(|overlay| color(found, *overlay, i, gain, &heat))
+            .fold(ground, Color32::blend)
     };
-    ColorImage::new([width, height], (0..width * height).into_par_iter().map(texel).collect())
+    ColorImage::new(
+        [width, height],
+        (0..width * height).into_par_iter().map(texel).collect(),
+    )
 }
 
 /// What one overlay paints on pixel `i`.
-fn color(found: &Findings, overlay: Overlay, i: usize, gain: u8, heat: &Overdraw) -> Option<Color32> {
+fn color(
+    found: &Findings,
+    overlay: Overlay,
+    i: usize,
+    gain: u8,
+    heat: &Overdraw,
+) -> Option<Color32> {
     let has = |fault: PixelError| found.faults.has(i, fault);
     match overlay {
-        Overlay::TriangleIds => (found.triangle_ids[i] != NO_TRIANGLE).then(|| triangle_color(found.triangle_ids[i])),
+        Overlay::TriangleIds => {
+            (found.triangle_ids[i] != NO_TRIANGLE).then(|| triangle_color(found.triangle_ids[i]))
+        }
         Overlay::Layers => (found.layers[i] > 0).then(|| layers_color(heat, found.layers[i])),
         Overlay::Color => {
             let delta = found.faults.color_delta[i].saturating_mul(gain);
@@ -60,21 +82,31 @@ fn triangle_color(triangle_id: u32) -> Color32 {
 }
 
 pub fn layers_color(heat: &Overdraw, layers: u32) -> Color32 {
-    let [r, g, b] = heat.color(heat.heat(layers)).to_array().map(|v| (v * 255.0 + 0.5) as u8);
+    let [r, g, b] = heat
+        .color(heat.heat(layers))
+        .to_array()
+        .map(|v| (v * 255.0 + 0.5) as u8);
     Color32::from_rgb(r, g, b)
 }
 
 /// Pixels that get a ring, by index, with its color: those of overlays that paint few.
 pub fn rings(found: &Findings, shown: &[Overlay]) -> Vec<(usize, Color32)> {
     let mut rings = Vec::new();
-    for overlay in shown.iter().filter(|overlay| found.count(**overlay) as usize <= MAX_RINGS) {
+    for overlay in shown
+        .iter()
+        .filter(|overlay| found.count(**overlay) as usize <= MAX_RINGS)
+    {
         let is_there = |&i: &usize| match overlay.fault() {
             _ if *overlay == Overlay::Unsound => found.is_unsound(i),
             Some(fault) => found.faults.has(i, fault),
             None if *overlay == Overlay::NotReference => found.differs_from_reference(i),
             None => *overlay == Overlay::Color && found.faults.color_delta[i] > 0,
         };
-        rings.extend((0..found.faults.pixels()).filter(is_there).map(|i| (i, overlay.color())));
+        rings.extend(
+            (0..found.faults.pixels())
+                .filter(is_there)
+                .map(|i| (i, overlay.color())),
+        );
     }
     rings
 }

@@ -1,4 +1,5 @@
-//! Picking: a click on the model sets a point parameter, or adds a part to those that an effect changes.
+//! Picking: a click on the model sets a point parameter, or adds a part to those that an effect
+//! changes.
 
 use eframe::egui::{Rect, Response};
 use glam::DVec2;
@@ -26,9 +27,19 @@ use crate::{
 };
 
 /// Sets what is picked to what lies under a click. The picture of the preset is in `side`.
-pub fn pick(response: &Response, side: Rect, picking: &Picking, state: &State, commands: &Commands) {
-    let clicked = response.interact_pointer_pos().filter(|_| response.clicked());
-    let Some((at, scene)) = clicked.zip(state.session.scene()) else { return };
+pub fn pick(
+    response: &Response,
+    side: Rect,
+    picking: &Picking,
+    state: &State,
+    commands: &Commands,
+) {
+    let clicked = response
+        .interact_pointer_pos()
+        .filter(|_| response.clicked());
+    let Some((at, scene)) = clicked.zip(state.session.scene()) else {
+        return;
+    };
     let size = whole_size(response.rect);
     // Side by side the picture is smaller, with nothing to click on around it.
     let shown = fitted(side, size);
@@ -37,12 +48,21 @@ pub fn pick(response: &Response, side: Rect, picking: &Picking, state: &State, c
     }
     let uv = (at - shown.min) / shown.size();
     let uv = DVec2::new(uv.x.into(), uv.y.into());
-    match edit(picking, state, scene, &state.session.view_at(scene, size), uv) {
+    match edit(
+        picking,
+        state,
+        scene,
+        &state.session.view_at(scene, size),
+        uv,
+    ) {
         Some(edit) => {
             commands.send(Command::View(ViewCommand::Pick(None)));
             commands.edit(edit);
         }
-        None => commands.send(Command::Notify(Level::Info, "There is no triangle under this click. Nothing was changed.".into())),
+        None => commands.send(Command::Notify(
+            Level::Info,
+            "There is no triangle under this click. Nothing was changed.".into(),
+        )),
     }
 }
 

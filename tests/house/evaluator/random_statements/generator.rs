@@ -69,8 +69,16 @@ impl Generator<'_> {
     }
 
     fn known(&mut self, names: &Names, is_copy: bool) -> Option<usize> {
-        let known: Vec<usize> = names.iter().filter(|(_, copy)| *copy == is_copy).map(|(name, _)| *name).collect();
-        if known.is_empty() { None } else { Some(known[self.random.u32(known.len() as u32) as usize]) }
+        let known: Vec<usize> = names
+            .iter()
+            .filter(|(_, copy)| *copy == is_copy)
+            .map(|(name, _)| *name)
+            .collect();
+        if known.is_empty() {
+            None
+        } else {
+            Some(known[self.random.u32(known.len() as u32) as usize])
+        }
     }
 
     fn source(&mut self, names: &Names, depth: u32) -> Source {
@@ -81,7 +89,10 @@ impl Generator<'_> {
             3 => Source::G,
             4 => self.known(names, false).map_or(Source::V, Source::Let),
             5 => self.known(names, true).map_or(Source::W, Source::CopyV),
-            6 => Source::Swizzle(std::array::from_fn(|_| self.random.u32(4) as usize), boxed(self)),
+            6 => Source::Swizzle(
+                std::array::from_fn(|_| self.random.u32(4) as usize),
+                boxed(self),
+            ),
             7 => Source::Sum(boxed(self), boxed(self)),
             _ => Source::Splat(self.random.u32(4) as usize, boxed(self)),
         }
@@ -132,23 +143,38 @@ impl Generator<'_> {
             8 => Statement::AddW(self.random.u32(4) as usize, self.number(names, 0)),
             9 => Statement::SetDynamic(self.number(names, 0), self.number(names, 0)),
             10 => Statement::SetN(self.number(names, 0), self.number(names, 0)),
-            11 => Statement::SetM(self.number(names, 0), self.random.u32(2) as usize, self.number(names, 0)),
+            11 => Statement::SetM(
+                self.number(names, 0),
+                self.random.u32(2) as usize,
+                self.number(names, 0),
+            ),
             12 => Statement::SwapM,
             13 => Statement::Touch(self.source(names, 0), self.number(names, 0)),
             14 => Statement::Read,
             15 => Statement::Globals(self.number(names, 0)),
-            16 => self.known(names, true).map_or(Statement::SwapM, Statement::Restore),
+            16 => self
+                .known(names, true)
+                .map_or(Statement::SwapM, Statement::Restore),
             17 => Statement::Blend(self.source(names, 0)),
             18 => Statement::Late(self.number(names, 0), self.source(names, 0)),
             19 => Statement::LoopOver(self.source(names, 0), self.random.u32(4) as usize),
-            20 | 21 => Statement::If(self.number(names, 0), self.block(depth + 1, names), self.block(depth + 1, names)),
+            20 | 21 => Statement::If(
+                self.number(names, 0),
+                self.block(depth + 1, names),
+                self.block(depth + 1, names),
+            ),
             22 | 23 => {
                 let name = self.name();
                 Statement::For(name, self.random.u32(5), self.block(depth + 1, names))
             }
             24 => {
                 let selector = self.number(names, 0);
-                Statement::Switch(selector, self.block(depth + 1, names), self.block(depth + 1, names), self.block(depth + 1, names))
+                Statement::Switch(
+                    selector,
+                    self.block(depth + 1, names),
+                    self.block(depth + 1, names),
+                    self.block(depth + 1, names),
+                )
             }
             25 if self.random.u32(2) == 0 => Statement::ReturnIf(self.number(names, 0)),
             25 => Statement::BreakIf(self.number(names, 0)),

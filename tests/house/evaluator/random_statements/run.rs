@@ -22,7 +22,13 @@ pub struct State {
 
 impl Default for State {
     fn default() -> State {
-        State { s: S::default(), w: [0; 4], g: [1, 2, 3, 4], lets: Vec::new(), copies: Vec::new() }
+        State {
+            s: S::default(),
+            w: [0; 4],
+            g: [1, 2, 3, 4],
+            lets: Vec::new(),
+            copies: Vec::new(),
+        }
     }
 }
 
@@ -31,8 +37,11 @@ pub fn result(state: &State) -> V {
     let more = [m[0][1], m[1][0], m[1][1], 0];
     let tail = [n[0], n[1], n[2], m[0][0]];
     std::array::from_fn(|at| {
-        let sum = v[at].wrapping_add(state.w[at].wrapping_mul(3)).wrapping_add(state.g[at].wrapping_mul(5));
-        sum.wrapping_add(tail[at].wrapping_mul(7)).wrapping_add(more[at].wrapping_mul(11))
+        let sum = v[at]
+            .wrapping_add(state.w[at].wrapping_mul(3))
+            .wrapping_add(state.g[at].wrapping_mul(5));
+        sum.wrapping_add(tail[at].wrapping_mul(7))
+            .wrapping_add(more[at].wrapping_mul(11))
     })
 }
 
@@ -64,7 +73,9 @@ pub fn step(statement: &Statement, state: &mut State) -> End {
         Statement::SetW(source) => state.w = source.value(state),
         Statement::SetG(source) => state.g = source.value(state),
         Statement::SetComponent(at, number) => state.s.v[*at] = number.value(state),
-        Statement::AddW(at, number) => state.w[*at] = state.w[*at].wrapping_add(number.value(state)),
+        Statement::AddW(at, number) => {
+            state.w[*at] = state.w[*at].wrapping_add(number.value(state))
+        }
         Statement::SetDynamic(at, number) => {
             let at = index(at.value(state), 4);
             state.s.v[at] = number.value(state);
@@ -126,9 +137,25 @@ pub fn step(statement: &Statement, state: &mut State) -> End {
             state.w = std::array::from_fn(|at| state.w[at] ^ r[at]);
         }
         Statement::Restore(name) => {
-            state.s = state.copies.iter().rev().find(|(other, _)| other == name).expect("in scope").1.clone();
+            state.s = state
+                .copies
+                .iter()
+                .rev()
+                .find(|(other, _)| other == name)
+                .expect("in scope")
+                .1
+                .clone();
         }
-        Statement::If(number, accept, reject) => return run(if number.value(state) > 0 { accept } else { reject }, state),
+        Statement::If(number, accept, reject) => {
+            return run(
+                if number.value(state) > 0 {
+                    accept
+                } else {
+                    reject
+                },
+                state,
+            );
+        }
         Statement::For(_, count, body) => {
             for _ in 0..*count {
                 if run(body, state) == End::Return {

@@ -33,7 +33,11 @@ impl Source {
             Source::G => "g".to_owned(),
             Source::Let(name) => format!("k{name}"),
             Source::CopyV(name) => format!("k{name}.v"),
-            Source::Swizzle(pattern, source) => format!("({}).{}", source.text(), pattern.map(|at| XYZW[at]).concat()),
+            Source::Swizzle(pattern, source) => format!(
+                "({}).{}",
+                source.text(),
+                pattern.map(|at| XYZW[at]).concat()
+            ),
             Source::Sum(a, b) => format!("({} + {})", a.text(), b.text()),
             Source::Splat(at, source) => format!("vec4i(({}).{})", source.text(), XYZW[*at]),
         }
@@ -44,8 +48,25 @@ impl Source {
             Source::V => state.s.v,
             Source::W => state.w,
             Source::G => state.g,
-            Source::Let(name) => state.lets.iter().rev().find(|(other, _)| other == name).expect("in scope").1,
-            Source::CopyV(name) => state.copies.iter().rev().find(|(other, _)| other == name).expect("in scope").1.v,
+            Source::Let(name) => {
+                state
+                    .lets
+                    .iter()
+                    .rev()
+                    .find(|(other, _)| other == name)
+                    .expect("in scope")
+                    .1
+            }
+            Source::CopyV(name) => {
+                state
+                    .copies
+                    .iter()
+                    .rev()
+                    .find(|(other, _)| other == name)
+                    .expect("in scope")
+                    .1
+                    .v
+            }
             Source::Swizzle(pattern, source) => {
                 let source = source.value(state);
                 pattern.map(|at| source[at])
@@ -87,7 +108,10 @@ impl Number {
 }
 
 pub fn text(statements: &[Statement]) -> String {
-    statements.iter().map(|statement| statement.text() + "\n").collect()
+    statements
+        .iter()
+        .map(|statement| statement.text() + "\n")
+        .collect()
 }
 
 impl Statement {
@@ -98,27 +122,57 @@ impl Statement {
             Statement::SetV(source) => format!("s.v = {};", source.text()),
             Statement::SetW(source) => format!("w = {};", source.text()),
             Statement::SetG(source) => format!("g = {};", source.text()),
-            Statement::SetComponent(at, number) => format!("s.v.{} = {};", XYZW[*at], number.text()),
+            Statement::SetComponent(at, number) => {
+                format!("s.v.{} = {};", XYZW[*at], number.text())
+            }
             Statement::AddW(at, number) => format!("w.{} += {};", XYZW[*at], number.text()),
-            Statement::SetDynamic(at, number) => format!("s.v[{} + zero] = {};", at.text(), number.text()),
-            Statement::SetN(at, number) => format!("s.n[{} + zero] = {};", at.text(), number.text()),
-            Statement::SetM(at, component, number) => format!("s.m[{} + zero].{} = {};", at.text(), XYZW[*component], number.text()),
+            Statement::SetDynamic(at, number) => {
+                format!("s.v[{} + zero] = {};", at.text(), number.text())
+            }
+            Statement::SetN(at, number) => {
+                format!("s.n[{} + zero] = {};", at.text(), number.text())
+            }
+            Statement::SetM(at, component, number) => format!(
+                "s.m[{} + zero].{} = {};",
+                at.text(),
+                XYZW[*component],
+                number.text()
+            ),
             Statement::SwapM => "s.m = array<vec2i, 2>(s.m[1].yx, s.m[0]);".to_owned(),
-            Statement::Touch(source, number) => format!("w = touch(&s.v, {}, {});", source.text(), number.text()),
+            Statement::Touch(source, number) => {
+                format!("w = touch(&s.v, {}, {});", source.text(), number.text())
+            }
             Statement::Blend(source) => format!("blend(&s.v, {});", source.text()),
             Statement::Late(number, source) => {
-                format!("{{ var late: vec4i; if {} > 0 {{ late = {}; w.y += late.x; }} w += late; }}", number.text(), source.text())
+                format!(
+                    "{{ var late: vec4i; if {} > 0 {{ late = {}; w.y += late.x; }} w += late; }}",
+                    number.text(),
+                    source.text()
+                )
             }
             Statement::LoopOver(source, at) => {
                 let (source, at) = (source.text(), XYZW[*at]);
-                format!("{{ let r = {source}; for (var t = 0; t < 3; t++) {{ w += r; s.v.{at} += 1; g.{at} -= 2; }} }}")
+                format!(
+                    "{{ let r = {source}; for (var t = 0; t < 3; t++) {{ w += r; s.v.{at} += 1; g.{at} -= 2; }} }}"
+                )
             }
             Statement::Read => "{ let r = read(&s.v); s.v.x += 1; w += r; }".to_owned(),
-            Statement::Globals(number) => format!("{{ let r = globals({}); g.x += 1; w ^= r; }}", number.text()),
+            Statement::Globals(number) => format!(
+                "{{ let r = globals({}); g.x += 1; w ^= r; }}",
+                number.text()
+            ),
             Statement::Restore(name) => format!("s = k{name};"),
-            Statement::If(number, accept, reject) => format!("if {} > 0 {{\n{}}} else {{\n{}}}", number.text(), text(accept), text(reject)),
+            Statement::If(number, accept, reject) => format!(
+                "if {} > 0 {{\n{}}} else {{\n{}}}",
+                number.text(),
+                text(accept),
+                text(reject)
+            ),
             Statement::For(name, count, body) => {
-                format!("for (var k{name} = 0u; k{name} < {count}u; k{name} += 1u) {{\n{}}}", text(body))
+                format!(
+                    "for (var k{name} = 0u; k{name} < {count}u; k{name} += 1u) {{\n{}}}",
+                    text(body)
+                )
             }
             Statement::Switch(number, first, second, other) => format!(
                 "switch {} & 3 {{ case 0: {{\n{}}} case 1, 2: {{\n{}}} default: {{\n{}}} }}",
@@ -127,9 +181,15 @@ impl Statement {
                 text(second),
                 text(other)
             ),
-            Statement::BreakIf(number) => format!("loop {{ if {} > 3 {{ break; }} w.x += 1; break; }}", number.text()),
+            Statement::BreakIf(number) => format!(
+                "loop {{ if {} > 3 {{ break; }} w.x += 1; break; }}",
+                number.text()
+            ),
             Statement::ContinueIf(number) => {
-                format!("for (var t = 0; t < 3; t++) {{ if {} > t {{ continue; }} s.v.y += t; }}", number.text())
+                format!(
+                    "for (var t = 0; t < 3; t++) {{ if {} > t {{ continue; }} s.v.y += t; }}",
+                    number.text()
+                )
             }
             Statement::ReturnIf(number) => format!("if {} == 1 {{ return w; }}", number.text()),
         }

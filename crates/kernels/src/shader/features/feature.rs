@@ -30,14 +30,20 @@ pub(super) struct Feature {
     pub label: fn(&KernelKey) -> String,
     /// A part of the frame that exists only with this feature.
     pub part: Option<Part>,
-    /// Files of variants and functions of steps, and the section that a pass takes of each; [`NO_STEP`] where it takes none.
+    /// Files of variants and functions of steps, and the section that a pass takes of each;
+    /// [`NO_STEP`] where it takes none.
     pub variants: &'static [VariantChoice],
     /// Overrides, and their values in a pass.
     pub constants: &'static [ConstantChoice],
 }
 
 impl Feature {
-    pub const NONE: Self = Self { label: |_| String::new(), part: None, variants: &[], constants: &[] };
+    pub const NONE: Self = Self {
+        label: |_| String::new(),
+        part: None,
+        variants: &[],
+        constants: &[],
+    };
 }
 
 /// A part of the frame that can be omitted.

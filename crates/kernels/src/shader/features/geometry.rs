@@ -33,33 +33,54 @@ const PARTICLES: Feature = Feature {
         is_used: |key| key.generated.has_particles,
         why_omitted: |_| "no effect puts particles into the scene".into(),
     }),
-    variants: &[("curl", |key, _| key.options.curl_noise.name()), ("particle_state", |key, _| key.options.particle_storage.name())],
+    variants: &[
+        ("curl", |key, _| key.options.curl_noise.name()),
+        ("particle_state", |key, _| {
+            key.options.particle_storage.name()
+        }),
+    ],
     ..Feature::NONE
 };
 
 const JOINTS: Feature = Feature {
     label: |key| word_if(key.generated.has_joints, "joints"),
-    variants: &[("skinning", |key, _| variant_if(key.generated.has_joints, key.options.skinning.name()))],
+    variants: &[("skinning", |key, _| {
+        variant_if(key.generated.has_joints, key.options.skinning.name())
+    })],
     ..Feature::NONE
 };
 
 const MORPH_TARGETS: Feature = Feature {
     label: |key| word_if(key.generated.has_morph_targets, "morph_targets"),
-    variants: &[("morph_targets", |key, _| variant_if(key.generated.has_morph_targets, "weighted"))],
+    variants: &[("morph_targets", |key, _| {
+        variant_if(key.generated.has_morph_targets, "weighted")
+    })],
     ..Feature::NONE
 };
 
 const DEFORMATION: Feature = Feature {
-    part: Some(Part { name: "deform", is_used: KernelKey::deforms, why_omitted: |_| "no mesh has joints or morph targets".into() }),
+    part: Some(Part {
+        name: "deform",
+        is_used: KernelKey::deforms,
+        why_omitted: |_| "no mesh has joints or morph targets".into(),
+    }),
     ..Feature::NONE
 };
 
 const VERTEX_EFFECTS: Feature = Feature {
     label: |key| word_if(key.moves(), "vertex_effects"),
-    part: Some(Part { name: "vertex effects", is_used: KernelKey::moves, why_omitted: |_| "no effect of the stack moves a vertex".into() }),
+    part: Some(Part {
+        name: "vertex effects",
+        is_used: KernelKey::moves,
+        why_omitted: |_| "no effect of the stack moves a vertex".into(),
+    }),
     variants: &[
-        ("vertex_effects", |key, _| variant_if(key.moves(), "applied")),
-        ("corner_step", |key, _| step_if(key.unshares_vertices(), "triangle")),
+        ("vertex_effects", |key, _| {
+            variant_if(key.moves(), "applied")
+        }),
+        ("corner_step", |key, _| {
+            step_if(key.unshares_vertices(), "triangle")
+        }),
     ],
     ..Feature::NONE
 };
@@ -69,9 +90,13 @@ const UNSHARED_VERTICES: Feature = Feature {
     part: Some(Part {
         name: "unshared vertices",
         is_used: KernelKey::unshares_vertices,
-        why_omitted: |_| "no effect moves triangles apart, so neighbors share projected vertices".into(),
+        why_omitted: |_| {
+            "no effect moves triangles apart, so neighbors share projected vertices".into()
+        },
     }),
-    variants: &[("vertex_records", |key, _| variant_if(key.unshares_vertices(), "unshared"))],
+    variants: &[("vertex_records", |key, _| {
+        variant_if(key.unshares_vertices(), "unshared")
+    })],
     constants: &[("UNSHARES_VERTICES", |key, _| flag(key.unshares_vertices()))],
 };
 
@@ -82,7 +107,9 @@ const CULLING: Feature = Feature {
         why_omitted: |_| "culling = none, so each triangle is tested on its own".into(),
     }),
     variants: &[
-        ("triangle_source", |key, _| variant_if(key.culls(), "meshlets")),
+        ("triangle_source", |key, _| {
+            variant_if(key.culls(), "meshlets")
+        }),
         ("occlusion", |_, pass| match pass {
             Pass::Cull(CullPhase::PreviousFrame) => "previous_frame",
             Pass::Cull(CullPhase::Early) => "early",
@@ -91,9 +118,19 @@ const CULLING: Feature = Feature {
         }),
     ],
     constants: &[
-        ("IS_TWO_PASS", |key, _| flag(key.options.culling == Culling::TwoPass)),
-        ("COUNTS_CULLED", |_, pass| flag(pass != Pass::Cull(CullPhase::Early))),
-        ("REOPENS_QUEUES", |_, pass| flag(pass == Pass::AdvanceQueues { reopens_queues: true })),
+        ("IS_TWO_PASS", |key, _| {
+            flag(key.options.culling == Culling::TwoPass)
+        }),
+        ("COUNTS_CULLED", |_, pass| {
+            flag(pass != Pass::Cull(CullPhase::Early))
+        }),
+        ("REOPENS_QUEUES", |_, pass| {
+            flag(
+                pass == Pass::AdvanceQueues {
+                    reopens_queues: true,
+                },
+            )
+        }),
         ("MESHLET_TRIANGLES", |_, _| MESHLET_TRIANGLES as f64),
     ],
     ..Feature::NONE
@@ -127,31 +164,66 @@ const VERTEX_FORMATS: Feature = Feature {
         is_used: |key| key.vertices.fetch != Fetch::Direct,
         why_omitted: |_| "no primitive has indices".into(),
     }),
-    variants: &[("loads", |key, pass| variant_if(key.work.wide_loads && pass.resolves(), "wide"))],
+    variants: &[("loads", |key, pass| {
+        variant_if(key.work.wide_loads && pass.resolves(), "wide")
+    })],
     constants: &[
-        ("ONLY_TRIANGLE_LISTS", |key, _| flag(key.vertices.only_triangle_lists)),
-        ("HAS_INDICES", |key, _| flag(key.vertices.fetch != Fetch::Direct)),
-        ("U32_INDICES", |key, _| flag(key.vertices.fetch == Fetch::IndexedU32)),
-        ("F32_POSITIONS", |key, _| flag(key.vertices.positions == AttributeFormat::F32)),
-        ("F32_NORMALS", |key, _| flag(key.vertices.normals == AttributeFormat::F32)),
-        ("PACKED_POSITION_BITS", |key, _| key.options.position_format.packed_bits().unwrap_or(0).into()),
+        ("ONLY_TRIANGLE_LISTS", |key, _| {
+            flag(key.vertices.only_triangle_lists)
+        }),
+        ("HAS_INDICES", |key, _| {
+            flag(key.vertices.fetch != Fetch::Direct)
+        }),
+        ("U32_INDICES", |key, _| {
+            flag(key.vertices.fetch == Fetch::IndexedU32)
+        }),
+        ("F32_POSITIONS", |key, _| {
+            flag(key.vertices.positions == AttributeFormat::F32)
+        }),
+        ("F32_NORMALS", |key, _| {
+            flag(key.vertices.normals == AttributeFormat::F32)
+        }),
+        ("PACKED_POSITION_BITS", |key, _| {
+            key.options
+                .position_format
+                .packed_bits()
+                .unwrap_or(0)
+                .into()
+        }),
     ],
     ..Feature::NONE
 };
 
 const TRANSFORM: Feature = Feature {
-    variants: &[("projection", |key, _| if key.options.vertex_transform == VertexTransform::Strict { "strict" } else { "float" })],
+    variants: &[("projection", |key, _| {
+        if key.options.vertex_transform == VertexTransform::Strict {
+            "strict"
+        } else {
+            "float"
+        }
+    })],
     constants: &[
-        ("IS_RELATIVE", |key, _| flag(key.options.position_format == PositionFormat::Relative)),
-        ("FLOAT_VIEWPORT", |key, _| flag(key.options.vertex_transform == VertexTransform::Viewport)),
+        ("IS_RELATIVE", |key, _| {
+            flag(key.options.position_format == PositionFormat::Relative)
+        }),
+        ("FLOAT_VIEWPORT", |key, _| {
+            flag(key.options.vertex_transform == VertexTransform::Viewport)
+        }),
         ("GROUP_SIZE", |key, _| key.work.group_size.into()),
     ],
     ..Feature::NONE
 };
 
 const PROJECTION: Feature = Feature {
-    label: |key| word_if(key.view.projection == ProjectionKind::Orthographic, "orthographic"),
-    constants: &[("IS_PERSPECTIVE", |key, _| flag(key.view.projection == ProjectionKind::Perspective))],
+    label: |key| {
+        word_if(
+            key.view.projection == ProjectionKind::Orthographic,
+            "orthographic",
+        )
+    },
+    constants: &[("IS_PERSPECTIVE", |key, _| {
+        flag(key.view.projection == ProjectionKind::Perspective)
+    })],
     ..Feature::NONE
 };
 

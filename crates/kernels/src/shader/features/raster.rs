@@ -13,13 +13,37 @@ use crate::{
 };
 
 /// Features that every frame has.
-pub(super) const BASIS: &[Feature] = &[FETCH, COVERAGE, FRAMEBUFFER, SMALL_PATH, OTHER_OPTIONS, DEPTH];
+pub(super) const BASIS: &[Feature] = &[
+    FETCH,
+    COVERAGE,
+    FRAMEBUFFER,
+    SMALL_PATH,
+    OTHER_OPTIONS,
+    DEPTH,
+];
 
-pub(super) const FEATURES: &[Feature] =
-    &[CLEARS, HIDDEN_BLOCKS, QUEUES, MEDIUM_PATH, LARGE_PATH, TILE_LIST, SHAPE, SAMPLE_SETUPS, DRAW_ORDER, COUNTERS, SAMPLE_EFFECTS];
+pub(super) const FEATURES: &[Feature] = &[
+    CLEARS,
+    HIDDEN_BLOCKS,
+    QUEUES,
+    MEDIUM_PATH,
+    LARGE_PATH,
+    TILE_LIST,
+    SHAPE,
+    SAMPLE_SETUPS,
+    DRAW_ORDER,
+    COUNTERS,
+    SAMPLE_EFFECTS,
+];
 
 const FETCH: Feature = Feature {
-    label: |key| if key.vertices.fetch == Fetch::Direct { "fetch=direct".into() } else { "fetch=indexed".into() },
+    label: |key| {
+        if key.vertices.fetch == Fetch::Direct {
+            "fetch=direct".into()
+        } else {
+            "fetch=indexed".into()
+        }
+    },
     ..Feature::NONE
 };
 
@@ -31,11 +55,21 @@ const COVERAGE: Feature = Feature {
             _ if key.options.coverage.is_float() => "float",
             _ => "fixed",
         }),
-        ("large_edges", |key, _| if key.options.coverage.is_float() { "float" } else { "rebased" }),
+        ("large_edges", |key, _| {
+            if key.options.coverage.is_float() {
+                "float"
+            } else {
+                "rebased"
+            }
+        }),
     ],
     constants: &[
-        ("IS_TOP_LEFT", |key, _| flag(key.options.coverage != Coverage::Float)),
-        ("SUBPIXEL_BITS", |key, _| key.options.coverage.subpixel_bits().into()),
+        ("IS_TOP_LEFT", |key, _| {
+            flag(key.options.coverage != Coverage::Float)
+        }),
+        ("SUBPIXEL_BITS", |key, _| {
+            key.options.coverage.subpixel_bits().into()
+        }),
         ("SMALL_EXTENT", |_, _| SMALL_EXTENT.into()),
     ],
     ..Feature::NONE
@@ -46,11 +80,19 @@ const FRAMEBUFFER: Feature = Feature {
         Visibility::Packed32 => format!("visibility=packed32/{}", key.framebuffer.triangle_id_bits),
         other => format!("visibility={}", other.name()),
     },
-    variants: &[("framebuffer_write", framebuffer_write), ("framebuffer_read", framebuffer_read), ("xray_buffer", xray_buffer)],
+    variants: &[
+        ("framebuffer_write", framebuffer_write),
+        ("framebuffer_read", framebuffer_read),
+        ("xray_buffer", xray_buffer),
+    ],
     constants: &[
-        ("FINDS_NEAREST", |_, pass| flag(pass.phase() == Some(RasterPhase::NearestAndSum))),
+        ("FINDS_NEAREST", |_, pass| {
+            flag(pass.phase() == Some(RasterPhase::NearestAndSum))
+        }),
         ("EARLY_LOAD", |key, _| flag(key.work.early_load)),
-        ("EXCHANGES_MAXIMUM", |key, _| flag(key.work.exchanges_maximum)),
+        ("EXCHANGES_MAXIMUM", |key, _| {
+            flag(key.work.exchanges_maximum)
+        }),
         ("ID_BITS", |key, _| key.framebuffer.triangle_id_bits.into()),
         ("DEPTH_KEY_BITS", |key, _| key.depth_key_range().0.into()),
         ("MIN_DEPTH_KEY", |key, _| key.depth_key_range().1.into()),
@@ -68,13 +110,23 @@ fn framebuffer_layout(key: &KernelKey, _: Pass) -> &'static str {
 
 /// How a pass reads the finished pixels.
 fn framebuffer_read(key: &KernelKey, pass: Pass) -> &'static str {
-    let is_wide = key.work.wide_loads && pass.resolves() && key.framebuffer_layout() == FramebufferLayout::Packed64;
-    if is_wide { "packed64_wide" } else { framebuffer_layout(key, pass) }
+    let is_wide = key.work.wide_loads
+        && pass.resolves()
+        && key.framebuffer_layout() == FramebufferLayout::Packed64;
+    if is_wide {
+        "packed64_wide"
+    } else {
+        framebuffer_layout(key, pass)
+    }
 }
 
 /// Where the sums of an x-ray are added up.
 fn xray_buffer(key: &KernelKey, pass: Pass) -> &'static str {
-    if key.work.paired_sums { "packed64_pairs" } else { framebuffer_layout(key, pass) }
+    if key.work.paired_sums {
+        "packed64_pairs"
+    } else {
+        framebuffer_layout(key, pass)
+    }
 }
 
 /// What a raster pass does with a sample.
@@ -93,21 +145,35 @@ fn framebuffer_write(_: &KernelKey, pass: Pass) -> &'static str {
     }
 }
 
-/// Neighboring triangles that a workgroup takes at once: those of a vector of eight invocations, or all that it takes.
+/// Neighboring triangles that a workgroup takes at once: those of a vector of eight invocations, or
+/// all that it takes.
 fn triangle_run(work: &WorkSharing) -> u32 {
     const VECTOR: u32 = 8;
-    if work.interleaves_triangles && work.group_size.is_multiple_of(VECTOR) { VECTOR } else { work.group_size }
+    if work.interleaves_triangles && work.group_size.is_multiple_of(VECTOR) {
+        VECTOR
+    } else {
+        work.group_size
+    }
 }
 
 const SMALL_PATH: Feature = Feature {
     label: |key| format!("small={}", key.paths.max_small_samples),
     constants: &[
-        ("MAX_SMALL_SAMPLES", |key, _| key.paths.max_small_samples.into()),
+        ("MAX_SMALL_SAMPLES", |key, _| {
+            key.paths.max_small_samples.into()
+        }),
         ("MAX_SMALL_SIDE", |key, _| key.paths.max_small_side.into()),
         ("TRIANGLE_RUN", |key, _| triangle_run(&key.work).into()),
         ("LISTS_SAMPLES", |key, pass| {
-            let is_shaded = matches!(pass.phase(), Some(RasterPhase::Sum | RasterPhase::NearestAndSum));
-            flag(is_shaded && key.paths.max_small_samples <= u32::BITS && !key.options.coverage.is_float())
+            let is_shaded = matches!(
+                pass.phase(),
+                Some(RasterPhase::Sum | RasterPhase::NearestAndSum)
+            );
+            flag(
+                is_shaded
+                    && key.paths.max_small_samples <= u32::BITS
+                    && !key.options.coverage.is_float(),
+            )
         }),
     ],
     ..Feature::NONE
@@ -116,15 +182,28 @@ const SMALL_PATH: Feature = Feature {
 /// Options of the axes that have no label of their own.
 const OTHER_OPTIONS: Feature = Feature {
     label: |key| {
-        let is_other = |axis: &str| ![Coverage::AXIS, Visibility::AXIS].iter().any(|labeled| AXES[*labeled].name == axis);
-        let others = key.options.non_default().filter(|(axis, _)| is_other(axis.name));
-        others.map(|(axis, option)| format!("{}={option}", axis.name)).collect::<Vec<_>>().join(" ")
+        let is_other = |axis: &str| {
+            ![Coverage::AXIS, Visibility::AXIS]
+                .iter()
+                .any(|labeled| AXES[*labeled].name == axis)
+        };
+        let others = key
+            .options
+            .non_default()
+            .filter(|(axis, _)| is_other(axis.name));
+        others
+            .map(|(axis, option)| format!("{}={option}", axis.name))
+            .collect::<Vec<_>>()
+            .join(" ")
     },
     ..Feature::NONE
 };
 
 const DEPTH: Feature = Feature {
-    variants: &[("depth", depth_interpolation), ("large_depth", depth_interpolation)],
+    variants: &[
+        ("depth", depth_interpolation),
+        ("large_depth", depth_interpolation),
+    ],
     constants: &[
         // As variants/depth numbers them; integer depth has the keys of reversed depth.
         ("DEPTH_FORMAT", |key, _| match key.options.depth {
@@ -139,13 +218,19 @@ const DEPTH: Feature = Feature {
 };
 
 fn depth_interpolation(key: &KernelKey, _: Pass) -> &'static str {
-    if key.options.depth == DepthFormat::Integer { "integer" } else { "float" }
+    if key.options.depth == DepthFormat::Integer {
+        "integer"
+    } else {
+        "float"
+    }
 }
 
 /// What the first pass clears beside its own work.
 const CLEARS: Feature = Feature {
     variants: &[
-        ("clear_step", |key, _| step_if(key.work.clears_in_passes, "counters")),
+        ("clear_step", |key, _| {
+            step_if(key.work.clears_in_passes, "counters")
+        }),
         ("clear_step", |key, _| match key.framebuffer_layout() {
             _ if !key.work.clears_in_passes => NO_STEP,
             FramebufferLayout::Split32 if key.view.is_light => "depth",
@@ -153,9 +238,15 @@ const CLEARS: Feature = Feature {
             FramebufferLayout::Packed32 => "packed32",
             FramebufferLayout::Packed64 => "packed64",
         }),
-        ("clear_step", |key, _| step_if(key.work.clears_order, "sample_counts")),
         ("clear_step", |key, _| {
-            step_if(key.work.clears_order && key.samples.draw_order == Some(draw_order::Mode::Submission), "boundary_samples")
+            step_if(key.work.clears_order, "sample_counts")
+        }),
+        ("clear_step", |key, _| {
+            step_if(
+                key.work.clears_order
+                    && key.samples.draw_order == Some(draw_order::Mode::Submission),
+                "boundary_samples",
+            )
         }),
     ],
     constants: &[("HAS_SURPLUS", |key, _| flag(key.work.clears_in_passes))],
@@ -165,33 +256,65 @@ const CLEARS: Feature = Feature {
 const HIDDEN_BLOCKS: Feature = Feature {
     constants: &[
         ("HIDES_BLOCKS", |key, pass| {
-            let keeps_keys = matches!(pass.phase(), Some(RasterPhase::Packed | RasterPhase::Depth | RasterPhase::TriangleId));
+            let keeps_keys = matches!(
+                pass.phase(),
+                Some(RasterPhase::Packed | RasterPhase::Depth | RasterPhase::TriangleId)
+            );
             flag(key.hides_blocks() && keeps_keys)
         }),
-        ("RAISES_BLOCKS", |_, pass| flag(pass.phase() != Some(RasterPhase::TriangleId))),
-        ("MARKS_ENTRIES", |key, pass| flag(key.hides_blocks() && pass.phase() == Some(RasterPhase::Depth))),
-        ("SKIPS_HIDDEN_ENTRIES", |key, pass| flag(key.hides_blocks() && pass.phase() == Some(RasterPhase::TriangleId))),
+        ("RAISES_BLOCKS", |_, pass| {
+            flag(pass.phase() != Some(RasterPhase::TriangleId))
+        }),
+        ("MARKS_ENTRIES", |key, pass| {
+            flag(key.hides_blocks() && pass.phase() == Some(RasterPhase::Depth))
+        }),
+        ("SKIPS_HIDDEN_ENTRIES", |key, pass| {
+            flag(key.hides_blocks() && pass.phase() == Some(RasterPhase::TriangleId))
+        }),
     ],
     ..Feature::NONE
 };
 
-const QUEUES: Feature = Feature { constants: &[("HAS_QUEUES", |key, _| flag(key.has_queues()))], ..Feature::NONE };
+const QUEUES: Feature = Feature {
+    constants: &[("HAS_QUEUES", |key, _| flag(key.has_queues()))],
+    ..Feature::NONE
+};
 
 const MEDIUM_PATH: Feature = Feature {
     label: |key| word_if(key.paths.has_medium, "medium"),
-    part: Some(Part { name: "raster_medium", is_used: |key| key.paths.has_medium, why_omitted: largest_triangle }),
-    variants: &[("medium_boxes", |key, _| variant_if(key.shares_entries(), "shared"))],
+    part: Some(Part {
+        name: "raster_medium",
+        is_used: |key| key.paths.has_medium,
+        why_omitted: largest_triangle,
+    }),
+    variants: &[("medium_boxes", |key, _| {
+        variant_if(key.shares_entries(), "shared")
+    })],
     constants: &[("DRAWS_MEDIUM", |key, _| flag(key.paths.has_medium))],
 };
 
 const LARGE_PATH: Feature = Feature {
     label: |key| word_if(key.paths.has_large, "large"),
-    part: Some(Part { name: "tile_large, raster_large", is_used: |key| key.paths.has_large, why_omitted: largest_triangle }),
+    part: Some(Part {
+        name: "tile_large, raster_large",
+        is_used: |key| key.paths.has_large,
+        why_omitted: largest_triangle,
+    }),
     variants: &[
-        ("large_tiles", |key, _| variant_if(key.shares_entries(), "shared")),
-        ("divide_step", |key, pass| step_if(key.divides_in_medium() && key.is_first_visit(pass), "large_queue")),
+        ("large_tiles", |key, _| {
+            variant_if(key.shares_entries(), "shared")
+        }),
+        ("divide_step", |key, pass| {
+            step_if(
+                key.divides_in_medium() && key.is_first_visit(pass),
+                "large_queue",
+            )
+        }),
     ],
-    constants: &[("HAS_LARGE", |key, _| flag(key.paths.has_large)), ("DRAWS_LARGE", |key, _| flag(key.paths.has_large))],
+    constants: &[
+        ("HAS_LARGE", |key, _| flag(key.paths.has_large)),
+        ("DRAWS_LARGE", |key, _| flag(key.paths.has_large)),
+    ],
 };
 
 fn largest_triangle(needs: &Needs) -> String {
@@ -202,13 +325,18 @@ fn largest_triangle(needs: &Needs) -> String {
 const TILE_LIST: Feature = Feature {
     variants: &[("mark_tiles", |key, pass| {
         use RasterPhase::{BoundaryTriangle, Count, CountSamples, Sum, TriangleId};
-        let is_repeated = matches!(pass.phase(), Some(TriangleId | Count | Sum | CountSamples | BoundaryTriangle));
+        let is_repeated = matches!(
+            pass.phase(),
+            Some(TriangleId | Count | Sum | CountSamples | BoundaryTriangle)
+        );
         step_if(key.work.listed_tiles && !is_repeated, "marked")
     })],
     constants: &[
         ("IS_BRANCHLESS", |key, _| flag(key.work.listed_tiles)),
         ("LISTS_BACKGROUND", |key, _| flag(key.lists_background())),
-        ("HAS_DOT_STRENGTHS", |key, _| flag(key.effects.dots.is_some())),
+        ("HAS_DOT_STRENGTHS", |key, _| {
+            flag(key.effects.dots.is_some())
+        }),
         ("TILE_SIDE", |key, _| key.tile_side().into()),
     ],
     ..Feature::NONE
@@ -222,7 +350,9 @@ const SHAPE: Feature = Feature {
     },
     constants: &[
         ("SHAPE", |key, _| (key.samples.shape as u32).into()),
-        ("INVOCATIONS_PER_TRIANGLE", |key, _| key.work.invocations_per_triangle.into()),
+        ("INVOCATIONS_PER_TRIANGLE", |key, _| {
+            key.work.invocations_per_triangle.into()
+        }),
     ],
     ..Feature::NONE
 };
@@ -233,9 +363,13 @@ const SAMPLE_SETUPS: Feature = Feature {
         is_used: |key| key.sample_setups() > 0,
         why_omitted: |_| "neither effects nor masks need anything per triangle".into(),
     }),
-    variants: &[("setup_step", |key, _| step_if(key.samples.has_mask, "alpha_mask"))],
+    variants: &[("setup_step", |key, _| {
+        step_if(key.samples.has_mask, "alpha_mask")
+    })],
     constants: &[
-        ("IS_CLIPPED_TRIANGLES", |_, pass| flag(pass == Pass::SampleSetup(TriangleSource::ClippedTriangles))),
+        ("IS_CLIPPED_TRIANGLES", |_, pass| {
+            flag(pass == Pass::SampleSetup(TriangleSource::ClippedTriangles))
+        }),
         ("SAMPLE_SETUPS", |key, _| key.sample_setups().into()),
     ],
     ..Feature::NONE
@@ -253,7 +387,9 @@ const DRAW_ORDER: Feature = Feature {
         why_omitted: |_| "every sample is drawn".into(),
     }),
     constants: &[
-        ("TESTS_EVERY_SAMPLE", |key, _| flag(key.samples.draw_order == Some(draw_order::Mode::Scheduler))),
+        ("TESTS_EVERY_SAMPLE", |key, _| {
+            flag(key.samples.draw_order == Some(draw_order::Mode::Scheduler))
+        }),
         ("HAS_RANKS", |key, _| flag(key.samples.draw_order.is_some())),
         // As variants/sample_test numbers them.
         ("ORDER_TEST", |key, pass| match order(key, pass) {
@@ -272,7 +408,8 @@ enum OrderTest {
     Racy,
 }
 
-/// The test of a pass, if it has one. Counting phases count every sample, and the boundary triangle's are marked by its id; of two passes over the same samples, only the first
+/// The test of a pass, if it has one. Counting phases count every sample, and the boundary
+/// triangle's are marked by its id; of two passes over the same samples, only the first
 /// takes numbers from the counter.
 fn order(key: &KernelKey, pass: Pass) -> Option<OrderTest> {
     use draw_order::Mode::{Scheduler, Submission};
@@ -289,7 +426,9 @@ fn order(key: &KernelKey, pass: Pass) -> Option<OrderTest> {
 const COUNTERS: Feature = Feature {
     constants: &[
         ("IS_FIRST_VISIT", |key, pass| flag(key.is_first_visit(pass))),
-        ("USES_SECOND_COUNTER", |key, pass| flag(key.uses_second_counter(pass))),
+        ("USES_SECOND_COUNTER", |key, pass| {
+            flag(key.uses_second_counter(pass))
+        }),
     ],
     ..Feature::NONE
 };
@@ -302,10 +441,18 @@ const SAMPLE_EFFECTS: Feature = Feature {
     }),
     // In the order in which they are called.
     variants: &[
-        ("sample_test", |key, _| step_if(key.has_sample_effects(), "effects")),
-        ("sample_test", |key, _| step_if(key.has_discs(), "particle_disc")),
-        ("sample_test", |key, _| step_if(key.samples.has_mask, "alpha_mask")),
-        ("sample_test", |key, pass| step_if(order(key, pass).is_some(), "draw_order")),
+        ("sample_test", |key, _| {
+            step_if(key.has_sample_effects(), "effects")
+        }),
+        ("sample_test", |key, _| {
+            step_if(key.has_discs(), "particle_disc")
+        }),
+        ("sample_test", |key, _| {
+            step_if(key.samples.has_mask, "alpha_mask")
+        }),
+        ("sample_test", |key, pass| {
+            step_if(order(key, pass).is_some(), "draw_order")
+        }),
     ],
     ..Feature::NONE
 };

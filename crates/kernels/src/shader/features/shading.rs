@@ -1,4 +1,5 @@
-//! Shading features: surface inputs, light, layers, dots, image effects and the size of the picture.
+//! Shading features: surface inputs, light, layers, dots, image effects and the size of the
+//! picture.
 
 use super::feature::{Feature, Part, flag, step_if, word_if};
 use crate::{
@@ -7,12 +8,25 @@ use crate::{
     shader::key::KernelKey,
 };
 
-pub(super) const FEATURES: &[Feature] =
-    &[LAYERS, PLANES, COLORS, ATTRIBUTES, MATERIAL_ATLAS, MASK, LIGHT, DOTS, IMAGE_EFFECTS, RENDER_SCALE, EFFECTS];
+pub(super) const FEATURES: &[Feature] = &[
+    LAYERS,
+    PLANES,
+    COLORS,
+    ATTRIBUTES,
+    MATERIAL_ATLAS,
+    MASK,
+    LIGHT,
+    DOTS,
+    IMAGE_EFFECTS,
+    RENDER_SCALE,
+    EFFECTS,
+];
 
 const LAYERS: Feature = Feature {
     label: |key| match key.framebuffer.layers {
-        Some(Layers::Xray { bits }) if key.framebuffer.has_one64_sums => format!("layers=xray/{bits}/one64"),
+        Some(Layers::Xray { bits }) if key.framebuffer.has_one64_sums => {
+            format!("layers=xray/{bits}/one64")
+        }
         Some(Layers::Xray { bits }) => format!("layers=xray/{bits}"),
         Some(Layers::Overdraw) => "layers=overdraw".into(),
         Some(Layers::Race) | None => String::new(),
@@ -23,12 +37,20 @@ const LAYERS: Feature = Feature {
             Some(Layers::Overdraw) => "overdraw",
             Some(Layers::Race) | None => "nearest",
         }),
-        ("store_step", |key, _| step_if(key.framebuffer.layers == Some(Layers::Race), "race")),
+        ("store_step", |key, _| {
+            step_if(key.framebuffer.layers == Some(Layers::Race), "race")
+        }),
     ],
     constants: &[
         ("SUM_WORDS", |key, _| key.sum_words().into()),
         ("IS_ONE64", |key, _| flag(key.framebuffer.has_one64_sums)),
-        ("SUM_BITS", |key, _| if let Some(Layers::Xray { bits }) = key.framebuffer.layers { bits.into() } else { 0.0 }),
+        ("SUM_BITS", |key, _| {
+            if let Some(Layers::Xray { bits }) = key.framebuffer.layers {
+                bits.into()
+            } else {
+                0.0
+            }
+        }),
         ("CLEARED_SUMS", |key, _| match key.framebuffer.layers {
             Some(Layers::Xray { .. }) => key.sum_words().into(),
             _ => 0.0,
@@ -50,13 +72,21 @@ const PLANES: Feature = Feature {
 
 const COLORS: Feature = Feature {
     label: |key| word_if(key.vertices.has_colors, "colors"),
-    part: Some(Part { name: "vertex colors", is_used: |key| key.vertices.has_colors, why_omitted: |_| "no primitive has them".into() }),
+    part: Some(Part {
+        name: "vertex colors",
+        is_used: |key| key.vertices.has_colors,
+        why_omitted: |_| "no primitive has them".into(),
+    }),
     constants: &[("HAS_COLORS", |key, _| flag(key.vertices.has_colors))],
     ..Feature::NONE
 };
 
-const ATTRIBUTES: Feature =
-    Feature { constants: &[("IS_AFFINE", |key, _| flag(key.options.perspective == Perspective::Affine))], ..Feature::NONE };
+const ATTRIBUTES: Feature = Feature {
+    constants: &[("IS_AFFINE", |key, _| {
+        flag(key.options.perspective == Perspective::Affine)
+    })],
+    ..Feature::NONE
+};
 
 const MATERIAL_ATLAS: Feature = Feature {
     label: |key| word_if(key.surface.has_material_atlas, "material_atlas"),
@@ -65,32 +95,69 @@ const MATERIAL_ATLAS: Feature = Feature {
         is_used: |key| key.surface.has_material_atlas,
         why_omitted: |_| "no material is more than a base color".into(),
     }),
-    variants: &[("shade_step", |key, _| step_if(key.surface.has_material_atlas, "textures"))],
+    variants: &[("shade_step", |key, _| {
+        step_if(key.surface.has_material_atlas, "textures")
+    })],
     ..Feature::NONE
 };
 
 const MASK: Feature = Feature {
     label: |key| word_if(key.samples.has_mask, "mask"),
-    part: Some(Part { name: "mask", is_used: |key| key.samples.has_mask, why_omitted: |_| "no texture's alpha discards samples".into() }),
+    part: Some(Part {
+        name: "mask",
+        is_used: |key| key.samples.has_mask,
+        why_omitted: |_| "no texture's alpha discards samples".into(),
+    }),
     ..Feature::NONE
 };
 
 const LIGHT: Feature = Feature {
     variants: &[
-        ("shade_step", |key, _| step_if(key.reads_light(), "shadow_map")),
-        ("shadow_map", |key, _| if key.work.buffered_shadow_map { "buffer" } else { "texture" }),
+        ("shade_step", |key, _| {
+            step_if(key.reads_light(), "shadow_map")
+        }),
+        ("shadow_map", |key, _| {
+            if key.work.buffered_shadow_map {
+                "buffer"
+            } else {
+                "texture"
+            }
+        }),
     ],
-    constants: &[("SHADOW_TAPS_SIDE", |key, _| key.options.shadow_taps.side().into()), ("MAX_SHADOW_SLOPE", |_, _| MAX_SHADOW_SLOPE)],
+    constants: &[
+        ("SHADOW_TAPS_SIDE", |key, _| {
+            key.options.shadow_taps.side().into()
+        }),
+        ("MAX_SHADOW_SLOPE", |_, _| MAX_SHADOW_SLOPE),
+    ],
     ..Feature::NONE
 };
 
 const DOTS: Feature = Feature {
     label: |key| word_if(key.effects.dots.is_some(), "dots"),
-    part: Some(Part { name: "dots", is_used: |key| key.effects.dots.is_some(), why_omitted: |_| "no effect draws dots".into() }),
+    part: Some(Part {
+        name: "dots",
+        is_used: |key| key.effects.dots.is_some(),
+        why_omitted: |_| "no effect draws dots".into(),
+    }),
     variants: &[
-        ("finish_step", |key, _| step_if(key.effects.dots.is_some(), "dots")),
-        ("dot_segments", |key, _| if key.effects.dots == Some(LineSource::Polyline) { "polyline" } else { "edges" }),
-        ("dot_list", |key, _| if key.options.dot_culling == DotCulling::Brute { "all" } else { "listed" }),
+        ("finish_step", |key, _| {
+            step_if(key.effects.dots.is_some(), "dots")
+        }),
+        ("dot_segments", |key, _| {
+            if key.effects.dots == Some(LineSource::Polyline) {
+                "polyline"
+            } else {
+                "edges"
+            }
+        }),
+        ("dot_list", |key, _| {
+            if key.options.dot_culling == DotCulling::Brute {
+                "all"
+            } else {
+                "listed"
+            }
+        }),
     ],
     ..Feature::NONE
 };
@@ -102,18 +169,37 @@ const IMAGE_EFFECTS: Feature = Feature {
         is_used: KernelKey::finishes_pixels,
         why_omitted: |_| "no effect of the stack finishes pixels".into(),
     }),
-    variants: &[("finish_step", |key, _| step_if(key.finishes_pixels(), "effects"))],
+    variants: &[("finish_step", |key, _| {
+        step_if(key.finishes_pixels(), "effects")
+    })],
     ..Feature::NONE
 };
 
-const RENDER_SCALE: Feature =
-    Feature { constants: &[("SCALE_SIDE", |key, _| key.options.render_scale.factor().max(1.0))], ..Feature::NONE };
+const RENDER_SCALE: Feature = Feature {
+    constants: &[("SCALE_SIDE", |key, _| {
+        key.options.render_scale.factor().max(1.0)
+    })],
+    ..Feature::NONE
+};
 
 const EFFECTS: Feature = Feature {
     label: |key| {
-        let scope = |effect| key.effects.scope(effect).map_or_else(String::new, |bit| format!("@{bit}"));
-        key.effects.list.iter().map(|effect| format!("+{}{}", effect.name, scope(effect))).collect::<Vec<_>>().join(" ")
+        let scope = |effect| {
+            key.effects
+                .scope(effect)
+                .map_or_else(String::new, |bit| format!("@{bit}"))
+        };
+        key.effects
+            .list
+            .iter()
+            .map(|effect| format!("+{}{}", effect.name, scope(effect)))
+            .collect::<Vec<_>>()
+            .join(" ")
     },
-    part: Some(Part { name: "effects uniform", is_used: |key| !key.effects.list.is_empty(), why_omitted: |_| "the stack is empty".into() }),
+    part: Some(Part {
+        name: "effects uniform",
+        is_used: |key| !key.effects.list.is_empty(),
+        why_omitted: |_| "the stack is empty".into(),
+    }),
     ..Feature::NONE
 };

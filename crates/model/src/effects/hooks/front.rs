@@ -1,4 +1,5 @@
-//! Fronts: one number per triangle that travels over the model, for effects that come and go triangle by triangle.
+//! Fronts: one number per triangle that travels over the model, for effects that come and go
+//! triangle by triangle.
 
 use glam::{DVec2, DVec3};
 
@@ -62,11 +63,16 @@ impl Front {
     /// The same in thicknesses of the front, below 0 before it and above 1 behind it.
     fn passed(&self, center: DVec3, center_screen: DVec2, triangle: u32) -> f64 {
         let width = f64::from(self.width);
-        let passed = |path_position: f64| (f64::from(self.front) * (1.0 + width) - path_position) / width;
+        let passed =
+            |path_position: f64| (f64::from(self.front) * (1.0 + width) - path_position) / width;
         match self.pattern() {
             Pattern::Uniform => 1.0,
-            Pattern::Sweep => passed(0.5 + (center_screen - 0.5).dot(self.along()) / self.sweep_length()),
-            Pattern::Radial => (f64::from(self.radius_m) - self.distance(center)) / f64::from(self.width_m) + 0.5,
+            Pattern::Sweep => {
+                passed(0.5 + (center_screen - 0.5).dot(self.along()) / self.sweep_length())
+            }
+            Pattern::Radial => {
+                (f64::from(self.radius_m) - self.distance(center)) / f64::from(self.width_m) + 0.5
+            }
             Pattern::Random => passed(hash_unit(triangle ^ self.seed.wrapping_mul(HASH_GOLDEN))),
         }
     }
@@ -83,11 +89,24 @@ impl Front {
 
     /// Distance from the center of the radial front, meters.
     fn distance(&self, center: DVec3) -> f64 {
-        (center - DVec3::new(self.center[0].into(), self.center[1].into(), self.center[2].into())).length()
+        (center
+            - DVec3::new(
+                self.center[0].into(),
+                self.center[1].into(),
+                self.center[2].into(),
+            ))
+        .length()
     }
 
-    /// Bound of the error of the f32 side of [`Front::reached`]: first-order roundings, each of the terms that it concerns.
-    pub fn error_bound(&self, center: DVec3, center_screen: DVec2, triangle: u32, given: &ErrorBound) -> f64 {
+    /// Bound of the error of the f32 side of [`Front::reached`]: first-order roundings, each of the
+    /// terms that it concerns.
+    pub fn error_bound(
+        &self,
+        center: DVec3,
+        center_screen: DVec2,
+        triangle: u32,
+        given: &ErrorBound,
+    ) -> f64 {
         let passed = self.passed(center, center_screen, triangle);
         let (width, width_m) = (f64::from(self.width), f64::from(self.width_m));
         let progress = 3.0 * ROUNDING * f64::from(self.front) * (1.0 + width);
@@ -96,13 +115,22 @@ impl Front {
             Pattern::Sweep => {
                 let direction = self.along().abs() / self.sweep_length();
                 let path = direction.dot((center_screen - 0.5).abs());
-                let position = (direction.x + direction.y) * given.center_screen + ROUNDING * (1.0 + 8.0 * path);
+                let position = (direction.x + direction.y) * given.center_screen
+                    + ROUNDING * (1.0 + 8.0 * path);
                 (progress + position) / width
             }
-            Pattern::Radial => (2.0 * given.center_m + ROUNDING * (8.0 * self.distance(center) + f64::from(self.radius_m))) / width_m,
+            Pattern::Radial => {
+                (2.0 * given.center_m
+                    + ROUNDING * (8.0 * self.distance(center) + f64::from(self.radius_m)))
+                    / width_m
+            }
             Pattern::Random => progress / width,
         } + 4.0 * ROUNDING * (passed.abs() + 1.0);
         // Away from the front both ends are exact.
-        if passed + error_bound < 0.0 || passed - error_bound > 1.0 { 0.0 } else { error_bound.min(1.0) }
+        if passed + error_bound < 0.0 || passed - error_bound > 1.0 {
+            0.0
+        } else {
+            error_bound.min(1.0)
+        }
     }
 }

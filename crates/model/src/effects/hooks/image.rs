@@ -9,7 +9,8 @@ use crate::params::Params;
 /// A finished pixel of the picture; an image effect changes its color and passes it on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
-    /// Gamma-encoded RGBA so far, each 0 to 1: what the picture will hold, before it is rounded to bytes.
+    /// Gamma-encoded RGBA so far, each 0 to 1: what the picture will hold, before it is rounded to
+    /// bytes.
     pub color: DVec4,
     pub x: u32,
     pub y: u32,
@@ -44,13 +45,18 @@ impl Picture<'_> {
         (0..i64::from(self.width)).contains(&x) && (0..i64::from(self.height)).contains(&y)
     }
 
-    /// Triangle id if any, depth key and draw of a pixel; those of the nearest pixel of the picture when it lies outside.
+    /// Triangle id if any, depth key and draw of a pixel; those of the nearest pixel of the picture
+    /// when it lies outside.
     pub fn at(&self, x: i64, y: i64) -> (Option<u32>, u32, u32) {
         let x = x.clamp(0, i64::from(self.width) - 1) as usize;
         let y = y.clamp(0, i64::from(self.height) - 1) as usize;
         let triangle_id = self.triangle_ids[y * self.width as usize + x];
         let draw = self.draws.partition_point(|&first| first <= triangle_id) as u32;
-        ((triangle_id != u32::MAX).then_some(triangle_id), self.keys[y * self.width as usize + x], draw)
+        (
+            (triangle_id != u32::MAX).then_some(triangle_id),
+            self.keys[y * self.width as usize + x],
+            draw,
+        )
     }
 }
 

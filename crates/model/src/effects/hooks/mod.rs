@@ -1,4 +1,5 @@
-//! Hooks: where in the pipeline an effect acts. The same signatures in WGSL and here, where they are f64 or integers.
+//! Hooks: where in the pipeline an effect acts. The same signatures in WGSL and here, where they
+//! are f64 or integers.
 
 mod front;
 mod image;
@@ -62,7 +63,11 @@ impl Hooks {
             (self.has_lines, "lines"),
             (self.image.is_some(), "image"),
         ];
-        let names: Vec<&str> = hooks.iter().filter(|(is_there, _)| *is_there).map(|(_, name)| *name).collect();
+        let names: Vec<&str> = hooks
+            .iter()
+            .filter(|(is_there, _)| *is_there)
+            .map(|(_, name)| *name)
+            .collect();
         names.join(" + ")
     }
 }

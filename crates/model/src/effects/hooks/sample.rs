@@ -1,7 +1,8 @@
-//! The sample hook: is this sample drawn? Integers alone decide, so that every pass, option and adapter gives the same answer.
+//! The sample hook: is this sample drawn? Integers alone decide, so that every pass, option and
+//! adapter gives the same answer.
 //!
-//! What a decision takes from floats (a front in the world, for instance) is rounded once per triangle, stored, and read by all
-//! passes: [`SampleEffect::sample_setup`].
+//! What a decision takes from floats (a front in the world, for instance) is rounded once per
+//! triangle, stored, and read by all passes: [`SampleEffect::sample_setup`].
 
 use std::{cmp::Ordering, sync::Arc};
 
@@ -10,12 +11,14 @@ use glam::{DVec2, DVec3};
 use super::{ErrorBound, ROUNDING};
 use crate::params::Params;
 
-/// What is known of a triangle, or of a clipped triangle, when the setup of its samples is computed.
+/// What is known of a triangle, or of a clipped triangle, when the setup of its samples is
+/// computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleSetup {
     /// Global triangle id; a clipped triangle has its parent's.
     pub triangle: u32,
-    /// Snapped corners, units of 1/256 px, in the order of the file, or of the clip fan; at most [`GUARD_BAND`](crate::math::GUARD_BAND) from 0 along both axes.
+    /// Snapped corners, units of 1/256 px, in the order of the file, or of the clip fan; at most
+    /// [`GUARD_BAND`](crate::math::GUARD_BAND) from 0 along both axes.
     pub corners: [[i32; 2]; 3],
     /// Bit k: the edge opposite corner k is an edge of the parent triangle, not of the clipping.
     pub outline: u32,
@@ -38,33 +41,53 @@ impl TriangleSetup {
 
     /// How far the center of the f32 side may be from the f64 one, in the world and in the picture.
     pub fn error_bound(&self) -> ErrorBound {
-        // A few operations on numbers up to the largest corner's position, as fractions of the picture.
-        let reach = self.corners.as_flattened().iter().map(|at| f64::from(*at).abs()).fold(0.0, f64::max);
+        // A few operations on numbers up to the largest corner's position, as fractions of the
+        // picture.
+        let reach = self
+            .corners
+            .as_flattened()
+            .iter()
+            .map(|at| f64::from(*at).abs())
+            .fold(0.0, f64::max);
         let shortest = f64::from(self.size[0].min(self.size[1]).max(1));
         let center_screen = 24.0 * ROUNDING * (1.0 + reach / (256.0 * shortest));
-        ErrorBound { center_m: self.center_error_m, center_screen, ..ErrorBound::default() }
+        ErrorBound {
+            center_m: self.center_error_m,
+            center_screen,
+            ..ErrorBound::default()
+        }
     }
 
     /// Samples that the triangle covers in the picture, row by row, each tested on its own.
     pub fn samples(&self) -> impl Iterator<Item = [u32; 2]> {
         let axis = |k: usize| self.corners.map(|corner| i64::from(corner[k]));
         let range = |k: usize| {
-            let [low, high] = [axis(k).into_iter().min(), axis(k).into_iter().max()].map(|end| end.expect("three corners"));
-            (low - 128).div_euclid(256).max(0)..((high - 128).div_euclid(256) + 1).min(self.size[k].into())
+            let [low, high] = [axis(k).into_iter().min(), axis(k).into_iter().max()]
+                .map(|end| end.expect("three corners"));
+            (low - 128).div_euclid(256).max(0)
+                ..((high - 128).div_euclid(256) + 1).min(self.size[k].into())
         };
         let columns = range(0);
-        range(1).flat_map(move |y| columns.clone().map(move |x| [x, y])).filter(|&[x, y]| self.covers(x, y)).map(|at| at.map(|k| k as u32))
+        range(1)
+            .flat_map(move |y| columns.clone().map(move |x| [x, y]))
+            .filter(|&[x, y]| self.covers(x, y))
+            .map(|at| at.map(|k| k as u32))
     }
 
-    /// Top-left rule at the sample of a pixel: each edge function with the sample moved right by less than a unit, and down by less than that.
+    /// Top-left rule at the sample of a pixel: each edge function with the sample moved right by
+    /// less than a unit, and down by less than that.
     fn covers(&self, x: i64, y: i64) -> bool {
         let [a, b, c] = self.corners.map(|corner| corner.map(i64::from));
         let (px, py) = (256 * x + 128, 256 * y + 128);
         let side = |[ax, ay]: [i64; 2], [bx, by]: [i64; 2]| {
             let (dx, dy) = (bx - ax, by - ay);
-            (dx * (py - ay) - dy * (px - ax)).cmp(&0).then(0.cmp(&dy)).then(dx.cmp(&0))
+            (dx * (py - ay) - dy * (px - ax))
+                .cmp(&0)
+                .then(0.cmp(&dy))
+                .then(dx.cmp(&0))
         };
-        // Clockwise all are positive, counterclockwise all negative: a tie is broken alike for both sides of an edge.
+        // Clockwise all are positive, counterclockwise all negative: a tie is broken alike for both
+        // sides of an edge.
         let sides = [side(b, c), side(c, a), side(a, b)];
         sides == [Ordering::Greater; 3] || sides == [Ordering::Less; 3]
     }
@@ -89,7 +112,8 @@ pub struct Sample {
     pub y: u32,
     /// Global triangle id; a clipped triangle has its parent's.
     pub triangle: u32,
-    /// Doubled area between the sample and the edge opposite each corner, shifted down by [`TriangleSetup::shift`].
+    /// Doubled area between the sample and the edge opposite each corner, shifted down by
+    /// [`TriangleSetup::shift`].
     pub areas: [u32; 3],
     /// What the effect computed for the triangle: [`SampleEffect::sample_setup`].
     pub setup: [u32; 4],
@@ -130,7 +154,8 @@ pub trait SampleEffect: Params {
     /// Samples read [`Sample::setup`].
     const HAS_SETUP: bool;
 
-    /// Bound of the error of the f32 side in the first word of a setup; the other words are exact, given the first.
+    /// Bound of the error of the f32 side in the first word of a setup; the other words are exact,
+    /// given the first.
     fn error_bound(_: &TriangleSetup, _: &Self) -> f64 {
         0.0
     }
@@ -140,8 +165,8 @@ pub trait SampleEffect: Params {
         false
     }
 
-    /// What the samples of a triangle are compared with. Only the first word may come from floats; where `first` is given, it is
-    /// that word, and the others follow from it.
+    /// What the samples of a triangle are compared with. Only the first word may come from floats;
+    /// where `first` is given, it is that word, and the others follow from it.
     fn sample_setup(setup: &TriangleSetup, params: &Self, first: Option<u32>) -> [u32; 4];
 
     fn is_drawn(sample: &Sample, params: &Self) -> bool;

@@ -7,12 +7,15 @@ use crate::params::Params;
 /// What the rasterizer knows about a visible sample; a surface effect changes it and passes it on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
-    /// Linear RGBA so far; begins as the material's base color times the vertex color and the texture, plus its emission.
+    /// Linear RGBA so far; begins as the material's base color times the vertex color and the
+    /// texture, plus its emission.
     pub color: DVec4,
-    /// The part of the color that no light changes: what the material emits, or all of it where it is unlit. An effect that
-    /// paints over a fraction of the color removes the same fraction of this.
+    /// The part of the color that no light changes: what the material emits, or all of it where it
+    /// is unlit. An effect that paints over a fraction of the color removes the same fraction
+    /// of this.
     pub glow: DVec3,
-    /// World space, meters: on the ray of its pixel at `depth_m`, however the corners were snapped.
+    /// World space, meters: on the ray of its pixel at `depth_m`, however the corners were
+    /// snapped.
     pub position: DVec3,
     /// Unit, towards the viewer's side: interpolated, then as earlier effects have changed it.
     pub normal: DVec3,
@@ -28,8 +31,8 @@ pub struct Surface {
     pub screen: DVec2,
     /// The same in pixels, right and down.
     pub pixel: DVec2,
-    /// Barycentric coordinates of the sample, measured on the screen: 1 at the corner, 0 on the opposite edge. Of a clipped
-    /// triangle, measured on its plane.
+    /// Barycentric coordinates of the sample, measured on the screen: 1 at the corner, 0 on the
+    /// opposite edge. Of a clipped triangle, measured on its plane.
     pub barycentrics: DVec3,
     /// Distance of the sample from the edge opposite each corner, pixels.
     pub edge_distance_px: DVec3,
@@ -47,13 +50,14 @@ pub struct Surface {
     pub rank: f64,
     /// Fraction of the light that arrives, 0 to 1, where an effect reads it; else 0.
     pub lit: f64,
-    /// Added to each value that decides a step of color. It is 0 except for the judge, which finds with it the pixels so close
-    /// to a step that either answer is right.
+    /// Added to each value that decides a step of color. It is 0 except for the judge, which finds
+    /// with it the pixels so close to a step that either answer is right.
     pub step_offset: f64,
 }
 
 impl Surface {
-    /// A surface of this color in the middle of a triangle that faces the viewer from two meters away.
+    /// A surface of this color in the middle of a triangle that faces the viewer from two meters
+    /// away.
     pub fn example(color: DVec3, triangle_id: u32) -> Self {
         Self {
             color: color.extend(1.0),

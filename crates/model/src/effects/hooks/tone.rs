@@ -26,8 +26,9 @@ pub fn luminance(linear: DVec3) -> f64 {
     linear.dot(DVec3::new(0.2126, 0.7152, 0.0722))
 }
 
-/// Cosine and sine of an angle in degrees. Its mirror in `shaders/lib/angle.wgsl` is a polynomial, since the functions
-/// built into WGSL may err by 2^-11, which is a sixth of a pixel across a small picture.
+/// Cosine and sine of an angle in degrees. Its mirror in `shaders/lib/angle.wgsl` is a polynomial,
+/// since the functions built into WGSL may err by 2^-11, which is a sixth of a pixel across a small
+/// picture.
 pub fn turned(degrees: f64) -> DVec2 {
     let quarters = (degrees / 90.0).round();
     let x = (degrees - 90.0 * quarters) * (std::f64::consts::PI / 180.0);

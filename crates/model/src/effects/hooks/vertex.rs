@@ -11,22 +11,22 @@ use crate::params::Params;
 pub struct Vertex {
     /// World space before any vertex effect, meters.
     pub position: DVec3,
-    /// How far the effects so far have moved it, meters: it lies at `position + offset`. The two are separate, so that a vertex
-    /// that does not move keeps its bits.
+    /// How far the effects so far have moved it, meters: it lies at `position + offset`. The two
+    /// are separate, so that a vertex that does not move keeps its bits.
     pub offset: DVec3,
     /// Unit, world space, as the file has it; zero where it has none.
     pub normal: DVec3,
-    /// Unit normal of the triangle before any vertex effect; zero where it has no plane, or where no
-    /// effect needs triangles.
+    /// Unit normal of the triangle before any vertex effect; zero where it has no plane, or where
+    /// no effect needs triangles.
     pub flat_normal: DVec3,
-    /// Mean of the triangle's corners before any vertex effect; the position itself where no effect needs
-    /// triangles.
+    /// Mean of the triangle's corners before any vertex effect; the position itself where no
+    /// effect needs triangles.
     pub center: DVec3,
-    /// From the center to the position, meters: a difference taken in the model, so that it is as exact far
-    /// from the origin.
+    /// From the center to the position, meters: a difference taken in the model, so that it is as
+    /// exact far from the origin.
     pub arm: DVec3,
-    /// Position of that mean in the picture, 0 to 1; the middle where it lies behind the eye. Zero where no effect needs
-    /// triangles.
+    /// Position of that mean in the picture, 0 to 1; the middle where it lies behind the eye. Zero
+    /// where no effect needs triangles.
     pub center_screen: DVec2,
     /// Global triangle id; 0 where no effect needs triangles.
     pub triangle: u32,
@@ -37,8 +37,9 @@ pub struct Vertex {
 pub struct ErrorBound {
     pub position_m: f64,
     pub offset_m: f64,
-    /// The part of `offset_m` whose direction is known: the offset errs by this vector or less of it to either side, and beside that by
-    /// no more than the rest of `offset_m`. A model that is swayed far in one direction errs far in that one alone.
+    /// The part of `offset_m` whose direction is known: the offset errs by this vector or less of
+    /// it to either side, and beside that by no more than the rest of `offset_m`. A model that
+    /// is swayed far in one direction errs far in that one alone.
     pub along_m: DVec3,
     pub normal: f64,
     pub flat_normal: f64,
@@ -82,8 +83,8 @@ pub trait VertexEffect: Params {
     /// Changes `offset` and `normal` alone.
     fn moved(vertex: Vertex, params: &Self) -> Vertex;
 
-    /// Error bound of what the f32 side makes of `vertex` under any rounding, order and fusion that WGSL allows, given the bound
-    /// of its input. Parameters that move nothing add nothing.
+    /// Error bound of what the f32 side makes of `vertex` under any rounding, order and fusion that
+    /// WGSL allows, given the bound of its input. Parameters that move nothing add nothing.
     fn error_bound(vertex: &Vertex, error_bound: ErrorBound, params: &Self) -> ErrorBound;
 
     /// The farthest that it moves a vertex of a model of this radius, meters.

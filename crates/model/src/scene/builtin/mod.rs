@@ -1,7 +1,8 @@
 //! Built-in scenes: meshes from formulas, selected by a query such as `sphere?triangles=160000`.
 //!
-//! Teapot, sphere, knot, cube-wall, tentacle, walker, town, still-life and chamber are meant to look good. The others stress one property of the
-//! rasterizer each and bring a camera for it. All are indexed, finite and identical on every machine.
+//! Teapot, sphere, knot, cube-wall, tentacle, walker, town, still-life and chamber are meant to
+//! look good. The others stress one property of the rasterizer each and bring a camera for it. All
+//! are indexed, finite and identical on every machine.
 
 mod extremes;
 mod field;
@@ -22,14 +23,24 @@ use query::{real, whole};
 
 use super::model::Scene;
 
-const SEED: BuiltinParam = whole("seed", "seed of the random arrangement", 0.0, 0.0..=4_294_967_295.0);
+const SEED: BuiltinParam = whole(
+    "seed",
+    "seed of the random arrangement",
+    0.0,
+    0.0..=4_294_967_295.0,
+);
 
 /// Every built-in scene.
 pub const BUILTINS: &[Builtin] = &[
     Builtin {
         name: "teapot",
         about: "the Utah teapot, tessellated from its Bézier patches",
-        params: &[whole("tess", "segments along each side of each of the 32 patches", 16.0, 1.0..=256.0)],
+        params: &[whole(
+            "tess",
+            "segments along each side of each of the 32 patches",
+            16.0,
+            1.0..=256.0,
+        )],
         build: teapot::build,
     },
     Builtin {
@@ -46,13 +57,22 @@ pub const BUILTINS: &[Builtin] = &[
     Builtin {
         name: "knot",
         about: "a closed trefoil tube in two colors",
-        params: &[whole("tess", "tessellation; the tube has 96 * tess^2 triangles", 16.0, 2.0..=256.0)],
+        params: &[whole(
+            "tess",
+            "tessellation; the tube has 96 * tess^2 triangles",
+            16.0,
+            2.0..=256.0,
+        )],
         build: shapes::knot,
     },
     Builtin {
         name: "cube-wall",
         about: "a wall of colored cubes, each an instance",
-        params: &[whole("columns", "number of columns", 16.0, 1.0..=64.0), whole("rows", "number of rows", 10.0, 1.0..=64.0), SEED],
+        params: &[
+            whole("columns", "number of columns", 16.0, 1.0..=64.0),
+            whole("rows", "number of rows", 10.0, 1.0..=64.0),
+            SEED,
+        ],
         build: shapes::cube_wall,
     },
     Builtin {
@@ -60,7 +80,12 @@ pub const BUILTINS: &[Builtin] = &[
         about: "a lattice of bumpy spheres seen from its center; most are outside the picture or occluded",
         params: &[
             whole("count", "number of spheres", 216.0, 1.0..=5_000.0),
-            whole("triangles", "triangles of each; an odd number is rounded down", 2_000.0, 100.0..=40_000.0),
+            whole(
+                "triangles",
+                "triangles of each; an odd number is rounded down",
+                2_000.0,
+                100.0..=40_000.0,
+            ),
             SEED,
         ],
         build: field::build,
@@ -70,9 +95,24 @@ pub const BUILTINS: &[Builtin] = &[
         about: "a skinned tube with the clips Sway, Curl, Twist and Breathe; one or many",
         params: &[
             whole("joints", "number of joints", 8.0, 1.0..=128.0),
-            whole("influences", "most joints that influence a vertex", 4.0, 1.0..=8.0),
-            whole("tess", "tessellation; each has 16 * tess * (tess + 2) triangles and two caps", 8.0, 1.0..=128.0),
-            whole("instances", "number of instances, each with its own joints", 1.0, 1.0..=5_000.0),
+            whole(
+                "influences",
+                "most joints that influence a vertex",
+                4.0,
+                1.0..=8.0,
+            ),
+            whole(
+                "tess",
+                "tessellation; each has 16 * tess * (tess + 2) triangles and two caps",
+                8.0,
+                1.0..=128.0,
+            ),
+            whole(
+                "instances",
+                "number of instances, each with its own joints",
+                1.0,
+                1.0..=5_000.0,
+            ),
         ],
         build: tentacle::build,
     },
@@ -80,8 +120,18 @@ pub const BUILTINS: &[Builtin] = &[
         name: "walker",
         about: "a long-necked animal on four legs with the clips Walk, Trot and Idle; one or a herd",
         params: &[
-            whole("tess", "tessellation; each has about 1,300 * tess^2 triangles", 2.0, 1.0..=12.0),
-            whole("instances", "number of instances, each with its own joints", 1.0, 1.0..=1_000.0),
+            whole(
+                "tess",
+                "tessellation; each has about 1,300 * tess^2 triangles",
+                2.0,
+                1.0..=12.0,
+            ),
+            whole(
+                "instances",
+                "number of instances, each with its own joints",
+                1.0,
+                1.0..=1_000.0,
+            ),
         ],
         build: walker::build,
     },
@@ -89,8 +139,18 @@ pub const BUILTINS: &[Builtin] = &[
         name: "town",
         about: "a town on a hill in the sea: houses, a tower, trees and boats, drawn from the shore up",
         params: &[
-            whole("houses", "number of houses; the hill grows with them", 40.0, 1.0..=400.0),
-            real("lights", "how brightly the windows shine; 0: dark", 0.0, 0.0..=1.0),
+            whole(
+                "houses",
+                "number of houses; the hill grows with them",
+                40.0,
+                1.0..=400.0,
+            ),
+            real(
+                "lights",
+                "how brightly the windows shine; 0: dark",
+                0.0,
+                0.0..=1.0,
+            ),
             SEED,
         ],
         build: town::build,
@@ -98,37 +158,65 @@ pub const BUILTINS: &[Builtin] = &[
     Builtin {
         name: "still-life",
         about: "a jug, a bottle, a bowl of oranges, pears and a lemon on a round table, each a closed surface",
-        params: &[whole("tess", "tessellation; it has about 2,400 * tess^2 triangles", 3.0, 1.0..=32.0)],
+        params: &[whole(
+            "tess",
+            "tessellation; it has about 2,400 * tess^2 triangles",
+            3.0,
+            1.0..=32.0,
+        )],
         build: still_life::build,
     },
     Builtin {
         name: "chamber",
         about: "six walls visible only from the inside, so that the camera can look in from anywhere; for particles",
-        params: &[real("half", "half the length of a wall, meters", 2.0, 0.1..=1000.0)],
+        params: &[real(
+            "half",
+            "half the length of a wall, meters",
+            2.0,
+            0.1..=1000.0,
+        )],
         build: shapes::chamber,
     },
     Builtin {
         name: "globe",
         about: "a globe with a texture of colored cells",
-        params: &[whole("tess", "tessellation; it has 16 * tess^2 - 8 * tess triangles", 12.0, 2.0..=512.0)],
+        params: &[whole(
+            "tess",
+            "tessellation; it has 16 * tess^2 - 8 * tess triangles",
+            12.0,
+            2.0..=512.0,
+        )],
         build: painted::globe,
     },
     Builtin {
         name: "panels",
         about: "panels with textures that are repeated, mirrored, clamped, rotated, emissive and unlit, above a ground of gravel",
-        params: &[real("repeats", "repeats of the image along each side of the ground", 24.0, 1.0..=4096.0)],
+        params: &[real(
+            "repeats",
+            "repeats of the image along each side of the ground",
+            24.0,
+            1.0..=4096.0,
+        )],
         build: painted::panels,
     },
     Builtin {
         name: "leaves",
         about: "a crown of leaves: quadrilaterals masked by the alpha of an image",
-        params: &[whole("n", "number of leaves", 160.0, 1.0..=1_000_000.0), SEED],
+        params: &[
+            whole("n", "number of leaves", 160.0, 1.0..=1_000_000.0),
+            SEED,
+        ],
         build: leaves::build,
     },
     Builtin {
         name: "near",
         about: "inside a hall of rings and very long walls that cross the near plane and every side of the guard band",
-        params: &[real("reach", "half the length of the walls, meters", 1e5, 10.0..=1e6)],
+        params: &[real(
+            "reach",
+            "half the length of the walls, meters",
+            1e5,
+            10.0..=1e6,
+        )],
         build: extremes::near,
     },
     Builtin {
@@ -136,9 +224,24 @@ pub const BUILTINS: &[Builtin] = &[
         about: "a plane of jittered cells without folds: every sample is covered exactly once",
         params: &[
             real("cell", "side of a cell, pixels", 1.0, 0.1..=64.0),
-            whole("width", "width of the covered picture, pixels", 256.0, 1.0..=16_384.0),
-            whole("height", "height of the covered picture, pixels", 256.0, 1.0..=16_384.0),
-            whole("lattice", "vertices lie on multiples of 1/lattice px, which forces ties; 0: anywhere", 0.0, 0.0..=256.0),
+            whole(
+                "width",
+                "width of the covered picture, pixels",
+                256.0,
+                1.0..=16_384.0,
+            ),
+            whole(
+                "height",
+                "height of the covered picture, pixels",
+                256.0,
+                1.0..=16_384.0,
+            ),
+            whole(
+                "lattice",
+                "vertices lie on multiples of 1/lattice px, which forces ties; 0: anywhere",
+                0.0,
+                0.0..=256.0,
+            ),
             SEED,
         ],
         build: plates::grid,
@@ -164,7 +267,12 @@ pub const BUILTINS: &[Builtin] = &[
         about: "needles 1 to 8 units of 1/256 px wide, in all directions",
         params: &[
             whole("n", "number of needles", 64.0, 1.0..=100_000.0),
-            real("length", "length of a needle, pixels", 120.0, 1.0..=30_000.0),
+            real(
+                "length",
+                "length of a needle, pixels",
+                120.0,
+                1.0..=30_000.0,
+            ),
         ],
         build: extremes::slivers,
     },
@@ -173,16 +281,23 @@ pub const BUILTINS: &[Builtin] = &[
         about: "layers that all cover the center of the picture",
         params: &[
             whole("layers", "number of layers", 8.0, 1.0..=1_000_000.0),
-            real("gap", "distance between layers, meters; 0: coplanar, the smaller id wins", 0.0, 0.0..=1.0),
+            real(
+                "gap",
+                "distance between layers, meters; 0: coplanar, the smaller id wins",
+                0.0,
+                0.0..=1.0,
+            ),
         ],
         build: extremes::stack,
     },
 ];
 
-/// Builds the scene of a query, `name?parameter=value&parameter=value`. Missing parameters have their defaults.
+/// Builds the scene of a query, `name?parameter=value&parameter=value`. Missing parameters have
+/// their defaults.
 ///
 /// # Errors
-/// If the name or a parameter is unknown, a value is outside its range, or the values ask for too many triangles.
+/// If the name or a parameter is unknown, a value is outside its range, or the values ask for too
+/// many triangles.
 pub fn build(query: &str) -> Result<Scene, BuiltinError> {
     let (builtin, values) = query::parse(BUILTINS, query)?;
     let mut scene = (builtin.build)(&values)?;

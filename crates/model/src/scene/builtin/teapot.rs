@@ -1,9 +1,10 @@
 //! The Utah teapot (M. Newell, 1975) from its 32 bicubic Bézier patches.
 //!
-//! Newell's 306 control points are stored as what they describe: profiles revolved around the axis in four quarter arcs of
-//! kappa 0.56, and two tubes mirrored in the plane y = 0 (z is up in the data). Neighboring patches therefore share their
-//! vertices, and the poles of lid and bottom have exact normals. The knob's published value 0.45 is 0.448 here, so that its
-//! rings have the same shape as all others.
+//! Newell's 306 control points are stored as what they describe: profiles revolved around the axis
+//! in four quarter arcs of kappa 0.56, and two tubes mirrored in the plane y = 0 (z is up in the
+//! data). Neighboring patches therefore share their vertices, and the poles of lid and bottom have
+//! exact normals. The knob's published value 0.45 is 0.448 here, so that its rings have the same
+//! shape as all others.
 
 use glam::{DVec2, DVec3};
 
@@ -23,9 +24,18 @@ const POT: [[f64; 2]; 13] = [
     [1.5, 0.075], [1.425, 0.0], [0.0, 0.0],
 ];
 /// Knob and lid.
-const LID: [[f64; 2]; 7] = [[0.0, 3.15], [0.8, 3.15], [0.0, 2.85], [0.2, 2.7], [0.4, 2.55], [1.3, 2.55], [1.3, 2.4]];
+const LID: [[f64; 2]; 7] = [
+    [0.0, 3.15],
+    [0.8, 3.15],
+    [0.0, 2.85],
+    [0.2, 2.7],
+    [0.4, 2.55],
+    [1.3, 2.55],
+    [1.3, 2.4],
+];
 
-/// Control sections of a tube, end to end: from (x, z) at y = 0 over the half width y to another (x, z) at y = 0.
+/// Control sections of a tube, end to end: from (x, z) at y = 0 over the half width y to another
+/// (x, z) at y = 0.
 struct Section {
     from: DVec2,
     to: DVec2,
@@ -33,7 +43,11 @@ struct Section {
 }
 
 const fn section(from: [f64; 2], to: [f64; 2], half_width: f64) -> Section {
-    Section { from: DVec2::from_array(from), to: DVec2::from_array(to), half_width }
+    Section {
+        from: DVec2::from_array(from),
+        to: DVec2::from_array(to),
+        half_width,
+    }
 }
 
 const HANDLE: [Section; 7] = [
@@ -71,7 +85,12 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     revolve(&mut mesh, &LID, tess);
     tube(&mut mesh, &HANDLE, tess);
     tube(&mut mesh, &SPOUT, tess);
-    let glaze = Material { name: "glaze".into(), base_color: [0.61, 0.235, 0.095, 1.0], double_sided: true, ..Material::default() };
+    let glaze = Material {
+        name: "glaze".into(),
+        base_color: [0.61, 0.235, 0.095, 1.0],
+        double_sided: true,
+        ..Material::default()
+    };
     Ok(single_mesh_scene(mesh, "teapot", glaze))
 }
 
@@ -79,14 +98,23 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
 fn revolve(mesh: &mut MeshBuilder, profile: &[[f64; 2]], tess: u32) {
     let mut above: Option<Ring> = None;
     for row in 0..=(profile.len() as u32 - 1) / 3 * tess {
-        let (point, slopes) = curve(profile.len(), row, tess, |i| DVec3::new(profile[i][0], 0.0, profile[i][1]));
+        let (point, slopes) = curve(profile.len(), row, tess, |i| {
+            DVec3::new(profile[i][0], 0.0, profile[i][1])
+        });
         let columns = if point.x == 0.0 { 1 } else { 4 * tess };
         let ring = mesh.ring(columns, |mesh, column| {
             let (arc, along) = arc(column, tess);
             let position = DVec3::new(point.x * arc.x, point.x * arc.y, point.z);
-            // The derivative around the axis omits its factor, the radius, so that poles have a normal too.
-            let normal =
-                slopes.iter().map(|d| DVec3::new(d.x * arc.x, d.x * arc.y, d.z).cross(along.extend(0.0)).normalize_or_zero()).sum();
+            // The derivative around the axis omits its factor, the radius, so that poles have a
+            // normal too.
+            let normal = slopes
+                .iter()
+                .map(|d| {
+                    DVec3::new(d.x * arc.x, d.x * arc.y, d.z)
+                        .cross(along.extend(0.0))
+                        .normalize_or_zero()
+                })
+                .sum();
             add_vertex(mesh, position, normal);
         });
         if let Some(above) = above.replace(ring) {
@@ -102,15 +130,34 @@ fn tube(mesh: &mut MeshBuilder, sections: &[Section], tess: u32) {
     let mut before: Option<Ring> = None;
     for row in 0..=(sections.len() as u32 - 1) / 3 * tess {
         let ring = mesh.ring(2 * half, |mesh, column| {
-            let (mirror, step) = if column <= half { (1.0, column) } else { (-1.0, 2 * half - column) };
+            let (mirror, step) = if column <= half {
+                (1.0, column)
+            } else {
+                (-1.0, 2 * half - column)
+            };
             let v = f64::from(step) / f64::from(half);
             let across = |s: &Section, weights: [f64; 4]| {
                 let flat = s.from * (weights[0] + weights[1]) + s.to * (weights[2] + weights[3]);
-                DVec3::new(flat.x, -mirror * s.half_width * (weights[1] + weights[2]), flat.y)
+                DVec3::new(
+                    flat.x,
+                    -mirror * s.half_width * (weights[1] + weights[2]),
+                    flat.y,
+                )
             };
-            let (position, along) = curve(sections.len(), row, tess, |i| across(&sections[i], bernstein(v)));
-            let (round, _) = curve(sections.len(), row, tess, |i| across(&sections[i], bernstein_slope(v)) * mirror);
-            add_vertex(mesh, position, along.iter().map(|d| round.cross(*d).normalize_or_zero()).sum());
+            let (position, along) = curve(sections.len(), row, tess, |i| {
+                across(&sections[i], bernstein(v))
+            });
+            let (round, _) = curve(sections.len(), row, tess, |i| {
+                across(&sections[i], bernstein_slope(v)) * mirror
+            });
+            add_vertex(
+                mesh,
+                position,
+                along
+                    .iter()
+                    .map(|d| round.cross(*d).normalize_or_zero())
+                    .sum(),
+            );
         });
         if let Some(before) = before.replace(ring) {
             mesh.band(before, ring);
@@ -124,12 +171,21 @@ fn add_vertex(mesh: &mut MeshBuilder, p: DVec3, n: DVec3) {
     mesh.vertex(DVec3::new(p.x, p.z, -p.y), DVec3::new(n.x, n.z, -n.y));
 }
 
-/// Row `row` of a chain of cubic curves: the point, and the derivatives of the one or two curves that meet there.
+/// Row `row` of a chain of cubic curves: the point, and the derivatives of the one or two curves
+/// that meet there.
 fn curve(len: usize, row: u32, tess: u32, control: impl Fn(usize) -> DVec3) -> (DVec3, Vec<DVec3>) {
     let last = len / 3 - 1;
     let (patch, step) = ((row / tess) as usize, row % tess);
-    let sum = |patch: usize, weights: [f64; 4]| (0..4).map(|i| control(3 * patch + i) * weights[i]).sum::<DVec3>();
-    let (patch, t) = if patch > last { (last, 1.0) } else { (patch, f64::from(step) / f64::from(tess)) };
+    let sum = |patch: usize, weights: [f64; 4]| {
+        (0..4)
+            .map(|i| control(3 * patch + i) * weights[i])
+            .sum::<DVec3>()
+    };
+    let (patch, t) = if patch > last {
+        (last, 1.0)
+    } else {
+        (patch, f64::from(step) / f64::from(tess))
+    };
     let mut slopes = vec![sum(patch, bernstein_slope(t))];
     if step == 0 && patch > 0 && t == 0.0 {
         slopes.push(sum(patch - 1, bernstein_slope(1.0)));
@@ -139,7 +195,12 @@ fn curve(len: usize, row: u32, tess: u32, control: impl Fn(usize) -> DVec3) -> (
 
 /// Column `column` of the unit circle of four Bézier quarters: the point and its derivative.
 fn arc(column: u32, tess: u32) -> (DVec2, DVec2) {
-    const QUARTER: [DVec2; 4] = [DVec2::new(1.0, 0.0), DVec2::new(1.0, KAPPA), DVec2::new(KAPPA, 1.0), DVec2::new(0.0, 1.0)];
+    const QUARTER: [DVec2; 4] = [
+        DVec2::new(1.0, 0.0),
+        DVec2::new(1.0, KAPPA),
+        DVec2::new(KAPPA, 1.0),
+        DVec2::new(0.0, 1.0),
+    ];
     let s = f64::from(column % tess) / f64::from(tess);
     let sum = |weights: [f64; 4]| (0..4).map(|i| QUARTER[i] * weights[i]).sum::<DVec2>();
     let turn = |v: DVec2| (0..column / tess).fold(v, |v, _| v.perp());
@@ -153,5 +214,10 @@ fn bernstein(t: f64) -> [f64; 4] {
 
 fn bernstein_slope(t: f64) -> [f64; 4] {
     let u = 1.0 - t;
-    [-3.0 * u * u, 3.0 * u * (u - 2.0 * t), 3.0 * t * (2.0 * u - t), 3.0 * t * t]
+    [
+        -3.0 * u * u,
+        3.0 * u * (u - 2.0 * t),
+        3.0 * t * (2.0 * u - t),
+        3.0 * t * t,
+    ]
 }

@@ -28,35 +28,82 @@ const MAX_INFLUENCE_SETS: u32 = 2;
 
 /// Returns true if the file has animations, skinned meshes or morph targets.
 pub fn has_motion(root: &json::Root) -> bool {
-    let has_targets = |primitive: &json::mesh::Primitive| primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty());
-    let is_skinned = root.nodes.iter().any(|node| node.skin.is_some() && node.mesh.is_some());
-    !root.animations.is_empty() || is_skinned || root.meshes.iter().flat_map(|mesh| &mesh.primitives).any(has_targets)
+    let has_targets = |primitive: &json::mesh::Primitive| {
+        primitive
+            .targets
+            .as_ref()
+            .is_some_and(|targets| !targets.is_empty())
+    };
+    let is_skinned = root
+        .nodes
+        .iter()
+        .any(|node| node.skin.is_some() && node.mesh.is_some());
+    !root.animations.is_empty()
+        || is_skinned
+        || root
+            .meshes
+            .iter()
+            .flat_map(|mesh| &mesh.primitives)
+            .any(has_targets)
 }
 
-/// Reads the morph targets of a primitive of `count` vertices. Errors begin as those of attributes do.
-pub fn morph_targets(writer: &mut SceneWriter, about: &json::mesh::Primitive, count: u32) -> Result<Vec<MorphTarget>, LoadError> {
+/// Reads the morph targets of a primitive of `count` vertices. Errors begin as those of attributes
+/// do.
+pub fn morph_targets(
+    writer: &mut SceneWriter,
+    about: &json::mesh::Primitive,
+    count: u32,
+) -> Result<Vec<MorphTarget>, LoadError> {
     let targets = about.targets.iter().flatten().enumerate();
-    let read = |(index, target)| morph_target(writer, target, count).map_err(|error| LoadError(format!(" target {index} {error}")));
+    let read = |(index, target)| {
+        morph_target(writer, target, count)
+            .map_err(|error| LoadError(format!(" target {index} {error}")))
+    };
     targets.map(read).collect()
 }
 
-fn morph_target(writer: &mut SceneWriter, target: &json::mesh::MorphTarget, count: u32) -> Result<MorphTarget, LoadError> {
-    let mut read = |index: Option<json::Index<json::Accessor>>, what: &str| -> Result<_, LoadError> {
-        let Some(index) = index else { return Ok(None) };
-        let formats = if writer.is_quantized { QUANTIZED_DISPLACEMENTS } else { FLOAT };
-        let accessor = writer.attribute(index.value(), count, &[3], formats).map_err(|error| error.within(what))?;
-        check_finite(&writer.scene, &accessor).map_err(|error| error.within(what))?;
-        Ok(Some(accessor))
-    };
-    let (positions, normals) = (read(target.positions, "POSITION")?, read(target.normals, "NORMAL")?);
+fn morph_target(
+    writer: &mut SceneWriter,
+    target: &json::mesh::MorphTarget,
+    count: u32,
+) -> Result<MorphTarget, LoadError> {
+    let mut read =
+        |index: Option<json::Index<json::Accessor>>, what: &str| -> Result<_, LoadError> {
+            let Some(index) = index else { return Ok(None) };
+            let formats = if writer.is_quantized {
+                QUANTIZED_DISPLACEMENTS
+            } else {
+                FLOAT
+            };
+            let accessor = writer
+                .attribute(index.value(), count, &[3], formats)
+                .map_err(|error| error.within(what))?;
+            check_finite(&writer.scene, &accessor).map_err(|error| error.within(what))?;
+            Ok(Some(accessor))
+        };
+    let (positions, normals) = (
+        read(target.positions, "POSITION")?,
+        read(target.normals, "NORMAL")?,
+    );
     let max_displacement = positions.map_or(0.0, |accessor| {
-        let value = |vertex| [0, 1, 2].map(|component| accessor.value(&writer.scene.vertex_bytes, vertex, component).abs());
+        let value = |vertex| {
+            [0, 1, 2].map(|component| {
+                accessor
+                    .value(&writer.scene.vertex_bytes, vertex, component)
+                    .abs()
+            })
+        };
         (0..count).flat_map(value).fold(0.0, f64::max)
     });
-    Ok(MorphTarget { positions, normals, max_displacement })
+    Ok(MorphTarget {
+        positions,
+        normals,
+        max_displacement,
+    })
 }
 
-/// Reads the joints and weights of a primitive that `skin` places, unless that was done before. Returns messages to the user.
+/// Reads the joints and weights of a primitive that `skin` places, unless that was done before.
+/// Returns messages to the user.
 pub fn follow_skin(
     writer: &mut SceneWriter,
     primitive: usize,
@@ -70,19 +117,30 @@ pub fn follow_skin(
         return if largest < joint_count {
             Ok(Vec::new())
         } else {
-            Err(LoadError::new(format!("refers to joint {largest}, but the skin has {joint_count} joints")).within("JOINTS_0"))
+            Err(LoadError::new(format!(
+                "refers to joint {largest}, but the skin has {joint_count} joints"
+            ))
+            .within("JOINTS_0"))
         };
     }
     let (name, positions) = (known.name.clone(), known.positions);
     let mut notes = Vec::new();
     let sets = influences(writer, about, positions.count)?;
     if has_attribute(about, Semantic::Joints(MAX_INFLUENCE_SETS)) {
-        notes.push(format!("{name}: only the first 8 joints per vertex are used"));
+        notes.push(format!(
+            "{name}: only the first 8 joints per vertex are used"
+        ));
     }
     let checked = skin::check_influences(&writer.scene, &sets, &positions, joint_count)?;
     for (count, what) in [
-        (checked.weightless, "have only weights of 0; they follow their first joint"),
-        (checked.not_normalized, "have weights that do not sum to 1; they are normalized"),
+        (
+            checked.weightless,
+            "have only weights of 0; they follow their first joint",
+        ),
+        (
+            checked.not_normalized,
+            "have weights that do not sum to 1; they are normalized",
+        ),
     ] {
         if count > 0 {
             notes.push(format!("{name}: {count} vertices {what}"));
@@ -94,7 +152,10 @@ pub fn follow_skin(
 }
 
 fn attribute(about: &json::mesh::Primitive, semantic: Semantic) -> Option<usize> {
-    about.attributes.get(&Checked::Valid(semantic)).map(|accessor| accessor.value())
+    about
+        .attributes
+        .get(&Checked::Valid(semantic))
+        .map(|accessor| accessor.value())
 }
 
 fn has_attribute(about: &json::mesh::Primitive, semantic: Semantic) -> bool {
@@ -102,24 +163,42 @@ fn has_attribute(about: &json::mesh::Primitive, semantic: Semantic) -> bool {
 }
 
 /// Reads all sets of joints and weights, at least one.
-fn influences(writer: &mut SceneWriter, about: &json::mesh::Primitive, count: u32) -> Result<Vec<Influences>, LoadError> {
+fn influences(
+    writer: &mut SceneWriter,
+    about: &json::mesh::Primitive,
+    count: u32,
+) -> Result<Vec<Influences>, LoadError> {
     let mut sets = Vec::new();
     for set in 0..=MAX_INFLUENCE_SETS {
-        let (joints, weights) = match (attribute(about, Semantic::Joints(set)), attribute(about, Semantic::Weights(set))) {
+        let (joints, weights) = match (
+            attribute(about, Semantic::Joints(set)),
+            attribute(about, Semantic::Weights(set)),
+        ) {
             (Some(joints), Some(weights)) => (joints, weights),
             (None, None) if set > 0 => break,
-            _ => return Err(LoadError::new(format!("it has a skin, but lacks JOINTS_{set} or WEIGHTS_{set}; export both"))),
+            _ => {
+                return Err(LoadError::new(format!(
+                    "it has a skin, but lacks JOINTS_{set} or WEIGHTS_{set}; export both"
+                )));
+            }
         };
         if set == MAX_INFLUENCE_SETS {
             break;
         }
         let mut read = |index: usize, what: &str| -> Result<Accessor, LoadError> {
             let what = format!("{what}_{set}");
-            let accessor = writer.accessor(index).map_err(|error| error.within(&what))?;
+            let accessor = writer
+                .accessor(index)
+                .map_err(|error| error.within(&what))?;
             skin::check_types(&accessor, &what, count)?;
-            writer.copy_attribute(index).map_err(|error| error.within(&what))
+            writer
+                .copy_attribute(index)
+                .map_err(|error| error.within(&what))
         };
-        sets.push(Influences { joints: read(joints, "JOINTS")?, weights: read(weights, "WEIGHTS")? });
+        sets.push(Influences {
+            joints: read(joints, "JOINTS")?,
+            weights: read(weights, "WEIGHTS")?,
+        });
     }
     Ok(sets)
 }

@@ -1,8 +1,11 @@
-//! KHR_draco_mesh_compression: vertices and indices of a primitive, decoded by the crate `draco-core`.
+//! KHR_draco_mesh_compression: vertices and indices of a primitive, decoded by the crate
+//! `draco-core`.
 
 use std::collections::BTreeMap;
 
-use draco_core::{DataType, DecodeLimits, DecoderBuffer, Mesh, MeshDecoder, PointAttribute, PointIndex};
+use draco_core::{
+    DataType, DecodeLimits, DecoderBuffer, Mesh, MeshDecoder, PointAttribute, PointIndex,
+};
 use serde::Deserialize;
 
 use super::{error::LoadError, limits::Limits};
@@ -31,8 +34,16 @@ impl Decoded {
             .with_max_faces(limits.triangles)
             .with_max_decoded_bytes(limits.buffer_bytes);
         let mut mesh = Mesh::new();
-        let decoded = MeshDecoder::new().decode(&mut DecoderBuffer::new(bytes).with_limits(allowed), &mut mesh);
-        decoded.map_err(|error| LoadError::new(format!("its Draco data cannot be decoded: {}", error.to_string().replace('\n', " "))))?;
+        let decoded = MeshDecoder::new().decode(
+            &mut DecoderBuffer::new(bytes).with_limits(allowed),
+            &mut mesh,
+        );
+        decoded.map_err(|error| {
+            LoadError::new(format!(
+                "its Draco data cannot be decoded: {}",
+                error.to_string().replace('\n', " ")
+            ))
+        })?;
         Ok(Self(mesh))
     }
 
@@ -54,10 +65,16 @@ impl Decoded {
         let mut bytes = Vec::with_capacity(self.indices() * component_type.bytes() as usize);
         for corner in self.0.faces().iter().flatten() {
             let index = corner.0;
-            let too_large = || LoadError::new(format!("its Draco data has index {index}, which does not fit the type of its accessor"));
+            let too_large = || {
+                LoadError::new(format!(
+                    "its Draco data has index {index}, which does not fit the type of its accessor"
+                ))
+            };
             match component_type {
                 ComponentType::U8 => bytes.push(u8::try_from(index).map_err(|_| too_large())?),
-                ComponentType::U16 => bytes.extend(u16::try_from(index).map_err(|_| too_large())?.to_le_bytes()),
+                ComponentType::U16 => {
+                    bytes.extend(u16::try_from(index).map_err(|_| too_large())?.to_le_bytes())
+                }
                 _ => bytes.extend(index.to_le_bytes()),
             }
         }
@@ -68,8 +85,16 @@ impl Decoded {
     ///
     /// # Errors
     /// There is no such attribute, it has another type, or a vertex has no value.
-    pub fn attribute_bytes(&self, id: u32, component_type: ComponentType, components: u32) -> Result<Vec<u8>, LoadError> {
-        let attribute = self.0.attribute_by_unique_id(id).ok_or_else(|| LoadError::new(format!("its Draco data has no attribute {id}")))?;
+    pub fn attribute_bytes(
+        &self,
+        id: u32,
+        component_type: ComponentType,
+        components: u32,
+    ) -> Result<Vec<u8>, LoadError> {
+        let attribute = self
+            .0
+            .attribute_by_unique_id(id)
+            .ok_or_else(|| LoadError::new(format!("its Draco data has no attribute {id}")))?;
         let lanes = u32::from(attribute.num_components());
         if component_of(attribute.data_type()) != Some(component_type) || lanes != components {
             return Err(LoadError::new(format!(
@@ -81,8 +106,11 @@ impl Decoded {
         let mut bytes = Vec::with_capacity(self.vertices() * element);
         for vertex in 0..self.vertices() {
             let value = value(attribute, vertex, element);
-            bytes
-                .extend(value.ok_or_else(|| LoadError::new(format!("its Draco data has no value for vertex {vertex} of attribute {id}")))?);
+            bytes.extend(value.ok_or_else(|| {
+                LoadError::new(format!(
+                    "its Draco data has no value for vertex {vertex} of attribute {id}"
+                ))
+            })?);
         }
         Ok(bytes)
     }
@@ -92,7 +120,10 @@ impl Decoded {
 fn value(attribute: &PointAttribute, vertex: usize, element: usize) -> Option<&[u8]> {
     let entry = attribute.mapped_index(PointIndex(vertex as u32)).0 as usize;
     let start = entry.checked_mul(usize::try_from(attribute.byte_stride()).ok()?)?;
-    attribute.buffer().data().get(start..start.checked_add(element)?)
+    attribute
+        .buffer()
+        .data()
+        .get(start..start.checked_add(element)?)
 }
 
 fn component_of(data_type: DataType) -> Option<ComponentType> {

@@ -15,7 +15,8 @@ pub fn component_of(kind: JsonComponentType) -> ComponentType {
     }
 }
 
-/// Components per element. Padding between the columns of small matrices is not counted; no such matrix is read.
+/// Components per element. Padding between the columns of small matrices is not counted; no such
+/// matrix is read.
 pub fn lanes_of(kind: Type) -> u32 {
     kind.multiplicity() as u32
 }

@@ -26,14 +26,18 @@ impl From<Canceled> for LoadError {
     }
 }
 
-/// Reads a file beside the model, given its path and the largest size in bytes. The path is relative and has no `..`, so that it stays in the
-/// model's folder unless a link there leads out.
+/// Reads a file beside the model, given its path and the largest size in bytes. The path is
+/// relative and has no `..`, so that it stays in the model's folder unless a link there leads out.
 pub type ReadFile<'a> = dyn FnMut(&Path, u64) -> Result<Vec<u8>, LoadError> + 'a;
 
 /// A name from a file, made safe for messages: quoted, escaped and at most 60 characters.
 pub(super) fn quoted(name: &str) -> String {
     let short: String = name.chars().take(60).collect();
-    if short.len() < name.len() { format!("{:?}", short + "…") } else { format!("{short:?}") }
+    if short.len() < name.len() {
+        format!("{:?}", short + "…")
+    } else {
+        format!("{short:?}")
+    }
 }
 
 /// `kind "name"`, or `kind 3` if it has no name.
@@ -44,10 +48,15 @@ pub(super) fn called(kind: &str, index: usize, name: Option<&str>) -> String {
     }
 }
 
-/// The name by which patterns find a part: that of the file, at most [`MAX_NAME_CHARS`] long and without control characters, or `kind 3`.
+/// The name by which patterns find a part: that of the file, at most [`MAX_NAME_CHARS`] long and
+/// without control characters, or `kind 3`.
 pub(super) fn part_name(kind: &str, index: usize, name: Option<&str>) -> String {
     match name {
-        Some(name) if !name.is_empty() => name.chars().take(MAX_NAME_CHARS).map(|c| if c.is_control() { '?' } else { c }).collect(),
+        Some(name) if !name.is_empty() => name
+            .chars()
+            .take(MAX_NAME_CHARS)
+            .map(|c| if c.is_control() { '?' } else { c })
+            .collect(),
         _ => format!("{kind} {index}"),
     }
 }

@@ -1,7 +1,8 @@
 //! Upper limits of everything that a model file can demand.
 //!
-//! The constants hold for every model. [`Limits`] grow with the memory budget and with the bytes of the files, so that a small file never
-//! takes much memory, and a large one is loaded where the machine has room for it.
+//! The constants hold for every model. [`Limits`] grow with the memory budget and with the bytes of
+//! the files, so that a small file never takes much memory, and a large one is loaded where the
+//! machine has room for it.
 
 use super::error::LoadError;
 use crate::scene::{draw, memory::MemoryBudget};
@@ -36,7 +37,8 @@ pub const IMAGES_BYTES: u64 = 512 * MIB;
 /// Messages to the user.
 pub const NOTES: usize = 32;
 
-/// Decoded bytes for each byte of the files, beyond what every model may take: a higher compression is none that is in use.
+/// Decoded bytes for each byte of the files, beyond what every model may take: a higher compression
+/// is none that is in use.
 const MOST_GROWTH: u64 = 32;
 
 /// Limits that follow from the memory budget and from the size of the files.
@@ -44,7 +46,8 @@ const MOST_GROWTH: u64 = 32;
 pub struct Limits {
     /// Size of the model file, and of each file that it refers to.
     pub file_bytes: u64,
-    /// Total size of all files of a model, and of all that is compressed in them once it is decoded.
+    /// Total size of all files of a model, and of all that is compressed in them once it is
+    /// decoded.
     pub total_bytes: u64,
     /// Size of the attributes of all primitives, and of their index lists.
     pub buffer_bytes: u64,
@@ -74,13 +77,17 @@ impl Limits {
     pub fn of_model(budget: MemoryBudget, files: u64) -> Self {
         let grown = files.saturating_mul(MOST_GROWTH);
         if grown < budget.decoded() {
-            Self { file_bytes: Self::of_files(budget).file_bytes, ..Self::of(grown, Remedy::Growth(files)) }
+            Self {
+                file_bytes: Self::of_files(budget).file_bytes,
+                ..Self::of(grown, Remedy::Growth(files))
+            }
         } else {
             Self::of_files(budget)
         }
     }
 
-    /// As much as `decoded` bytes allow, and no less than every model may have. A list of triangles has at least two bytes for each.
+    /// As much as `decoded` bytes allow, and no less than every model may have. A list of triangles
+    /// has at least two bytes for each.
     fn of(decoded: u64, remedy: Remedy) -> Self {
         // Kernels address bytes of a buffer with 32 bits.
         let addressable = (1 << 32) - 4;
@@ -97,8 +104,12 @@ impl Limits {
     /// `what` exceeds `most`, a limit of these.
     pub fn exceeded(&self, what: impl std::fmt::Display, most: u64) -> LoadError {
         LoadError::new(match self.remedy {
-            Remedy::Budget(budget) => format!("{what}; allowed: at most {most} {}", budget.remedy()),
-            Remedy::Growth(files) => format!("{what}; allowed: at most {most}, because its files have only {files} bytes"),
+            Remedy::Budget(budget) => {
+                format!("{what}; allowed: at most {most} {}", budget.remedy())
+            }
+            Remedy::Growth(files) => format!(
+                "{what}; allowed: at most {most}, because its files have only {files} bytes"
+            ),
         })
     }
 }

@@ -1,7 +1,8 @@
 //! EXT_meshopt_compression: decodes the three modes of its bitstream and undoes its three filters.
 //!
-//! The format is that of the extension's specification, version 0 of attributes and indices and version 1 of triangles. Sizes are
-//! checked before anything is allocated, and every read is checked, since a file may be cut off or hostile.
+//! The format is that of the extension's specification, version 0 of attributes and indices and
+//! version 1 of triangles. Sizes are checked before anything is allocated, and every read is
+//! checked, since a file may be cut off or hostile.
 
 use serde::Deserialize;
 
@@ -54,27 +55,47 @@ impl CompressedView {
     /// The stream is malformed or cut off, or its parameters do not fit each other.
     pub fn decode(&self, bytes: &[u8]) -> Result<Vec<u8>, LoadError> {
         let stride = self.byte_stride;
-        let wrong_stride = |allowed: &str| LoadError::new(format!("byteStride is {stride}; {:?} allows {allowed}", self.mode));
+        let wrong_stride = |allowed: &str| {
+            LoadError::new(format!(
+                "byteStride is {stride}; {:?} allows {allowed}",
+                self.mode
+            ))
+        };
         let mut decoded = match self.mode {
             Mode::Attributes if stride == 0 || stride > 256 || !stride.is_multiple_of(4) => {
                 return Err(wrong_stride("multiples of 4 up to 256"));
             }
             Mode::Attributes => attributes(bytes, self.count, stride)?,
-            Mode::Triangles | Mode::Indices if stride != 2 && stride != 4 => return Err(wrong_stride("2 or 4")),
+            Mode::Triangles | Mode::Indices if stride != 2 && stride != 4 => {
+                return Err(wrong_stride("2 or 4"));
+            }
             Mode::Triangles if !self.count.is_multiple_of(3) => {
-                return Err(LoadError::new(format!("count is {}; TRIANGLES needs a multiple of 3", self.count)));
+                return Err(LoadError::new(format!(
+                    "count is {}; TRIANGLES needs a multiple of 3",
+                    self.count
+                )));
             }
             Mode::Triangles => indices_as(&triangles(bytes, self.count)?, stride)?,
             Mode::Indices => indices_as(&sequence(bytes, self.count)?, stride)?,
         };
         match (self.filter, self.mode, stride) {
             (Filter::None, ..) => {}
-            (Filter::Octahedral, Mode::Attributes, 4) => decoded.chunks_exact_mut(4).for_each(octahedral8),
-            (Filter::Octahedral, Mode::Attributes, 8) => decoded.chunks_exact_mut(8).for_each(octahedral16),
-            (Filter::Quaternion, Mode::Attributes, 8) => decoded.chunks_exact_mut(8).for_each(quaternion),
-            (Filter::Exponential, Mode::Attributes, _) => decoded.chunks_exact_mut(4).for_each(exponential),
+            (Filter::Octahedral, Mode::Attributes, 4) => {
+                decoded.chunks_exact_mut(4).for_each(octahedral8)
+            }
+            (Filter::Octahedral, Mode::Attributes, 8) => {
+                decoded.chunks_exact_mut(8).for_each(octahedral16)
+            }
+            (Filter::Quaternion, Mode::Attributes, 8) => {
+                decoded.chunks_exact_mut(8).for_each(quaternion)
+            }
+            (Filter::Exponential, Mode::Attributes, _) => {
+                decoded.chunks_exact_mut(4).for_each(exponential)
+            }
             (filter, mode, _) => {
-                return Err(LoadError::new(format!("the filter {filter:?} does not fit mode {mode:?} with byteStride {stride}")));
+                return Err(LoadError::new(format!(
+                    "the filter {filter:?} does not fit mode {mode:?} with byteStride {stride}"
+                )));
             }
         }
         Ok(decoded)
@@ -95,19 +116,26 @@ fn take<'a>(from: &mut &'a [u8], count: usize) -> Result<&'a [u8], LoadError> {
 fn check_header(from: &mut &[u8], expected: u8) -> Result<(), LoadError> {
     match take(from, 1)? {
         [header] if *header == expected => Ok(()),
-        header => Err(LoadError::new(format!("its compressed data begins with {header:02x?}; this version begins with {expected:02x}"))),
+        header => Err(LoadError::new(format!(
+            "its compressed data begins with {header:02x?}; this version begins with {expected:02x}"
+        ))),
     }
 }
 
-/// Elements in blocks; in a block the deltas of the first bytes of all elements, then those of the second bytes, and so on.
+/// Elements in blocks; in a block the deltas of the first bytes of all elements, then those of the
+/// second bytes, and so on.
 fn attributes(mut bytes: &[u8], count: usize, stride: usize) -> Result<Vec<u8>, LoadError> {
     const GROUP: usize = 16;
     check_header(&mut bytes, 0xa0)?;
     // The element that the first one is a difference to stands at the end.
-    let tail = bytes.len().checked_sub(stride.max(32)).ok_or_else(cut_off)?;
+    let tail = bytes
+        .len()
+        .checked_sub(stride.max(32))
+        .ok_or_else(cut_off)?;
     let (mut bytes, tail) = bytes.split_at(tail);
     let mut last = tail[tail.len() - stride..].to_vec();
-    // Each group of elements needs at least two bits for each byte of an element, so that a short stream cannot claim many.
+    // Each group of elements needs at least two bits for each byte of an element, so that a short
+    // stream cannot claim many.
     if (count.div_ceil(GROUP) as u64) * stride as u64 > 4 * bytes.len() as u64 {
         return Err(cut_off());
     }
@@ -121,7 +149,11 @@ fn attributes(mut bytes: &[u8], count: usize, stride: usize) -> Result<Vec<u8>, 
             for group in 0..groups {
                 let mode = (modes[group / 4] >> (2 * (group % 4))) & 3;
                 let deltas = deltas(&mut bytes, mode)?;
-                for (i, delta) in deltas.into_iter().enumerate().take(in_block - group * GROUP) {
+                for (i, delta) in deltas
+                    .into_iter()
+                    .enumerate()
+                    .take(in_block - group * GROUP)
+                {
                     last[byte] = last[byte].wrapping_add((delta >> 1) ^ (delta & 1).wrapping_neg());
                     elements[(group * GROUP + i) * stride + byte] = last[byte];
                 }
@@ -131,7 +163,8 @@ fn attributes(mut bytes: &[u8], count: usize, stride: usize) -> Result<Vec<u8>, 
     Ok(decoded)
 }
 
-/// Sixteen deltas: zeros, or of 2 or 4 bits with a byte of its own for each that has all bits set, or bytes.
+/// Sixteen deltas: zeros, or of 2 or 4 bits with a byte of its own for each that has all bits set,
+/// or bytes.
 fn deltas(bytes: &mut &[u8], mode: u8) -> Result<[u8; 16], LoadError> {
     let mut deltas = [0; 16];
     let bits = match mode {
@@ -147,7 +180,11 @@ fn deltas(bytes: &mut &[u8], mode: u8) -> Result<[u8; 16], LoadError> {
     for (i, delta) in deltas.iter_mut().enumerate() {
         // The highest bits come first.
         let short = (packed[i / in_byte] >> (8 - bits * (1 + i % in_byte))) & sentinel;
-        *delta = if short == sentinel { take(bytes, 1)?[0] } else { short };
+        *delta = if short == sentinel {
+            take(bytes, 1)?[0]
+        } else {
+            short
+        };
     }
     Ok(deltas)
 }
@@ -167,7 +204,9 @@ fn varint(bytes: &mut &[u8]) -> Result<u32, LoadError> {
             return Ok(value);
         }
     }
-    Err(LoadError::new("its compressed data holds a number of more than five bytes"))
+    Err(LoadError::new(
+        "its compressed data holds a number of more than five bytes",
+    ))
 }
 
 /// The latest sixteen entries; 0 is the latest.
@@ -178,7 +217,10 @@ struct Fifo<T> {
 
 impl<T: Copy> Fifo<T> {
     fn new(empty: T) -> Self {
-        Self { entries: [empty; 16], next: 0 }
+        Self {
+            entries: [empty; 16],
+            next: 0,
+        }
     }
 
     fn push(&mut self, entry: T) {
@@ -227,19 +269,28 @@ fn triangles(mut bytes: &[u8], count: usize) -> Result<Vec<u32>, LoadError> {
             indices.extend([a, b, c]);
             continue;
         }
-        let pair = if code < 0xfe { table[usize::from(code & 15)] } else { take(&mut bytes, 1)?[0] };
+        let pair = if code < 0xfe {
+            table[usize::from(code & 15)]
+        } else {
+            take(&mut bytes, 1)?[0]
+        };
         if code >= 0xfe && pair == 0 {
             next = 0;
         }
         let [fea, feb, fec] = [if code == 0xff { 15 } else { 0 }, pair >> 4, pair & 15];
-        // The fifo is read as it was before this triangle, and new vertices are numbered before any is read from the stream.
+        // The fifo is read as it was before this triangle, and new vertices are numbered before any
+        // is read from the stream.
         let mut known = |code: u8, is_long: bool| match code {
             0 => new(&mut next),
             15 if is_long => 0,
             age => vertices.get(usize::from(age) - 1),
         };
         let is_long = code >= 0xfe;
-        let [mut a, mut b, mut c] = [known(fea, is_long), known(feb, is_long), known(fec, is_long)];
+        let [mut a, mut b, mut c] = [
+            known(fea, is_long),
+            known(feb, is_long),
+            known(fec, is_long),
+        ];
         for (code, vertex) in [(fea, &mut a), (feb, &mut b), (fec, &mut c)] {
             if code == 15 && is_long {
                 (last, *vertex) = (index(&mut bytes, last)?, 0);
@@ -280,13 +331,26 @@ fn sequence(mut bytes: &[u8], count: usize) -> Result<Vec<u32>, LoadError> {
 /// Indices as 16- or 32-bit integers.
 fn indices_as(indices: &[u32], stride: usize) -> Result<Vec<u8>, LoadError> {
     if stride == 4 {
-        return Ok(indices.iter().flat_map(|index| index.to_le_bytes()).collect());
+        return Ok(indices
+            .iter()
+            .flat_map(|index| index.to_le_bytes())
+            .collect());
     }
-    let short = |index: &u32| u16::try_from(*index).map_err(|_| LoadError::new(format!("index {index} does not fit byteStride 2")));
-    Ok(indices.iter().map(short).collect::<Result<Vec<_>, _>>()?.into_iter().flat_map(u16::to_le_bytes).collect())
+    let short = |index: &u32| {
+        u16::try_from(*index)
+            .map_err(|_| LoadError::new(format!("index {index} does not fit byteStride 2")))
+    };
+    Ok(indices
+        .iter()
+        .map(short)
+        .collect::<Result<Vec<_>, _>>()?
+        .into_iter()
+        .flat_map(u16::to_le_bytes)
+        .collect())
 }
 
-/// A unit vector from its octahedral map; `z` holds what 1 is in the map, and the result is scaled to `most`.
+/// A unit vector from its octahedral map; `z` holds what 1 is in the map, and the result is scaled
+/// to `most`.
 fn unit([x, y, one]: [f32; 3], most: f32) -> [f32; 3] {
     let z = one - x.abs() - y.abs();
     // Points beyond the octahedron's equator are folded back.
@@ -303,12 +367,18 @@ fn rounded(value: f32) -> f32 {
 
 fn octahedral8(element: &mut [u8]) {
     let [x, y, z] = unit([0, 1, 2].map(|i| f32::from(element[i] as i8)), 127.0);
-    [x, y, z].into_iter().zip(element).for_each(|(v, byte)| *byte = v as i8 as u8);
+    [x, y, z]
+        .into_iter()
+        .zip(element)
+        .for_each(|(v, byte)| *byte = v as i8 as u8);
 }
 
 fn octahedral16(element: &mut [u8]) {
     let vector = unit([0, 1, 2].map(|i| f32::from(short(element, i))), 32767.0);
-    vector.into_iter().enumerate().for_each(|(i, v)| put_short(element, i, v as i16));
+    vector
+        .into_iter()
+        .enumerate()
+        .for_each(|(i, v)| put_short(element, i, v as i16));
 }
 
 /// Three components and the place of the largest, which follows from them.

@@ -1,4 +1,5 @@
-//! Messages to the user about a model. A file can give rise to millions, so only the first are built.
+//! Messages to the user about a model. A file can give rise to millions, so only the first are
+//! built.
 
 use std::fmt::Display;
 

@@ -1,4 +1,5 @@
-//! Skins: joints with their inverse bind matrices, and checks of the joints and weights of vertices.
+//! Skins: joints with their inverse bind matrices, and checks of the joints and weights of
+//! vertices.
 
 use glam::DMat4;
 use gltf::json;
@@ -19,13 +20,23 @@ use crate::scene::{
 
 /// Reads every skin of the file.
 pub fn read_skins(buffers: &Buffers, tree: &Tree) -> Result<Vec<Skin>, LoadError> {
-    let joints: usize = buffers.root.skins.iter().map(|skin| skin.joints.len()).sum();
+    let joints: usize = buffers
+        .root
+        .skins
+        .iter()
+        .map(|skin| skin.joints.len())
+        .sum();
     if joints > limits::ALL_JOINTS {
-        return Err(LoadError::new(format!("the skins have {joints} joints; allowed: at most {}", limits::ALL_JOINTS)));
+        return Err(LoadError::new(format!(
+            "the skins have {joints} joints; allowed: at most {}",
+            limits::ALL_JOINTS
+        )));
     }
     let skin = |(index, skin): (usize, &json::Skin)| {
         let name = called("skin", index, skin.name.as_deref());
-        read(buffers, tree, skin).map_err(|error| error.within(&name)).map(|skin| Skin { name, ..skin })
+        read(buffers, tree, skin)
+            .map_err(|error| error.within(&name))
+            .map(|skin| Skin { name, ..skin })
     };
     buffers.root.skins.iter().enumerate().map(skin).collect()
 }
@@ -33,17 +44,38 @@ pub fn read_skins(buffers: &Buffers, tree: &Tree) -> Result<Vec<Skin>, LoadError
 fn read(buffers: &Buffers, tree: &Tree, skin: &json::Skin) -> Result<Skin, LoadError> {
     let joints = skin.joints.len();
     if joints == 0 || joints > limits::JOINTS {
-        return Err(LoadError::new(format!("it has {joints} joints; allowed: 1 to {}", limits::JOINTS)));
+        return Err(LoadError::new(format!(
+            "it has {joints} joints; allowed: 1 to {}",
+            limits::JOINTS
+        )));
     }
     let joint_from_mesh = match skin.inverse_bind_matrices {
         None => vec![DMat4::IDENTITY; joints],
-        Some(accessor) => inverse_bind(buffers, accessor.value(), joints).map_err(|error| error.within("inverseBindMatrices"))?,
+        Some(accessor) => inverse_bind(buffers, accessor.value(), joints)
+            .map_err(|error| error.within("inverseBindMatrices"))?,
     };
-    let nodes: Vec<usize> = skin.joints.iter().map(|joint| tree.rig_index[joint.value()]).collect();
-    let position = |(joint, inverse): (&json::Index<json::Node>, &DMat4)| tree.world_from_node[joint.value()] * *inverse;
-    match skin.joints.iter().zip(&joint_from_mesh).position(|pair| !position(pair).is_finite()) {
-        Some(joint) => Err(LoadError::new(format!("the matrix of joint {joint} is not finite"))),
-        None => Ok(Skin { name: String::new(), joints: nodes, joint_from_mesh }),
+    let nodes: Vec<usize> = skin
+        .joints
+        .iter()
+        .map(|joint| tree.rig_index[joint.value()])
+        .collect();
+    let position = |(joint, inverse): (&json::Index<json::Node>, &DMat4)| {
+        tree.world_from_node[joint.value()] * *inverse
+    };
+    match skin
+        .joints
+        .iter()
+        .zip(&joint_from_mesh)
+        .position(|pair| !position(pair).is_finite())
+    {
+        Some(joint) => Err(LoadError::new(format!(
+            "the matrix of joint {joint} is not finite"
+        ))),
+        None => Ok(Skin {
+            name: String::new(),
+            joints: nodes,
+            joint_from_mesh,
+        }),
     }
 }
 
@@ -61,13 +93,26 @@ fn inverse_bind(buffers: &Buffers, index: usize, joints: usize) -> Result<Vec<DM
         )));
     }
     let bytes = buffers.materialized(index, &layout)?;
-    let numbers = Accessor { offset: 0, stride: 64, ..about };
-    let matrix = |i: u32| DMat4::from_cols_array(&std::array::from_fn(|component| numbers.value(&bytes, i, component as u32)));
+    let numbers = Accessor {
+        offset: 0,
+        stride: 64,
+        ..about
+    };
+    let matrix = |i: u32| {
+        DMat4::from_cols_array(&std::array::from_fn(|component| {
+            numbers.value(&bytes, i, component as u32)
+        }))
+    };
     let matrices: Vec<DMat4> = (0..joints as u32).map(matrix).collect();
     // Exporters that round leave small errors in the last row, 0 0 0 1.
     let is_affine = |m: &DMat4| m.row(3).abs_diff_eq(glam::DVec4::W, 1e-3);
-    match matrices.iter().position(|m| !m.is_finite() || !is_affine(m)) {
-        Some(joint) => Err(LoadError::new(format!("matrix {joint} must be finite and have the last row 0 0 0 1"))),
+    match matrices
+        .iter()
+        .position(|m| !m.is_finite() || !is_affine(m))
+    {
+        Some(joint) => Err(LoadError::new(format!(
+            "matrix {joint} must be finite and have the last row 0 0 0 1"
+        ))),
         None => Ok(matrices),
     }
 }
@@ -76,13 +121,22 @@ fn inverse_bind(buffers: &Buffers, index: usize, joints: usize) -> Result<Vec<DM
 pub fn check_types(accessor: &Accessor, what: &str, count: u32) -> Result<(), LoadError> {
     let kinds: &[(ComponentType, bool)] = match what.starts_with("JOINTS") {
         true => &[(ComponentType::U8, false), (ComponentType::U16, false)],
-        false => &[(ComponentType::F32, false), (ComponentType::U8, true), (ComponentType::U16, true)],
+        false => &[
+            (ComponentType::F32, false),
+            (ComponentType::U8, true),
+            (ComponentType::U16, true),
+        ],
     };
-    if accessor.components != 4 || !kinds.contains(&(accessor.component_type, accessor.normalized)) {
+    if accessor.components != 4 || !kinds.contains(&(accessor.component_type, accessor.normalized))
+    {
         return Err(LoadError::new("must be VEC4 of a type that glTF allows for it").within(what));
     }
     if accessor.count != count {
-        return Err(LoadError::new(format!("has {} elements, but the primitive has {count} vertices", accessor.count)).within(what));
+        return Err(LoadError::new(format!(
+            "has {} elements, but the primitive has {count} vertices",
+            accessor.count
+        ))
+        .within(what));
     }
     Ok(())
 }
@@ -105,9 +159,15 @@ pub fn check_influences(
     joint_count: usize,
 ) -> Result<CheckedInfluences, LoadError> {
     let bytes = &scene.vertex_bytes;
-    let mut checked = CheckedInfluences { joint_bounds: Vec::new(), weightless: 0, not_normalized: 0 };
+    let mut checked = CheckedInfluences {
+        joint_bounds: Vec::new(),
+        weightless: 0,
+        not_normalized: 0,
+    };
     for vertex in 0..positions.count {
-        let position = [0, 1, 2].map(|component| positions.value(bytes, vertex, component)).into();
+        let position = [0, 1, 2]
+            .map(|component| positions.value(bytes, vertex, component))
+            .into();
         let (mut sum, mut first) = (0.0, 0);
         for (set, influences) in sets.iter().enumerate() {
             for component in 0..4 {
@@ -137,7 +197,10 @@ pub fn check_influences(
             checked.joint_bounds[first].include(position);
             checked.weightless += 1;
         } else if sum > 1e30 {
-            return Err(LoadError::new(format!("the weights of vertex {vertex} sum to {sum:e}; allowed: at most 1e30")).within("WEIGHTS_0"));
+            return Err(LoadError::new(format!(
+                "the weights of vertex {vertex} sum to {sum:e}; allowed: at most 1e30"
+            ))
+            .within("WEIGHTS_0"));
         } else if (sum - 1.0).abs() > 0.01 {
             checked.not_normalized += 1;
         }

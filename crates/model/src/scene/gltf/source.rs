@@ -1,4 +1,5 @@
-//! Where the bytes of a model come from: a source in memory, or one outside, from which large buffers are read to where they belong.
+//! Where the bytes of a model come from: a source in memory, or one outside, from which large
+//! buffers are read to where they belong.
 
 use std::{borrow::Cow, cell::OnceCell, ops::Range};
 
@@ -54,8 +55,14 @@ impl<'a> Bytes<'a> {
     /// Those of a range that lies inside of `source`.
     pub fn of(source: &'a dyn Source, range: Range<u64>) -> Self {
         match source.in_memory() {
-            Some(bytes) => Self::Memory(Cow::Borrowed(&bytes[range.start as usize..range.end as usize])),
-            None => Self::Outside(OutsideBytes { source, range, whole: OnceCell::new() }),
+            Some(bytes) => Self::Memory(Cow::Borrowed(
+                &bytes[range.start as usize..range.end as usize],
+            )),
+            None => Self::Outside(OutsideBytes {
+                source,
+                range,
+                whole: OnceCell::new(),
+            }),
         }
     }
 
@@ -86,7 +93,10 @@ impl<'a> Bytes<'a> {
             Self::Memory(all) => (&**all).append_to(bytes, range),
             Self::Outside(outside) => match outside.whole.get() {
                 Some(all) => all.as_slice().append_to(bytes, range),
-                None => outside.source.append_to(bytes, outside.range.start + range.start..outside.range.start + range.end),
+                None => outside.source.append_to(
+                    bytes,
+                    outside.range.start + range.start..outside.range.start + range.end,
+                ),
             },
         }
     }
@@ -116,7 +126,9 @@ impl OutsideBytes<'_> {
 /// # Errors
 /// The system has no memory for them.
 pub fn reserve(bytes: &mut Vec<u8>, more: u64) -> Result<(), LoadError> {
-    bytes.try_reserve_exact(more as usize).map_err(|_| LoadError::new(format!("the system has no memory for its {more} bytes")))
+    bytes
+        .try_reserve_exact(more as usize)
+        .map_err(|_| LoadError::new(format!("the system has no memory for its {more} bytes")))
 }
 
 #[cfg(test)]
@@ -148,7 +160,12 @@ mod tests {
         assert_eq!((bytes, source.1.get()), (vec![7, 52, 53, 54, 55, 56], 5));
         assert_eq!(there.all(), Ok(&source.0[32..]));
         let mut bytes = Vec::new();
-        there.append_to(&mut bytes, 198..200).expect("it is in memory");
-        assert_eq!((bytes, there.len(), source.1.get()), (vec![230, 231], 200, 205));
+        there
+            .append_to(&mut bytes, 198..200)
+            .expect("it is in memory");
+        assert_eq!(
+            (bytes, there.len(), source.1.get()),
+            (vec![230, 231], 200, 205)
+        );
     }
 }

@@ -11,8 +11,10 @@ use base64::{
 use super::error::{LoadError, ReadFile, quoted};
 
 /// Real files often omit the padding.
-const BASE64: GeneralPurpose =
-    GeneralPurpose::new(&STANDARD, GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent));
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &STANDARD,
+    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
+);
 
 /// The bytes that `uri` refers to, at most `most`.
 pub fn resolve(uri: &str, most: u64, read: &mut ReadFile) -> Result<Vec<u8>, LoadError> {
@@ -30,11 +32,15 @@ pub fn resolve(uri: &str, most: u64, read: &mut ReadFile) -> Result<Vec<u8>, Loa
 }
 
 fn decode(data: &str) -> Result<Vec<u8>, LoadError> {
-    let (kind, payload) = data.split_once(',').ok_or_else(|| LoadError::new("its data URI has no comma"))?;
+    let (kind, payload) = data
+        .split_once(',')
+        .ok_or_else(|| LoadError::new("its data URI has no comma"))?;
     if !kind.ends_with(";base64") {
         return Err(LoadError::new("its data URI is not base64"));
     }
-    BASE64.decode(payload).map_err(|error| LoadError::new(format!("its data URI is malformed: {error}")))
+    BASE64
+        .decode(payload)
+        .map_err(|error| LoadError::new(format!("its data URI is malformed: {error}")))
 }
 
 /// A path inside the model's folder: no scheme, no root and no `..` after percent-decoding.
@@ -45,12 +51,23 @@ pub fn relative(uri: &str) -> Result<PathBuf, LoadError> {
         return Err(refused("contains a NUL or a backslash"));
     }
     // A colon before the first slash ends a scheme or a drive letter.
-    if decoded.split('/').next().is_some_and(|first| first.contains(':')) {
-        return Err(refused("has a scheme; only data: URIs and relative paths are supported"));
+    if decoded
+        .split('/')
+        .next()
+        .is_some_and(|first| first.contains(':'))
+    {
+        return Err(refused(
+            "has a scheme; only data: URIs and relative paths are supported",
+        ));
     }
     let path = Path::new(&decoded);
-    if !path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
-        return Err(refused("leads out of the model's folder; copy the file there"));
+    if !path
+        .components()
+        .all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
+    {
+        return Err(refused(
+            "leads out of the model's folder; copy the file there",
+        ));
     }
     if path.file_name().is_none() {
         return Err(refused("names no file"));
