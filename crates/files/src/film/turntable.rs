@@ -22,9 +22,8 @@ pub enum Turntable {
 const SIDES: u32 = 72;
 
 impl Turntable {
-    /// Turns `preset` to a moment of the film of the range `range_s`: `fraction` of one turn, 0 to
-    /// 1. The preset is at its time already; `around` is the automatic camera of the whole
-    /// turn.
+    /// Turns `preset` to a moment of the film of the range `range_s`: `fraction` of one turn, from
+    /// 0 to 1. The preset is at its time already; `around` is the automatic camera of the whole turn.
     pub fn turn(
         self,
         preset: &mut Preset,

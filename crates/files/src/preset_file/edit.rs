@@ -167,7 +167,7 @@ pub fn set(preset_file: &mut PresetFile, path: &str, value: &str) -> Result<(), 
         && !matches!(&target, Target::Setting(setting) if matches!(setting.value_type, ValueType::Text { .. }));
     match target {
         Target::Effect(effect) if value.is_empty() => {
-            drop(preset_file.preset.stack.enable(&effect))
+            preset_file.preset.stack.enable(&effect);
         }
         Target::Section(section) if value.is_empty() => section.add(&mut preset_file.preset),
         Target::Field(..) | Target::Setting(_) | Target::Stack | Target::Animation(_, Some(_))

@@ -16,9 +16,9 @@
 //! the ball of radius 32768 counts, else the last one halved. Coordinates over 32768, times
 //! `half_axes`, clamped to the bounds, are the position relative to `center`. Velocity is 0.
 //!
-//! **Step.** dt = 1 / rate. With position p and velocity v of the previous frame, away = attractor
-//! - p and pull = attraction 2 r away / (away² + r²), r = `attractor_m`: v' = (v + dt (drag u +
-//! pull)) / (1 + dt drag), p' = p + dt v'.
+//! **Step.** dt = 1 / rate. With position p and velocity v of the previous frame,
+//! away = attractor - p and pull = attraction 2 r away / (away² + r²), r = `attractor_m`:
+//! v' = (v + dt (drag u + pull)) / (1 + dt drag), p' = p + dt v'.
 //!
 //! **Flow.** u = `speed_mps` [`SPEED_NORMALIZER`] Σ persistence^o curl ψ_o(q) / Σ persistence^o
 //! over the octaves o, where q = p 2^o / swirl_m + (o + 1) [`LATTICE_SHIFT`] + (step dt evolve)

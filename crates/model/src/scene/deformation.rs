@@ -9,8 +9,8 @@ pub struct Deformation {
     pub influences: Vec<Influences>,
     /// Weighted by the node that shows the mesh.
     pub morph_targets: Vec<MorphTarget>,
-    /// For each joint, the object-space box of the vertices that it influences with a weight above
-    /// 0. As long as the largest joint index requires.
+    /// For each joint, the object-space box of the vertices that it influences (a weight above 0).
+    /// As long as the largest joint index requires.
     pub joint_bounds: Vec<Bounds>,
 }
 
