@@ -9,7 +9,7 @@ use std::{
 use toml_edit::DocumentMut;
 
 use super::{
-    Settings, WindowSize,
+    Settings,
     last_session::{LastSession, Restored},
 };
 use crate::{
@@ -248,10 +248,10 @@ const LOCK: &str = "session.lock";
 /// The size that the window had, by the settings of `folder`. What is wrong with them is said by
 /// [`Keeper::new`].
 #[cfg(not(target_arch = "wasm32"))]
-pub fn window_size(folder: &Path) -> WindowSize {
+pub fn window_size(folder: &Path) -> super::WindowSize {
     let text = std::fs::read_to_string(folder.join(SETTINGS)).unwrap_or_default();
     plain_file::parse(&text, SETTINGS, &mut Vec::new()).map_or_else(
-        |_| WindowSize::default(),
+        |_| super::WindowSize::default(),
         |(settings, _): (Settings, _)| settings.window,
     )
 }
