@@ -51,7 +51,7 @@ mod native {
             Self(ready)
         }
 
-        /// Can it be read? True some time after it can, where nobody polls the device.
+        /// Can it be read? True some time after it can, and only while a thread polls the device.
         pub fn is_ready(&self) -> bool {
             self.0.load(Ordering::Acquire)
         }

@@ -2,7 +2,7 @@
 //!
 //! What takes long returns a `Result`, so that a picture which is half finished never looks like
 //! one that is finished. Its loops ask for a [`Checkpoint`] on the thread that begins them and pass
-//! it in every turn, on whatever thread.
+//! it in every turn, on any thread.
 
 use std::{
     cell::RefCell,

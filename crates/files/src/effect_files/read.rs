@@ -26,7 +26,7 @@ pub const MAX_BYTES: usize = 64 << 10;
 pub const MAX_LOOPED_INSTRUCTIONS: usize = 8192;
 /// Longest name of an effect.
 const MAX_NAME_CHARS: usize = 40;
-/// Effects that are kept although nobody uses them.
+/// Most unused effects that are kept.
 const MAX_UNUSED: usize = 64;
 /// Names that mean something else in preset files, on the command line or in effect files.
 pub const RESERVED_NAMES: [&str; 23] = [

@@ -118,7 +118,7 @@ impl OpenFile {
         })
     }
 
-    /// Bytes that nobody has read.
+    /// Bytes that are not read yet.
     fn unread(&self) -> u64 {
         self.size.saturating_sub(self.read.get())
     }

@@ -55,7 +55,7 @@ impl GalleryEntry {
             .map_or(&self.id, |preset_file| preset_file.title())
     }
 
-    /// Is `what` its id or its name, whatever the case of the letters?
+    /// Is `what` its id or its name, in any case of letters?
     fn is_called(&self, what: &str) -> bool {
         let what = what.to_lowercase();
         [&self.id, self.title()]
