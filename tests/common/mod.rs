@@ -267,7 +267,7 @@ pub fn captured(
     accuracy: &AccuracyRequest,
 ) -> Capture {
     stress::captured(renderer, scene, view, stack, accuracy)
-        .unwrap_or_else(|error| panic!("{error}"))
+        .unwrap_or_else(|error| panic!("{error:?}"))
 }
 
 /// The picture of a preset, after those that lead up to it, with its verdict.

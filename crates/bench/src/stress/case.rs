@@ -122,8 +122,6 @@ impl Case {
             });
         let left = context.leave();
         let outcome = match (result, self.expectation) {
-            // What was canceled cannot be compared.
-            (Err(EarlyEnd::Failed(_)), _) if !keep_going(self.name) => Outcome::Stopped,
             (Err(EarlyEnd::Failed(why)), _) => Outcome::Failed(why),
             (Err(EarlyEnd::Skipped(why)), _) => Outcome::Skipped(why),
             (Err(EarlyEnd::Stopped), _) => Outcome::Stopped,

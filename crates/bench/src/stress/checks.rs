@@ -16,6 +16,16 @@ pub enum EarlyEnd {
     Stopped,
 }
 
+impl EarlyEnd {
+    /// The same end, its failure preceded by what was drawn.
+    pub(super) fn of(self, what: &str) -> Self {
+        match self {
+            Self::Failed(why) => Self::Failed(format!("{what}: {why}")),
+            other => other,
+        }
+    }
+}
+
 impl From<String> for EarlyEnd {
     fn from(why: String) -> Self {
         Self::Failed(why)

@@ -149,8 +149,7 @@ impl<'a> CaseContext<'a> {
         self.renderer.set_tuning(default);
         match outcome {
             Ok(()) | Err(EarlyEnd::Skipped(_)) => Ok(strict),
-            Err(EarlyEnd::Failed(why)) => Err(EarlyEnd::Failed(format!("{name}: {why}"))),
-            Err(EarlyEnd::Stopped) => Err(EarlyEnd::Stopped),
+            Err(end) => Err(end.of(name)),
         }
     }
 
@@ -267,8 +266,7 @@ impl<'a> CaseContext<'a> {
     ) -> Result<Capture, EarlyEnd> {
         self.step(scene, view, what)?;
         let accuracy = &self.requested(scene, view, stack, accuracy)?;
-        drawing::captured(self.renderer, scene, view, stack, accuracy)
-            .map_err(|error| EarlyEnd::Failed(format!("{what}: {error}")))
+        drawing::captured(self.renderer, scene, view, stack, accuracy).map_err(|end| end.of(what))
     }
 
     /// Draws and judges.
@@ -283,7 +281,7 @@ impl<'a> CaseContext<'a> {
         self.step(scene, view, what)?;
         let accuracy = &self.requested(scene, view, stack, accuracy)?;
         let judged = drawing::judged(self.renderer, scene, view, stack, accuracy)
-            .map_err(|error| EarlyEnd::Failed(format!("{what}: {error}")))?;
+            .map_err(|end| end.of(what))?;
         if accuracy.tier == Tier::Strict && view.pixels() > 0 {
             self.hold_strict(&judged.0, scene, view, stack, what)?;
         }
@@ -327,15 +325,14 @@ impl<'a> CaseContext<'a> {
             ));
         }
         self.step(scene, view, what)?;
-        let failed = |error: String| EarlyEnd::Failed(format!("{what}: {error}"));
         self.renderer.set_scene(scene).block_on()?;
         let capture = self
             .renderer
             .capture_next(view, stack, accuracy)
             .block_on()
-            .map_err(|error| failed(error.to_string()))?;
+            .map_err(|error| EarlyEnd::from(error).of(what))?;
         let verdict = oracle::judge(scene, view, stack, &capture.picture())?;
-        exactness(&verdict.report).map_err(failed)?;
+        exactness(&verdict.report).map_err(|faults| EarlyEnd::from(faults).of(what))?;
         Ok(self.renderer.culled().unwrap_or_default())
     }
 

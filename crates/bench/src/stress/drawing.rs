@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use pollster::FutureExt as _;
 
+use super::checks::EarlyEnd;
 use crate::{
     accuracy::{PinnedOptions, Visibility},
     effects::{Effect, Stack},
@@ -126,25 +127,22 @@ pub fn stack(names: &[&str]) -> Stack {
 /// Draws without judging.
 ///
 /// # Errors
-/// The error of the renderer or the device.
+/// The error of the renderer or the device. A canceled picture is [`EarlyEnd::Stopped`].
 pub fn captured(
     renderer: &mut Renderer,
     scene: &Arc<Scene>,
     view: &View,
     stack: &Stack,
     accuracy: &AccuracyRequest,
-) -> Result<Capture, String> {
-    let name = &scene.name;
-    renderer
-        .set_scene(scene)
-        .block_on()
-        .map_err(|error| format!("{name}: {error}"))?;
-    let capture = renderer
-        .capture(view, stack, accuracy)
-        .block_on()
-        .map_err(|error| format!("{name}: {error}"))?;
+) -> Result<Capture, EarlyEnd> {
+    let capture = async {
+        renderer.set_scene(scene).await?;
+        renderer.capture(view, stack, accuracy).await
+    }
+    .block_on()
+    .map_err(|error| EarlyEnd::from(error).of(&scene.name))?;
     match renderer.gpu().take_error() {
-        Some(error) => Err(format!("{name}: the device reports {error}")),
+        Some(error) => Err(format!("{}: the device reports {error}", scene.name).into()),
         None => Ok(capture),
     }
 }
@@ -152,16 +150,16 @@ pub fn captured(
 /// Draws and judges.
 ///
 /// # Errors
-/// The error of the renderer, the device or the oracle.
+/// The error of the renderer, the device or the oracle. A canceled picture is [`EarlyEnd::Stopped`].
 pub fn judged(
     renderer: &mut Renderer,
     scene: &Arc<Scene>,
     view: &View,
     stack: &Stack,
     accuracy: &AccuracyRequest,
-) -> Result<(Capture, Verdict), String> {
+) -> Result<(Capture, Verdict), EarlyEnd> {
     let capture = captured(renderer, scene, view, stack, accuracy)?;
     let verdict = oracle::judge(scene, view, stack, &capture.picture())
-        .map_err(|error| format!("{}: {error}", scene.name))?;
+        .map_err(|error| EarlyEnd::from(error).of(&scene.name))?;
     Ok((capture, verdict))
 }
