@@ -1,11 +1,11 @@
-//! Checking: an effect file is linked alone and validated, so that every fault is reported at its
-//! line before any kernel is compiled.
+//! Checking: an effect file is linked alone, validated, and translated for every graphics interface,
+//! so that every fault is reported at its line before any kernel is compiled.
 
 use std::sync::Arc;
 
 use naga::{
-    Module,
-    valid::{Capabilities, ValidationFlags, Validator},
+    Arena, Module,
+    valid::{Capabilities, ModuleInfo, ValidationFlags, Validator},
 };
 
 use super::{
@@ -17,6 +17,7 @@ use super::{
 use crate::{
     effects::Effect,
     shader::{
+        backends::{Untranslatable, caught, translate},
         library::Library,
         link::{self, LinkError, Linked},
     },
@@ -50,6 +51,17 @@ pub struct Parts<'a> {
 pub fn check(parts: Parts<'_>, effect: &Arc<Effect>) -> Result<Checked, EffectError> {
     let linked = link::link_effect(&Library::of_process(), effect)
         .map_err(|error| of_link(parts, &error))?;
+    let (module, info) = caught(|| valid(parts, &linked)).unwrap_or_else(|_| {
+        let message = "the reader of WGSL fails at this text, which is a fault of rasterlab; write the file in another way";
+        Err(parts.text.whole(message))
+    })?;
+    check_types(parts, &linked, &module)?;
+    translate(&module, &info).map_err(|error| of_translation(parts, &linked, &module, &error))?;
+    Ok(Checked { module, linked })
+}
+
+/// What naga reads and validates.
+fn valid(parts: Parts<'_>, linked: &Linked) -> Result<(Module, ModuleInfo), EffectError> {
     let module = naga::front::wgsl::parse_str(&linked.text).map_err(|error| {
         let spans: Vec<naga::Span> = error.labels().map(|(span, _)| span).collect();
         let label = error.labels().next().map_or("", |(_, label)| label);
@@ -64,13 +76,12 @@ pub fn check(parts: Parts<'_>, effect: &Arc<Effect>) -> Result<Checked, EffectEr
         };
         error_at(
             parts,
-            &linked,
+            linked,
             &spans,
             &format!("{}{detail}{}", error.message(), hint(error.message())),
         )
     })?;
-    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
-    validator.validate(&module).map_err(|error| {
+    let info = validator().validate(&module).map_err(|error| {
         // The shortest is the expression at fault; others are the function and what it calls.
         let mut spans: Vec<naga::Span> = error.spans().map(|(span, _)| *span).collect();
         spans.sort_by_key(|span| span.to_range().map_or(usize::MAX, |range| range.len()));
@@ -80,10 +91,49 @@ pub fn check(parts: Parts<'_>, effect: &Arc<Effect>) -> Result<Checked, EffectEr
             causes.push(inner.to_string());
             cause = inner.source();
         }
-        error_at(parts, &linked, &spans, &told(&causes))
+        error_at(parts, linked, &spans, &told(&causes))
     })?;
-    check_types(parts, &linked, &module)?;
-    Ok(Checked { module, linked })
+    Ok((module, info))
+}
+
+fn validator() -> Validator {
+    Validator::new(ValidationFlags::all(), Capabilities::default())
+}
+
+/// What cannot be translated, at the first function that cannot.
+fn of_translation(
+    parts: Parts<'_>,
+    linked: &Linked,
+    module: &Module,
+    error: &Untranslatable,
+) -> EffectError {
+    // A function names only functions before it.
+    let is_at_fault = |count: usize| {
+        let mut first = module.clone();
+        first.functions = Arena::new();
+        for (handle, function) in module.functions.iter().take(count) {
+            let span = module.functions.get_span(handle);
+            first.functions.append(function.clone(), span);
+        }
+        let valid = caught(|| validator().validate(&first));
+        valid.is_ok_and(|info| info.is_ok_and(|info| translate(&first, &info).is_err()))
+    };
+    let fault = (1..=module.functions.len())
+        .find(|&count| is_at_fault(count))
+        .and_then(|count| module.functions.iter().nth(count - 1));
+    let (name, spans) = match fault {
+        Some((handle, function)) => (
+            function.name.as_deref().unwrap_or("a function"),
+            vec![module.functions.get_span(handle)],
+        ),
+        None => ("the effect", Vec::new()),
+    };
+    let message = format!(
+        "{name} cannot be translated for {}, whatever the device: {}; write it in another way",
+        error.interface,
+        without_indices(&error.reason)
+    );
+    error_at(parts, linked, &spans, &message)
 }
 
 /// The causes of a refusal in one sentence: those that name no index of naga's own.
