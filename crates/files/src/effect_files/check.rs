@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use naga::{
     Arena, Module,
-    valid::{Capabilities, ModuleInfo, ValidationFlags, Validator},
+    valid::{ModuleInfo, ValidationFlags, Validator},
 };
 
 use super::{
@@ -20,6 +20,7 @@ use crate::{
         backends::{Untranslatable, caught, translate},
         library::Library,
         link::{self, LinkError, Linked},
+        reflect::capabilities,
     },
 };
 
@@ -78,7 +79,10 @@ fn valid(parts: Parts<'_>, linked: &Linked) -> Result<(Module, ModuleInfo), Effe
             parts,
             linked,
             &spans,
-            &format!("{}{detail}{}", error.message(), hint(error.message())),
+            &of_reader(error.message()).map_or_else(
+                || format!("{}{detail}{}", error.message(), hint(error.message())),
+                str::to_owned,
+            ),
         )
     })?;
     let info = validator().validate(&module).map_err(|error| {
@@ -97,7 +101,7 @@ fn valid(parts: Parts<'_>, linked: &Linked) -> Result<(Module, ModuleInfo), Effe
 }
 
 fn validator() -> Validator {
-    Validator::new(ValidationFlags::all(), Capabilities::default())
+    Validator::new(ValidationFlags::all(), capabilities())
 }
 
 /// What cannot be translated, at the first function that cannot.
@@ -149,6 +153,19 @@ fn told(causes: &[String]) -> String {
             without_indices(last.split(" (of type ").next().unwrap_or(last))
         }),
         all => all.join(": "),
+    }
+}
+
+/// Refusals of naga's own making, which WGSL does not know.
+fn of_reader(message: &str) -> Option<&'static str> {
+    if message.starts_with("Not implemented as constant expression") {
+        Some("this function of constants is not computed beforehand; write let in a function in place of const, or the number itself")
+    } else if message.starts_with("failed to convert expression to a concrete type")
+        || message.starts_with("Abstract types may only appear in constant expressions")
+    {
+        Some("plain numbers have no type here; give one of them its type, as in 0.5f, 3i or 3u")
+    } else {
+        None
     }
 }
 

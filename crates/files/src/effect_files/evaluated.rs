@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::valid::{ValidationFlags, Validator};
 
 use super::twin::{self, Function};
 use crate::{
@@ -16,6 +16,7 @@ use crate::{
         glue::Chain,
         library::Library,
         link::{self, LinkError},
+        reflect::capabilities,
     },
 };
 
@@ -53,7 +54,7 @@ pub fn evaluated_in(
     let module = naga::front::wgsl::parse_str(text)
         .map_err(|error| EvaluatedError::Refused(error.emit_to_string(text)))?;
     let validated =
-        Validator::new(ValidationFlags::all(), Capabilities::default()).validate(&module);
+        Validator::new(ValidationFlags::all(), capabilities()).validate(&module);
     validated.map_err(|error| EvaluatedError::Refused(error.emit_to_string(text)))?;
     let function = |chain: Chain, precision| {
         Function::new(

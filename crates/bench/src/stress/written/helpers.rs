@@ -275,6 +275,11 @@ fn rim(normal: vec3f, view: vec3f) -> f32 {
     return smoothstep(0.2, 0.9, facing);
 }
 "),
+    helper("sine_hash", &[V2], F, 1.0, "
+fn sine_hash(p: vec2f) -> f32 {
+    return fract(sin(dot(floor(p * 20.0), vec2f(12.9898, 78.233))) * 43758.5453);
+}
+"),
     helper("checker", &[V2], F, 1.0, "
 fn checker(p: vec2f) -> f32 {
     let q = vec2i(floor(p));

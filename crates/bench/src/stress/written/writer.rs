@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::{
     super::scenes::Rng,
-    constants::{CONSTANTS, SNIPPETS},
+    constants::{CONSTANTS, SNIPPETS, UNFOLDED},
     helpers::{HELPERS, Helper},
 };
 
@@ -76,6 +76,8 @@ pub enum Place {
 pub struct Written {
     pub text: String,
     pub place: Place,
+    /// It has a hash of sines, whose digits no two devices share: its colors are not compared.
+    pub has_sine_hash: bool,
 }
 
 /// The effect `index` of a corpus; its name is [`super::NAME`].
@@ -96,8 +98,10 @@ pub fn effect(seed: u32, index: u32) -> Written {
         fresh: 0,
         indent: 1,
     };
+    let text = writer.effect(place, index);
     Written {
-        text: writer.effect(place, index),
+        has_sine_hash: text.contains("fn sine_hash("),
+        text,
         place,
     }
 }
@@ -152,7 +156,7 @@ impl Writer {
         for _ in 0..self.rng.between(0, 4) {
             let name = format!("CONSTANT_{}", self.fresh());
             let name = name.to_uppercase();
-            let (kind, value, bound) = self.constant();
+            let (kind, value, bound) = self.constant(true);
             let kind_text = if self.one_in(2) {
                 format!(": {}", kind.name())
             } else {
@@ -291,9 +295,9 @@ struct Written {
         match choice {
             // What #7793 is about: constants in let, and what is made of them.
             0 | 1 => {
-                let (kind, value, bound) = self.constant();
-                let name = self.fresh();
                 let word = self.pick(&["let", "let", "const", "var"]);
+                let (kind, value, bound) = self.constant(word == "const");
+                let name = self.fresh();
                 self.line(&format!("{word} {name} = {value};"));
                 self.name(&name, kind, bound);
             }
@@ -423,9 +427,11 @@ struct Written {
         self.line("}");
     }
 
-    /// A constant of some kind, written in one of the ways that the language has.
-    fn constant(&mut self) -> (Kind, String, f64) {
-        let constant = CONSTANTS[self.rng.between(0, CONSTANTS.len() as i32) as usize];
+    /// A constant of some kind, written in one of the ways that the language has. One for a `const`
+    /// is seldom one that a `const` refuses.
+    fn constant(&mut self, is_const: bool) -> (Kind, String, f64) {
+        let is_unfolded = self.one_in(if is_const { 40 } else { 3 });
+        let constant = self.pick(if is_unfolded { UNFOLDED } else { CONSTANTS });
         (constant.kind, constant.text.into(), constant.bound)
     }
 
@@ -590,7 +596,7 @@ struct Written {
             10 => (format!("abs({at})"), a.bound),
             11 => (format!("min({at}, {bt})"), a.bound.max(b.bound)),
             12 => (format!("max({at}, {bt})"), a.bound.max(b.bound)),
-            13 => (format!("smoothstep({one} * -0.5, {one} * 1.5, {at})"), 1.0),
+            13 => (format!("smoothstep({one} * -0.5f, {one} * 1.5, {at})"), 1.0),
             14 => (format!("sqrt(abs({at}) + 0.1)"), (a.bound + 0.1).sqrt()),
             15 => (format!("exp(-abs({at}))"), 1.0),
             16 => (format!("pow(abs({at}) + 0.1, {one} * 1.5)"), (a.bound + 0.1).powf(1.5)),
