@@ -85,8 +85,7 @@ fn translates(linked: &Linked, reflected: &Reflected, constants: &[(&str, f64)],
         text,
         parts: linked.parts.clone(),
     };
-    let reflected =
-        reflect::reflect(&specialized, int64).unwrap_or_else(|error| panic!("{error}"));
+    let reflected = reflect::reflect(&specialized, int64).unwrap_or_else(|error| panic!("{error}"));
     assert!(reflected.module.overrides.is_empty());
     if let Err(error) = translate(&reflected.module, &reflected.info) {
         panic!("{error}\n{}", specialized.text);
@@ -293,7 +292,12 @@ fn the_hardware_baseline_is_translated_with_every_effect() {
         let reflected = reflect::reflect(&linked, false).unwrap_or_else(|error| panic!("{error}"));
         for is_set in [0.0, 1.0] {
             let flags = ["HAS_BASE_IMAGE", "HAS_EMISSION_IMAGE", "IS_UNLIT"];
-            translates(&linked, &reflected, &flags.map(|flag| (flag, is_set)), false);
+            translates(
+                &linked,
+                &reflected,
+                &flags.map(|flag| (flag, is_set)),
+                false,
+            );
         }
     }
 }

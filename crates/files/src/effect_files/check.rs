@@ -159,7 +159,9 @@ fn told(causes: &[String]) -> String {
 /// Refusals of naga's own making, which WGSL does not know.
 fn of_reader(message: &str) -> Option<&'static str> {
     if message.starts_with("Not implemented as constant expression") {
-        Some("this function of constants is not computed beforehand; write let in a function in place of const, or the number itself")
+        Some(
+            "this function of constants is not computed beforehand; write let in a function in place of const, or the number itself",
+        )
     } else if message.starts_with("failed to convert expression to a concrete type")
         || message.starts_with("Abstract types may only appear in constant expressions")
     {

@@ -2,6 +2,7 @@
 //! drawn by the adapter as by the oracle, which evaluates the same text.
 
 mod constants;
+mod expressions;
 mod helpers;
 mod writer;
 
@@ -80,7 +81,13 @@ fn draw_corpus(context: &mut CaseContext, count: u32) -> Result<(), EarlyEnd> {
         let mut stack = Stack::default();
         stack.enable(&effect);
         let what = format!("effect {index} of seed {seed:#x}, {place:?}");
-        match context.judged(&scene, &view, &stack, &pinned(context.quick_option()), &what) {
+        match context.judged(
+            &scene,
+            &view,
+            &stack,
+            &pinned(context.quick_option()),
+            &what,
+        ) {
             Ok((_, verdict)) => {
                 if let Err(fault) = verdict.report.within(&budget(has_sine_hash)) {
                     failures.push(format!("{what}: {fault}"));
@@ -90,24 +97,19 @@ fn draw_corpus(context: &mut CaseContext, count: u32) -> Result<(), EarlyEnd> {
             Err(end) => return Err(end),
         }
     }
-    if let Ok(folder) = std::env::var("WRITTEN_DEBUG") {
-        for line in refused.iter().chain(&failures) {
-            eprintln!("{line}");
-            if let Some(index) = line.split_whitespace().nth(1).and_then(|n| n.trim_end_matches(':').parse().ok()) {
-                std::fs::create_dir_all(format!("{folder}/{index}")).ok();
-                std::fs::write(format!("{folder}/{index}/written.wgsl"), effect(seed, index).text).ok();
-            }
-        }
-    }
     context.note(format!("{} of {count} effects are refused", refused.len()));
     if failures.is_empty() && refused.len() as u32 * 100 > count * MOST_REFUSED {
-        failures.push(format!("too many effects are refused, the first: {}", refused[0]));
+        failures.push(format!(
+            "too many effects are refused, the first: {}",
+            refused[0]
+        ));
     }
     match failures.first() {
         None => Ok(()),
-        Some(first) => Err(EarlyEnd::Failed(format!(
-            "{} of {count} effects fail, the first: {first}",
-            failures.len()
+        Some(_) => Err(EarlyEnd::Failed(format!(
+            "{} of {count} effects fail: {}",
+            failures.len(),
+            failures.join("; ")
         ))),
     }
 }
