@@ -181,6 +181,33 @@ pub fn places(stack: &Stack) -> impl Iterator<Item = Perturbation> {
     color_steps(stack).iter().flat_map(at_step)
 }
 
+/// Perturbations of texture lookups within their bounds, for each perturbation of color steps:
+/// across and down by these offsets, and in the level of detail by the whole bound. None without
+/// images.
+pub fn textures(
+    scene: &Scene,
+    stack: &Stack,
+    [across, down]: &[Vec<f64>; 2],
+) -> impl Iterator<Item = Perturbation> {
+    let levels: &[f64] = if scene.images.is_empty() {
+        &[]
+    } else {
+        &[0.0, 1.0, -1.0]
+    };
+    let at_step = move |&color_step: &f64| {
+        levels.iter().flat_map(move |&level| {
+            across.iter().flat_map(move |&across| {
+                down.iter().map(move |&down| Perturbation {
+                    texture: [across, down, level],
+                    color_step,
+                    ..Perturbation::default()
+                })
+            })
+        })
+    };
+    color_steps(stack).iter().flat_map(at_step)
+}
+
 /// How many perturbations are tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Search {
