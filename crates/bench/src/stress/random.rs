@@ -479,7 +479,9 @@ mod tests {
                 let mut stack = Stack::default();
                 stack.enable(a);
                 let has_both = |preset: &Preset| {
-                    [a, b].iter().all(|effect| preset.stack.get(&effect.name).is_some())
+                    [a, b]
+                        .iter()
+                        .all(|effect| preset.stack.get(&effect.name).is_some())
                 };
                 assert!(
                     stack.rival_of(b).is_some() || presets.iter().any(has_both),

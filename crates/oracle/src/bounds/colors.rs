@@ -194,8 +194,7 @@ impl AcceptedColors {
                 .flat_map(on_either_side)
                 .chain(textures(shot.scene, shot.stack, &offsets));
             let [least, most] =
-                span(around.flat_map(&finished))
-                    .unwrap_or([self.pictures[0][i]; 2]);
+                span(around.flat_map(&finished)).unwrap_or([self.pictures[0][i]; 2]);
             let slack = |c: usize| {
                 if errors.doubt() == Doubt::Wide {
                     (f64::from(most[c] - least[c]) * WIDE_SLACK).ceil() as u8

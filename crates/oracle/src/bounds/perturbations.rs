@@ -265,7 +265,10 @@ mod tests {
     fn steps_are_wider_only_where_layers_are_summed() {
         let steps = |names: &[&str]| {
             let mut stack = Stack::default();
-            for effect in EFFECTS.iter().filter(|effect| names.contains(&&*effect.name)) {
+            for effect in EFFECTS
+                .iter()
+                .filter(|effect| names.contains(&&*effect.name))
+            {
                 stack.enable(effect);
             }
             color_steps(&stack)

@@ -214,8 +214,11 @@ impl SamplePosition {
         let side = weights.iter().sum::<f64>().signum();
         let inside = weights.map(|weight| (weight * side).max(0.0));
         let inv_w = corners.map(|corner| f64::from(corner.inv_w));
-        let [sum, first, second] =
-            [0, 1, 2].map(|power| (0..3).map(|k| inside[k] * inv_w[k].powi(power)).sum::<f64>());
+        let [sum, first, second] = [0, 1, 2].map(|power| {
+            (0..3)
+                .map(|k| inside[k] * inv_w[k].powi(power))
+                .sum::<f64>()
+        });
         if first == 0.0 {
             return [inv_w[0].max(inv_w[1]).max(inv_w[2]); 2];
         }

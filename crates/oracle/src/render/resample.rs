@@ -136,7 +136,13 @@ mod tests {
     fn a_pixel_on_another_takes_nothing_from_its_neighbors() {
         for side in [1, 3, 49, 1_001] {
             let row: Vec<[u8; 4]> = (0..side)
-                .map(|x| if x == side / 2 { [9, 8, 7, 0] } else { [255; 4] })
+                .map(|x| {
+                    if x == side / 2 {
+                        [9, 8, 7, 0]
+                    } else {
+                        [255; 4]
+                    }
+                })
                 .collect();
             let wide = resampled(&row, [side, 1], [2 * side - 1, 1]);
             assert_eq!(wide[side as usize - 1], [9, 8, 7, 0], "{side}");

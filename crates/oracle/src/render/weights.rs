@@ -130,9 +130,8 @@ impl Weights {
             + cross_magnitudes(of_ab, ac.abs())
             + 3.0 * ROUNDING * terms;
         // As far as a product with the plane's normal may err; `terms` are larger than the normal.
-        let error = |p: DVec3, p_error: DVec3| {
-            p.abs().dot(plane_error) + p_error.dot(terms + plane_error)
-        };
+        let error =
+            |p: DVec3, p_error: DVec3| p.abs().dot(plane_error) + p_error.dot(terms + plane_error);
         let side = rows.iter().sum::<DVec3>();
         let determinant = corners[0].dot(side).abs();
         let trusted = 2.0 * SIDE_ERROR * corners[0].abs().dot(terms);
