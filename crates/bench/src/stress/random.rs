@@ -128,12 +128,12 @@ fn components(rng: &mut Rng, field: &Field, values: Values) -> Vec<f64> {
 
 /// A pair of effects and up to seven more, at most one in each slot, in random order. Pairs come in
 /// turn: as many consecutive seeds as there are pairs have each once.
-fn stack(rng: &mut Rng, seed: u32) -> Stack {
+pub fn stack(rng: &mut Rng, seed: u32, values: Values) -> Stack {
     let mut stack = Stack::default();
     let more = (0..rng.between(0, 8)).map(|_| rng.pick(&EFFECTS).clone());
     for effect in pair(seed).into_iter().chain(more.collect::<Vec<_>>()) {
         if stack.get(&effect.name).is_none() && stack.rival_of(&effect).is_none() {
-            shake(rng, stack.enable(&effect), Values::Allowed);
+            shake(rng, stack.enable(&effect), values);
         }
     }
     rng.shuffle(&mut stack.0);
@@ -298,7 +298,7 @@ pub fn preset(seed: u32) -> Preset {
             hash_unit(seed.wrapping_mul(4).wrapping_add(c as u32)) as f32
         }));
     }
-    preset.stack = stack(rng, seed);
+    preset.stack = stack(rng, seed, Values::Allowed);
     if seed % 8 != 3 {
         thin_out(&mut preset.stack, hash_unit(seed));
     }
