@@ -119,8 +119,8 @@ fn of_translation(
             let span = module.functions.get_span(handle);
             first.functions.append(function.clone(), span);
         }
-        let valid = caught(|| validator().validate(&first));
-        valid.is_ok_and(|info| info.is_ok_and(|info| translate(&first, &info).is_err()))
+        let valid = caught(|| validator().validate(&first).ok());
+        valid.is_ok_and(|info| info.is_some_and(|info| translate(&first, &info).is_err()))
     };
     let fault = (1..=module.functions.len())
         .find(|&count| is_at_fault(count))
