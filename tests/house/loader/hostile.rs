@@ -44,7 +44,7 @@ fn everything() -> Model {
 }
 
 fn never_panics(bytes: &[u8], about: &str) -> bool {
-    let outcome = gltf::load(bytes, &mut |_, _| Err(LoadError("no files here".into())));
+    let outcome = gltf::load(bytes, &mut |_, _| Err(LoadError::new("no files here")));
     match outcome {
         Ok(scene) => {
             assert_sound(&scene);

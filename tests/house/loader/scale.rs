@@ -110,7 +110,7 @@ fn a_file_beyond_the_budget_is_refused_unread_and_the_remedy_named() {
     let wanted = "huge.glb: it has 536870913 bytes; allowed: at most 536870912 within the memory budget of 1280 MiB; raise it with --memory";
     assert_eq!(
         host::model::load_within(&path, budget),
-        Err(LoadError(wanted.into()))
+        Err(LoadError::new(wanted))
     );
     // A budget of ten gigabytes has room for files of four, so a file of 600 MB would be read
     // there; one of five would not.
