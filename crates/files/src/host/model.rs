@@ -21,7 +21,7 @@ use crate::{
     work::checkpoint,
 };
 
-/// Loads a `.gltf` or `.glb` file within the memory budget of the process. Only files in its folder
+/// Loads a `.gltf`, `.glb` or `.vrm` file within the memory budget of the process. Only files in its folder
 /// and below are read.
 ///
 /// Within [`Work`](crate::work::Work) it counts its bytes, and unwinds where that was canceled.

@@ -144,7 +144,9 @@ impl<'a> Buffers<'a> {
             Source::View(index) => self.view(index),
             Source::Accessor(index) => match self.decoded.accessors.get(&index) {
                 Some(decoded) => decoded.as_deref().map_err(LoadError::new),
-                None => Err(LoadError::new(format!("accessor {index} is not compressed"))),
+                None => Err(LoadError::new(format!(
+                    "accessor {index} is not compressed"
+                ))),
             },
         }
     }
@@ -160,9 +162,9 @@ impl<'a> Buffers<'a> {
     /// The buffer of a view that is not compressed, and the range of its bytes there.
     fn range(&self, index: usize) -> Result<(&Bytes<'a>, Range<u64>), LoadError> {
         let view = match self.document.views.get(index) {
-            Some(view) => view
-                .as_ref()
-                .map_err(|reason| LoadError::new(reason).within(format_args!("bufferView {index}")))?,
+            Some(view) => view.as_ref().map_err(|reason| {
+                LoadError::new(reason).within(format_args!("bufferView {index}"))
+            })?,
             None => return Err(LoadError::new(format!("bufferView {index} does not exist"))),
         };
         let (bytes, start) = (self.buffer(view.buffer)?, view.offset);
@@ -255,7 +257,7 @@ impl<'a> Buffers<'a> {
                 if offset % size != 0 || start % size != 0 || stride % size != 0 {
                     self.notes.fault(|| {
                         format!(
-                            "accessor {index}: byteOffset {offset}, that of its bufferView and                              byteStride {stride} must be multiples of the component size, {size};                              its elements are copied"
+                            "accessor {index}: byteOffset {offset}, that of its bufferView and byteStride {stride} must be multiples of the component size, {size}; its elements are copied"
                         )
                     });
                     is_packed = true;

@@ -156,7 +156,11 @@ impl Reader<'_> {
         place: &str,
     ) -> Result<Sampler, LoadError> {
         let interpolation = from.interpolation;
-        let parts = if interpolation == Interpolation::Cubic { 3 } else { 1 };
+        let parts = if interpolation == Interpolation::Cubic {
+            3
+        } else {
+            1
+        };
         let times = self
             .times(from.times, place)
             .map_err(|error| error.within("input"))?;
@@ -179,10 +183,7 @@ impl Reader<'_> {
             .within("output"));
         }
         if property == Property::Rotation {
-            let keys = values
-                .chunks_exact_mut(4)
-                .skip(parts / 2)
-                .step_by(parts);
+            let keys = values.chunks_exact_mut(4).skip(parts / 2).step_by(parts);
             for (key, q) in keys.enumerate() {
                 let length = q
                     .iter()

@@ -120,9 +120,8 @@ impl Decoder<'_> {
     fn missing(&self, accessors: impl Iterator<Item = usize>) -> Vec<usize> {
         let known = &self.buffers.document.accessors;
         let is_missing = |accessor: &usize| {
-            let is_empty = |about: &super::document::Accessor| {
-                about.view.is_none() && about.sparse.is_none()
-            };
+            let is_empty =
+                |about: &super::document::Accessor| about.view.is_none() && about.sparse.is_none();
             known[*accessor].as_ref().is_ok_and(is_empty)
                 && !matches!(self.data.accessors.get(accessor), Some(Ok(_)))
         };

@@ -19,10 +19,12 @@ pub fn split<'a>(
 ) -> Result<(Bytes<'a>, Option<Bytes<'a>>), LoadError> {
     let size = model.size();
     let mut head = Vec::new();
-    model.append_to(&mut head, 0..size.min(200))?;
+    model.append_to(&mut head, 0..size.min(12))?;
     if head.starts_with(b"glTF") {
         return split_glb(model, &head, notes);
     }
+    let read = head.len() as u64;
+    model.append_to(&mut head, read..size.min(200))?;
     if let Some(what) = other_file::named(&head) {
         return Err(LoadError::new(format!("it is not a glTF file: {what}")));
     }
@@ -53,7 +55,7 @@ fn split_glb<'a>(
             "GLB version {version} is not supported; export as version 2"
         )));
     }
-    if length > size || length < 12 {
+    if length != size {
         notes.fault(|| format!("the GLB header states {length} bytes, but the file has {size}"));
     }
     let (mut at, mut json, mut binary) = (12, None, None);
@@ -92,7 +94,8 @@ fn split_glb<'a>(
             }
         }
     }
-    let json = json.ok_or_else(|| LoadError::new("the GLB has no chunk of JSON; it is truncated"))?;
+    let json =
+        json.ok_or_else(|| LoadError::new("the GLB has no chunk of JSON; it is truncated"))?;
     Ok((json, binary))
 }
 
@@ -109,7 +112,9 @@ pub fn text<'a>(json: &'a [u8], notes: &Notes) -> Cow<'a, str> {
     }
     let padding = plain.iter().rev().take_while(|&&byte| byte == 0).count();
     if padding > 0 {
-        notes.fault(|| "the JSON is padded with NUL; spaces are required, and the padding is ignored");
+        notes.fault(
+            || "the JSON is padded with NUL; spaces are required, and the padding is ignored",
+        );
         plain = &plain[..plain.len() - padding];
     }
     let text = String::from_utf8_lossy(plain);

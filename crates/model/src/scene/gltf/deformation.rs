@@ -52,20 +52,21 @@ pub fn morph_targets(
     count: u32,
     notes: &Notes,
 ) -> Result<Vec<MorphTarget>, LoadError> {
-    let mut read = |target: &BTreeMap<String, usize>, at: usize, what: &str| -> Result<_, LoadError> {
-        let Some(&accessor) = target.get(what) else {
-            return Ok(None);
-        };
-        match displacements(writer, accessor, count) {
-            Ok(accessor) => Ok(Some(accessor)),
-            Err(error) => {
-                let place = format_args!("{name} target {at} {what}");
-                let reason = error.within(place).of_part()?;
-                notes.fault(|| format!("{reason}; it is left out"));
-                Ok(None)
+    let mut read =
+        |target: &BTreeMap<String, usize>, at: usize, what: &str| -> Result<_, LoadError> {
+            let Some(&accessor) = target.get(what) else {
+                return Ok(None);
+            };
+            match displacements(writer, accessor, count) {
+                Ok(accessor) => Ok(Some(accessor)),
+                Err(error) => {
+                    let place = format_args!("{name} target {at} {what}");
+                    let reason = error.within(place).of_part()?;
+                    notes.fault(|| format!("{reason}; it is left out"));
+                    Ok(None)
+                }
             }
-        }
-    };
+        };
     let mut targets = Vec::with_capacity(about.targets.len());
     for (at, target) in about.targets.iter().enumerate() {
         targets.push((read(target, at, "POSITION")?, read(target, at, "NORMAL")?));
@@ -124,7 +125,10 @@ pub fn follow_skin(
     }
     let (name, positions) = (known.name.clone(), known.positions);
     let sets = influences(writer, about, positions.count)?;
-    if about.attributes.contains_key(&format!("JOINTS_{MAX_INFLUENCE_SETS}")) {
+    if about
+        .attributes
+        .contains_key(&format!("JOINTS_{MAX_INFLUENCE_SETS}"))
+    {
         notes.add(|| format!("{name}: only the first 8 joints per vertex are used"));
     }
     let checked = skin::check_influences(&writer.scene, &sets, &positions, joint_count)?;

@@ -73,7 +73,10 @@ pub(super) fn quoted(name: &str) -> String {
     } else {
         ""
     };
-    format!("\"{}{end}\"", legible_name(&name.replace('"', "\\\""), most))
+    format!(
+        "\"{}{end}\"",
+        legible_name(&name.replace('"', "\\\""), most)
+    )
 }
 
 /// `kind "name"`, or `kind 3` if it has no name.

@@ -90,7 +90,9 @@ impl Limits {
             vertices: (decoded / 12).clamp(4_000_000, draw::MAX_TRIANGLES),
             triangles: (decoded / 6).clamp(10_000_000, draw::MAX_TRIANGLES / 3),
             // An instance takes some 300 bytes here, and as many where it is drawn.
-            instances: usize::try_from(decoded / 1024).unwrap_or(usize::MAX).max(65_536),
+            instances: usize::try_from(decoded / 1024)
+                .unwrap_or(usize::MAX)
+                .max(262_144),
             remedy,
         }
     }

@@ -1,5 +1,7 @@
 //! Loads a model: follows its parts in order and assembles the scene.
 
+use std::collections::BTreeSet;
+
 use super::{
     buffers::Buffers,
     clips, container, deformation,
@@ -13,7 +15,7 @@ use super::{
     skin,
     source::{Bytes, Source},
 };
-use crate::scene::{memory::MemoryBudget, model::Scene, pose, rig::Rig};
+use crate::scene::{camera::MIN_NEAR_M, memory::MemoryBudget, model::Scene, pose, rig::Rig};
 
 /// Loads a model from memory, within the least memory budget. `read` supplies the files that it
 /// refers to.
@@ -48,10 +50,16 @@ pub fn load_within(
     let document = document::parse_document(json.all()?, &notes)?;
     drop(json);
     let mut scene = read_model(&document, binary, (model.size(), budget), read, &notes)?;
+    for (name, reason) in document.broken() {
+        notes.fault_once(reason, || format!("{name}: {reason}; nothing uses it"));
+    }
     notes.extend(omissions(&document));
     [scene.notes, scene.faults] = notes.into_lists();
     Ok(scene)
 }
+
+/// Of a smaller model the near plane would cut off all.
+const LEAST_RADIUS_M: f64 = 2.0 * MIN_NEAR_M;
 
 /// Reads a whole model. `file` is the size of its file.
 fn read_model(
@@ -99,15 +107,24 @@ fn read_model(
     if !scene.rig.is_empty() {
         scene.rig.motion_bounds = pose::motion_bounds(&scene);
     }
+    let radius_m = scene.bounds().radius();
+    if radius_m > 0.0 && radius_m < LEAST_RADIUS_M {
+        return Err(LoadError::new(format!(
+            "the model is {:.1e} m large; models below {:.0e} m are too small to draw: scale it up",
+            2.0 * radius_m,
+            2.0 * LEAST_RADIUS_M
+        )));
+    }
     scene.cameras = tree.cameras(document, &scene.bounds(), !scene.rig.is_empty(), notes);
     Ok(scene)
 }
 
 /// Messages about features of the file that are not drawn; each is built when it is asked for.
 fn omissions(document: &Document) -> impl Iterator<Item = String> {
-    let ignored = document.extensions_used.iter().filter(|name| {
-        !document::is_read(name) && !document.extensions_required.contains(name)
-    });
+    let names: BTreeSet<&String> = document.extensions_used.iter().collect();
+    let ignored = names
+        .into_iter()
+        .filter(|name| !document::is_read(name) && !document.extensions_required.contains(name));
     let notes = ignored.map(|name| {
         format!(
             "the extension {} is not supported and is ignored",

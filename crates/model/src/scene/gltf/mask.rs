@@ -60,10 +60,13 @@ impl Alphas {
             return Ok(Self([1.0; 2]));
         };
         let ranges = map_parts(colors.count, |part| {
-            part.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], vertex| {
-                let alpha = colors.value(&scene.vertex_bytes, vertex, 3).clamp(0.0, 1.0);
-                [least.min(alpha), most.max(alpha)]
-            })
+            part.fold(
+                [f64::INFINITY, f64::NEG_INFINITY],
+                |[least, most], vertex| {
+                    let alpha = colors.value(&scene.vertex_bytes, vertex, 3).clamp(0.0, 1.0);
+                    [least.min(alpha), most.max(alpha)]
+                },
+            )
         })?;
         let join = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a.min(c), b.max(d)];
         Ok(Self(ranges.into_iter().reduce(join).unwrap_or([1.0; 2])))

@@ -241,7 +241,8 @@ impl Reader<'_, '_, '_> {
                 ImageFormat::WebP
             }
             other => {
-                let what = other_file::named(other).map_or(String::new(), |what| format!("{what}; "));
+                let what =
+                    other_file::named(other).map_or(String::new(), |what| format!("{what}; "));
                 return Err(LoadError::new(format!(
                     "{what}it is neither PNG, JPEG nor WebP; convert it to one of them"
                 )));

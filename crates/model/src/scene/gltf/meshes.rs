@@ -223,7 +223,9 @@ impl<'a> Loader<'a> {
             && !accessor.has_bounds
         {
             notes.fault(|| {
-                format!("{name} POSITION: accessor {positions} has no min and max of 3 numbers; they are computed")
+                format!(
+                    "{name} POSITION: accessor {positions} has no min and max; they are computed"
+                )
             });
         }
         let [position_formats, normal_formats, texcoord_formats] = match self.writer.is_quantized {

@@ -174,8 +174,9 @@ impl Tree {
                     pose,
                     node: moves.then(|| self.rig_index[node]),
                 }),
-                None => notes
-                    .add(|| format!("{in_messages} is skipped: its node has no direction")),
+                None => {
+                    notes.add(|| format!("{in_messages} is skipped: its node has no direction"))
+                }
             }
         }
         cameras
@@ -280,8 +281,7 @@ fn tops(
     // A node below another of the list is drawn once, with that one.
     let mut is_below = vec![false; parents.len()];
     for &node in order {
-        is_below[node] =
-            parents[node].is_some_and(|parent| is_listed[parent] || is_below[parent]);
+        is_below[node] = parents[node].is_some_and(|parent| is_listed[parent] || is_below[parent]);
     }
     listed.retain(|&node| !is_below[node]);
     listed
@@ -361,11 +361,7 @@ fn morph_weights(document: &Document, index: usize, notes: &Notes) -> Vec<f32> {
 
 /// The camera at a node: it looks along -z with +y up. Scale does not affect it. None where the
 /// node has no direction.
-fn pose(
-    camera: &document::Camera,
-    world_from_node: &DMat4,
-    bounds: &Bounds,
-) -> Option<Camera> {
+fn pose(camera: &document::Camera, world_from_node: &DMat4, bounds: &Bounds) -> Option<Camera> {
     let eye = world_from_node.w_axis.truncate();
     let forward = (-world_from_node.z_axis.truncate()).try_normalize()?;
     let up = world_from_node

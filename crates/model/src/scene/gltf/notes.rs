@@ -41,6 +41,14 @@ impl Notes {
         }
     }
 
+    /// Adds a fault unless one tells `reason` already.
+    pub fn fault_once<Text: Display>(&self, reason: &str, message: impl FnOnce() -> Text) {
+        let is_told = |fault: &String| fault.contains(reason);
+        if !self.0.borrow().faults.iter().any(is_told) {
+            self.fault(message);
+        }
+    }
+
     /// Adds messages that are built only as far as there is room for them.
     pub fn extend(&self, messages: impl IntoIterator<Item = String>) {
         for message in messages {

@@ -8,9 +8,15 @@ const BEGINNINGS: &[(&[u8], &str)] = &[
     ),
     (b"PK\x03\x04", "it is a zip archive; unpack it first"),
     (b"\x1f\x8b", "it is a gzip archive; unpack it first"),
-    (b"7z\xbc\xaf\x27\x1c", "it is a 7-Zip archive; unpack it first"),
+    (
+        b"7z\xbc\xaf\x27\x1c",
+        "it is a 7-Zip archive; unpack it first",
+    ),
     (b"Rar!", "it is a RAR archive; unpack it first"),
-    (b"\x28\xb5\x2f\xfd", "it is a Zstandard archive; unpack it first"),
+    (
+        b"\x28\xb5\x2f\xfd",
+        "it is a Zstandard archive; unpack it first",
+    ),
     (b"\x89PNG", "it is a PNG picture"),
     (b"\xff\xd8\xff", "it is a JPEG picture"),
     (b"GIF8", "it is a GIF picture"),
@@ -41,7 +47,10 @@ const TEXTS: &[(&str, &str)] = &[
         "<html",
         "it is an HTML page, perhaps one that a download ended at; fetch the file itself",
     ),
-    ("<?xml", "it is an XML file; a model of another format must be converted to glTF"),
+    (
+        "<?xml",
+        "it is an XML file; a model of another format must be converted to glTF",
+    ),
 ];
 
 /// What a file is instead, and what to do; nothing where its beginning does not tell.
@@ -49,11 +58,18 @@ pub fn named(bytes: &[u8]) -> Option<&'static str> {
     if bytes.is_empty() {
         return Some("it is empty");
     }
-    let by_bytes = BEGINNINGS.iter().find(|(start, _)| bytes.starts_with(start));
+    let by_bytes = BEGINNINGS
+        .iter()
+        .find(|(start, _)| bytes.starts_with(start));
     let text: String = String::from_utf8_lossy(&bytes[..bytes.len().min(200)])
         .trim_start_matches('\u{feff}')
         .trim_start()
         .to_lowercase();
-    let by_text = || TEXTS.iter().find(|(start, _)| text.starts_with(start)).map(|(_, what)| *what);
+    let by_text = || {
+        TEXTS
+            .iter()
+            .find(|(start, _)| text.starts_with(start))
+            .map(|(_, what)| *what)
+    };
     by_bytes.map(|(_, what)| *what).or_else(by_text)
 }

@@ -66,8 +66,7 @@ fn read(buffers: &Buffers, tree: &Tree, skin: &document::Skin) -> Result<Skin, L
             .map_err(|error| error.within("inverseBindMatrices"))?,
     };
     let nodes = skin.joints.iter().map(|&joint| tree.rig_index[joint]);
-    let position =
-        |(&joint, inverse): (&usize, &DMat4)| tree.world_from_node[joint] * *inverse;
+    let position = |(&joint, inverse): (&usize, &DMat4)| tree.world_from_node[joint] * *inverse;
     match skin
         .joints
         .iter()

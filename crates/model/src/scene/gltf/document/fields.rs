@@ -24,7 +24,11 @@ fn shown(value: &Value) -> String {
     match value {
         Value::Array(list) if list.len() <= 16 => {
             let text = value.to_string();
-            if text.len() <= 60 { legible_name(&text, 60) } else { "a list".into() }
+            if text.len() <= 60 {
+                legible_name(&text, 60)
+            } else {
+                "a list".into()
+            }
         }
         Value::Array(_) => "a list".into(),
         Value::Object(_) => "an object".into(),
@@ -117,7 +121,11 @@ impl<'a> Object<'a> {
     /// Exactly `N` numbers.
     pub fn vector<const N: usize>(self, key: &str) -> Field<[f32; N]> {
         self.read(key, format_args!("{N} numbers below 3.4e38"), |value| {
-            let numbers: Vec<f32> = value.as_array()?.iter().map(number).collect::<Option<_>>()?;
+            let numbers: Vec<f32> = value
+                .as_array()?
+                .iter()
+                .map(number)
+                .collect::<Option<_>>()?;
             numbers.try_into().ok()
         })
     }
@@ -125,9 +133,9 @@ impl<'a> Object<'a> {
     /// The place of a part in a list of `count` `parts`.
     pub fn index(self, key: &str, parts: &str, count: usize) -> Field<usize> {
         match self.integer(key)? {
-            Some(index) if index >= count as u64 => {
-                Err(format!("its {key} is {index}, but there are only {count} {parts}"))
-            }
+            Some(index) if index >= count as u64 => Err(format!(
+                "its {key} is {index}, but there are only {count} {parts}"
+            )),
             index => Ok(index.map(|index| index as usize)),
         }
     }
@@ -175,7 +183,11 @@ impl<'a> Object<'a> {
             Some((_, choice)) => Ok(Some(*choice)),
             None => {
                 let names: Vec<String> = known.iter().map(|(known, _)| known.to_string()).collect();
-                Err(wrong(key, value, format_args!("one of {}", names.join(", "))))
+                Err(wrong(
+                    key,
+                    value,
+                    format_args!("one of {}", names.join(", ")),
+                ))
             }
         }
     }

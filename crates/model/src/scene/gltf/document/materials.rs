@@ -42,7 +42,10 @@ pub fn image(lists: &Lists, index: usize, part: Object) -> Part<Image> {
     let uri = part.text("uri")?;
     if view.is_some() && uri.is_some() {
         lists.notes.fault(|| {
-            format!("{}: it has both a URI and a bufferView; the bufferView is used", lenient.name)
+            format!(
+                "{}: it has both a URI and a bufferView; the bufferView is used",
+                lenient.name
+            )
         });
     }
     let from = match (view, uri) {
@@ -94,7 +97,9 @@ fn sampler(lists: &Lists, index: usize) -> Sampler {
     // Unknown numbers leave the choice to us: nothing breaks the standard.
     let known = |name: &str, field: Field<Wrap>| {
         field.unwrap_or_else(|reason| {
-            lists.notes.add(|| format!("{name}: {reason}; the default is used"));
+            lists
+                .notes
+                .add(|| format!("{name}: {reason}; the default is used"));
             None
         })
     };
@@ -102,8 +107,13 @@ fn sampler(lists: &Lists, index: usize) -> Sampler {
     let wrap = |key: &str| known(&name, part.choice(key, &WRAPS)).unwrap_or(Wrap::Repeat);
     let mag_filter = part.choice("magFilter", &MAG_FILTERS);
     let min_filter = part.choice("minFilter", &MIN_FILTERS);
-    for reason in [mag_filter.as_ref().err(), min_filter.as_ref().err()].into_iter().flatten() {
-        lists.notes.add(|| format!("{name}: {reason}; the default is used"));
+    for reason in [mag_filter.as_ref().err(), min_filter.as_ref().err()]
+        .into_iter()
+        .flatten()
+    {
+        lists
+            .notes
+            .add(|| format!("{name}: {reason}; the default is used"));
     }
     let (min_filter, mip_filter) = min_filter
         .ok()
@@ -234,9 +244,8 @@ impl Reader<'_, '_> {
             name: format!("{}: {key}", self.lenient.name),
         };
         let textures = self.lists.textures.len();
-        let texture = lenient.field(
-            needed("index", info.index("index", "textures", textures)).map(Some),
-        )?;
+        let texture =
+            lenient.field(needed("index", info.index("index", "textures", textures)).map(Some))?;
         let set = lenient.field(info.integer("texCoord")).unwrap_or(0);
         let mut used = TextureUse {
             texture,

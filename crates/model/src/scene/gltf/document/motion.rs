@@ -50,11 +50,14 @@ pub fn clip(lists: &Lists, index: usize, value: &Value) -> Clip {
         name,
         channels: channels
             .filter_map(|(at, value)| {
-                let channel = Object::of(value)
-                    .and_then(|part| channel(lists, part, samplers.len()));
+                let channel =
+                    Object::of(value).and_then(|part| channel(lists, part, samplers.len()));
                 if matches!(channel, Ok(None)) {
                     lists.notes.add(|| {
-                        format!("{} channel {at} animates no node; it is ignored", lenient.name)
+                        format!(
+                            "{} channel {at} animates no node; it is ignored",
+                            lenient.name
+                        )
                     });
                 }
                 Some((at, channel.transpose()?))
@@ -93,9 +96,7 @@ fn key_sampler(lists: &Lists, part: Object) -> Part<KeySampler> {
         ("LINEAR", Interpolation::Linear),
         ("CUBICSPLINE", Interpolation::Cubic),
     ];
-    let accessor = |key: &str| {
-        needed(key, part.index(key, "accessors", lists.accessors.len()))
-    };
+    let accessor = |key: &str| needed(key, part.index(key, "accessors", lists.accessors.len()));
     Ok(KeySampler {
         times: accessor("input")?,
         values: accessor("output")?,

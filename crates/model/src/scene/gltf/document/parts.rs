@@ -35,6 +35,28 @@ pub struct Document {
     pub extensions_required: Vec<String>,
 }
 
+impl Document {
+    /// The parts that cannot be read, with the reasons.
+    pub fn broken(&self) -> impl Iterator<Item = (String, &str)> {
+        fn of<'a, T>(
+            kind: &'a str,
+            parts: &'a [Part<T>],
+        ) -> impl Iterator<Item = (String, &'a str)> {
+            parts.iter().enumerate().filter_map(move |(index, part)| {
+                let reason = part.as_ref().err()?;
+                Some((format!("{kind} {index}"), reason.as_str()))
+            })
+        }
+        of("accessor", &self.accessors)
+            .chain(of("bufferView", &self.views))
+            .chain(of("buffer", &self.buffers))
+            .chain(of("image", &self.images))
+            .chain(of("texture", &self.textures))
+            .chain(of("skin", &self.skins))
+            .chain(of("camera", &self.cameras))
+    }
+}
+
 /// A list of nodes.
 #[derive(Debug)]
 pub struct Scene {

@@ -80,9 +80,8 @@ impl<'a> Lists<'a> {
 pub fn parse_document(json: &[u8], notes: &Notes) -> Result<Document, LoadError> {
     check_size(json)?;
     let text = container::text(json, notes);
-    let none = |error: &dyn std::fmt::Display| {
-        LoadError::new(format!("it is not a glTF file: {error}"))
-    };
+    let none =
+        |error: &dyn std::fmt::Display| LoadError::new(format!("it is not a glTF file: {error}"));
     let value: Value = serde_json::from_str(&text).map_err(|error| none(&error))?;
     let root = Object::of(&value).map_err(|error| none(&error))?;
     check_version(root, notes)?;
@@ -120,17 +119,33 @@ pub fn parse_document(json: &[u8], notes: &Notes) -> Result<Document, LoadError>
         cameras: list("cameras"),
     };
     let document = Document {
-        accessors: parts(lists.accessors, |_, part| shapes::accessor(&lists, part)),
+        accessors: parts(lists.accessors, |index, part| {
+            shapes::accessor(&lists, index, part)
+        }),
         views: parts(lists.views, |_, part| shapes::view(&lists, part)),
-        buffers: parts(lists.buffers, |index, part| shapes::buffer(&lists, index, part)),
-        images: parts(lists.images, |index, part| materials::image(&lists, index, part)),
-        textures: parts(lists.textures, |index, part| materials::texture(&lists, index, part)),
-        materials: each(lists.materials, |index, value| materials::material(&lists, index, value)),
-        meshes: each(lists.meshes, |index, value| shapes::mesh(&lists, index, value)),
-        nodes: each(lists.nodes, |index, value| shapes::node(&lists, index, value)),
+        buffers: parts(lists.buffers, |index, part| {
+            shapes::buffer(&lists, index, part)
+        }),
+        images: parts(lists.images, |index, part| {
+            materials::image(&lists, index, part)
+        }),
+        textures: parts(lists.textures, |index, part| {
+            materials::texture(&lists, index, part)
+        }),
+        materials: each(lists.materials, |index, value| {
+            materials::material(&lists, index, value)
+        }),
+        meshes: each(lists.meshes, |index, value| {
+            shapes::mesh(&lists, index, value)
+        }),
+        nodes: each(lists.nodes, |index, value| {
+            shapes::node(&lists, index, value)
+        }),
         skins: parts(lists.skins, |_, part| motion::skin(&lists, part)),
         cameras: parts(lists.cameras, |_, part| shapes::camera(part)),
-        clips: each(list("animations"), |index, value| motion::clip(&lists, index, value)),
+        clips: each(list("animations"), |index, value| {
+            motion::clip(&lists, index, value)
+        }),
         scene: shapes::scene(&lists, root, list("scenes")),
         extensions_used,
         extensions_required,
@@ -177,7 +192,9 @@ fn check_version(root: Object, notes: &Notes) -> Result<(), LoadError> {
     let asset = match root.object("asset") {
         Ok(Some(asset)) => asset,
         Ok(None) => {
-            return Err(LoadError::new("it is not a glTF file: its JSON has no asset"));
+            return Err(LoadError::new(
+                "it is not a glTF file: its JSON has no asset",
+            ));
         }
         Err(reason) => {
             return Err(LoadError::new(format!("it is not a glTF file: {reason}")));

@@ -53,33 +53,51 @@ const MODES: [(u64, Option<Topology>); 7] = [
     (6, Some(Topology::Fan)),
 ];
 
-pub fn accessor(lists: &Lists, part: Object) -> Part<Accessor> {
-    let components = needed("type", part.word("type", &TYPES))?;
-    let has = |key: &str| {
-        let numbers = part.list(key).unwrap_or_default();
-        numbers.len() == components as usize && numbers.iter().all(Value::is_number)
+pub fn accessor(lists: &Lists, index: usize, part: Object) -> Part<Accessor> {
+    let lenient = Lenient {
+        notes: lists.notes,
+        name: format!("accessor {index}"),
     };
+    let components = needed("type", part.word("type", &TYPES))?;
+    let bounds = |key: &str| match lenient.field(part.numbers(key)) {
+        Some(numbers) if numbers.len() == components as usize => true,
+        Some(numbers) => {
+            let count = numbers.len();
+            lenient.fault(format_args!(
+                "its {key} has {count} of {components} numbers"
+            ));
+            false
+        }
+        None => false,
+    };
+    let (has_min, has_max) = (bounds("min"), bounds("max"));
     Ok(Accessor {
         view: part.index("bufferView", "buffer views", lists.views.len())?,
         offset: part.integer("byteOffset")?.unwrap_or(0),
         count: needed("count", part.integer("count"))?,
-        component_type: needed("componentType", part.choice("componentType", &COMPONENT_TYPES))?,
+        component_type: needed(
+            "componentType",
+            part.choice("componentType", &COMPONENT_TYPES),
+        )?,
         components,
         normalized: part.flag("normalized")?.unwrap_or(false),
         sparse: match part.object("sparse")? {
-            Some(sparse) => Some(
-                self::sparse(lists, sparse).map_err(|reason| format!("sparse: {reason}"))?,
-            ),
+            Some(sparse) => {
+                Some(self::sparse(lists, sparse).map_err(|reason| format!("sparse: {reason}"))?)
+            }
             None => None,
         },
-        has_bounds: has("min") && has("max"),
+        has_bounds: has_min && has_max,
     })
 }
 
 fn sparse(lists: &Lists, part: Object) -> Part<Sparse> {
     let place = |part: Object| {
         let view = part.index("bufferView", "buffer views", lists.views.len());
-        Ok::<_, String>((needed("bufferView", view)?, part.integer("byteOffset")?.unwrap_or(0)))
+        Ok::<_, String>((
+            needed("bufferView", view)?,
+            part.integer("byteOffset")?.unwrap_or(0),
+        ))
     };
     let (indices, values) = (
         needed("indices", part.object("indices"))?,
@@ -88,7 +106,10 @@ fn sparse(lists: &Lists, part: Object) -> Part<Sparse> {
     Ok(Sparse {
         count: needed("count", part.integer("count"))?,
         indices: place(indices)?,
-        index_type: needed("componentType", indices.choice("componentType", &INDEX_TYPES))?,
+        index_type: needed(
+            "componentType",
+            indices.choice("componentType", &INDEX_TYPES),
+        )?,
         values: place(values)?,
     })
 }
@@ -168,9 +189,7 @@ fn primitive(lists: &Lists, lenient: &Lenient, part: Object) -> Part<Primitive> 
     let primitive = Primitive {
         attributes: accessors(lists, lenient, attributes),
         indices: part.index("indices", "accessors", lists.accessors.len())?,
-        topology: part
-            .choice("mode", &MODES)?
-            .unwrap_or(Some(Topology::List)),
+        topology: part.choice("mode", &MODES)?.unwrap_or(Some(Topology::List)),
         material: lenient.field(part.index("material", "materials", lists.materials.len())),
         targets: targets
             .iter()
@@ -213,7 +232,8 @@ fn accessors(lists: &Lists, lenient: &Lenient, part: Object) -> BTreeMap<String,
         let in_set = |(set, number): (&str, &str)| {
             SETS.contains(&set) && number.parse::<u32>().is_ok_and(|n| n.to_string() == number)
         };
-        matches!(name, "POSITION" | "NORMAL" | "TANGENT") || name.split_once('_').is_some_and(in_set)
+        matches!(name, "POSITION" | "NORMAL" | "TANGENT")
+            || name.split_once('_').is_some_and(in_set)
     };
     let mut accessors = BTreeMap::new();
     for (name, value) in part.entries().filter(|(name, _)| !name.starts_with('_')) {
@@ -273,8 +293,14 @@ pub fn node(lists: &Lists, index: usize, value: &Value) -> Node {
         }
     }
     let length = |q: [f32; 4]| q.map(|v| f64::from(v).powi(2)).iter().sum::<f64>().sqrt();
-    if let Some(short) = node.rotation.map(length).filter(|&length| length < MIN_QUATERNION_LENGTH) {
-        lenient.fault(format_args!("its rotation is a quaternion of length {short:e}"));
+    if let Some(short) = node
+        .rotation
+        .map(length)
+        .filter(|&length| length < MIN_QUATERNION_LENGTH)
+    {
+        lenient.fault(format_args!(
+            "its rotation is a quaternion of length {short:e}"
+        ));
         node.rotation = None;
     }
     node
@@ -309,7 +335,11 @@ pub fn scene(lists: &Lists, root: Object, scenes: &[Value]) -> Option<Scene> {
 pub fn camera(part: Object) -> Part<Camera> {
     let is_perspective = [("perspective", true), ("orthographic", false)];
     let is_perspective = needed("type", part.word("type", &is_perspective))?;
-    let kind = if is_perspective { "perspective" } else { "orthographic" };
+    let kind = if is_perspective {
+        "perspective"
+    } else {
+        "orthographic"
+    };
     let lens = needed(kind, part.object(kind))?;
     let number = |key: &str| Ok::<_, String>(f64::from(needed(key, lens.number(key))?));
     let projection = if is_perspective {
@@ -331,6 +361,9 @@ pub fn camera(part: Object) -> Part<Camera> {
     Ok(Camera {
         name: part.text("name").ok().flatten().map(str::to_owned),
         projection,
-        near: number("znear").unwrap_or(0.0),
+        near: match lens.value("znear") {
+            Some(_) => number("znear")?,
+            None => 0.0,
+        },
     })
 }
