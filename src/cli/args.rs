@@ -76,7 +76,8 @@ pub struct Common {
     /// Print neither progress nor notes
     #[arg(long, short, global = true)]
     pub quiet: bool,
-    /// Treat unknown keys in a preset, and parts that its scene does not have, as errors
+    /// Treat unknown keys in a preset, parts that its scene does not have, and what breaks the
+    /// standard of its model, as errors
     #[arg(long, global = true)]
     pub strict: bool,
     /// Overwrite existing files

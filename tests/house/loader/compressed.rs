@@ -151,21 +151,21 @@ fn hostile_meshopt_streams_are_refused_and_never_panic() {
         .unwrap();
     let encoded = bytes(&entry, "encoded");
     model_of(&entry, &encoded[..40])
-        .left_out("EXT_meshopt_compression: its compressed data is cut off");
+        .without_it("EXT_meshopt_compression: its compressed data is cut off");
     let with = |name: &str, value: Value| {
         let mut entry = entry.clone();
         entry[name] = value;
         model_of(&entry, &encoded)
     };
     with("count", json!(1_000_000_000)).refused("it unpacks to 12000000000 bytes");
-    with("count", json!(9_000_000)).left_out("its compressed data is cut off");
-    with("mode", json!("TRIANGLES")).left_out("byteStride is 12; Triangles allows 2 or 4");
+    with("count", json!(9_000_000)).without_it("its compressed data is cut off");
+    with("mode", json!("TRIANGLES")).without_it("byteStride is 12; Triangles allows 2 or 4");
     with("filter", json!("OCTAHEDRAL"))
-        .left_out("the filter Octahedral does not fit mode Attributes with byteStride 12");
-    with("filter", json!("NEW")).left_out("its EXT_meshopt_compression is malformed");
+        .without_it("the filter Octahedral does not fit mode Attributes with byteStride 12");
+    with("filter", json!("NEW")).without_it("its EXT_meshopt_compression is malformed");
     let mut other = encoded.clone();
     other[0] = 0xa1;
-    model_of(&entry, &other).left_out("begins with [a1]; this version begins with a0");
+    model_of(&entry, &other).without_it("begins with [a1]; this version begins with a0");
 }
 
 /// A model whose one primitive is compressed, without any other bytes.

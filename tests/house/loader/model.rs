@@ -164,6 +164,19 @@ impl Model {
         scene
     }
 
+    /// It loads and says so, or is refused with the sentence where nothing else is left.
+    #[track_caller]
+    pub fn without_it(&self, sentence: &str) {
+        let said = match self.load() {
+            Ok(scene) => scene.faults,
+            Err(error) => vec![error.to_string()],
+        };
+        assert!(
+            said.iter().any(|said| said.contains(sentence)),
+            "said: {said:?}\nnot:  {sentence}"
+        );
+    }
+
     /// As [`Self::dropped`], whether that breaks the standard or not.
     #[track_caller]
     pub fn left_out(&self, sentence: &str) {

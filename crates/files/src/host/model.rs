@@ -13,6 +13,7 @@ use std::{
 };
 
 use crate::{
+    params::legible_line,
     scene::{
         Scene,
         gltf::{self, LoadError, PART_BYTES, Source, limits::Limits, reserve},
@@ -58,7 +59,7 @@ pub fn load_within(path: &Path, budget: MemoryBudget) -> Result<Scene, LoadError
     };
     match load() {
         Ok(scene) => Ok(Scene { name, ..scene }),
-        Err(error) => Err(LoadError::within(error, file)),
+        Err(error) => Err(LoadError::within(error, legible_line(&file))),
     }
 }
 
