@@ -211,7 +211,7 @@ fn links(document: &Document, notes: &Notes) -> (Vec<Vec<usize>>, Vec<Option<usi
     // Nodes that no root reaches lie below a cycle, and going up from one leads onto it.
     let mut is_reached = vec![false; count];
     let roots: Vec<usize> = (0..count).filter(|&node| parents[node].is_none()).collect();
-    let mut open: Vec<usize> = visit(&children, roots.into_iter());
+    let mut open: Vec<usize> = visit(&children, roots);
     let mut start = 0;
     loop {
         open.drain(..).for_each(|node| is_reached[node] = true);
