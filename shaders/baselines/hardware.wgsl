@@ -27,6 +27,7 @@ fn hardware_projected(position: vec3f, normal: vec3f, draw: u32) -> Varyings {
     v.at = draws[draw].clip_from_object * vec4f(position, 1.0);
     v.position = (draws[draw].world_from_object * vec4f(position, 1.0)).xyz;
     v.normal = (draws[draw].normal_from_object * vec4f(normal, 0.0)).xyz;
+    if (draws[draw].flags & DRAW_UNEVEN) != 0u { v.normal = normalize(v.normal) * length(normal); }
     v.depth_m = v.at.w;
     v.draw = draw;
     return v;
@@ -43,9 +44,11 @@ fn hardware_fragment(v: Varyings, @builtin(front_facing) is_front: bool) -> @loc
 fn hardware_surface(v: Varyings, is_front: bool) -> Surface {
     var s: Surface;
     s.position = v.position;
-    s.normal = select(-normalize(v.normal), normalize(v.normal), is_front);
-    s.flat_normal = s.normal;
     s.view = normalize(frame.eye.xyz - v.position);
+    s.normal = select(-normalize(v.normal), normalize(v.normal), is_front);
+    let plane = cross(dpdx(v.position), dpdy(v.position));
+    if (draws[v.draw].flags & DRAW_FACETED) != 0u { s.normal = normalize(select(plane, -plane, dot(plane, s.view) < 0.0)); }
+    s.flat_normal = s.normal;
     s.center = v.position;
     s.screen = v.at.xy / vec2f(frame.size);
     s.center_screen = s.screen;

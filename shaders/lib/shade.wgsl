@@ -129,6 +129,22 @@ fn shade_begin(id: u32) {
     if HAS_PLANES { vertex_effects_begin(id, shaded.draw, shaded_at); }
 }
 
+// The interpolated normal in world space, a unit vector; zero where a corner has none, where the corners cancel and where planes
+// alone have normals.
+fn draw_smooth_normal(draw: u32, a: vec4f, b: vec4f, c: vec4f, weights: vec3f) -> vec3f {
+    let flags = draws[draw].flags;
+    if (flags & DRAW_FACETED) != 0u { return vec3f(0.0); }
+    if (flags & DRAW_UNEVEN) != 0u {
+        return normal_direction(normal_interpolated(draw_even_normal(draw, a), draw_even_normal(draw, b), draw_even_normal(draw, c), weights));
+    }
+    return normal_direction((draws[draw].normal_from_object * vec4f(normal_interpolated(a, b, c, weights), 0.0)).xyz);
+}
+
+// A corner's normal in world space, as long as in object space.
+fn draw_even_normal(draw: u32, n: vec4f) -> vec4f {
+    return vec4f(normal_direction((draws[draw].normal_from_object * vec4f(n.xyz, 0.0)).xyz) * length(n.xyz), n.w);
+}
+
 // The surface at a pixel's sample, before surface effects.
 fn shade_surface(pixel: vec2u) -> Surface {
     let t = shaded;
@@ -179,13 +195,13 @@ fn shade_surface(pixel: vec2u) -> Surface {
         s.normal = normalize((normal_from_object * vec4f(sum, 0.0)).xyz);
         s.flat_normal = s.normal;
     } else {
-        let smooth_normal = normal_interpolated(normal_from_bits(na), normal_from_bits(nb), normal_from_bits(nc), k);
+        let smooth_normal = draw_smooth_normal(t.draw, normal_from_bits(na), normal_from_bits(nb), normal_from_bits(nc), k);
         let a = floats_of_class(position_bits(t.draw, at.x), 0u);
         let b = floats_of_class(position_bits(t.draw, at.y), 0u);
         let c = floats_of_class(position_bits(t.draw, at.z), 0u);
         s.center = center_world(t.draw, at);
         let normals = vertex_effects_normals(
-            normal_direction((normal_from_object * vec4f(smooth_normal, 0.0)).xyz),
+            smooth_normal,
             normal_direction((normal_from_object * vec4f(normal_of_plane(a, b, c), 0.0)).xyz), k);
         s.normal = normals[0];
         s.flat_normal = normals[1];

@@ -40,6 +40,8 @@ struct Draw {
 const DRAW_DOUBLE_SIDED = 1u;
 const DRAW_MIRRORED = 2u;
 const DRAW_PARTICLES = 4u;
+const DRAW_UNEVEN = 8u;  // its transform shears, or scales unevenly
+const DRAW_FACETED = 16u; // normals are those of the planes
 const DRAW_PRIMITIVE_SHIFT = 8u;
 
 // ---- Topology. Indices are u8, u16 or u32, as the file stores them; the glue declares `index_bytes`.

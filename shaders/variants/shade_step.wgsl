@@ -107,13 +107,15 @@ fn texture_at(lookup: Lookup, at: vec3u, weights: vec3f, slopes: Slopes) -> vec3
 //@ step shadow_map
 // The fraction of a directional light that reaches a sample, from the depths that the light sees.
 // Mirrors `gpu::records::ShadowMapUniform`.
+//@ use lib/frame
+//@ use lib/geometry
 //@ use lib/triangle
 //@ use lib/surface
 //@ use lib/shade
 //@ use variants/shadow_map
 //@ use glue/effects
 
-// The transform from world space to the shadow map.
+// The transform to the shadow map from the axes of the world, at the eye of the picture.
 struct ShadowMapView {
     column: vec4f, // texels to the right, of a point (x, y, z, 1)
     row: vec4f,    // texels down
@@ -149,7 +151,11 @@ fn shadow_map_weight(tap: i32, fraction: f32) -> f32 {
 
 fn shade_step_shadow_map(surface: Surface, t: Triangle, vertices_at: vec3u, position: SamplePosition) -> Surface {
     var s = surface;
-    let p = vec4f(s.position, 1.0);
+    // From the eye, not from the origin: far from it positions are coarse.
+    let ndc = vec2f(s.screen.x * 2.0 - 1.0, 1.0 - s.screen.y * 2.0);
+    let aside = frame.ndc_x.xyz * ndc.x + frame.ndc_y.xyz * ndc.y;
+    let from_eye = select(aside + frame.forward.xyz * s.depth_m, (frame.forward.xyz + aside) * s.depth_m, IS_PERSPECTIVE);
+    let p = vec4f(from_eye, 1.0);
     let at = vec2f(dot(light.column, p), dot(light.row, p));
     let texel_depth = light.texel_m / light.range_m;
     // The slope of the triangle's plane: its change of depth from texel to texel.

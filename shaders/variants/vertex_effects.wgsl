@@ -104,11 +104,19 @@ fn vertex_effects_begin(id: u32, draw: u32, at: vec3u) {
     let na = vertex_effects_stored_normal(draw, at.x);
     let nb = vertex_effects_stored_normal(draw, at.y);
     let nc = vertex_effects_stored_normal(draw, at.z);
-    moved.is_turned = any(a.normal != normal_direction(na)) || any(b.normal != normal_direction(nb)) || any(c.normal != normal_direction(nc));
-    // Turned normals keep the lengths by which the file weights them.
-    moved.a = vec4f(a.normal * length(na), normal_from_bits(normal_bits(draw, at.x)).w);
-    moved.b = vec4f(b.normal * length(nb), normal_from_bits(normal_bits(draw, at.y)).w);
-    moved.c = vec4f(c.normal * length(nc), normal_from_bits(normal_bits(draw, at.z)).w);
+    // Where planes alone have normals, nothing turns them.
+    let is_smooth = (draws[draw].flags & DRAW_FACETED) == 0u;
+    moved.is_turned = is_smooth && (any(a.normal != normal_direction(na)) || any(b.normal != normal_direction(nb)) || any(c.normal != normal_direction(nc)));
+    moved.a = vertex_effects_weighted(draw, a.normal, na, normal_from_bits(normal_bits(draw, at.x)));
+    moved.b = vertex_effects_weighted(draw, b.normal, nb, normal_from_bits(normal_bits(draw, at.y)));
+    moved.c = vertex_effects_weighted(draw, c.normal, nc, normal_from_bits(normal_bits(draw, at.z)));
+}
+
+// Turned normals keep the lengths by which the file weights them. `in_world` is the stored one in world space, which an uneven
+// transform gives another length.
+fn vertex_effects_weighted(draw: u32, turned: vec3f, in_world: vec3f, stored: vec4f) -> vec4f {
+    let is_uneven = (draws[draw].flags & DRAW_UNEVEN) != 0u;
+    return vec4f(turned * select(length(in_world), length(stored.xyz), is_uneven), stored.w);
 }
 
 // What no effect changes keeps its bits: the plane of a triangle that is only carried along, and the interpolated normal where

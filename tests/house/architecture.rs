@@ -12,7 +12,8 @@ const ORDER: &[(&str, &[&str])] = &[
     (
         "crates/model",
         &[
-            "work", "math", "frame", "accuracy", "measure", "scene", "params", "effects", "preset",
+            "work", "math", "legible", "frame", "accuracy", "measure", "scene", "params",
+            "effects", "preset",
         ],
     ),
     ("crates/kernels", &["shader", "plan"]),

@@ -110,6 +110,8 @@ impl DrawData {
 const DOUBLE_SIDED: u32 = 1;
 const MIRRORED: u32 = 2;
 const PARTICLES: u32 = 4;
+const UNEVEN: u32 = 8;
+const FACETED: u32 = 16;
 const PRIMITIVE_SHIFT: u32 = 8;
 
 impl DrawRecord {
@@ -144,6 +146,8 @@ impl DrawRecord {
             first_triangle: draw.first_triangle,
             flags: flag(draw.double_sided, DOUBLE_SIDED)
                 | flag(draw.mirrored, MIRRORED)
+                | flag(draw.is_uneven, UNEVEN)
+                | flag(draw.is_faceted, FACETED)
                 | flag(scene.particle_discs == Some(draw.primitive), PARTICLES)
                 | (draw.primitive as u32) << PRIMITIVE_SHIFT,
             topology: primitive.topology as u32,

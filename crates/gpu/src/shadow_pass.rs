@@ -2,6 +2,8 @@
 //! drawn, into the map by which the picture is shaded. The scene's buffers are read as the
 //! picture's passes deformed them.
 
+use glam::{DMat4, DVec3};
+
 use super::{
     buffers::{BufferNote, Buffers},
     device::Gpu,
@@ -52,7 +54,8 @@ impl ShadowPass {
         view: &View,
         stack: &Stack,
     ) -> Result<Option<Self>, RenderError> {
-        let Some(view) = stack.light_view(scene.scene(), view) else {
+        let picture = view;
+        let Some(view) = stack.light_view(scene.scene(), picture) else {
             return Ok(None);
         };
         let (mut resources, mut uniform, map) = match previous {
@@ -85,7 +88,7 @@ impl ShadowPass {
             .fill(
                 &device.gpu,
                 BufferId::ShadowMapView,
-                bytemuck::bytes_of(&ShadowMapUniform::new(&view)),
+                bytemuck::bytes_of(&ShadowMapUniform::new(&view, picture.eye)),
             )
             .await?;
         let map = match map.filter(|map| map.texture.width() == view.width) {
@@ -209,10 +212,11 @@ async fn new_map(gpu: &Gpu, side: u32) -> Result<WordTexture, RenderError> {
 }
 
 impl ShadowMapUniform {
-    /// The uniform of a light's view.
-    pub fn new(view: &View) -> Self {
+    /// The uniform of a light's view, for positions relative to `eye`.
+    pub fn new(view: &View, eye: DVec3) -> Self {
         let half = f64::from(view.width) * 0.5;
-        let row = |i: usize| view.clip_from_world.row(i);
+        let clip_from_eye = view.clip_from_world * DMat4::from_translation(eye);
+        let row = |i: usize| clip_from_eye.row(i);
         let rounded = |row: glam::DVec4| row.to_array().map(|v| v as f32);
         // Half a picture is one unit of normalized device coordinates, whose y points up.
         let [column, down, depth] = [(row(0) + row(3)) * half, (row(3) - row(1)) * half, row(2)];
@@ -231,8 +235,6 @@ impl ShadowMapUniform {
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;
-
-    use glam::{DMat4, DVec3};
 
     use super::*;
     use crate::{

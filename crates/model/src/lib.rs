@@ -16,6 +16,7 @@
 pub mod accuracy;
 pub mod effects;
 pub mod frame;
+mod legible;
 pub mod math;
 pub mod measure;
 pub mod params;

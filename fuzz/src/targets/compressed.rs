@@ -49,7 +49,7 @@ fn check(input: &[u8]) -> Outcome {
         json.to_string().as_bytes(),
         &[&[0; ZEROS], stream].concat(),
     ))
-    .map_err(|LoadError(error)| error)?;
+    .map_err(|error| error.to_string())?;
     model::use_scene(&scene);
     Ok(())
 }

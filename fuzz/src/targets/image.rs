@@ -24,7 +24,7 @@ fn check(image: &[u8]) -> Outcome {
         .iter()
         .find(|(_, begin)| image.starts_with(begin))
         .map_or("image/png", |(format, _)| format);
-    let scene = model::read(&showing(image, format)).map_err(|LoadError(error)| error)?;
+    let scene = model::read(&showing(image, format)).map_err(|error| error.to_string())?;
     let is_whole =
         |level: &Level| level.texels.len() == level.size[0] as usize * level.size[1] as usize;
     assert!(

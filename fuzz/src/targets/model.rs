@@ -95,13 +95,13 @@ const WORDS: &[&str] = &[
 ];
 
 fn check(bytes: &[u8]) -> Outcome {
-    use_scene(&read(bytes).map_err(|LoadError(error)| error)?);
+    use_scene(&read(bytes).map_err(|error| error.to_string())?);
     Ok(())
 }
 
 /// The model; the files that it refers to are not there.
 pub fn read(bytes: &[u8]) -> Result<Scene, LoadError> {
-    gltf::load(bytes, &mut |_, _| Err(LoadError("no files here".into())))
+    gltf::load(bytes, &mut |_, _| Err(LoadError::new("no files here")))
 }
 
 /// Everything that a model goes through until it is drawn.

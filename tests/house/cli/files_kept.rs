@@ -419,11 +419,11 @@ fn files_that_cannot_be_what_they_are_called_are_refused_with_what_to_do() {
     };
     refused(
         &["render", "model.obj", "--adapter", "cpu"],
-        "models in .glb and .gltf files",
+        "models in .glb, .gltf and .vrm files",
     );
     refused(
         &["render", "folder", "--adapter", "cpu"],
-        "models in .glb and .gltf files",
+        "models in .glb, .gltf and .vrm files",
     );
     refused(
         &["render", "facet", "--adapter", "cpu", "-o", "a.jpg"],

@@ -201,7 +201,7 @@ fn only_the_default_scene_is_shown() {
 }
 
 #[test]
-fn missing_normals_are_flat_without_indices_and_smooth_with_them() {
+fn without_normals_planes_are_lit_and_smooth_normals_lead_vertex_effects() {
     // Two faces that meet at a right angle along the y axis, of areas 1/2 and 1.
     let corners: [[f32; 3]; 4] = [
         [0.0, 0.0, 0.0],
@@ -228,6 +228,14 @@ fn missing_normals_are_flat_without_indices_and_smooth_with_them() {
     let smooth = smooth.scene();
     assert!(normal(&smooth, 0).distance(DVec3::new(2.0, 0.0, 1.0).normalize()) < 1e-6);
     assert_eq!(normal(&smooth, 2), DVec3::Z);
+    for scene in [&flat, &smooth] {
+        let primitive = &scene.primitives[0];
+        assert!(primitive.is_faceted && !primitive.normals_agree);
+    }
+    let mut given = Model::square();
+    let normals = given.floats("VEC3", &[0.0, 0.0, 1.0].repeat(4));
+    let given = given.with("/meshes/0/primitives/0/attributes/NORMAL", json!(normals));
+    assert!(!given.scene().primitives[0].is_faceted);
 }
 
 #[test]
@@ -275,7 +283,8 @@ fn vertex_colors_come_in_three_widths() {
     );
     assert_eq!(
         read(add(true, &|m| m.shorts("VEC4", &[13_107; 16]))),
-        (4, [0.2; 3])
+        (3, [0.2; 3]),
+        "an opaque material ignores alpha"
     );
 }
 
@@ -422,7 +431,7 @@ fn the_names_of_a_model_are_its_parts() {
     let part = |name: &str, depth, instances| (name.to_owned(), depth, instances);
     assert_eq!(
         names(PartKind::Mesh),
-        [part("Shell?of glass", 0, 1), part("mesh 1", 0, 1)]
+        [part("Shell\\u{a}of glass", 0, 1), part("mesh 1", 0, 1)]
     );
     assert_eq!(
         names(PartKind::Material),

@@ -102,7 +102,7 @@ fn uris_that_lead_out_of_the_folder_are_refused_unread() {
             panic!("{uri}: {} was asked for", path.display())
         })
         .expect_err(&uri);
-        assert!(error.to_string().starts_with("buffer 0: URI "), "{error}");
+        assert!(error.to_string().contains("buffer 0: URI "), "{error}");
         let file = outer.path("inner/model.gltf");
         fs::write(&file, text).unwrap();
         assert!(host::model::load(&file).is_err(), "{uri}");
@@ -119,7 +119,7 @@ fn links_out_of_the_folder_are_refused() {
     let error = inner.load(&model).unwrap_err().to_string();
     assert_eq!(
         error,
-        "model.gltf: buffer 0: \"data.bin\": it lies outside the model's folder; copy it there"
+        "model.gltf: mesh \"X\" primitive 0 POSITION: accessor 0: buffer 0: \"data.bin\": it lies outside the model's folder; copy it there"
     );
     // A link that stays inside is an ordinary file.
     fs::remove_file(inner.path("data.bin")).unwrap();
@@ -182,7 +182,7 @@ fn huge_and_absent_files_are_refused() {
             .load(&model)
             .unwrap_err()
             .to_string()
-            .starts_with("model.gltf: buffer 0: \"data.bin\": cannot read the file: ")
+            .contains("POSITION: accessor 0: buffer 0: \"data.bin\": cannot read the file: ")
     );
     // Sparse on disk: no test writes 600 MiB.
     fs::File::create(folder.path("data.bin"))
@@ -238,10 +238,7 @@ fn glb_lengths_are_checked_before_use() {
         let error = gltf::load(bytes, &mut |_, _| unreachable!())
             .expect_err(sentence)
             .to_string();
-        assert!(
-            error.contains(sentence) && !error.contains("is a bug"),
-            "said: {error}\nnot:  {sentence}"
-        );
+        assert!(error.contains(sentence), "said: {error}\nnot:  {sentence}");
     };
     let patched = |at: usize, value: u32| {
         let mut bytes = good.clone();
@@ -250,15 +247,16 @@ fn glb_lengths_are_checked_before_use() {
     };
     refused(b"glTF", "the GLB header has 4 of 12 bytes");
     refused(&good[..11], "the GLB header has 11 of 12 bytes");
-    refused(&good[..12], "the GLB header states");
+    refused(&good[..12], "the GLB has no chunk of JSON; it is truncated");
     refused(&patched(4, 1), "GLB version 1 is not supported");
-    for length in [0, 11, u32::MAX, good.len() as u32 + 1] {
-        refused(
-            &patched(8, length),
-            &format!("the GLB header states {length} bytes"),
+    for length in [0, 11, 12, u32::MAX, good.len() as u32 + 1] {
+        let scene = gltf::load(&patched(8, length), &mut |_, _| unreachable!()).unwrap();
+        let fault = format!(
+            "the GLB header states {length} bytes, but the file has {}",
+            good.len()
         );
+        assert_eq!((triangles(&scene), scene.faults), (square(), vec![fault]));
     }
-    refused(&patched(8, 12), "the first GLB chunk is not JSON");
     refused(
         &patched(12, u32::MAX),
         "a GLB chunk states 4294967295 bytes",
@@ -276,7 +274,17 @@ fn versions_and_extensions_are_named() {
         .refused("glTF version \"1.0\" is not supported");
     Model::square()
         .with("/asset", json!({}))
-        .refused("missing field `version`");
+        .dropped("its asset has no version; it is read as glTF 2.0");
+    Model::square()
+        .without("/asset")
+        .refused("it is not a glTF file: its JSON has no asset");
+    Model::square()
+        .with("/asset/minVersion", json!("2.1"))
+        .refused("it needs a reader of glTF \"2.1\", by its minVersion");
+    let later = Model::square()
+        .with("/asset", json!({ "version": "2.1", "minVersion": "2.0" }))
+        .scene();
+    assert_eq!(later.notes, [""; 0]);
     Model::square().with("/extensionsRequired", json!(["KHR_meshopt_compression"])).refused(
         "it requires the extension \"KHR_meshopt_compression\", which is not supported; export the model with EXT_meshopt_compression",
     );

@@ -44,16 +44,17 @@ fn everything() -> Model {
 }
 
 fn never_panics(bytes: &[u8], about: &str) -> bool {
-    let outcome = gltf::load(bytes, &mut |_, _| Err(LoadError("no files here".into())));
+    let outcome = gltf::load(bytes, &mut |_, _| Err(LoadError::new("no files here")));
     match outcome {
         Ok(scene) => {
             assert_sound(&scene);
             true
         }
         Err(error) => {
+            let sentence = error.to_string();
             assert!(
-                !error.to_string().contains("is a bug"),
-                "{about}: a panic was caught"
+                !sentence.is_empty() && !sentence.contains('\n'),
+                "{about}: {sentence}"
             );
             false
         }
@@ -64,11 +65,11 @@ fn never_panics(bytes: &[u8], about: &str) -> bool {
 fn truncated_files_never_panic() {
     let good = everything().glb();
     assert!(never_panics(&good, "whole"));
+    let json = good.len() - everything().bytes.len() - 8;
     for length in 0..good.len() {
-        assert!(!never_panics(
-            &good[..length],
-            &format!("first {length} bytes")
-        ));
+        // What lies in the bytes that are left may be drawn.
+        let loads = never_panics(&good[..length], &format!("first {length} bytes"));
+        assert!(!loads || length >= json, "first {length} bytes");
     }
 }
 
@@ -135,7 +136,7 @@ fn awkward_numbers_never_panic() {
 fn broken_images_never_panic() {
     let (png, jpeg) = (encoded(ImageFormat::Png), encoded(ImageFormat::Jpeg));
     let mut loaded = 0;
-    for seed in 0..600u32 {
+    for seed in 0..1_200u32 {
         let mut bytes = if seed % 2 == 0 {
             png.clone()
         } else {
@@ -146,11 +147,8 @@ fn broken_images_never_panic() {
             bytes[at / 8] ^= 1 << (at % 8);
         }
         match Model::textured().showing(&bytes).load() {
-            Ok(_) => loaded += 1,
-            Err(error) => assert!(
-                !error.to_string().contains("is a bug"),
-                "seed {seed}: a panic was caught"
-            ),
+            Ok(scene) => loaded += u32::from(scene.faults.is_empty()),
+            Err(error) => panic!("seed {seed}: {error}"),
         }
     }
     assert!(

@@ -91,15 +91,15 @@ fn images_come_as_png_or_jpeg_from_bytes_uris_and_files() {
         ("http://example.org/flag.png", "has a scheme"),
         ("none.png", "image 0: \"none.png\": cannot read the file"),
     ] {
-        let error = load(uri).expect_err(uri).to_string();
-        assert!(error.contains(sentence), "{error}");
+        let faults = load(uri).expect(uri).faults;
+        assert!(faults[0].contains(sentence), "{faults:?}");
     }
 }
 
 #[test]
 fn only_images_that_something_drawn_looks_up_are_read() {
     let broken = Model::textured().with("/images/0", json!({ "uri": "../../etc/passwd" }));
-    broken.refused("leads out of the model's folder");
+    broken.dropped("leads out of the model's folder");
     let unused = broken
         .with(
             "/meshes/0/primitives/0",
@@ -228,7 +228,7 @@ fn coordinates_come_in_every_width_of_the_standard_and_quantized_ones_where_the_
             json!(texcoords),
         );
         if component == I16 {
-            model.refused("mesh \"X\" primitive 0 TEXCOORD_0: accessor 3 has the type 2 x I16, which glTF does not allow for it");
+            model.dropped("mesh \"X\" primitive 0 TEXCOORD_0: accessor 3 has the type 2 x I16, which glTF does not allow for it");
             model = model
                 .with("/extensionsRequired", json!(["KHR_mesh_quantization"]))
                 .with("/extensionsUsed", json!(["KHR_mesh_quantization"]));
@@ -303,8 +303,9 @@ fn alpha_modes_say_what_is_cut_out() {
     );
     with_mode("MASK")
         .with("/materials/0/alphaCutoff", json!(-0.1))
-        .refused("material \"paper\": alphaCutoff is -0.1; it must be finite and at least 0");
-    with_mode("TRANSLUCENT").refused("alphaMode");
+        .dropped("material \"paper\": its alphaCutoff is -0.1; it must be at least 0");
+    with_mode("TRANSLUCENT")
+        .dropped("its alphaMode is \"TRANSLUCENT\"; it must be one of OPAQUE, MASK, BLEND");
 
     let blended = with_mode("BLEND").scene();
     assert_eq!(
@@ -353,57 +354,71 @@ fn alpha_modes_say_what_is_cut_out() {
 }
 
 #[test]
-fn textures_that_do_not_fit_are_refused_by_name() {
+fn textures_that_do_not_fit_are_left_out_by_name() {
     let at = |place: &str, value: Value| Model::textured().with(place, value);
-    at(&format!("{BASE}/index"), json!(9)).refused("baseColorTexture.index: Index out of bounds");
-    at("/textures/0/source", json!(9)).refused("textures[0].source: Index out of bounds");
-    at("/textures/0/sampler", json!(9)).refused("textures[0].sampler: Index out of bounds");
-    at("/samplers/0/wrapS", json!(1)).refused("wrapS");
-    at("/samplers/0/magFilter", json!(9985)).refused("magFilter");
-    at("/samplers/0/minFilter", json!(1)).refused("minFilter");
-    at("/images/0", json!({})).refused("image 0: it has neither a URI nor a bufferView");
+    at(&format!("{BASE}/index"), json!(9)).dropped(
+        "material \"paper\": baseColorTexture: its index is 9, but there are only 1 textures",
+    );
+    at("/textures/0/source", json!(9))
+        .dropped("texture 0: its source is 9, but there are only 1 images");
+    at("/textures/0/sampler", json!(9))
+        .dropped("texture 0: its sampler is 9, but there are only 1 samplers");
+    for key in ["wrapS", "magFilter", "minFilter"] {
+        let scene = at(&format!("/samplers/0/{key}"), json!(1)).scene();
+        assert_eq!(scene.materials[0].base_texture, Some(Texture::plain(0)));
+        assert!(
+            scene.notes[0].starts_with(&format!("sampler 0: its {key} is 1; it must be one of"))
+                && scene.faults.is_empty(),
+            "{:?}",
+            scene.notes
+        );
+    }
+    at("/images/0", json!({})).dropped("image 0: it has neither a URI nor a bufferView");
     at("/images/0/uri", json!("flag.png"))
-        .refused("image \"flag\": it has both a URI and a bufferView");
-    at("/images/0/bufferView", json!(99)).refused("bufferView");
-    at("/bufferViews/3/byteLength", json!(100_000)).refused("image \"flag\": bufferView 3");
+        .dropped("image \"flag\": it has both a URI and a bufferView");
+    at("/images/0/bufferView", json!(99)).dropped("bufferView");
+    at("/bufferViews/3/byteLength", json!(100_000)).dropped("image \"flag\": bufferView 3");
     at(
         &format!("{BASE}/extensions"),
         json!({ "KHR_texture_transform": { "scale": [1e39, 1] } }),
     )
-    .refused("KHR_texture_transform");
+    .dropped("baseColorTexture: its scale is [1e+39,1]; it must be 2 numbers below 3.4e38");
     at(
         "/materials/0/extensions",
         json!({ "KHR_materials_emissive_strength": { "emissiveStrength": -1 } }),
     )
-    .refused("material \"paper\": emissiveStrength is -1; allowed: 0 to 65504");
-    at("/extensionsRequired", json!(["KHR_texture_basisu"]))
-        .refused("it requires the extension \"KHR_texture_basisu\", which is not supported");
+    .dropped("material \"paper\": its emissiveStrength is -1; it must be at least 0");
+    let basis = at("/extensionsRequired", json!(["KHR_texture_basisu"])).scene();
+    assert_eq!(
+        (basis.notes, basis.faults),
+        (vec!["it requires the extension \"KHR_texture_basisu\", which is not supported; what does not need it is drawn".to_owned()], vec![])
+    );
 }
 
 #[test]
-fn images_that_are_none_are_refused_by_name() {
+fn images_that_are_none_are_left_out_by_name() {
     let place = "material \"paper\": baseColorTexture: image \"flag\": ";
     let png = encoded(ImageFormat::Png);
     Model::textured()
         .showing(b"RIFF....WEBP")
-        .refused(&format!("{place}cannot decode the image"));
+        .dropped(&format!("{place}cannot decode the image"));
     Model::textured()
         .showing(&[])
-        .refused("it is neither PNG, JPEG nor WebP");
+        .dropped("it is neither PNG, JPEG nor WebP");
     for length in [8, 20, 40, png.len() - 16] {
         Model::textured()
             .showing(&png[..length])
-            .refused(&format!("{place}cannot decode the image"));
+            .dropped(&format!("{place}cannot decode the image"));
     }
     let mut flipped = png.clone();
     flipped[20] ^= 64;
     Model::textured()
         .showing(&flipped)
-        .refused("image \"flag\": ");
+        .dropped("image \"flag\": ");
     let jpeg = encoded(ImageFormat::Jpeg);
     Model::textured()
         .showing(&jpeg[..60])
-        .refused(&format!("{place}cannot decode the image"));
+        .dropped(&format!("{place}cannot decode the image"));
 }
 
 /// A PNG of one color: a few bytes for any size.
@@ -427,7 +442,7 @@ fn an_image_cannot_ask_for_more_than_the_budget() {
     assert!(bomb.len() < 100_000, "{} bytes", bomb.len());
     Model::textured()
         .showing(&bomb)
-        .refused("image \"flag\": it has 60000 x 1200 texels; allowed: 1 to 8192 along each side");
+        .dropped("image \"flag\": it has 60000 x 1200 texels; allowed: 1 to 8192 along each side");
     let side = limits::IMAGE_SIDE;
     assert_eq!(
         Model::textured()
@@ -459,19 +474,19 @@ fn an_image_cannot_ask_for_more_than_the_budget() {
 }
 
 #[test]
-fn coordinates_that_do_not_fit_are_refused_by_name() {
+fn coordinates_that_do_not_fit_are_left_out_by_name() {
     let place = "mesh \"X\" primitive 0 TEXCOORD_0: ";
     Model::textured()
         .with(
             "/meshes/0/primitives/0/attributes",
             json!({ "POSITION": 0 }),
         )
-        .refused(&format!(
+        .dropped(&format!(
             "{place}it is missing, although a texture of the material uses it"
         ));
     Model::textured()
         .with(&format!("{BASE}/texCoord"), json!(2))
-        .refused("mesh \"X\" primitive 0 TEXCOORD_2: it is missing");
+        .dropped("mesh \"X\" primitive 0 TEXCOORD_2: it is missing");
     for (values, sentence) in [
         (
             [0.0, 0.0, f32::NAN, 0.0, 1.0, 1.0, 0.0, 1.0],
@@ -483,7 +498,7 @@ fn coordinates_that_do_not_fit_are_refused_by_name() {
         ),
         (
             [0.0, 0.0, 1e6, 0.0, 1.0, 1.0, 0.0, 1.0],
-            "vertex 1 has the image coordinates 1000000 0; allowed: magnitudes up to 65536",
+            "vertex 1 has the image coordinates 1000000 0; allowed: magnitudes up to 65536; the texture is left out",
         ),
     ] {
         let mut model = Model::textured();
@@ -493,7 +508,7 @@ fn coordinates_that_do_not_fit_are_refused_by_name() {
                 "/meshes/0/primitives/0/attributes/TEXCOORD_0",
                 json!(texcoords),
             )
-            .refused(&format!("{place}{sentence}"));
+            .left_out(&format!("{place}{sentence}"));
     }
     let mut short = Model::textured();
     let texcoords = short.accessor(&le_floats(&[0.0; 6]), F32, "VEC2", 3);
@@ -502,13 +517,13 @@ fn coordinates_that_do_not_fit_are_refused_by_name() {
             "/meshes/0/primitives/0/attributes/TEXCOORD_0",
             json!(texcoords),
         )
-        .refused("accessor 3 has 3 elements, but the primitive has 4 vertices");
+        .dropped("accessor 3 has 3 elements, but the primitive has 4 vertices");
     Model::textured()
         .with("/accessors/1/type", json!("SCALAR"))
-        .refused(place);
+        .dropped(place);
     Model::textured()
         .with("/accessors/1/componentType", json!(U16))
-        .refused(place);
+        .dropped(place);
 }
 
 #[test]

@@ -7,6 +7,7 @@ mod compressed;
 mod corpus;
 mod files;
 mod hostile;
+mod kinds;
 mod materials;
 mod model;
 mod motion;

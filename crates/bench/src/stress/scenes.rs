@@ -150,6 +150,7 @@ pub fn scene_of_meshes(meshes: &[SimpleMesh]) -> Arc<Scene> {
             material,
             bounds,
             longest_edge,
+            is_faceted: false,
             normals_agree: false,
             deformation: Default::default(),
         });

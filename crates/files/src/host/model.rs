@@ -13,6 +13,7 @@ use std::{
 };
 
 use crate::{
+    params::legible_line,
     scene::{
         Scene,
         gltf::{self, LoadError, PART_BYTES, Source, limits::Limits, reserve},
@@ -21,7 +22,7 @@ use crate::{
     work::checkpoint,
 };
 
-/// Loads a `.gltf` or `.glb` file within the memory budget of the process. Only files in its folder
+/// Loads a `.gltf`, `.glb` or `.vrm` file within the memory budget of the process. Only files in its folder
 /// and below are read.
 ///
 /// Within [`Work`](crate::work::Work) it counts its bytes, and unwinds where that was canceled.
@@ -58,7 +59,7 @@ pub fn load_within(path: &Path, budget: MemoryBudget) -> Result<Scene, LoadError
     };
     match load() {
         Ok(scene) => Ok(Scene { name, ..scene }),
-        Err(error) => Err(LoadError::within(error, file)),
+        Err(error) => Err(LoadError::within(error, legible_line(&file))),
     }
 }
 

@@ -28,6 +28,12 @@ pub const MODEL_FORMATS: &[ModelFormat] = &[
         beside: &["bin", "png", "jpg", "jpeg", "ktx2"],
         load: model::load,
     },
+    // A GLB with a person in it.
+    ModelFormat {
+        extension: "vrm",
+        beside: &[],
+        load: model::load,
+    },
 ];
 
 impl ModelFormat {
@@ -39,12 +45,15 @@ impl ModelFormat {
         })
     }
 
-    /// Every extension with its dot, with `between` between them.
-    pub fn names(between: &str) -> String {
-        MODEL_FORMATS
+    /// Every extension with its dot, with commas between them, and `last` before the last.
+    pub fn names(last: &str) -> String {
+        let names: Vec<String> = MODEL_FORMATS
             .iter()
             .map(|format| format!(".{}", format.extension))
-            .collect::<Vec<_>>()
-            .join(between)
+            .collect();
+        match names.split_last() {
+            Some((end, rest)) => format!("{}{last}{end}", rest.join(", ")),
+            None => String::new(),
+        }
     }
 }

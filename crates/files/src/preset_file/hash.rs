@@ -63,6 +63,9 @@ pub fn scene_hash(scene: &Scene) -> Fnv {
                 .for_each(&mut accessor)
         });
         hash = hash.words(&[primitive.topology as u32, primitive.material as u32]);
+        if primitive.is_faceted {
+            hash = hash.words(&[1]);
+        }
     }
     for material in &scene.materials {
         hash = hash

@@ -5,7 +5,6 @@
 //! has it; settings of a preset and accuracy axes wrap the same type. Sliders, preset files,
 //! `--set`, listings, the JSON schema and uniform bytes all read these entries.
 
-mod legible;
 mod measure;
 mod suggest;
 mod value;
@@ -15,7 +14,7 @@ use std::{
     sync::Arc,
 };
 
-pub use legible::{is_hidden, legible, legible_line};
+pub use crate::legible::{is_hidden, legible, legible_line};
 pub use measure::Measure;
 pub use suggest::{did_you_mean, likeness, suggestion};
 pub use value::{Stored, Value, ValueError, ValueType, format_number};

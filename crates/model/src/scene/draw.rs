@@ -34,6 +34,11 @@ pub struct Draw {
     pub double_sided: bool,
     /// The transform mirrors, so front faces have the opposite winding.
     pub mirrored: bool,
+    /// The transform shears, or scales unevenly: it changes the lengths of normals unequally, so
+    /// each gets that of its own back before they are interpolated.
+    pub is_uneven: bool,
+    /// Normals are those of the triangles' planes.
+    pub is_faceted: bool,
     /// What deforms its vertices before they are transformed.
     pub deform: Option<Deform>,
     /// Index of its vertex 0 among the vertices of all draws that can deform.
@@ -60,6 +65,22 @@ impl Draw {
             .as_ref()
             .map_or(primitive.bounds, |deform| deform.bounds(primitive))
     }
+}
+
+/// Does the transform change lengths by different factors in different directions? Differences of
+/// less than a thousandth do not count: they are not seen, and matrices of files are rounded.
+fn is_uneven(m: &DMat4) -> bool {
+    let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|axis| axis.truncate());
+    let mean = (x.length_squared() + y.length_squared() + z.length_squared()) / 3.0;
+    let differences = [
+        x.length_squared() - mean,
+        y.length_squared() - mean,
+        z.length_squared() - mean,
+        x.dot(y),
+        y.dot(z),
+        z.dot(x),
+    ];
+    differences.iter().any(|d| d.abs() > 1e-3 * mean)
 }
 
 /// Why a scene and a viewpoint exceed the arithmetic.
@@ -248,6 +269,8 @@ pub fn scoped_draws(scene: &Scene, view: &View, scopes: &[Scope]) -> Result<Vec<
             double_sided: scene.materials[primitive.material].double_sided || view.is_light(),
             mirrored: (world_from_object.determinant() < 0.0)
                 != deform.as_ref().is_some_and(Deform::mirrors),
+            is_uneven: is_uneven(&world_from_object),
+            is_faceted: primitive.is_faceted,
             deform,
             first_deformable,
             scopes: masks.get(index).copied().unwrap_or_default(),

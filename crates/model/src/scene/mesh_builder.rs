@@ -179,6 +179,7 @@ impl MeshBuilder {
             material,
             bounds,
             longest_edge,
+            is_faceted: false,
             normals_agree: false,
             deformation: Default::default(),
         });

@@ -58,6 +58,9 @@ pub struct Primitive {
     pub positions: Accessor,
     /// Object space, three components. Not necessarily unit vectors.
     pub normals: Accessor,
+    /// Light falls on the planes of its triangles, deformed as they are; its normals only lead
+    /// vertex effects.
+    pub is_faceted: bool,
     /// Linear RGB or RGBA, three or four components.
     pub colors: Option<Accessor>,
     /// Texture coordinates of the base color and of the emission, two components each. Present

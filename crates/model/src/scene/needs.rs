@@ -141,7 +141,9 @@ impl Needs {
             },
             normals_agree: draws.iter().all(|draw| draw.deform.is_none())
                 && drawn().all(|p| p.normals_agree)
-                && draws.iter().all(keeps_normals),
+                && draws
+                    .iter()
+                    .all(|draw| keeps_normals(draw) && !draw.is_uneven && !draw.is_faceted),
             perspective: view.linear_depth_m.is_none(),
             clipping: largest_px.is_infinite(),
             largest_px,

@@ -136,6 +136,7 @@ impl Scene {
             bounds: particle_settings.disc_bounds(),
             longest_edge: 2.0 * 3f64.sqrt() * particle_settings.radius_m * (1.0 + 1e-5)
                 + 1e-5 * particle_settings.disc_bounds().radius(),
+            is_faceted: false,
             normals_agree: true,
             deformation: Deformation::default(),
         });

@@ -83,6 +83,23 @@ impl Default for Trs {
     }
 }
 
+impl Trs {
+    /// The parts of a matrix that has no others: no shear, and no axis of length 0.
+    pub fn of(matrix: &DMat4) -> Option<Self> {
+        let (scale, rotation, translation) = matrix.to_scale_rotation_translation();
+        let parts = Self {
+            translation,
+            rotation,
+            scale,
+        };
+        let size = scale.abs().max_element();
+        let is_same = LocalTransform::Trs(parts)
+            .matrix()
+            .abs_diff_eq(*matrix, 1e-4 * size.max(1e-30));
+        (is_same && scale.is_finite() && rotation.is_normalized()).then_some(parts)
+    }
+}
+
 impl LocalTransform {
     /// The transform as a matrix.
     pub fn matrix(&self) -> DMat4 {

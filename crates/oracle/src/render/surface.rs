@@ -8,7 +8,7 @@ use super::{
     super::{
         arithmetic::{
             bits,
-            vector::{DEGENERATE, plane_normal},
+            vector::{DEGENERATE, direction, plane_normal},
         },
         perturbation::Perturbation,
         shot::Shot,
@@ -227,7 +227,11 @@ impl<'a> SurfaceTriangle<'a> {
             positions: object.map(|position| draw.world_from_object.transform_point3(position)),
             colors: vertices.map(color),
             material: TriangleMaterial::of(scene, primitive, vertices),
-            normals: n0.zip(n1).zip(n2).map(|((n0, n1), n2)| [n0, n1, n2]),
+            normals: n0
+                .zip(n1)
+                .zip(n2)
+                .filter(|_| !draw.is_faceted)
+                .map(|((n0, n1), n2)| [n0, n1, n2]),
             world_from_normal,
             flat_normal: plane_normal(object)
                 .and_then(|normal| (world_from_normal * normal).try_normalize()),
@@ -238,6 +242,12 @@ impl<'a> SurfaceTriangle<'a> {
                 .then_some((records, stack.point_radius().into())),
             is_deformed: false,
         };
+        if draw.is_uneven {
+            // Each normal as long in the world as in object space.
+            let even = |normal: DVec3| direction(world_from_normal * normal) * normal.length();
+            triangle.normals = triangle.normals.map(|normals| normals.map(even));
+            triangle.world_from_normal = DMat3::IDENTITY;
+        }
         if evaluator.moves {
             triangle.apply_vertex_effects(&evaluator, corners, side);
         }
@@ -280,8 +290,7 @@ impl<'a> SurfaceTriangle<'a> {
         if has_new_normals && self.normals.is_some() {
             // The lengths of the file's normals weigh them in interpolation, so they are kept.
             self.normals = Some(
-                [0, 1, 2]
-                    .map(|k| moved[k].normal * evaluator.world_normal(corners[k].vertex).length()),
+                [0, 1, 2].map(|k| moved[k].normal * evaluator.normal_weight(corners[k].vertex)),
             );
             self.world_from_normal = DMat3::from_diagonal(DVec3::splat(side));
         }
@@ -446,7 +455,8 @@ impl<'a> SurfaceTriangle<'a> {
 
     /// Where a sample with this surface lies, for a light.
     pub fn lit_point(&self, surface: &Surface) -> LitPoint {
-        let on_ray = surface.position;
+        // From the eye: not moved by the rounding of the place in the world.
+        let on_ray = on_ray(self.view, surface.screen, surface.depth_m);
         let on_triangle = match self.shape {
             Shape::Triangles => {
                 let point = SamplePoint {

@@ -214,6 +214,16 @@ impl<'a> VertexEvaluator<'a> {
     pub fn world_normal(&self, vertex: u32) -> DVec3 {
         self.world_from_normal * deform::normal(self.scene, self.draw, vertex).unwrap_or_default()
     }
+
+    /// The length by which the normal of a vertex is weighed in interpolation.
+    pub fn normal_weight(&self, vertex: u32) -> f64 {
+        if self.draw.is_uneven {
+            let stored = deform::normal(self.scene, self.draw, vertex);
+            stored.unwrap_or_default().length()
+        } else {
+            self.world_normal(vertex).length()
+        }
+    }
 }
 
 /// Which sum of a matrix product's terms is meant.

@@ -142,14 +142,15 @@ impl Weights {
         p.dot(side) <= error(p, 8.0 * ROUNDING * p.abs())
     }
 
-    /// Bound of the error in f32 of a sample's position in meters. Weights of small triangles err
-    /// by 9 steps of 2^-23, those of large ones by 15, and the point on the ray by a few more;
+    /// Bound of the error in f32 of a sample's position relative to the eye, in meters. Weights of
+    /// small triangles err by 9 steps of 2^-23, those of large ones by 15, and the point on the ray
+    /// by a few more;
     /// on a clipped triangle the error is 2^-15 of the distance.
     pub fn position_error_m(&self, view: &View, position: DVec3) -> f64 {
-        let (from_eye, from_origin) = ((position - view.eye).length(), view.eye.length());
+        let from_eye = (position - view.eye).length();
         match self {
-            Self::Snapped(_) => (24.0 * from_eye + 4.0 * from_origin) * ROUNDING,
-            Self::Homogeneous { .. } => (from_eye + from_origin) / f64::from(1 << 15),
+            Self::Snapped(_) => 24.0 * from_eye * ROUNDING,
+            Self::Homogeneous { .. } => from_eye / f64::from(1 << 15),
         }
     }
 

@@ -3,14 +3,13 @@
 
 use std::{borrow::Cow, collections::HashMap, ops::Range};
 
-use gltf::json::{self, validation::Checked};
-
 use super::{
-    compression::{Compression, DecodedViews},
-    document,
-    element::{component_of, lanes_of},
+    compression::DecodedData,
+    document::{self, Document, Sparse},
     error::{LoadError, ReadFile},
     limits::Limits,
+    notes::Notes,
+    other_file,
     source::{Bytes, PART_BYTES, reserve},
     uri,
 };
@@ -26,12 +25,18 @@ use crate::{
 /// All buffers.
 pub struct Buffers<'a> {
     /// The parsed JSON.
-    pub root: &'a json::Root,
-    bytes: Vec<Bytes<'a>>,
-    /// The buffer views that were compressed.
-    decoded: DecodedViews,
+    pub document: &'a Document,
+    /// Messages to the user.
+    pub notes: &'a Notes,
+    /// The bytes of each buffer, or why there are none.
+    bytes: Vec<Result<Bytes<'a>, String>>,
+    /// What was compressed.
+    decoded: DecodedData,
     /// What the model may have.
     pub limits: Limits,
+    /// What its images may have once they are decoded: they are compressed too well for their
+    /// bytes to tell.
+    pub image_limits: Limits,
     /// Bytes that the model may still read from files.
     pub left: u64,
 }
@@ -41,153 +46,186 @@ pub struct Buffers<'a> {
 pub struct Layout {
     /// `offset` counts from the first byte of its buffer view.
     pub accessor: Accessor,
-    /// The buffer view. `None`: all elements are zero except sparse ones.
-    pub view: Option<usize>,
-    /// Some elements are replaced by sparse values.
-    pub is_sparse: bool,
+    /// Where its elements lie. `None`: all elements are zero except sparse ones.
+    pub view: Option<Source>,
+    /// Elements cannot be read where they lie: some are replaced by sparse values, or lie at
+    /// places that their type does not allow.
+    is_packed: bool,
 }
 
 impl<'a> Buffers<'a> {
     /// Reads every buffer, and decodes what is compressed. A buffer without a URI is the binary
-    /// chunk of a GLB, or has no bytes because all its views are compressed. `file` is the size
-    /// of the model file.
+    /// chunk of a GLB, or has no bytes because all its views are compressed. What cannot be read
+    /// costs only the parts that use it. `file` is the size of the model file.
+    ///
+    /// # Errors
+    /// The files together exceed their limit, or loading was canceled.
     pub fn read(
-        root: &'a mut json::Root,
+        document: &'a Document,
         mut binary: Option<Bytes<'a>>,
-        compression: &Compression,
         (file, budget): (u64, MemoryBudget),
         read: &mut ReadFile,
+        notes: &'a Notes,
     ) -> Result<Self, LoadError> {
         let limits = Limits::of_files(budget);
         let mut left = limits.total_bytes;
-        let mut bytes = Vec::with_capacity(root.buffers.len());
-        for (index, buffer) in root.buffers.iter().enumerate() {
-            if buffer.uri.is_none() && compression.is_fallback(index) {
-                bytes.push(Bytes::Memory(Cow::Borrowed(&[])));
-                continue;
-            }
-            let content = match (&buffer.uri, binary.take().filter(|_| index == 0)) {
-                (Some(uri), _) => uri::resolve(uri, left.min(limits.file_bytes), read)
-                    .map(|bytes| Bytes::Memory(Cow::Owned(bytes))),
-                (None, Some(binary)) => Ok(binary),
-                (None, None) => Err(LoadError::new(
-                    "it has no URI, and the file has no binary chunk for it",
-                )),
+        let mut bytes = Vec::with_capacity(document.buffers.len());
+        for (index, buffer) in document.buffers.iter().enumerate() {
+            let binary = binary.take().filter(|_| index == 0);
+            let content = match buffer {
+                Err(reason) => Err(LoadError::new(reason)),
+                Ok(buffer) => match (&buffer.uri, binary) {
+                    (Some(uri), _) => uri::resolve(uri, left.min(limits.file_bytes), read)
+                        .map(|bytes| Bytes::Memory(Cow::Owned(bytes))),
+                    (None, Some(binary)) => Ok(binary),
+                    (None, None) if buffer.is_fallback => Ok(Bytes::Memory(Cow::Borrowed(&[]))),
+                    (None, None) => Err(LoadError::new(
+                        "it has no URI, and the file has no binary chunk for it",
+                    )),
+                },
             };
-            let content = content.map_err(|error| error.within(format!("buffer {index}")))?;
-            if buffer.byte_length.0 > content.len() {
-                let reason = format!(
-                    "byteLength is {}, but the buffer has only {} bytes",
-                    buffer.byte_length.0,
-                    content.len()
-                );
-                return Err(LoadError::new(reason).within(format!("buffer {index}")));
-            }
-            if matches!(content, Bytes::Memory(Cow::Owned(_))) {
+            let content = match content {
+                Ok(content) => Ok(content),
+                Err(error) => Err(error.within(format_args!("buffer {index}")).of_part()?),
+            };
+            if let Ok(content @ Bytes::Memory(Cow::Owned(_))) = &content {
                 left -= content.len();
             }
             bytes.push(content);
         }
-        let limits = Limits::of_model(budget, file + (limits.total_bytes - left));
-        let decoded = match compression.is_none() {
-            true => DecodedViews::new(),
-            false => compression.decode(
-                root,
-                &bytes
-                    .iter()
-                    .map(Bytes::all)
-                    .collect::<Result<Vec<_>, _>>()?,
-                &limits,
-            )?,
-        };
-        Ok(Self {
-            root,
+        let mut buffers = Self {
+            document,
+            notes,
             bytes,
-            decoded,
-            limits,
+            decoded: DecodedData::default(),
+            limits: Limits::of_model(budget, file + (limits.total_bytes - left)),
+            image_limits: limits,
             left,
-        })
+        };
+        buffers.decoded = DecodedData::of(&buffers)?;
+        Ok(buffers)
     }
 
     /// The bytes of a buffer view. Fails if it does not exist or exceeds its buffer, or cannot be
     /// read.
     pub fn view(&self, index: usize) -> Result<&[u8], LoadError> {
-        if let Some(decoded) = self.decoded.get(&index) {
-            return Ok(decoded);
+        if let Some(decoded) = self.decoded.views.get(&index) {
+            return decoded.as_deref().map_err(LoadError::new);
         }
-        let (buffer, range) = self.range(index)?;
-        Ok(&self.bytes[buffer].all()?[range.start as usize..range.end as usize])
+        let (bytes, range) = self.range(index)?;
+        Ok(&bytes.all()?[range.start as usize..range.end as usize])
+    }
+
+    /// `length` bytes of a buffer, from byte `start`.
+    pub fn part(&self, buffer: usize, start: u64, length: u64) -> Result<&[u8], LoadError> {
+        let bytes = self.buffer(buffer)?.all()?;
+        let end = start
+            .checked_add(length)
+            .filter(|&end| end <= bytes.len() as u64);
+        let part = end.map(|end| &bytes[start as usize..end as usize]);
+        part.ok_or_else(|| {
+            LoadError::new(format!(
+                "{length} bytes from byte {start} exceed buffer {buffer}, which has {} bytes",
+                bytes.len()
+            ))
+        })
+    }
+
+    fn buffer(&self, index: usize) -> Result<&Bytes<'a>, LoadError> {
+        match self.bytes.get(index) {
+            Some(bytes) => bytes.as_ref().map_err(LoadError::new),
+            None => Err(LoadError::new(format!("buffer {index} does not exist"))),
+        }
+    }
+
+    /// The bytes where an accessor's elements lie.
+    fn source(&self, source: Source) -> Result<&[u8], LoadError> {
+        match source {
+            Source::View(index) => self.view(index),
+            Source::Accessor(index) => match self.decoded.accessors.get(&index) {
+                Some(decoded) => decoded.as_deref().map_err(LoadError::new),
+                None => Err(LoadError::new(format!(
+                    "accessor {index} is not compressed"
+                ))),
+            },
+        }
     }
 
     /// Length of a buffer view, which is not read. Fails as [`Self::view`] does.
     pub fn view_length(&self, index: usize) -> Result<u64, LoadError> {
-        match self.decoded.get(&index) {
-            Some(decoded) => Ok(decoded.len() as u64),
+        match self.decoded.views.get(&index) {
+            Some(decoded) => Ok(decoded.as_ref().map_err(LoadError::new)?.len() as u64),
             None => self.range(index).map(|(_, range)| range.end - range.start),
         }
     }
 
     /// The buffer of a view that is not compressed, and the range of its bytes there.
-    fn range(&self, index: usize) -> Result<(usize, Range<u64>), LoadError> {
-        let view = self
-            .root
-            .buffer_views
-            .get(index)
-            .ok_or_else(|| LoadError::new(format!("bufferView {index} does not exist")))?;
-        let (buffer, start) = (view.buffer.value(), view.byte_offset.unwrap_or_default().0);
-        let length = self.root.buffers.get(buffer).map_or(0, |b| b.byte_length.0);
-        let there = self.bytes.get(buffer).map_or(0, Bytes::len);
-        let end = start
-            .checked_add(view.byte_length.0)
-            .filter(|&end| end <= length && end <= there);
+    fn range(&self, index: usize) -> Result<(&Bytes<'a>, Range<u64>), LoadError> {
+        let view = match self.document.views.get(index) {
+            Some(view) => view.as_ref().map_err(|reason| {
+                LoadError::new(reason).within(format_args!("bufferView {index}"))
+            })?,
+            None => return Err(LoadError::new(format!("bufferView {index} does not exist"))),
+        };
+        let (bytes, start) = (self.buffer(view.buffer)?, view.offset);
+        let stated = match &self.document.buffers[view.buffer] {
+            Ok(buffer) => buffer.length,
+            Err(_) => 0,
+        };
+        let there = bytes.len();
+        if stated > there {
+            let what = bytes.all().ok().and_then(other_file::named);
+            self.notes.fault(|| {
+                let what = what.map_or(String::new(), |what| format!("; {what}"));
+                format!(
+                    "buffer {}: byteLength is {stated}, but the buffer has only {there} bytes{what}",
+                    view.buffer
+                )
+            });
+        }
+        let length = stated.min(there);
+        let end = start.checked_add(view.length).filter(|&end| end <= length);
         let end = end.ok_or_else(|| {
             LoadError::new(format!(
-                "bufferView {index} ({} bytes from byte {start}) exceeds buffer {buffer}, which has {length} bytes",
-                view.byte_length.0
+                "bufferView {index} ({} bytes from byte {start}) exceeds buffer {}, which has {length} bytes",
+                view.length, view.buffer
             ))
         })?;
-        Ok((buffer, start..end))
+        Ok((bytes, start..end))
     }
 
-    /// Appends a buffer view at a multiple of 4 bytes and pads to one; returns the offset.
-    fn append_view(&self, index: usize, bytes: &mut Vec<u8>) -> Result<u32, LoadError> {
-        if let Some(decoded) = self.decoded.get(&index) {
-            return append(&self.limits, bytes, decoded);
-        }
-        let (buffer, range) = self.range(index)?;
+    /// Appends what a source holds at a multiple of 4 bytes and pads to one; returns the offset.
+    fn append_source(&self, source: Source, bytes: &mut Vec<u8>) -> Result<u32, LoadError> {
+        let view = match source {
+            Source::View(view) if !self.decoded.views.contains_key(&view) => view,
+            _ => return append(&self.limits, bytes, self.source(source)?),
+        };
+        let (from, range) = self.range(view)?;
         let start = make_room(&self.limits, bytes, (range.end - range.start) as usize)?;
-        self.bytes[buffer].append_to(bytes, range)?;
+        from.append_to(bytes, range)?;
         bytes.resize(bytes.len().next_multiple_of(4), 0);
         Ok(start)
     }
 
     /// Checks an accessor and its buffer view, in 64-bit arithmetic.
     pub fn layout(&self, index: usize) -> Result<Layout, LoadError> {
-        let accessor = self
-            .root
-            .accessors
-            .get(index)
-            .ok_or_else(|| LoadError::new(format!("accessor {index} does not exist")))?;
-        self.checked(accessor)
-            .map_err(|error| error.within(format!("accessor {index}")))
+        let accessor = match self.document.accessors.get(index) {
+            Some(accessor) => accessor.as_ref().map_err(LoadError::new),
+            None => return Err(LoadError::new(format!("accessor {index} does not exist"))),
+        };
+        accessor
+            .and_then(|accessor| self.checked(index, accessor))
+            .map_err(|error| error.within(format_args!("accessor {index}")))
     }
 
-    fn checked(&self, accessor: &json::Accessor) -> Result<Layout, LoadError> {
-        let (Checked::Valid(component_type), Checked::Valid(kind)) =
-            (accessor.component_type, accessor.type_)
-        else {
-            return Err(LoadError::new(
-                "its type or componentType is not one of glTF 2.0",
-            ));
-        };
-        let (component_type, components) = (component_of(component_type.0), lanes_of(kind));
+    fn checked(&self, index: usize, accessor: &document::Accessor) -> Result<Layout, LoadError> {
         let (size, element) = (
-            u64::from(component_type.bytes()),
-            u64::from(component_type.bytes() * components),
+            u64::from(accessor.component_type.bytes()),
+            accessor.element_bytes(),
         );
-        let (count, offset) = (accessor.count.0, accessor.byte_offset.unwrap_or_default().0);
-        // Checked before any allocation: a sparse accessor can claim any count without having
-        // bytes.
+        let (count, mut offset) = (accessor.count, accessor.offset);
+        // Checked before any allocation: an accessor without a view can claim any count without
+        // having bytes.
         if count == 0 {
             return Err(LoadError::new("count is 0; it must be at least 1"));
         }
@@ -196,35 +234,47 @@ impl<'a> Buffers<'a> {
                 .limits
                 .exceeded(format_args!("count is {count}"), 3 * self.limits.triangles));
         }
-        let mut stride = element;
-        if let Some(index) = accessor.buffer_view {
-            let view = &self.root.buffer_views[index.value()];
-            stride = view.byte_stride.map_or(element, |stride| stride.0 as u64);
-            if stride < element || stride % size != 0 {
-                return Err(LoadError::new(format!(
-                    "byteStride is {stride}; it must be a multiple of {size} and at least {element}"
-                )));
+        let (mut stride, mut is_packed) = (element, accessor.sparse.is_some());
+        let view = if self.decoded.accessors.contains_key(&index) {
+            offset = 0;
+            Some(Source::Accessor(index))
+        } else {
+            accessor.view.map(Source::View)
+        };
+        let length = match view {
+            None => None,
+            Some(Source::Accessor(_)) => Some(count * element),
+            Some(Source::View(at)) => {
+                let length = self.view_length(at)?;
+                let from = self.document.views[at].as_ref().ok();
+                stride = from.and_then(|view| view.stride).unwrap_or(element);
+                if stride < element {
+                    return Err(LoadError::new(format!(
+                        "byteStride is {stride}; it must be at least {element}"
+                    )));
+                }
+                let start = from.map_or(0, |view| view.offset).wrapping_add(offset);
+                if offset % size != 0 || start % size != 0 || stride % size != 0 {
+                    self.notes.fault(|| {
+                        format!(
+                            "accessor {index}: byteOffset {offset}, that of its bufferView and byteStride {stride} must be multiples of the component size, {size}; its elements are copied"
+                        )
+                    });
+                    is_packed = true;
+                }
+                Some(length)
             }
-            let start = view.byte_offset.unwrap_or_default().0.checked_add(offset);
-            if offset % size != 0 || start.is_none_or(|start| start % size != 0) {
-                return Err(LoadError::new(format!(
-                    "byteOffset {offset}, added to that of its bufferView, must be a multiple of the component size, {size}"
-                )));
-            }
-            let length = self.view_length(index.value())?;
+        };
+        if let Some(length) = length {
             let end = (count - 1)
                 .checked_mul(stride)
                 .and_then(|last| last.checked_add(offset)?.checked_add(element));
             if end.is_none_or(|end| end > length) {
-                let reason = format!(
-                    "{count} elements of {stride} bytes from byte {offset} exceed bufferView {index}, which has {length} bytes"
-                );
-                return Err(LoadError::new(reason));
+                let from = accessor.view.unwrap_or_default();
+                return Err(LoadError::new(format!(
+                    "{count} elements of {stride} bytes from byte {offset} exceed bufferView {from}, which has {length} bytes"
+                )));
             }
-        } else if accessor.sparse.is_none() {
-            return Err(LoadError::new(
-                "has neither a bufferView nor sparse values; add one of them",
-            ));
         }
         // A sparse accessor may lie in a view that is larger than what 32 bits address; all others
         // are copied with their view.
@@ -233,23 +283,22 @@ impl<'a> Buffers<'a> {
                 "byteOffset {offset} exceeds 32 bits; put the elements into a bufferView of their own"
             )));
         };
-        let accessor_in_view = Accessor {
-            offset,
-            stride,
-            component_type,
-            components,
-            normalized: accessor.normalized,
-            count: count as u32,
-        };
         Ok(Layout {
-            accessor: accessor_in_view,
-            view: accessor.buffer_view.map(|view| view.value()),
-            is_sparse: accessor.sparse.is_some(),
+            accessor: Accessor {
+                offset,
+                stride,
+                component_type: accessor.component_type,
+                components: accessor.components,
+                normalized: accessor.normalized,
+                count: count as u32,
+            },
+            view,
+            is_packed: is_packed || view.is_none(),
         })
     }
 
-    /// The packed elements of an accessor: its buffer view, or zeros, with the sparse values
-    /// applied.
+    /// The packed elements of an accessor: those of its buffer view, or zeros, with the sparse
+    /// values applied.
     pub fn materialized(&self, index: usize, layout: &Layout) -> Result<Vec<u8>, LoadError> {
         let Accessor {
             offset,
@@ -268,41 +317,33 @@ impl<'a> Buffers<'a> {
             ));
         }
         let mut bytes = vec![0; element * count as usize];
-        if let Some(view) = layout.view {
-            let from = self.view(view)?;
+        if let Some(source) = layout.view {
+            let from = self.source(source)?;
             for (i, to) in bytes.chunks_exact_mut(element).enumerate() {
                 let at = offset as usize + i * stride as usize;
                 to.copy_from_slice(&from[at..at + element]);
             }
         }
-        if let Some(sparse) = &self.root.accessors[index].sparse {
+        if let Some(sparse) = self.document.accessors[index]
+            .as_ref()
+            .ok()
+            .and_then(|accessor| accessor.sparse.as_ref())
+        {
             self.overlay(sparse, element, &mut bytes)
-                .map_err(|error| error.within(format!("accessor {index} sparse")))?;
+                .map_err(|error| error.within(format_args!("accessor {index} sparse")))?;
         }
         Ok(bytes)
     }
 
-    fn overlay(
-        &self,
-        sparse: &json::accessor::sparse::Sparse,
-        element: usize,
-        bytes: &mut [u8],
-    ) -> Result<(), LoadError> {
-        let Checked::Valid(json::accessor::IndexComponentType(width)) =
-            sparse.indices.component_type
-        else {
-            return Err(LoadError::new(
-                "the componentType of its indices is not one of glTF 2.0",
-            ));
-        };
-        let (count, width) = (sparse.count.0, component_of(width));
+    fn overlay(&self, sparse: &Sparse, element: usize, bytes: &mut [u8]) -> Result<(), LoadError> {
+        let (count, width) = (sparse.count, sparse.index_type);
         let elements = (bytes.len() / element) as u64;
         if count == 0 || count > elements {
             return Err(LoadError::new(format!(
                 "count is {count}; allowed: 1 to {elements}"
             )));
         }
-        let part = |what: &str, view: usize, offset: u64, size: u64| {
+        let part = |what: &str, (view, offset): (usize, u64), size: u64| {
             let bytes = self.view(view)?;
             let end = offset
                 .checked_add(count * size)
@@ -315,18 +356,8 @@ impl<'a> Buffers<'a> {
                     ))
                 })
         };
-        let indices = part(
-            "indices",
-            sparse.indices.buffer_view.value(),
-            sparse.indices.byte_offset.0,
-            width.bytes().into(),
-        )?;
-        let values = part(
-            "values",
-            sparse.values.buffer_view.value(),
-            sparse.values.byte_offset.0,
-            element as u64,
-        )?;
+        let indices = part("indices", sparse.indices, width.bytes().into())?;
+        let values = part("values", sparse.values, element as u64)?;
         let reader = Accessor {
             offset: 0,
             stride: width.bytes(),
@@ -396,8 +427,10 @@ pub struct SceneWriter<'a> {
 
 /// A source of bytes that several primitives may share.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
-enum Source {
+pub enum Source {
+    /// A buffer view.
     View(usize),
+    /// The packed elements of an accessor.
     Accessor(usize),
 }
 
@@ -405,9 +438,10 @@ impl<'a> SceneWriter<'a> {
     /// Adds to `scene`.
     pub fn new(buffers: &'a Buffers<'a>, scene: Scene) -> Self {
         let is_quantized = buffers
-            .root
+            .document
             .extensions_used
             .iter()
+            .chain(&buffers.document.extensions_required)
             .any(|name| name == document::QUANTIZATION);
         Self {
             buffers,
@@ -454,6 +488,7 @@ impl<'a> SceneWriter<'a> {
             index,
             &mut self.vertex_offsets,
             &mut self.scene.vertex_bytes,
+            false,
         )
     }
 
@@ -468,16 +503,18 @@ impl<'a> SceneWriter<'a> {
         if !is_index {
             return Err(wrong_type(index, &accessor));
         }
-        if accessor.stride != accessor.component_type.bytes() {
-            return Err(LoadError::new(format!(
-                "the bufferView of accessor {index} has a byteStride; indices must not have one"
-            )));
+        let is_apart = accessor.stride != accessor.component_type.bytes();
+        if is_apart {
+            self.buffers.notes.fault(|| {
+                format!("accessor {index}: indices must not have a byteStride; they are copied")
+            });
         }
         copy(
             self.buffers,
             index,
             &mut self.index_offsets,
             &mut self.scene.index_bytes,
+            is_apart,
         )
     }
 
@@ -493,6 +530,13 @@ impl<'a> SceneWriter<'a> {
             .take(count)
             .for_each(|vector| bytes.extend_from_slice(bytemuck::bytes_of(&vector)));
         Ok(Accessor::packed_f32(offset as usize, 3, count))
+    }
+
+    /// Appends coordinates that the file does not have.
+    pub fn append_pairs(&mut self, pairs: &[[f32; 2]]) -> Result<Accessor, LoadError> {
+        let bytes = &mut self.scene.vertex_bytes;
+        let offset = append(&self.buffers.limits, bytes, bytemuck::cast_slice(pairs))?;
+        Ok(Accessor::packed_f32(offset as usize, 2, pairs.len()))
     }
 }
 
@@ -511,17 +555,18 @@ fn wrong_type(index: usize, accessor: &Accessor) -> LoadError {
     ))
 }
 
-/// Copies the buffer view of an accessor, or its sparse elements, unless that was done before.
+/// Copies the buffer view of an accessor, or its packed elements, unless that was done before.
 fn copy(
     buffers: &Buffers,
     index: usize,
     offsets: &mut HashMap<Source, u32>,
     bytes: &mut Vec<u8>,
+    pack: bool,
 ) -> Result<Accessor, LoadError> {
     let layout = buffers.layout(index)?;
     let accessor = layout.accessor;
     let (source, copied) = match layout.view {
-        Some(view) if !layout.is_sparse => (Source::View(view), accessor),
+        Some(source) if !layout.is_packed && !pack => (source, accessor),
         _ => (
             Source::Accessor(index),
             Accessor {
@@ -534,9 +579,11 @@ fn copy(
     let start = match offsets.get(&source) {
         Some(&start) => start,
         None => {
-            let start = match source {
-                Source::View(view) => buffers.append_view(view, bytes)?,
-                Source::Accessor(_) => append(
+            let start = match layout.view {
+                Some(view) if view == source && !layout.is_packed => {
+                    buffers.append_source(source, bytes)?
+                }
+                _ => append(
                     &buffers.limits,
                     bytes,
                     &buffers.materialized(index, &layout)?,

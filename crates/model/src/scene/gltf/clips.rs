@@ -2,40 +2,28 @@
 
 use std::collections::{HashMap, HashSet};
 
-use gltf::json::{
-    self,
-    animation::{Interpolation as Way, Property as Path},
-    validation::Checked,
-};
-
 use super::{
     buffers::Buffers,
-    error::{LoadError, called},
+    document::{self, MIN_QUATERNION_LENGTH},
+    error::{LoadError, called, menu_name},
     limits,
-    nodes::{LENGTH_TOLERANCE, MIN_QUATERNION_LENGTH, Tree, node_name},
-    notes::Notes,
+    nodes::{LENGTH_TOLERANCE, Tree, node_name},
 };
 use crate::scene::{
     accessor::{Accessor, ComponentType},
     rig::{Channel, Clip, Interpolation, LocalTransform, Property, Rig, Sampler},
 };
 
-/// Reads every animation into `rig`, whose nodes must be complete. `notes` receives messages about
-/// repairs.
-pub fn read(
-    buffers: &Buffers,
-    tree: &Tree,
-    rig: &mut Rig,
-    notes: &mut Notes,
-) -> Result<(), LoadError> {
-    let root = buffers.root;
-    let channels: usize = root
-        .animations
-        .iter()
-        .map(|animation| animation.channels.len())
-        .sum();
+/// Reads every animation into `rig`, whose nodes must be complete. A channel that cannot be read is
+/// left out.
+///
+/// # Errors
+/// The clips exceed their limits.
+pub fn read(buffers: &Buffers, tree: &Tree, rig: &mut Rig) -> Result<(), LoadError> {
+    let document = buffers.document;
+    let channels: usize = document.clips.iter().map(|clip| clip.channels.len()).sum();
     if channels > limits::CHANNELS {
-        return Err(LoadError::new(format!(
+        return Err(LoadError::end(format!(
             "the animations have {channels} channels; allowed: at most {}",
             limits::CHANNELS
         )));
@@ -47,34 +35,46 @@ pub fn read(
         numbers: 0,
         not_normalized: 0,
     };
-    for (index, animation) in root.animations.iter().enumerate() {
-        let name = called("clip", index, animation.name.as_deref());
+    for (index, about) in document.clips.iter().enumerate() {
+        let name = called("clip", index, about.name.as_deref());
         let mut clip = Clip {
-            name: name_of(animation, index),
+            name: menu_name("clip", index, about.name.as_deref()),
             duration_s: 0.0,
             channels: Vec::new(),
         };
         let mut taken = HashSet::new();
-        for (in_property, channel) in animation.channels.iter().enumerate() {
-            let at = |error: LoadError| error.within(format!("{name} channel {in_property}"));
-            let channel = reader
-                .channel(tree, index, animation, channel)
-                .map_err(at)?;
-            if !taken.insert((channel.node, channel.property.name())) {
-                return Err(at(LoadError::new(format!(
-                    "another channel already animates the {} of its node; a clip may animate it once",
-                    channel.property.name()
-                ))));
+        for (at, channel) in &about.channels {
+            let place = format!("{name} channel {at}");
+            let channel = match channel {
+                Ok(channel) => reader.channel(tree, index, about, channel, &place),
+                Err(reason) => Err(LoadError::new(reason)),
+            };
+            let channel = channel.and_then(|channel| {
+                match taken.insert((channel.node, channel.property.name())) {
+                    true => Ok(channel),
+                    false => Err(LoadError::new(format!(
+                        "another channel already animates the {} of its node; a clip may animate it once",
+                        channel.property.name()
+                    ))),
+                }
+            });
+            match channel {
+                Ok(channel) => {
+                    let last = reader.rig.samplers[channel.sampler].times.last();
+                    clip.duration_s =
+                        last.map_or(clip.duration_s, |&last| clip.duration_s.max(last.into()));
+                    clip.channels.push(channel);
+                }
+                Err(error) => {
+                    let reason = error.within(place).of_part()?;
+                    buffers.notes.fault(|| format!("{reason}; it is left out"));
+                }
             }
-            let last = reader.rig.samplers[channel.sampler].times.last();
-            clip.duration_s =
-                last.map_or(clip.duration_s, |&last| clip.duration_s.max(last.into()));
-            clip.channels.push(channel);
         }
         reader.rig.clips.push(clip);
     }
     if reader.not_normalized > 0 {
-        notes.add(|| {
+        buffers.notes.fault(|| {
             format!(
                 "{} rotation keyframes are not unit quaternions; they are normalized",
                 reader.not_normalized
@@ -82,22 +82,6 @@ pub fn read(
         });
     }
     Ok(())
-}
-
-/// The name in menus and presets.
-fn name_of(animation: &json::Animation, index: usize) -> String {
-    let name: String = animation
-        .name
-        .iter()
-        .flat_map(|name| name.chars())
-        .filter(|c| !c.is_control())
-        .take(60)
-        .collect();
-    if name.trim().is_empty() {
-        format!("clip {index}")
-    } else {
-        name
-    }
 }
 
 struct Reader<'a> {
@@ -116,29 +100,19 @@ impl Reader<'_> {
         &mut self,
         tree: &Tree,
         clip: usize,
-        from: &json::Animation,
-        channel: &json::animation::Channel,
+        from: &document::Clip,
+        channel: &document::Channel,
+        place: &str,
     ) -> Result<Channel, LoadError> {
-        let (target, at) = (channel.target.node.value(), channel.sampler.value());
-        // The crate `gltf` does not check this index.
-        let node = tree.rig_index.get(target).copied().ok_or_else(|| {
-            LoadError::new(format!("its target is node {target}, which does not exist"))
-        })?;
-        let (property, components) = match channel.target.path {
-            Checked::Valid(Path::Translation) => (Property::Translation, 3),
-            Checked::Valid(Path::Rotation) => (Property::Rotation, 4),
-            Checked::Valid(Path::Scale) => (Property::Scale, 3),
-            Checked::Valid(Path::MorphTargetWeights) => {
-                (Property::Weights, self.rig.nodes[node].weights.len())
-            }
-            Checked::Invalid => {
-                return Err(LoadError::new(
-                    "its target path must be translation, rotation, scale or weights",
-                ));
-            }
+        let (node, property) = (tree.rig_index[channel.node], channel.property);
+        let components = match property {
+            Property::Translation | Property::Scale => 3,
+            Property::Rotation => 4,
+            Property::Weights => self.rig.nodes[node].weights.len(),
         };
-        let name = node_name(self.buffers.root, target);
-        let in_property = |error: LoadError| error.within(format!("{} of {name}", property.name()));
+        let name = node_name(self.buffers.document, channel.node);
+        let in_property =
+            |error: LoadError| error.within(format_args!("{} of {name}", property.name()));
         if property == Property::Weights && components == 0 {
             return Err(in_property(LoadError::new(
                 "the node has no mesh with morph targets",
@@ -148,14 +122,18 @@ impl Reader<'_> {
             && matches!(self.rig.nodes[node].rest, LocalTransform::Matrix(_))
         {
             return Err(in_property(LoadError::new(
-                "the node has a matrix; only a node with translation, rotation and scale can be animated",
+                "the node has a matrix with shear; only a node with translation, rotation and scale can be animated",
             )));
         }
+        let at = channel.sampler;
         let sampler = match self.known.get(&(clip, at, components)) {
             Some(&sampler) => sampler,
             None => {
+                let about = from.samplers[at].as_ref().map_err(|reason| {
+                    LoadError::new(reason).within(format_args!("sampler {at}"))
+                })?;
                 let sampler = self
-                    .sampler(&from.samplers[at], property, components)
+                    .sampler(about, property, components, place)
                     .map_err(in_property)?;
                 self.rig.samplers.push(sampler);
                 self.known
@@ -172,22 +150,19 @@ impl Reader<'_> {
 
     fn sampler(
         &mut self,
-        from: &json::animation::Sampler,
+        from: &document::KeySampler,
         property: Property,
         components: usize,
+        place: &str,
     ) -> Result<Sampler, LoadError> {
-        let (interpolation, parts) = match from.interpolation {
-            Checked::Valid(Way::Step) => (Interpolation::Step, 1),
-            Checked::Valid(Way::Linear) => (Interpolation::Linear, 1),
-            Checked::Valid(Way::CubicSpline) => (Interpolation::Cubic, 3),
-            Checked::Invalid => {
-                return Err(LoadError::new(
-                    "its interpolation must be STEP, LINEAR or CUBICSPLINE",
-                ));
-            }
+        let interpolation = from.interpolation;
+        let parts = if interpolation == Interpolation::Cubic {
+            3
+        } else {
+            1
         };
         let times = self
-            .times(from.input.value())
+            .times(from.times, place)
             .map_err(|error| error.within("input"))?;
         let expected = times.len()
             * parts
@@ -196,8 +171,8 @@ impl Reader<'_> {
             } else {
                 1
             };
-        let values = self
-            .values(from.output.value(), property, expected)
+        let mut values = self
+            .values(from.values, property, expected)
             .map_err(|error| error.within("output"))?;
         if let Some(at) = values.iter().position(|value| !value.is_finite()) {
             return Err(LoadError::new(format!(
@@ -208,7 +183,7 @@ impl Reader<'_> {
             .within("output"));
         }
         if property == Property::Rotation {
-            let keys = values.chunks_exact(4).skip(parts / 2).step_by(parts);
+            let keys = values.chunks_exact_mut(4).skip(parts / 2).step_by(parts);
             for (key, q) in keys.enumerate() {
                 let length = q
                     .iter()
@@ -216,10 +191,11 @@ impl Reader<'_> {
                     .sum::<f64>()
                     .sqrt();
                 if length < MIN_QUATERNION_LENGTH {
-                    return Err(LoadError::new(format!(
-                        "keyframe {key} is a quaternion of length {length:e}; it must be at least {MIN_QUATERNION_LENGTH:e}"
-                    ))
-                    .within("output"));
+                    self.buffers.notes.fault(|| {
+                        format!("{place}: keyframe {key} is a quaternion of length {length:e}; it is read as no rotation")
+                    });
+                    q.copy_from_slice(&[0.0, 0.0, 0.0, 1.0]);
+                    continue;
                 }
                 self.not_normalized += usize::from((length - 1.0).abs() > LENGTH_TOLERANCE);
             }
@@ -232,8 +208,8 @@ impl Reader<'_> {
         })
     }
 
-    /// Keyframe times: finite, not negative and strictly increasing.
-    fn times(&mut self, index: usize) -> Result<Vec<f32>, LoadError> {
+    /// Keyframe times: finite, not negative and not falling. Of equal ones the last is seen.
+    fn times(&mut self, index: usize, place: &str) -> Result<Vec<f32>, LoadError> {
         let about = self.buffers.layout(index)?.accessor;
         if (about.component_type, about.components) != (ComponentType::F32, 1) {
             return Err(LoadError::new("must be SCALAR of FLOAT"));
@@ -245,11 +221,18 @@ impl Reader<'_> {
                     "keyframe {key} has the time {time} s; it must be finite and at least 0"
                 )));
             }
-            if key > 0 && times[key - 1] >= time {
+            let Some(before) = key.checked_sub(1).map(|before| times[before]) else {
+                continue;
+            };
+            if before > time {
                 return Err(LoadError::new(format!(
-                    "keyframe {key} at {time} s follows {} s; times must increase",
-                    times[key - 1]
+                    "keyframe {key} at {time} s follows {before} s; times must increase"
                 )));
+            }
+            if before == time {
+                self.buffers.notes.fault(|| {
+                    format!("{place}: keyframe {key} has the same time as the one before, {time} s; times must increase, and the value jumps there")
+                });
             }
         }
         Ok(times)
@@ -298,7 +281,7 @@ impl Reader<'_> {
         } = layout.accessor;
         self.numbers += (count * components) as usize;
         if self.numbers > limits::KEY_NUMBERS {
-            return Err(LoadError::new(format!(
+            return Err(LoadError::end(format!(
                 "the animations have {} numbers or more; allowed: at most {}",
                 self.numbers,
                 limits::KEY_NUMBERS

@@ -1,11 +1,13 @@
 //! Deformation: the morph targets of primitives, and the joints and weights of skinned ones.
 
-use gltf::json::{self, mesh::Semantic, validation::Checked};
+use std::collections::BTreeMap;
 
 use super::{
     buffers::{FLOAT, Format, SceneWriter},
     checks::check_finite,
+    document::{Document, Primitive},
     error::LoadError,
+    notes::Notes,
     skin,
 };
 use crate::scene::{
@@ -27,95 +29,93 @@ const QUANTIZED_DISPLACEMENTS: &[Format] = &[
 const MAX_INFLUENCE_SETS: u32 = 2;
 
 /// Returns true if the file has animations, skinned meshes or morph targets.
-pub fn has_motion(root: &json::Root) -> bool {
-    let has_targets = |primitive: &json::mesh::Primitive| {
-        primitive
-            .targets
-            .as_ref()
-            .is_some_and(|targets| !targets.is_empty())
-    };
-    let is_skinned = root
+pub fn has_motion(document: &Document) -> bool {
+    let is_skinned = document
         .nodes
         .iter()
         .any(|node| node.skin.is_some() && node.mesh.is_some());
-    !root.animations.is_empty()
-        || is_skinned
-        || root
-            .meshes
-            .iter()
-            .flat_map(|mesh| &mesh.primitives)
-            .any(has_targets)
+    let has_targets = || {
+        let mut primitives = document.meshes.iter().flat_map(|mesh| mesh.sound());
+        primitives.any(|(_, primitive)| !primitive.targets.is_empty())
+    };
+    !document.clips.is_empty() || is_skinned || has_targets()
 }
 
-/// Reads the morph targets of a primitive of `count` vertices. Errors begin as those of attributes
-/// do.
+/// Reads the morph targets of a primitive of `count` vertices, which messages call `name`. What
+/// cannot be read displaces nothing.
+///
+/// # Errors
+/// Loading ends.
 pub fn morph_targets(
     writer: &mut SceneWriter,
-    about: &json::mesh::Primitive,
+    (name, about): (&str, &Primitive),
     count: u32,
+    notes: &Notes,
 ) -> Result<Vec<MorphTarget>, LoadError> {
-    let targets = about.targets.iter().flatten().enumerate();
-    let read = |(index, target)| {
-        morph_target(writer, target, count)
-            .map_err(|error| LoadError(format!(" target {index} {error}")))
-    };
-    targets.map(read).collect()
-}
-
-fn morph_target(
-    writer: &mut SceneWriter,
-    target: &json::mesh::MorphTarget,
-    count: u32,
-) -> Result<MorphTarget, LoadError> {
     let mut read =
-        |index: Option<json::Index<json::Accessor>>, what: &str| -> Result<_, LoadError> {
-            let Some(index) = index else { return Ok(None) };
-            let formats = if writer.is_quantized {
-                QUANTIZED_DISPLACEMENTS
-            } else {
-                FLOAT
+        |target: &BTreeMap<String, usize>, at: usize, what: &str| -> Result<_, LoadError> {
+            let Some(&accessor) = target.get(what) else {
+                return Ok(None);
             };
-            let accessor = writer
-                .attribute(index.value(), count, &[3], formats)
-                .map_err(|error| error.within(what))?;
-            check_finite(&writer.scene, &accessor).map_err(|error| error.within(what))?;
-            Ok(Some(accessor))
+            match displacements(writer, accessor, count) {
+                Ok(accessor) => Ok(Some(accessor)),
+                Err(error) => {
+                    let place = format_args!("{name} target {at} {what}");
+                    let reason = error.within(place).of_part()?;
+                    notes.fault(|| format!("{reason}; it is left out"));
+                    Ok(None)
+                }
+            }
         };
-    let (positions, normals) = (
-        read(target.positions, "POSITION")?,
-        read(target.normals, "NORMAL")?,
-    );
-    let max_displacement = positions.map_or(0.0, |accessor| {
-        let value = |vertex| {
-            [0, 1, 2].map(|component| {
-                accessor
-                    .value(&writer.scene.vertex_bytes, vertex, component)
-                    .abs()
-            })
-        };
+    let mut targets = Vec::with_capacity(about.targets.len());
+    for (at, target) in about.targets.iter().enumerate() {
+        targets.push((read(target, at, "POSITION")?, read(target, at, "NORMAL")?));
+    }
+    let bytes = &writer.scene.vertex_bytes;
+    let largest = |accessor: Accessor| {
+        let value = |vertex| [0, 1, 2].map(|c| accessor.value(bytes, vertex, c).abs());
         (0..count).flat_map(value).fold(0.0, f64::max)
-    });
-    Ok(MorphTarget {
+    };
+    let target = |(positions, normals): (Option<Accessor>, Option<Accessor>)| MorphTarget {
         positions,
         normals,
-        max_displacement,
-    })
+        max_displacement: positions.map_or(0.0, largest),
+    };
+    Ok(targets.into_iter().map(target).collect())
+}
+
+fn displacements(
+    writer: &mut SceneWriter,
+    index: usize,
+    count: u32,
+) -> Result<Accessor, LoadError> {
+    let formats = if writer.is_quantized {
+        QUANTIZED_DISPLACEMENTS
+    } else {
+        FLOAT
+    };
+    let accessor = writer.attribute(index, count, &[3], formats)?;
+    check_finite(&writer.scene, &accessor)?;
+    Ok(accessor)
 }
 
 /// Reads the joints and weights of a primitive that `skin` places, unless that was done before.
-/// Returns messages to the user.
+///
+/// # Errors
+/// They cannot be read, or do not fit the skin.
 pub fn follow_skin(
     writer: &mut SceneWriter,
     primitive: usize,
-    about: &json::mesh::Primitive,
+    about: &Primitive,
     skin: &Skin,
-) -> Result<Vec<String>, LoadError> {
+    notes: &Notes,
+) -> Result<(), LoadError> {
     let joint_count = skin.joints.len();
     let known = &writer.scene.primitives[primitive];
     if !known.deformation.influences.is_empty() {
         let largest = known.deformation.joint_bounds.len().saturating_sub(1);
         return if largest < joint_count {
-            Ok(Vec::new())
+            Ok(())
         } else {
             Err(LoadError::new(format!(
                 "refers to joint {largest}, but the skin has {joint_count} joints"
@@ -124,12 +124,12 @@ pub fn follow_skin(
         };
     }
     let (name, positions) = (known.name.clone(), known.positions);
-    let mut notes = Vec::new();
     let sets = influences(writer, about, positions.count)?;
-    if has_attribute(about, Semantic::Joints(MAX_INFLUENCE_SETS)) {
-        notes.push(format!(
-            "{name}: only the first 8 joints per vertex are used"
-        ));
+    if about
+        .attributes
+        .contains_key(&format!("JOINTS_{MAX_INFLUENCE_SETS}"))
+    {
+        notes.add(|| format!("{name}: only the first 8 joints per vertex are used"));
     }
     let checked = skin::check_influences(&writer.scene, &sets, &positions, joint_count)?;
     for (count, what) in [
@@ -143,38 +143,27 @@ pub fn follow_skin(
         ),
     ] {
         if count > 0 {
-            notes.push(format!("{name}: {count} vertices {what}"));
+            notes.fault(|| format!("{name}: {count} vertices {what}"));
         }
     }
     let deformation = &mut writer.scene.primitives[primitive].deformation;
     (deformation.influences, deformation.joint_bounds) = (sets, checked.joint_bounds);
-    Ok(notes)
-}
-
-fn attribute(about: &json::mesh::Primitive, semantic: Semantic) -> Option<usize> {
-    about
-        .attributes
-        .get(&Checked::Valid(semantic))
-        .map(|accessor| accessor.value())
-}
-
-fn has_attribute(about: &json::mesh::Primitive, semantic: Semantic) -> bool {
-    attribute(about, semantic).is_some()
+    Ok(())
 }
 
 /// Reads all sets of joints and weights, at least one.
 fn influences(
     writer: &mut SceneWriter,
-    about: &json::mesh::Primitive,
+    about: &Primitive,
     count: u32,
 ) -> Result<Vec<Influences>, LoadError> {
     let mut sets = Vec::new();
     for set in 0..=MAX_INFLUENCE_SETS {
         let (joints, weights) = match (
-            attribute(about, Semantic::Joints(set)),
-            attribute(about, Semantic::Weights(set)),
+            about.attributes.get(&format!("JOINTS_{set}")),
+            about.attributes.get(&format!("WEIGHTS_{set}")),
         ) {
-            (Some(joints), Some(weights)) => (joints, weights),
+            (Some(&joints), Some(&weights)) => (joints, weights),
             (None, None) if set > 0 => break,
             _ => {
                 return Err(LoadError::new(format!(

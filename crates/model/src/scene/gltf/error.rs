@@ -2,27 +2,62 @@
 
 use std::{fmt::Display, path::Path};
 
-use crate::{scene::parts::MAX_NAME_CHARS, work::Canceled};
+use crate::{legible::legible_name, scene::parts::MAX_NAME_CHARS, work::Canceled};
 
-/// Why a model cannot be loaded; one sentence.
+/// Why a model, or a part of one, cannot be loaded; one sentence.
 #[derive(Debug, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct LoadError(pub String);
+#[error("{reason}")]
+pub struct LoadError {
+    reason: String,
+    /// Loading ends: a part that is left out does not help.
+    ends: bool,
+}
 
 impl LoadError {
+    /// What is wrong with a file, or with a part that may be left out.
     pub fn new(reason: impl Display) -> Self {
-        Self(reason.to_string())
+        Self {
+            reason: reason.to_string(),
+            ends: false,
+        }
+    }
+
+    /// Why loading ends: a limit, or because nobody waits for it any more.
+    pub(super) fn end(reason: impl Display) -> Self {
+        Self {
+            ends: true,
+            ..Self::new(reason)
+        }
     }
 
     /// Prepends the place of the error.
     pub fn within(self, context: impl Display) -> Self {
-        Self(format!("{context}: {}", self.0))
+        self.after(format_args!("{context}: "))
+    }
+
+    /// Prepends the beginning of the sentence.
+    pub(super) fn after(self, beginning: impl Display) -> Self {
+        Self {
+            reason: format!("{beginning}{}", self.reason),
+            ..self
+        }
+    }
+
+    /// The reason why a part is left out.
+    ///
+    /// # Errors
+    /// Loading ends.
+    pub(super) fn of_part(self) -> Result<String, Self> {
+        match self.ends {
+            true => Err(self),
+            false => Ok(self.reason),
+        }
     }
 }
 
 impl From<Canceled> for LoadError {
     fn from(canceled: Canceled) -> Self {
-        Self::new(canceled)
+        Self::end(canceled)
     }
 }
 
@@ -32,12 +67,16 @@ pub type ReadFile<'a> = dyn FnMut(&Path, u64) -> Result<Vec<u8>, LoadError> + 'a
 
 /// A name from a file, made safe for messages: quoted, escaped and at most 60 characters.
 pub(super) fn quoted(name: &str) -> String {
-    let short: String = name.chars().take(60).collect();
-    if short.len() < name.len() {
-        format!("{:?}", short + "…")
+    let most = 60;
+    let end = if name.chars().nth(most).is_some() {
+        "…"
     } else {
-        format!("{short:?}")
-    }
+        ""
+    };
+    format!(
+        "\"{}{end}\"",
+        legible_name(&name.replace('"', "\\\""), most)
+    )
 }
 
 /// `kind "name"`, or `kind 3` if it has no name.
@@ -49,14 +88,19 @@ pub(super) fn called(kind: &str, index: usize, name: Option<&str>) -> String {
 }
 
 /// The name by which patterns find a part: that of the file, at most [`MAX_NAME_CHARS`] long and
-/// without control characters, or `kind 3`.
+/// with hidden characters written out, or `kind 3`.
 pub(super) fn part_name(kind: &str, index: usize, name: Option<&str>) -> String {
     match name {
-        Some(name) if !name.is_empty() => name
-            .chars()
-            .take(MAX_NAME_CHARS)
-            .map(|c| if c.is_control() { '?' } else { c })
-            .collect(),
+        Some(name) if !name.is_empty() => legible_name(name, MAX_NAME_CHARS),
         _ => format!("{kind} {index}"),
+    }
+}
+
+/// The name of a clip or camera in menus and presets, or `kind 3`.
+pub(super) fn menu_name(kind: &str, index: usize, name: Option<&str>) -> String {
+    let name = legible_name(name.unwrap_or_default(), 60);
+    match name.trim() {
+        "" => format!("{kind} {index}"),
+        _ => name,
     }
 }

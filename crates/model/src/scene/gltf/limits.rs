@@ -14,16 +14,8 @@ pub const JSON_BYTES: u64 = 64 * MIB;
 pub const JSON_OBJECTS: usize = 1_000_000;
 /// Commas of the JSON, which separate its values; each value may need 64 bytes once parsed.
 pub const JSON_VALUES: usize = 10_000_000;
-/// Instances of primitives.
-pub const INSTANCES: usize = 65_536;
-/// Nodes from a root to a leaf.
-pub const NODE_DEPTH: usize = 256;
-/// Joints of a skin.
-pub const JOINTS: usize = 256;
 /// Joints of all skins.
 pub const ALL_JOINTS: usize = 1_000_000;
-/// Morph targets of a mesh.
-pub const MORPH_TARGETS: usize = 256;
 /// Morph weights of all nodes.
 pub const WEIGHTS: usize = 4_000_000;
 /// Channels of all clips.
@@ -32,8 +24,6 @@ pub const CHANNELS: usize = 262_144;
 pub const KEY_NUMBERS: usize = 16_000_000;
 /// Width and height of an image in texels.
 pub const IMAGE_SIDE: u32 = 8192;
-/// Decoded size of all images, without mip levels.
-pub const IMAGES_BYTES: u64 = 512 * MIB;
 /// Messages to the user.
 pub const NOTES: usize = 32;
 
@@ -55,6 +45,8 @@ pub struct Limits {
     pub vertices: u64,
     /// Triangles of all primitives, each counted once however often it is instanced.
     pub triangles: u64,
+    /// Instances of primitives.
+    pub instances: usize,
     /// What to do where a limit is exceeded; nothing where every model has it.
     remedy: Remedy,
 }
@@ -97,13 +89,17 @@ impl Limits {
             buffer_bytes: decoded.clamp(128 * MIB, addressable),
             vertices: (decoded / 12).clamp(4_000_000, draw::MAX_TRIANGLES),
             triangles: (decoded / 6).clamp(10_000_000, draw::MAX_TRIANGLES / 3),
+            // An instance takes some 300 bytes here, and as many where it is drawn.
+            instances: usize::try_from(decoded / 1024)
+                .unwrap_or(usize::MAX)
+                .max(262_144),
             remedy,
         }
     }
 
     /// `what` exceeds `most`, a limit of these.
     pub fn exceeded(&self, what: impl std::fmt::Display, most: u64) -> LoadError {
-        LoadError::new(match self.remedy {
+        LoadError::end(match self.remedy {
             Remedy::Budget(budget) => {
                 format!("{what}; allowed: at most {most} {}", budget.remedy())
             }

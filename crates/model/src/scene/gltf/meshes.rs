@@ -7,19 +7,15 @@ use std::{
 };
 
 use glam::DMat4;
-use gltf::json::{
-    self,
-    mesh::{Mode, Semantic},
-    validation::Checked,
-};
 
 use super::{
-    buffers::{Buffers, FLOAT, FLOAT_OR_UNORM, QUANTIZED, QUANTIZED_NORMALS, SceneWriter},
+    buffers::{Buffers, FLOAT, FLOAT_OR_UNORM, Format, QUANTIZED, QUANTIZED_NORMALS, SceneWriter},
     checks::{check_finite, check_indices, check_repeats, measure, normal, smooth_normals},
     deformation,
+    document::{self, AlphaMode, Document},
     error::{LoadError, called, part_name},
-    limits::{self, Limits},
-    materials,
+    limits::Limits,
+    mask,
     nodes::{Tree, node_name},
 };
 use crate::{
@@ -39,17 +35,19 @@ const STEPS: u64 = 4;
 
 /// Reads meshes into a scene.
 pub struct Loader<'a> {
-    root: &'a json::Root,
+    document: &'a Document,
+    buffers: &'a Buffers<'a>,
     tree: &'a Tree,
     limits: &'a Limits,
     pub writer: SceneWriter<'a>,
-    /// Messages about what was skipped or repaired, each once.
-    pub notes: BTreeSet<String>,
+    /// Why the first primitive that was left out is.
+    pub first_lost: Option<String>,
     /// The JSON of each primitive of the scene.
-    sources: Vec<&'a json::mesh::Primitive>,
+    sources: Vec<&'a document::Primitive>,
     /// Primitives of each mesh that was read.
     meshes: HashMap<usize, Range<usize>>,
-    default_material: Option<usize>,
+    /// Materials that the file does not have as they are drawn: each with what it is made from.
+    variants: HashMap<(Option<usize>, mask::Variant), usize>,
     vertices: u64,
     triangles: u64,
 }
@@ -58,14 +56,15 @@ impl<'a> Loader<'a> {
     /// A loader that adds to `scene`, which must have the file's materials and images.
     pub fn new(buffers: &'a Buffers<'a>, tree: &'a Tree, scene: Scene) -> Self {
         Self {
-            root: buffers.root,
+            document: buffers.document,
+            buffers,
             tree,
             limits: &buffers.limits,
             writer: SceneWriter::new(buffers, scene),
-            notes: BTreeSet::new(),
+            first_lost: None,
             sources: Vec::new(),
             meshes: HashMap::new(),
-            default_material: None,
+            variants: HashMap::new(),
             vertices: 0,
             triangles: 0,
         }
@@ -77,69 +76,56 @@ impl<'a> Loader<'a> {
             .tree
             .shown
             .iter()
-            .filter_map(|&node| Some(self.root.nodes[node].mesh?.value()))
+            .filter_map(|&node| self.document.nodes[node].mesh)
             .collect();
         let primitives = shown
             .iter()
-            .filter_map(|&mesh| self.root.meshes.get(mesh))
-            .flat_map(|mesh| &mesh.primitives);
+            .flat_map(|&mesh| self.document.meshes[mesh].sound());
         checkpoint().expect(
             primitives
-                .map(|primitive| STEPS * self.step_bytes(primitive))
+                .map(|(_, primitive)| STEPS * self.step_bytes(primitive))
                 .sum(),
         );
     }
 
     /// Bytes that count as done after each step of reading a primitive.
-    fn step_bytes(&self, about: &json::mesh::Primitive) -> u64 {
-        let accessors = about
-            .attributes
-            .values()
-            .chain(&about.indices)
-            .filter_map(|accessor| self.root.accessors.get(accessor.value()));
-        let size = |accessor: &json::Accessor| match (accessor.component_type, accessor.type_) {
-            (Checked::Valid(component), Checked::Valid(kind)) => {
-                (component.0.size() * kind.multiplicity()) as u64
-            }
-            _ => 0,
+    fn step_bytes(&self, about: &document::Primitive) -> u64 {
+        let size = |accessor: usize| match &self.document.accessors[accessor] {
+            Ok(accessor) => accessor.count.saturating_mul(accessor.element_bytes()),
+            Err(_) => 0,
         };
-        accessors
-            .fold(0, |sum: u64, accessor| {
-                sum.saturating_add(accessor.count.0.saturating_mul(size(accessor)))
-            })
+        about
+            .accessors()
+            .fold(0, |sum: u64, accessor| sum.saturating_add(size(accessor)))
             .min(1 << 40)
             / STEPS
     }
 
     /// Adds the instances of a node. A skinned mesh ignores the transform of its node: its joints
     /// place it.
+    ///
+    /// # Errors
+    /// Loading ends.
     pub fn add_instances(&mut self, node: usize, rig: &Rig) -> Result<(), LoadError> {
-        let about = &self.root.nodes[node];
-        let Some(mesh) = about.mesh.map(|mesh| mesh.value()) else {
+        let about = &self.document.nodes[node];
+        let Some(mesh) = about.mesh else {
             return Ok(());
         };
         let range = self.mesh(mesh)?;
-        if self.writer.scene.instances.len() + range.len() > limits::INSTANCES {
-            return Err(LoadError::new(format!(
-                "the nodes show more than {} primitives, which is the limit",
-                limits::INSTANCES
-            ))
-            .within(node_name(self.root, node)));
+        let instances = self.writer.scene.instances.len() + range.len();
+        if instances > self.limits.instances {
+            let what = format_args!(
+                "{}: the nodes show {instances} primitives or more",
+                node_name(self.document, node)
+            );
+            return Err(self.limits.exceeded(what, self.limits.instances as u64));
         }
-        let skin = about.skin.map(|skin| skin.value());
         let rig_node = (!rig.is_empty()).then(|| self.tree.rig_index[node]);
         for primitive in range {
-            if let Some(skin) = skin {
-                let follow = deformation::follow_skin(
-                    &mut self.writer,
-                    primitive,
-                    self.sources[primitive],
-                    &rig.skins[skin],
-                );
-                let notes = follow
-                    .map_err(|error| error.within(&self.writer.scene.primitives[primitive].name))?;
-                notes.into_iter().for_each(|note| self.note(|| note));
-            }
+            let skin = match about.skin {
+                Some(skin) => self.followed(primitive, skin, rig)?,
+                None => None,
+            };
             let world_from_object = if skin.is_some() {
                 DMat4::IDENTITY
             } else {
@@ -157,100 +143,104 @@ impl<'a> Loader<'a> {
         Ok(())
     }
 
-    /// Adds a message while there is room for it.
-    fn note(&mut self, message: impl FnOnce() -> String) {
-        if self.notes.len() < limits::NOTES {
-            self.notes.insert(message());
+    /// The skin that moves a primitive; none if it cannot.
+    fn followed(
+        &mut self,
+        primitive: usize,
+        skin: usize,
+        rig: &Rig,
+    ) -> Result<Option<usize>, LoadError> {
+        // What is wrong with a skin without joints was said already.
+        let Some(joints) = rig.skins.get(skin).filter(|skin| !skin.joints.is_empty()) else {
+            return Ok(None);
+        };
+        let notes = self.buffers.notes;
+        let about = self.sources[primitive];
+        match deformation::follow_skin(&mut self.writer, primitive, about, joints, notes) {
+            Ok(()) => Ok(Some(skin)),
+            Err(error) => {
+                let name = &self.writer.scene.primitives[primitive].name;
+                let reason = error.within(name).of_part()?;
+                notes.fault(|| format!("{reason}; it is drawn without its skin"));
+                Ok(None)
+            }
         }
     }
 
-    /// The primitives of a mesh, which is read on its first use.
+    /// The primitives of a mesh, which is read on its first use. What cannot be read is left out.
     fn mesh(&mut self, mesh: usize) -> Result<Range<usize>, LoadError> {
         if let Some(range) = self.meshes.get(&mesh) {
             return Ok(range.clone());
         }
         let first = self.writer.scene.primitives.len();
-        for (index, primitive) in self.root.meshes[mesh].primitives.iter().enumerate() {
-            let name = primitive_name(self.root, mesh, index);
-            let topology = match primitive.mode {
-                Checked::Valid(Mode::Triangles) => Topology::List,
-                Checked::Valid(Mode::TriangleStrip) => Topology::Strip,
-                Checked::Valid(Mode::TriangleFan) => Topology::Fan,
-                _ => {
-                    self.note(|| format!("{name} is skipped: points and lines are not drawn"));
-                    continue;
-                }
+        let about = &self.document.meshes[mesh];
+        let part = part_name("mesh", mesh, about.name.as_deref());
+        for (index, primitive) in about.primitives.iter().enumerate() {
+            let name = format!(
+                "{} primitive {index}",
+                called("mesh", mesh, about.name.as_deref())
+            );
+            let read = match primitive {
+                Ok(primitive) => self.primitive([&name, &part], primitive),
+                Err(reason) => Err(LoadError::new(format_args!(": {reason}"))),
             };
-            let material = primitive
-                .material
-                .map(|material| &self.root.materials[material.value()]);
-            if material.is_some_and(materials::is_invisible) {
-                self.note(|| format!("{name} is skipped: the alpha of its material is below the cutoff everywhere"));
-                continue;
+            if let Err(error) = read {
+                let reason = error.after(&name).of_part()?;
+                self.buffers
+                    .notes
+                    .fault(|| format!("{reason}; it is left out"));
+                self.first_lost.get_or_insert(reason);
             }
-            let part = part_name("mesh", mesh, self.root.meshes[mesh].name.as_deref());
-            self.primitive([&name, &part], topology, primitive)
-                .map_err(|LoadError(reason)| LoadError(format!("{name}{reason}")))?;
         }
         let range = first..self.writer.scene.primitives.len();
         self.meshes.insert(mesh, range.clone());
         Ok(range)
     }
 
-    /// Reads a primitive of the mesh with this name. Errors begin with ` ATTRIBUTE: ` or `: `, to
-    /// follow the primitive's name.
+    /// Reads a primitive of the mesh with this name; nothing where its kind is not drawn. Errors
+    /// begin with ` ATTRIBUTE: ` or `: `, to follow the primitive's name.
     fn primitive(
         &mut self,
         [name, mesh]: [&str; 2],
-        topology: Topology,
-        about: &'a json::mesh::Primitive,
+        about: &'a document::Primitive,
     ) -> Result<(), LoadError> {
-        let attribute = |semantic: Semantic| {
-            about
-                .attributes
-                .get(&Checked::Valid(semantic))
-                .map(|accessor| accessor.value())
+        let notes = self.buffers.notes;
+        let Some(topology) = about.topology else {
+            notes.add(|| format!("{name} is skipped: points and lines are not drawn"));
+            return Ok(());
+        };
+        let Some(&positions) = about.attributes.get("POSITION") else {
+            notes.add(|| format!("{name} is skipped: it has no POSITION"));
+            return Ok(());
         };
         let at = |coordinates: &'static str| {
-            move |error: LoadError| LoadError(format!(" {coordinates}: {error}"))
+            move |error: LoadError| error.after(format_args!(" {coordinates}: "))
         };
-        let plain = |error: LoadError| LoadError(format!(": {error}"));
-        let positions = attribute(Semantic::Positions)
-            .ok_or_else(|| plain(LoadError::new("it has no POSITION attribute")))?;
-        let count = self
-            .writer
-            .accessor(positions)
-            .map_err(at("POSITION"))?
-            .count;
+        let layout = self.writer.accessor(positions).map_err(at("POSITION"))?;
+        let count = layout.count;
         self.budget_vertices(count.into()).map_err(at("POSITION"))?;
-        let [position_formats, normal_formats] = if self.writer.is_quantized {
-            [QUANTIZED, QUANTIZED_NORMALS]
-        } else {
-            [FLOAT; 2]
+        if let Ok(accessor) = &self.document.accessors[positions]
+            && !accessor.has_bounds
+        {
+            notes.fault(|| {
+                format!(
+                    "{name} POSITION: accessor {positions} has no min and max; they are computed"
+                )
+            });
+        }
+        let [position_formats, normal_formats, texcoord_formats] = match self.writer.is_quantized {
+            true => [QUANTIZED, QUANTIZED_NORMALS, QUANTIZED],
+            false => [FLOAT, FLOAT, FLOAT_OR_UNORM],
         };
         let positions = self
             .writer
             .attribute(positions, count, &[3], position_formats)
             .map_err(at("POSITION"))?;
-        let normals = attribute(Semantic::Normals)
-            .map(|a| {
-                self.writer
-                    .attribute(a, count, &[3], normal_formats)
-                    .map_err(at("NORMAL"))
-            })
-            .transpose()?;
-        let colors = attribute(Semantic::Colors(0))
-            .map(|a| {
-                self.writer
-                    .attribute(a, count, &[3, 4], FLOAT_OR_UNORM)
-                    .map_err(at("COLOR_0"))
-            })
-            .transpose()?;
-        let material = self.material(about);
-        let texcoords = self.texcoords(about, material, count)?;
+        let normals = self.optional(name, about, "NORMAL", count, (&[3], normal_formats))?;
+        let colors = self.optional(name, about, "COLOR_0", count, (&[3, 4], FLOAT_OR_UNORM))?;
         let indices = about
             .indices
-            .map(|a| self.writer.indices(a.value()).map_err(at("indices")))
+            .map(|accessor| self.writer.indices(accessor).map_err(at("indices")))
             .transpose()?;
         let corners = indices.map_or(count, |indices| indices.count);
         self.budget_triangles(topology, corners)
@@ -259,7 +249,9 @@ impl<'a> Loader<'a> {
             } else {
                 at("POSITION")
             })?;
-
+        let texcoords = self.texcoords(name, about, count, texcoord_formats)?;
+        let morph_targets =
+            deformation::morph_targets(&mut self.writer, (name, about), count, notes)?;
         let mut primitive = Primitive {
             name: name.into(),
             mesh: mesh.into(),
@@ -267,14 +259,15 @@ impl<'a> Loader<'a> {
             indices,
             positions,
             normals: normals.unwrap_or(positions),
+            is_faceted: normals.is_none(),
             colors,
             texcoords,
-            material,
+            material: 0,
             bounds: Bounds::EMPTY,
             longest_edge: 0.0,
             normals_agree: false,
             deformation: Deformation {
-                morph_targets: deformation::morph_targets(&mut self.writer, about, count)?,
+                morph_targets,
                 ..Deformation::default()
             },
         };
@@ -290,73 +283,157 @@ impl<'a> Loader<'a> {
                 .writer
                 .append_vectors(smooth.len(), smooth.iter().copied().map(normal))
                 .map_err(at("NORMAL"))?;
-        } else {
-            check_finite(&self.writer.scene, &primitive.normals).map_err(at("NORMAL"))?;
         }
         checkpoint.advance(step)?;
-        primitive.normals_agree = primitive.normals_agree(&self.writer.scene)?;
-        if let Some(colors) = &primitive.colors {
-            check_finite(&self.writer.scene, colors).map_err(at("COLOR_0"))?;
-            if colors.components == 4
-                && self.writer.scene.materials[material].alpha_cutoff.is_some()
-            {
-                self.note(|| format!("{name}: alpha masking uses the alpha of the image, not that of the vertex colors"));
-            }
+        primitive.normals_agree =
+            !primitive.is_faceted && primitive.normals_agree(&self.writer.scene)?;
+        if !self.give_material(name, about.material, &mut primitive)? {
+            return Ok(());
         }
         self.writer.scene.primitives.push(primitive);
         self.sources.push(about);
         Ok(())
     }
 
-    fn material(&mut self, about: &json::mesh::Primitive) -> usize {
-        let materials = &mut self.writer.scene.materials;
-        about
-            .material
-            .map(|material| material.value())
-            .unwrap_or_else(|| {
-                *self.default_material.get_or_insert_with(|| {
-                    materials.push(Material::default());
-                    materials.len() - 1
-                })
-            })
+    /// An attribute that a primitive is drawn without where it cannot be read.
+    ///
+    /// # Errors
+    /// Loading ends.
+    fn optional(
+        &mut self,
+        name: &str,
+        about: &document::Primitive,
+        attribute: &str,
+        count: u32,
+        (components, formats): (&[u32], &[Format]),
+    ) -> Result<Option<Accessor>, LoadError> {
+        let Some(&accessor) = about.attributes.get(attribute) else {
+            return Ok(None);
+        };
+        let read = self.writer.attribute(accessor, count, components, formats);
+        let read = read.and_then(|accessor| {
+            check_finite(&self.writer.scene, &accessor)?;
+            Ok(accessor)
+        });
+        match read {
+            Ok(accessor) => Ok(Some(accessor)),
+            Err(error) => {
+                let place = format_args!("{name} {attribute}");
+                let reason = error.within(place).of_part()?;
+                self.buffers
+                    .notes
+                    .fault(|| format!("{reason}; it is left out"));
+                Ok(None)
+            }
+        }
     }
 
-    /// The texture coordinates of a material's textures. Errors begin as those of attributes do.
+    /// The texture coordinates of the textures of a primitive's material, those that can be read.
     fn texcoords(
         &mut self,
-        about: &json::mesh::Primitive,
-        material: usize,
+        name: &str,
+        about: &document::Primitive,
         count: u32,
+        formats: &[Format],
     ) -> Result<[Option<Accessor>; 2], LoadError> {
+        let Some(material) = about.material else {
+            return Ok([None; 2]);
+        };
         let textures = self.writer.scene.materials[material]
             .textures()
             .map(|texture| texture.copied());
         let mut texcoords = [None; 2];
         for (texcoords, texture) in texcoords.iter_mut().zip(textures) {
             let Some(texture) = texture else { continue };
-            let at = |error: LoadError| LoadError(format!(" TEXCOORD_{}: {error}", texture.set));
-            let index = about
-                .attributes
-                .get(&Checked::Valid(Semantic::TexCoords(texture.set)));
-            let index = index.ok_or_else(|| {
-                at(LoadError::new(
-                    "it is missing, although a texture of the material uses it",
-                ))
-            })?;
-            let formats = if self.writer.is_quantized {
-                QUANTIZED
-            } else {
-                FLOAT_OR_UNORM
-            };
-            let accessor = self
-                .writer
-                .attribute(index.value(), count, &[2], formats)
-                .map_err(at)?;
-            check_finite(&self.writer.scene, &accessor).map_err(at)?;
-            check_repeats(&self.writer.scene, &accessor, &texture).map_err(at)?;
-            *texcoords = Some(accessor);
+            let attribute = format!("TEXCOORD_{}", texture.set);
+            if !about.attributes.contains_key(&attribute) {
+                self.buffers.notes.fault(|| {
+                    format!("{name} {attribute}: it is missing, although a texture of the material uses it; the texture is left out")
+                });
+                continue;
+            }
+            let read = self.optional(name, about, &attribute, count, (&[2], formats))?;
+            let Some(accessor) = read else { continue };
+            match check_repeats(&self.writer.scene, &accessor, &texture) {
+                Ok(()) => *texcoords = Some(accessor),
+                Err(error) => {
+                    let place = format_args!("{name} {attribute}");
+                    let reason = error.within(place).of_part()?;
+                    self.buffers
+                        .notes
+                        .add(|| format!("{reason}; the texture is left out"));
+                }
+            }
         }
         Ok(texcoords)
+    }
+
+    /// Gives a primitive its material, without the textures that it has no coordinates for, and
+    /// with the mask that the alpha of its vertices makes. False where masking leaves nothing.
+    fn give_material(
+        &mut self,
+        name: &str,
+        material: Option<usize>,
+        primitive: &mut Primitive,
+    ) -> Result<bool, LoadError> {
+        let about = material.map(|material| &self.document.materials[material]);
+        let mode = about.map_or(AlphaMode::Opaque, |about| about.alpha_mode);
+        let as_read = material.map(|material| {
+            let plain = &self.writer.scene.materials[material];
+            mask::Variant::of_material(plain)
+        });
+        let [base, emission] = [0, 1].map(|k| primitive.texcoords[k].is_some());
+        let mut variant = mask::Variant {
+            base,
+            emission,
+            cutoff: as_read.and_then(|as_read| as_read.cutoff).filter(|_| base),
+            is_ramp: false,
+        };
+        if let (AlphaMode::Mask, Some(about)) = (mode, about) {
+            let alphas = mask::Alphas::of(&self.writer.scene, primitive.colors.as_ref())?;
+            variant.cutoff = None;
+            match mask::masked(about, base, alphas) {
+                mask::Masked::Whole => {}
+                mask::Masked::Nothing => {
+                    self.buffers.notes.add(|| {
+                        format!("{name} is skipped: the alpha of its material is below the cutoff everywhere")
+                    });
+                    return Ok(false);
+                }
+                mask::Masked::Image { cutoff } => variant.cutoff = Some(cutoff.to_bits()),
+                mask::Masked::Ramp { cutoff } => {
+                    variant.cutoff = Some(cutoff.to_bits());
+                    variant.is_ramp = true;
+                    let alphas = mask::ramp_texcoords(&self.writer.scene, primitive);
+                    primitive.texcoords[0] = Some(self.writer.append_pairs(&alphas)?);
+                }
+            }
+            if base && !alphas.is_uniform() {
+                self.buffers.notes.add(|| {
+                    format!("{name}: alpha masking uses the alpha of the image, not that of the vertex colors")
+                });
+            }
+        }
+        // What is drawn is opaque, whatever the alpha of its colors.
+        if let Some(colors) = &mut primitive.colors {
+            colors.components = 3;
+        }
+        primitive.material = match material {
+            Some(material) if as_read == Some(variant) => material,
+            _ => {
+                let scene = &mut self.writer.scene;
+                *self.variants.entry((material, variant)).or_insert_with(|| {
+                    let plain = match material {
+                        Some(material) => scene.materials[material].clone(),
+                        None => Material::default(),
+                    };
+                    let made = variant.made_of(plain, &mut scene.images);
+                    scene.materials.push(made);
+                    scene.materials.len() - 1
+                })
+            }
+        };
+        Ok(true)
     }
 
     fn budget_vertices(&mut self, more: u64) -> Result<(), LoadError> {
@@ -371,16 +448,13 @@ impl<'a> Loader<'a> {
     }
 
     fn budget_triangles(&mut self, topology: Topology, corners: u32) -> Result<(), LoadError> {
-        let (fits, expected) = match topology {
-            Topology::List => (corners.is_multiple_of(3), "a multiple of 3"),
-            Topology::Strip | Topology::Fan => (corners >= 3, "at least 3"),
-        };
-        if !fits {
+        let triangles = topology.triangles(corners);
+        if triangles == 0 {
             return Err(LoadError::new(format!(
-                "{corners} corners do not form whole triangles; their number must be {expected}"
+                "{corners} corners form no triangle; it takes at least 3"
             )));
         }
-        self.triangles += u64::from(topology.triangles(corners));
+        self.triangles += u64::from(triangles);
         match self.triangles > self.limits.triangles {
             true => Err(self.limits.exceeded(
                 format_args!("the model has {} triangles or more", self.triangles),
@@ -389,11 +463,4 @@ impl<'a> Loader<'a> {
             false => Ok(()),
         }
     }
-}
-
-fn primitive_name(root: &json::Root, mesh: usize, primitive: usize) -> String {
-    format!(
-        "{} primitive {primitive}",
-        called("mesh", mesh, root.meshes[mesh].name.as_deref())
-    )
 }

@@ -1,13 +1,13 @@
 //! glTF 2.0 loader for untrusted files.
 //!
-//! The crate `gltf` parses and validates the JSON. Everything else (URIs, buffers, accessors, the
-//! node tree) is checked here in 64-bit arithmetic and against [`limits`] before a byte is read.
-//! Attribute bytes are copied as they are. Every error is one sentence that names the file, the
-//! mesh, the primitive and the accessor.
+//! What the standard calls valid is drawn as far as it is supported. What breaks it is left out, and
+//! the rest is kept, with one sentence that names the part: the mesh, the primitive and the accessor,
+//! for instance. Only what leaves nothing to draw is an error, and what exceeds the [`limits`], which
+//! are checked in 64-bit arithmetic before a byte is read. Attribute bytes are copied as they are.
 //!
 //! Supported: triangle lists, strips and fans, all index widths, interleaved, sparse, quantized and
 //! compressed (Draco, meshopt) accessors, base color and emission with their textures, vertex
-//! colors, the nodes and cameras of the default scene, skins, morph targets and clips. Skipped with
+//! colors, the nodes and cameras of the default scene, skins, morph targets and clips. Left out with
 //! an entry in [`Scene::notes`](crate::scene::Scene::notes): points, lines, normal maps and the
 //! rest of physically based shading.
 
@@ -15,19 +15,20 @@ mod buffers;
 mod checks;
 mod clips;
 mod compression;
+mod container;
 mod deformation;
 mod document;
 mod draco;
-mod element;
 mod error;
 pub mod limits;
 mod load;
+mod mask;
 mod materials;
 mod meshes;
 mod meshopt;
 mod nodes;
 mod notes;
-mod repair;
+mod other_file;
 mod skin;
 mod source;
 mod uri;

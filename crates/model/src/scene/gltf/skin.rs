@@ -2,10 +2,10 @@
 //! vertices.
 
 use glam::DMat4;
-use gltf::json;
 
 use super::{
     buffers::Buffers,
+    document,
     error::{LoadError, called},
     limits,
     nodes::Tree,
@@ -18,50 +18,55 @@ use crate::scene::{
     rig::Skin,
 };
 
-/// Reads every skin of the file.
+/// Reads every skin of the file. One that cannot be read has no joints, and what it should place is
+/// drawn without it.
+///
+/// # Errors
+/// The skins exceed their limits.
 pub fn read_skins(buffers: &Buffers, tree: &Tree) -> Result<Vec<Skin>, LoadError> {
-    let joints: usize = buffers
-        .root
-        .skins
-        .iter()
-        .map(|skin| skin.joints.len())
-        .sum();
+    let skins = &buffers.document.skins;
+    let joints: usize = skins.iter().flatten().map(|skin| skin.joints.len()).sum();
     if joints > limits::ALL_JOINTS {
-        return Err(LoadError::new(format!(
+        return Err(LoadError::end(format!(
             "the skins have {joints} joints; allowed: at most {}",
             limits::ALL_JOINTS
         )));
     }
-    let skin = |(index, skin): (usize, &json::Skin)| {
-        let name = called("skin", index, skin.name.as_deref());
-        read(buffers, tree, skin)
-            .map_err(|error| error.within(&name))
-            .map(|skin| Skin { name, ..skin })
+    let skin = |(index, about): (usize, &document::Part<document::Skin>)| {
+        let (name, skin) = match about {
+            Ok(about) => (
+                called("skin", index, about.name.as_deref()),
+                read(buffers, tree, about),
+            ),
+            Err(reason) => (called("skin", index, None), Err(LoadError::new(reason))),
+        };
+        match skin {
+            Ok(skin) => Ok(Skin { name, ..skin }),
+            Err(error) => {
+                let reason = error.within(&name).of_part()?;
+                buffers
+                    .notes
+                    .fault(|| format!("{reason}; what it should move is drawn without it"));
+                Ok(Skin {
+                    name,
+                    joints: Vec::new(),
+                    joint_from_mesh: Vec::new(),
+                })
+            }
+        }
     };
-    buffers.root.skins.iter().enumerate().map(skin).collect()
+    skins.iter().enumerate().map(skin).collect()
 }
 
-fn read(buffers: &Buffers, tree: &Tree, skin: &json::Skin) -> Result<Skin, LoadError> {
+fn read(buffers: &Buffers, tree: &Tree, skin: &document::Skin) -> Result<Skin, LoadError> {
     let joints = skin.joints.len();
-    if joints == 0 || joints > limits::JOINTS {
-        return Err(LoadError::new(format!(
-            "it has {joints} joints; allowed: 1 to {}",
-            limits::JOINTS
-        )));
-    }
-    let joint_from_mesh = match skin.inverse_bind_matrices {
+    let joint_from_mesh = match skin.inverse_bind {
         None => vec![DMat4::IDENTITY; joints],
-        Some(accessor) => inverse_bind(buffers, accessor.value(), joints)
+        Some(accessor) => inverse_bind(buffers, accessor, joints)
             .map_err(|error| error.within("inverseBindMatrices"))?,
     };
-    let nodes: Vec<usize> = skin
-        .joints
-        .iter()
-        .map(|joint| tree.rig_index[joint.value()])
-        .collect();
-    let position = |(joint, inverse): (&json::Index<json::Node>, &DMat4)| {
-        tree.world_from_node[joint.value()] * *inverse
-    };
+    let nodes = skin.joints.iter().map(|&joint| tree.rig_index[joint]);
+    let position = |(&joint, inverse): (&usize, &DMat4)| tree.world_from_node[joint] * *inverse;
     match skin
         .joints
         .iter()
@@ -73,7 +78,7 @@ fn read(buffers: &Buffers, tree: &Tree, skin: &json::Skin) -> Result<Skin, LoadE
         ))),
         None => Ok(Skin {
             name: String::new(),
-            joints: nodes,
+            joints: nodes.collect(),
             joint_from_mesh,
         }),
     }
@@ -85,11 +90,10 @@ fn inverse_bind(buffers: &Buffers, index: usize, joints: usize) -> Result<Vec<DM
     if about.component_type != ComponentType::F32 || about.components != 16 {
         return Err(LoadError::new("must be MAT4 of FLOAT"));
     }
-    if (about.count as usize) < joints || about.count as usize > limits::JOINTS {
+    if (about.count as usize) < joints {
         return Err(LoadError::new(format!(
-            "it has {} matrices for {joints} joints; it needs one for each and at most {}",
-            about.count,
-            limits::JOINTS
+            "it has {} matrices for {joints} joints; it needs one for each",
+            about.count
         )));
     }
     let bytes = buffers.materialized(index, &layout)?;

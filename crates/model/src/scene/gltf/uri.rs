@@ -1,6 +1,6 @@
 //! URIs: decodes `data:`, passes plain relative paths to the reader, and refuses everything else.
 
-use std::path::{Component, Path, PathBuf};
+use std::path::PathBuf;
 
 use base64::{
     Engine,
@@ -10,20 +10,22 @@ use base64::{
 
 use super::error::{LoadError, ReadFile, quoted};
 
-/// Real files often omit the padding.
+/// Real files often omit the padding, or leave bits in the last character.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
     &STANDARD,
-    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
+    GeneralPurposeConfig::new()
+        .with_decode_padding_mode(DecodePaddingMode::Indifferent)
+        .with_decode_allow_trailing_bits(true),
 );
 
 /// The bytes that `uri` refers to, at most `most`.
 pub fn resolve(uri: &str, most: u64, read: &mut ReadFile) -> Result<Vec<u8>, LoadError> {
-    let bytes = match uri.strip_prefix("data:") {
+    let bytes = match data_of(uri) {
         Some(data) => decode(data)?,
         None => read(&relative(uri)?, most).map_err(|error| error.within(quoted(uri)))?,
     };
     if bytes.len() as u64 > most {
-        return Err(LoadError::new(format!(
+        return Err(LoadError::end(format!(
             "it has {} bytes, but only {most} of the limit for all files of a model are left",
             bytes.len()
         )));
@@ -31,25 +33,48 @@ pub fn resolve(uri: &str, most: u64, read: &mut ReadFile) -> Result<Vec<u8>, Loa
     Ok(bytes)
 }
 
+/// What follows the scheme of a data URI; schemes have no case.
+fn data_of(uri: &str) -> Option<&str> {
+    let (scheme, rest) = uri.trim_start().split_once(':')?;
+    scheme.eq_ignore_ascii_case("data").then_some(rest)
+}
+
 fn decode(data: &str) -> Result<Vec<u8>, LoadError> {
     let (kind, payload) = data
         .split_once(',')
         .ok_or_else(|| LoadError::new("its data URI has no comma"))?;
-    if !kind.ends_with(";base64") {
-        return Err(LoadError::new("its data URI is not base64"));
+    let malformed = || LoadError::new("its data URI is malformed: a % stands before no two digits");
+    let mut bytes = match payload.contains('%') {
+        true => percent_decoded(payload).ok_or_else(malformed)?,
+        false => payload.as_bytes().to_vec(),
+    };
+    if !kind.to_ascii_lowercase().trim_end().ends_with(";base64") {
+        return Ok(bytes);
     }
+    bytes.retain(|byte| !byte.is_ascii_whitespace());
+    // Some writers use the letters of URLs.
+    bytes.iter_mut().for_each(|byte| match byte {
+        b'-' => *byte = b'+',
+        b'_' => *byte = b'/',
+        _ => {}
+    });
     BASE64
-        .decode(payload)
+        .decode(&bytes)
         .map_err(|error| LoadError::new(format!("its data URI is malformed: {error}")))
 }
 
-/// A path inside the model's folder: no scheme, no root and no `..` after percent-decoding.
+/// A path inside the model's folder: no scheme, no root and no `..` that leads out, after
+/// percent-decoding.
 pub fn relative(uri: &str) -> Result<PathBuf, LoadError> {
     let refused = |reason: &str| LoadError::new(format!("URI {} {reason}", quoted(uri)));
-    let decoded = percent_decoded(uri).ok_or_else(|| refused("is not percent-encoded UTF-8"))?;
-    if decoded.contains(['\0', '\\']) {
-        return Err(refused("contains a NUL or a backslash"));
+    let decoded = percent_decoded(uri)
+        .and_then(|bytes| String::from_utf8(bytes).ok())
+        .ok_or_else(|| refused("is not percent-encoded UTF-8"))?;
+    if decoded.contains('\0') {
+        return Err(refused("contains a NUL"));
     }
+    // Writers on Windows leave its separators.
+    let decoded = decoded.replace('\\', "/");
     // A colon before the first slash ends a scheme or a drive letter.
     if decoded
         .split('/')
@@ -60,24 +85,27 @@ pub fn relative(uri: &str) -> Result<PathBuf, LoadError> {
             "has a scheme; only data: URIs and relative paths are supported",
         ));
     }
-    let path = Path::new(&decoded);
-    if !path
-        .components()
-        .all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
-    {
-        return Err(refused(
-            "leads out of the model's folder; copy the file there",
-        ));
+    let leads_out = || refused("leads out of the model's folder; copy the file there");
+    if decoded.starts_with('/') {
+        return Err(leads_out());
     }
-    if path.file_name().is_none() {
-        return Err(refused("names no file"));
+    let mut parts = Vec::new();
+    for part in decoded.split('/') {
+        match part {
+            "" | "." => {}
+            ".." => drop(parts.pop().ok_or_else(leads_out)?),
+            name => parts.push(name),
+        }
     }
-    Ok(path.into())
+    match parts.is_empty() {
+        true => Err(refused("names no file")),
+        false => Ok(parts.iter().collect()),
+    }
 }
 
-fn percent_decoded(uri: &str) -> Option<String> {
-    let mut bytes = Vec::with_capacity(uri.len());
-    let mut rest = uri.bytes();
+fn percent_decoded(text: &str) -> Option<Vec<u8>> {
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut rest = text.bytes();
     while let Some(byte) = rest.next() {
         bytes.push(if byte == b'%' {
             let digit = |byte: Option<u8>| char::from(byte?).to_digit(16);
@@ -86,5 +114,5 @@ fn percent_decoded(uri: &str) -> Option<String> {
             byte
         });
     }
-    String::from_utf8(bytes).ok()
+    Some(bytes)
 }

@@ -6,9 +6,9 @@ const MAX_CHARS: usize = 1000;
 /// is allowed.
 const SHOWN_CHARS: [usize; 2] = [300, 500];
 
-/// A message about a file of anyone, made safe to show: characters that steer a terminal or reorder
-/// text are written as `\u{1b}`, and the middle of a long one is left out. Line breaks stay, for
-/// the line of an effect file that a message shows.
+/// A message about a file of anyone, made safe to show: characters that steer a terminal, reorder
+/// text or cannot be seen are written as `\u{1b}`, and the middle of a long one is left out. Line
+/// breaks stay, for the line of an effect file that a message shows.
 pub fn legible(message: &str) -> String {
     let mut shown = String::with_capacity(message.len());
     for c in message.chars() {
@@ -33,10 +33,41 @@ pub fn legible_line(message: &str) -> String {
     legible(&message.replace('\n', "\\n"))
 }
 
-/// Does the character steer a terminal, or reorder text?
+/// Does the character steer a terminal, reorder text, or take no room?
 pub fn is_hidden(c: char) -> bool {
     c.is_control()
-        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}' | '\u{2029}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+        || matches!(
+            c,
+            '\u{ad}'
+                | '\u{61c}'
+                | '\u{115f}'
+                | '\u{1160}'
+                | '\u{180e}'
+                | '\u{200b}'..='\u{200f}'
+                | '\u{2028}'..='\u{202e}'
+                | '\u{2060}'..='\u{206f}'
+                | '\u{3164}'
+                | '\u{feff}'
+                | '\u{ffa0}'
+                | '\u{fff9}'..='\u{fffb}'
+                | '\u{e0000}'..='\u{e007f}'
+        )
+}
+
+/// At most `most` characters of a name, with those that are [hidden](is_hidden) written out.
+pub fn legible_name(name: &str, most: usize) -> String {
+    let mut shown = String::new();
+    for c in name.chars() {
+        if is_hidden(c) {
+            shown.extend(c.escape_unicode());
+        } else {
+            shown.push(c);
+        }
+        if shown.len() > 4 * most {
+            break;
+        }
+    }
+    shown.chars().take(most).collect()
 }
 
 #[cfg(test)]
@@ -50,6 +81,10 @@ mod tests {
             "a\\u{1b}[2J\\u{202e}b\nc é"
         );
         assert_eq!(legible_line("a\nb"), "a\\nb");
+        assert_eq!(
+            legible_name("Ä\u{2066}\u{200b}b\nc", 22),
+            "Ä\\u{2066}\\u{200b}b\\u{a"
+        );
     }
 
     #[test]
