@@ -356,7 +356,7 @@ fn saving_writes_a_file_that_loads_equal() {
     let Some(mut lab) = lab_in("teapot", Some(folder.path())) else {
         return;
     };
-    click(&mut lab, Role::CheckBox, "facet");
+    add_effect(&mut lab, "facet");
     let rail = slider(&lab, "facet.amount").rect();
     drag(
         &mut lab,
@@ -428,7 +428,7 @@ fn undo_after_saving_is_an_unsaved_change_again() {
     let Some(mut lab) = lab_in(&path.to_string_lossy(), Some(folder.path())) else {
         return;
     };
-    click(&mut lab, Role::CheckBox, "facet");
+    add_effect(&mut lab, "facet");
     press(&mut lab, Modifiers::COMMAND, Key::S);
     assert!(!lab.state().preset_file().is_modified());
     undo(&mut lab);
