@@ -220,11 +220,11 @@ done_step
 begin slider
 # The first slider of the first effect; on a slow adapter the picture is smaller while it moves.
 middle before
-xdotool mousemove $((width - 200)) 141
+xdotool mousemove $((width - 200)) 170
 nap 0.3
 xdotool mousedown 1
 for to in $(seq 198 -2 140); do
-    xdotool mousemove $((width - to)) 141
+    xdotool mousemove $((width - to)) 170
     sleep 0.1
 done
 xdotool mouseup 1

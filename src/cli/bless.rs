@@ -126,8 +126,7 @@ fn named(common: &Common, name: &str) -> Result<(PresetFile, bool), CliError> {
     match common.folders().effects.find(name) {
         Ok(Some(effect)) if is_unknown => Ok((first_preset(effect), true)),
         _ if is_unknown => Err(CliError::usage(format!(
-            "{error}, and {name} is no effect",
-            error = error.sentence()
+            "there is no preset and no effect {name:?}; rasterlab list shows all of them"
         ))),
         _ => Err(error),
     }

@@ -216,7 +216,7 @@ fn an_effect_is_added_by_a_button_with_values_that_show_and_the_folders_are_with
     for effect in ["facet", "toon", "hatch", "outline", "fog", "dissolve"] {
         add_effect(&mut lab, effect);
     }
-    for (title, control) in [("Camera", "Set the camera"), ("Accuracy", "Tier draft")] {
+    for (title, control) in [("Camera", "Frame scene"), ("Accuracy", "Tier draft")] {
         click(&mut lab, Role::Button, &format!("Go to {title}"));
         lab.run_steps(30);
         let at = lab.get_by_role_and_label(Role::Button, control).rect();

@@ -5,7 +5,7 @@ use super::entry::{Choice, Entry, Kind};
 use crate::app::widgets::fuzzy;
 
 /// Most entries that are listed.
-const MAX_LISTED: usize = 60;
+pub const MAX_LISTED: usize = 60;
 /// Most values that are offered for a path that is typed inexactly.
 const MAX_VALUES: usize = 3;
 
@@ -132,7 +132,12 @@ pub fn rank(
     });
     let [whole, rest] =
         [whole, rest].map(|found| found.into_iter().map(|(_, entry)| entry.clone()));
-    whole.chain(values).chain(rest).take(MAX_LISTED).collect()
+    // While nothing is typed, who lists them brings what was used last to the front.
+    let most = match query.trim() {
+        "" => usize::MAX,
+        _ => MAX_LISTED,
+    };
+    whole.chain(values).chain(rest).take(most).collect()
 }
 
 /// The order of entries of the same name.

@@ -84,12 +84,19 @@ impl Row {
 
     /// The row of a setting of the preset.
     pub fn of_setting(setting: &'static Setting, preset: &Preset) -> Self {
-        Self::new(
+        let row = Self::new(
             setting.path(),
             setting.param.clone(),
             setting.is_modified(preset),
             Edited::Setting(setting),
-        )
+        );
+        match row.path == "accuracy.render_scale" {
+            true => Self {
+                label: "AA".into(),
+                ..row
+            },
+            false => row,
+        }
     }
 
     fn new(path: String, param: Param, modified: bool, edited: Edited) -> Self {
@@ -378,7 +385,7 @@ fn hex_ui(ui: &mut Ui, commands: &Commands, row: &Row, components: &[f64]) -> Op
         .id(id)
         .char_limit(9)
         .font(egui::TextStyle::Monospace)
-        .desired_width(76.0f32.min(ui.available_width()));
+        .desired_width(84.0f32.min(ui.available_width()));
     let field = ui
         .add(edit)
         .accessible_name(format!("{} value", row.path))

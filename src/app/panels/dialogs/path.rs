@@ -488,8 +488,15 @@ fn place_cursor(ctx: &egui::Context, id: egui::Id, dialog: &PathDialog) {
 /// The list of recent files and matches. Returns true if a file was taken.
 fn list_ui(ui: &mut Ui, dialog: &mut PathDialog, rows: &[Row], missing: &HashSet<PathBuf>) -> bool {
     let mut taken = None;
-    if let Some(Err(error)) = dialog.listing.as_ref().map(|listing| &listing.entries) {
-        ui.label(theme::weak(error.clone()));
+    match dialog.listing.as_ref() {
+        Some(listing) if dialog.purpose != Purpose::Open && !listing.folder.exists() => {
+            ui.label(theme::weak("This folder is made when you save."));
+        }
+        Some(Listing {
+            entries: Err(error),
+            ..
+        }) => drop(ui.label(theme::weak(error.clone()))),
+        _ => {}
     }
     let frame = egui::Frame::new()
         .fill(theme::well())

@@ -147,7 +147,9 @@ pub fn outside_ui(ui: &mut Ui, preset_file: &PresetFile) -> Option<Choice> {
         Some(_) => "The picture",
         None => "The pasted line",
     };
-    let is_there = model.is_file();
+    // To ask for a file of another machine would already reach it.
+    let text = model.to_string_lossy();
+    let is_there = text.starts_with("\\\\") || text.starts_with("//") || model.is_file();
     ui.label(format!(
         "{what} shows a model {}:",
         match (is_there, &preset_file.path) {
@@ -156,7 +158,7 @@ pub fn outside_ui(ui: &mut Ui, preset_file: &PresetFile) -> Option<Choice> {
             (true, None) => "on this machine",
         }
     ));
-    ui.label(RichText::new(legible_line(&model.to_string_lossy())).monospace());
+    ui.label(RichText::new(legible_line(&text)).monospace());
     if is_there {
         ui.label(theme::weak(
             "Open it if you know the file: it is read, and the files in its folder that it names.",

@@ -70,7 +70,7 @@ pub fn effects_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     drop_ui(ui, commands, &names, &rects, area);
     ui.add_space(theme::HALF);
     let size = vec2(ui.available_width(), theme::ROW + 4.0);
-    let add = ui.add(egui::Button::new("Add effect").min_size(size));
+    let add = ui.add_sized(size, egui::Button::new("Add effect"));
     if add.on_hover_text(Action::AddEffect.hint()).clicked() {
         commands.perform(Action::AddEffect);
     }

@@ -69,8 +69,8 @@ impl Panel for Inspector {
 /// Buttons that lead to the folders, however long the stack is.
 fn leads_ui(ui: &mut Ui) {
     ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 0.0;
-        ui.spacing_mut().button_padding = egui::vec2(5.0, 1.0);
+        ui.spacing_mut().item_spacing.x = 10.0;
+        ui.spacing_mut().button_padding = egui::vec2(0.0, 1.0);
         for title in LEADS {
             let text = egui::RichText::new(title)
                 .size(11.5)
