@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
-
 use super::{
     dots, draw_order,
     effect::{Effect, read},
@@ -154,18 +152,6 @@ impl Stack {
     pub fn shade(&self, surface: Surface, scopes: u32) -> Surface {
         self.each_on(scopes, |hooks| hooks.surface.as_ref())
             .fold(surface, |surface, (apply, words)| apply(surface, words))
-    }
-
-    /// Does the color of a material show through the surface effects, or do they paint over it?
-    /// Tried with a few triangles. Compilers leave out what is painted over.
-    pub fn shows_materials(&self) -> bool {
-        let shaded = |color, triangle| {
-            self.shade(Surface::example(color, triangle), u32::MAX)
-                .color
-        };
-        (0..4).any(|triangle| {
-            shaded(DVec3::splat(0.2), triangle) != shaded(DVec3::splat(0.8), triangle)
-        })
     }
 
     /// Moves a vertex of a draw with these `scopes` by every vertex effect in order.
