@@ -35,7 +35,7 @@ pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit,
     let preset_files = preset_files(common, args, streams)?;
     let bar = streams.progress(preset_files.len() as u64);
     let (mut results, mut changed) = (Vec::new(), false);
-    for (preset_file, is_new) in preset_files {
+    for (preset_file, writes) in preset_files {
         bar.set_message(preset_file.id.clone());
         let golden = golden::draw(&preset_file, &*scene_of(common, &preset_file, streams)?)?;
         let snapshots = args
@@ -43,22 +43,22 @@ pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit,
             .clone()
             .unwrap_or_else(|| golden_folder(&preset_file));
         let change = change(&golden, &snapshots, &preset_file.id);
-        changed |= is_new || change["changes"] == json!(true);
+        changed |= writes.is_some() || change["changes"] == json!(true);
         if !streams.json {
             streams.text(&format!(
                 "{}{}\n",
                 line(&preset_file.id, &change),
-                if is_new {
-                    " (its preset is created, too)"
-                } else {
-                    ""
+                match writes {
+                    Some(Writes::Preset) => " (its preset is created, too)",
+                    Some(Writes::Test) => " (its preset gets a [test] table)",
+                    None => "",
                 }
             ))?;
         }
         if !args.dry_run {
             store(
                 preset_file,
-                is_new,
+                writes,
                 &golden,
                 &snapshots,
                 &common.presets_folder(),
@@ -79,13 +79,22 @@ pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit,
     Ok(Exit::failed_if(args.dry_run && changed))
 }
 
-/// The presets to bless, each with whether it is new: those that are named, or every preset in a
+/// What blessing writes beside a golden.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Writes {
+    /// The first preset of an effect.
+    Preset,
+    /// The table `[test]` of a preset that has none.
+    Test,
+}
+
+/// The presets to bless, each with what is written beside its golden: those that are named, or every preset in a
 /// file that has a golden.
 fn preset_files(
     common: &Common,
     args: &Bless,
     streams: &Streams,
-) -> Result<Vec<(PresetFile, bool)>, CliError> {
+) -> Result<Vec<(PresetFile, Option<Writes>)>, CliError> {
     if !args.all && args.names.is_empty() {
         return Err(CliError::usage("name presets or effects, or use --all"));
     }
@@ -109,14 +118,24 @@ fn preset_files(
     });
     Ok(tested
         .into_iter()
-        .map(|preset_file| (preset_file, false))
+        .map(|preset_file| (preset_file, None))
         .collect())
 }
 
-/// The preset that every command finds under `name`; or the first one of an effect, which is new.
-fn named(common: &Common, name: &str) -> Result<(PresetFile, bool), CliError> {
+/// The preset that every command finds under `name`, whose file gets a table `[test]` if it has
+/// none; or the first one of an effect, which is new.
+fn named(common: &Common, name: &str) -> Result<(PresetFile, Option<Writes>), CliError> {
     let error = match open(common, name) {
-        Ok(preset_file) => return Ok((preset_file.strict()?, false)),
+        Ok(preset_file) => {
+            let mut preset_file = preset_file.strict()?;
+            let is_untested = preset_file.preset.test.is_none()
+                && preset_file.path.is_some()
+                && !preset_file.read_only;
+            if is_untested {
+                preset_file.preset.test = Some(GoldenTest::default());
+            }
+            return Ok((preset_file, is_untested.then_some(Writes::Test)));
+        }
         Err(error) => error,
     };
     let is_unknown = matches!(
@@ -124,7 +143,7 @@ fn named(common: &Common, name: &str) -> Result<(PresetFile, bool), CliError> {
         Some(PresetError::NoPreset { .. })
     );
     match common.folders().effects.find(name) {
-        Ok(Some(effect)) if is_unknown => Ok((first_preset(effect), true)),
+        Ok(Some(effect)) if is_unknown => Ok((first_preset(effect), Some(Writes::Preset))),
         _ if is_unknown => Err(CliError::usage(format!(
             "there is no preset and no effect {name:?}; rasterlab list shows all of them"
         ))),
@@ -151,14 +170,15 @@ fn first_preset(effect: &Arc<Effect>) -> PresetFile {
 
 fn store(
     mut preset_file: PresetFile,
-    is_new: bool,
+    writes: Option<Writes>,
     golden: &Golden,
     snapshots: &Path,
     folder: &Path,
     changes: bool,
 ) -> Result<(), CliError> {
-    if is_new {
-        let path = folder.join(format!("{}.toml", preset_file.id));
+    if writes.is_some() {
+        let own = preset_file.path.clone();
+        let path = own.unwrap_or_else(|| folder.join(format!("{}.toml", preset_file.id)));
         preset_file::save(&mut preset_file, &path)?;
     }
     if changes {

@@ -334,8 +334,22 @@ fn every_button_and_menu_entry_is_in_the_palette() {
     }
     // What belongs to one thing among many is found by the name of that thing.
     let of_one = [
-        "preset ", "effect ", "reset ", "key ", "fold ", "mute ", "apply ", "drag ", "more of ",
-        "keys of ", "tag ", "scene ", "animate ", "parts of ", "more tags", "command palette",
+        "preset ",
+        "effect ",
+        "reset ",
+        "key ",
+        "fold ",
+        "mute ",
+        "apply ",
+        "drag ",
+        "more of ",
+        "keys of ",
+        "tag ",
+        "scene ",
+        "animate ",
+        "parts of ",
+        "more tags",
+        "command palette",
     ];
     // What opens a list whose entries are there, or leads to a place.
     let leads = [

@@ -330,7 +330,8 @@ fn a_picture_of_a_model_opens_where_the_model_is_and_elsewhere_gives_its_look_or
         "{}",
         whole.err
     );
-    let pixels = |name: &str| rasterlab::preset_file::png_pixels(&folder.path().join(name)).unwrap();
+    let pixels =
+        |name: &str| rasterlab::preset_file::png_pixels(&folder.path().join(name)).unwrap();
     assert_eq!(pixels("elsewhere/c.png"), pixels("whole.png"));
     assert_ne!(pixels("elsewhere/c.png"), pixels("look.png"));
     // Nothing is read of a file of the system, or of one on another machine.

@@ -1065,6 +1065,18 @@ fn bless_finds_what_every_command_finds() {
             .out
             .contains("the folder presets here")
     );
+    // A preset without a test gets one in its file, since it was named.
+    fs::write(
+        folder.path().join("bare.toml"),
+        text.replace("[test]\n", ""),
+    )
+    .unwrap();
+    assert_eq!(go(&["bless", "bare.toml"]).code, 0);
+    let tested = rasterlab::preset_file::load_with(
+        &folder.path().join("bare.toml"),
+        &rasterlab::effect_files::Catalog::of_folders([&*folder.path().join("effects")]),
+    );
+    assert!(tested.is_ok_and(|tested| tested.preset.test.is_some()));
     // An effect without a preset gets its first one.
     let blessed = go(&["bless", "ink"]);
     assert_eq!(blessed.code, 0, "{}", blessed.err);
