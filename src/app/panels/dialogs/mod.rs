@@ -39,7 +39,7 @@ use crate::{
 
 /// The dialog that is open.
 enum Dialog {
-    Path(PathDialog),
+    Path(Box<PathDialog>),
     /// Save with muted effects enabled, or without them?
     Muted {
         path: PathBuf,
@@ -120,9 +120,8 @@ impl Dialogs {
                 session.title().to_owned(),
             )
         });
-        self.open = Some(Dialog::Path(
-            PathDialog::new(purpose, text, size).with_own_name(own_name),
-        ));
+        let dialog = PathDialog::new(purpose, text, size).with_own_name(own_name);
+        self.open = Some(Dialog::Path(dialog.into()));
     }
 
     /// Asks whether muted effects are saved to `path` too.
@@ -186,7 +185,7 @@ impl Dialogs {
         let mut dialog =
             kept.unwrap_or_else(|| PathDialog::new(purpose, path.display().to_string(), [1, 1]));
         (dialog.error, dialog.replace) = (Some(reason.to_owned()), None);
-        self.open = Some(Dialog::Path(dialog));
+        self.open = Some(Dialog::Path(dialog.into()));
         true
     }
 
@@ -239,7 +238,7 @@ impl Dialogs {
             }
             (Choice::Accept, Some(Dialog::Path(mut dialog))) => {
                 if dialog.accept(open.path.as_deref(), commands) {
-                    self.saving = Some(dialog).filter(|dialog| dialog.purpose != Purpose::Open);
+                    self.saving = Some(*dialog).filter(|dialog| dialog.purpose != Purpose::Open);
                 } else {
                     self.open = Some(Dialog::Path(dialog));
                 }
