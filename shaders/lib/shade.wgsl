@@ -8,6 +8,7 @@
 //@ use lib/shape
 //@ use lib/surface
 //@ use variants/loads
+//@ use lib/clip_corners
 //@ use variants/vertex_effects
 //@ use steps/shade_step
 
@@ -65,6 +66,9 @@ fn sample_in_shape(e: vec3f, t: Triangle, p: vec2i) -> vec3f {
     return orientation * vec3f(vec3<bool>(corner == 0u, corner == 1u, corner == 2u));
 }
 
+// Bound on the roundings of a determinant, relative to the magnitudes of its terms.
+const SIDE_ERROR = 9.5367431640625e-7; // 2^-20
+
 // Meters of an orthographic depth.
 fn linear_depths(z: vec3f) -> vec3f {
     return z * (frame.linear_depth_m.x - frame.linear_depth_m.y) + frame.linear_depth_m.y;
@@ -72,18 +76,22 @@ fn linear_depths(z: vec3f) -> vec3f {
 
 // A triangle that was clipped has no snapped corners: homogeneous barycentrics (Olano and Greer 1997).
 fn sample_clipped(t: Triangle, at: vec3u, pixel: vec2u) -> SamplePosition {
-    // A loop, because compilers inline the vertex effects wherever they are called.
-    var corners: array<vec4f, 3>;
-    for (var i = 0u; i < 3u; i += 1u) { corners[i] = vertex_effects_clip_of(t.draw, at[i], t.id); }
-    let a = corners[0];
-    let b = corners[1];
-    let c = corners[2];
+    let corners = clip_corners(t.draw, at, t.id);
+    let a = corners.a;
+    let b = corners.b;
+    let c = corners.c;
     let sample = (vec2f(pixel) + 0.5) / vec2f(frame.size);
     let p = vec3f(sample.x * 2.0 - 1.0, 1.0 - sample.y * 2.0, 1.0);
     // Counter-clockwise in clip space, y up, is a positive determinant, whose sign all terms inside have. A snapped clipped
     // triangle may own a sample slightly outside; terms are clamped to 0 there, else their sum could vanish at a horizon.
-    // Of edges, since the products of corners that lie far away cancel to less than their rounding errors.
-    let is_clockwise = dot(a.xyw, cross(b.xyw - a.xyw, c.xyw - a.xyw)) < 0.0;
+    // Of edges, since the products of corners that lie far away cancel to less than their rounding errors. Where the edges' do
+    // too, as on a needle with both ends far away, the sample itself has that sign, and no length that cancels.
+    let ab = b.xyw - a.xyw;
+    let ac = c.xyw - a.xyw;
+    let plane = cross(ab, ac);
+    let determinant = dot(a.xyw, plane);
+    let is_certain = abs(determinant) > SIDE_ERROR * dot(abs(a.xyw), abs(ab.yzx * ac.zxy) + abs(ab.zxy * ac.yzx));
+    let is_clockwise = select(dot(p, plane), determinant, is_certain) < 0.0;
     let lines = mat3x3f(cross(b.xyw, c.xyw), cross(c.xyw, a.xyw), cross(a.xyw, b.xyw));
     let signed = p * lines;
     let terms = max(select(signed, -signed, is_clockwise), vec3f(0.0));

@@ -62,9 +62,22 @@ fn projection_cut(plane: u32, inside: ClipPosition, outside: ClipPosition) -> Cl
     let t = select(0.0, clamp(near / (near - far), 0.0, 1.0), near > far);
     let along = outside - inside;
     var clip = inside + along * t;
-    // On the near plane w equals z, and the one that changes less along the edge is more exact.
-    if plane == VERTEX_NEAR && abs(along.z) < abs(along.w) { clip.w = clip.z; }
+    // On a plane w follows from another coordinate, and the one that changes less along the edge is more exact.
+    if abs(projection_plane_w(plane, along)) < abs(along.w) { clip.w = projection_plane_w(plane, clip); }
     return clip;
+}
+
+// The w of a position on a plane, from the other coordinate that the plane fixes.
+fn projection_plane_w(plane: u32, v: ClipPosition) -> f32 {
+    let guard = f32(SNAP_GUARD_BAND);
+    let center = frame.center;
+    switch plane {
+        case VERTEX_NEAR: { return v.z; }
+        case VERTEX_LEFT: { return -v.x * center.x / (guard + center.x); }
+        case VERTEX_RIGHT: { return v.x * center.x / (guard - center.x); }
+        case VERTEX_TOP: { return v.y * center.y / (guard + center.y); }
+        default: { return -v.y * center.y / (guard - center.y); }
+    }
 }
 
 fn projection_cut_record(clip: ClipPosition, planes: u32) -> vec4u {

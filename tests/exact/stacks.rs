@@ -54,7 +54,7 @@ fn two_effects_in_one_slot_are_refused_by_name() {
 #[test]
 fn a_stack_reads_back_in_its_own_order() {
     for seed in 0..50 {
-        let stack = random::stack(&mut Rng(seed * 77), Values::OfSlider);
+        let stack = random::stack(&mut Rng(seed * 77), seed, Values::OfSlider);
         let text = as_preset(&stack);
         let preset_file =
             preset_file::parse(&text, "random").unwrap_or_else(|error| panic!("{error}\n{text}"));

@@ -15,6 +15,8 @@ pub struct Perturbation {
     pub color_step: f64,
     pub texture: TexturePerturbation,
     pub place: PlacePerturbation,
+    /// The other side of the triangle is seen.
+    pub is_turned: bool,
     pub interpolated: InterpolatedPerturbation,
 }
 

@@ -6,6 +6,8 @@
 //@ use lib/triangle
 //@ use lib/queues
 //@ use lib/queued_triangle
+//@ use lib/shape
+//@ use lib/snap
 //@ use variants/projection
 
 @group(0) @binding(9) var<storage, read_write> clipped_triangles: array<ClippedTriangle>;
@@ -74,6 +76,10 @@ fn emit(polygon: Polygon, t: Triangle) {
     for (var i = 1u; i + 1u < polygon.count; i += 1u) {
         whole = fixed_add(whole, fixed_edge(vertex_at(records[0]), vertex_at(records[i]), vertex_at(records[i + 1u])));
     }
+    if SHAPE == SHAPE_BOXES {
+        emit_box(polygon, t, whole);
+        return;
+    }
     for (var i = 1u; i + 1u < polygon.count; i += 1u) {
         let a = vertex_at(records[0]);
         let b = vertex_at(records[i]);
@@ -83,20 +89,47 @@ fn emit(polygon: Polygon, t: Triangle) {
             atomicAdd(&counters.flipped_clips, 1u);
             continue;
         }
-        if !triangle_is_shown(draws[t.draw].flags, sign > 0) { continue; }
-        let slot = atomicAdd(&counters.clipped_triangles, 1u);
-        if slot >= frame.clipped_triangle_capacity { continue; }
         let is_first = i == 1u && polygon.corners[0].is_edge;
         let is_last = i + 2u == polygon.count && polygon.corners[i + 1u].is_edge;
         let outline = select(0u, 1u, polygon.corners[i].is_edge) | select(0u, 2u, is_last) | select(0u, 4u, is_first);
-        clipped_triangles[slot] = ClippedTriangle(records[0], records[i], records[i + 1u], vec4u(t.id, t.draw, i, outline));
-        let low = min(min(a, b), c);
-        let high = max(max(a, b), c);
-        let pixels = triangle_pixels(low, high);
-        if any(pixels.zw < pixels.xy) { continue; }
-        if max(high.x - low.x, high.y - low.y) > SMALL_EXTENT { queues_push_large(CLIPPED_ENTRY | slot); }
-        else { queues_push_medium(CLIPPED_ENTRY | slot); }
+        emit_triangle(t, records[0], records[i], records[i + 1u], i, outline, sign > 0);
     }
+}
+
+// Queues the bounding box of the polygon, at the depth of its nearest corner, as a triangle that has this box. The boxes of a fan
+// would overlap, and a sample under several would be drawn as often.
+fn emit_box(polygon: Polygon, t: Triangle, whole: Wide) {
+    let sign = fixed_sign(whole);
+    if sign == 0 {
+        atomicAdd(&counters.flipped_clips, 1u);
+        return;
+    }
+    var low = vec2i(0x7fffffff);
+    var high = vec2i(-0x7fffffff);
+    var nearest = vec2u(0u);
+    for (var i = 0u; i < polygon.count; i += 1u) {
+        let corner = record(polygon.corners[i], t);
+        low = min(low, vertex_at(corner));
+        high = max(high, vertex_at(corner));
+        nearest = max(nearest, corner.zw);
+    }
+    let first = snap_pack(low, nearest.x, nearest.y, 0u);
+    let right = snap_pack(vec2i(high.x, low.y), nearest.x, nearest.y, 0u);
+    let below = snap_pack(vec2i(low.x, high.y), nearest.x, nearest.y, 0u);
+    emit_triangle(t, first, select(below, right, sign > 0), select(right, below, sign > 0), 1u, 0u, sign > 0);
+}
+
+fn emit_triangle(t: Triangle, a: vec4u, b: vec4u, c: vec4u, index: u32, outline: u32, is_clockwise: bool) {
+    if !triangle_is_shown(draws[t.draw].flags, is_clockwise) { return; }
+    let slot = atomicAdd(&counters.clipped_triangles, 1u);
+    if slot >= frame.clipped_triangle_capacity { return; }
+    clipped_triangles[slot] = ClippedTriangle(a, b, c, vec4u(t.id, t.draw, index, outline));
+    let low = min(min(vertex_at(a), vertex_at(b)), vertex_at(c));
+    let high = max(max(vertex_at(a), vertex_at(b)), vertex_at(c));
+    let pixels = triangle_pixels(low, high);
+    if any(pixels.zw < pixels.xy) { return; }
+    if max(high.x - low.x, high.y - low.y) > SMALL_EXTENT { queues_push_large(CLIPPED_ENTRY | slot); }
+    else { queues_push_medium(CLIPPED_ENTRY | slot); }
 }
 
 @compute @workgroup_size(64)

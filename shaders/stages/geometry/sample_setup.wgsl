@@ -6,7 +6,7 @@
 //@ use lib/queued_triangle
 //@ use lib/sample
 //@ use lib/sample_setup_write
-//@ use variants/vertex_effects
+//@ use lib/clip_corners
 // What is computed besides the setups of sample effects: alpha_mask where a material has an alpha mask. `at`: vertices of the triangle, or of
 // the parent of a clipped triangle, within the draw.
 //@ steps fn setup_step(t: Triangle, at: vec3u)
@@ -27,10 +27,8 @@ fn sample_setup(
     let at = triangle_vertices(t.draw, t.id - draws[t.draw].first_triangle);
     var center_screen: vec2f;
     if IS_CLIPPED_TRIANGLES {
-        // A loop, because compilers inline the vertex effects wherever they are called.
-        var corners: array<vec4f, 3>;
-        for (var i = 0u; i < 3u; i += 1u) { corners[i] = vertex_effects_clip_of(t.draw, at[i], t.id); }
-        center_screen = center_clipped(corners[0], corners[1], corners[2], vec2f(0.5));
+        let corners = clip_corners(t.draw, at, t.id);
+        center_screen = center_clipped(corners.a, corners.b, corners.c, vec2f(0.5));
     } else {
         if ((t.a.x | t.b.x | t.c.x) & 255u) != 0u { return; }
         center_screen = center_unclipped(t.a, t.b, t.c);
@@ -50,7 +48,7 @@ fn sample_setup(
 //@ use lib/sample_setup
 //@ use lib/sample_setup_write
 //@ use lib/material_atlas
-//@ use variants/vertex_effects
+//@ use lib/clip_corners
 
 // Two records: x and y of three corners, and behind them 1 + the word of the material's record; 0 without a mask.
 fn setup_step_alpha_mask(t: Triangle, at: vec3u) {
@@ -65,11 +63,9 @@ fn setup_step_alpha_mask(t: Triangle, at: vec3u) {
     let c = alpha_mask_corner(material.first_corner + 2u * at.z);
     var corners = array<vec2i, 3>(a, b, c);
     if IS_CLIPPED_TRIANGLES {
-        // A loop, because compilers inline the vertex effects wherever they are called.
-        var v: array<vec3f, 3>;
-        for (var i = 0u; i < 3u; i += 1u) { v[i] = vertex_effects_clip_of(t.draw, at[i], t.id).xyw; }
         // Homogeneous barycentrics in the parent (Olano and Greer 1997).
-        let lines = mat3x3f(cross(v[1], v[2]), cross(v[2], v[0]), cross(v[0], v[1]));
+        let v = clip_corners(t.draw, at, t.id);
+        let lines = mat3x3f(cross(v.b.xyw, v.c.xyw), cross(v.c.xyw, v.a.xyw), cross(v.a.xyw, v.b.xyw));
         corners[0] = a + alpha_mask_offset(lines, vertex_at(t.a), b - a, c - a);
         corners[1] = a + alpha_mask_offset(lines, vertex_at(t.b), b - a, c - a);
         corners[2] = a + alpha_mask_offset(lines, vertex_at(t.c), b - a, c - a);

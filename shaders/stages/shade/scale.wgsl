@@ -45,19 +45,22 @@ fn downscaled(pixel: vec2u) -> ColorSum {
     return sum;
 }
 
-// The four drawn pixels about a shown pixel, weighted bilinearly.
+// The four drawn pixels about a shown pixel, weighted bilinearly. Integers place it among them: where it lies on one, the others
+// weigh exactly nothing, since any weight, however small, would give a transparent pixel their color.
 fn upscaled(pixel: vec2u, size: vec2u) -> ColorSum {
-    let at = (vec2f(pixel) + 0.5) * vec2f(frame.size) / vec2f(size) - 0.5;
-    let first = floor(at);
-    let fraction = at - first;
-    let last = vec2i(frame.size) - 1;
-    let low = vec2u(clamp(vec2i(first), vec2i(0), last));
-    let high = vec2u(clamp(vec2i(first) + 1, vec2i(0), last));
+    let whole = 2u * size;
+    let at = (2u * pixel + 1u) * frame.size + size;
+    let behind = at / whole; // the drawn pixel behind the shown one's middle
+    let rest = at - behind * whole;
+    let low = max(behind, vec2u(1u)) - 1u;
+    let high = min(behind, frame.size - 1u);
+    let near = vec2f(whole - rest) / vec2f(whole);
+    let far = vec2f(rest) / vec2f(whole);
     var sum = ColorSum(vec4f(0.0), vec3f(0.0));
-    sum = color_sum_add(sum, low, (1.0 - fraction.x) * (1.0 - fraction.y));
-    sum = color_sum_add(sum, vec2u(high.x, low.y), fraction.x * (1.0 - fraction.y));
-    sum = color_sum_add(sum, vec2u(low.x, high.y), (1.0 - fraction.x) * fraction.y);
-    return color_sum_add(sum, high, fraction.x * fraction.y);
+    sum = color_sum_add(sum, low, near.x * near.y);
+    sum = color_sum_add(sum, vec2u(high.x, low.y), far.x * near.y);
+    sum = color_sum_add(sum, vec2u(low.x, high.y), near.x * far.y);
+    return color_sum_add(sum, high, far.x * far.y);
 }
 
 @compute @workgroup_size(8, 8)

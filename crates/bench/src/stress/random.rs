@@ -8,11 +8,15 @@ use glam::DVec3;
 use super::scenes::Rng;
 use crate::{
     accuracy::{AXES, Visibility},
-    effects::{EFFECTS, EnabledEffect, Stack},
+    effects::{EFFECTS, Effect, EnabledEffect, Stack},
     math::hash_unit,
     params::{Field, Param, ValueType},
     plan::Tier,
-    preset::{ClipPlayback, Preset, SceneSource, settings::Setting},
+    preset::{
+        ClipPlayback, Preset, SceneSource,
+        animation::{Easing, Keyframe, Track, steps},
+        settings::Setting,
+    },
     scene::{
         Bounds, Ground, GroundShape, Scene,
         builtin::{self, BUILTINS, BuiltinParam},
@@ -20,6 +24,9 @@ use crate::{
         parts::{Scope, parts},
     },
 };
+
+/// Numbers at which formulas change: nothing, hardly anything, and what floats round.
+const SPECIAL: [f64; 6] = [0.0, 1e-38, 1.0 / 3.0, 0.999_999, 1.0, -1.0];
 
 /// Most triangles of a random scene, so that the oracle draws it within about a second.
 const MAX_TRIANGLES: u64 = 20_000;
@@ -81,10 +88,11 @@ impl Rng {
 
     /// A number that the parameter allows.
     fn number(&mut self, param: &Param) -> f64 {
-        match self.between(0, 10) {
+        match self.between(0, 12) {
             0 => self.pick(&param.hard),
             1 => self.magnitude(param.hard),
             2 => self.pick(&param.soft),
+            3 => self.pick(&SPECIAL).clamp(param.hard[0], param.hard[1]),
             _ if param.log => self.magnitude(param.soft),
             _ => self.real(param.soft[0], param.soft[1]),
         }
@@ -118,18 +126,26 @@ fn components(rng: &mut Rng, field: &Field, values: Values) -> Vec<f64> {
         .collect()
 }
 
-/// Up to five effects, at most one in each slot, in random order.
-pub fn stack(rng: &mut Rng, values: Values) -> Stack {
+/// A pair of effects and up to seven more, at most one in each slot, in random order. Pairs come in
+/// turn: as many consecutive seeds as there are pairs have each once.
+pub fn stack(rng: &mut Rng, seed: u32, values: Values) -> Stack {
     let mut stack = Stack::default();
-    for _ in 0..rng.between(1, 6) {
-        let effect = &rng.pick(&EFFECTS);
-        if stack.rival_of(effect).is_some() {
-            continue;
+    let more = (0..rng.between(0, 8)).map(|_| rng.pick(&EFFECTS).clone());
+    for effect in pair(seed).into_iter().chain(more.collect::<Vec<_>>()) {
+        if stack.get(&effect.name).is_none() && stack.rival_of(&effect).is_none() {
+            shake(rng, stack.enable(&effect), values);
         }
-        shake(rng, stack.enable(effect), values);
     }
     rng.shuffle(&mut stack.0);
     stack
+}
+
+/// The pair of effects whose turn it is.
+fn pair(seed: u32) -> [Arc<Effect>; 2] {
+    let pairs = (0..EFFECTS.len()).flat_map(|b| (0..b).map(move |a| [a, b]));
+    let count = EFFECTS.len() * (EFFECTS.len() - 1) / 2;
+    let turn = pairs.into_iter().nth(seed as usize % count);
+    turn.expect("one of the pairs").map(|i| EFFECTS[i].clone())
 }
 
 /// Gives every parameter of an effect a random value.
@@ -142,9 +158,13 @@ pub(super) fn shake(rng: &mut Rng, enabled: &mut EnabledEffect, values: Values) 
     }
 }
 
-/// A value of a built-in scene's parameter: small scenes are likelier than large ones.
+/// A value of a built-in scene's parameter: small scenes are likelier than large ones, and the ends
+/// of its range, if the scene allows them, than any other.
 fn builtin_value(rng: &mut Rng, param: &BuiltinParam) -> f64 {
     let [low, high] = [*param.range.start(), *param.range.end()];
+    if rng.one_in(4) {
+        return rng.pick(&[low, high]);
+    }
     let value = rng.magnitude([
         low,
         if param.whole {
@@ -197,7 +217,7 @@ fn camera_number(rng: &mut Rng, name: &str) -> f64 {
 }
 
 /// A camera from inside the scene to a hundred times its radius away, now and then from much
-/// farther.
+/// farther; and often a few meters from the origin, where scenes that are far larger have details.
 fn camera(rng: &mut Rng, bounds: &Bounds) -> Camera {
     let radius = if bounds.is_empty() {
         1.0
@@ -213,6 +233,11 @@ fn camera(rng: &mut Rng, bounds: &Bounds) -> Camera {
         [2.0, 6.0]
     } else {
         [-2.0, 2.0]
+    };
+    let (radius, center) = if rng.one_in(3) {
+        (radius.min(3.0), DVec3::ZERO)
+    } else {
+        (radius, center)
     };
     let distance = radius * 10f64.powf(rng.real(decades[0], decades[1]));
     let target = center + rng.direction() * rng.real(0.0, radius);
@@ -233,7 +258,11 @@ fn camera(rng: &mut Rng, bounds: &Bounds) -> Camera {
             fov_y_deg: camera_number(rng, "fov_y_deg"),
         }
     };
-    let near_m = (distance * 10f64.powf(rng.real(-6.0, 0.0))).clamp(MIN_NEAR_M, 1e6);
+    let near_m = if rng.one_in(4) {
+        1e-3
+    } else {
+        (distance * 10f64.powf(rng.real(-6.0, 0.0))).clamp(MIN_NEAR_M, 1e6)
+    };
     let within = |point: DVec3| point.clamp(DVec3::splat(-1e9), DVec3::splat(1e9));
     Camera {
         eye: within(target - rng.direction() * distance),
@@ -259,13 +288,17 @@ pub fn preset(seed: u32) -> Preset {
         rng.between(1, MAX_SIDE * 3 / 4 + 1) as u32,
     ];
     preset.output.background = std::array::from_fn(|_| rng.real(0.0, 1.0) as f32);
+    if rng.one_in(2) {
+        // Colors of what cannot be seen must not show.
+        preset.output.background[3] = rng.pick(&[0.0, 1.0]);
+    }
     if seed % 3 == 1 {
         // Not a turn of `rng`, so that seeds keep what else they draw.
         preset.output.background_bottom = Some(std::array::from_fn(|c| {
             hash_unit(seed.wrapping_mul(4).wrapping_add(c as u32)) as f32
         }));
     }
-    preset.stack = stack(rng, Values::Allowed);
+    preset.stack = stack(rng, seed, Values::Allowed);
     if seed % 8 != 3 {
         thin_out(&mut preset.stack, hash_unit(seed));
     }
@@ -307,6 +340,9 @@ pub fn preset(seed: u32) -> Preset {
         preset.polyline = Arc::from(points);
     }
     preset.playback = playback(rng, &scene);
+    if rng.one_in(4) {
+        animate(rng, &mut preset);
+    }
     for axis in AXES {
         if rng.one_in(10) {
             preset
@@ -347,6 +383,41 @@ fn thin_out(stack: &mut Stack, unit: f64) {
             .set(&mut enabled.words, &[MAX_PARTICLES.powf(unit).floor()])
             .expect("a number within the range");
     }
+}
+
+/// Gives one parameter of one effect up to three keyframes about the clock's time.
+fn animate(rng: &mut Rng, preset: &mut Preset) {
+    let animated: Vec<&EnabledEffect> = preset
+        .stack
+        .0
+        .iter()
+        .filter(|enabled| !enabled.effect.fields.is_empty())
+        .collect();
+    if animated.is_empty() {
+        return;
+    }
+    let effect = rng.pick(&animated).effect.clone();
+    let field = rng.pick(&effect.fields);
+    // Particles are drawn from the start of their flight on.
+    if effect.name == "particles" && field.name == "count" {
+        return;
+    }
+    let easing = if steps(&field) {
+        Easing::Hold
+    } else {
+        rng.pick(&Easing::ALL)
+    };
+    let first_s = preset.clock.time_s + rng.real(-2.0, 0.5);
+    let keys = (0..rng.between(1, 4))
+        .map(|i| Keyframe {
+            time_s: first_s + 2.0 * f64::from(i),
+            value: components(rng, &field, Values::Allowed),
+            easing,
+        })
+        .collect();
+    preset
+        .animation
+        .put(Track::new(&effect, &field, keys).expect("values and times that are allowed"));
 }
 
 /// Limits one effect to one part of the scene.
@@ -396,6 +467,30 @@ mod tests {
     fn a_seed_gives_one_preset_and_other_seeds_give_others() {
         assert_eq!(preset(7), preset(7));
         assert_ne!(preset(7), preset(8));
+    }
+
+    #[test]
+    fn every_pair_of_effects_has_its_turn() {
+        let pairs = EFFECTS.len() * (EFFECTS.len() - 1) / 2;
+        let first_seed = 7_000;
+        let presets: Vec<Preset> = (0..pairs as u32).map(|n| preset(first_seed + n)).collect();
+        for (i, a) in EFFECTS.iter().enumerate() {
+            for b in &EFFECTS[..i] {
+                let mut stack = Stack::default();
+                stack.enable(a);
+                let has_both = |preset: &Preset| {
+                    [a, b]
+                        .iter()
+                        .all(|effect| preset.stack.get(&effect.name).is_some())
+                };
+                assert!(
+                    stack.rival_of(b).is_some() || presets.iter().any(has_both),
+                    "{} with {}",
+                    a.name,
+                    b.name
+                );
+            }
+        }
     }
 
     #[test]

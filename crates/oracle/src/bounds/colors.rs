@@ -27,7 +27,9 @@ use super::{
         shot::Shot,
     },
     layers::LayerBounds,
-    perturbations::{Search, WIDE_SLACK, color_steps, interpolations, of_pictures, places},
+    perturbations::{
+        Search, WIDE_SLACK, color_steps, interpolations, of_pictures, places, textures,
+    },
     surface::{CornerErrors, Doubt},
 };
 use crate::{
@@ -160,7 +162,11 @@ impl AcceptedColors {
                 let all = span(known.into_iter().chain(at_ties))?;
                 return (all != known).then_some((i, all));
             };
-            let errors = CornerErrors::of(shot, id, geometry.packed_bits).at(&triangle, x, y);
+            let corners = CornerErrors::of(shot, id, geometry.packed_bits);
+            let (errors, may_turn) = (
+                corners.at(&triangle, x, y),
+                corners.may_turn(&triangle, x, y),
+            );
             let rank = ranks.get(id as usize).copied().unwrap_or(0.0);
             let finished = |perturbation: Perturbation| {
                 let surface = triangle.surface(x, y, &perturbation);
@@ -173,9 +179,22 @@ impl AcceptedColors {
                 );
                 finish.pixel_at_ties(i, color, perturbation.color_step)
             };
+            let on_either_side = |perturbation: Perturbation| {
+                [false, true]
+                    .into_iter()
+                    .filter(|&is_turned| !is_turned || may_turn)
+                    .map(move |is_turned| Perturbation {
+                        is_turned,
+                        ..perturbation
+                    })
+            };
+            let offsets = triangle.texture_offsets(x, y);
+            let around = interpolations(shot.stack, errors, Search::Wide)
+                .chain(places(shot.stack).filter(|_| may_turn))
+                .flat_map(on_either_side)
+                .chain(textures(shot.scene, shot.stack, &offsets));
             let [least, most] =
-                span(interpolations(shot.stack, errors, Search::Wide).flat_map(&finished))
-                    .unwrap_or([self.pictures[0][i]; 2]);
+                span(around.flat_map(&finished)).unwrap_or([self.pictures[0][i]; 2]);
             let slack = |c: usize| {
                 if errors.doubt() == Doubt::Wide {
                     (f64::from(most[c] - least[c]) * WIDE_SLACK).ceil() as u8

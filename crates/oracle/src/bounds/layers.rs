@@ -21,7 +21,7 @@ use super::{
         },
     },
     coverage::depth_interval,
-    perturbations::{Search, WIDE_SLACK, interpolations, of_layers},
+    perturbations::{Search, WIDE_SLACK, color_steps, interpolations, of_layers, textures},
     surface::{CornerErrors, Doubt},
 };
 use crate::{
@@ -182,11 +182,22 @@ fn sums(
                 return;
             };
             let lit_point = known.lit_point(&known.surface(x, y, &Perturbation::default()));
-            let errors = errors.at(known, x, y);
+            let (errors, may_turn) = (errors.at(known, x, y), errors.may_turn(known, x, y));
+            let offsets = match search {
+                Search::Quick => [Vec::new(), Vec::new()],
+                Search::Wide => known.texture_offsets(x, y),
+            };
+            let turned = color_steps(stack).iter().map(|&color_step| Perturbation {
+                is_turned: true,
+                color_step,
+                ..Perturbation::default()
+            });
             let mut shaded = perturbations
                 .iter()
                 .copied()
                 .chain(interpolations(stack, errors, search))
+                .chain(turned.filter(|_| may_turn))
+                .chain(textures(input.shot.scene, stack, &offsets))
                 .map(|perturbation| {
                     let step = perturbation.color_step;
                     let lit =

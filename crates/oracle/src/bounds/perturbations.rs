@@ -9,7 +9,7 @@ use super::{
     surface::{Doubt, SampleErrors},
 };
 use crate::{
-    effects::{Stack, hooks::Slot},
+    effects::{Stack, hooks::Layers},
     scene::{Scene, view::View},
 };
 
@@ -129,10 +129,10 @@ pub fn color_steps(stack: &Stack) -> &'static [f64] {
     // Layers are summed in linear light, and gamma encoding, which is 13 times as steep in the
     // dark, precedes a step.
     const LAYERS: f64 = 4.0 * STEP;
-    match (stack.has_steps(), stack.in_slot(Slot::Visibility)) {
+    match (stack.has_steps(), stack.layers(0)) {
         (false, _) => &[0.0],
-        (true, None) => &[0.0, -STEP, STEP],
-        (true, Some(_)) => &[0.0, -LAYERS, LAYERS],
+        (true, None | Some(Layers::Race)) => &[0.0, -STEP, STEP],
+        (true, Some(Layers::Xray { .. } | Layers::Overdraw)) => &[0.0, -LAYERS, LAYERS],
     }
 }
 
@@ -176,6 +176,33 @@ pub fn places(stack: &Stack) -> impl Iterator<Item = Perturbation> {
             place,
             color_step,
             ..Perturbation::default()
+        })
+    };
+    color_steps(stack).iter().flat_map(at_step)
+}
+
+/// Perturbations of texture lookups within their bounds, for each perturbation of color steps:
+/// across and down by these offsets, and in the level of detail by the whole bound. None without
+/// images.
+pub fn textures(
+    scene: &Scene,
+    stack: &Stack,
+    [across, down]: &[Vec<f64>; 2],
+) -> impl Iterator<Item = Perturbation> {
+    let levels: &[f64] = if scene.images.is_empty() {
+        &[]
+    } else {
+        &[0.0, 1.0, -1.0]
+    };
+    let at_step = move |&color_step: &f64| {
+        levels.iter().flat_map(move |&level| {
+            across.iter().flat_map(move |&across| {
+                down.iter().map(move |&down| Perturbation {
+                    texture: [across, down, level],
+                    color_step,
+                    ..Perturbation::default()
+                })
+            })
         })
     };
     color_steps(stack).iter().flat_map(at_step)
@@ -227,4 +254,29 @@ pub fn interpolations(
         })
     };
     color_steps(stack).iter().flat_map(at_step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{STEP, color_steps};
+    use crate::effects::{EFFECTS, Stack};
+
+    #[test]
+    fn steps_are_wider_only_where_layers_are_summed() {
+        let steps = |names: &[&str]| {
+            let mut stack = Stack::default();
+            for effect in EFFECTS
+                .iter()
+                .filter(|effect| names.contains(&&*effect.name))
+            {
+                stack.enable(effect);
+            }
+            color_steps(&stack)
+        };
+        let usual = &[0.0, -STEP, STEP];
+        assert_eq!(steps(&["posterize"]), usual);
+        assert_eq!(steps(&["posterize", "race"]), usual);
+        assert_eq!(steps(&["posterize", "xray"])[2], 4.0 * STEP);
+        assert_eq!(steps(&["lambert", "race"]), &[0.0]);
+    }
 }

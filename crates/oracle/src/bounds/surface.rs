@@ -153,6 +153,11 @@ impl CornerErrors {
         }
     }
 
+    /// Returns true if a renderer may see the other side of the triangle at the center of a pixel.
+    pub fn may_turn(&self, triangle: &SurfaceTriangle, x: usize, y: usize) -> bool {
+        triangle.may_turn(x, y, &self.clip)
+    }
+
     /// Of the direction of the plane through the displaced corners.
     fn plane(&self, [a, b, c]: [DVec3; 3]) -> f64 {
         let (ab, ac) = (b - a, c - a);

@@ -23,7 +23,8 @@ pub struct Outline {
     /// either axis.
     pub reach: f64,
     /// Of a clipped triangle: bound of the error of its points in clip space. At a point it moves
-    /// an edge by this over w, in halves of the picture.
+    /// an edge by this over w, in halves of the picture. A depth there follows from the corners',
+    /// of which each errs by this over its own w.
     pub clip_error: f64,
     /// How far the depth of a corner is from the adapter's.
     pub depth_error: f64,
@@ -42,8 +43,11 @@ impl Outline {
         if self.clip_error == 0.0 {
             return [self.reach, 0.0];
         }
-        let error = self.clip_error * at.inv_w(corners);
-        [self.reach.max(error * self.half_picture), error]
+        let [inv_w, of_corners] = at.inv_w(corners);
+        [
+            self.reach.max(self.clip_error * inv_w * self.half_picture),
+            self.clip_error * of_corners,
+        ]
     }
 
     /// Returns true if an edge or rim may have passed over a sample.
@@ -199,8 +203,9 @@ impl SamplePosition {
             })
     }
 
-    /// 1/w of the triangle at this point, or at one of its points nearby.
-    fn inv_w(&self, corners: &[SnappedVertex; 3]) -> f64 {
+    /// 1/w of the triangle at this point, or at one of its points nearby, and the mean of the
+    /// corners' own, by their perspective weights.
+    fn inv_w(&self, corners: &[SnappedVertex; 3]) -> [f64; 2] {
         let [a, b, c] = corners.map(|v| [f64::from(v.x), f64::from(v.y)]);
         let edge = |p: [f64; 2], q: [f64; 2]| {
             (q[0] - p[0]) * (self.y - p[1]) - (q[1] - p[1]) * (self.x - p[0])
@@ -209,11 +214,15 @@ impl SamplePosition {
         let side = weights.iter().sum::<f64>().signum();
         let inside = weights.map(|weight| (weight * side).max(0.0));
         let inv_w = corners.map(|corner| f64::from(corner.inv_w));
-        let sum: f64 = inside.iter().sum();
-        if sum == 0.0 {
-            return inv_w[0].max(inv_w[1]).max(inv_w[2]);
+        let [sum, first, second] = [0, 1, 2].map(|power| {
+            (0..3)
+                .map(|k| inside[k] * inv_w[k].powi(power))
+                .sum::<f64>()
+        });
+        if first == 0.0 {
+            return [inv_w[0].max(inv_w[1]).max(inv_w[2]); 2];
         }
-        (0..3).map(|k| inside[k] * inv_w[k]).sum::<f64>() / sum
+        [first / sum, second / first]
     }
 
     /// Interval of the depth of the plane through three corners, where an edge may have moved by

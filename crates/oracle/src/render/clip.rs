@@ -7,11 +7,12 @@
 use rayon::prelude::*;
 
 use super::{
-    super::shot::Shot,
+    super::{arithmetic::edge::doubled_area, shot::Shot},
     snap::{ClipPosition, half_size, snap_inside},
     vertex,
 };
 use crate::{
+    effects::hooks::Shape,
     frame::{ClippedTriangle, Geometry, SnappedVertex, vertex_flags},
     math::GUARD_BAND,
     scene::{draw::Draw, view::View},
@@ -75,16 +76,45 @@ pub fn clipped_triangles<P: Point>(
             record: Some(records[i]),
             leads_along_edge: true,
         };
-        fan(
+        let fan = fan(
             parent,
             &polygon([0, 1, 2].map(corner), shot.view),
             shot.view,
-        )
+        );
+        match shot.stack.shape() {
+            Shape::Boxes => bounding_box(&fan).into_iter().collect(),
+            Shape::Triangles | Shape::Points => fan,
+        }
     };
     (0..primitive.triangle_count())
         .into_par_iter()
         .flat_map_iter(fan)
         .collect()
+}
+
+/// A triangle with the bounding box of a fan, at the depth of its nearest corner, so that a box
+/// draws every sample once; none if the fan has no area.
+fn bounding_box(fan: &[ClippedTriangle]) -> Option<ClippedTriangle> {
+    let area: i64 = fan.iter().map(|t| doubled_area(&t.corners)).sum();
+    let corners = || fan.iter().flat_map(|t| t.corners);
+    let (low_x, high_x) = (corners().map(|c| c.x).min()?, corners().map(|c| c.x).max()?);
+    let (low_y, high_y) = (corners().map(|c| c.y).min()?, corners().map(|c| c.y).max()?);
+    let at = |x: i32, y: i32| SnappedVertex {
+        x,
+        y,
+        depth: corners().map(|c| c.depth).fold(0.0, f32::max),
+        inv_w: corners().map(|c| c.inv_w).fold(0.0, f32::max),
+        flags: 0,
+    };
+    let mut corners = [at(low_x, low_y), at(high_x, low_y), at(low_x, high_y)];
+    if area < 0 {
+        corners.swap(1, 2);
+    }
+    (area != 0).then_some(ClippedTriangle {
+        parent: fan[0].parent,
+        corners,
+        outline: 0,
+    })
 }
 
 /// The triangles of a convex polygon.

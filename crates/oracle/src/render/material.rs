@@ -11,6 +11,9 @@ use crate::{
     },
 };
 
+/// Most offsets of a lookup along an axis, for each level.
+const MAX_OFFSETS: f64 = 12.0;
+
 /// A material as one triangle shows it.
 pub struct TriangleMaterial<'a> {
     scene: &'a Scene,
@@ -73,6 +76,16 @@ impl<'a> TriangleMaterial<'a> {
         })
     }
 
+    /// Offsets of lookups across and down, in error bounds, between which colors change evenly:
+    /// both ends, and every middle and edge of a texel that the bounds reach, or some of very many.
+    pub fn offsets(&self, at: &SampleWeights) -> [Vec<f64>; 2] {
+        [0, 1].map(|axis| {
+            let lookups = [&self.base, &self.emissive].into_iter().flatten();
+            let inner = lookups.flat_map(|lookup| lookup.offsets(self.scene, at, axis));
+            [-1.0, 0.0, 1.0].into_iter().chain(inner).collect()
+        })
+    }
+
     /// Color of a surface with the base color `base`, and the part of it that no light changes.
     pub fn color(
         &self,
@@ -94,29 +107,68 @@ impl<'a> TriangleMaterial<'a> {
     }
 }
 
+/// Where a texture is looked up.
+struct Place {
+    uv: DVec2,
+    /// Bound of its error.
+    uv_error: DVec2,
+    /// A pixel spans 2^detail texels.
+    detail: f64,
+    detail_error: f64,
+}
+
 impl TextureLookup<'_> {
-    fn color(&self, scene: &Scene, at: &SampleWeights, perturbation: TexturePerturbation) -> DVec3 {
-        let levels = &scene.images[self.texture.image].levels;
-        let size = DVec2::from(levels[0].size.map(f64::from));
+    fn place(&self, scene: &Scene, at: &SampleWeights) -> Place {
+        let size = DVec2::from(scene.images[self.texture.image].size().map(f64::from));
         let mixed =
             |k: [f64; 3]| self.corners[0] * k[0] + self.corners[1] * k[1] + self.corners[2] * k[2];
         let spans = at.slopes.map(|slope| (mixed(slope) * size).length());
-        let detail = libm::log2(spans[0].max(spans[1]).max(1e-15));
         let uv = mixed(at.weights);
         let from_weights: DVec2 = (0..3)
             .map(|k| (self.corners[k] - uv).abs() * at.errors[k])
             .sum();
         // Corners err by a few roundings; the level of detail by the errors of the weights and by
         // those of its logarithm.
-        let uv_error = (from_weights + self.terms / f64::from(1 << 21)).max(DVec2::splat(1e-7));
-        let detail_error =
-            (1.0 / f64::from(1 << 10) + 4.0 * at.errors.iter().sum::<f64>()).min(1.0);
+        Place {
+            uv,
+            uv_error: (from_weights + self.terms / f64::from(1 << 21)).max(DVec2::splat(1e-7)),
+            detail: libm::log2(spans[0].max(spans[1]).max(1e-15)),
+            detail_error: (1.0 / f64::from(1 << 10) + 4.0 * at.errors.iter().sum::<f64>()).min(1.0),
+        }
+    }
+
+    fn color(&self, scene: &Scene, at: &SampleWeights, perturbation: TexturePerturbation) -> DVec3 {
+        let place = self.place(scene, at);
         let [across, down, level] = perturbation;
         self.filtered(
-            levels,
-            uv + uv_error * DVec2::new(across, down),
-            detail + level * detail_error,
+            &scene.images[self.texture.image].levels,
+            place.uv + place.uv_error * DVec2::new(across, down),
+            place.detail + level * place.detail_error,
         )
+    }
+
+    /// Offsets along an axis, in error bounds, at which the lookup meets the middle of a texel, and
+    /// those between two such.
+    fn offsets(&self, scene: &Scene, at: &SampleWeights, axis: usize) -> Vec<f64> {
+        let place = self.place(scene, at);
+        let levels = &scene.images[self.texture.image].levels;
+        // Levels between which the lookup may mix.
+        let level = |detail: f64| (detail.max(0.0) as usize).min(levels.len() - 1);
+        let used = level(place.detail - place.detail_error)
+            ..=(level(place.detail + place.detail_error) + 1).min(levels.len() - 1);
+        used.flat_map(|level| {
+            let side = f64::from(levels[level].size[axis]);
+            let (middle, error) = (place.uv[axis] * side, place.uv_error[axis] * side);
+            // In halves of texels: middles, and the edges where the nearest texel changes.
+            let first = (2.0 * (middle - error)).ceil();
+            let count = ((2.0 * (middle + error)).floor() - first + 1.0).max(0.0);
+            let step = (count / MAX_OFFSETS).ceil().max(1.0);
+            (0..)
+                .map(move |i| f64::from(i) * step)
+                .take_while(move |i| *i < count)
+                .map(move |i| (0.5 * (first + i) - middle) / error)
+        })
+        .collect()
     }
 
     /// The filtered color at texture coordinates `uv`, where a pixel spans 2^detail texels.

@@ -21,12 +21,15 @@ pub fn resampled(color: &[[u8; 4]], from: [u32; 2], to: [u32; 2]) -> Vec<[u8; 4]
         } else {
             // The two nearest rows or columns with their weights.
             let nearest = |at: u32, axis: usize| {
-                let at = (f64::from(at) + 0.5) * f64::from(from[axis]) / f64::from(to[axis]) - 0.5;
-                let clamped = |at: f64| at.clamp(0.0, f64::from(from[axis] - 1)) as u32;
-                let fraction = at - at.floor();
+                // In half pixels of the larger picture, so that a pixel on another takes exactly
+                // nothing from its neighbors.
+                let (from, to) = (u64::from(from[axis]), u64::from(to[axis]));
+                let halves = (2 * u64::from(at) + 1) * from + to;
+                let (behind, rest) = (halves / (2 * to), halves % (2 * to));
+                let fraction = rest as f64 / (2 * to) as f64;
                 [
-                    (clamped(at.floor()), 1.0 - fraction),
-                    (clamped(at.floor() + 1.0), fraction),
+                    (behind.max(1) as u32 - 1, 1.0 - fraction),
+                    (behind.min(from - 1) as u32, fraction),
                 ]
             };
             let columns = nearest(x, 0);
@@ -127,6 +130,23 @@ mod tests {
             resampled(&[[9, 8, 7, 0]; 4], [2, 2], [1, 1]),
             [[9, 8, 7, 0]]
         );
+    }
+
+    #[test]
+    fn a_pixel_on_another_takes_nothing_from_its_neighbors() {
+        for side in [1, 3, 49, 1_001] {
+            let row: Vec<[u8; 4]> = (0..side)
+                .map(|x| {
+                    if x == side / 2 {
+                        [9, 8, 7, 0]
+                    } else {
+                        [255; 4]
+                    }
+                })
+                .collect();
+            let wide = resampled(&row, [side, 1], [2 * side - 1, 1]);
+            assert_eq!(wide[side as usize - 1], [9, 8, 7, 0], "{side}");
+        }
     }
 
     #[test]

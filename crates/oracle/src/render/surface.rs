@@ -314,9 +314,12 @@ impl<'a> SurfaceTriangle<'a> {
         let smooth = self
             .normals
             .and_then(|normals| self.smooth_normal(weights, normals));
-        let flat_normal = self.flat_normal.map(|normal| turned(normal, moved.plane));
+        let side = if perturbation.is_turned { -1.0 } else { 1.0 };
+        let flat_normal = self
+            .flat_normal
+            .map(|normal| turned(normal, moved.plane) * side);
         let normal = smooth
-            .map(|normal| turned(normal, moved.normal))
+            .map(|normal| turned(normal, moved.normal) * side)
             .or(flat_normal)
             .unwrap_or(toward_eye);
         let base = self.base_color(weights, moved.color);
@@ -390,6 +393,23 @@ impl<'a> SurfaceTriangle<'a> {
         let point = self.sample_point(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
         self.weights
             .errors_from(clip_errors, self.weights.at(&point), &point)
+    }
+
+    /// Returns true if f32 may see the other side of the triangle at the center of a pixel, where
+    /// the corners err by so much in x, y and w of clip space: in any direction, and along one.
+    pub fn may_turn(&self, x: usize, y: usize, clip_errors: &[[DVec3; 2]; 3]) -> bool {
+        let point = self.sample_point(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+        self.weights.may_turn(clip_errors, &point)
+    }
+
+    /// The offsets of texture lookups across and down, in error bounds, between which colors change
+    /// evenly at the center of a pixel: both ends, and where a bound crosses the middles of texels.
+    pub fn texture_offsets(&self, x: usize, y: usize) -> [Vec<f64>; 2] {
+        let Some(material) = &self.material else {
+            return [vec![0.0], vec![0.0]];
+        };
+        let point = self.sample_point(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+        material.offsets(&self.sample_weights(self.weights.at(&point), &point))
     }
 
     fn sample_point(&self, pixel: DVec2) -> SamplePoint {

@@ -4,7 +4,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::super::arithmetic::vector::cross_errors;
+use super::super::arithmetic::vector::{cross_errors, cross_magnitudes};
 use crate::{
     effects::hooks::{ROUNDING, Shape},
     scene::view::View,
@@ -110,6 +110,36 @@ impl Weights {
         } else {
             [UNKNOWN; 3]
         }
+    }
+
+    /// Returns true if f32 may take a triangle's back for its front at a sample, where the corners'
+    /// (x, y, w) err by `clip`. Of a clipped triangle the determinant of the corners tells its side
+    /// or, where that is within its roundings, the sample's place before the triangle's plane.
+    pub fn may_turn(&self, clip: &[[DVec3; 2]; 3], point: &SamplePoint) -> bool {
+        // Of a determinant of differences; the renderer trusts one that is more than that.
+        const SIDE_ERROR: f64 = 8.0 * ROUNDING;
+        let Self::Homogeneous { rows, corners, .. } = self else {
+            return false;
+        };
+        let [ab, ac] = [corners[1] - corners[0], corners[2] - corners[0]];
+        let [a, b, c] = clip.map(|[aside, along]| aside + along.abs());
+        let rounded = |edge: DVec3, error: DVec3| error + ROUNDING * edge.abs();
+        let (of_ab, of_ac) = (rounded(ab, a + b), rounded(ac, a + c));
+        let terms = cross_magnitudes(ab.abs(), ac.abs());
+        let plane_error = cross_magnitudes(ab.abs() + of_ab, of_ac)
+            + cross_magnitudes(of_ab, ac.abs())
+            + 3.0 * ROUNDING * terms;
+        // As far as a product with the plane's normal may err; `terms` are larger than the normal.
+        let error =
+            |p: DVec3, p_error: DVec3| p.abs().dot(plane_error) + p_error.dot(terms + plane_error);
+        let side = rows.iter().sum::<DVec3>();
+        let determinant = corners[0].dot(side).abs();
+        let trusted = 2.0 * SIDE_ERROR * corners[0].abs().dot(terms);
+        if determinant > trusted + error(corners[0], a) {
+            return false;
+        }
+        let p = point.ndc();
+        p.dot(side) <= error(p, 8.0 * ROUNDING * p.abs())
     }
 
     /// Bound of the error in f32 of a sample's position in meters. Weights of small triangles err
