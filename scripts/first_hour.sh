@@ -267,6 +267,7 @@ until_true 20 session_has "path = \"$saved\""
 
 begin own-effect
 palette "new effect of my own"
+nap 1
 write first_hour_ink
 key Return
 until_true 60 session_has "[effects.first_hour_ink]"
