@@ -159,7 +159,13 @@ done
 begin combine-three
 palette "open (teapot)"
 until_true 60 session_has "id = \"teapot-$name\""
-for effect in facet toon outline; do
+middle before
+key shift+a
+write facet
+shot
+key Return
+until_true 20 session_has "[effects.facet]"
+for effect in toon outline; do
     middle before
     palette "enable $effect"
     until_true 20 session_has "[effects.$effect]"
@@ -214,11 +220,11 @@ done_step
 begin slider
 # The first slider of the first effect; on a slow adapter the picture is smaller while it moves.
 middle before
-xdotool mousemove $((width - 200)) 141
+xdotool mousemove $((width - 200)) 170
 nap 0.3
 xdotool mousedown 1
 for to in $(seq 198 -2 140); do
-    xdotool mousemove $((width - to)) 141
+    xdotool mousemove $((width - to)) 170
     sleep 0.1
 done
 xdotool mouseup 1
@@ -230,6 +236,51 @@ noted="$began"
 median="$(numbers '[0-9] pictures[^,]*: median' | awk '{ all[NR] = $1 } END { print all[int((NR + 1) / 2)] }')"
 noted="$ended"
 echo "   a step of the slider was seen after $median ms (median)"
+key ctrl+z
+
+begin own-picture
+# Into a folder that is not there yet, away from the model.
+picture="$work/pictures/first-hour-shot.png"
+key ctrl+e
+key ctrl+a
+write "$picture"
+key Return
+until_true 60 log_has "Saved $picture"
+key ctrl+o
+write "$picture"
+key Return
+until_true 60 session_has "path = \"$picture\""
+done_step
+key ctrl+z
+
+begin own-line
+palette "copy preset"
+palette "open (teapot)"
+until_true 60 session_has "id = \"teapot-$name\""
+palette "paste preset"
+until_true 60 log_has "Pasted a preset"
+until_true 20 session_has "[animation.facet]"
+done_step
+key ctrl+z
+key ctrl+z
+until_true 20 session_has "path = \"$saved\""
+
+begin own-effect
+palette "new effect of my own"
+nap 1
+write first_hour_ink
+key Return
+until_true 60 session_has "[effects.first_hour_ink]"
+inked="$work/inked/mine.toml"
+key ctrl+shift+s
+key ctrl+a
+write "$inked"
+key Return
+until_true 20 test -s "$inked"
+# Elsewhere, and without the adapter that RASTERLAB may name: only the oracle blesses.
+(cd / && "${RASTERLAB%% *}" bless "$inked" --snapshots "$work/goldens") >> "$work/out.txt" 2>&1
+until_true 1 test -s "$work/goldens/mine.png"
+done_step
 key ctrl+z
 
 begin film

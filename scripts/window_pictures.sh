@@ -68,9 +68,9 @@ click 120 92   # the search of the presets
 write cel
 click 120 215  # its first result
 nap 5
-xdotool mousemove 1016 361 mousedown 1  # the slider of toon.steps
+xdotool mousemove 1016 389 mousedown 1  # the slider of toon.steps
 for x in 1008 1000 994; do
-    xdotool mousemove "$x" 361
+    xdotool mousemove "$x" 389
     nap 0.3
 done
 xdotool mouseup 1

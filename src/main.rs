@@ -3,10 +3,19 @@
 use std::process::ExitCode;
 
 use clap::Parser as _;
-use rasterlab::cli::{self, Cli};
+use rasterlab::cli::{self, Cli, Exit};
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => match cli::mistyped_command(&error) {
+            Some(sentence) => {
+                eprintln!("error: {sentence}");
+                return Exit::Usage.into();
+            }
+            None => error.exit(),
+        },
+    };
     match cli::run(&cli) {
         Ok(exit) => exit.into(),
         Err(error) => {

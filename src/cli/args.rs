@@ -40,7 +40,8 @@ pub struct Common {
     /// Part of an adapter's name, or cpu for the built-in oracle [env: RASTERLAB_ADAPTER]
     #[arg(long, global = true, value_name = "NAME")]
     pub adapter: Option<String>,
-    /// Folder of presets that is searched first [env: RASTERLAB_PRESETS]
+    /// Folder of presets that is searched first [default: presets, for commands] [env:
+    /// RASTERLAB_PRESETS]
     #[arg(long, global = true, value_name = "DIR")]
     pub presets: Option<PathBuf>,
     /// Folder of effect files [default: effects], beside that of the user and `effects` beside a
@@ -55,6 +56,10 @@ pub struct Common {
     /// effects, lights, background and animation
     #[arg(long, global = true, value_name = "ID|FILE")]
     pub preset: Option<String>,
+    /// Open the model that a picture or a shared line names outside of its folder; without it only
+    /// the look is used
+    #[arg(long, global = true)]
+    pub allow_outside: bool,
     /// Change one value of the preset, e.g. facet.amount=.5; the name of an effect alone enables
     /// it
     #[arg(long, global = true, value_name = "PATH[=VALUE]")]
@@ -86,6 +91,12 @@ pub struct Common {
 }
 
 impl Common {
+    /// The folder of presets that is searched first: `--presets`, `RASTERLAB_PRESETS`, or `presets`
+    /// in the current folder.
+    pub fn presets_folder(&self) -> PathBuf {
+        self.presets_dir().unwrap_or_else(|| "presets".into())
+    }
+
     /// `--presets`, or `RASTERLAB_PRESETS`.
     pub fn presets_dir(&self) -> Option<PathBuf> {
         self.presets.clone().or_else(|| {
@@ -100,8 +111,14 @@ impl Common {
         self.effects.clone().unwrap_or_else(|| "effects".into())
     }
 
-    /// Where presets and effects are looked for.
+    /// Where every command looks for presets and effects.
     pub fn folders(&self) -> Folders {
+        Folders::new(Some(self.presets_folder()), &self.effects_dir())
+    }
+
+    /// Where the window looks for presets and effects: in the current folder only for effects,
+    /// since it also writes presets to their files.
+    pub fn window_folders(&self) -> Folders {
         Folders::new(self.presets_dir(), &self.effects_dir())
     }
 
@@ -564,13 +581,13 @@ fn turntable(text: &str) -> Result<Turntable, String> {
 /// `1920x1080`.
 fn size(text: &str) -> Result<[u32; 2], String> {
     let wrong = || {
-        format!("{text:?} is no size; write WIDTHxHEIGHT, each 0 to 16384, for instance 1920x1080")
+        format!("{text:?} is no size; write WIDTHxHEIGHT, each 1 to 16384, for instance 1920x1080")
     };
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
     let side = |side: &str| {
         side.parse()
             .ok()
-            .filter(|side| *side <= 16_384)
+            .filter(|side| (1..=16_384).contains(side))
             .ok_or_else(wrong)
     };
     Ok([side(width)?, side(height)?])

@@ -1,10 +1,7 @@
 //! `bless`: redraws goldens with the oracle and prints what changes. Only this command writes
 //! goldens.
 
-use std::{
-    path::{Path, PathBuf},
-    sync::Arc,
-};
+use std::{path::Path, sync::Arc};
 
 use serde_json::{Value, json};
 
@@ -14,13 +11,14 @@ use super::{
     error::{CliError, Exit},
     files,
     golden::{self, Golden},
+    open::open,
     streams::Streams,
 };
 use crate::{
     effects::Effect,
     measure::compare::pictures,
     preset::{GoldenTest, Output, Preset},
-    preset_file::{self, Existing, PresetFile, golden_folder, golden_paths},
+    preset_file::{self, Existing, PresetError, PresetFile, golden_folder, golden_paths},
 };
 
 pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit, CliError> {
@@ -34,13 +32,10 @@ pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit,
             "bless takes no --set and no --unset: a golden is drawn from the preset file",
         ));
     }
-    let folder = common
-        .presets_dir()
-        .unwrap_or_else(|| PathBuf::from("presets"));
-    let preset_files = preset_files(args, &folder, streams)?;
+    let preset_files = preset_files(common, args, streams)?;
     let bar = streams.progress(preset_files.len() as u64);
     let (mut results, mut changed) = (Vec::new(), false);
-    for (preset_file, is_new) in preset_files {
+    for (preset_file, writes) in preset_files {
         bar.set_message(preset_file.id.clone());
         let golden = golden::draw(&preset_file, &*scene_of(common, &preset_file, streams)?)?;
         let snapshots = args
@@ -48,25 +43,25 @@ pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit,
             .clone()
             .unwrap_or_else(|| golden_folder(&preset_file));
         let change = change(&golden, &snapshots, &preset_file.id);
-        changed |= is_new || change["changes"] == json!(true);
+        changed |= writes.is_some() || change["changes"] == json!(true);
         if !streams.json {
             streams.text(&format!(
                 "{}{}\n",
                 line(&preset_file.id, &change),
-                if is_new {
-                    " (its preset is created, too)"
-                } else {
-                    ""
+                match writes {
+                    Some(Writes::Preset) => " (its preset is created, too)",
+                    Some(Writes::Test) => " (its preset gets a [test] table)",
+                    None => "",
                 }
             ))?;
         }
         if !args.dry_run {
             store(
                 preset_file,
-                is_new,
+                writes,
                 &golden,
                 &snapshots,
-                &folder,
+                &common.presets_folder(),
                 change["changes"] == json!(true),
             )?;
         }
@@ -84,29 +79,33 @@ pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit,
     Ok(Exit::failed_if(args.dry_run && changed))
 }
 
-/// The presets to bless, each with whether it is new.
+/// What blessing writes beside a golden.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Writes {
+    /// The first preset of an effect.
+    Preset,
+    /// The table `[test]` of a preset that has none.
+    Test,
+}
+
+/// The presets to bless, each with what is written beside its golden: those that are named, or every preset in a
+/// file that has a golden.
 fn preset_files(
+    common: &Common,
     args: &Bless,
-    folder: &Path,
     streams: &Streams,
-) -> Result<Vec<(PresetFile, bool)>, CliError> {
+) -> Result<Vec<(PresetFile, Option<Writes>)>, CliError> {
     if !args.all && args.names.is_empty() {
         return Err(CliError::usage("name presets or effects, or use --all"));
     }
     if !args.all {
-        return args.names.iter().map(|name| named(name, folder)).collect();
+        return args.names.iter().map(|name| named(common, name)).collect();
     }
-    let entries = std::fs::read_dir(folder)
-        .map_err(|e| CliError::from(e).during(format!("{} cannot be read", folder.display())))?;
-    let mut files: Vec<PathBuf> = entries
-        .flatten()
-        .map(|entry| entry.path())
-        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
-        .collect();
-    files.sort();
-    let preset_files = files
-        .iter()
-        .map(|file| Ok(preset_file::load(file)?.strict()?))
+    let entries = preset_file::gallery(&common.folders());
+    let preset_files = entries
+        .into_iter()
+        .filter(|entry| entry.path.is_some())
+        .map(|entry| Ok(entry.preset_file?.strict()?))
         .collect::<Result<Vec<_>, CliError>>()?;
     let (tested, bare): (Vec<_>, Vec<_>) = preset_files
         .into_iter()
@@ -119,29 +118,37 @@ fn preset_files(
     });
     Ok(tested
         .into_iter()
-        .map(|preset_file| (preset_file, false))
+        .map(|preset_file| (preset_file, None))
         .collect())
 }
 
-/// The preset of a path, or of a name in `folder`; or the first one of an effect.
-fn named(name: &str, folder: &Path) -> Result<(PresetFile, bool), CliError> {
-    if Path::new(name)
-        .extension()
-        .is_some_and(|extension| extension == "toml")
-    {
-        return Ok((preset_file::load(Path::new(name))?.strict()?, false));
+/// The preset that every command finds under `name`, whose file gets a table `[test]` if it has
+/// none; or the first one of an effect, which is new.
+fn named(common: &Common, name: &str) -> Result<(PresetFile, Option<Writes>), CliError> {
+    let error = match open(common, name) {
+        Ok(preset_file) => {
+            let mut preset_file = preset_file.strict()?;
+            let is_untested = preset_file.preset.test.is_none()
+                && preset_file.path.is_some()
+                && !preset_file.read_only;
+            if is_untested {
+                preset_file.preset.test = Some(GoldenTest::default());
+            }
+            return Ok((preset_file, is_untested.then_some(Writes::Test)));
+        }
+        Err(error) => error,
+    };
+    let is_unknown = matches!(
+        error.error.downcast_ref(),
+        Some(PresetError::NoPreset { .. })
+    );
+    match common.folders().effects.find(name) {
+        Ok(Some(effect)) if is_unknown => Ok((first_preset(effect), Some(Writes::Preset))),
+        _ if is_unknown => Err(CliError::usage(format!(
+            "there is no preset and no effect {name:?}; rasterlab list shows all of them"
+        ))),
+        _ => Err(error),
     }
-    let file = folder.join(format!("{name}.toml"));
-    if file.exists() {
-        return Ok((preset_file::load(&file)?.strict()?, false));
-    }
-    if let Some(effect) = Effect::find(name) {
-        return Ok((first_preset(effect), true));
-    }
-    Err(CliError::usage(format!(
-        "{} does not exist, and {name} is no effect",
-        file.display()
-    )))
 }
 
 /// The first preset of a new effect: on the teapot, with default parameters.
@@ -163,14 +170,15 @@ fn first_preset(effect: &Arc<Effect>) -> PresetFile {
 
 fn store(
     mut preset_file: PresetFile,
-    is_new: bool,
+    writes: Option<Writes>,
     golden: &Golden,
     snapshots: &Path,
     folder: &Path,
     changes: bool,
 ) -> Result<(), CliError> {
-    if is_new {
-        let path = folder.join(format!("{}.toml", preset_file.id));
+    if writes.is_some() {
+        let own = preset_file.path.clone();
+        let path = own.unwrap_or_else(|| folder.join(format!("{}.toml", preset_file.id)));
         preset_file::save(&mut preset_file, &path)?;
     }
     if changes {

@@ -53,7 +53,7 @@ pub fn run(common: &Common, args: &List, streams: &mut Streams) -> Result<Exit, 
         )?;
     } else {
         let parts = [
-            presets_text(&entries),
+            presets_text(&entries, common),
             effects_text(&effects),
             scenes_text(scenes),
             axes_text(axes),
@@ -79,8 +79,9 @@ pub fn run(common: &Common, args: &List, streams: &mut Streams) -> Result<Exit, 
     Ok(Exit::Done)
 }
 
-fn origin(entry: &GalleryEntry) -> String {
+fn origin(entry: &GalleryEntry, common: &Common) -> String {
     let word = |origin: preset_file::Origin| match origin {
+        preset_file::Origin::Chosen if common.presets_dir().is_none() => "the folder presets here",
         preset_file::Origin::Chosen => "--presets",
         preset_file::Origin::Beside => "beside the program",
         preset_file::Origin::User => "user",
@@ -104,7 +105,7 @@ fn effect_names(preset_file: &preset_file::PresetFile) -> Vec<&str> {
         .collect()
 }
 
-fn presets_text(entries: &[GalleryEntry]) -> String {
+fn presets_text(entries: &[GalleryEntry], common: &Common) -> String {
     if entries.is_empty() {
         return String::new();
     }
@@ -118,13 +119,13 @@ fn presets_text(entries: &[GalleryEntry]) -> String {
             entry.id.clone(),
             preset_file.title().to_owned(),
             effect_names(preset_file).join(" + "),
-            origin(entry),
+            origin(entry, common),
         ],
         Err(_) => vec![
             entry.id.clone(),
             "(cannot be read)".into(),
             String::new(),
-            origin(entry),
+            origin(entry, common),
         ],
     }));
     table(&rows)

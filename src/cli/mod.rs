@@ -151,7 +151,7 @@ fn window(cli: &Cli) -> Result<Exit, CliError> {
         (None, Some(look)) => Some((look.as_str(), open::open_alone(&cli.common, look))),
         (what, _) if is_asked => {
             let what = what.as_deref().unwrap_or(crate::app::FIRST_PRESET);
-            Some((what, open::open(&cli.common, what)))
+            Some((what, open::open_to_ask(&cli.common, what)))
         }
         _ => None,
     };
@@ -183,7 +183,7 @@ fn window(cli: &Cli) -> Result<Exit, CliError> {
         opened,
         adapter,
         devices: None,
-        folders: cli.common.folders(),
+        folders: cli.common.window_folders(),
         opens_editor: true,
         config: crate::app::config_folder(),
         log: log.transpose()?.map(std::sync::Arc::new),
@@ -195,20 +195,41 @@ fn window(cli: &Cli) -> Result<Exit, CliError> {
 /// The name of a preset that does not exist may be a mistyped command.
 #[cfg(feature = "gui")]
 fn suggest_command(error: CliError, what: &str) -> CliError {
+    let is_unknown = matches!(
+        error.error.downcast_ref(),
+        Some(PresetError::NoPreset { .. })
+    );
+    match hinted_command(what) {
+        Some(sentence) if is_unknown => CliError::usage(sentence),
+        _ => error,
+    }
+}
+
+/// What is wrong with arguments that cannot be read because the first word is a mistyped command.
+pub fn mistyped_command(error: &clap::Error) -> Option<String> {
+    use clap::error::ErrorKind;
+    if !matches!(
+        error.kind(),
+        ErrorKind::UnknownArgument | ErrorKind::InvalidSubcommand | ErrorKind::TooManyValues
+    ) {
+        return None;
+    }
+    let first = std::env::args().nth(1)?;
+    let is_command = Cli::command().find_subcommand(&first).is_some();
+    if is_command || first.starts_with('-') || std::path::Path::new(&first).exists() {
+        return None;
+    }
+    hinted_command(&first)
+}
+
+/// `there is no preset and no command "rendr"; did you mean …`: none if no command is like it.
+fn hinted_command(what: &str) -> Option<String> {
     let names: Vec<String> = Cli::command()
         .get_subcommands()
         .map(|command| command.get_name().to_owned())
         .collect();
     let hint = crate::params::did_you_mean(what, names.iter().map(String::as_str));
-    let is_unknown = matches!(
-        error.error.downcast_ref(),
-        Some(PresetError::NoPreset { .. })
-    );
-    if hint.is_empty() || !is_unknown {
-        error
-    } else {
-        CliError::usage(format!("there is no preset and no command {what:?}{hint}"))
-    }
+    (!hint.is_empty()).then(|| format!("there is no preset and no command {what:?}{hint}"))
 }
 
 #[cfg(not(feature = "gui"))]

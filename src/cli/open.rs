@@ -3,13 +3,41 @@
 
 use super::{args::Common, error::CliError, files, streams::Streams};
 use crate::{
-    preset::Fit,
+    params::legible_line,
+    preset::{Fit, Preset},
     preset_file::{self, GalleryEntry, PresetError, PresetFile},
 };
 
-/// Opens a preset, puts the look of `--preset` on its scene, and applies `--unset`, then `--set`.
+/// Opens a preset, puts the look of `--preset` on its scene, and applies `--unset`, then `--set`. Of
+/// a picture that names a model outside of its folder only the look is taken.
 pub fn open(common: &Common, what: &str) -> Result<PresetFile, CliError> {
-    let named = read(common, what)?;
+    let mut named = read(common, what)?;
+    if let Some(model) = &named.outside_model {
+        let own = PresetFile::of_scene(&named.id, Preset::default().scene);
+        let name = own.scene_name();
+        let warning = format!(
+            "{what}: its model {} lies outside of its folder, so only its look is used, on the {name}; --allow-outside opens the model",
+            legible_line(&model.to_string_lossy()),
+        );
+        let frame = named.preset.output.size;
+        let mut landed = land(common, &named, &own)?;
+        landed.warnings.push(warning);
+        if common.strict {
+            landed = landed.strict()?;
+        }
+        (landed.id, landed.preset.output.size) = (named.id, frame);
+        named = landed;
+    }
+    finish_opening(common, named)
+}
+
+/// [`open`] for the window, which asks about a model outside of its folder.
+#[cfg(feature = "gui")]
+pub fn open_to_ask(common: &Common, what: &str) -> Result<PresetFile, CliError> {
+    finish_opening(common, read(common, what)?)
+}
+
+fn finish_opening(common: &Common, named: PresetFile) -> Result<PresetFile, CliError> {
     let preset_file = match &common.preset {
         Some(look) => land(common, &read(common, look)?, &named)?,
         None => named,
@@ -24,7 +52,7 @@ pub fn open_alone(common: &Common, look: &str) -> Result<PresetFile, CliError> {
 }
 
 /// Reads what a person names, as its file has it.
-fn read(common: &Common, what: &str) -> Result<PresetFile, CliError> {
+pub fn read(common: &Common, what: &str) -> Result<PresetFile, CliError> {
     let preset_file = if what == "-" {
         preset_file::parse_with(
             &files::stdin_text()?,
@@ -34,6 +62,10 @@ fn read(common: &Common, what: &str) -> Result<PresetFile, CliError> {
         )?
     } else {
         preset_file::open(what, &common.folders())?
+    };
+    let preset_file = match common.allow_outside {
+        true => preset_file.with_outside_model(),
+        false => preset_file,
     };
     Ok(if common.strict {
         preset_file.strict()?
@@ -53,12 +85,19 @@ pub fn land(common: &Common, look: &PresetFile, own: &PresetFile) -> Result<Pres
             preset_file::scene_bounds(&preset_file.preset.scene, preset_file.path.as_deref());
         bounds.map_err(|error| CliError::from(error).during(format!("preset {}", preset_file.id)))
     };
-    let fit = if look.needs_fit() {
+    let is_measurable = look.outside_model.is_none();
+    let fit = if look.needs_fit() && is_measurable {
         Fit::between(&bounds(look)?, &bounds(own)?)
     } else {
         None
     };
     let mut landed = look.landed_on(own, fit.as_ref());
+    if look.needs_fit() && !is_measurable {
+        landed.warnings.push(format!(
+            "{}: the model of the look lies outside of its folder and is not read, so its lengths stay as they are; --allow-outside opens it",
+            landed.title()
+        ));
+    }
     if common.strict && !landed.warnings.is_empty() {
         return Err(PresetError::Strict(landed.warnings).into());
     }

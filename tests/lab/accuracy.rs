@@ -40,7 +40,7 @@ fn the_slider_chooses_a_tier_beside_its_cost_and_error() {
         "the precise tier was judged"
     );
     assert_eq!(
-        lab.query_all_by_label_contains("wrong ppm: 0 snapped, ")
+        lab.query_all_by_label_contains("per million: 0 wrong, ")
             .count(),
         1,
         "what was measured"

@@ -9,7 +9,7 @@ use std::{
 use eframe::egui::{self, Key, Modifiers, Role, vec2};
 use egui_kittest::kittest::Queryable as _;
 use rasterlab::{
-    preset::SceneSource,
+    preset::{Preset, SceneSource},
     preset_file::{self, Folders},
 };
 
@@ -356,7 +356,7 @@ fn saving_writes_a_file_that_loads_equal() {
     let Some(mut lab) = lab_in("teapot", Some(folder.path())) else {
         return;
     };
-    click(&mut lab, Role::CheckBox, "facet");
+    add_effect(&mut lab, "facet");
     let rail = slider(&lab, "facet.amount").rect();
     drag(
         &mut lab,
@@ -374,11 +374,25 @@ fn saving_writes_a_file_that_loads_equal() {
     assert_eq!(loaded.preset, lab.state().preset_file().preset);
     assert!(loaded.warnings.is_empty() && !lab.state().preset_file().is_modified());
     assert_eq!(lab.state().preset_file().id, "my-teapot");
+    let Preset {
+        name,
+        about,
+        tags,
+        test,
+        ..
+    } = loaded.preset;
     assert_eq!(
-        lab.query_all_by_label("Preset Teapot").count(),
-        2,
-        "the gallery shows the new preset beside the built-in one"
+        (name.as_str(), about.as_str(), tags.len(), test),
+        ("my-teapot", "", 0, None),
+        "what described and tested the old preset stays with it"
     );
+    for name in ["Preset Teapot", "Preset my-teapot"] {
+        assert_eq!(
+            lab.query_all_by_label(name).count(),
+            1,
+            "the gallery shows the new preset beside the built-in one"
+        );
+    }
 }
 
 #[test]
@@ -428,7 +442,7 @@ fn undo_after_saving_is_an_unsaved_change_again() {
     let Some(mut lab) = lab_in(&path.to_string_lossy(), Some(folder.path())) else {
         return;
     };
-    click(&mut lab, Role::CheckBox, "facet");
+    add_effect(&mut lab, "facet");
     press(&mut lab, Modifiers::COMMAND, Key::S);
     assert!(!lab.state().preset_file().is_modified());
     undo(&mut lab);

@@ -19,8 +19,14 @@ fn drawn(lab: &mut Lab) -> image::RgbaImage {
     image::imageops::crop_imm(&whole, 0, 64, whole.width(), whole.height() - 64).to_image()
 }
 
-/// Clicks the box of an effect, and shows the window once.
+/// Adds an effect, or clicks the box of one that is in the stack, and shows the window once.
 pub fn tick(lab: &mut Lab, effect: &str) {
+    if lab
+        .query_by_role_and_label(Role::CheckBox, effect)
+        .is_none()
+    {
+        return begin_adding(lab, effect);
+    }
     lab.get_by_role_and_label(Role::CheckBox, effect)
         .scroll_to_me();
     lab.run_steps(3);

@@ -12,8 +12,8 @@ use std::{
 
 use eframe::{
     egui::{
-        Key, Modifiers, Pos2, Rect, Role, TexturesDelta, ThemePreference, accesskit::Toggled,
-        mutex::RwLock,
+        Event, Key, Modifiers, Pos2, Rect, Role, TexturesDelta, ThemePreference,
+        accesskit::Toggled, mutex::RwLock,
     },
     egui_wgpu::{self, RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration},
     wgpu,
@@ -423,6 +423,22 @@ pub fn click(lab: &mut Lab, role: Role, label: &str) {
     lab.run_steps(3);
     lab.get_by_role_and_label(role, label).click();
     lab.run_steps(3);
+    settle(lab);
+}
+
+/// Adds an effect with the dialog *Add effect*, without waiting for its picture.
+pub fn begin_adding(lab: &mut Lab, effect: &str) {
+    lab.key_press_modifiers(Modifiers::SHIFT, Key::A);
+    lab.run_steps(3);
+    lab.event(Event::Text(effect.into()));
+    lab.run_steps(2);
+    lab.key_press_modifiers(Modifiers::NONE, Key::Enter);
+    lab.run_steps(2);
+}
+
+/// Adds an effect with the dialog *Add effect*.
+pub fn add_effect(lab: &mut Lab, effect: &str) {
+    begin_adding(lab, effect);
     settle(lab);
 }
 

@@ -76,7 +76,7 @@ fn enabling_an_effect_shows_its_sliders_and_disabling_hides_them() {
         return;
     };
     assert!(!has_slider(&lab, "facet.amount"));
-    click(&mut lab, Role::CheckBox, "facet");
+    add_effect(&mut lab, "facet");
     assert!(has_slider(&lab, "facet.amount"));
     assert!(
         !has_slider(&lab, "facet.radius_m"),
@@ -175,26 +175,53 @@ fn randomize_stays_within_soft_ranges_and_is_one_undo_step() {
 }
 
 #[test]
-fn a_second_effect_of_a_slot_is_refused_and_offered_instead_of_the_first() {
+fn a_second_effect_of_a_slot_takes_the_place_of_the_first_which_is_said() {
     let Some(mut lab) = lab("xray") else { return };
     let has = |lab: &Lab, name: &str| lab.state().preset_file().preset.stack.get(name).is_some();
-    click(&mut lab, Role::CheckBox, "overdraw");
-    assert!(
-        has(&lab, "xray") && !has(&lab, "overdraw"),
-        "nothing was switched"
-    );
-    let sentence =
-        "xray and overdraw both take the visibility slot of the rasterizer; switch one of them off";
+    add_effect(&mut lab, "overdraw");
+    assert!(!has(&lab, "xray") && has(&lab, "overdraw"));
+    let sentence = "overdraw replaced xray: both take the same slot of the rasterizer";
     assert!(
         lab.state().log_text().contains(sentence),
         "{}",
         lab.state().log_text()
     );
-    click(&mut lab, Role::Button, "overdraw instead of xray");
-    assert!(!has(&lab, "xray") && has(&lab, "overdraw"));
     assert!(slider(&lab, "overdraw.max_layers").rect().width() > 0.0);
     undo(&mut lab);
     assert!(has(&lab, "xray") && !has(&lab, "overdraw"), "one step");
+}
+
+#[test]
+fn an_effect_is_added_by_a_button_with_values_that_show_and_the_folders_are_within_reach() {
+    let Some(mut lab) = lab("lambert") else {
+        return;
+    };
+    click(&mut lab, Role::Button, "Add effect");
+    assert!(
+        lab.query_by_role_and_label(Role::Button, "Effect hatch")
+            .is_some()
+            && lab
+                .query_by_role_and_label(Role::Button, "Effect lambert")
+                .is_none(),
+        "what is in the stack is not offered"
+    );
+    click(&mut lab, Role::Button, "Effect dither");
+    assert!(lab.query_by_label("Search effects to add").is_none());
+    assert_eq!(
+        value(&lab, "dither", "levels"),
+        [4.0],
+        "256 levels show nothing"
+    );
+    undo(&mut lab);
+    for effect in ["facet", "toon", "hatch", "outline", "fog", "dissolve"] {
+        add_effect(&mut lab, effect);
+    }
+    for (title, control) in [("Camera", "Frame scene"), ("Accuracy", "Tier draft")] {
+        click(&mut lab, Role::Button, &format!("Go to {title}"));
+        lab.run_steps(30);
+        let at = lab.get_by_role_and_label(Role::Button, control).rect();
+        assert!((60.0..720.0).contains(&at.center().y), "{title}: {at:?}");
+    }
 }
 
 #[test]

@@ -103,7 +103,7 @@ fn in_a_small_window_no_word_of_the_top_bar_covers_another_when_there_is_most_to
     );
     shown.retain(|(name, _)| !name.starts_with("Picture") && !name.starts_with("Preset "));
     assert!(
-        shown.iter().any(|(name, _)| name.contains(" true")),
+        shown.iter().any(|(name, _)| name.contains(" by rounding")),
         "{shown:?}"
     );
     for (at, (name, rect)) in shown.iter().enumerate() {

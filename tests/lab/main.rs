@@ -24,6 +24,7 @@ mod layout;
 mod live;
 mod memory;
 mod numerics;
+mod outside;
 mod palette;
 mod preparing;
 mod preset_browser;

@@ -244,12 +244,17 @@ fn a_path_leads_to_its_row_which_has_the_focus() {
         row.rect()
     );
 
-    // A parameter of an effect that is not in the stack enables it, and a folded effect unfolds.
+    // A parameter of an effect that is not in the stack leads to where that can be added.
     search(&mut lab, "toon.softness");
     key(&mut lab, Key::Enter);
+    assert!(!has_slider(&lab, "toon.softness") && lab.state().undo_steps() == 0);
     assert!(
-        has_slider(&lab, "toon.softness") && lab.get_by_label("toon.softness value").is_focused()
+        lab.query_by_role_and_label(Role::Button, "Effect toon")
+            .is_some()
     );
+    key(&mut lab, Key::Enter);
+    assert!(has_slider(&lab, "toon.softness"));
+    // A folded effect unfolds.
     click(&mut lab, Role::Button, "Fold facet");
     search(&mut lab, "facet.amount");
     key(&mut lab, Key::Enter);
@@ -281,4 +286,104 @@ fn presets_and_scenes_open() {
         lab.state().preset_file().preset.scene,
         rasterlab::preset::SceneSource::Builtin("sphere".into())
     );
+}
+
+#[test]
+fn the_exact_name_of_an_effect_or_theme_comes_first_and_switches_nothing() {
+    let Some(mut lab) = lab("facet-knot") else {
+        return;
+    };
+    for (typed, first) in [
+        ("facet", "Show facet"),
+        ("toon", "Enable toon"),
+        ("dark", "Theme: Dark"),
+        ("facet-knot", "Open Cut knot (facet-knot)"),
+        ("aa 2×2", "AA 2×2"),
+    ] {
+        search(&mut lab, typed);
+        assert_eq!(selected(&lab), first, "{typed}");
+        key(&mut lab, Key::Escape);
+    }
+    search(&mut lab, "facet");
+    key(&mut lab, Key::Enter);
+    assert!(has_slider(&lab, "facet.amount") && lab.state().undo_steps() == 0);
+}
+
+/// Labels of buttons, without what stands for a key or for more to come.
+fn plain(label: &str) -> String {
+    let label = label.split(" (").next().unwrap_or(label);
+    label.trim_end_matches('…').trim().to_lowercase()
+}
+
+#[test]
+fn every_button_and_menu_entry_is_in_the_palette() {
+    let Some(mut lab) = lab("facet-knot") else {
+        return;
+    };
+    let buttons = |lab: &Lab| -> Vec<String> {
+        lab.query_all_by_role(Role::Button)
+            .filter_map(|node| node.accesskit_node().label())
+            .collect()
+    };
+    let mut labels = buttons(&lab);
+    for menu in ["File", "Edit", "Time", "View"] {
+        lab.get_by_role_and_label(Role::Button, menu).click();
+        lab.run_steps(4);
+        labels.extend(buttons(&lab));
+        press(&mut lab, Modifiers::NONE, Key::Escape);
+    }
+    // What belongs to one thing among many is found by the name of that thing.
+    let of_one = [
+        "preset ",
+        "effect ",
+        "reset ",
+        "key ",
+        "fold ",
+        "mute ",
+        "apply ",
+        "drag ",
+        "more of ",
+        "keys of ",
+        "tag ",
+        "scene ",
+        "animate ",
+        "parts of ",
+        "more tags",
+        "command palette",
+    ];
+    // What opens a list whose entries are there, or leads to a place.
+    let leads = [
+        "file",
+        "edit",
+        "time",
+        "view",
+        "open recent",
+        "theme and size",
+        "presets",
+        "effects",
+        "scene",
+        "anti-aliasing",
+    ];
+    labels.sort();
+    labels.dedup();
+    let wanted: Vec<String> = labels
+        .iter()
+        .map(|label| plain(label))
+        .filter(|label| !label.is_empty())
+        .filter(|label| !leads.contains(&label.as_str()) && !label.starts_with("go to "))
+        .filter(|label| !of_one.iter().any(|of| label.starts_with(of)))
+        .collect();
+    assert!(wanted.len() > 30, "{wanted:?}");
+    let mut missing = Vec::new();
+    for label in wanted {
+        search(&mut lab, &label);
+        let is_there = rows(&lab)
+            .filter_map(|node| node.accesskit_node().label())
+            .any(|found| label.split(' ').all(|word| plain(&found).contains(word)));
+        if !is_there {
+            missing.push(label);
+        }
+        key(&mut lab, Key::Escape);
+    }
+    assert!(missing.is_empty(), "{missing:#?}");
 }

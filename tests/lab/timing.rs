@@ -147,13 +147,15 @@ fn a_new_size_and_another_preset_reset_time_and_verdict() {
         size,
         "a verdict changes the size of the picture"
     );
-    assert!(texts(&lab, "error not measured").is_empty() && !texts(&lab, " snapped").is_empty());
+    assert!(
+        texts(&lab, "error not measured").is_empty() && !texts(&lab, "no wrong pixel").is_empty()
+    );
     lab.set_size(vec2(1216.0, 800.0));
     lab.run_steps(2);
     assert!(
         !texts(&lab, "error not measured").is_empty(),
         "a verdict on another size is shown: {:?}",
-        texts(&lab, " snapped")
+        texts(&lab, "no wrong pixel")
     );
     assert!(texts(&lab, " ms GPU").is_empty());
     settle(&mut lab);
@@ -163,7 +165,7 @@ fn a_new_size_and_another_preset_reset_time_and_verdict() {
     assert!(
         !texts(&lab, "error not measured").is_empty(),
         "a verdict on another preset is shown: {:?}",
-        texts(&lab, " snapped")
+        texts(&lab, "no wrong pixel")
     );
     // A verdict that comes after the change is dropped as well.
     lab.get_by_role_and_label(Role::Button, "Verify").click();
@@ -172,7 +174,7 @@ fn a_new_size_and_another_preset_reset_time_and_verdict() {
     assert!(
         !texts(&lab, "error not measured").is_empty(),
         "a late verdict on another preset is shown: {:?}",
-        texts(&lab, " snapped")
+        texts(&lab, "no wrong pixel")
     );
 }
 
@@ -185,13 +187,13 @@ fn header_and_legend_count_the_same_wrong_pixels() {
         return;
     };
     press(&mut lab, Modifiers::NONE, Key::O);
-    let header = texts(&lab, "wrong: 0 snapped, ");
+    let header = texts(&lab, "no wrong pixel, ");
     let header = header
         .first()
-        .unwrap_or_else(|| panic!("no header: {:?}", texts(&lab, "wrong")));
+        .unwrap_or_else(|| panic!("no header: {:?}", texts(&lab, "no wrong")));
     let count = header
-        .trim_start_matches("wrong: 0 snapped, ")
-        .split(" true")
+        .trim_start_matches("no wrong pixel, ")
+        .split(" differ by rounding")
         .next()
         .expect("a count");
     assert_ne!(count, "0", "a grid of 1/16 px moves edges");
@@ -206,7 +208,7 @@ fn header_and_legend_count_the_same_wrong_pixels() {
     let words =
         "True: pixels that show another triangle than the exact picture of the true positions";
     assert!(texts(&lab, words).is_empty());
-    lab.get_all_by_label_contains("wrong: 0 snapped, ")
+    lab.get_all_by_label_contains("no wrong pixel, ")
         .next()
         .expect("the header")
         .hover();

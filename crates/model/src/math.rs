@@ -91,6 +91,16 @@ pub fn srgb(linear: f64) -> f64 {
     }
 }
 
+/// A gamma-encoded sRGB value in [0, 1] to linear light.
+pub fn linear_of_srgb(encoded: f64) -> f64 {
+    let c = encoded.clamp(0.0, 1.0);
+    if c <= 0.040_45 {
+        c / 12.92
+    } else {
+        libm::pow((c + 0.055) / 1.055, 2.4)
+    }
+}
+
 /// Linear light in [0, 1] to a gamma-encoded sRGB byte, ties away from zero.
 pub fn srgb_byte(linear: f64) -> u8 {
     (srgb(linear) * 255.0 + 0.5).floor() as u8
@@ -169,5 +179,8 @@ mod tests {
             (srgb_byte(0.0), srgb_byte(1.0), srgb_byte(0.215_860_5)),
             (0, 255, 128)
         );
+        for byte in 0..=255 {
+            assert_eq!(srgb_byte(linear_of_srgb(f64::from(byte) / 255.0)), byte);
+        }
     }
 }

@@ -1,11 +1,14 @@
 //! Edits of the preset: each variant of [`Edit`] is carried out here.
 
-use super::session::Session;
+use std::sync::Arc;
+
+use super::{first_values::first_words, session::Session};
 use crate::{
     app::{
         picture::orbit,
         shell::command::{Edit, Parameter},
     },
+    effects::Effect,
     params::Value,
     preset::{Preset, SceneSource},
     preset_file,
@@ -56,7 +59,7 @@ impl Session {
                 }
             }
             Edit::Parameter(parameter, value) => return self.set_parameter(parameter, &value),
-            Edit::Enable(effect) => drop(preset.stack.enable(&effect)),
+            Edit::Enable(effect) => self.enable(&effect),
             Edit::Disable(effect) => self.disable(&effect.name),
             Edit::Scope(effect, on) => preset
                 .stack
@@ -64,7 +67,7 @@ impl Session {
                 .map_err(|conflict| conflict.to_string())?,
             Edit::Replace(other, effect) => {
                 self.disable(&other);
-                self.preset_mut().stack.enable(&effect);
+                self.enable(&effect);
             }
             Edit::Rebind(old, new) => {
                 preset.rebind(&[(old.clone(), new.clone())]);
@@ -80,7 +83,8 @@ impl Session {
                     return Err(conflict.to_string());
                 }
                 let before = preset.stack.0.len();
-                preset.stack.enable(&effect);
+                self.enable(&effect);
+                let preset = self.preset_mut();
                 let from = preset
                     .stack
                     .0
@@ -110,6 +114,16 @@ impl Session {
             Edit::ToggleOrthographic => self.move_camera(orbit::toggle_orthographic),
         }
         Ok(())
+    }
+
+    /// Puts an effect into the stack, with values that show. One that is there stays as it is.
+    fn enable(&mut self, effect: &Arc<Effect>) {
+        if self.preset().stack.get(&effect.name).is_some() {
+            return;
+        }
+        let bounds = self.scene().map(|scene| scene.content_bounds());
+        let words = first_words(effect, self.preset().unit, bounds);
+        self.preset_mut().stack.enable(effect).words = words;
     }
 
     /// Takes an effect out of the stack, with its keys.

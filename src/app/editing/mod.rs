@@ -3,6 +3,7 @@
 pub mod apply;
 pub mod command;
 pub mod edit;
+pub mod first_values;
 pub mod history;
 pub mod key_id;
 pub mod keyframes;

@@ -189,12 +189,18 @@ impl Session {
         self.remember(after);
     }
 
-    /// True if the preset differs from its file. A preset without a file does not until it is
-    /// edited.
+    /// True if the preset differs from its file in more than the camera, which is moved only to
+    /// look. A preset without a file does not until it is edited.
     pub fn is_modified(&self) -> bool {
-        self.files
-            .get(&FileId::of(&self.preset_file))
-            .is_none_or(|as_opened| as_opened.preset != self.preset_file.preset)
+        let open = &self.preset_file.preset;
+        let Some(as_opened) = self.files.get(&FileId::of(&self.preset_file)) else {
+            return true;
+        };
+        as_opened.preset != *open
+            && Preset {
+                camera: as_opened.preset.camera,
+                ..open.clone()
+            } != as_opened.preset
     }
 
     pub fn undo_state(&self) -> UndoState {
@@ -230,6 +236,18 @@ impl Session {
         self.shown_time_s() != self.preset().clock.time_s
     }
 
+    /// The time of the picture that is asked for next, seconds.
+    pub fn next_time_s(&self) -> f64 {
+        self.playback.next_time_s(&self.preset().clock)
+    }
+
+    /// The preset of the picture that is asked for next, with its lengths in meters.
+    pub fn next_preset(&self) -> Preset {
+        let mut next = self.metric_preset();
+        next.clock.time_s = self.next_time_s();
+        next
+    }
+
     /// The preset at the time that is shown.
     pub fn shown_preset(&self) -> Preset {
         let mut preset = self.preset().clone();
@@ -259,13 +277,20 @@ impl Session {
         }
     }
 
-    /// The stack as it is drawn: at the time shown, without muted effects, in meters.
+    /// The stack as it is seen: at the time shown, without muted effects, in meters.
     pub fn visible_stack(&self) -> Stack {
+        self.stack_at(self.shown_time_s())
+    }
+
+    /// The stack of the picture that is asked for next.
+    pub fn next_stack(&self) -> Stack {
+        self.stack_at(self.next_time_s())
+    }
+
+    fn stack_at(&self, time_s: f64) -> Stack {
         let mut stack = match (self.preset().unit, self.scene()) {
-            (LengthUnit::Scene, Some(scene)) => {
-                self.preset().in_meters(scene).stack_at(self.shown_time_s())
-            }
-            _ => self.preset().stack_at(self.shown_time_s()),
+            (LengthUnit::Scene, Some(scene)) => self.preset().in_meters(scene).stack_at(time_s),
+            _ => self.preset().stack_at(time_s),
         };
         stack
             .0
@@ -304,10 +329,12 @@ impl Session {
         (aspect(self.preset().output.size) / aspect(size)).max(1.0)
     }
 
-    /// The view that a picture of `size` pixels shows: all of the preset's own frame, and more
-    /// where the aspect ratios differ.
+    /// The view that the next picture of `size` pixels shows: all of the preset's own frame, and
+    /// more where the aspect ratios differ.
     pub fn view_at(&self, scene: &Scene, size: [u32; 2]) -> View {
-        let mut view = self.view_of(self.shown_preset(), scene, size);
+        let mut next = self.preset().clone();
+        next.clock.time_s = self.next_time_s();
+        let mut view = self.view_of(next, scene, size);
         if let Some(particle_timeline) = self.trail.particle_timeline(&view) {
             view.scene_state.particles = Some(particle_timeline);
         }
@@ -355,7 +382,7 @@ impl Session {
                     );
                 }
             }
-            TimeCommand::Pause => self.playback.playing = false,
+            TimeCommand::Pause => self.playback.pause(),
             TimeCommand::Step(frames) => self.playback.step(&clock, frames),
             TimeCommand::Rewind => self.playback.show(clock.range_s[0]),
             TimeCommand::Hold(is_held) => self.playback.is_held = is_held,
@@ -373,7 +400,7 @@ impl Session {
     /// take precedence.
     pub fn follow_particles(&mut self) {
         let particle_timeline = self
-            .metric_preset()
+            .next_preset()
             .particle_timeline()
             .filter(|particle_timeline| particle_timeline.len() == 1);
         match particle_timeline {

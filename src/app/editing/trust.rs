@@ -1,13 +1,22 @@
-//! Trust: which effects that came inside a preset may run. The user allows their code once; effects
-//! of the user's own files need no answer.
+//! Trust: which effects that came inside a preset may run, and which models that a picture or a
+//! pasted line names outside of its folder may be read. The user allows each once; effects of the
+//! user's own files need no answer.
 
-use std::collections::BTreeSet;
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+};
 
 use crate::{effect_files::Catalog, effects::Effect, preset_file::PresetFile};
 
-/// The texts of effects that may run, of this run of the program.
+/// What this run of the program may use.
 #[derive(Default)]
-pub struct Trust(BTreeSet<String>);
+pub struct Trust {
+    /// Texts of effects.
+    effects: BTreeSet<String>,
+    /// Models, by their absolute paths.
+    models: BTreeSet<PathBuf>,
+}
 
 impl Trust {
     /// May everything run that `preset_file` brings? `own` are the effects of the user's files.
@@ -21,16 +30,26 @@ impl Trust {
                 || effect
                     .source
                     .as_ref()
-                    .is_some_and(|source| self.0.contains(&source.written))
+                    .is_some_and(|source| self.effects.contains(&source.written))
         })
     }
 
     /// Allows what `preset_file` brings.
     pub fn allow(&mut self, preset_file: &PresetFile) {
-        self.0.extend(
+        self.effects.extend(
             preset_file
                 .brought()
                 .filter_map(|effect| Some(effect.source.as_ref()?.written.clone())),
         );
+    }
+
+    /// May the model at this absolute path be read?
+    pub fn allows_model(&self, model: &Path) -> bool {
+        self.models.contains(model)
+    }
+
+    /// Allows reading the model at this absolute path.
+    pub fn allow_model(&mut self, model: PathBuf) {
+        self.models.insert(model);
     }
 }

@@ -19,7 +19,8 @@ use crate::{
         picture::{anti_aliasing, screen::Inputs},
         shell::{log::Level, state::State},
     },
-    preset_file::{self, PresetFile},
+    preset::SceneSource,
+    preset_file::{self, Existing, PresetFile},
 };
 
 pub fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: FileCommand) {
@@ -72,18 +73,22 @@ pub fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command
         FileCommand::Save => {
             let open = &state.session.preset_file;
             match open.path.clone().filter(|_| !open.read_only) {
-                Some(path) => save_to(state, panels, path),
+                Some(path) => save_to(state, panels, path, None),
                 None => file(ctx, state, panels, FileCommand::Ask(Purpose::SaveAs)),
             }
         }
-        FileCommand::SaveTo(path) => save_to(state, panels, path),
-        FileCommand::Write { path, drops_muted } => {
+        FileCommand::SaveTo { path, name } => save_to(state, panels, path, name),
+        FileCommand::Write {
+            path,
+            name,
+            drops_muted,
+        } => {
             if drops_muted {
                 state.session.drop_muted();
             }
-            write(state, panels, &path);
+            write(state, panels, &path, name);
         }
-        FileCommand::Export { path, size } => export(state, path, size),
+        FileCommand::Export { path, size } => export(state, panels, path, size),
         FileCommand::AskNewEffect(duplicated) => panels
             .dialogs
             .ask_new_effect(duplicated, &state.session.preset_file.effects),
@@ -99,6 +104,20 @@ pub fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command
             then,
             runs,
         } => use_code(state, panels, *preset_file, then, runs),
+        FileCommand::UseOutside {
+            preset_file,
+            manner,
+            said,
+            opens_model: true,
+        } => {
+            if let Some(model) = &preset_file.outside_model {
+                state.files.trust.allow_model(model.clone());
+            }
+            request_open(state, panels, *preset_file, manner, said);
+        }
+        FileCommand::UseOutside {
+            preset_file, said, ..
+        } => request_allowed(state, panels, *preset_file, Manner::Look, said),
         FileCommand::Quit { keeps_edits } => {
             (state.closing.may_quit, state.closing.keeps_edits) = (true, keeps_edits);
             ctx.send_viewport_cmd(ViewportCommand::Close);
@@ -111,8 +130,37 @@ fn open_and_notify(state: &mut State, panels: &mut Panels, opened: PresetFile, m
     request_open(state, panels, opened, manner, said);
 }
 
-/// Opens a preset and says so. Asks first if it brings code that has not been allowed.
+/// Opens a preset and says so. Asks first if it names a model outside of its folder which the user
+/// has neither opened nor allowed, and if it brings code that has not been allowed.
 pub fn request_open(
+    state: &mut State,
+    panels: &mut Panels,
+    opened: PresetFile,
+    manner: Manner,
+    said: String,
+) {
+    match &opened.outside_model {
+        Some(model) if !is_known_model(state, model) => {
+            panels.dialogs.ask_outside(opened.into(), manner, said);
+        }
+        _ => request_allowed(state, panels, opened.with_outside_model(), manner, said),
+    }
+}
+
+/// Has the user opened this model, or allowed it?
+fn is_known_model(state: &State, model: &Path) -> bool {
+    let is_this = |path: &Path| preset_file::normalized(path).as_deref() == Some(model);
+    let session = &state.session;
+    state.files.trust.allows_model(model)
+        || state.settings.recents.iter().any(is_this)
+        || session
+            .file_ids()
+            .filter_map(|id| session.filed(id))
+            .any(|filed| matches!(filed.scene_source(), SceneSource::File(path) if is_this(&path)))
+}
+
+/// [`request_open`] for a preset whose model was decided about.
+fn request_allowed(
     state: &mut State,
     panels: &mut Panels,
     opened: PresetFile,
@@ -167,7 +215,7 @@ fn resolve(
         Side::Both => reload::merge_preset(state, *theirs),
     }
     if let Some(path) = saving {
-        write(state, panels, &path);
+        write(state, panels, &path, None);
     }
 }
 
@@ -207,32 +255,49 @@ fn may_write(state: &mut State, panels: &mut Panels, path: &Path) -> bool {
 }
 
 /// Saves there; asks first if effects are muted.
-fn save_to(state: &mut State, panels: &mut Panels, path: PathBuf) {
+fn save_to(state: &mut State, panels: &mut Panels, path: PathBuf, name: Option<String>) {
     if state.session.muted.is_empty() {
-        write(state, panels, &path);
+        write(state, panels, &path, name);
     } else {
-        panels.dialogs.ask_muted(path);
+        panels.dialogs.ask_muted(path, name);
     }
 }
 
-fn write(state: &mut State, panels: &mut Panels, path: &Path) {
+/// Makes the folder that a typed path names, if it is not there.
+///
+/// # Errors
+/// It cannot be made: why, in one sentence.
+pub fn make_folder_of(path: &Path) -> Result<(), String> {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    folder.map_or(Ok(()), |folder| {
+        std::fs::create_dir_all(folder).map_err(|error| {
+            format!(
+                "{}: the folder cannot be created: {error}",
+                folder.display()
+            )
+        })
+    })
+}
+
+fn write(state: &mut State, panels: &mut Panels, path: &Path, name: Option<String>) {
     if !may_write(state, panels, path) {
         return;
     }
-    if let Some(folder) = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty())
-        && let Err(error) = std::fs::create_dir_all(folder)
-    {
-        let reason = format!(
-            "{}: the folder cannot be created: {error}",
-            folder.display()
-        );
+    if let Err(reason) = make_folder_of(path) {
         return save_failed(state, panels, Purpose::SaveAs, path, reason);
     }
-    match preset_file::save(&mut state.session.preset_file, path) {
+    let mut saved = state.session.preset_file.clone();
+    if saved.path.as_deref() != Some(path) {
+        saved.make_new(name.as_deref(), path);
+    }
+    match preset_file::save(&mut saved, path) {
         Ok(()) => {
-            let saved = state.session.preset_file.clone();
+            if let Err(error) = keep_effects(state, &saved, path) {
+                state.notify(Level::Warning, error);
+            }
+            state.session.preset_file = saved.clone();
             state.settings.recents.add_opened(&saved);
             panels.browser.refresh(&state.files.folders, &saved.id);
             state.session.remember(saved);
@@ -240,6 +305,45 @@ fn write(state: &mut State, panels: &mut Panels, path: &Path) {
         }
         Err(error) => save_failed(state, panels, Purpose::SaveAs, path, error.to_string()),
     }
+}
+
+/// Copies the effects of files that nobody would find from `path` into the folder `effects` beside
+/// it.
+///
+/// # Errors
+/// One of them cannot be written: why, in one sentence.
+fn keep_effects(state: &State, saved: &PresetFile, path: &Path) -> Result<(), String> {
+    let beside = path.with_file_name("effects");
+    for source in saved
+        .preset
+        .stack
+        .0
+        .iter()
+        .filter_map(|enabled| enabled.effect.source.as_ref())
+    {
+        let mut custom = saved.effects.custom();
+        let file = custom
+            .find(|(name, _)| *name == source.stem)
+            .and_then(|(_, found)| found.path.clone());
+        let folder = file.as_deref().and_then(Path::parent);
+        let copy = beside.join(format!("{}.wgsl", source.stem));
+        let is_found = folder.is_none_or(|folder| {
+            folder == beside
+                || state
+                    .files
+                    .folders
+                    .effect_folders
+                    .iter()
+                    .any(|own| own == folder)
+        });
+        if is_found || copy.exists() {
+            continue;
+        }
+        make_folder_of(&copy)?;
+        preset_file::write_atomically(&copy, source.written.as_bytes(), Existing::Keep)
+            .map_err(|error| error.to_string())?;
+    }
+    Ok(())
 }
 
 /// Shows the dialog of a save that failed again, with its path and the reason.
@@ -257,7 +361,10 @@ pub fn save_failed(
     }
 }
 
-pub fn export(state: &mut State, path: PathBuf, size: [u32; 2]) {
+pub fn export(state: &mut State, panels: &mut Panels, path: PathBuf, size: [u32; 2]) {
+    if let Err(reason) = make_folder_of(&path) {
+        return save_failed(state, panels, Purpose::Export, &path, reason);
+    }
     let (Some(scene), Some(requested)) = (state.session.scene(), state.picture.screen.requested())
     else {
         return state.notify(Level::Error, "There is no picture to export yet");
@@ -283,6 +390,8 @@ pub fn export(state: &mut State, path: PathBuf, size: [u32; 2]) {
 
 /// Draws a film as the window shows the preset: without muted effects.
 pub fn export_film(state: &State, request: film::Request, progress: Arc<film::Progress>) {
+    // A folder that cannot be made is named by what is written into it.
+    drop(make_folder_of(&request.path));
     let Some(scene) = state.session.scene() else {
         return;
     };

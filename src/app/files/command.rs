@@ -69,11 +69,16 @@ pub enum FileCommand {
     OpenNeighbor(isize),
     /// Saves to the preset's own file, or asks for one.
     Save,
-    /// Saves there; asks first if effects are muted.
-    SaveTo(PathBuf),
+    /// Saves there; asks first if effects are muted. A preset that gets another file gets this name,
+    /// or that of the file.
+    SaveTo {
+        path: PathBuf,
+        name: Option<String>,
+    },
     /// Saves there, without the muted effects if `drops_muted`.
     Write {
         path: PathBuf,
+        name: Option<String>,
         drops_muted: bool,
     },
     /// Draws the picture at this size and saves it as a PNG.
@@ -102,6 +107,14 @@ pub enum FileCommand {
         preset_file: Box<PresetFile>,
         then: CodeUse,
         runs: bool,
+    },
+    /// Goes on with a preset that names a model outside of its folder, now that the user has decided
+    /// whether that is opened, or only the look is used; `said` is said of it.
+    UseOutside {
+        preset_file: Box<PresetFile>,
+        manner: Manner,
+        said: String,
+        opens_model: bool,
     },
     /// Closes the window without saving; the edits may come back at the next start.
     Quit {

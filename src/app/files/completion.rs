@@ -137,6 +137,28 @@ pub fn completed(typed: &str, matches: &[&Entry]) -> Option<String> {
     (completed != typed).then_some(completed)
 }
 
+/// `path` with this extension, once; as it is where none is asked for.
+pub fn with_extension(path: &Path, extension: Option<&str>) -> PathBuf {
+    let Some(extension) = extension else {
+        return path.to_owned();
+    };
+    let has = |path: &Path| {
+        path.extension()
+            .is_some_and(|there| there.eq_ignore_ascii_case(extension))
+    };
+    match path.file_stem() {
+        // Typed in place of the selected name, in front of the extension that stayed.
+        Some(stem) if has(path) && has(Path::new(stem)) => path.with_file_name(stem),
+        _ if has(path) => path.to_owned(),
+        _ => {
+            // Appended, so that `preset.v2` keeps its dot.
+            let mut name = path.as_os_str().to_owned();
+            name.push(format!(".{extension}"));
+            name.into()
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -203,6 +225,26 @@ mod tests {
         };
         let [a, b] = [entry("Ärmel-é.glb"), entry("ärmel-è.glb")];
         assert_eq!(completed("ä", &[&a, &b]), Some("Ärmel-".into()));
+    }
+
+    #[test]
+    fn a_typed_name_gets_its_extension_once() {
+        assert_eq!(
+            with_extension(Path::new("a/preset"), Some("toml")),
+            Path::new("a/preset.toml")
+        );
+        assert_eq!(
+            with_extension(Path::new("preset.v2"), Some("toml")),
+            Path::new("preset.v2.toml")
+        );
+        assert_eq!(
+            with_extension(Path::new("preset.TOML"), Some("toml")),
+            Path::new("preset.TOML")
+        );
+        assert_eq!(
+            with_extension(Path::new("a/mine.toml.toml"), Some("toml")),
+            Path::new("a/mine.toml")
+        );
     }
 
     #[test]

@@ -61,7 +61,10 @@ pub fn begin(
     // A preset of the same model comes with its camera and clip.
     let is_of_this_model = matches!(opened.preset.scene, SceneSource::File(_))
         && opened.scene_source() == open.scene_source();
-    let lands = manner != Manner::Look || (open.has_own_scene() && !is_of_this_model);
+    // Of a model that may not be read only the look is used.
+    let has_no_scene = opened.outside_model.is_some();
+    let lands =
+        manner != Manner::Look || has_no_scene || (open.has_own_scene() && !is_of_this_model);
     let manner = if lands { manner } else { Manner::WithScene };
     state.files.opening.waiting = Some(Request {
         opened: opened.into(),
@@ -115,7 +118,7 @@ fn go_on(state: &mut State, panels: &mut Panels) {
     };
     let sources = [look.scene_source(), own.scene_source()];
     let mut boxes = [None; 2];
-    if look.needs_fit() {
+    if look.needs_fit() && look.outside_model.is_none() {
         for (source, found) in sources.iter().zip(&mut boxes) {
             *found = bounds(state, source);
         }
@@ -187,7 +190,7 @@ fn land(state: &mut State, panels: &mut Panels, request: Request, boxes: Option<
     };
     if look.needs_fit() && fit.is_none() {
         let text = format!(
-            "{}: the scene of the preset cannot be measured, so its lengths stay as they are",
+            "{}: the scene of the preset cannot be measured or may not be read, so its lengths stay as they are",
             landed.title()
         );
         landed.warnings.push(text);

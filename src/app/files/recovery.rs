@@ -27,8 +27,9 @@ pub struct Start {
     pub session: Session,
     /// It is that of the last time.
     pub is_restored: bool,
-    /// A preset that brings code which the user has not allowed yet.
-    pub brings_code: Option<PresetFile>,
+    /// A preset that brings code, or names a model outside of its folder, which the user has not
+    /// allowed yet.
+    pub asks: Option<PresetFile>,
     /// What a crash left, to be asked about.
     pub crashed: Option<Box<Restored>>,
 }
@@ -73,12 +74,12 @@ pub fn start(
         }
         PreviousSession::None => first_preset(opened, open, folders, log),
     };
-    if !trust.allows(&first, &folders.effects) {
+    if first.outside_model.is_some() || !trust.allows(&first, &folders.effects) {
         let session = Session::new(first_preset(None, None, folders, log));
         return Start {
             session,
             is_restored: false,
-            brings_code: Some(first),
+            asks: Some(first),
             crashed,
         };
     }
@@ -88,7 +89,7 @@ pub fn start(
     Start {
         session,
         is_restored,
-        brings_code: None,
+        asks: None,
         crashed,
     }
 }

@@ -5,11 +5,13 @@ use std::sync::Arc;
 
 use super::entry::{Choice, Entry, Kind, axis_path};
 use crate::{
-    accuracy::AXES,
+    accuracy::{AXES, AxisOption as _, RenderScale},
     app::{
         editing::session::Session,
         panels::inspector::rows::has_row,
+        picture::anti_aliasing::{CHOICES, name},
         shell::action::{ACTIONS, Action},
+        widgets::theme::ThemeChoice,
     },
     effects::Effect,
     params::{Field, Param, Value},
@@ -41,6 +43,7 @@ pub fn entries(session: &Session, presets: &[GalleryEntry]) -> Vec<Entry> {
     for effect in &effects {
         entries.extend(of_effect(session, effect));
     }
+    entries.extend(ThemeChoice::ALL.map(theme));
     for effect in &effects {
         entries.extend(parameters(session, effect));
     }
@@ -51,6 +54,7 @@ pub fn entries(session: &Session, presets: &[GalleryEntry]) -> Vec<Entry> {
             .filter_map(|setting| of_setting(session, setting)),
     );
     entries.extend(accuracy(session));
+    entries.extend(anti_aliasing(session));
     entries.extend(presets.iter().filter_map(preset));
     entries.extend(BUILTINS.iter().map(|builtin| Entry {
         kind: Kind::Scene,
@@ -74,32 +78,45 @@ fn action(action: Action) -> Entry {
     }
 }
 
-fn of_effect(session: &Session, effect: &Arc<Effect>) -> Option<Entry> {
+fn theme(choice: ThemeChoice) -> Entry {
+    Entry {
+        kind: Kind::Action,
+        text: format!("Theme: {}", choice.label()),
+        detail: String::new(),
+        about: "colors of the window".into(),
+        keys: String::new(),
+        choice: Choice::Theme(choice),
+    }
+}
+
+/// What can be done with an effect. That it is found neither switches it on nor off.
+fn of_effect(session: &Session, effect: &Arc<Effect>) -> Vec<Entry> {
     let stack = &session.preset().stack;
-    let (verb, choice) = match (stack.get(&effect.name), stack.rival_of(effect)) {
-        (Some(_), _) => ("Disable", Choice::Disable(effect.clone())),
-        (None, Some(rival)) => (
-            "Enable",
-            Choice::Replace(rival.name.clone(), effect.clone()),
-        ),
-        (None, None) => ("Enable", Choice::Enable(effect.clone())),
-    };
-    let detail = match &choice {
-        Choice::Replace(rival, _) => format!("instead of {rival}: {}", effect.about),
-        _ => effect.about.clone(),
-    };
-    Some(Entry {
+    let entry = |verb: &str, detail: String, choice: Choice| Entry {
         kind: Kind::Effect,
         text: format!("{verb} {}", effect.name),
         detail,
         about: effect.about.clone(),
         keys: String::new(),
         choice,
-    })
+    };
+    let about = effect.about.clone();
+    match (stack.get(&effect.name), stack.rival_of(effect)) {
+        (Some(_), _) => vec![
+            entry("Show", about.clone(), Choice::Reveal(effect.name.clone())),
+            entry("Disable", about, Choice::Disable(effect.clone())),
+        ],
+        (None, Some(rival)) => vec![entry(
+            "Enable",
+            format!("instead of {}: {about}", rival.name),
+            Choice::Replace(rival.name.clone(), effect.clone()),
+        )],
+        (None, None) => vec![entry("Enable", about, Choice::Enable(effect.clone()))],
+    }
 }
 
-/// The parameters of an effect. One of an effect that is not in the stack enables it; one that is
-/// hidden says why.
+/// The parameters of an effect. One of an effect that is not in the stack leads to where it can be
+/// added; one that is hidden says why.
 fn parameters(session: &Session, effect: &Arc<Effect>) -> Vec<Entry> {
     let stack = &session.preset().stack;
     let words = session.shown_words(effect);
@@ -112,12 +129,12 @@ fn parameters(session: &Session, effect: &Arc<Effect>) -> Vec<Entry> {
         let (detail, choice) = match (&words, &conflict) {
             (_, Some(conflict)) => (conflict.clone(), Choice::Refuse(conflict.clone())),
             (None, None) => (
-                format!("enables {}", effect.name),
-                Choice::Reveal(path.clone(), Some(effect.clone())),
+                format!("{} is not in the stack", effect.name),
+                Choice::Offer(effect.clone()),
             ),
             (Some(words), None) if field.is_shown(&effect.fields, words) => (
                 written(field, &field.value(words)),
-                Choice::Reveal(path.clone(), None),
+                Choice::Reveal(path.clone()),
             ),
             (Some(words), None) => {
                 let condition = field
@@ -153,7 +170,7 @@ fn of_setting(session: &Session, setting: &'static Setting) -> Option<Entry> {
         .map_or_else(String::new, |value| written(setting, value));
     let path = setting.path();
     let choice = match value {
-        Some(_) if has_row(&path) => Choice::Reveal(path.clone(), None),
+        Some(_) if has_row(&path) => Choice::Reveal(path.clone()),
         _ => Choice::Refuse(format!(
             "{path} has no row; type its value, {}",
             setting.allowed()
@@ -208,6 +225,28 @@ fn accuracy(session: &Session) -> impl Iterator<Item = Entry> {
             })
     });
     Tier::ALL.into_iter().map(tier).chain(options)
+}
+
+/// The choices of the menu AA.
+fn anti_aliasing(session: &Session) -> Vec<Entry> {
+    let axis = &AXES[RenderScale::AXIS];
+    let pinned = session.preset().accuracy.pins.option::<RenderScale>();
+    let entry = |option: Option<RenderScale>| {
+        let word = option.map_or(axis.choices[0], |option| option.name());
+        Entry {
+            kind: Kind::Accuracy,
+            text: format!("AA {}", option.map_or("automatic", name)),
+            detail: match pinned == option {
+                true => "present".into(),
+                false => String::new(),
+            },
+            about: "anti-aliasing: samples of a pixel".into(),
+            keys: String::new(),
+            choice: Choice::Set(axis_path(axis), word.to_owned()),
+        }
+    };
+    let options = CHOICES.iter().map(|(option, _)| Some(*option));
+    [None].into_iter().chain(options).map(entry).collect()
 }
 
 fn preset(entry: &GalleryEntry) -> Option<Entry> {
@@ -321,7 +360,8 @@ mod tests {
         let facet = Effect::find("facet").expect("a built-in effect");
         assert_eq!(
             find("facet.amount"),
-            Choice::Reveal("facet.amount".into(), Some(facet.clone()))
+            Choice::Offer(facet.clone()),
+            "to find a parameter switches nothing on"
         );
     }
 }

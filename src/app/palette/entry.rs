@@ -8,9 +8,10 @@ use crate::{
         files::command::FileCommand,
         shell::{
             action::Action,
-            command::{Command, Edit},
+            command::{Command, Edit, SettingsCommand},
             log::Level,
         },
+        widgets::theme::ThemeChoice,
     },
     effects::Effect,
 };
@@ -49,8 +50,11 @@ pub enum Choice {
     Disable(Arc<Effect>),
     /// Disables the first effect and enables the second, since both take the same slot.
     Replace(String, Arc<Effect>),
-    /// Shows the row of this path in the inspector, after enabling the effect that it belongs to.
-    Reveal(String, Option<Arc<Effect>>),
+    /// Shows the row of this path, or the effect of this name, in the inspector.
+    Reveal(String),
+    /// Shows this effect, which is not in the stack, among those that can be added.
+    Offer(Arc<Effect>),
+    Theme(ThemeChoice),
     /// Gives the value at this path.
     Set(String, String),
     /// Opens the preset of this id.
@@ -75,6 +79,36 @@ pub struct Entry {
     pub choice: Choice,
 }
 
+/// What the texts of entries begin with, before the name of what they are about.
+const VERBS: [&str; 6] = ["Enable ", "Disable ", "Show ", "Open ", "Scene ", "Theme: "];
+
+impl Entry {
+    /// Is `query` the whole text, or the name of the effect, preset, action, scene or theme?
+    pub fn is_called(&self, query: &str) -> bool {
+        let plain = |text: &str| {
+            text.trim()
+                .trim_end_matches('…')
+                .replace('_', " ")
+                .to_lowercase()
+        };
+        let query = plain(query);
+        let name = VERBS
+            .iter()
+            .find_map(|verb| self.text.strip_prefix(verb))
+            .unwrap_or(&self.text);
+        let (title, id) = match name
+            .strip_suffix(')')
+            .and_then(|name| name.rsplit_once(" ("))
+        {
+            Some((title, id)) if self.kind == Kind::Preset => (title, id),
+            _ => (name, name),
+        };
+        [&self.text, title, id]
+            .iter()
+            .any(|name| plain(name) == query)
+    }
+}
+
 /// The commands that carry out `choice`.
 pub fn commands(choice: Choice) -> Vec<Command> {
     match choice {
@@ -88,11 +122,9 @@ pub fn commands(choice: Choice) -> Vec<Command> {
             Command::Edit(Edit::Replace(other, effect.clone())),
             Command::Reveal(effect.name.clone()),
         ],
-        Choice::Reveal(path, effect) => effect
-            .map(|effect| Command::Edit(Edit::Enable(effect)))
-            .into_iter()
-            .chain([Command::Reveal(path)])
-            .collect(),
+        Choice::Reveal(path) => vec![Command::Reveal(path)],
+        Choice::Offer(effect) => vec![Command::AddEffect(effect.name.clone())],
+        Choice::Theme(theme) => vec![Command::Settings(SettingsCommand::Theme(theme))],
         Choice::Set(path, value) => vec![Command::SetText(path, value)],
         Choice::Open(id) => vec![Command::File(FileCommand::Open(id))],
         Choice::Builtin(name) => vec![Command::File(FileCommand::Open(format!("builtin:{name}")))],

@@ -8,5 +8,5 @@ mod rank;
 pub use self::{
     entries::entries,
     entry::{Choice, Entry, commands},
-    rank::rank,
+    rank::{MAX_LISTED, rank},
 };

@@ -5,7 +5,7 @@ use super::entry::{Choice, Entry, Kind};
 use crate::app::widgets::fuzzy;
 
 /// Most entries that are listed.
-const MAX_LISTED: usize = 60;
+pub const MAX_LISTED: usize = 60;
 /// Most values that are offered for a path that is typed inexactly.
 const MAX_VALUES: usize = 3;
 
@@ -25,7 +25,6 @@ fn assignments(query: &str, entries: &[Entry]) -> Vec<Assignment> {
         entries
             .iter()
             .filter(|entry| matches!(entry.kind, Kind::Parameter | Kind::Setting))
-            .map(|entry| entry.text.as_str())
     };
     let query = query.trim();
     let split = |at: usize| {
@@ -45,7 +44,7 @@ fn assignments(query: &str, entries: &[Entry]) -> Vec<Assignment> {
         let axis = entries.iter().any(|entry| {
             entry.kind == Kind::Accuracy && entry.text.split(" = ").next() == Some(short)
         });
-        if axis || paths().any(|known| known == short) {
+        if axis || paths().any(|known| known.text == short) {
             return vec![Assignment {
                 path: short.into(),
                 value: (*value).into(),
@@ -56,8 +55,10 @@ fn assignments(query: &str, entries: &[Entry]) -> Vec<Assignment> {
     let Some((typed, value)) = splits.last() else {
         return Vec::new();
     };
+    // What is typed inexactly switches no effect on.
     let mut near: Vec<(i32, &str)> = paths()
-        .filter_map(|path| Some((fuzzy::score(typed, path, "")?, path)))
+        .filter(|entry| !matches!(entry.choice, Choice::Offer(_)))
+        .filter_map(|entry| Some((fuzzy::score(typed, &entry.text, "")?, entry.text.as_str())))
         .collect();
     near.sort_by_key(|(points, _)| -points);
     near.into_iter()
@@ -95,7 +96,10 @@ pub fn rank(
         };
         match probe(&path, &value) {
             Ok(()) => {
-                let now = known.map_or_else(String::new, |known| format!("now {}", known.detail));
+                let now = known.map_or_else(String::new, |known| match &known.choice {
+                    Choice::Offer(effect) => format!("enables {}", effect.name),
+                    _ => format!("now {}", known.detail),
+                });
                 values.push(entry(Choice::Set(path.clone(), value.clone()), now));
             }
             Err(sentence) if is_exact => {
@@ -117,13 +121,34 @@ pub fn rank(
         })
         .collect();
     found.sort_by_key(|(points, _)| -points);
-    // "Scene sphere" is an entry, and could also set `scene.builtin`: the entry comes first.
-    let (whole, rest): (Vec<_>, Vec<_>) = found
+    // What is called exactly so comes before values and parameters: "Scene sphere" could also set
+    // `scene.builtin`.
+    let (mut whole, rest): (Vec<_>, Vec<_>) = found
         .into_iter()
-        .partition(|(_, entry)| entry.text.eq_ignore_ascii_case(query.trim()));
+        .partition(|(_, entry)| !query.trim().is_empty() && entry.is_called(query));
+    whole.sort_by_key(|(_, entry)| {
+        let is_text = entry.text.eq_ignore_ascii_case(query.trim());
+        (!is_text, by_name(entry))
+    });
     let [whole, rest] =
         [whole, rest].map(|found| found.into_iter().map(|(_, entry)| entry.clone()));
-    whole.chain(values).chain(rest).take(MAX_LISTED).collect()
+    // While nothing is typed, who lists them brings what was used last to the front.
+    let most = match query.trim() {
+        "" => usize::MAX,
+        _ => MAX_LISTED,
+    };
+    whole.chain(values).chain(rest).take(most).collect()
+}
+
+/// The order of entries of the same name.
+const fn by_name(entry: &Entry) -> u32 {
+    match (entry.kind, &entry.choice) {
+        (_, Choice::Disable(_)) => 4,
+        (Kind::Effect, _) => 0,
+        (Kind::Preset, _) => 1,
+        (Kind::Action, _) => 2,
+        _ => 3,
+    }
 }
 
 /// Of two entries that answer equally well, that of the rarer kind comes first.
@@ -132,7 +157,7 @@ const fn preference(entry: &Entry) -> i32 {
         (_, Choice::Refuse(_)) => -20,
         (Kind::Action | Kind::Effect, _) => 12,
         (Kind::Preset, _) => 8,
-        (Kind::Parameter, Choice::Reveal(_, None)) => 6,
+        (Kind::Parameter, Choice::Reveal(_)) => 6,
         _ => 0,
     }
 }
@@ -154,7 +179,7 @@ mod tests {
     }
 
     fn entries() -> Vec<Entry> {
-        let reveal = |path: &str| entry(Kind::Parameter, path, Choice::Reveal(path.into(), None));
+        let reveal = |path: &str| entry(Kind::Parameter, path, Choice::Reveal(path.into()));
         let facet = Effect::find("facet").expect("a built-in effect");
         vec![
             reveal("facet.amount"),
@@ -163,7 +188,7 @@ mod tests {
             entry(
                 Kind::Setting,
                 "clock.speed",
-                Choice::Reveal("clock.speed".into(), None),
+                Choice::Reveal("clock.speed".into()),
             ),
             entry(
                 Kind::Accuracy,
@@ -258,7 +283,12 @@ mod tests {
 
     #[test]
     fn entries_are_ordered_by_how_well_they_answer() {
-        assert_eq!(texts("facet")[0], "facet.amount", "{:?}", texts("facet"));
+        assert_eq!(
+            texts("facet")[..2],
+            ["Disable facet", "facet.amount"],
+            "the name of an effect comes before its parameters"
+        );
+        assert_eq!(texts("facet-knot")[0], "Open Cut knot (facet-knot)");
         assert_eq!(texts("cut knot"), ["Open Cut knot (facet-knot)"]);
         assert_eq!(texts("log16"), ["accuracy.depth = log16"]);
         assert_eq!(

@@ -15,7 +15,7 @@ use crate::{
             log::Level,
             state::State,
         },
-        widgets::{panel::Panel, theme},
+        widgets::{panel::Panel, text::cut_middle, theme},
     },
     film::{Turntable, find_ffmpeg},
     preset::Clock,
@@ -90,7 +90,7 @@ impl Form {
         let path = last.format.named(
             &std::env::current_dir()
                 .unwrap_or_default()
-                .join(format!("{id}.png")),
+                .join(format!("{id}-film.png")),
         );
         Self {
             preset: session.preset_file.id.clone(),
@@ -418,7 +418,8 @@ fn form_ui(ui: &mut Ui, form: &mut Form, clock: &Clock, takes_focus: bool) -> bo
                 }
             });
             ui.end_row();
-            ui.label("Anti-aliasing");
+            ui.label("AA")
+                .on_hover_text("Anti-aliasing: samples of a pixel");
             let shown = ANTI_ALIASING
                 .iter()
                 .find(|(scale, _)| *scale == form.scale)
@@ -482,7 +483,9 @@ fn about(form: &Form, schedule: &crate::film::Schedule) -> String {
 /// Returns true if the film is to be stopped.
 fn progress_ui(ui: &mut Ui, request: &Request, progress: &Progress) -> bool {
     let counts = progress.read();
-    ui.label(RichText::new(request.path.display().to_string()).color(theme::text_strong()));
+    let path = request.path.display().to_string();
+    ui.label(RichText::new(cut_middle(&path, 56)).color(theme::text_strong()))
+        .on_hover_text(path);
     ui.add_space(theme::HALF);
     let text = if counts.all == 0 {
         "Preparing".to_owned()

@@ -55,12 +55,18 @@ pub struct Panels {
 impl Panels {
     /// True while a dialog takes all keys.
     pub fn has_dialog(&self) -> bool {
-        self.dialogs.is_open() || self.palette.is_open() || self.naming.is_open()
+        self.dialogs.is_open()
+            || self.palette.is_open()
+            || self.naming.is_open()
+            || self.browser.effects.is_adding()
     }
 
     /// True while a dialog with a field for text is open.
     pub fn takes_text(&self) -> bool {
-        self.dialogs.takes_text() || self.palette.is_open() || self.naming.is_open()
+        self.dialogs.takes_text()
+            || self.palette.is_open()
+            || self.naming.is_open()
+            || self.browser.effects.is_adding()
     }
 
     /// The panels at the start, with the presets of `folders` in the gallery.

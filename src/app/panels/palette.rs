@@ -8,7 +8,7 @@ use eframe::egui::{
 use crate::{
     app::{
         editing::session::Session,
-        palette::{Choice, Entry, commands, entries, rank},
+        palette::{Choice, Entry, MAX_LISTED, commands, entries, rank},
         shell::{action::Action, command::Commands, state::State},
         widgets::{panel::Panel, theme},
     },
@@ -106,6 +106,7 @@ impl Open {
                     .unwrap_or(recent.len())
             };
             self.listed.sort_by_key(index);
+            self.listed.truncate(MAX_LISTED);
         }
         (self.selected, self.follows) = (0, true);
     }

@@ -56,6 +56,8 @@ const MENUS: [(&str, &[Option<Action>]); 4] = [
             Some(Action::Undo),
             Some(Action::Redo),
             None,
+            Some(Action::AddEffect),
+            Some(Action::NewEffect),
             Some(Action::Randomize),
             Some(Action::RandomizeWindow),
             Some(Action::Sweep),
@@ -83,6 +85,7 @@ const MENUS: [(&str, &[Option<Action>]); 4] = [
             None,
             Some(Action::Verify),
             Some(Action::Overlays),
+            Some(Action::NextPixel),
             Some(Action::Handles),
             Some(Action::Compare),
             Some(Action::FlipAb),
@@ -219,8 +222,8 @@ fn recents_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         }
     }
     ui.separator();
-    if ui.button("Forget these files").clicked() {
-        commands.send(Command::File(FileCommand::ForgetRecents));
+    if ui.button(Action::ForgetRecents.label()).clicked() {
+        commands.perform(Action::ForgetRecents);
         ui.close();
     }
 }

@@ -36,6 +36,8 @@ pub struct Marker {
 pub enum ViewCommand {
     ToggleOverlays,
     ShowOverlay(Overlay, bool),
+    /// Marks the next pixel that the overlays paint.
+    NextPixel,
     OverlayGain(u8),
     CycleCompare,
     FlipCompare,

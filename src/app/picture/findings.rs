@@ -128,6 +128,32 @@ impl Findings {
             .is_some_and(|reference| reference[i] != self.triangle_ids[i])
     }
 
+    /// Does an overlay of errors paint pixel `i`?
+    pub fn is_painted(&self, overlay: Overlay, i: usize) -> bool {
+        match overlay.fault() {
+            _ if overlay == Overlay::Unsound => self.is_unsound(i),
+            Some(fault) => self.faults.has(i, fault),
+            None if overlay == Overlay::NotReference => self.differs_from_reference(i),
+            None => overlay == Overlay::Color && self.faults.color_delta[i] > 0,
+        }
+    }
+
+    /// The pixels that these overlays of errors paint, in reading order. Those of colors count only
+    /// where nothing else is painted, since a last bit may differ everywhere.
+    pub fn painted(&self, overlays: &[Overlay]) -> Vec<usize> {
+        let of = |overlays: &[Overlay]| -> Vec<usize> {
+            (0..self.faults.pixels())
+                .filter(|&i| overlays.iter().any(|overlay| self.is_painted(*overlay, i)))
+                .collect()
+        };
+        let (colors, errors): (Vec<Overlay>, Vec<Overlay>) = overlays
+            .iter()
+            .filter(|overlay| overlay.is_error())
+            .partition(|overlay| **overlay == Overlay::Color);
+        let found = of(&errors);
+        if found.is_empty() { of(&colors) } else { found }
+    }
+
     /// Pixel `i` in words.
     pub fn pixel_text(&self, i: usize) -> String {
         let layers = self.layers[i];

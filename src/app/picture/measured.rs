@@ -77,22 +77,30 @@ fn error_color(findings: &Findings) -> Color32 {
     }
 }
 
-/// `wrong: 0 snapped, 17 true, max Δ 1`.
+/// `no wrong pixel, 17 differ by rounding`: the error of a picture for a person. The numbers behind
+/// it are in [`details`].
 pub fn error_text(findings: &Findings) -> String {
     let report = &findings.accuracy;
-    let race = if report.race_pixels > 0 {
-        format!(", {} lost to the race", grouped(report.race_pixels))
-    } else {
-        String::new()
+    let wrong = match report.wrong_triangles {
+        0 => "no wrong pixel".to_owned(),
+        1 => "1 wrong pixel".to_owned(),
+        count => format!("{} wrong pixels", grouped(count)),
     };
-    let against_true = findings
-        .wrong_against_true()
-        .map_or(String::new(), |count| format!(", {} true", grouped(count)));
-    format!(
-        "wrong: {} snapped{against_true}{race}, max Δ {}",
-        grouped(report.wrong_triangles),
-        report.max_color_delta
-    )
+    let rounded = match findings.wrong_against_true() {
+        None | Some(0) => String::new(),
+        Some(1) => ", 1 differs by rounding".to_owned(),
+        Some(count) => format!(", {} differ by rounding", grouped(count)),
+    };
+    let race = match report.race_pixels {
+        0 => String::new(),
+        count => format!(", {} lost to the race", grouped(count)),
+    };
+    // A last bit is no difference that a person could see.
+    let color = match report.max_color_delta {
+        0 | 1 => String::new(),
+        delta => format!(", colors off by up to {delta} of 255"),
+    };
+    format!("{wrong}{rounded}{race}{color}")
 }
 
 fn details(findings: &Findings) -> String {
@@ -168,22 +176,18 @@ mod tests {
             (
                 findings(0, Some(vec![0; 6])),
                 theme::green(),
-                "wrong: 0 snapped, 0 true, max Δ 0",
+                "no wrong pixel",
             ),
             (
                 findings(0, Some(vec![0, 0, 7, 0, 7, 0])),
                 theme::text_strong(),
-                "wrong: 0 snapped, 2 true, max Δ 0",
+                "no wrong pixel, 2 differ by rounding",
             ),
-            (
-                findings(0, None),
-                theme::text_strong(),
-                "wrong: 0 snapped, max Δ 0",
-            ),
+            (findings(0, None), theme::text_strong(), "no wrong pixel"),
             (
                 findings(3, Some(vec![0; 6])),
                 theme::red(),
-                "wrong: 3 snapped, 0 true, max Δ 0",
+                "3 wrong pixels",
             ),
         ];
         for (findings, color, text) in cases {

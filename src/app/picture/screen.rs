@@ -38,6 +38,10 @@ pub struct Screen {
     ordered: Option<Inputs>,
     /// The picture that was ordered is still to come.
     is_waiting: bool,
+    /// When pictures were ordered that may still come, and the times that they show, seconds.
+    times: Vec<(Instant, f64)>,
+    /// The time that the newest picture shows, seconds.
+    time_s: Option<f64>,
     /// It could not be drawn; it is not tried again until it changes.
     has_failed: bool,
     is_measuring: bool,
@@ -80,6 +84,8 @@ impl Screen {
             divisor: 1,
             ordered: None,
             is_waiting: false,
+            times: Vec::new(),
+            time_s: None,
             has_failed: false,
             is_measuring: false,
             drawn: None,
@@ -247,12 +253,20 @@ impl Screen {
         self.divisor
     }
 
-    /// Has `requested` drawn at its size over `divisor`, unless that is what the picture shows or
-    /// what could not be drawn.
-    pub fn show(&mut self, requested: Inputs, divisor: u32) {
+    /// The time that the newest picture shows, seconds.
+    pub fn time_s(&self) -> Option<f64> {
+        self.time_s
+    }
+
+    /// Has `requested`, the picture of `time_s`, drawn at its size over `divisor`, unless that is
+    /// what the picture shows or what could not be drawn.
+    pub fn show(&mut self, requested: Inputs, divisor: u32, time_s: f64) {
         let inputs = requested.reduced(divisor);
         (self.requested, self.divisor) = (Some(requested), divisor);
         if self.ordered.as_ref() == Some(&inputs) {
+            if !self.is_waiting {
+                self.time_s = Some(time_s); // The same picture at another time.
+            }
             return;
         }
         (self.is_waiting, self.has_failed, self.is_measuring) = (true, false, false);
@@ -263,8 +277,9 @@ impl Screen {
             .ctx
             .with_plugin(|frames: &mut UiFrames| frames.begun())
             .flatten();
-        self.thread
-            .draw(inputs, asked_at.unwrap_or_else(Instant::now));
+        let asked_at = asked_at.unwrap_or_else(Instant::now);
+        self.times.push((asked_at, time_s));
+        self.thread.draw(inputs, asked_at);
     }
 
     /// Forgets what was measured of another preset, or at another size.
@@ -308,10 +323,16 @@ impl Screen {
                     self.ctx.with_plugin(|frames: &mut UiFrames| {
                         frames.shows(asked_at, drawn.is_compiled)
                     });
+                    if let Some((_, time_s)) = self.times.iter().rfind(|(at, _)| *at == asked_at) {
+                        self.time_s = Some(*time_s);
+                    }
+                    self.times
+                        .retain(|(at, _)| *at > asked_at || drawn.is_partial);
                     self.take(inputs, *drawn, asked_at.elapsed().as_secs_f64() * 1e3);
                 }
                 Outcome::Refused(error) if is_newest => {
                     (self.is_waiting, self.has_failed, self.is_measuring) = (false, true, false);
+                    self.times.clear();
                     refused = Err(error);
                 }
                 Outcome::Measured(samples) if is_newest && !self.is_waiting => {

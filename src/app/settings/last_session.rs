@@ -116,6 +116,17 @@ impl LastSession {
             _ => None,
         };
         let filed = match reread {
+            // The user has allowed the model that was shown then.
+            Some(reread) if reread.outside_model.is_some() => {
+                let then = self.parsed(&self.filed, &name, Some(&reread), folders)?;
+                let is_same = matches!(then.scene_source(), SceneSource::File(model)
+                    if preset_file::normalized(&model) == reread.outside_model);
+                if is_same {
+                    reread.with_outside_model()
+                } else {
+                    reread
+                }
+            }
             Some(reread) => reread,
             // The text of then: if another program has changed the file since, saving asks what to
             // do.

@@ -16,8 +16,11 @@ pub enum Action {
     PastePreset,
     Quit,
     OpenWithScene,
+    ForgetRecents,
     Undo,
     Redo,
+    AddEffect,
+    NewEffect,
     Randomize,
     RandomizeWindow,
     Sweep,
@@ -36,6 +39,7 @@ pub enum Action {
     Verify,
     Extremes,
     Overlays,
+    NextPixel,
     Handles,
     Compare,
     FlipAb,
@@ -106,6 +110,7 @@ pub const ACTIONS: &[Entry] = &[
     (Action::PastePreset, "Paste preset", &[]),
     (Action::Quit, "Quit", &[command(Key::Q)]),
     (Action::OpenWithScene, "Open with its scene", &[]),
+    (Action::ForgetRecents, "Forget recent files", &[]),
     (
         Action::PreviousPreset,
         "Previous preset",
@@ -116,6 +121,8 @@ pub const ACTIONS: &[Entry] = &[
         "Next preset",
         &[plain(Key::CloseBracket)],
     ),
+    (Action::AddEffect, "Add effect…", &[shift(Key::A)]),
+    (Action::NewEffect, "New effect of my own…", &[]),
     (
         Action::RandomizeWindow,
         "Randomize: locks and seeds…",
@@ -152,6 +159,11 @@ pub const ACTIONS: &[Entry] = &[
     ),
     (Action::Extremes, "Run extreme cases…", &[]),
     (Action::Overlays, "Show or hide overlays", &[plain(Key::O)]),
+    (
+        Action::NextPixel,
+        "Next pixel of the overlays",
+        &[plain(Key::N)],
+    ),
     (
         Action::Handles,
         "Show or hide handles of points and light",
@@ -275,6 +287,8 @@ impl Action {
                 | Self::SaveAs
                 | Self::Export
                 | Self::Palette
+                | Self::AddEffect
+                | Self::NewEffect
                 | Self::CheatSheet
         )
     }

@@ -134,6 +134,7 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
         Command::Paste => ctx.send_viewport_cmd(ViewportCommand::RequestPaste),
         Command::PasteText(text) => paste(state, panels, &text),
         Command::SetText(path, text) => set_text(state, &path, &text),
+        Command::AddEffect(search) => panels.browser.effects.begin_adding(search),
         Command::Reveal(path) => {
             state.open.right = true;
             reveal::start(ctx, path);

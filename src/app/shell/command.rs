@@ -83,6 +83,8 @@ pub enum Command {
     PasteText(String),
     /// Gives the value at a path, from text, as `--set` does.
     SetText(String, String),
+    /// Shows the effects that can be added, and searches among them.
+    AddEffect(String),
     /// Shows the row of this path, or the effect of this name, in the inspector.
     Reveal(String),
     ClearLog,
@@ -153,6 +155,9 @@ impl From<Action> for Command {
             Action::Undo => Self::Undo,
             Action::Redo => Self::Redo,
             Action::Randomize => Self::Randomize,
+            Action::ForgetRecents => Self::File(FileCommand::ForgetRecents),
+            Action::AddEffect => Self::AddEffect(String::new()),
+            Action::NewEffect => Self::File(FileCommand::AskNewEffect(None)),
             Action::OpenWithScene => Self::File(FileCommand::OpenWithScene),
             Action::PreviousPreset => Self::File(FileCommand::OpenNeighbor(-1)),
             Action::NextPreset => Self::File(FileCommand::OpenNeighbor(1)),
@@ -168,6 +173,7 @@ impl From<Action> for Command {
             Action::RemoveKey => Self::RemoveSelectedKey,
             Action::Verify => Self::Verify,
             Action::Overlays => Self::View(ViewCommand::ToggleOverlays),
+            Action::NextPixel => Self::View(ViewCommand::NextPixel),
             Action::Handles => Self::Toggle(Toggle::Handles),
             Action::Compare => Self::View(ViewCommand::CycleCompare),
             Action::FlipAb => Self::View(ViewCommand::FlipCompare),

@@ -1,6 +1,5 @@
 //! The window on a desktop: opening it, and opening it again when the graphics device is lost.
 
-use anyhow::Context as _;
 use eframe::{egui, egui_wgpu};
 
 use super::{
@@ -76,9 +75,12 @@ pub fn run(options: Options) -> anyhow::Result<()> {
             Box::new(create),
         );
         if !loss.is_set() {
-            return closed
-                .map_err(|error| anyhow::anyhow!("{error}"))
-                .context("the window could not be opened");
+            return closed.map_err(|error| match error {
+                eframe::Error::WinitEventLoop(_) | eframe::Error::Winit(_) => {
+                    anyhow::anyhow!("{}", without_display())
+                }
+                error => anyhow::anyhow!("the window could not be opened: {error}"),
+            });
         }
         options.opened = None;
         options.open = recovery_path()
@@ -93,6 +95,21 @@ pub fn run(options: Options) -> anyhow::Result<()> {
         recovered,
     }
     .into())
+}
+
+/// What is said where there is no display.
+fn without_display() -> String {
+    let set: Vec<String> = ["DISPLAY", "WAYLAND_DISPLAY"]
+        .iter()
+        .filter_map(|name| Some(format!("{name}={}", std::env::var(name).ok()?)))
+        .collect();
+    let why = match set.is_empty() {
+        true => "neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned(),
+        false => format!("{} cannot be reached", set.join(", ")),
+    };
+    format!(
+        "there is no display to open the window on ({why}); the commands that rasterlab --help lists need none"
+    )
 }
 
 /// The device of the window was lost again and again (exit status 4 of the command line).

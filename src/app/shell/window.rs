@@ -140,11 +140,16 @@ impl App {
             (&keeper, &trust),
             &mut log,
         );
-        if let Some(brings) = start.brings_code {
-            let said = format!("Opened {}", brings.title());
-            panels
-                .dialogs
-                .ask_code(brings.into(), CodeUse::Open(Manner::WithScene, said));
+        if let Some(asks) = start.asks {
+            let said = format!("Opened {}", asks.title());
+            match asks.outside_model {
+                Some(_) => panels
+                    .dialogs
+                    .ask_outside(asks.into(), Manner::WithScene, said),
+                None => panels
+                    .dialogs
+                    .ask_code(asks.into(), CodeUse::Open(Manner::WithScene, said)),
+            }
         }
         if let Some(crashed) = start.crashed {
             panels.dialogs.ask_restore(crashed);
@@ -539,6 +544,7 @@ impl eframe::App for App {
         self.panel_ui(ui, |panels| &mut panels.cheat_sheet);
         self.panel_ui(ui, |panels| &mut panels.palette);
         self.panel_ui(ui, |panels| &mut panels.naming);
+        self.panel_ui(ui, |panels| &mut panels.browser.effects);
         self.panel_ui(ui, |panels| &mut panels.settings);
         self.panel_ui(ui, |panels| &mut panels.extremes);
         self.panel_ui(ui, |panels| &mut panels.randomize);

@@ -1,9 +1,10 @@
 //! Rows: a label and the control for its type of value. One function serves every setting of a
 //! preset and every parameter of every effect.
 
+use std::sync::Arc;
+
 use eframe::egui::{
-    self, Align, Align2, Color32, Rect, RichText, Sense, Slider, SliderClamping, Ui, UiBuilder,
-    pos2, vec2,
+    self, Align, Color32, Rect, RichText, Sense, Slider, SliderClamping, Ui, UiBuilder, pos2, vec2,
 };
 
 use super::{
@@ -21,7 +22,7 @@ use crate::{
     },
     params::{Param, Value, ValueType},
     preset::{Preset, settings::Setting},
-    preset_file::toml_value,
+    preset_file::toml_value::{self, color_of_hex, hex_of_color},
 };
 
 /// What a row shows and what it edits.
@@ -83,12 +84,19 @@ impl Row {
 
     /// The row of a setting of the preset.
     pub fn of_setting(setting: &'static Setting, preset: &Preset) -> Self {
-        Self::new(
+        let row = Self::new(
             setting.path(),
             setting.param.clone(),
             setting.is_modified(preset),
             Edited::Setting(setting),
-        )
+        );
+        match row.path == "accuracy.render_scale" {
+            true => Self {
+                label: "AA".into(),
+                ..row
+            },
+            false => row,
+        }
     }
 
     fn new(path: String, param: Param, modified: bool, edited: Edited) -> Self {
@@ -214,6 +222,26 @@ pub fn row_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) {
     }
 }
 
+/// The text of a label: in one line, or in two small ones where that is too long.
+fn label_galley(ui: &Ui, text: &str, color: Color32, width: f32) -> Arc<egui::Galley> {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let line = ui.painter().layout_no_wrap(text.to_owned(), font, color);
+    if line.size().x <= width {
+        return line;
+    }
+    let small = egui::FontId::proportional(10.5);
+    let mut job = egui::text::LayoutJob::single_section(
+        text.to_owned(),
+        egui::TextFormat::simple(small, color),
+    );
+    job.wrap = egui::text::TextWrapping {
+        max_width: width,
+        max_rows: 2,
+        ..Default::default()
+    };
+    ui.painter().layout_job(job)
+}
+
 /// The label: tooltip, double click to reset, menu.
 fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<RowCommand> {
     let response = ui.interact(rect, egui::Id::unique((&row.path, "label")), Sense::click());
@@ -224,17 +252,11 @@ fn label_ui(ui: &mut Ui, row: &Row, value: &Value, rect: Rect) -> Option<RowComm
     };
     // The bundled fonts have no bold cut, so bold is the same text twice, half a pixel apart.
     let clipped = ui.painter_at(rect.expand(1.0));
-    let font = egui::TextStyle::Body.resolve(ui.style());
-    let at = pos2(rect.left(), rect.center().y);
-    clipped.text(at, Align2::LEFT_CENTER, &row.label, font.clone(), color);
+    let label = label_galley(ui, &row.label, color, rect.width());
+    let at = pos2(rect.left(), rect.center().y - 0.5 * label.size().y);
+    clipped.galley(at, label.clone(), color);
     if row.modified {
-        clipped.text(
-            at + vec2(0.5, 0.0),
-            Align2::LEFT_CENTER,
-            &row.label,
-            font,
-            color,
-        );
+        clipped.galley(at + vec2(0.5, 0.0), label, color);
     }
     let mut command = response
         .double_clicked()
@@ -292,7 +314,7 @@ fn control_ui(ui: &mut Ui, commands: &Commands, row: &Row, value: &Value) -> Opt
             shown.changed().then_some(Value::Bool(on))
         }
         (ValueType::Choice(words), Value::Choice(index)) => word_ui(ui, row, words, *index),
-        (ValueType::Color, Value::Numbers(components)) => color_ui(ui, row, components),
+        (ValueType::Color, Value::Numbers(components)) => color_ui(ui, commands, row, components),
         (_, Value::Numbers(components)) => match components[..] {
             [number] => number_ui(ui, commands, row, number),
             _ => components_ui(ui, commands, row, components),
@@ -326,7 +348,7 @@ fn word_ui(ui: &mut Ui, row: &Row, words: &[String], chosen: usize) -> Option<Va
     (now != chosen).then_some(Value::Choice(now))
 }
 
-fn color_ui(ui: &mut Ui, row: &Row, components: &[f64]) -> Option<Value> {
+fn color_ui(ui: &mut Ui, commands: &Commands, row: &Row, components: &[f64]) -> Option<Value> {
     let mut color: [f32; 4] = std::array::from_fn(|i| components[i] as f32);
     ui.spacing_mut().interact_size.x = 44.0;
     let response = ui
@@ -334,18 +356,9 @@ fn color_ui(ui: &mut Ui, row: &Row, components: &[f64]) -> Option<Value> {
         .accessible_name(&row.path)
         .on_hover_text("Choose the color");
     reveal::focus(&row.path, &response);
-    let [r, g, b, a] = egui::Rgba::from_rgba_unmultiplied(color[0], color[1], color[2], color[3])
-        .to_srgba_unmultiplied();
-    let alpha = if a == 255 {
-        String::new()
-    } else {
-        format!(" {:.0}%", f64::from(a) / 2.55)
-    };
-    ui.label(
-        RichText::new(format!("#{r:02x}{g:02x}{b:02x}{alpha}"))
-            .monospace()
-            .color(theme::text_weak()),
-    );
+    if let Some(typed) = hex_ui(ui, commands, row, components) {
+        return Some(typed);
+    }
     // The picker's arithmetic may leave the unit range by a bit.
     response.changed().then(|| {
         Value::Numbers(
@@ -360,6 +373,37 @@ fn color_ui(ui: &mut Ui, row: &Row, components: &[f64]) -> Option<Value> {
                 .to_vec(),
         )
     })
+}
+
+/// The color as it is written for screens, which can be typed.
+fn hex_ui(ui: &mut Ui, commands: &Commands, row: &Row, components: &[f64]) -> Option<Value> {
+    let shown = hex_of_color(std::array::from_fn(|i| components[i]));
+    let id = ui.scope_id().with("hex");
+    let kept = ui.data(|data| data.get_temp::<String>(id));
+    let mut text = kept.unwrap_or_else(|| shown.clone());
+    let edit = egui::TextEdit::singleline(&mut text)
+        .id(id)
+        .char_limit(9)
+        .font(egui::TextStyle::Monospace)
+        .desired_width(84.0f32.min(ui.available_width()));
+    let field = ui
+        .add(edit)
+        .accessible_name(format!("{} value", row.path))
+        .on_hover_text("As on the screen (sRGB). The preset keeps the same color as four numbers of linear light, in which light adds up.");
+    if field.has_focus() {
+        ui.data_mut(|data| data.insert_temp(id, text));
+        return None;
+    }
+    ui.data_mut(|data| data.remove::<String>(id));
+    if !field.lost_focus() || text == shown {
+        return None;
+    }
+    let typed = color_of_hex(&text);
+    if typed.is_none() {
+        let said = format!("{text:?} is no color, so it stays {shown}; write #rrggbb");
+        say(commands, row, Some(said));
+    }
+    typed.map(|color| Value::Numbers(color.into()))
 }
 
 /// One number: a slider over the soft range, and a field that takes the hard one.

@@ -36,6 +36,19 @@ pub fn short(value: f64) -> String {
     }
 }
 
+/// A path, or another text whose ends tell most, in at most `max` characters: cut in its middle.
+pub fn cut_middle(text: &str, max: usize) -> String {
+    let letters: Vec<char> = text.chars().collect();
+    if letters.len() <= max {
+        return text.to_owned();
+    }
+    // The end of a path tells more than its beginning.
+    let kept = max.saturating_sub(1);
+    let first = kept / 3;
+    let last = &letters[letters.len() - (kept - first)..];
+    letters[..first].iter().chain(&['…']).chain(last).collect()
+}
+
 /// The first line of a message, and that there is more.
 pub fn first_line(text: &str) -> String {
     match text.split_once('\n') {
@@ -54,6 +67,14 @@ mod tests {
             [grouped(7), grouped(1000), grouped(1_234_567)],
             ["7", "1,000", "1,234,567"]
         );
+    }
+
+    #[test]
+    fn long_paths_are_cut_in_their_middle() {
+        let path = "/home/ada/models/animals/fox.glb";
+        assert_eq!(cut_middle(path, 40), path);
+        assert_eq!(cut_middle(path, 19), "/home/…mals/fox.glb");
+        assert_eq!(cut_middle("äöüß", 3), "…ß".replace('…', "…ü"));
     }
 
     #[test]

@@ -275,7 +275,7 @@ fn saved_pictures_can_be_opened_or_are_not_saved() {
 }
 
 #[test]
-fn a_picture_of_a_model_opens_where_the_model_is_and_nowhere_else() {
+fn a_picture_of_a_model_opens_where_the_model_is_and_elsewhere_gives_its_look_or_is_asked_for() {
     let folder = tempfile::tempdir().unwrap();
     let make = |path: &str| {
         let path = folder.path().join(path);
@@ -292,37 +292,49 @@ fn a_picture_of_a_model_opens_where_the_model_is_and_nowhere_else() {
     )
     .unwrap();
     make("elsewhere/x");
-    let render = |from: &str, to: &str| {
-        run_in(
-            folder.path(),
-            &[
-                "render",
-                from,
-                "--adapter",
-                "cpu",
-                "--size",
-                "8x6",
-                "-o",
-                to,
-            ],
-        )
+    let render_with = |from: &str, to: &str, flags: &[&str]| {
+        let args = [
+            "render",
+            from,
+            "--adapter",
+            "cpu",
+            "--size",
+            "8x6",
+            "-o",
+            to,
+        ];
+        run_in(folder.path(), &[&args[..], flags].concat())
     };
+    let render = |from: &str, to: &str| render_with(from, to, &[]);
     let beside = render("p/mine.toml", "models/a.png");
     assert_eq!(beside.code, 0, "{}", beside.err);
     let opened = render("models/a.png", "b.png");
     assert_eq!(opened.code, 0, "{}", opened.err);
     // The folder of b.png holds the folder of the model.
     assert_eq!(render("b.png", "elsewhere/c.png").code, 0);
-    let refused = render("elsewhere/c.png", "d.png");
-    assert_eq!(refused.code, 2);
+    let look = render("elsewhere/c.png", "look.png");
     assert!(
-        refused
-            .err
-            .contains("t.gltf lies outside of the folder of the picture"),
+        look.code == 0
+            && look
+                .err
+                .contains("t.gltf lies outside of its folder, so only its look is used")
+            && look.err.contains("--allow-outside opens the model"),
         "{}",
-        refused.err
+        look.err
     );
-    // Nor does a picture name a file of the system, or one on another machine.
+    let strict = render_with("elsewhere/c.png", "d.png", &["--strict"]);
+    assert_eq!(strict.code, 2, "{}", strict.err);
+    let whole = render_with("elsewhere/c.png", "whole.png", &["--allow-outside"]);
+    assert!(
+        whole.code == 0 && !whole.err.contains("outside"),
+        "{}",
+        whole.err
+    );
+    let pixels =
+        |name: &str| rasterlab::preset_file::png_pixels(&folder.path().join(name)).unwrap();
+    assert_eq!(pixels("elsewhere/c.png"), pixels("whole.png"));
+    assert_ne!(pixels("elsewhere/c.png"), pixels("look.png"));
+    // Nothing is read of a file of the system, or of one on another machine.
     for name in [
         "/etc/passwd",
         "/etc/t.gltf",
@@ -337,320 +349,17 @@ fn a_picture_of_a_model_opens_where_the_model_is_and_nowhere_else() {
             with_chunk_at(&foreign(), AFTER_HEADER, b"iTXt", chunk.as_bytes()),
         )
         .unwrap();
-        let refused = render("elsewhere/e.png", "f.png");
+        let look = render_with("elsewhere/e.png", "f.png", &["--force"]);
         assert!(
-            refused.code == 2 && !folder.path().join("f.png").exists(),
+            look.code == 0 && look.err.contains("only its look is used"),
+            "{name}: {}",
+            look.err
+        );
+        let refused = render_with("elsewhere/e.png", "g.png", &["--allow-outside"]);
+        assert!(
+            refused.code == 2 && !folder.path().join("g.png").exists(),
             "{name}: {}",
             refused.err
-        );
-        assert!(
-            refused.err.contains("outside of the folder of the picture"),
-            "{name}: {}",
-            refused.err
-        );
-    }
-    fs::copy(
-        folder.path().join("models/t.gltf"),
-        folder.path().join("elsewhere/t.gltf"),
-    )
-    .unwrap();
-    let copied = render("elsewhere/c.png", "d.png");
-    assert!(
-        copied.code == 0 && copied.err.contains("t.gltf beside the picture is used"),
-        "{}",
-        copied.err
-    );
-}
-
-#[test]
-fn a_damaged_picture_is_called_damaged() {
-    let folder = tempfile::tempdir().unwrap();
-    assert_eq!(
-        run_in(
-            folder.path(),
-            &[
-                "render",
-                "facet",
-                "--adapter",
-                "cpu",
-                "--size",
-                "4x3",
-                "-o",
-                "a.png"
-            ]
-        )
-        .code,
-        0
-    );
-    let mut bytes = fs::read(folder.path().join("a.png")).unwrap();
-    let text = bytes
-        .windows(10)
-        .position(|window| window == b"schema = 2")
-        .unwrap();
-    bytes[text] ^= 1;
-    fs::write(folder.path().join("a.png"), bytes).unwrap();
-    let run = run_in(
-        folder.path(),
-        &["render", "a.png", "--adapter", "cpu", "-o", "b.png"],
-    );
-    assert!(
-        run.code == 2 && run.err.contains("the file is damaged"),
-        "{}",
-        run.err
-    );
-}
-
-#[test]
-fn files_that_cannot_be_what_they_are_called_are_refused_with_what_to_do() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name);
-    fs::write(at("model.obj"), "v 0 0 0\n").unwrap();
-    fs::create_dir(at("folder")).unwrap();
-    fs::create_dir(at("effects")).unwrap();
-    fs::write(at("effects/mist.wgsl"), "fn mist(").unwrap();
-    let refused = |args: &[&str], wanted: &str| {
-        let run = run_in(folder.path(), args);
-        assert!(
-            run.code == 2 && run.err.contains(wanted),
-            "{args:?}: {} {}",
-            run.code,
-            run.err
-        );
-    };
-    refused(
-        &["render", "model.obj", "--adapter", "cpu"],
-        "models in .glb, .gltf and .vrm files",
-    );
-    refused(
-        &["render", "folder", "--adapter", "cpu"],
-        "models in .glb, .gltf and .vrm files",
-    );
-    refused(
-        &["render", "facet", "--adapter", "cpu", "-o", "a.jpg"],
-        "a.jpg: pictures are written as PNG",
-    );
-    refused(
-        &["explain", "facet", "--adapter", "cpu", "--measure"],
-        "the built-in oracle, is not timed",
-    );
-    let missing = run_in(
-        folder.path(),
-        &[
-            "render",
-            "facet",
-            "--adapter",
-            "cpu",
-            "--size",
-            "4x3",
-            "-o",
-            "no/a.png",
-        ],
-    );
-    assert!(
-        missing.code != 0
-            && missing.err.contains("there is no folder no")
-            && !missing.err.contains(".tmp"),
-        "{}",
-        missing.err
-    );
-    assert!(!at("a.jpg").exists());
-    let listed = run_in(folder.path(), &["list", "effects"]);
-    assert!(
-        listed.code == 0 && listed.err.contains("mist.wgsl"),
-        "{}",
-        listed.err
-    );
-}
-
-#[cfg(unix)]
-mod special {
-    use std::os::unix::fs::{FileTypeExt as _, symlink};
-
-    use super::*;
-
-    fn pipe(path: &Path) {
-        assert!(
-            Command::new("mkfifo")
-                .arg(path)
-                .status()
-                .expect("mkfifo is there")
-                .success()
-        );
-    }
-
-    #[test]
-    fn pipes_and_devices_are_never_replaced_and_never_waited_for() {
-        let folder = studio();
-        pipe(&folder.path().join("out.png"));
-        pipe(&folder.path().join("pipe.toml"));
-        pipe(&folder.path().join("pipe.png"));
-        pipe(&folder.path().join(".rasterlab-abcdefabcdef.tmp"));
-        let refused = |args: &[&str], wanted: &str| {
-            let run = run_in(folder.path(), args);
-            assert!(
-                run.code == 2 && run.err.contains(wanted),
-                "{args:?}: {} {}",
-                run.code,
-                run.err
-            );
-        };
-        let render = |name: &str, to: &str, wanted: &str| {
-            refused(
-                &[
-                    "render",
-                    name,
-                    "--adapter",
-                    "cpu",
-                    "--size",
-                    "4x3",
-                    "--force",
-                    "-o",
-                    to,
-                ],
-                wanted,
-            );
-        };
-        render(
-            "facet",
-            "out.png",
-            "is a device, pipe or socket, not a regular file",
-        );
-        render(
-            "facet",
-            "/dev/null",
-            "is a device, pipe or socket, not a regular file",
-        );
-        render("facet", ".", "is a folder, not a regular file");
-        render("pipe.toml", "a.png", "it is not a regular file");
-        render("pipe.png", "a.png", "it is not a regular file");
-        assert!(
-            fs::metadata(folder.path().join("out.png"))
-                .unwrap()
-                .file_type()
-                .is_fifo()
-        );
-        // A pipe beside the frames, and one in the place of a frame.
-        assert_eq!(sequence(folder.path(), &[]).code, 0);
-        fs::remove_file(folder.path().join("f_003.png")).unwrap();
-        pipe(&folder.path().join("f_003.png"));
-        let output = [
-            "sequence",
-            "move.toml",
-            "-o",
-            "f_{frame:3}.png",
-            "--fps",
-            "8",
-            "--adapter",
-            "cpu",
-        ];
-        refused(&output, "f_003.png exists and is no frame of this preset");
-        refused(
-            &[&output[..], &["--force"]].concat(),
-            "is a device, pipe or socket",
-        );
-    }
-
-    #[test]
-    fn links_are_written_through_and_a_link_takes_its_name() {
-        let folder = tempfile::tempdir().unwrap();
-        let at = |name: &str| folder.path().join(name);
-        fs::create_dir(at("deep")).unwrap();
-        symlink("deep/target.png", at("link.png")).unwrap();
-        let render = |extra: &[&str]| {
-            run_in(
-                folder.path(),
-                &[
-                    &[
-                        "render",
-                        "facet",
-                        "--adapter",
-                        "cpu",
-                        "--size",
-                        "4x3",
-                        "-o",
-                        "link.png",
-                    ],
-                    extra,
-                ]
-                .concat(),
-            )
-        };
-        let refused = render(&[]);
-        assert!(
-            refused.code == 2 && refused.err.contains("link.png exists"),
-            "{}",
-            refused.err
-        );
-        let written = render(&["--force"]);
-        assert_eq!(written.code, 0, "{}", written.err);
-        assert!(
-            fs::symlink_metadata(at("link.png")).unwrap().is_symlink()
-                && at("deep/target.png").is_file()
-        );
-        symlink("b.png", at("a.png")).unwrap();
-        symlink("a.png", at("b.png")).unwrap();
-        let circle = run_in(
-            folder.path(),
-            &[
-                "render",
-                "facet",
-                "--adapter",
-                "cpu",
-                "--size",
-                "4x3",
-                "--force",
-                "-o",
-                "a.png",
-            ],
-        );
-        assert!(
-            circle.code == 2 && circle.err.contains("lead in a circle"),
-            "{}",
-            circle.err
-        );
-    }
-
-    #[test]
-    fn unfinished_files_of_killed_processes_are_swept_and_others_stay() {
-        let folder = tempfile::tempdir().unwrap();
-        let at = |name: &str| folder.path().join(name);
-        let (dead, alive, young, not_ours) = (
-            at(".rasterlab-aaaaaaaaaaaa.tmp"),
-            at(".rasterlab-bbbbbbbbbbbb.tmp"),
-            at(".rasterlab-cccccccccccc.tmp"),
-            at(".rasterlab-notes"),
-        );
-        for path in [&dead, &alive, &young, &not_ours] {
-            let file = fs::File::create(path).unwrap();
-            if *path != young {
-                file.set_modified(
-                    std::time::SystemTime::now() - std::time::Duration::from_secs(7200),
-                )
-                .unwrap();
-            }
-        }
-        let held = fs::File::open(&alive).unwrap();
-        held.lock().unwrap();
-        assert_eq!(
-            run_in(
-                folder.path(),
-                &[
-                    "render",
-                    "facet",
-                    "--adapter",
-                    "cpu",
-                    "--size",
-                    "4x3",
-                    "-o",
-                    "a.png"
-                ]
-            )
-            .code,
-            0
-        );
-        assert_eq!(
-            [&dead, &alive, &young, &not_ours].map(|path| path.exists()),
-            [false, true, true, true]
         );
     }
 }

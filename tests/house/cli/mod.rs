@@ -1043,21 +1043,102 @@ fn a_golden_lies_beside_its_preset_or_with_those_of_the_tests() {
 }
 
 #[test]
-fn blessing_an_effect_without_a_preset_makes_its_first() {
+fn bless_finds_what_every_command_finds() {
     let folder = tempfile::tempdir().unwrap();
+    let go = |args: &[&str]| run_in(folder.path(), args);
+    assert_eq!(go(&["new-effect", "ink"]).code, 0);
     fs::create_dir(folder.path().join("presets")).unwrap();
-    let blessed = run_in(folder.path(), &["bless", "normals"]);
-    assert_eq!(blessed.code, 0, "{}", blessed.err);
-    let preset_file = rasterlab::preset_file::load(&folder.path().join("presets/normals.toml"))
-        .unwrap()
-        .strict()
-        .unwrap();
-    assert!(preset_file.preset.stack.get("normals").is_some() && preset_file.preset.test.is_some());
+    let text = "schema = 2\nname = \"Inked\"\n[scene]\nbuiltin = \"knot?tess=3\"\n[effects.ink]\n[output]\nsize = [64, 48]\n[test]\n";
+    fs::write(folder.path().join("presets/inked.toml"), text).unwrap();
+    for args in [
+        &["bless", "inked"][..],
+        &["bless", "Inked", "--dry-run"],
+        &["check", "inked", "--render", "--adapter", "cpu"],
+        &["verify", "inked", "--adapter", "cpu"],
+        &["render", "inked", "--adapter", "cpu"],
+    ] {
+        let run = go(args);
+        assert_eq!(run.code, 0, "{args:?}: {}{}", run.out, run.err);
+    }
     assert!(
-        folder.path().join("tests/snapshots/normals.png").exists()
-            && folder.path().join("tests/snapshots/normals.json").exists()
+        go(&["list", "presets"])
+            .out
+            .contains("the folder presets here")
     );
-    assert_eq!(run_in(folder.path(), &["bless", "no-such-effect"]).code, 2);
+    // A preset without a test gets one in its file, since it was named.
+    fs::write(
+        folder.path().join("bare.toml"),
+        text.replace("[test]\n", ""),
+    )
+    .unwrap();
+    assert_eq!(go(&["bless", "bare.toml"]).code, 0);
+    let tested = rasterlab::preset_file::load_with(
+        &folder.path().join("bare.toml"),
+        &rasterlab::effect_files::Catalog::of_folders([&*folder.path().join("effects")]),
+    );
+    assert!(tested.is_ok_and(|tested| tested.preset.test.is_some()));
+    // An effect without a preset gets its first one.
+    let blessed = go(&["bless", "ink"]);
+    assert_eq!(blessed.code, 0, "{}", blessed.err);
+    let first = rasterlab::preset_file::load(&folder.path().join("presets/ink.toml"));
+    assert!(
+        first.is_ok_and(|first| first.preset.test.is_some()) || go(&["check", "ink"]).code == 0
+    );
+    let unknown = go(&["bless", "no-such-effect"]);
+    assert!(
+        unknown.code == 2 && unknown.err.contains("no preset and no effect"),
+        "{}",
+        unknown.err
+    );
+}
+
+#[test]
+fn a_mistyped_command_is_one_sentence_with_the_command_that_was_meant() {
+    for args in [&["rendr"][..], &["rendr", "fox.glb", "-o", "x.png"]] {
+        let run = run(args);
+        assert!(
+            run.code == 2 && run.err.contains("did you mean \"render\""),
+            "{args:?}: {}",
+            run.err
+        );
+        assert_eq!(run.err.lines().count(), 1, "{}", run.err);
+    }
+}
+
+#[test]
+fn a_color_may_be_written_as_on_a_screen() {
+    let colors = |color: &str| {
+        let set = format!("output.background={color}");
+        let folder = tempfile::tempdir().unwrap();
+        let run = run_in(
+            folder.path(),
+            &[
+                "render",
+                "facet",
+                "--adapter",
+                "cpu",
+                "--size",
+                "8x8",
+                "-o",
+                "x.png",
+                "--set",
+                &set,
+            ],
+        );
+        (
+            run.code,
+            run.err,
+            rasterlab::preset_file::png_pixels(&folder.path().join("x.png")).ok(),
+        )
+    };
+    let (code, err, pixels) = colors("#3366cc");
+    assert_eq!(code, 0, "{err}");
+    assert_eq!(
+        pixels.map(|(pixels, _)| pixels[0]),
+        Some([0x33, 0x66, 0xcc, 255])
+    );
+    let (code, err, _) = colors("#3366c");
+    assert!(code == 2 && err.contains("write #rrggbb"), "{err}");
 }
 
 #[test]
@@ -1245,7 +1326,7 @@ fn explain_measures_the_frame_and_its_passes_when_asked() {
 fn a_picture_of_no_pixels_is_a_sentence() {
     let run = run(&["render", "facet", "--adapter", "cpu", "--size", "0x10"]);
     assert!(
-        run.code == 2 && run.err.contains("PNG cannot hold"),
+        run.code == 2 && run.err.contains("each 1 to 16384"),
         "{}",
         run.err
     );

@@ -142,7 +142,7 @@ fn a_sequence_that_cannot_be_is_one_sentence() {
             &["-o", "-"],
             "use --apng FILE or --video FILE for a single file",
         ),
-        (&["--size", "0x4"], "PNG cannot hold"),
+        (&["--size", "0x4"], "each 1 to 16384"),
     ];
     for (args, wanted) in cases {
         let folder = studio();

@@ -152,7 +152,7 @@ fn what_is_no_sweep_is_wrong_usage_in_one_sentence() {
         ),
         (
             &["--vary", "facet.amount=0..1:3", "--size", "0x9"],
-            "at least 1x1",
+            "each 1 to 16384",
         ),
     ] {
         let args: Vec<&str> = if args.contains(&"--size") {

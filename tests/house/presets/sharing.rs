@@ -1,6 +1,9 @@
 //! Promise: a shared line and a saved picture give their preset back; hostile ones are refused.
 
-use rasterlab::preset_file::{self};
+use rasterlab::{
+    preset::SceneSource,
+    preset_file::{self, PresetFile},
+};
 
 use super::*;
 
@@ -34,6 +37,7 @@ fn hostile_shared_lines_are_refused() {
         .unwrap_err()
         .to_string();
     assert!(bomb.contains("more than 1 MiB"), "{bomb}");
+    // A model outside of the folder is named, and nothing of it is read before it is allowed.
     for path in [
         "../secret.glb",
         "/etc/passwd",
@@ -42,10 +46,13 @@ fn hostile_shared_lines_are_refused() {
         "..\\x.glb",
     ] {
         let line = pack(format!("schema = 2\n[scene]\npath = '{path}'\n").as_bytes());
-        let error = preset_file::from_line(&line).unwrap_err().to_string();
-        assert!(
-            error.contains("leaves the folder of the preset"),
-            "{path}: {error}"
+        let held = preset_file::from_line(&line).unwrap();
+        let model = held.outside_model.clone().expect(path);
+        assert!(model.is_absolute() && !model.to_string_lossy().contains("/../"));
+        assert!(!matches!(held.preset.scene, SceneSource::File(_)), "{path}");
+        assert_eq!(
+            held.with_outside_model().preset.scene,
+            SceneSource::File(model)
         );
     }
     for line in [
@@ -87,4 +94,37 @@ fn a_saved_picture_gives_its_preset_back_and_a_bare_one_says_so() {
     );
     assert!(preset_file::preset_from_png(b"no png", "x.png").is_err());
     assert!(preset_file::png_bytes(&[], [0, 1]).is_err());
+}
+
+#[test]
+fn a_line_and_a_picture_name_their_model_wherever_they_are_opened() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = folder.path().join("models/fox.glb");
+    let mut preset_file =
+        PresetFile::of_scene("fox", SceneSource::File("../models/fox.glb".into()));
+    preset_file.path = Some(folder.path().join("presets/fox.toml"));
+    let pasted = preset_file::from_line(&preset_file::to_line(&preset_file)).unwrap();
+    assert_eq!(pasted.outside_model.as_deref(), Some(model.as_path()));
+
+    let frame = rasterlab::frame::Frame {
+        width: 1,
+        height: 1,
+        color: vec![[1, 2, 3, 255]],
+        ..Default::default()
+    };
+    let picture = folder.path().join("pictures/shot.png");
+    std::fs::create_dir(folder.path().join("pictures")).unwrap();
+    let png = preset_file::png_with_preset(
+        &frame,
+        &preset_file.for_picture(&picture),
+        &preset_file::Provenance::default(),
+    )
+    .unwrap();
+    std::fs::write(&picture, png).unwrap();
+    let open = || preset_file::open(&picture.to_string_lossy(), &Default::default()).unwrap();
+    assert_eq!(open().outside_model.as_deref(), Some(model.as_path()));
+    // One of its name beside the picture is nearer.
+    std::fs::write(folder.path().join("pictures/fox.glb"), "").unwrap();
+    assert_eq!(open().outside_model, None);
+    assert_eq!(open().preset.scene, SceneSource::File("fox.glb".into()));
 }

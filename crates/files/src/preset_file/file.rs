@@ -40,6 +40,10 @@ pub struct PresetFile {
     /// Names of the effects whose text came inside the preset: code that its reader has not seen
     /// yet.
     pub brought_effects: Vec<String>,
+    /// The model that a picture or a pasted line names outside of its folder, as an absolute path.
+    /// Nothing of it is read, and `preset` shows the default scene, until
+    /// [`PresetFile::with_outside_model`].
+    pub outside_model: Option<PathBuf>,
     /// The person chose the scene: a model or built-in scene was opened.
     pub chose_scene: bool,
     /// The preset whose look has landed on the scene of another.
@@ -64,6 +68,7 @@ impl PresetFile {
             warnings: Vec::new(),
             effects: Catalog::default(),
             brought_effects: Vec::new(),
+            outside_model: None,
             chose_scene: false,
             look: None,
             read_only: false,
@@ -198,6 +203,42 @@ impl PresetFile {
             .map_err(|[key, reason]| PresetError::value(at, key, reason))
     }
 
+    /// Makes it a preset of its own that is about to be saved to `path`: with this name, or that of
+    /// the file, and without what described and tested the preset that it comes from.
+    pub fn make_new(&mut self, name: Option<&str>, path: &Path) {
+        let name = name.map(str::trim).filter(|name| !name.is_empty());
+        let name = name.map_or_else(|| stem(path), str::to_owned);
+        let preset = &mut self.preset;
+        preset.name = name.chars().take(MAX_NAME).collect();
+        preset.about.clear();
+        preset.tags.clear();
+        preset.test = None;
+    }
+
+    /// The preset with the model that it names outside of its folder, which the person has allowed.
+    #[must_use]
+    pub fn with_outside_model(mut self) -> Self {
+        if let Some(model) = self.outside_model.take() {
+            self.preset.scene = SceneSource::File(model);
+        }
+        self
+    }
+
+    /// The preset without its model where that lies outside of its folder, which is noted.
+    #[must_use]
+    pub(super) fn held_to_folder(mut self) -> Self {
+        if let SceneSource::File(model) = &self.preset.scene
+            && !stays_inside(model)
+        {
+            self.outside_model = Some(
+                normalized(&model_path(model, self.path.as_deref()))
+                    .unwrap_or_else(|| model.clone()),
+            );
+            self.preset.scene = Preset::default().scene;
+        }
+        self
+    }
+
     /// The preset as a picture saved at `picture` holds it: a relative model path starts at the
     /// folder of the picture.
     #[must_use]
@@ -273,11 +314,6 @@ pub fn save(preset_file: &mut PresetFile, path: &Path) -> Result<(), PresetError
     if let SceneSource::File(model) = &preset_file.preset.scene {
         next.preset.scene = SceneSource::File(rebase(model, preset_file.path.as_deref(), path));
     }
-    // The name of a look on a chosen scene was made from both; the name of the file was typed.
-    let typed = stem(path);
-    if preset_file.path.is_none() && preset_file.chose_scene && typed != preset_file.id {
-        next.preset.name = typed.chars().take(MAX_NAME).collect();
-    }
     let text = to_toml(&next);
     let is_there = preset_file.path.as_deref() == Some(path)
         && std::fs::read(path).is_ok_and(|there| there == text.as_bytes());
@@ -313,19 +349,31 @@ pub(super) fn model_path(model: &Path, preset_path: Option<&Path>) -> PathBuf {
         .join(model)
 }
 
+/// Is this a path inside the folder that it starts at, on every system?
+pub(super) fn stays_inside(model: &Path) -> bool {
+    let text = model.to_string_lossy();
+    model
+        .components()
+        .all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
+        && !text.contains(['\\', ':'])
+}
+
+/// The path from the root, without `.` and `..`; none where the current folder is unknown. Links
+/// are not followed, and nothing is read.
+pub fn normalized(path: &Path) -> Option<PathBuf> {
+    let mut normalized = PathBuf::new();
+    for part in std::path::absolute(path).ok()?.components() {
+        match part {
+            Component::ParentDir => drop(normalized.pop()),
+            Component::CurDir => {}
+            part => normalized.push(part),
+        }
+    }
+    Some(normalized)
+}
+
 /// `model` relative to the folder of `to`, when it was relative to the folder of `from`.
 fn rebase(model: &Path, from: Option<&Path>, to: &Path) -> PathBuf {
-    let normalized = |path: &Path| -> Option<PathBuf> {
-        let mut normalized = PathBuf::new();
-        for part in std::path::absolute(path).ok()?.components() {
-            match part {
-                Component::ParentDir => drop(normalized.pop()),
-                Component::CurDir => {}
-                part => normalized.push(part),
-            }
-        }
-        Some(normalized)
-    };
     let folder = normalized(to).and_then(|to| to.parent().map(Path::to_owned));
     let (Some(model_path), Some(folder)) = (normalized(&model_path(model, from)), folder) else {
         return model.to_owned();

@@ -81,10 +81,12 @@ pub struct Folders {
 }
 
 impl Folders {
-    /// These folders, and the effects in the user's own folder.
+    /// These folders, and the effects in the user's own folder and beside the user's presets.
     pub fn new(presets: Option<PathBuf>, effects: &Path) -> Self {
+        let beside_own = user_folder().map(|presets| presets.join("effects"));
         let effect_folders: Vec<PathBuf> = user_effects_folder()
             .into_iter()
+            .chain(beside_own)
             .chain([effects.to_owned()])
             .collect();
         let user = user_folder().and_then(|presets| presets.parent().map(Path::to_owned));

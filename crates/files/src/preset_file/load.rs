@@ -56,6 +56,7 @@ pub fn parse_with(
         document,
         effects: read.catalog,
         brought_effects: read.brought_effects,
+        outside_model: None,
         chose_scene: false,
         look: None,
     })

@@ -43,7 +43,7 @@ pub use effect_values::{
     EffectValues, SavedValues, is_effect_text, load_values, save_values, saved_values,
 };
 pub use error::{Position, PresetError};
-pub use file::{MAX_NAME, PresetFile, save, to_shared_toml, to_toml};
+pub use file::{MAX_NAME, PresetFile, normalized, save, to_shared_toml, to_toml};
 pub use formats::{MODEL_FORMATS, ModelFormat};
 pub use frame_status::{FrameStatus, frame_status};
 pub use gallery::{

@@ -8,10 +8,9 @@ use std::{
 
 use super::{
     error::PresetError,
-    file::{PresetFile, stem, to_shared_toml},
+    file::{PresetFile, stays_inside, stem, to_shared_toml},
     frame_status::{ADAPTER, FINGERPRINT, is_damaged},
     load::{MAX_BYTES, parse_file, read_capped},
-    share::stays_inside,
 };
 use crate::{frame::Frame, params::legible_line, preset::SceneSource};
 
@@ -148,41 +147,36 @@ pub fn png_pixels(path: &Path) -> Result<(Vec<[u8; 4]>, [u32; 2]), PresetError> 
     Ok((bytemuck::pod_collect_to_vec(picture.as_raw()), size))
 }
 
-/// Reads the preset of the picture at `path`. Its model must lie in the folder of the picture or
-/// below: a picture may come from anyone, and must not name files elsewhere. Instead of a model
-/// elsewhere, one of its name beside the picture is taken.
+/// Reads the preset of the picture at `path`. A picture may come from anyone: a model outside of
+/// its folder is not its scene before [`PresetFile::with_outside_model`], and one of the same name
+/// beside the picture is taken instead.
 ///
 /// # Errors
-/// The file cannot be read, as [`preset_from_png`], or its model lies elsewhere.
+/// The file cannot be read, or as [`preset_from_png`].
 pub fn load_picture(path: &Path) -> Result<PresetFile, PresetError> {
     let file = path.display().to_string();
-    let mut preset_file = preset_from_png(&read_capped(path, MAX_FILE_BYTES)?, &file)?;
-    if let SceneSource::File(model) = &preset_file.preset.scene
-        && !stays_inside(model)
-    {
-        let shown = legible_line(&model.to_string_lossy());
-        let name = model
-            .file_name()
-            .map(Path::new)
-            .filter(|name| stays_inside(name) && path.with_file_name(name).is_file());
-        let Some(name) = name else {
-            let reason = format!(
-                "its model {shown} lies outside of the folder of the picture; put a copy of the model beside the picture"
-            );
-            return Err(PresetError::NotOurs { what: file, reason });
-        };
-        preset_file.warnings.push(format!(
-            "{file}: its model {shown} lies elsewhere; {} beside the picture is used",
-            name.display()
-        ));
-        preset_file.preset.scene = SceneSource::File(name.to_owned());
-    }
-    Ok(PresetFile {
+    let mut preset_file = PresetFile {
         id: stem(path),
         path: Some(path.to_owned()),
         read_only: true,
-        ..preset_file
-    })
+        ..preset_from_png(&read_capped(path, MAX_FILE_BYTES)?, &file)?
+    }
+    .held_to_folder();
+    let beside = preset_file
+        .outside_model
+        .as_deref()
+        .and_then(|model| Some((model, Path::new(model.file_name()?))))
+        .filter(|(_, name)| stays_inside(name) && path.with_file_name(name).is_file());
+    if let Some((model, name)) = beside {
+        preset_file.warnings.push(format!(
+            "{file}: its model {} lies elsewhere; {} beside the picture is used",
+            legible_line(&model.to_string_lossy()),
+            name.display()
+        ));
+        preset_file.preset.scene = SceneSource::File(name.to_owned());
+        preset_file.outside_model = None;
+    }
+    Ok(preset_file)
 }
 
 /// The preset inside a picture that rasterlab saved; `file` is what errors call it.

@@ -150,7 +150,13 @@ fn param_schema(param: &Param, default: Option<Value>) -> Json {
             match numbers.components() {
                 1 => number,
                 count => {
-                    json!({ "type": "array", "minItems": count, "maxItems": count, "items": number })
+                    let list = json!({ "type": "array", "minItems": count, "maxItems": count, "items": number });
+                    match numbers {
+                        ValueType::Color => json!({ "anyOf": [list, {
+                            "type": "string", "pattern": "^#([0-9a-fA-F]{2}){3,4}$"
+                        }] }),
+                        _ => list,
+                    }
                 }
             }
         }

@@ -2,25 +2,28 @@
 //! account.
 
 use std::io::{Read as _, Write as _};
-use std::path::{Component, Path};
 
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use flate2::{Compression, read::DeflateDecoder, write::DeflateEncoder};
 
 use super::{
     error::PresetError,
-    file::{PresetFile, to_shared_toml},
+    file::{PresetFile, normalized, to_shared_toml},
     load::{MAX_BYTES, parse_file},
 };
 use crate::preset::SceneSource;
 
 const PREFIX: &str = "rasterlab1:";
 
-/// The preset as one line.
+/// The preset as one line. It has no folder, so it names a model by its whole path.
 pub fn to_line(preset_file: &PresetFile) -> String {
+    let mut shared = preset_file.clone();
+    if let SceneSource::File(model) = shared.scene_source() {
+        shared.preset.scene = SceneSource::File(normalized(&model).unwrap_or(model));
+    }
     let mut deflate = DeflateEncoder::new(Vec::new(), Compression::best());
     deflate
-        .write_all(to_shared_toml(preset_file).as_bytes())
+        .write_all(to_shared_toml(&shared).as_bytes())
         .expect("memory takes all bytes");
     format!(
         "{PREFIX}{}",
@@ -28,8 +31,11 @@ pub fn to_line(preset_file: &PresetFile) -> String {
     )
 }
 
-/// Reads a pasted line; white space from a mail or chat is forgiven. A model path may not leave the
-/// folder.
+/// Reads a pasted line; white space from a mail or chat is forgiven. A model outside of the current
+/// folder is not its scene before [`PresetFile::with_outside_model`].
+///
+/// # Errors
+/// The text is no such line, or its preset cannot be read.
 pub fn from_line(line: &str) -> Result<PresetFile, PresetError> {
     let not_ours = |reason: &str| PresetError::NotOurs {
         what: "the pasted text".into(),
@@ -57,20 +63,5 @@ pub fn from_line(line: &str) -> Result<PresetFile, PresetError> {
         return Err(not_ours("it unpacks to more than 1 MiB"));
     }
     let toml = String::from_utf8(toml).map_err(|_| not_ours("it is not text"))?;
-    let preset_file = parse_file(&toml, "pasted", "the pasted text")?;
-    if let SceneSource::File(model) = &preset_file.preset.scene
-        && !stays_inside(model)
-    {
-        return Err(not_ours("its scene.path leaves the folder of the preset"));
-    }
-    Ok(preset_file)
-}
-
-/// Is this a path inside the folder that it starts at, on every system?
-pub(super) fn stays_inside(model: &Path) -> bool {
-    let text = model.to_string_lossy();
-    model
-        .components()
-        .all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
-        && !text.contains(['\\', ':'])
+    Ok(parse_file(&toml, "pasted", "the pasted text")?.held_to_folder())
 }

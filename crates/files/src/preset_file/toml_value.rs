@@ -5,7 +5,10 @@
 
 use toml_edit::Value as Toml;
 
-use crate::params::{Param, Value, ValueType, did_you_mean};
+use crate::{
+    math::{linear_of_srgb, srgb_byte},
+    params::{Param, Value, ValueType, did_you_mean},
+};
 
 /// The text of a number as it stands in the file.
 pub type NumberText<'a> = &'a dyn Fn(&Toml) -> String;
@@ -29,13 +32,25 @@ pub fn read(param: &Param, toml: &Toml, text_of: NumberText<'_>) -> Result<Value
                 .ok_or_else(|| format!("must be true or false, not {}", description(toml)))?,
         ),
         ValueType::Choice(words) => Value::Choice(word(toml, words)?),
+        ValueType::Color if toml.is_str() => {
+            let written = toml.as_str().unwrap_or_default();
+            Value::Numbers(
+                color_of_hex(written)
+                    .ok_or_else(|| not_a_color(written))?
+                    .into(),
+            )
+        }
         numbers => match numbers.components() {
             1 => Value::Numbers(vec![number(toml, &text_of(toml), numbers)?]),
             count => {
                 let list = toml.as_array().filter(|list| list.len() == count);
                 let list = list.ok_or_else(|| {
+                    let or_hex = match numbers {
+                        ValueType::Color => ", in linear light, or #rrggbb",
+                        _ => "",
+                    };
                     format!(
-                        "must be a list of {count} numbers, not {}",
+                        "must be a list of {count} numbers{or_hex}, not {}",
                         description(toml)
                     )
                 })?;
@@ -47,6 +62,39 @@ pub fn read(param: &Param, toml: &Toml, text_of: NumberText<'_>) -> Result<Value
             }
         },
     })
+}
+
+/// A color as it is written for screens, `#rrggbb` or `#rrggbbaa` in sRGB, as linear RGBA; none if it
+/// is no such text.
+pub fn color_of_hex(written: &str) -> Option<[f64; 4]> {
+    let digits = written.trim().strip_prefix('#')?;
+    if !matches!(digits.len(), 6 | 8) || !digits.bytes().all(|c| c.is_ascii_hexdigit()) {
+        return None;
+    }
+    let byte = |at: usize| u8::from_str_radix(digits.get(at..at + 2)?, 16).ok();
+    let linear = |at| {
+        Some(f64::from(
+            linear_of_srgb(f64::from(byte(at)?) / 255.0) as f32
+        ))
+    };
+    let alpha = byte(6).map_or(1.0, |alpha| f64::from(f32::from(alpha) / 255.0));
+    Some([linear(0)?, linear(2)?, linear(4)?, alpha])
+}
+
+/// Linear RGBA as `#rrggbb` in sRGB, with two more digits unless alpha is 1.
+pub fn hex_of_color([r, g, b, a]: [f64; 4]) -> String {
+    let [r, g, b] = [r, g, b].map(srgb_byte);
+    let alpha = (a.clamp(0.0, 1.0) * 255.0).round() as u8;
+    match alpha {
+        255 => format!("#{r:02x}{g:02x}{b:02x}"),
+        alpha => format!("#{r:02x}{g:02x}{b:02x}{alpha:02x}"),
+    }
+}
+
+fn not_a_color(written: &str) -> String {
+    format!(
+        "{written:?} is no color; write #rrggbb or #rrggbbaa as for a screen (sRGB), or four numbers of linear light, for instance [0.5, 0.5, 0.5, 1.0]"
+    )
 }
 
 /// The TOML that [`read`] takes back to the same bits. `value` must have this type.
@@ -256,6 +304,26 @@ mod tests {
                 .unwrap_err()
                 .contains("not a finite number")
         );
+    }
+
+    #[test]
+    fn a_color_of_a_screen_is_read_as_linear_light() {
+        let read = |text: &str| {
+            let param = Param::new("any", "", ValueType::Color).hard(0.0..=1.0);
+            super::read(&param, &text.into(), &|_| text.to_owned())
+        };
+        let gray = f64::from(0.215_860_5_f32);
+        let Ok(Value::Numbers(numbers)) = read("#80ff00") else {
+            panic!("{:?}", read("#80ff00"))
+        };
+        assert!((numbers[0] - gray).abs() < 1e-6 && numbers[1..] == [1.0, 0.0, 1.0]);
+        for hex in ["#000000", "#80ff00", "#0a0b0c80", "#ffffff00"] {
+            assert_eq!(hex_of_color(color_of_hex(hex).expect("a color")), hex);
+        }
+        for wrong in ["#80ff0", "80ff00", "#80ff0g", "#", "red", "#ééé"] {
+            let error = read(wrong).expect_err(wrong);
+            assert!(error.contains("write #rrggbb"), "{error}");
+        }
     }
 
     #[test]

@@ -20,6 +20,9 @@ pub enum Choice {
     Side(Side),
     Run,
     OpenWithout,
+    /// Opens a model outside of the folder of what names it.
+    OpenModel,
+    LookOnly,
 }
 
 /// Buttons from right to left, the main one emphasized; `left` adds one at the other end.

@@ -14,14 +14,14 @@ use eframe::egui::{self, Ui};
 use self::{
     buttons::{Choice, buttons},
     path::{PathDialog, path_ui},
-    questions::{brought_ui, changed_ui, muted_ui, restore_ui, unsaved_ui},
+    questions::{brought_ui, changed_ui, muted_ui, outside_ui, restore_ui, unsaved_ui},
 };
 use super::new_effect::{NewEffect, fields_ui};
 use crate::{
     app::{
         editing::session::Session,
         files::{
-            command::{CodeUse, FileCommand, Origin, Purpose},
+            command::{CodeUse, FileCommand, Manner, Origin, Purpose},
             completion::Listing,
             system_dialog::Answer,
         },
@@ -39,16 +39,20 @@ use crate::{
 
 /// The dialog that is open.
 enum Dialog {
-    Path(PathDialog),
+    Path(Box<PathDialog>),
     /// Save with muted effects enabled, or without them?
     Muted {
         path: PathBuf,
+        name: Option<String>,
     },
     /// Quit with unsaved changes?
     Unsaved,
     NewEffect(NewEffect),
     /// May the code that a preset brings run?
     Code(Box<PresetFile>, CodeUse),
+    /// May the model be read that a picture or a pasted line names outside of its folder? What is
+    /// said of it afterwards.
+    Outside(Box<PresetFile>, Manner, String),
     /// Keep unsaved changes, or take what the preset's file has now, or both? It is saved to the
     /// path afterwards.
     Changed(Box<PresetFile>, Option<PathBuf>),
@@ -108,12 +112,21 @@ impl Dialogs {
                 .display()
                 .to_string(),
         };
-        self.open = Some(Dialog::Path(PathDialog::new(purpose, text, size)));
+        // Its own file keeps its name, and so does a look on a model that has none yet.
+        let own_name = (!session.preset_file.read_only).then(|| {
+            let path = session.preset_file.path.clone();
+            (
+                path.unwrap_or_else(|| PathBuf::from(&text)),
+                session.title().to_owned(),
+            )
+        });
+        let dialog = PathDialog::new(purpose, text, size).with_own_name(own_name);
+        self.open = Some(Dialog::Path(dialog.into()));
     }
 
     /// Asks whether muted effects are saved to `path` too.
-    pub fn ask_muted(&mut self, path: PathBuf) {
-        self.open = Some(Dialog::Muted { path });
+    pub fn ask_muted(&mut self, path: PathBuf, name: Option<String>) {
+        self.open = Some(Dialog::Muted { path, name });
     }
 
     /// Asks whether to save before the window closes.
@@ -144,6 +157,11 @@ impl Dialogs {
         self.open = Some(Dialog::Code(preset_file, then));
     }
 
+    /// Asks whether the model of `preset_file`, which lies outside of its folder, is opened.
+    pub fn ask_outside(&mut self, preset_file: Box<PresetFile>, manner: Manner, said: String) {
+        self.open = Some(Dialog::Outside(preset_file, manner, said));
+    }
+
     /// Asks whether to go on with the session that a crash ended.
     pub fn ask_restore(&mut self, restored: Box<Restored>) {
         self.open = Some(Dialog::Restore(restored));
@@ -167,7 +185,7 @@ impl Dialogs {
         let mut dialog =
             kept.unwrap_or_else(|| PathDialog::new(purpose, path.display().to_string(), [1, 1]));
         (dialog.error, dialog.replace) = (Some(reason.to_owned()), None);
-        self.open = Some(Dialog::Path(dialog));
+        self.open = Some(Dialog::Path(dialog.into()));
         true
     }
 
@@ -220,17 +238,19 @@ impl Dialogs {
             }
             (Choice::Accept, Some(Dialog::Path(mut dialog))) => {
                 if dialog.accept(open.path.as_deref(), commands) {
-                    self.saving = Some(dialog).filter(|dialog| dialog.purpose != Purpose::Open);
+                    self.saving = Some(*dialog).filter(|dialog| dialog.purpose != Purpose::Open);
                 } else {
                     self.open = Some(Dialog::Path(dialog));
                 }
             }
-            (Choice::KeepMuted, Some(Dialog::Muted { path })) => file(FileCommand::Write {
+            (Choice::KeepMuted, Some(Dialog::Muted { path, name })) => file(FileCommand::Write {
                 path,
+                name,
                 drops_muted: false,
             }),
-            (Choice::DropMuted, Some(Dialog::Muted { path })) => file(FileCommand::Write {
+            (Choice::DropMuted, Some(Dialog::Muted { path, name })) => file(FileCommand::Write {
                 path,
+                name,
                 drops_muted: true,
             }),
             (Choice::Save, Some(Dialog::Unsaved)) => file(FileCommand::Save),
@@ -259,6 +279,15 @@ impl Dialogs {
                     runs: choice == Choice::Run,
                 });
             }
+            (
+                Choice::OpenModel | Choice::LookOnly,
+                Some(Dialog::Outside(preset_file, manner, said)),
+            ) => file(FileCommand::UseOutside {
+                preset_file,
+                manner,
+                said,
+                opens_model: choice == Choice::OpenModel,
+            }),
             (Choice::Side(side), Some(Dialog::Changed(theirs, saving))) => {
                 file(FileCommand::Resolve {
                     theirs,
@@ -307,6 +336,7 @@ impl Panel for Dialogs {
                         changed_ui(ui, theirs.title(), saving.is_some())
                     }
                     Dialog::Code(preset_file, _) => brought_ui(ui, preset_file),
+                    Dialog::Outside(preset_file, ..) => outside_ui(ui, preset_file),
                     Dialog::Restore(restored) => restore_ui(ui, restored),
                 };
             });

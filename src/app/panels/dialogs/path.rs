@@ -23,9 +23,9 @@ use crate::{
         },
         settings::recents::Recents,
         shell::command::{Command, Commands},
-        widgets::theme,
+        widgets::{text::cut_middle, theme},
     },
-    preset_file::ModelFormat,
+    preset_file::{MAX_NAME, ModelFormat},
 };
 
 impl Purpose {
@@ -43,7 +43,7 @@ impl Purpose {
                 "A preset (.toml), a model ({}), an exported picture (.png), an effect (.wgsl), a preset's id, or builtin:teapot",
                 ModelFormat::names(", ")
             ),
-            Self::SaveAs => "Presets in the suggested folder appear in the list on the left".into(),
+            Self::SaveAs => "Presets in the suggested folder appear in the list on the left. The description, tags and test of the preset that it comes from are left out".into(),
             Self::Export => {
                 "The picture contains the preset: open the picture to get it back".into()
             }
@@ -79,6 +79,10 @@ const ROWS: f32 = 8.0;
 pub struct PathDialog {
     pub purpose: Purpose,
     pub text: String,
+    /// Name of the preset that is saved, once it was typed; before that it is that of the file.
+    name: Option<String>,
+    /// The file of the open preset, with the name of that.
+    own_name: Option<(PathBuf, String)>,
     /// Width and height of an export, pixels.
     size: [u32; 2],
     /// The existing file that the user has agreed to replace.
@@ -106,6 +110,8 @@ impl PathDialog {
         Self {
             purpose,
             text,
+            name: None,
+            own_name: None,
             size,
             replace: None,
             is_browsing: false,
@@ -119,9 +125,30 @@ impl PathDialog {
         }
     }
 
+    /// The same with the file of the open preset, which keeps its name there.
+    #[must_use]
+    pub fn with_own_name(mut self, own_name: Option<(PathBuf, String)>) -> Self {
+        self.own_name = own_name;
+        self
+    }
+
+    /// The name that the saved preset will have.
+    fn preset_name(&self) -> String {
+        if let Some(typed) = &self.name {
+            return typed.clone();
+        }
+        let path = self.path();
+        match &self.own_name {
+            Some((own, name)) if *own == path => name.clone(),
+            _ => path
+                .file_stem()
+                .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned()),
+        }
+    }
+
     /// The file that the dialog names.
     pub fn path(&self) -> PathBuf {
-        with_extension(
+        completion::with_extension(
             &completion::expanded(self.text.trim()),
             self.purpose.extension(),
         )
@@ -159,7 +186,10 @@ impl PathDialog {
                 FileCommand::Open(path.to_string_lossy().into_owned())
             }
             Purpose::Open => FileCommand::Open(typed.to_owned()),
-            Purpose::SaveAs => FileCommand::SaveTo(path),
+            Purpose::SaveAs => FileCommand::SaveTo {
+                path,
+                name: Some(self.preset_name()),
+            },
             Purpose::Export => FileCommand::Export {
                 path,
                 size: self.size,
@@ -297,6 +327,20 @@ pub fn path_ui(
         };
     }
     is_accepted |= list_ui(ui, dialog, &rows, missing);
+    if dialog.purpose == Purpose::SaveAs {
+        let mut name = dialog.preset_name();
+        ui.horizontal(|ui| {
+            ui.label("Name");
+            let edit = egui::TextEdit::singleline(&mut name)
+                .char_limit(MAX_NAME)
+                .desired_width(f32::INFINITY);
+            let field = ui.add(edit).accessible_name("Name");
+            if field.changed() {
+                dialog.name = Some(name);
+            }
+            is_accepted |= field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
+        });
+    }
     if dialog.purpose == Purpose::Export {
         ui.horizontal(|ui| {
             ui.label("Size");
@@ -444,8 +488,15 @@ fn place_cursor(ctx: &egui::Context, id: egui::Id, dialog: &PathDialog) {
 /// The list of recent files and matches. Returns true if a file was taken.
 fn list_ui(ui: &mut Ui, dialog: &mut PathDialog, rows: &[Row], missing: &HashSet<PathBuf>) -> bool {
     let mut taken = None;
-    if let Some(Err(error)) = dialog.listing.as_ref().map(|listing| &listing.entries) {
-        ui.label(theme::weak(error.clone()));
+    match dialog.listing.as_ref() {
+        Some(listing) if dialog.purpose != Purpose::Open && !listing.folder.exists() => {
+            ui.label(theme::weak("This folder is made when you save."));
+        }
+        Some(Listing {
+            entries: Err(error),
+            ..
+        }) => drop(ui.label(theme::weak(error.clone()))),
+        _ => {}
     }
     let frame = egui::Frame::new()
         .fill(theme::well())
@@ -534,6 +585,8 @@ fn row_ui(ui: &mut Ui, row: &Row, is_chosen: bool, is_missing: bool) -> egui::Re
     );
     let rest = egui::Rect::from_min_max(egui::pos2(drawn.right() + 12.0, rect.top()), rect.max);
     let weak = if is_missing { "missing".into() } else { detail };
+    // A letter is some 7 points wide.
+    let weak = cut_middle(&weak, ((rest.width() - 12.0) / 7.0).max(4.0) as usize);
     ui.painter_at(rest).text(
         rest.right_center() - vec2(6.0, 0.0),
         Align2::RIGHT_CENTER,
@@ -544,50 +597,9 @@ fn row_ui(ui: &mut Ui, row: &Row, is_chosen: bool, is_missing: bool) -> egui::Re
     response
 }
 
-fn with_extension(path: &Path, extension: Option<&str>) -> PathBuf {
-    let Some(extension) = extension else {
-        return path.to_owned();
-    };
-    let has = |path: &Path| {
-        path.extension()
-            .is_some_and(|there| there.eq_ignore_ascii_case(extension))
-    };
-    match path.file_stem() {
-        // Typed in place of the selected name, in front of the extension that stayed.
-        Some(stem) if has(path) && has(Path::new(stem)) => path.with_file_name(stem),
-        _ if has(path) => path.to_owned(),
-        _ => {
-            // Appended, so that `preset.v2` keeps its dot.
-            let mut name = path.as_os_str().to_owned();
-            name.push(format!(".{extension}"));
-            name.into()
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_typed_name_gets_its_extension_once() {
-        assert_eq!(
-            with_extension(Path::new("a/preset"), Some("toml")),
-            Path::new("a/preset.toml")
-        );
-        assert_eq!(
-            with_extension(Path::new("preset.v2"), Some("toml")),
-            Path::new("preset.v2.toml")
-        );
-        assert_eq!(
-            with_extension(Path::new("preset.TOML"), Some("toml")),
-            Path::new("preset.TOML")
-        );
-        assert_eq!(
-            with_extension(Path::new("a/mine.toml.toml"), Some("toml")),
-            Path::new("a/mine.toml")
-        );
-    }
 
     #[test]
     fn a_folder_is_no_name_to_save_under() {

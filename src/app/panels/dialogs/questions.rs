@@ -8,6 +8,7 @@ use crate::{
         files::command::Side, panels::brought_code::code_ui, settings::last_session::Restored,
         widgets::theme,
     },
+    params::legible_line,
     preset_file::PresetFile,
 };
 
@@ -129,4 +130,45 @@ pub fn brought_ui(ui: &mut Ui, preset_file: &PresetFile) -> Option<Choice> {
         ("Cancel", Choice::Cancel, false),
     ];
     buttons(ui, &options, |_| None)
+}
+
+/// May the model be read that the picture or the pasted line names?
+pub fn outside_ui(ui: &mut Ui, preset_file: &PresetFile) -> Option<Choice> {
+    let Some(model) = &preset_file.outside_model else {
+        return Some(Choice::Cancel);
+    };
+    ui.label(
+        RichText::new("Open its model too?")
+            .size(15.0)
+            .color(theme::text_strong())
+            .strong(),
+    );
+    let what = match preset_file.path {
+        Some(_) => "The picture",
+        None => "The pasted line",
+    };
+    // To ask for a file of another machine would already reach it.
+    let text = model.to_string_lossy();
+    let is_there = text.starts_with("\\\\") || text.starts_with("//") || model.is_file();
+    ui.label(format!(
+        "{what} shows a model {}:",
+        match (is_there, &preset_file.path) {
+            (false, _) => "that is not on this machine",
+            (true, Some(_)) => "outside of its folder",
+            (true, None) => "on this machine",
+        }
+    ));
+    ui.label(RichText::new(legible_line(&text)).monospace());
+    if is_there {
+        ui.label(theme::weak(
+            "Open it if you know the file: it is read, and the files in its folder that it names.",
+        ));
+    }
+    ui.add_space(theme::HALF);
+    let options = [
+        ("Open", Choice::OpenModel, true),
+        ("Look only", Choice::LookOnly, !is_there),
+        ("Cancel", Choice::Cancel, false),
+    ];
+    buttons(ui, &options[usize::from(!is_there)..], |_| None)
 }

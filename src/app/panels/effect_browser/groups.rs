@@ -174,6 +174,15 @@ pub fn grouped<'a>(
         .collect()
 }
 
+/// The effect of `groups` that answers `search` best; none if nothing does.
+pub fn best<'a>(groups: &[(Group, Vec<&'a Arc<Effect>>)], search: &str) -> Option<&'a Arc<Effect>> {
+    // Of a group the first answers best.
+    let first = groups.iter().filter_map(|(_, effects)| effects.first());
+    first
+        .max_by_key(|effect| fuzzy::score(search, &effect.name, &effect.about))
+        .copied()
+}
+
 /// The other effects of `stack` for which the place of `effect` in the stack matters: both change
 /// vertices, surfaces, or the picture. Tests of samples may stand in any order.
 pub fn depends_on_order<'a>(effect: &Effect, stack: &[&'a Arc<Effect>]) -> Vec<&'a str> {

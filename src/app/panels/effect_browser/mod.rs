@@ -11,7 +11,7 @@ use std::sync::{
 use eframe::egui::{self, RichText, ScrollArea, Ui, vec2};
 
 use self::{
-    groups::{Group, grouped},
+    groups::{Group, best, grouped},
     tile::{Tile, tile_size, tile_ui},
 };
 use super::{
@@ -24,18 +24,17 @@ use super::{
 use crate::{
     app::{
         editing::{session::Session, stack_drag::StackDrag},
-        files::{
-            command::{FileCommand, LibraryCommand},
-            favorites::Starred,
-        },
+        files::{command::LibraryCommand, favorites::Starred},
         picture::effect_picture::EffectPicture,
         shell::{
+            action::Action,
             command::{Command, Commands, Edit},
             log::Level,
             state::State,
         },
         widgets::{
             icons::{Icon, toggle_button},
+            panel::Panel,
             theme,
         },
     },
@@ -50,6 +49,10 @@ use crate::{
 pub struct EffectBrowser {
     search: String,
     only_favorites: bool,
+    /// The dialog that adds an effect is open, with its own search.
+    adding: Option<Adding>,
+    /// Something in the dialog was chosen in this frame, so that it closes.
+    has_added: bool,
     pictures: Thumbnails,
     /// The scene that the pictures show.
     scene: Weak<Scene>,
@@ -57,7 +60,27 @@ pub struct EffectBrowser {
     cancelled: Arc<AtomicBool>,
 }
 
+/// The dialog that adds an effect.
+#[derive(Default)]
+struct Adding {
+    search: String,
+}
+
+/// Width of the dialog, and the most height of its list, points.
+const DIALOG: [f32; 2] = [560.0, 460.0];
+const SEARCH: &str = "Search effects to add";
+
 impl EffectBrowser {
+    /// Opens the dialog that adds an effect.
+    pub fn begin_adding(&mut self, search: String) {
+        self.adding = Some(Adding { search });
+    }
+
+    /// Is that dialog open?
+    pub fn is_adding(&self) -> bool {
+        self.adding.is_some()
+    }
+
     /// True while a picture in view is still to come.
     pub fn is_busy(&self) -> bool {
         self.pictures.is_busy()
@@ -114,9 +137,8 @@ impl EffectBrowser {
         self.pictures.arrived(ctx, effect, image);
     }
 
-    /// Shows the browser.
-    pub fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
-        self.follow_scene(state);
+    /// Shows the browser in its tab.
+    pub fn tab_ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
         ui.horizontal(|ui| {
             let side = ui.spacing().interact_size.y;
             ui.scope(|ui| {
@@ -136,42 +158,100 @@ impl EffectBrowser {
             }
         });
         ui.add_space(theme::HALF);
-        let session = &state.session;
-        let all = session.preset_file.effects.effects_with(
-            session
-                .preset()
-                .stack
-                .0
-                .iter()
-                .map(|enabled| &enabled.effect),
-        );
         let is_kept = |effect: &Effect| {
             !self.only_favorites || state.files.favorites.has(Starred::Effect, &effect.name)
         };
-        let groups = grouped(&all, &self.search, is_kept);
-        self.pictures.begin_frame();
+        let groups = grouped(&all_effects(state), &self.search, is_kept);
         ScrollArea::vertical()
             .id_salt("effects")
             .auto_shrink(false)
             .show(ui, |ui| {
-                for (group, effects) in &groups {
-                    self.group_ui(ui, state, commands, *group, effects);
+                self.groups_ui(ui, state, commands, &groups);
+                if groups.is_empty() && ui.small_button("Show all effects").clicked() {
+                    (self.search, self.only_favorites) = (String::new(), false);
                 }
-                if groups.is_empty() {
-                    ui.label(theme::weak("No effect answers."));
-                    if ui.small_button("Show all effects").clicked() {
-                        (self.search, self.only_favorites) = (String::new(), false);
-                    }
-                }
-                ui.add_space(theme::GAP);
-                let own = ui
-                    .button("New effect…")
-                    .on_hover_text("Write an effect of your own, in one WGSL file");
-                if own.accessible_name("Write a new effect").clicked() {
-                    commands.send(Command::File(FileCommand::AskNewEffect(None)));
-                }
-                ui.add_space(theme::GAP);
             });
+    }
+
+    /// Shows the dialog that adds an effect, if it is open: a search, and the effects that are not
+    /// in the stack. Enter adds the one that answers best.
+    pub fn dialog_ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
+        let Some(Adding { mut search }) = self.adding.take() else {
+            return;
+        };
+        let area = ui.ctx().content_rect();
+        let stack = &state.session.preset().stack;
+        let all = all_effects(state);
+        let is_absent = |effect: &Effect| stack.get(&effect.name).is_none();
+        let frame = egui::Frame::window(&ui.ctx().global_style()).inner_margin(12.0);
+        let modal = egui::Modal::new(egui::Id::unique("add effect"))
+            .backdrop_color(egui::Color32::from_black_alpha(60))
+            .frame(frame);
+        let shown = modal.show(ui.ctx(), |ui| {
+            ui.set_width(DIALOG[0].min(area.width() - 48.0));
+            ui.label(
+                RichText::new("Add effect")
+                    .size(15.0)
+                    .color(theme::text_strong())
+                    .strong(),
+            );
+            ui.add_space(theme::HALF);
+            let field = search_ui(ui, &mut search, SEARCH);
+            let is_entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+            if ui.memory(|memory| memory.focused().is_none()) {
+                field.request_focus();
+            }
+            ui.add_space(theme::HALF);
+            let groups = grouped(&all, &search, is_absent);
+            ScrollArea::vertical()
+                .id_salt("effects to add")
+                .auto_shrink([false, true])
+                .max_height(DIALOG[1].min(area.height() - 200.0).max(80.0))
+                .show(ui, |ui| {
+                    ui.spacing_mut().item_spacing.y = 2.0;
+                    self.groups_ui(ui, state, commands, &groups)
+                });
+            let is_best = is_entered && !search.trim().is_empty();
+            best(&groups, &search).filter(|_| is_best)
+        });
+        let (is_closed, entered) = (shown.should_close(), shown.inner);
+        if let Some(effect) = entered {
+            add(
+                commands,
+                effect,
+                stack.rival_of(effect).map(|rival| rival.name.as_str()),
+            );
+        } else if !is_closed && !self.has_added {
+            self.adding = Some(Adding { search });
+        }
+        self.has_added = false;
+    }
+
+    /// The groups with their tiles, and what leads to an effect of one's own.
+    fn groups_ui(
+        &mut self,
+        ui: &mut Ui,
+        state: &State,
+        commands: &Commands,
+        groups: &[(Group, Vec<&Arc<Effect>>)],
+    ) {
+        self.follow_scene(state);
+        self.pictures.begin_frame();
+        for (group, effects) in groups {
+            self.group_ui(ui, state, commands, *group, effects);
+        }
+        if groups.is_empty() {
+            ui.label(theme::weak("No effect answers."));
+        }
+        ui.add_space(theme::GAP);
+        let own = ui
+            .button("New effect…")
+            .on_hover_text("Write an effect of your own, in one WGSL file");
+        if own.accessible_name("Write a new effect").clicked() {
+            self.has_added = true;
+            commands.perform(Action::NewEffect);
+        }
+        ui.add_space(theme::GAP);
     }
 
     /// Pictures of another scene are drawn anew.
@@ -241,6 +321,7 @@ impl EffectBrowser {
                     )));
                 }
                 if responses.tile.clicked() {
+                    self.has_added = true;
                     toggle(commands, &tile);
                 }
             }
@@ -249,18 +330,41 @@ impl EffectBrowser {
     }
 }
 
+/// The dialog that adds an effect; the tab belongs to the browser of presets.
+impl Panel for EffectBrowser {
+    fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
+        self.dialog_ui(ui, state, commands);
+    }
+}
+
+/// Every effect that the open preset may use.
+fn all_effects(state: &State) -> Vec<&Arc<Effect>> {
+    let preset_file = &state.session.preset_file;
+    let stack = &preset_file.preset.stack.0;
+    preset_file
+        .effects
+        .effects_with(stack.iter().map(|enabled| &enabled.effect))
+}
+
 /// Enables the effect of a tile, in place of its rival if there is one, or disables it.
 fn toggle(commands: &Commands, tile: &Tile<'_>) {
-    let name = &tile.effect.name;
-    match (tile.is_enabled, tile.rival) {
-        (true, _) => return commands.edit(Edit::Disable(tile.effect.clone())),
-        (false, Some(rival)) => {
-            commands.edit(Edit::Replace(rival.into(), tile.effect.clone()));
+    match tile.is_enabled {
+        true => commands.edit(Edit::Disable(tile.effect.clone())),
+        false => add(commands, tile.effect, tile.rival),
+    }
+}
+
+/// Enables an effect, in place of its rival if there is one, and shows it in the inspector.
+fn add(commands: &Commands, effect: &Arc<Effect>, rival: Option<&str>) {
+    let name = &effect.name;
+    match rival {
+        Some(rival) => {
+            commands.edit(Edit::Replace(rival.into(), effect.clone()));
             let text =
                 format!("{name} replaced {rival}: both take the same slot of the rasterizer");
             commands.send(Command::Notify(Level::Info, text));
         }
-        (false, None) => commands.edit(Edit::Enable(tile.effect.clone())),
+        None => commands.edit(Edit::Enable(effect.clone())),
     }
     commands.send(Command::Reveal(name.into()));
 }

@@ -194,17 +194,17 @@ fn error_text(numbers: &TierNumbers) -> String {
     )
 }
 
-/// `12.34 ms GPU, color Δ 0` and `wrong ppm: 0 snapped, 17 true`.
+/// `12.34 ms GPU, color Δ 0` and `per million: 0 wrong, 17 by rounding`.
 fn measured_texts(time: &str, findings: &Findings) -> (String, String) {
     let report = &findings.accuracy;
     let ppm = |count: u64| short(count as f64 * 1e6 / (report.pixels as f64).max(1.0));
     let against_true = findings
         .wrong_against_true()
-        .map_or_else(String::new, |count| format!(", {} true", ppm(count)));
+        .map_or_else(String::new, |count| format!(", {} by rounding", ppm(count)));
     (
         format!("{time}, color Δ {}", report.max_color_delta),
         format!(
-            "wrong ppm: {} snapped{against_true}",
+            "per million: {} wrong{against_true}",
             ppm(report.wrong_triangles)
         ),
     )

@@ -1,21 +1,24 @@
-//! The effects of the inspector: the stack in order, with the parameters of each, then every effect
-//! that is not in it.
+//! The effects of the inspector: the stack in order, with the parameters of each. The others are
+//! behind *Add effect*.
 
 use std::sync::Arc;
 
 use eframe::egui::{self, Rect, RichText, Sense, Ui, vec2};
 
-use super::{effect_menu, precision::precision_ui, scope::scope_ui};
+use super::{
+    effect_menu,
+    precision::precision_ui,
+    rows::{is_led_to, scroll_to_top},
+    scope::scope_ui,
+};
 use crate::{
     app::{
         editing::stack_drag::{StackDrag, drop_ui},
-        files::command::FileCommand,
         panels::effect_browser::groups::depends_on_order,
         picture::command::{Picking, ViewCommand},
         shell::{
             action::Action,
             command::{Command, Commands, Edit, Parameter},
-            log::Level,
             state::State,
         },
         widgets::{
@@ -24,13 +27,13 @@ use crate::{
             reveal, theme,
         },
     },
-    effects::{EFFECTS, Effect},
+    effects::Effect,
     params::Measure,
     preset::LengthUnit,
 };
 
 pub fn effects_ui(ui: &mut Ui, state: &State, commands: &Commands) {
-    ui.horizontal(|ui| {
+    let head = ui.horizontal(|ui| {
         ui.label(theme::heading("Effects"));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if icon_button(ui, Icon::Dice, &Action::Randomize.hint()).clicked() {
@@ -38,6 +41,9 @@ pub fn effects_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             }
         });
     });
+    if is_led_to(ui.ctx(), "Effects") {
+        scroll_to_top(ui, head.response.rect);
+    }
     let stack: Vec<&Arc<Effect>> = state
         .session
         .preset()
@@ -48,7 +54,7 @@ pub fn effects_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         .collect();
     if stack.is_empty() {
         ui.label(theme::weak(
-            "No effect is enabled, so the picture shows plain base colors. Enable one below.",
+            "No effect is enabled, so the picture shows plain base colors.",
         ));
         ui.add_space(theme::HALF);
     }
@@ -63,38 +69,17 @@ pub fn effects_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     let names: Vec<&str> = stack.iter().map(|effect| effect.name.as_str()).collect();
     drop_ui(ui, commands, &names, &rects, area);
     ui.add_space(theme::HALF);
-    for effect in EFFECTS.iter().filter(|effect| !stack.contains(effect)) {
-        ui.horizontal(|ui| disabled_ui(ui, state, commands, effect));
+    let size = vec2(ui.available_width(), theme::ROW + 4.0);
+    let add = ui.add_sized(size, egui::Button::new("Add effect"));
+    if add.on_hover_text(Action::AddEffect.hint()).clicked() {
+        commands.perform(Action::AddEffect);
     }
-    own_effects_ui(ui, state, commands, &stack);
+    faults_ui(ui, state);
     ui.add_space(theme::GAP);
 }
 
-/// The effects of files that are not in the stack, files that are faulty, and a button for a new
-/// one.
-fn own_effects_ui(ui: &mut Ui, state: &State, commands: &Commands, stack: &[&Arc<Effect>]) {
-    ui.add_space(theme::HALF);
-    ui.horizontal(|ui| {
-        ui.label(theme::weak("Your effects"));
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if ui
-                .small_button("New effect…")
-                .on_hover_text("Write an effect of your own, in one WGSL file")
-                .clicked()
-            {
-                commands.send(Command::File(FileCommand::AskNewEffect(None)));
-            }
-        });
-    });
-    let own = state
-        .session
-        .preset_file
-        .effects
-        .effects()
-        .filter(|effect| effect.source.is_some() || effect.base.is_some());
-    for effect in own.filter(|effect| !stack.iter().any(|enabled| enabled.name == effect.name)) {
-        ui.horizontal(|ui| disabled_ui(ui, state, commands, effect));
-    }
+/// The files of effects that are faulty.
+fn faults_ui(ui: &mut Ui, state: &State) {
     for (name, error) in state.files.live.effect_faults() {
         ui.horizontal(|ui| {
             ui.set_min_height(theme::ROW);
@@ -298,39 +283,6 @@ fn pick_ui(ui: &mut Ui, picking: Option<&Picking>, commands: &Commands, paramete
     });
 }
 
-/// An effect that is not in the stack, and the one that it would replace.
-fn disabled_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effect>) {
-    ui.set_min_height(theme::ROW);
-    ui.add_space(theme::GAP);
-    let mut on = false;
-    let box_ui = ui
-        .checkbox(&mut on, title(effect))
-        .on_hover_text(&effect.about)
-        .accessible_name(&effect.name);
-    box_ui.context_menu(|ui| effect_menu::menu_ui(ui, state, commands, effect));
-    let clicked = box_ui.clicked();
-    let stack = &state.session.preset().stack;
-    let Some((rival, conflict)) = stack.rival_of(effect).zip(stack.conflict_with(effect)) else {
-        if clicked {
-            commands.edit(Edit::Enable(effect.clone()));
-        }
-        return;
-    };
-    if clicked {
-        commands.send(Command::Notify(Level::Warning, conflict.to_string()));
-    }
-    let (name, other) = (&effect.name, &rival.name);
-    let instead = ui
-        .small_button(format!("instead of {other}"))
-        .accessible_name(format!("{name} instead of {other}"));
-    if instead
-        .on_hover_text(format!("Disable {other} and enable {name}"))
-        .clicked()
-    {
-        commands.edit(Edit::Replace(other.clone(), effect.clone()));
-    }
-}
-
 /// `triangle_id` as `Triangle id`.
 fn title(effect: &Effect) -> String {
     let mut name = effect.name.replace('_', " ");
@@ -343,6 +295,7 @@ fn title(effect: &Effect) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::EFFECTS;
 
     #[test]
     fn effects_read_as_words() {

@@ -14,7 +14,7 @@ mod scope;
 
 use eframe::egui::{self, Ui};
 
-use self::rows::{folder, setting_ui, settings_folder};
+use self::rows::{folder, lead_to, setting_ui, settings_folder};
 use crate::{
     app::{
         shell::{
@@ -30,19 +30,25 @@ use crate::{
 /// See the module's first line.
 pub struct Inspector;
 
+/// Folders that the buttons at the top lead to.
+const LEADS: [&str; 6] = [
+    "Effects", "Scene", "Camera", "Accuracy", "Overlays", "Timing",
+];
+
 impl Panel for Inspector {
     fn ui(&mut self, ui: &mut Ui, state: &State, commands: &Commands) {
+        leads_ui(ui);
         egui::ScrollArea::vertical()
             .auto_shrink(false)
             .show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 2.0;
                 effects::effects_ui(ui, state, commands);
                 scene::scene_ui(ui, state, commands);
-                clips::clips_ui(ui, state, commands);
                 camera_ui(ui, state, commands);
+                accuracy::accuracy_ui(ui, state, commands);
+                clips::clips_ui(ui, state, commands);
                 let clock = ["clock.time_s", "clock.range_s", "clock.loop", "clock.speed"];
                 settings_folder(ui, state, commands, ("Clock", false), &clock);
-                accuracy::accuracy_ui(ui, state, commands);
                 folder(ui, "Overlays", false, |ui| {
                     overlays::overlays_ui(ui, state, commands)
                 });
@@ -58,6 +64,24 @@ impl Panel for Inspector {
                 ui.add_space(16.0);
             });
     }
+}
+
+/// Buttons that lead to the folders, however long the stack is.
+fn leads_ui(ui: &mut Ui) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 10.0;
+        ui.spacing_mut().button_padding = egui::vec2(0.0, 1.0);
+        for title in LEADS {
+            let text = egui::RichText::new(title)
+                .size(11.5)
+                .color(theme::text_weak());
+            let button = ui.add(egui::Button::new(text).frame(false));
+            if button.accessible_name(format!("Go to {title}")).clicked() {
+                lead_to(ui.ctx(), title);
+            }
+        }
+    });
+    ui.add_space(2.0);
 }
 
 fn camera_ui(ui: &mut Ui, state: &State, commands: &Commands) {

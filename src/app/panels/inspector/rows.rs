@@ -50,6 +50,29 @@ pub fn has_row(path: &str) -> bool {
     FOLDERS.iter().any(|(_, paths)| paths.contains(&path))
 }
 
+fn lead_id() -> egui::Id {
+    egui::Id::unique("folder to go to")
+}
+
+/// Opens the folder called `title` in the next frame, and scrolls to it.
+pub fn lead_to(ctx: &egui::Context, title: &'static str) {
+    ctx.data_mut(|data| data.insert_temp(lead_id(), title));
+    ctx.request_repaint();
+}
+
+/// Is the folder called `title` the one to go to? True once.
+pub fn is_led_to(ctx: &egui::Context, title: &str) -> bool {
+    ctx.data_mut(|data| {
+        let is_this = data
+            .get_temp::<&'static str>(lead_id())
+            .is_some_and(|to| to == title);
+        if is_this {
+            data.remove::<&'static str>(lead_id());
+        }
+        is_this
+    })
+}
+
 /// A folder of the inspector; `open` at the start.
 pub fn folder(ui: &mut Ui, title: &str, open: bool, contents: impl FnOnce(&mut Ui)) {
     let mut paths = FOLDERS
@@ -57,14 +80,27 @@ pub fn folder(ui: &mut Ui, title: &str, open: bool, contents: impl FnOnce(&mut U
         .filter(|(folder, _)| *folder == title)
         .flat_map(|(_, paths)| *paths);
     let is_revealed = paths.any(|path| reveal::is_within(ui.ctx(), path));
+    let is_led_to = is_led_to(ui.ctx(), title);
     let header = egui::CollapsingHeader::new(theme::heading(title))
         .default_open(open)
-        .open(is_revealed.then_some(true));
-    header.show_unindented(ui, |ui| {
+        .open((is_revealed || is_led_to).then_some(true));
+    let shown = header.show_unindented(ui, |ui| {
         ui.add_space(2.0);
         contents(ui);
         ui.add_space(theme::GAP);
     });
+    if is_led_to {
+        scroll_to_top(ui, shown.header_response.rect);
+    }
+}
+
+/// Scrolls so that `rect` is at the top.
+pub fn scroll_to_top(ui: &Ui, rect: egui::Rect) {
+    ui.scroll_to_rect_animation(
+        rect,
+        Some(egui::Align::TOP),
+        egui::style::ScrollAnimation::none(),
+    );
 }
 
 /// A folder of settings, by their paths.

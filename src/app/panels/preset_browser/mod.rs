@@ -365,12 +365,15 @@ impl Panel for PresetBrowser {
         });
         ui.add_space(theme::HALF);
         self.begin_frame();
-        if self.tab != Tab::Effects {
+        let is_adding = self.effects.is_adding();
+        if self.tab != Tab::Effects && !is_adding {
             self.effects.close();
         }
         match self.tab {
             Tab::Presets => self.presets_ui(ui, state, commands),
-            Tab::Effects => self.effects.ui(ui, state, commands),
+            // The dialog shows the same tiles.
+            Tab::Effects if is_adding => {}
+            Tab::Effects => self.effects.tab_ui(ui, state, commands),
             Tab::Scene => {
                 let area = egui::ScrollArea::vertical()
                     .id_salt("scenes")

@@ -13,7 +13,10 @@ use crate::{
             command::{Command, Commands, Edit},
             state::State,
         },
-        widgets::{text::grouped, theme},
+        widgets::{
+            text::{cut_middle, grouped},
+            theme,
+        },
     },
     preset::SceneSource,
     preset_file::ModelFormat,
@@ -63,7 +66,9 @@ fn shown_ui(ui: &mut Ui, session: &Session) {
         SceneSource::Builtin(query) => query.clone(),
         SceneSource::File(path) => path.display().to_string(),
     };
-    ui.add(Label::new(RichText::new(&source).color(theme::text_strong()).strong()).truncate())
+    // A letter is some 8 points wide.
+    let short = cut_middle(&source, (ui.available_width() / 8.0).max(8.0) as usize);
+    ui.add(Label::new(RichText::new(short).color(theme::text_strong()).strong()).truncate())
         .on_hover_text(&source);
     if session.scenes.is_loading() {
         ui.horizontal(|ui| {

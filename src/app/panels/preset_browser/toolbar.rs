@@ -1,6 +1,6 @@
 //! The head of the gallery: search, order, favorites, list or grid, and tags to choose.
 
-use eframe::egui::{self, Align, Button, ComboBox, RichText, TextEdit, Ui, vec2};
+use eframe::egui::{self, Align, Button, ComboBox, Response, RichText, TextEdit, Ui, vec2};
 
 use super::arrange::Filter;
 use crate::app::{
@@ -63,7 +63,7 @@ pub fn toolbar_ui(
 }
 
 /// A field for a search, with a button that clears it.
-pub fn search_ui(ui: &mut Ui, search: &mut String, name: &str) {
+pub fn search_ui(ui: &mut Ui, search: &mut String, name: &str) -> Response {
     ui.horizontal(|ui| {
         let clear = if search.is_empty() {
             0.0
@@ -81,7 +81,9 @@ pub fn search_ui(ui: &mut Ui, search: &mut String, name: &str) {
         if clear > 0.0 && icon_button(ui, Icon::Cross, &format!("Clear: {name}")).clicked() {
             search.clear();
         }
-    });
+        field
+    })
+    .inner
 }
 
 fn tags_ui(ui: &mut Ui, filter: &mut Filter, shows_all: &mut bool, tags: &[(String, usize)]) {

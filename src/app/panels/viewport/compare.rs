@@ -234,7 +234,7 @@ impl Compare {
             stack,
             animation,
             accuracy,
-            ..session.metric_preset()
+            ..session.next_preset()
         };
         let stack = preset.evaluated_stack();
         Inputs {
@@ -258,7 +258,8 @@ impl Compare {
             .screen
             .get_or_insert_with(|| state.picture.screen.sibling());
         let polled = screen.poll();
-        screen.show(inputs, state.picture.screen.divisor());
+        let time_s = state.session.next_time_s();
+        screen.show(inputs, state.picture.screen.divisor(), time_s);
         if let Err(error) = polled {
             state.notify(
                 Level::Error,

@@ -132,7 +132,7 @@ impl Viewport {
             state.picture.verification.reset();
             self.compare.reset_measurements();
         }
-        let stack = state.session.visible_stack();
+        let stack = state.session.next_stack();
         let accuracy = self.accuracy(state, &scene, &stack, interaction.size);
         let requested = Inputs {
             view: state.session.view_at(&scene, interaction.size),
@@ -160,7 +160,10 @@ impl Viewport {
         if divisor > 1 {
             ctx.request_repaint_after_secs(rest_in_s.unwrap_or(0.0) as f32 + 0.01);
         }
-        state.picture.screen.show(requested, divisor);
+        let time_s = state.session.next_time_s();
+        state.picture.screen.show(requested, divisor, time_s);
+        let seen_s = state.picture.screen.time_s();
+        state.session.playback.see(seen_s);
         self.compare.draw(state);
         // What else runs would be measured, too.
         let is_busy = is_held

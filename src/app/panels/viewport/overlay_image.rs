@@ -15,7 +15,7 @@ use crate::{
 const DIMMED: u8 = 96;
 
 /// Most pixels of an overlay that get rings; more can be seen without.
-const MAX_RINGS: usize = 48;
+const MAX_RINGS: usize = 256;
 
 /// The overlays `shown`, blended from the lowest to the topmost.
 pub fn image(found: &Findings, shown: &[Overlay], gain: u8) -> ColorImage {
@@ -96,15 +96,9 @@ pub fn rings(found: &Findings, shown: &[Overlay]) -> Vec<(usize, Color32)> {
         .iter()
         .filter(|overlay| found.count(**overlay) as usize <= MAX_RINGS)
     {
-        let is_there = |&i: &usize| match overlay.fault() {
-            _ if *overlay == Overlay::Unsound => found.is_unsound(i),
-            Some(fault) => found.faults.has(i, fault),
-            None if *overlay == Overlay::NotReference => found.differs_from_reference(i),
-            None => *overlay == Overlay::Color && found.faults.color_delta[i] > 0,
-        };
         rings.extend(
             (0..found.faults.pixels())
-                .filter(is_there)
+                .filter(|&i| found.is_painted(*overlay, i))
                 .map(|i| (i, overlay.color())),
         );
     }

@@ -9,7 +9,7 @@ use crate::{
             findings::Findings,
             overlay::{Overlay, OverlaySelection},
         },
-        shell::state::State,
+        shell::{action::Action, state::State},
         widgets::{icons::swatch, text::grouped, theme},
     },
     effect_files::Crossing,
@@ -187,6 +187,18 @@ pub fn legend_ui(ui: &mut Ui, state: &State, free: Rect, at: Rect) -> Rect {
             "Overlays appear when the picture is at rest",
         )],
     };
+    let painted = state.picture.findings().map_or(0, |found| {
+        let shown = state.picture.overlays.shown().iter();
+        let errors = shown.filter(|overlay| overlay.is_error() && **overlay != Overlay::Color);
+        errors.map(|overlay| found.count(*overlay)).sum()
+    });
+    if painted > 0 {
+        let key = Action::NextPixel.shortcut_text();
+        lines.push(Line::sentence(
+            theme::text_weak(),
+            format!("{key}: go to the next of these pixels"),
+        ));
+    }
     lines.extend(hovered_line(ui, state, at));
     let height = lines.len() as f32 * LINE + 2.0 * MARGIN;
     let plate = Rect::from_min_size(
