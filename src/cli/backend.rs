@@ -116,13 +116,16 @@ impl Backend {
 
     /// The picture of `session`.
     pub fn frame(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Frame, CliError> {
+        let moments = self.moments(preset, scene)?;
         match self {
-            Self::Oracle => Ok(oracle::render_scaled(
-                scene,
-                &self.moments(preset, scene)?,
-                preset.accuracy.scale().factor(),
-            )?),
-            Self::Gpu(..) => Ok(self.capture(preset, scene)?.into_shown()),
+            Self::Oracle => {
+                let factor = preset.accuracy.scale().factor();
+                Ok(oracle::render_scaled(scene, &moments, factor)?)
+            }
+            Self::Gpu(renderer, _) => {
+                renderer.set_scene(scene).block_on()?;
+                Ok(renderer.still(&moments, &preset.accuracy).block_on()?)
+            }
         }
     }
 

@@ -3,7 +3,7 @@
 
 use super::{args::Common, error::CliError, files, streams::Streams};
 use crate::{
-    preset::Fit,
+    effects::EnabledEffect,
     preset_file::{self, GalleryEntry, PresetError, PresetFile},
 };
 
@@ -54,11 +54,17 @@ pub fn land(common: &Common, look: &PresetFile, own: &PresetFile) -> Result<Pres
         bounds.map_err(|error| CliError::from(error).during(format!("preset {}", preset_file.id)))
     };
     let fit = if look.needs_fit() {
-        Fit::between(&bounds(look)?, &bounds(own)?)
+        look.fit_to(own, [&bounds(look)?, &bounds(own)?])
     } else {
         None
     };
     let mut landed = look.landed_on(own, fit.as_ref());
+    let is_limited = |enabled: &EnabledEffect| !enabled.on.is_whole_scene();
+    if landed.preset.stack.0.iter().any(is_limited) {
+        let scene = preset_file::load_scene(&own.preset, own.path.as_deref())
+            .map_err(|error| CliError::from(error).during(format!("preset {}", own.id)))?;
+        landed.map_missing_parts(&scene);
+    }
     if common.strict && !landed.warnings.is_empty() {
         return Err(PresetError::Strict(landed.warnings).into());
     }

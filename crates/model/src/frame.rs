@@ -1,7 +1,7 @@
 //! What a renderer produces and the oracle judges: integer images, snapped geometry and counters.
 //! The oracle and the GPU renderer both fill these plain types and never import each other.
 
-use crate::math::SUBPIXEL_BITS;
+use crate::math::{SUBPIXEL_BITS, linear_light, srgb_byte};
 
 /// Triangle id of a pixel that no triangle covers.
 pub const NO_TRIANGLE: u32 = u32::MAX;
@@ -354,5 +354,49 @@ impl<'a> AdapterPicture<'a> {
             layers: None,
             previous: None,
         }
+    }
+}
+
+/// Linear light of every byte.
+pub fn linear_bytes() -> Vec<f64> {
+    (0..=255u8)
+        .map(|byte| linear_light(f64::from(byte) / 255.0))
+        .collect()
+}
+
+/// A weighted sum of pixels in linear light.
+#[derive(Clone, Copy, Default)]
+pub struct LightSum {
+    /// Weighted by alpha.
+    opaque: [f64; 3],
+    /// Not weighted by alpha.
+    plain: [f64; 3],
+    alpha: f64,
+}
+
+impl LightSum {
+    /// Adds a pixel; `light` is [`linear_bytes`].
+    pub fn add(&mut self, bytes: &[u8; 4], weight: f64, light: &[f64]) {
+        let alpha = weight * f64::from(bytes[3]) / 255.0;
+        self.alpha += alpha;
+        for (channel, &byte) in bytes[..3].iter().enumerate() {
+            self.opaque[channel] += alpha * light[usize::from(byte)];
+            self.plain[channel] += weight * light[usize::from(byte)];
+        }
+    }
+
+    /// The sum as a gamma-encoded pixel; without alpha it has the colors of its transparent pixels.
+    pub fn bytes(&self) -> [u8; 4] {
+        let [r, g, b] = if self.alpha > 0.0 {
+            self.opaque.map(|v| v / self.alpha)
+        } else {
+            self.plain
+        };
+        [
+            srgb_byte(r),
+            srgb_byte(g),
+            srgb_byte(b),
+            (self.alpha.min(1.0) * 255.0 + 0.5) as u8,
+        ]
     }
 }

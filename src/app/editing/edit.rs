@@ -1,5 +1,7 @@
 //! Edits of the preset: each variant of [`Edit`] is carried out here.
 
+use glam::DVec3;
+
 use super::session::Session;
 use crate::{
     app::{
@@ -9,7 +11,7 @@ use crate::{
     params::Value,
     preset::{Preset, SceneSource},
     preset_file,
-    scene::{Bounds, camera::Camera},
+    scene::camera::Camera,
 };
 
 impl Session {
@@ -140,19 +142,14 @@ impl Session {
             return *camera;
         };
         let preset = self.shown_preset();
-        // The bounds turn with the scene's spin.
+        // What is framed turns with the scene's spin.
         let turn = preset.view(scene, [1, 1]).scene_state.world_from_scene;
-        let mut bounds = Bounds::EMPTY;
-        let corners = if scene.bounds().is_empty() {
-            None
-        } else {
-            Some(scene.bounds().corners())
-        };
-        corners
+        let points: Vec<DVec3> = preset
+            .framing_points(scene)
             .into_iter()
-            .flatten()
-            .for_each(|corner| bounds.include(turn.transform_point3(corner)));
-        orbit::framing(camera, &bounds, super::session::aspect(preset.output.size))
+            .map(|point| turn.transform_point3(point))
+            .collect();
+        orbit::framing(camera, &points, super::session::aspect(preset.output.size))
     }
 
     /// Gives every parameter of the enabled effects that is neither locked nor animated a random

@@ -48,6 +48,7 @@ mod effect;
 pub mod hooks;
 mod list;
 mod stack;
+mod sun;
 
 pub use self::{
     effect::{BuiltIn, Effect, EffectSource, HookFunctions, constant_name, read},

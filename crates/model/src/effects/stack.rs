@@ -41,6 +41,11 @@ impl EnabledEffect {
             on: Scope::default(),
         }
     }
+
+    /// Gives it these values; `P` must be the effect's own.
+    pub fn put<P: Params>(&mut self, values: &P) {
+        self.words = bytemuck::cast_slice(std::slice::from_ref(values)).to_vec();
+    }
 }
 
 /// The enabled effects, in the order in which they apply.

@@ -179,6 +179,23 @@ impl View {
         }
     }
 
+    /// The same view with everything moved by a part of a pixel, to the right and down.
+    #[must_use]
+    pub fn shifted(&self, [right, down]: [f64; 2]) -> Self {
+        let shift = DVec4::new(
+            2.0 * right / f64::from(self.width),
+            -2.0 * down / f64::from(self.height),
+            0.0,
+            1.0,
+        );
+        let clip_from_world =
+            DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::Z, shift) * self.clip_from_world;
+        Self {
+            clip_from_world,
+            ..self.clone()
+        }
+    }
+
     /// The same view on another grid of snapped positions, relative to the eye or not.
     #[must_use]
     pub fn with_grid(&self, subpixel_bits: u32, is_relative: bool) -> Self {

@@ -236,7 +236,9 @@ impl Compare {
             accuracy,
             ..session.metric_preset()
         };
-        let stack = preset.evaluated_stack();
+        let stack = preset
+            .evaluated_stack()
+            .drawn(session.length_scale(&preset, full));
         Inputs {
             view: session.view_of(preset, &live.scene, full),
             stack,
