@@ -533,19 +533,25 @@ impl Preset {
             polyline: preset.polyline.clone(),
             particles: preset.particle_timeline(),
         };
+        let camera = preset.camera_for(scene, aspect);
         let view = View::new(
-            &preset.camera_for(scene, aspect),
+            &camera,
             width,
             height,
             &bounds,
             spin,
             preset.output.backdrop(),
         );
-        View {
+        let view = View {
             scene_state,
             ..view
         }
-        .with_shadow(shadow)
+        .with_shadow(shadow);
+        if scene.ground_instances().is_empty() {
+            view
+        } else {
+            view.with_content(&camera, &scene.bounds())
+        }
     }
 }
 

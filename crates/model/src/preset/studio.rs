@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// Linear RGBA: behind the scene at the top, where the ground ends, and at the bottom.
-const BACKDROP: [[f32; 4]; 2] = [[0.19, 0.2, 0.215, 1.0], [0.33, 0.335, 0.34, 1.0]];
+const BACKDROP: [[f32; 4]; 2] = [[0.24, 0.25, 0.265, 1.0], [0.3, 0.305, 0.31, 1.0]];
 
 impl Preset {
     /// The preset of a scene that was chosen, under the name that is shown.
@@ -23,7 +23,7 @@ impl Preset {
             scene,
             ground: Some(Ground {
                 size: 24.0,
-                color: [0.4, 0.402, 0.408, 1.0],
+                color: [0.47, 0.472, 0.478, 1.0],
                 cells: 16,
                 ..Ground::default()
             }),
@@ -48,20 +48,20 @@ fn stack() -> Stack {
     use crate::effects::{fog, lambert, shadow};
     let mut stack = Stack::default();
     stack.enable(&lambert::EFFECT).put(&Lambert {
-        sun: [0.9, 0.86, 0.78, 1.0],
-        sky: [0.36, 0.38, 0.41, 1.0],
+        sun: [0.8, 0.77, 0.72, 1.0],
+        sky: [0.34, 0.355, 0.38, 1.0],
         ground: [0.2, 0.19, 0.18, 1.0],
         sun_direction: [-0.6, 0.95, 0.75, 0.0],
         headlight: 0.08,
     });
     stack.enable(&shadow::EFFECT).put(&Shadow {
-        strength: 0.85,
+        strength: 0.75,
         ..Shadow::default()
     });
     let fog = stack.enable(&fog::EFFECT);
     fog.put(&Fog {
         color: BACKDROP[0],
-        density: 0.3,
+        density: 0.22,
         start_m: 2.6,
         ..Fog::default()
     });
