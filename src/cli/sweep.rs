@@ -126,6 +126,7 @@ fn open_with_flags(common: &Common, args: &Sweep) -> Result<PresetFile, CliError
     if let Some(size) = args.size {
         preset_file.preset.output.resize(size);
     }
+    preset_file.preset.accuracy = preset_file.preset.accuracy.anti_aliased();
     if let Some(time) = args.time {
         preset_file::set(&mut preset_file, "clock.time_s", &format!("{time:?}"))?;
     }

@@ -4,7 +4,7 @@ use super::{error::RenderError, renderer::Renderer};
 use crate::{
     accuracy::RenderScale,
     effects::Stack,
-    frame::{Frame, LightSum, linear_bytes},
+    frame::{Frame, MeanPicture},
     plan::AccuracyRequest,
     scene::view::View,
 };
@@ -34,35 +34,21 @@ impl Renderer {
         }
     }
 
-    /// The mean of `side` by `side` pictures, in linear light. Its integers are those of the last
-    /// one, as [`Frame::shown`] takes them.
+    /// The mean of `side` by `side` pictures.
     async fn mean(
         &mut self,
         moments: &[(View, Stack)],
         accuracy: &AccuracyRequest,
         side: u32,
     ) -> Result<Frame, RenderError> {
-        let light = linear_bytes();
-        let (mut sums, mut last) = (Vec::new(), None);
-        for sample in 0..side * side {
-            let shift = [sample % side, sample / side]
-                .map(|i| 0.5 - (f64::from(i) + 0.5) / f64::from(side));
+        let mut mean = MeanPicture::default();
+        for shift in MeanPicture::shifts(side) {
             let moved: Vec<(View, Stack)> = moments
                 .iter()
                 .map(|(view, stack)| (view.shifted(shift), stack.clone()))
                 .collect();
-            let frame = self.capture_last(&moved, accuracy).await?.into_shown();
-            sums.resize(frame.color.len(), LightSum::default());
-            let weight = 1.0 / f64::from(side * side);
-            for (sum, pixel) in sums.iter_mut().zip(&frame.color) {
-                sum.add(pixel, weight, &light);
-            }
-            last = Some(frame);
+            mean.add(self.capture_last(&moved, accuracy).await?.into_shown());
         }
-        let color = sums.iter().map(LightSum::bytes).collect();
-        Ok(Frame {
-            color,
-            ..last.expect("a side has at least one picture")
-        })
+        Ok(mean.frame().expect("a side has at least one picture"))
     }
 }

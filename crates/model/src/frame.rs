@@ -385,6 +385,14 @@ impl LightSum {
         }
     }
 
+    fn scaled(&self, factor: f64) -> Self {
+        Self {
+            opaque: self.opaque.map(|v| v * factor),
+            plain: self.plain.map(|v| v * factor),
+            alpha: self.alpha * factor,
+        }
+    }
+
     /// The sum as a gamma-encoded pixel; without alpha it has the colors of its transparent pixels.
     pub fn bytes(&self) -> [u8; 4] {
         let [r, g, b] = if self.alpha > 0.0 {
@@ -398,5 +406,44 @@ impl LightSum {
             srgb_byte(b),
             (self.alpha.min(1.0) * 255.0 + 0.5) as u8,
         ]
+    }
+}
+
+/// The mean of several pictures of the same size, in linear light.
+#[derive(Default)]
+pub struct MeanPicture {
+    sums: Vec<LightSum>,
+    count: u32,
+    last: Option<Frame>,
+}
+
+impl MeanPicture {
+    /// By which parts of a pixel pictures are moved, so that together they have `side` by `side`
+    /// samples for each pixel.
+    pub fn shifts(side: u32) -> impl Iterator<Item = [f64; 2]> {
+        (0..side * side).map(move |sample| {
+            [sample % side, sample / side].map(|i| 0.5 - (f64::from(i) + 0.5) / f64::from(side))
+        })
+    }
+
+    /// Adds a picture.
+    pub fn add(&mut self, frame: Frame) {
+        let light = linear_bytes();
+        self.sums.resize(frame.color.len(), LightSum::default());
+        for (sum, pixel) in self.sums.iter_mut().zip(&frame.color) {
+            sum.add(pixel, 1.0, &light);
+        }
+        self.count += 1;
+        self.last = Some(frame);
+    }
+
+    /// The mean, with the integers of the last picture; none without pictures.
+    pub fn frame(self) -> Option<Frame> {
+        let weight = 1.0 / f64::from(self.count);
+        let color = self.sums.iter().map(|sum| sum.scaled(weight).bytes());
+        Some(Frame {
+            color: color.collect(),
+            ..self.last?
+        })
     }
 }

@@ -290,7 +290,7 @@ fn parameters_of_the_built_in_effects_know_what_they_measure() {
         ("facet.center", Measure::Point),
         ("facet.radius_m", Measure::Length),
         ("fog.level_m", Measure::Height),
-        ("fog.density", Measure::PerLength),
+        ("fog.density", Measure::PerDepth),
         ("wobble.direction", Measure::None),
         ("particles.half_axes", Measure::Length),
         ("particles.attractor", Measure::Point),

@@ -48,7 +48,6 @@ mod effect;
 pub mod hooks;
 mod list;
 mod stack;
-mod sun;
 
 pub use self::{
     effect::{BuiltIn, Effect, EffectSource, HookFunctions, constant_name, read},

@@ -166,7 +166,6 @@ fn hull(places: Vec<DVec3>) -> Vec<DVec3> {
             .max_by(|a, b| a.dot(direction).total_cmp(&b.dot(direction)))
     };
     let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| [axis, -axis]);
-    let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| [axis, -axis]);
     let mut found: Vec<DVec3> = (0..DIRECTIONS)
         .map(direction)
         .chain(axes.concat())

@@ -52,6 +52,7 @@ pub fn resampled(color: &[[u8; 4]], from: [u32; 2], to: [u32; 2]) -> Vec<[u8; 4]
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::linear_light;
 
     #[test]
     fn an_even_picture_does_not_change_and_means_are_taken_in_linear_light() {

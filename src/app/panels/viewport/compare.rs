@@ -17,7 +17,7 @@ use crate::{
         shell::{log::Level, state::State},
     },
     preset::{AccuracyRequest, Preset, Tier},
-    scene::Scene,
+    scene::{Ground, Scene},
 };
 
 /// How A and B are shown.
@@ -48,7 +48,7 @@ pub struct Compare {
     pub screen: Option<Screen>,
     pub verdict: Option<Verdict>,
     /// The scene of B, and the same on the ground of A.
-    grounded: Option<[Arc<Scene>; 2]>,
+    grounded: Option<(Option<Ground>, [Arc<Scene>; 2])>,
     /// Factor of the difference.
     pub gain: u8,
     /// The newest difference between verdicts on A and B.
@@ -247,7 +247,7 @@ impl Compare {
             ..own
         };
         let scene = match &self.grounded {
-            Some([of, grounded]) if Arc::ptr_eq(of, &live.scene) => grounded,
+            Some((_, [of, grounded])) if Arc::ptr_eq(of, &live.scene) => grounded,
             _ => &live.scene,
         };
         let stack = preset
@@ -270,13 +270,15 @@ impl Compare {
             return;
         };
         let (live_scene, own_ground) = (&live.scene, state.session.preset().ground);
-        let is_known = |[of, _]: &[Arc<Scene>; 2]| Arc::ptr_eq(of, live_scene);
         match &self.kept {
             Some(kept) if kept.ground != own_ground => {
-                if !self.grounded.as_ref().is_some_and(is_known) {
+                let is_known = self.grounded.as_ref().is_some_and(|(ground, [of, _])| {
+                    *ground == kept.ground && Arc::ptr_eq(of, live_scene)
+                });
+                if !is_known {
                     let bare = Scene::clone(live_scene).without_ground();
                     let grounded = kept.ground.iter().fold(bare, Scene::on_ground);
-                    self.grounded = Some([live_scene.clone(), Arc::new(grounded)]);
+                    self.grounded = Some((kept.ground, [live_scene.clone(), Arc::new(grounded)]));
                 }
             }
             _ => self.grounded = None,
