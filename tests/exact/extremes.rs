@@ -106,6 +106,7 @@ cases! {
     case_34_slivers_at_the_border = "slivers-at-the-border",
     case_34_culled_behind_holes = "culled-behind-holes",
     case_36_every_pair = "every-pair",
+    case_37_written_sample = "written-sample",
 }
 
 /// Sweeps over many or very large pictures, which take most of the time of all cases together:
@@ -137,6 +138,7 @@ const SWEEPS: &[&str] = &[
     "scenes-by-options",
     "scenes-by-effects",
     "scenes-by-axes",
+    "written-corpus",
 ];
 
 #[test]

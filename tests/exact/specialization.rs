@@ -19,28 +19,16 @@ use rasterlab::{
 
 use crate::common::*;
 
-/// Every built-in scene on two options, each time the next in turn, and on one option a preset for
-/// every effect: the resolve of its effects hardly knows the option.
+/// Every built-in scene, each on the next option in turn, and on one option a preset for every effect:
+/// the resolve of its effects hardly knows the option.
 fn pictures(options: &[Visibility]) -> Vec<(String, Arc<Scene>, View, Stack, Visibility)> {
     let mut pictures = Vec::new();
     for (turn, query) in SCENES.iter().enumerate() {
         let scene = scene(query);
         let view = view(&scene, [200, 150]);
         let stack = stack(&["depth", "lambert"]);
-        let in_turn = options
-            .iter()
-            .cycle()
-            .skip(2 * turn)
-            .take(options.len().min(2));
-        pictures.extend(in_turn.map(|&option| {
-            (
-                (*query).to_owned(),
-                scene.clone(),
-                view.clone(),
-                stack.clone(),
-                option,
-            )
-        }));
+        let option = options[turn % options.len()];
+        pictures.push(((*query).to_owned(), scene, view, stack, option));
     }
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets");
     let entries = std::fs::read_dir(folder).expect("presets/ can be read");
@@ -56,7 +44,7 @@ fn pictures(options: &[Visibility]) -> Vec<(String, Arc<Scene>, View, Stack, Vis
                 .unwrap_or_else(|error| panic!("{}: {error}", preset_file.id));
             let view = preset_file
                 .preset
-                .view(&scene, preset_file.preset.output.size);
+                .view(&scene, preset_file.preset.output.size.map(|side| side / 2));
             let brings_new = preset_file
                 .preset
                 .stack

@@ -1,6 +1,6 @@
 //! Promise: every choice of variants, with no effect, each, all and every pair of effects, links
 //! and validates, with 64-bit atomics only where an option asks for them, within eight storage
-//! buffers; every file names only what it and the files that it uses declare; and few files must be
+//! buffers, and is translated for Vulkan, Direct3D 12 and Metal; every file names only what it and the files that it uses declare; and few files must be
 //! opened to read a pass. Needs no adapter.
 
 use std::{
@@ -19,10 +19,12 @@ use rasterlab::{
     host,
     shader::{
         Fetch, KernelKey, Pass,
+        backends::translate,
         library::{self, Library},
         link::{self, LinkError, Linked},
         pass::RasterPhase,
-        reflect::{self, BindingKind},
+        reflect::{self, BindingKind, Reflected},
+        specialize::specialized,
     },
 };
 
@@ -75,6 +77,21 @@ fn linked(key: &KernelKey, pass: Pass) -> Linked {
         .unwrap_or_else(|error| panic!("{} of {key}: {error}", pass.label()))
 }
 
+/// Gives the text its constants and translates it for Vulkan, Direct3D 12 and Metal.
+fn translates(linked: &Linked, reflected: &Reflected, constants: &[(&str, f64)], int64: bool) {
+    let text = specialized(linked, &reflected.overrides(), constants)
+        .unwrap_or_else(|error| panic!("{error}"));
+    let specialized = Linked {
+        text,
+        parts: linked.parts.clone(),
+    };
+    let reflected = reflect::reflect(&specialized, int64).unwrap_or_else(|error| panic!("{error}"));
+    assert!(reflected.module.overrides.is_empty());
+    if let Err(error) = translate(&reflected.module, &reflected.info) {
+        panic!("{error}\n{}", specialized.text);
+    }
+}
+
 /// Validates one pass and returns the number of storage buffers it binds. Most keys share most
 /// texts: each text is validated once.
 pub fn validate(key: &KernelKey, pass: Pass) -> usize {
@@ -95,6 +112,7 @@ pub fn validate(key: &KernelKey, pass: Pass) -> usize {
     }
     let reflected = reflect::reflect(&linked, int64)
         .unwrap_or_else(|error| panic!("{} of {key}: {error}", pass.label()));
+    translates(&linked, &reflected, &key.constants(pass), int64);
     let bindings = reflected.bindings(pass.stem());
     assert!(
         !bindings.is_empty(),
@@ -258,6 +276,27 @@ fn every_effect_alone_in_pairs_and_all_together_validates() {
                 storage <= 8,
                 "{} of {key} binds {storage} storage buffers",
                 pass.label()
+            );
+        }
+    }
+}
+
+#[test]
+fn the_hardware_baseline_is_translated_with_every_effect() {
+    for effects in [vec![], EFFECTS.to_vec()] {
+        let mut key = key(Fetch::Indexed, Visibility::Split32, true, effects);
+        key.vertices.is_single_draw = false;
+        let variants = key.variants(Pass::Resolve);
+        let linked = link::link(&Library::Embedded, "baselines/hardware", &key, &variants)
+            .unwrap_or_else(|error| panic!("{error}"));
+        let reflected = reflect::reflect(&linked, false).unwrap_or_else(|error| panic!("{error}"));
+        for is_set in [0.0, 1.0] {
+            let flags = ["HAS_BASE_IMAGE", "HAS_EMISSION_IMAGE", "IS_UNLIT"];
+            translates(
+                &linked,
+                &reflected,
+                &flags.map(|flag| (flag, is_set)),
+                false,
             );
         }
     }

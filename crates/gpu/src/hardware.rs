@@ -31,6 +31,7 @@ use crate::{
         link,
         pass::Pass,
         reflect,
+        specialize::specialized,
     },
 };
 
@@ -548,19 +549,37 @@ fn pipelines(
         pipeline_layout(None),
         pipeline_layout(materials.map(|materials| &materials.layout)),
     );
-    let module = hardware_pipeline::module(gpu, "hardware", &linked.text);
+    let overrides = reflected.overrides();
     let build = |recipe: Recipe| {
+        let text = specialized(&linked, &overrides, &recipe.constants())?;
+        let module = hardware_pipeline::module(gpu, "hardware", &text);
         let layout = if recipe.paint.is_some() {
             &painted
         } else {
             &plain
         };
-        (recipe.pipeline(gpu, &module, layout), recipe)
+        Ok((recipe.pipeline(gpu, &module, layout), recipe))
     };
-    Ok((recipes.into_iter().map(build).collect(), group))
+    let built: Result<_, RenderError> = recipes.into_iter().map(build).collect();
+    Ok((built?, group))
 }
 
 impl Recipe {
+    /// Values of the shader's overrides.
+    fn constants(&self) -> Vec<(&'static str, f64)> {
+        let Some(paint) = self.paint else {
+            return Vec::new();
+        };
+        let flags = [
+            ("HAS_BASE_IMAGE", paint.has_base_image),
+            ("HAS_EMISSION_IMAGE", paint.has_emission_image),
+            ("IS_UNLIT", paint.unlit),
+        ];
+        flags
+            .map(|(name, is_set)| (name, f64::from(u8::from(is_set))))
+            .to_vec()
+    }
+
     fn pipeline(
         &self,
         gpu: &Gpu,
@@ -589,32 +608,15 @@ impl Recipe {
             })
         };
         let buffers: Vec<_> = (0..self.streams()).map(buffer).collect();
-        let (entries, constants) = match self.paint {
-            None => (["hardware_vertex", "hardware_fragment"], Vec::new()),
-            Some(paint) => {
-                let fragment = if paint.masked {
-                    "hardware_masked"
-                } else {
-                    "hardware_painted"
-                };
-                let flags = [
-                    ("HAS_BASE_IMAGE", paint.has_base_image),
-                    ("HAS_EMISSION_IMAGE", paint.has_emission_image),
-                    ("IS_UNLIT", paint.unlit),
-                ];
-                (
-                    ["hardware_painted_vertex", fragment],
-                    flags
-                        .map(|(name, is_set)| (name, f64::from(u8::from(is_set))))
-                        .to_vec(),
-                )
-            }
+        let entries = match self.paint {
+            None => ["hardware_vertex", "hardware_fragment"],
+            Some(Paint { masked: true, .. }) => ["hardware_painted_vertex", "hardware_masked"],
+            Some(_) => ["hardware_painted_vertex", "hardware_painted"],
         };
         let pipeline = HardwarePipeline {
             label: "hardware",
             module,
             entries,
-            constants: &constants,
             layout: Some(layout),
             buffers: &buffers,
             cull_mode: (!self.double_sided).then_some(wgpu::Face::Back),

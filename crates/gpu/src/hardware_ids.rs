@@ -49,7 +49,6 @@ pub async fn triangle_ids(
         label: SHADER,
         module: &module(gpu, SHADER, &text),
         entries: ["ids_vertex", "ids_fragment"],
-        constants: &[],
         layout: None,
         buffers: &[Some(corner)],
         cull_mode: None,

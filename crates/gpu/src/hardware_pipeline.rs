@@ -70,8 +70,6 @@ pub struct HardwarePipeline<'a> {
     pub module: &'a wgpu::ShaderModule,
     /// Entry points of the vertex and the fragment stage.
     pub entries: [&'a str; 2],
-    /// Values of overrides of the fragment stage.
-    pub constants: &'a [(&'a str, f64)],
     /// None: as the shaders have it.
     pub layout: Option<&'a wgpu::PipelineLayout>,
     pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
@@ -121,10 +119,7 @@ impl HardwarePipeline<'_> {
                 fragment: Some(wgpu::FragmentState {
                     module: self.module,
                     entry_point: Some(fragment),
-                    compilation_options: wgpu::PipelineCompilationOptions {
-                        constants: self.constants,
-                        ..Default::default()
-                    },
+                    compilation_options: Default::default(),
                     targets: &[Some(self.format.into())],
                 }),
                 multiview_mask: None,

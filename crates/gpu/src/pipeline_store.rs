@@ -1,4 +1,4 @@
-//! The compiled pipelines of a device, by their text and constants.
+//! The compiled pipelines of a device, by their text.
 
 use std::{
     collections::HashMap,
@@ -28,13 +28,11 @@ pub struct Pipeline {
 /// Interfaces that are kept, with a text of some 30 KB each.
 const MOST_INTERFACES: usize = 512;
 
-/// What tells one pipeline from another: its text and its constants.
+/// What tells one pipeline from another: its text, in which constants have their values.
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub struct Identity {
     pub text: String,
     pub entry: String,
-    /// Names of overrides with the bits of their values.
-    pub constants: Vec<(String, u64)>,
     /// Compiled without the checks that the compiler adds.
     pub is_trusted: bool,
 }
@@ -102,14 +100,8 @@ impl PipelineStore {
             return Ok(interface.clone());
         }
         let reflected = reflect::reflect(linked, has_int64)?;
-        let overrides = reflected
-            .module
-            .overrides
-            .iter()
-            .filter_map(|(_, one)| one.name.clone())
-            .collect();
         let interface = Arc::new(Interface {
-            overrides,
+            overrides: reflected.overrides(),
             bindings: reflected.bindings(entry),
         });
         let mut state = self.state();

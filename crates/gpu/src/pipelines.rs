@@ -24,6 +24,7 @@ use crate::{
         link,
         pass::Pass,
         reflect::{Binding, BindingKind},
+        specialize::specialized,
     },
 };
 
@@ -250,15 +251,9 @@ impl Pipelines {
         let interface = gpu
             .pipelines
             .interface(&linked, entry, gpu.caps.int64_atomics)?;
-        let declared = constants
-            .iter()
-            .filter(|(name, _)| interface.overrides.iter().any(|declared| declared == name));
         let identity = Identity {
-            text: linked.text,
+            text: specialized(&linked, &interface.overrides, constants)?,
             entry: entry.to_owned(),
-            constants: declared
-                .map(|(name, value)| ((*name).to_owned(), value.to_bits()))
-                .collect(),
             // Without checks, NVIDIA's driver 580.159 shades some triangles that `wobble` has moved
             // in wrong colors; why is not known.
             is_trusted: is_trusted && !(entry == Pass::Resolve.stem() && key.moves()),
@@ -343,11 +338,6 @@ fn compile(
         }
     };
     let resources = bindings.iter().map(resource).collect::<Result<_, _>>()?;
-    let constants: Vec<(&str, f64)> = identity
-        .constants
-        .iter()
-        .map(|(name, bits)| (name.as_str(), f64::from_bits(*bits)))
-        .collect();
     let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
     let source = wgpu::ShaderSource::Wgsl(identity.text.as_str().into());
     let descriptor = wgpu::ShaderModuleDescriptor {
@@ -385,8 +375,8 @@ fn compile(
             entry_point: Some(&identity.entry),
             // Our kernels write all workgroup memory before they read it.
             compilation_options: wgpu::PipelineCompilationOptions {
-                constants: &constants,
                 zero_initialize_workgroup_memory: false,
+                ..Default::default()
             },
             cache: None,
         });

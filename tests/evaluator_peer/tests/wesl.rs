@@ -11,13 +11,17 @@
 
 use std::collections::HashMap;
 
-use evaluator_peer::evaluator::{NoHost, Options, Precision, Program, Word};
+use rasterlab_evaluator::{NoHost, Options, Precision, Program, Word};
 use wesl::eval::{Instance, LiteralInstance};
 use wesl::syntax::{Expression, TranslationUnit};
 
 fn single(source: &str, function: &str) -> Program {
-    let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|error| panic!("{}", error.emit_to_string(source)));
-    let options = Options { precision: Precision::Single, ..Options::default() };
+    let module = naga::front::wgsl::parse_str(source)
+        .unwrap_or_else(|error| panic!("{}", error.emit_to_string(source)));
+    let options = Options {
+        precision: Precision::Single,
+        ..Options::default()
+    };
     Program::new(&module, function, &options).unwrap_or_else(|error| panic!("{error}\n{source}"))
 }
 
@@ -42,13 +46,18 @@ fn flatten(instance: &Instance, scalars: &mut Vec<Scalar>) {
         Instance::Vec(vector) => vector.iter().for_each(|x| flatten(x, scalars)),
         Instance::Mat(matrix) => matrix.iter_cols().for_each(|x| flatten(x, scalars)),
         Instance::Array(array) => array.iter().for_each(|x| flatten(x, scalars)),
-        Instance::Struct(members) => members.members.iter().for_each(|member| flatten(member, scalars)),
+        Instance::Struct(members) => members
+            .members
+            .iter()
+            .for_each(|member| flatten(member, scalars)),
         other => panic!("a result of type {other:?}"),
     }
 }
 
-const FLOATS: [f32; 16] =
-    [0.0, 1.0, -1.0, 0.5, -0.25, 0.1, -0.7, 2.5, -3.5, 3.3333333, 1e-20, -1e-3, 12345.678, -65504.0, 16777216.0, 3e10];
+const FLOATS: [f32; 16] = [
+    0.0, 1.0, -1.0, 0.5, -0.25, 0.1, -0.7, 2.5, -3.5, 3.3333333, 1e-20, -1e-3, 12345.678, -65504.0,
+    16777216.0, 3e10,
+];
 const INTEGERS: [i32; 12] = [0, 1, -1, 2, -3, 7, 31, 100, -128, 65535, i32::MAX, i32::MIN];
 
 struct Outcome {
@@ -61,22 +70,39 @@ struct Outcome {
 fn compare(source: &str, ulps: u32) -> Outcome {
     let program = single(source, "f");
     let mut machine = program.machine();
-    let unit: TranslationUnit = source.parse().unwrap_or_else(|error| panic!("{error}\n{source}"));
-    let mut outcome = Outcome { compared: 0, skipped: 0, differences: Vec::new() };
+    let unit: TranslationUnit = source
+        .parse()
+        .unwrap_or_else(|error| panic!("{error}\n{source}"));
+    let mut outcome = Outcome {
+        compared: 0,
+        skipped: 0,
+        differences: Vec::new(),
+    };
     for at in 0..96usize {
         let a = FLOATS[at % 16];
         let b = FLOATS[(at * 7 + at / 16) % 16];
         let i = INTEGERS[(at * 5) % 12];
         let u = INTEGERS[(at * 11 + at / 12) % 12].cast_unsigned();
-        let call = format!("f(bitcast<f32>({}u), bitcast<f32>({}u), bitcast<i32>({}u), {u}u)", a.to_bits(), b.to_bits(), i.cast_unsigned());
+        let call = format!(
+            "f(bitcast<f32>({}u), bitcast<f32>({}u), bitcast<i32>({}u), {u}u)",
+            a.to_bits(),
+            b.to_bits(),
+            i.cast_unsigned()
+        );
         let expression: Expression = call.parse().expect("a call");
-        let Ok(Some(instance)) = wesl::exec(&expression, &unit, HashMap::new(), HashMap::new()).0 else {
+        let Ok(Some(instance)) = wesl::exec(&expression, &unit, HashMap::new(), HashMap::new()).0
+        else {
             outcome.skipped += 1;
             continue;
         };
         let mut expected = Vec::new();
         flatten(&instance, &mut expected);
-        let arguments = [Word::from_f64(a.into()), Word::from_f64(b.into()), Word::from_i32(i), Word::from_u32(u)];
+        let arguments = [
+            Word::from_f64(a.into()),
+            Word::from_f64(b.into()),
+            Word::from_i32(i),
+            Word::from_u32(u),
+        ];
         let given = machine.call(&arguments, &mut NoHost).expect("it ends");
         assert_eq!(given.len(), expected.len(), "{source}");
         outcome.compared += 1;
@@ -84,7 +110,10 @@ fn compare(source: &str, ulps: u32) -> Outcome {
             let (given, is_same) = match expected {
                 Scalar::F(x) => {
                     let given = word.to_f64() as f32;
-                    assert!(given.is_nan() || f64::from(given) == word.to_f64(), "{given} is no f32");
+                    assert!(
+                        given.is_nan() || f64::from(given) == word.to_f64(),
+                        "{given} is no f32"
+                    );
                     (Scalar::F(given), close(given, x, ulps))
                 }
                 Scalar::I(x) => (Scalar::I(word.to_i32()), word.to_i32() == x),
@@ -92,7 +121,9 @@ fn compare(source: &str, ulps: u32) -> Outcome {
                 Scalar::B(x) => (Scalar::B(word.to_bool()), word.to_bool() == x),
             };
             if !is_same {
-                outcome.differences.push(format!("({a:?}, {b:?}, {i}, {u}): {given:?}, wesl {expected:?}"));
+                outcome.differences.push(format!(
+                    "({a:?}, {b:?}, {i}, {u}): {given:?}, wesl {expected:?}"
+                ));
             }
         }
     }
@@ -102,9 +133,15 @@ fn compare(source: &str, ulps: u32) -> Outcome {
 fn close(a: f32, b: f32, ulps: u32) -> bool {
     let ordered = |x: f32| {
         let bits = i64::from(x.to_bits().cast_signed());
-        if bits < 0 { i64::from(i32::MIN) - bits } else { bits }
+        if bits < 0 {
+            i64::from(i32::MIN) - bits
+        } else {
+            bits
+        }
     };
-    a == b || a.is_nan() && b.is_nan() || (ordered(a) - ordered(b)).unsigned_abs() <= u64::from(ulps)
+    a == b
+        || a.is_nan() && b.is_nan()
+        || (ordered(a) - ordered(b)).unsigned_abs() <= u64::from(ulps)
 }
 
 /// Compares every case; one without any comparable input is an error.
@@ -114,10 +151,17 @@ fn compare_all(cases: &[(&str, u32)], wrap: impl Fn(&str) -> String) {
         let source = wrap(case);
         let outcome = compare(&source, ulps);
         if outcome.compared < 8 {
-            report.push_str(&format!("{case}\n  only {} of {} inputs compared\n", outcome.compared, outcome.compared + outcome.skipped));
+            report.push_str(&format!(
+                "{case}\n  only {} of {} inputs compared\n",
+                outcome.compared,
+                outcome.compared + outcome.skipped
+            ));
         }
         if let Some(first) = outcome.differences.first() {
-            report.push_str(&format!("{case}\n  {} differences, the first: {first}\n", outcome.differences.len()));
+            report.push_str(&format!(
+                "{case}\n  {} differences, the first: {first}\n",
+                outcome.differences.len()
+            ));
         }
     }
     assert!(report.is_empty(), "\n{report}");

@@ -17,7 +17,7 @@ use super::{
 };
 
 /// Effects with as many features of the language as there are room for.
-pub const EXAMPLES: [&str; 4] = [
+pub const EXAMPLES: [&str; 5] = [
     "// Ink: loops, helpers and every kind of parameter.
 //@ use lib/surface
 //@ use lib/hash
@@ -88,6 +88,19 @@ fn turns(pixel: Pixel, p: Ink) -> Pixel {
     q.color += vec4f(image_previous(pixel)) / 255.0 * helper(p.helper);
     return q;
 }",
+    "// Ink: constants in let, of which naga's pipelines once made what its writers could not write; half words.
+struct Ink { @range(0.0, 1.0, 0.5) helper: f32 }
+fn ink(surface: Surface, p: Ink) -> Surface {
+    var s = surface;
+    let g = vec2f(0.2, 0.3);
+    let size = vec2f(320.0, 240.0);
+    let aspect = size.x / size.y;
+    let m = mat2x2f(0.8, 0.6, -0.6, 0.8);
+    let halves = unpack2x16float(pack2x16float(g * p.helper));
+    s.color = vec4f(abs(s.normal), g.x + 1.0) * aspect * m[0].y + reflect(g, halves).x;
+    return s;
+}
+",
 ];
 
 fn accepted(text: &str) -> Arc<Effect> {

@@ -58,6 +58,11 @@ fn statements_with_a_mistake() {
     let cases = [
         ("let x = «;", "expected"),
         ("let x = 1.0 «let y = 2.0;", "expected"),
+        (
+            "const x = «reflect(vec2f(1.0), vec2f(0.0, 1.0));",
+            "write let in a function in place of const",
+        ),
+        ("var x = «smoothstep(0.0, 1.0, 0.25);", "as in 0.5f"),
         ("let = 1.0;", "expected"),
         ("let x = «missing;", "missing"),
         ("let x = «missing(1.0);", "missing"),

@@ -30,6 +30,7 @@ mod strict;
 mod table;
 mod time;
 mod values;
+pub mod written;
 
 pub use case::{Case, Expectation, Outcome, Report};
 pub use checks::EarlyEnd;
@@ -80,7 +81,7 @@ mod tests {
         };
         assert!(names.iter().all(|name| is_plain(name)), "{names:?}");
         let rows: BTreeSet<_> = cases.iter().map(|case| case.number).collect();
-        assert_eq!(rows, (1..=36).collect());
+        assert_eq!(rows, (1..=37).collect());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::{
     case::Case, clipping, coverage, culling, depth, effects, hardware, matrix, normals, occlusion,
-    parameters, picture_sizes, published, queues, skins, time, values,
+    parameters, picture_sizes, published, queues, skins, time, values, written,
 };
 
 /// All cases by kind, except those that run other cases.
@@ -23,6 +23,7 @@ const CASES: &[&[Case]] = &[
     culling::CASES,
     occlusion::CASES,
     matrix::CASES,
+    written::CASES,
 ];
 
 /// The cases of the table, sorted by number.

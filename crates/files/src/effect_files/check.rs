@@ -1,11 +1,11 @@
-//! Checking: an effect file is linked alone and validated, so that every fault is reported at its
-//! line before any kernel is compiled.
+//! Checking: an effect file is linked alone, validated, and translated for every graphics interface,
+//! so that every fault is reported at its line before any kernel is compiled.
 
 use std::sync::Arc;
 
 use naga::{
-    Module,
-    valid::{Capabilities, ValidationFlags, Validator},
+    Arena, Module,
+    valid::{ModuleInfo, ValidationFlags, Validator},
 };
 
 use super::{
@@ -17,8 +17,10 @@ use super::{
 use crate::{
     effects::Effect,
     shader::{
+        backends::{Untranslatable, caught, translate},
         library::Library,
         link::{self, LinkError, Linked},
+        reflect::capabilities,
     },
 };
 
@@ -50,6 +52,17 @@ pub struct Parts<'a> {
 pub fn check(parts: Parts<'_>, effect: &Arc<Effect>) -> Result<Checked, EffectError> {
     let linked = link::link_effect(&Library::of_process(), effect)
         .map_err(|error| of_link(parts, &error))?;
+    let (module, info) = caught(|| valid(parts, &linked)).unwrap_or_else(|_| {
+        let message = "the reader of WGSL fails at this text, which is a fault of rasterlab; write the file in another way";
+        Err(parts.text.whole(message))
+    })?;
+    check_types(parts, &linked, &module)?;
+    translate(&module, &info).map_err(|error| of_translation(parts, &linked, &module, &error))?;
+    Ok(Checked { module, linked })
+}
+
+/// What naga reads and validates.
+fn valid(parts: Parts<'_>, linked: &Linked) -> Result<(Module, ModuleInfo), EffectError> {
     let module = naga::front::wgsl::parse_str(&linked.text).map_err(|error| {
         let spans: Vec<naga::Span> = error.labels().map(|(span, _)| span).collect();
         let label = error.labels().next().map_or("", |(_, label)| label);
@@ -64,13 +77,15 @@ pub fn check(parts: Parts<'_>, effect: &Arc<Effect>) -> Result<Checked, EffectEr
         };
         error_at(
             parts,
-            &linked,
+            linked,
             &spans,
-            &format!("{}{detail}{}", error.message(), hint(error.message())),
+            &of_reader(error.message()).map_or_else(
+                || format!("{}{detail}{}", error.message(), hint(error.message())),
+                str::to_owned,
+            ),
         )
     })?;
-    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
-    validator.validate(&module).map_err(|error| {
+    let info = validator().validate(&module).map_err(|error| {
         // The shortest is the expression at fault; others are the function and what it calls.
         let mut spans: Vec<naga::Span> = error.spans().map(|(span, _)| *span).collect();
         spans.sort_by_key(|span| span.to_range().map_or(usize::MAX, |range| range.len()));
@@ -80,10 +95,49 @@ pub fn check(parts: Parts<'_>, effect: &Arc<Effect>) -> Result<Checked, EffectEr
             causes.push(inner.to_string());
             cause = inner.source();
         }
-        error_at(parts, &linked, &spans, &told(&causes))
+        error_at(parts, linked, &spans, &told(&causes))
     })?;
-    check_types(parts, &linked, &module)?;
-    Ok(Checked { module, linked })
+    Ok((module, info))
+}
+
+fn validator() -> Validator {
+    Validator::new(ValidationFlags::all(), capabilities())
+}
+
+/// What cannot be translated, at the first function that cannot.
+fn of_translation(
+    parts: Parts<'_>,
+    linked: &Linked,
+    module: &Module,
+    error: &Untranslatable,
+) -> EffectError {
+    // A function names only functions before it.
+    let is_at_fault = |count: usize| {
+        let mut first = module.clone();
+        first.functions = Arena::new();
+        for (handle, function) in module.functions.iter().take(count) {
+            let span = module.functions.get_span(handle);
+            first.functions.append(function.clone(), span);
+        }
+        let valid = caught(|| validator().validate(&first));
+        valid.is_ok_and(|info| info.is_ok_and(|info| translate(&first, &info).is_err()))
+    };
+    let fault = (1..=module.functions.len())
+        .find(|&count| is_at_fault(count))
+        .and_then(|count| module.functions.iter().nth(count - 1));
+    let (name, spans) = match fault {
+        Some((handle, function)) => (
+            function.name.as_deref().unwrap_or("a function"),
+            vec![module.functions.get_span(handle)],
+        ),
+        None => ("the effect", Vec::new()),
+    };
+    let message = format!(
+        "{name} cannot be translated for {}, whatever the device: {}; write it in another way",
+        error.interface,
+        without_indices(&error.reason)
+    );
+    error_at(parts, linked, &spans, &message)
 }
 
 /// The causes of a refusal in one sentence: those that name no index of naga's own.
@@ -99,6 +153,21 @@ fn told(causes: &[String]) -> String {
             without_indices(last.split(" (of type ").next().unwrap_or(last))
         }),
         all => all.join(": "),
+    }
+}
+
+/// Refusals of naga's own making, which WGSL does not know.
+fn of_reader(message: &str) -> Option<&'static str> {
+    if message.starts_with("Not implemented as constant expression") {
+        Some(
+            "this function of constants is not computed beforehand; write let in a function in place of const, or the number itself",
+        )
+    } else if message.starts_with("failed to convert expression to a concrete type")
+        || message.starts_with("Abstract types may only appear in constant expressions")
+    {
+        Some("plain numbers have no type here; give one of them its type, as in 0.5f, 3i or 3u")
+    } else {
+        None
     }
 }
 

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::valid::{ValidationFlags, Validator};
 
 use super::twin::{self, Function};
 use crate::{
@@ -16,6 +16,7 @@ use crate::{
         glue::Chain,
         library::Library,
         link::{self, LinkError},
+        reflect::capabilities,
     },
 };
 
@@ -52,8 +53,7 @@ pub fn evaluated_in(
     let text = &linked.text;
     let module = naga::front::wgsl::parse_str(text)
         .map_err(|error| EvaluatedError::Refused(error.emit_to_string(text)))?;
-    let validated =
-        Validator::new(ValidationFlags::all(), Capabilities::default()).validate(&module);
+    let validated = Validator::new(ValidationFlags::all(), capabilities()).validate(&module);
     validated.map_err(|error| EvaluatedError::Refused(error.emit_to_string(text)))?;
     let function = |chain: Chain, precision| {
         Function::new(
@@ -86,13 +86,12 @@ pub fn evaluated_in(
         });
     }
     if hooks.surface.is_some() {
-        hooks.surface = Some(twin::surface(function(Chain::Surface, precision)?));
+        let function = function(Chain::Surface, precision)?;
+        hooks.surface = Some(twin::surface(function.clone(), function));
     }
     if let Some(hook) = hooks.image {
-        hooks.image = Some(twin::image(
-            function(Chain::Image, precision)?,
-            hook.reads_previous,
-        ));
+        let function = function(Chain::Image, precision)?;
+        hooks.image = Some(twin::image(function.clone(), function, hook.reads_previous));
     }
     Ok(hooks)
 }

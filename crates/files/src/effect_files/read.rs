@@ -204,7 +204,10 @@ fn read_anew(file: &str, stem: &str, written: &str) -> Result<Effect, EffectErro
         hooks.sample = Some(twin::sample(function(name, Precision::Double)?));
     }
     if let Some(name) = &source.functions.surface {
-        hooks.surface = Some(twin::surface(function(name, Precision::Double)?));
+        hooks.surface = Some(twin::surface(
+            function(name, Precision::Double)?,
+            function(name, Precision::Single)?,
+        ));
         hooks.surface_inputs = SurfaceInput::ALL
             .into_iter()
             .filter(|input| *input != SurfaceInput::Lit && members.contains(&input.member()))
@@ -217,6 +220,7 @@ fn read_anew(file: &str, stem: &str, written: &str) -> Result<Effect, EffectErro
             .any(|token| token.text == "image_previous");
         hooks.image = Some(twin::image(
             function(name, Precision::Double)?,
+            function(name, Precision::Single)?,
             reads_previous,
         ));
     }

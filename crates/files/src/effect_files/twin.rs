@@ -166,9 +166,15 @@ fn perturbed<const N: usize>(values: [f64; N], index: u32, strength: f64) -> [f6
     std::array::from_fn(|component| values[component] + sign(component) * strength * largest)
 }
 
-/// The surface hook.
-pub fn surface(function: Function) -> Arc<SurfaceFunction> {
+/// The surface hook. To one side of a step the function is evaluated in f32, as `rounded`: what
+/// constants alone decide is moved by no input.
+pub fn surface(exact: Function, rounded: Function) -> Arc<SurfaceFunction> {
     Arc::new(move |mut s: Surface, words: &[u32]| {
+        let function = if s.step_offset > 0.0 {
+            &rounded
+        } else {
+            &exact
+        };
         let strength = INPUT_ERROR
             * if s.step_offset == 0.0 {
                 0.0
@@ -253,9 +259,14 @@ impl Host for PictureHost<'_> {
     }
 }
 
-/// The image hook.
-pub fn image(function: Function, reads_previous: bool) -> ImageHook {
+/// The image hook, in f32 to one side of a step as [`surface`].
+pub fn image(exact: Function, rounded: Function, reads_previous: bool) -> ImageHook {
     let finish = move |mut q: Pixel, picture: &Picture<'_>, words: &[u32]| {
+        let function = if q.step_offset > 0.0 {
+            &rounded
+        } else {
+            &exact
+        };
         let strength = INPUT_ERROR
             * if q.step_offset == 0.0 {
                 0.0

@@ -28,6 +28,7 @@ use super::{
     library::{Library, sections},
     pass::Pass,
     source::{Directive, Signature, Source},
+    specialize::with_constants,
 };
 use crate::{accuracy::Visibility, effects::Effect};
 
@@ -179,14 +180,18 @@ pub fn link(
     Linker::new(library, key, variants, false).link(root)
 }
 
-/// Puts together the module of one effect alone: its functions and what they use.
+/// Puts together the module of one effect alone: its functions and what they use, with constants in
+/// place of overrides.
 ///
 /// # Errors
 /// As [`link`].
 pub fn link_effect(library: &Library, effect: &Arc<Effect>) -> Result<Linked, LinkError> {
     let key = KernelKey::complete(Fetch::Indexed, Visibility::Split32, vec![effect.clone()]);
     let variants = key.variants(Pass::Resolve);
-    Linker::new(library, &key, &variants, true).link(&format!("effects/{}", effect.file_stem()))
+    let root = format!("effects/{}", effect.file_stem());
+    let linked = Linker::new(library, &key, &variants, true).link(&root)?;
+    let text = with_constants(&linked.text, &[]).0;
+    Ok(Linked { text, ..linked })
 }
 
 struct Linker<'a> {

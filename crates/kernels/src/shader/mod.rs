@@ -1,6 +1,7 @@
 //! Shaders as text: the library of files, the linker, the generated glue, the kernel key and what
 //! naga says of it all. Names no GPU.
 
+pub mod backends;
 mod depth_keys;
 mod features;
 mod frames;
@@ -11,6 +12,7 @@ pub mod link;
 pub mod pass;
 pub mod reflect;
 mod source;
+pub mod specialize;
 
 pub use key::{Fetch, KernelKey};
 pub use pass::Pass;

@@ -193,14 +193,6 @@ impl Pass {
         matches!(self, Self::Resolve | Self::ResolveBackground)
     }
 
-    /// Does it run over dots?
-    pub const fn is_of_dots(self) -> bool {
-        matches!(
-            self,
-            Self::DotsEnds | Self::DotsCull | Self::DotsArgs | Self::DotsDraw | Self::DotsProbe
-        )
-    }
-
     /// What it writes, if it is a raster pass.
     pub const fn phase(self) -> Option<RasterPhase> {
         match self {

@@ -51,6 +51,12 @@ pub struct ShaderError {
     pub message: String,
 }
 
+/// What every device offers to shaders. Half floats in words are part of WGSL, and naga counts them
+/// among what a device may lack.
+pub fn capabilities() -> Capabilities {
+    Capabilities::default() | Capabilities::SHADER_FLOAT16_IN_FLOAT32
+}
+
 /// Reads and validates a linked module; 64-bit atomics only where `int64` says so.
 pub fn reflect(linked: &Linked, int64: bool) -> Result<Reflected, ShaderError> {
     let module = naga::front::wgsl::parse_str(&linked.text).map_err(|error| {
@@ -60,7 +66,7 @@ pub fn reflect(linked: &Linked, int64: bool) -> Result<Reflected, ShaderError> {
             message: error.emit_to_string(&linked.text),
         }
     })?;
-    let mut capabilities = Capabilities::default();
+    let mut capabilities = capabilities();
     if int64 {
         capabilities |= Capabilities::SHADER_INT64
             | Capabilities::SHADER_INT64_ATOMIC_MIN_MAX

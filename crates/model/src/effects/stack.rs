@@ -161,18 +161,6 @@ impl Stack {
             .fold(surface, |surface, (apply, words)| apply(surface, words))
     }
 
-    /// Does the color of a material show through the surface effects, or do they paint over it?
-    /// Tried with a few triangles. Compilers leave out what is painted over.
-    pub fn shows_materials(&self) -> bool {
-        let shaded = |color, triangle| {
-            self.shade(Surface::example(color, triangle), u32::MAX)
-                .color
-        };
-        (0..4).any(|triangle| {
-            shaded(DVec3::splat(0.2), triangle) != shaded(DVec3::splat(0.8), triangle)
-        })
-    }
-
     /// Moves a vertex of a draw with these `scopes` by every vertex effect in order.
     pub fn moved(&self, vertex: hooks::Vertex, scopes: u32) -> hooks::Vertex {
         self.each_on(scopes, |hooks| hooks.vertex.as_ref())

@@ -1,4 +1,0 @@
-//! The evaluator of rasterlab, alone.
-
-#[path = "../../../src/evaluator/mod.rs"]
-pub mod evaluator;
