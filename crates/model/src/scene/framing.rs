@@ -137,7 +137,7 @@ fn without_sheets(parts: &[Vec<DVec3>]) -> Vec<DVec3> {
         .collect();
     // A sheet that is one part with what stands on it.
     let all = bounds_of(&kept);
-    let top = all.min.y + THIN * width(&all);
+    let top = all.min.y + THIN * (all.max.y - all.min.y);
     let standing: Vec<DVec3> = kept.iter().filter(|place| place.y > top).copied().collect();
     let above = bounds_of(&standing);
     if standing.len() < 3 || !dominates(width(&all), (above.max - above.min).max_element()) {
