@@ -17,9 +17,12 @@ fn outline(pixel: Pixel, p: Outline) -> Pixel {
     let at = vec2i(vec2u(q.x, q.y));
     let here = image_at(at.x, at.y);
     let reach = i32(p.width_px);
+    // A wide line looks at as many neighbors as one of 8 pixels.
+    let step = max((reach + 7) / 8, 1);
+    let first = -(reach / step) * step;
     var is_line = false;
-    for (var dy = -reach; dy <= reach && !is_line; dy += 1) {
-        for (var dx = -reach; dx <= reach && !is_line; dx += 1) {
+    for (var dy = first; dy <= reach && !is_line; dy += step) {
+        for (var dx = first; dx <= reach && !is_line; dx += step) {
             let squared = dx * dx + dy * dy;
             if squared >= 1 && squared <= reach * reach { is_line = outline_is_edge(p, at, here, vec2i(dx, dy)); }
         }

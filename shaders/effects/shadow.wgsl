@@ -28,6 +28,6 @@ fn shadow(surface: Surface, p: Shadow) -> Surface {
     var shade = p.light.rgb * (facing * arrives) + p.ground.rgb + (p.sky.rgb - p.ground.rgb) * up;
     // A surface that the light only grazes is dim already.
     if p.shading == SHADOW_SHADING_DIM { shade = vec3f(1.0 - p.strength * (1.0 - s.lit * min(4.0 * facing, 1.0))); }
-    s.color = vec4f(s.color.rgb * shade, s.color.a);
+    s.color = vec4f((s.color.rgb - s.glow) * shade + s.glow, s.color.a);
     return s;
 }

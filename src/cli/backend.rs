@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::{args::Common, error::CliError, loading, streams::Streams};
 use crate::{
     effects::Stack,
-    frame::Frame,
+    frame::{Frame, MeanPicture},
     gpu::{
         Capture, Gpu, Renderer,
         device::{AdapterChoice, AdapterSummary, Caps},
@@ -116,28 +116,49 @@ impl Backend {
 
     /// The picture of `session`.
     pub fn frame(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Frame, CliError> {
+        // A picture whose samples do not fit at once is drawn as several.
+        let scale = preset.accuracy.scale().factor();
+        let moments = self.moments(preset, scene, scale.min(1.0))?;
         match self {
-            Self::Oracle => Ok(oracle::render_scaled(
-                scene,
-                &self.moments(preset, scene)?,
-                preset.accuracy.scale().factor(),
-            )?),
-            Self::Gpu(..) => Ok(self.capture(preset, scene)?.into_shown()),
+            Self::Oracle => {
+                if scale <= 1.0 || oracle::can_draw_sequence(scene, &moments, scale).is_ok() {
+                    return Ok(oracle::render_scaled(scene, &moments, scale)?);
+                }
+                // One picture after another for the samples of a pixel.
+                let mut mean = MeanPicture::default();
+                for shift in MeanPicture::shifts(scale as u32) {
+                    let moved: Vec<_> = moments
+                        .iter()
+                        .map(|(view, stack)| (view.shifted(shift), stack.clone()))
+                        .collect();
+                    mean.add(oracle::render_scaled(scene, &moved, 1.0)?);
+                }
+                Ok(mean.frame().expect("a pixel has samples"))
+            }
+            Self::Gpu(renderer, _) => {
+                renderer.set_scene(scene).block_on()?;
+                Ok(renderer.still(&moments, &preset.accuracy).block_on()?)
+            }
         }
     }
 
-    /// What is drawn for a picture, in order.
+    /// What is drawn for a picture, in order, with `factor` times as many pixels to a side.
     ///
     /// # Errors
     /// It would take a CPU minutes.
-    fn moments(&self, preset: &Preset, scene: &Scene) -> Result<Vec<(View, Stack)>, DrawError> {
+    fn moments(
+        &self,
+        preset: &Preset,
+        scene: &Scene,
+        factor: f64,
+    ) -> Result<Vec<(View, Stack)>, DrawError> {
         let moments = preset.moments(scene, preset.output.size);
         let is_cpu = match self {
             Self::Oracle => true,
             Self::Gpu(_, gpu) => gpu.summary.software,
         };
         if is_cpu {
-            oracle::can_draw_sequence(scene, &moments, preset.accuracy.scale().factor())?;
+            oracle::can_draw_sequence(scene, &moments, factor)?;
         }
         Ok(moments)
     }
@@ -171,7 +192,8 @@ impl Backend {
 
     /// The picture with everything that a judge needs.
     pub fn capture(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Capture, CliError> {
-        let moments = self.moments(preset, scene)?;
+        let factor = preset.accuracy.scale().factor();
+        let moments = self.moments(preset, scene, factor)?;
         match self {
             Self::Oracle => {
                 let ((view, stack), before) = moments

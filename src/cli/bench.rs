@@ -35,7 +35,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
     let bar = streams.progress(0);
     let mut rows = Vec::new();
     for (preset_file, scene) in &subjects {
-        let preset = &preset_file.preset.in_meters(scene).evaluated();
+        let preset = &preset_file.preset.drawn_on(scene, args.size[1]);
         let view = preset.view(scene, args.size);
         let judge = judge(scene, &view);
         let mut progress = |what: &str, done: usize, all: usize| {

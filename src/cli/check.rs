@@ -124,7 +124,7 @@ fn planned(preset: &Preset, scene: &Scene) -> Result<(), CliError> {
     let caps = Caps::ALL;
     let planned = Planner::default().plan(
         &needs,
-        &preset.stack_on(scene),
+        &preset.stack_on(scene, preset.output.size),
         &caps,
         &caps.tuning(),
         &preset.accuracy,

@@ -108,7 +108,9 @@ fn side(
         });
     }
     let mut preset_file = open(common, what)?;
-    preset_file.preset.output.size = args.size.unwrap_or(preset_file.preset.output.size);
+    if let Some(size) = args.size {
+        preset_file.preset.output.resize(size);
+    }
     let backend = match backend {
         Some(backend) => backend,
         None => backend.insert(Backend::open(common, streams)?),

@@ -23,7 +23,9 @@ use crate::{
 
 pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exit, CliError> {
     let mut preset_file = open(common, &args.input)?;
-    preset_file.preset.output.size = args.size.unwrap_or(preset_file.preset.output.size);
+    if let Some(size) = args.size {
+        preset_file.preset.output.resize(size);
+    }
     let scene = scene_of(common, &preset_file, streams)?;
     // Without an adapter there is no plan, but the preset can be described.
     let backend = match Backend::open(common, streams) {
@@ -44,7 +46,7 @@ pub fn run(common: &Common, args: &Explain, streams: &mut Streams) -> Result<Exi
             let preset = &preset_file.preset;
             let (view, stack) = (
                 preset.view(&scene, preset.output.size),
-                preset.stack_on(&scene),
+                preset.stack_on(&scene, preset.output.size),
             );
             let capture = renderer
                 .capture(&view, &stack, &preset.accuracy)

@@ -3,8 +3,9 @@
 
 use super::{args::Common, error::CliError, files, streams::Streams};
 use crate::{
+    effects::EnabledEffect,
     params::legible_line,
-    preset::{Fit, Preset},
+    preset::Preset,
     preset_file::{self, GalleryEntry, PresetError, PresetFile},
 };
 
@@ -87,7 +88,7 @@ pub fn land(common: &Common, look: &PresetFile, own: &PresetFile) -> Result<Pres
     };
     let is_measurable = look.outside_model.is_none();
     let fit = if look.needs_fit() && is_measurable {
-        Fit::between(&bounds(look)?, &bounds(own)?)
+        look.fit_to(own, [&bounds(look)?, &bounds(own)?])
     } else {
         None
     };
@@ -97,6 +98,12 @@ pub fn land(common: &Common, look: &PresetFile, own: &PresetFile) -> Result<Pres
             "{}: the model of the look lies outside of its folder and is not read, so its lengths stay as they are; --allow-outside opens it",
             landed.title()
         ));
+    }
+    let is_limited = |enabled: &EnabledEffect| !enabled.on.is_whole_scene();
+    if landed.preset.stack.0.iter().any(is_limited) {
+        let scene = preset_file::load_scene(&own.preset, own.path.as_deref())
+            .map_err(|error| CliError::from(error).during(format!("preset {}", own.id)))?;
+        landed.map_missing_parts(&scene);
     }
     if common.strict && !landed.warnings.is_empty() {
         return Err(PresetError::Strict(landed.warnings).into());

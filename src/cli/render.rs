@@ -156,7 +156,7 @@ fn check_arrays(args: &Render) -> Result<(), CliError> {
 fn open_with_flags(common: &Common, args: &Render, what: &str) -> Result<PresetFile, CliError> {
     let mut preset_file = open(common, what)?;
     if let Some(size) = args.size {
-        preset_file.preset.output.size = size;
+        preset_file.preset.output.resize(size);
     }
     if let Some(time) = args.time {
         preset_file::set(&mut preset_file, "clock.time_s", &format!("{time:?}"))?;
@@ -166,6 +166,10 @@ fn open_with_flags(common: &Common, args: &Render, what: &str) -> Result<PresetF
     }
     if !args.bare {
         preset_file.check_savable()?;
+    }
+    // Arrays have one sample for each pixel, and the picture beside them shows the same.
+    if args.triangle_ids.is_none() && args.depths.is_none() {
+        preset_file.preset.accuracy = preset_file.preset.accuracy.anti_aliased();
     }
     Ok(preset_file)
 }

@@ -148,11 +148,12 @@ fn print_count(schedule: &Schedule, streams: &mut Streams) -> Result<Exit, CliEr
 fn open_with_flags(common: &Common, args: &Sequence) -> Result<PresetFile, CliError> {
     let mut preset_file = open(common, &args.input)?;
     if let Some(size) = args.size {
-        preset_file.preset.output.size = size;
+        preset_file.preset.output.resize(size);
     }
     if let Some(tier) = &args.tier {
         preset_file::set(&mut preset_file, "accuracy.tier", tier)?;
     }
+    preset_file.preset.accuracy = preset_file.preset.accuracy.anti_aliased();
     let [width, height] = preset_file.preset.output.size;
     if width == 0 || height == 0 {
         return Err(CliError::usage(format!(

@@ -124,8 +124,9 @@ pub fn run(common: &Common, args: &Sweep, streams: &mut Streams) -> Result<Exit,
 fn open_with_flags(common: &Common, args: &Sweep) -> Result<PresetFile, CliError> {
     let mut preset_file = open(common, &args.input)?;
     if let Some(size) = args.size {
-        preset_file.preset.output.size = size;
+        preset_file.preset.output.resize(size);
     }
+    preset_file.preset.accuracy = preset_file.preset.accuracy.anti_aliased();
     if let Some(time) = args.time {
         preset_file::set(&mut preset_file, "clock.time_s", &format!("{time:?}"))?;
     }

@@ -41,7 +41,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
     let bar = streams.progress(0);
     let mut rows = Vec::new();
     for (preset_file, scene) in &subjects {
-        let preset = &preset_file.preset.in_meters(scene).evaluated();
+        let preset = &preset_file.preset.drawn_on(scene, args.size[1]);
         bar.set_message("the oracle draws");
         let view = preset.view(scene, args.size);
         let factors = factors(preset, &options.axes);

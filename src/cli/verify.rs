@@ -177,10 +177,12 @@ pub fn check(
     backend: &mut Backend,
 ) -> Result<Vec<Row>, CliError> {
     let mut preset = preset_file.preset.clone();
-    preset.output.size = options.size.unwrap_or(preset.output.size);
+    if let Some(size) = options.size {
+        preset.output.resize(size);
+    }
     let (view, stack) = (
         preset.view(scene, preset.output.size),
-        preset.stack_on(scene),
+        preset.stack_on(scene, preset.output.size),
     );
     let budget = preset.test.clone().unwrap_or_default();
     if let Backend::Gpu(..) = backend {

@@ -287,6 +287,7 @@ fn spinning() -> Preset {
         size: SIZE,
         background: GRADIENT.top,
         background_bottom: Some(GRADIENT.bottom),
+        reference_height_px: None,
     };
     preset
 }

@@ -61,7 +61,7 @@ fn a_model_on_a_ground_with_its_shadow_is_exact_with_every_option() {
         let mut preset = preset(query, &["shadow", "facet"], Some(ground));
         (preset.spin_deg_per_s, preset.clock.time_s) = (30.0, 1.0);
         let scene = loaded(&preset);
-        let (view, stack) = (preset.view(&scene, SIZE), preset.stack_on(&scene));
+        let (view, stack) = (preset.view(&scene, SIZE), preset.stack_on(&scene, SIZE));
         let first = scene.triangle_count()
             - u64::from(scene.primitives[scene.ground_instances()[0].primitive].triangle_count());
         for option in options(&renderer) {
@@ -111,8 +111,8 @@ fn the_scene_itself_keeps_its_camera_its_unit_and_its_triangle_ids() {
                 "{query}"
             );
             assert_eq!(
-                standing.stack_on(&scene),
-                alone.stack_on(&bare),
+                standing.stack_on(&scene, SIZE),
+                alone.stack_on(&bare, SIZE),
                 "{query}: lengths in radii"
             );
             let render = |preset: &Preset, scene: &Scene| {
@@ -163,7 +163,10 @@ fn the_shadow_of_the_scene_falls_on_the_ground_and_is_as_fine_as_without_it() {
             ground: None,
             ..with_shadow.clone()
         });
-        let (view, stack) = (with_shadow.view(&scene, SIZE), with_shadow.stack_on(&scene));
+        let (view, stack) = (
+            with_shadow.view(&scene, SIZE),
+            with_shadow.stack_on(&scene, SIZE),
+        );
         let [on_ground, alone] = [&scene, &bare].map(|scene| {
             let light = stack
                 .light_view(scene, &with_shadow.view(scene, SIZE))

@@ -9,6 +9,7 @@ mod effects_layers;
 mod effects_move;
 mod effects_paint;
 mod effects_samples;
+mod looks;
 mod materials;
 mod particles;
 mod scopes;

@@ -865,7 +865,7 @@ impl FrameUniform {
             ),
             center: [view.width, view.height]
                 .map(|pixels| (pixels as i32 * view.units_per_pixel() / 2) as f32),
-            depth_range_m: view.depth_range_m.map(|d| d as f32),
+            depth_range_m: view.content_depth_m.map(|d| d as f32),
             linear_depth_m: view.linear_depth_m.unwrap_or_default().map(|d| d as f32),
             size: [view.width, view.height],
             stride: color_stride(view.width),

@@ -63,6 +63,7 @@ pub mod warm_up;
 mod capture;
 pub mod hardware;
 pub mod naive;
+mod still;
 
 pub mod frame_times;
 

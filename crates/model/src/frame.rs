@@ -1,7 +1,7 @@
 //! What a renderer produces and the oracle judges: integer images, snapped geometry and counters.
 //! The oracle and the GPU renderer both fill these plain types and never import each other.
 
-use crate::math::SUBPIXEL_BITS;
+use crate::math::{SUBPIXEL_BITS, linear_light, srgb_byte};
 
 /// Triangle id of a pixel that no triangle covers.
 pub const NO_TRIANGLE: u32 = u32::MAX;
@@ -354,5 +354,96 @@ impl<'a> AdapterPicture<'a> {
             layers: None,
             previous: None,
         }
+    }
+}
+
+/// Linear light of every byte.
+pub fn linear_bytes() -> Vec<f64> {
+    (0..=255u8)
+        .map(|byte| linear_light(f64::from(byte) / 255.0))
+        .collect()
+}
+
+/// A weighted sum of pixels in linear light.
+#[derive(Clone, Copy, Default)]
+pub struct LightSum {
+    /// Weighted by alpha.
+    opaque: [f64; 3],
+    /// Not weighted by alpha.
+    plain: [f64; 3],
+    alpha: f64,
+}
+
+impl LightSum {
+    /// Adds a pixel; `light` is [`linear_bytes`].
+    pub fn add(&mut self, bytes: &[u8; 4], weight: f64, light: &[f64]) {
+        let alpha = weight * f64::from(bytes[3]) / 255.0;
+        self.alpha += alpha;
+        for (channel, &byte) in bytes[..3].iter().enumerate() {
+            self.opaque[channel] += alpha * light[usize::from(byte)];
+            self.plain[channel] += weight * light[usize::from(byte)];
+        }
+    }
+
+    fn scaled(&self, factor: f64) -> Self {
+        Self {
+            opaque: self.opaque.map(|v| v * factor),
+            plain: self.plain.map(|v| v * factor),
+            alpha: self.alpha * factor,
+        }
+    }
+
+    /// The sum as a gamma-encoded pixel; without alpha it has the colors of its transparent pixels.
+    pub fn bytes(&self) -> [u8; 4] {
+        let [r, g, b] = if self.alpha > 0.0 {
+            self.opaque.map(|v| v / self.alpha)
+        } else {
+            self.plain
+        };
+        [
+            srgb_byte(r),
+            srgb_byte(g),
+            srgb_byte(b),
+            (self.alpha.min(1.0) * 255.0 + 0.5) as u8,
+        ]
+    }
+}
+
+/// The mean of several pictures of the same size, in linear light.
+#[derive(Default)]
+pub struct MeanPicture {
+    sums: Vec<LightSum>,
+    count: u32,
+    last: Option<Frame>,
+}
+
+impl MeanPicture {
+    /// By which parts of a pixel pictures are moved, so that together they have `side` by `side`
+    /// samples for each pixel.
+    pub fn shifts(side: u32) -> impl Iterator<Item = [f64; 2]> {
+        (0..side * side).map(move |sample| {
+            [sample % side, sample / side].map(|i| 0.5 - (f64::from(i) + 0.5) / f64::from(side))
+        })
+    }
+
+    /// Adds a picture.
+    pub fn add(&mut self, frame: Frame) {
+        let light = linear_bytes();
+        self.sums.resize(frame.color.len(), LightSum::default());
+        for (sum, pixel) in self.sums.iter_mut().zip(&frame.color) {
+            sum.add(pixel, 1.0, &light);
+        }
+        self.count += 1;
+        self.last = Some(frame);
+    }
+
+    /// The mean, with the integers of the last picture; none without pictures.
+    pub fn frame(self) -> Option<Frame> {
+        let weight = 1.0 / f64::from(self.count);
+        let color = self.sums.iter().map(|sum| sum.scaled(weight).bytes());
+        Some(Frame {
+            color: color.collect(),
+            ..self.last?
+        })
     }
 }

@@ -124,7 +124,7 @@ pub fn use_scene(scene: &Scene) {
             let caps = Caps::ALL;
             let _ = Planner::default().plan(
                 &needs,
-                &preset.stack_on(scene),
+                &preset.stack_on(scene, [16, 12]),
                 &caps,
                 &caps.tuning(),
                 &preset.accuracy,

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::{first_values::first_words, session::Session};
 use crate::{
     app::{
@@ -12,7 +14,7 @@ use crate::{
     params::Value,
     preset::{Preset, SceneSource},
     preset_file,
-    scene::{Bounds, camera::Camera},
+    scene::camera::Camera,
 };
 
 impl Session {
@@ -154,19 +156,14 @@ impl Session {
             return *camera;
         };
         let preset = self.shown_preset();
-        // The bounds turn with the scene's spin.
+        // What is framed turns with the scene's spin.
         let turn = preset.view(scene, [1, 1]).scene_state.world_from_scene;
-        let mut bounds = Bounds::EMPTY;
-        let corners = if scene.bounds().is_empty() {
-            None
-        } else {
-            Some(scene.bounds().corners())
-        };
-        corners
+        let points: Vec<DVec3> = preset
+            .framing_points(scene)
             .into_iter()
-            .flatten()
-            .for_each(|corner| bounds.include(turn.transform_point3(corner)));
-        orbit::framing(camera, &bounds, super::session::aspect(preset.output.size))
+            .map(|point| turn.transform_point3(point))
+            .collect();
+        orbit::framing(camera, &points, super::session::aspect(preset.output.size))
     }
 
     /// Gives every parameter of the enabled effects that is neither locked nor animated a random

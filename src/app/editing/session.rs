@@ -329,6 +329,12 @@ impl Session {
         (aspect(self.preset().output.size) / aspect(size)).max(1.0)
     }
 
+    /// Factor of lengths in pixels of `preset` in a picture of `size` pixels that shows its frame.
+    pub fn length_scale(&self, preset: &Preset, size: [u32; 2]) -> f64 {
+        let height = f64::from(size[1]) / self.widening(size);
+        preset.output.length_scale(height)
+    }
+
     /// The view that the next picture of `size` pixels shows: all of the preset's own frame, and
     /// more where the aspect ratios differ.
     pub fn view_at(&self, scene: &Scene, size: [u32; 2]) -> View {

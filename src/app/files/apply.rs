@@ -16,7 +16,7 @@ use crate::{
         editing::new_effect,
         jobs::film,
         panels::Panels,
-        picture::{anti_aliasing, screen::Inputs},
+        picture::screen::Inputs,
         shell::{log::Level, state::State},
     },
     preset::SceneSource,
@@ -371,15 +371,15 @@ pub fn export(state: &mut State, panels: &mut Panels, path: PathBuf, size: [u32;
     };
     let mut exported = state.session.preset_file.clone();
     exported.preset = state.session.shown_preset();
-    // The picture has the anti-aliasing that is shown, and its preset pins that.
-    exported.preset.accuracy = anti_aliasing::for_export(
-        exported.preset.accuracy,
-        &state.picture.screen.gpu.caps,
-        size,
-    );
+    // The preset in the picture pins the anti-aliasing.
+    exported.preset.accuracy = exported.preset.accuracy.anti_aliased();
     let accuracy = state.picture.tier_times.informed(exported.preset.accuracy);
     let inputs = Inputs {
         view: state.session.view_at(scene, size),
+        stack: state
+            .session
+            .visible_stack()
+            .drawn(state.session.length_scale(state.session.preset(), size)),
         accuracy,
         ..requested.clone()
     };

@@ -18,7 +18,7 @@ use crate::{
         settings::last_session::Restored,
         shell::{log::Level, state::State},
     },
-    preset::{Fit, Output, SceneSource},
+    preset::{Output, SceneSource},
     preset_file::PresetFile,
     scene::Bounds,
 };
@@ -160,12 +160,16 @@ fn land(state: &mut State, panels: &mut Panels, request: Request, boxes: Option<
         said,
         ..
     } = request;
-    let fit = boxes.and_then(|(from, to)| Fit::between(&from, &to));
     let open = &state.session.preset_file;
+    let (looks, owner) = match manner {
+        Manner::Look => (&*opened, open),
+        _ => (open, &*opened),
+    };
+    let fit = boxes.and_then(|(from, to)| looks.fit_to(owner, [&from, &to]));
+    let own = state.session.scenes.get(&SceneKey::of(owner)).cloned();
     let mut landed = if manner == Manner::Look {
-        let own = state.session.scenes.get(&SceneKey::of(open));
         // A model that cannot move misses no clip.
-        let mut landed = match own.is_some_and(|scene| scene.rig.clips.is_empty()) {
+        let mut landed = match own.as_ref().is_some_and(|scene| scene.rig.clips.is_empty()) {
             true => without_clip(&opened).landed_on(open, fit.as_ref()),
             false => opened.landed_on(open, fit.as_ref()),
         };
@@ -183,12 +187,10 @@ fn land(state: &mut State, panels: &mut Panels, request: Request, boxes: Option<
         // The clip belongs to the scene that goes.
         without_clip(open).landed_on(&model, fit.as_ref())
     };
-    let look = if manner == Manner::Look {
-        &opened
-    } else {
-        open
-    };
-    if look.needs_fit() && fit.is_none() {
+    if let Some(scene) = &own {
+        landed.map_missing_parts(scene);
+    }
+    if looks.needs_fit() && fit.is_none() {
         let text = format!(
             "{}: the scene of the preset cannot be measured or may not be read, so its lengths stay as they are",
             landed.title()

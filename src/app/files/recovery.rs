@@ -20,7 +20,7 @@ use crate::{
 
 /// The preset of a window that was opened without one; it plays. A software driver draws it fast
 /// enough for that.
-pub const FIRST_PRESET: &str = "facet-random";
+pub const FIRST_PRESET: &str = "hero-day";
 
 /// What the window begins with.
 pub struct Start {

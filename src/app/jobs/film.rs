@@ -244,11 +244,8 @@ impl Painter for Studio {
 
     fn paint(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Frame, Failure> {
         self.renderer.set_scene(scene).block_on()?;
-        Ok(self
-            .renderer
-            .capture_last(&preset.moments(scene, preset.output.size), &preset.accuracy)
-            .block_on()?
-            .into_shown())
+        let moments = preset.moments(scene, preset.output.size);
+        Ok(self.renderer.still(&moments, &preset.accuracy).block_on()?)
     }
 }
 
@@ -287,10 +284,11 @@ pub fn export(
     ctx: &egui::Context,
 ) -> Result<Finished, Failure> {
     let preset = &mut preset_file.preset;
-    preset.output.size = request.size;
+    preset.output.resize(request.size);
     if let Some(scale) = request.scale {
         preset.accuracy.pins = preset.accuracy.pins.with(scale);
     }
+    preset.accuracy = preset.accuracy.anti_aliased();
     let schedule = request.schedule(&preset.clock)?;
     let frames = request.frame_paths(&schedule);
     let mut outputs = Outputs {

@@ -50,7 +50,7 @@ use crate::{
     effects::Stack,
     gpu::{CompileWatch, Gpu, Renderer},
     oracle,
-    preset::{AccuracyRequest, Fit, Preset, SceneSource},
+    preset::{AccuracyRequest, Preset, SceneSource},
     preset_file::{self, Existing, PresetFile, Provenance},
     scene::{Bounds, Scene, view::View},
     shader::key::KernelKey,
@@ -583,18 +583,22 @@ fn thumbnail_on(
     size: [u32; 2],
 ) -> Option<egui::ColorImage> {
     let fit = match look.needs_fit() {
-        true => Fit::between(
-            &preset_file::scene_bounds(&look.scene_source(), None).ok()?,
-            &scene.content_bounds(),
+        true => look.fit_to(
+            own,
+            [
+                &preset_file::scene_bounds(&look.scene_source(), None).ok()?,
+                &scene.content_bounds(),
+            ],
         ),
         false => None,
     };
     // The whole model is shown, so that the picture stays right when the camera moves.
-    let preset = Preset {
+    let mut preset = Preset {
         camera: None,
         ..look.landed_on(own, fit.as_ref()).preset
     };
-    if preset.ground == own.preset.ground {
+    preset.map_missing_parts(scene);
+    if preset.ground == own.preset.ground && preset.room == own.preset.room {
         return thumbnail_of(&preset, scene, size);
     }
     thumbnail_of(
@@ -643,15 +647,12 @@ fn export(
         .set_scene(scene)
         .block_on()
         .map_err(|e| e.to_string())?;
-    let capture = renderer
-        .capture(view, stack, accuracy)
+    let moments = [(view.clone(), stack.clone())];
+    let still = renderer
+        .still(&moments, accuracy)
         .block_on()
         .map_err(|e| e.to_string())?;
-    let png = preset_file::png_with_preset(
-        &capture.into_shown(),
-        &preset_file.for_picture(path),
-        &provenance,
-    )
-    .map_err(|e| e.to_string())?;
+    let png = preset_file::png_with_preset(&still, &preset_file.for_picture(path), &provenance)
+        .map_err(|e| e.to_string())?;
     preset_file::write_atomically(path, &png, Existing::Replace).map_err(|e| e.to_string())
 }

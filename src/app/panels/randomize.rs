@@ -105,7 +105,9 @@ fn inputs(state: &State, requested: &Inputs, seeded: &Seeded) -> Inputs {
             .cloned()
             .collect(),
     );
-    let stack = preset.evaluated_stack();
+    let stack = preset
+        .evaluated_stack()
+        .drawn(state.session.length_scale(&preset, size));
     Inputs {
         view: state.session.view_of(preset, &requested.scene, size),
         stack,

@@ -204,7 +204,9 @@ impl SweepPanel {
         let size = cells::size(width, [requested.view.width, requested.view.height]);
         let cell = |(index, cell): (usize, &Cell)| {
             let preset = cell.preset_file.preset.clone();
-            let stack = preset.evaluated_stack();
+            let stack = preset
+                .evaluated_stack()
+                .drawn(state.session.length_scale(&preset, size));
             let view = state.session.view_of(preset, &requested.scene, size);
             (
                 CellOf::Sweep {

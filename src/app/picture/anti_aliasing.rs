@@ -59,28 +59,6 @@ pub fn is_automatic(axis: &Axis, preset: &Preset, drawn: Option<&Inputs>) -> boo
         && drawn.is_some_and(|inputs| inputs.accuracy.scale() != RenderScale::Full)
 }
 
-/// `accuracy` with anti-aliasing for a picture that is drawn once, as large as `size`.
-pub fn for_export(accuracy: AccuracyRequest, caps: &Caps, size: [u32; 2]) -> AccuracyRequest {
-    if may_be_automatic(caps, size) {
-        with_automatic(accuracy)
-    } else {
-        accuracy
-    }
-}
-
-/// `accuracy` with [`AUTOMATIC`] samples unless it pins the axis.
-fn with_automatic(accuracy: AccuracyRequest) -> AccuracyRequest {
-    let is_pinned = accuracy.pins.option::<RenderScale>().is_some();
-    if is_pinned {
-        accuracy
-    } else {
-        AccuracyRequest {
-            pins: accuracy.pins.with(AUTOMATIC),
-            ..accuracy
-        }
-    }
-}
-
 /// What the time of a picture depends on, as far as automatic anti-aliasing looks at it.
 #[derive(Clone, Debug)]
 struct Subject {
@@ -156,7 +134,7 @@ impl AutomaticAntiAliasing {
         let is_too_slow = self.too_slow.as_ref() == Some(&subject);
         self.drawn = Some(subject);
         if may_be_automatic(caps, size) && !is_too_slow {
-            with_automatic(accuracy)
+            accuracy.anti_aliased()
         } else {
             accuracy
         }
@@ -180,31 +158,19 @@ mod tests {
     }
 
     #[test]
-    fn a_card_is_asked_for_two_by_two_samples_and_a_cpu_adapter_never() {
-        let plain = AccuracyRequest::default();
-        assert_eq!(
-            scale(&for_export(plain, &CARD, [1280, 800])),
-            Some(RenderScale::Double)
-        );
-        assert_eq!(
-            scale(&for_export(
-                plain,
-                &Caps {
-                    software: true,
-                    ..CARD
-                },
-                [1280, 800]
-            )),
-            None
-        );
-        assert_eq!(
-            scale(&for_export(plain, &CARD, [9000, 100])),
-            None,
+    fn a_card_is_asked_for_two_by_two_samples_that_it_holds_and_a_cpu_adapter_never() {
+        assert!(may_be_automatic(&CARD, [1280, 800]));
+        let software = Caps {
+            software: true,
+            ..CARD
+        };
+        assert!(!may_be_automatic(&software, [1280, 800]));
+        assert!(
+            !may_be_automatic(&CARD, [9000, 100]),
             "wider than a texture"
         );
-        assert_eq!(
-            scale(&for_export(plain, &CARD, [8000, 8000])),
-            None,
+        assert!(
+            !may_be_automatic(&CARD, [8000, 8000]),
             "more than a buffer holds"
         );
     }
@@ -216,7 +182,7 @@ mod tests {
                 pins: PinnedOptions::of(*option),
                 ..AccuracyRequest::default()
             };
-            assert_eq!(for_export(pinned, &CARD, [64, 64]), pinned);
+            assert_eq!(pinned.anti_aliased(), pinned);
         }
     }
 

@@ -33,9 +33,11 @@ impl PartialEq for Inputs {
 }
 
 impl Inputs {
-    /// The same frustum on fewer pixels, so that nothing jumps when a motion ends.
+    /// The same frustum on fewer pixels, with lengths in pixels as much smaller, so that nothing
+    /// jumps when a motion ends.
     pub fn reduced(&self, divisor: u32) -> Self {
         let mut inputs = self.clone();
+        inputs.stack = inputs.stack.scaled(1.0 / f64::from(divisor));
         inputs.view.width = inputs.view.width.div_ceil(divisor);
         inputs.view.height = inputs.view.height.div_ceil(divisor);
         inputs

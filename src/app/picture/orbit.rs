@@ -2,10 +2,7 @@
 
 use glam::DVec3;
 
-use crate::scene::{
-    Bounds,
-    camera::{Camera, MIN_NEAR_M, Projection},
-};
+use crate::scene::camera::{Camera, FRAMED, MIN_NEAR_M, Projection};
 
 /// Range of the distance between eye and target, meters: keeps poses below the 2^40 that the
 /// kernels' arithmetic allows.
@@ -152,18 +149,20 @@ pub fn toggle_orthographic(camera: &mut Camera) {
     };
 }
 
-/// The pose with the same direction and projection that shows the whole of `bounds`.
-pub fn framing(camera: &Camera, bounds: &Bounds, aspect: f64) -> Camera {
-    let mut framed = Camera::framing(bounds, camera.forward(), aspect);
+/// The pose with the same direction and projection that frames `points`.
+pub fn framing(camera: &Camera, points: &[DVec3], aspect: f64) -> Camera {
+    let mut framed = Camera::around(points, camera.forward(), aspect);
     framed.up = camera.up;
     if matches!(camera.projection, Projection::Orthographic { .. }) {
-        let radius = if bounds.radius() > 0.0 {
-            bounds.radius()
-        } else {
-            1.0
-        };
+        let (right, up) = axes(&framed);
+        let reach = points
+            .iter()
+            .map(|point| *point - framed.target)
+            .map(|from| from.dot(right).abs().max(from.dot(up).abs()))
+            .fold(0.0, f64::max);
+        let reach = if reach > 0.0 { reach } else { 1.0 };
         framed.projection = Projection::Orthographic {
-            height_m: 2.1 * radius / aspect.clamp(1e-3, 1.0),
+            height_m: 2.0 * reach / (FRAMED * aspect.clamp(1e-3, 1.0)),
         };
     }
     framed

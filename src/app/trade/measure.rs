@@ -41,6 +41,7 @@ pub fn measure(
     let gpu = Gpu::open(&AdapterChoice::Named(adapter))
         .block_on()
         .map_err(|e| e.to_string())?;
+    let preset = &preset.drawn_on(scene, size[1]);
     let view = preset.view(scene, *size);
     let began = Instant::now();
     let factors = factors(preset, axes);

@@ -90,6 +90,8 @@ fn ids_and_depths_are_those_of_the_plane_that_was_drawn() {
             &[
                 "--set",
                 lens,
+                "--unset",
+                "ground",
                 "--triangle-ids",
                 "{preset}-ids.npy",
                 "--depths",

@@ -363,3 +363,296 @@ fn a_picture_of_a_model_opens_where_the_model_is_and_elsewhere_gives_its_look_or
         );
     }
 }
+
+#[test]
+fn a_damaged_picture_is_called_damaged() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_eq!(
+        run_in(
+            folder.path(),
+            &[
+                "render",
+                "facet",
+                "--adapter",
+                "cpu",
+                "--size",
+                "4x3",
+                "-o",
+                "a.png"
+            ]
+        )
+        .code,
+        0
+    );
+    let mut bytes = fs::read(folder.path().join("a.png")).unwrap();
+    let text = bytes
+        .windows(10)
+        .position(|window| window == b"schema = 2")
+        .unwrap();
+    bytes[text] ^= 1;
+    fs::write(folder.path().join("a.png"), bytes).unwrap();
+    let run = run_in(
+        folder.path(),
+        &["render", "a.png", "--adapter", "cpu", "-o", "b.png"],
+    );
+    assert!(
+        run.code == 2 && run.err.contains("the file is damaged"),
+        "{}",
+        run.err
+    );
+}
+
+#[test]
+fn files_that_cannot_be_what_they_are_called_are_refused_with_what_to_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("model.obj"), "v 0 0 0\n").unwrap();
+    fs::create_dir(at("folder")).unwrap();
+    fs::create_dir(at("effects")).unwrap();
+    fs::write(at("effects/mist.wgsl"), "fn mist(").unwrap();
+    let refused = |args: &[&str], wanted: &str| {
+        let run = run_in(folder.path(), args);
+        assert!(
+            run.code == 2 && run.err.contains(wanted),
+            "{args:?}: {} {}",
+            run.code,
+            run.err
+        );
+    };
+    refused(
+        &["render", "model.obj", "--adapter", "cpu"],
+        "models in .glb, .gltf and .vrm files",
+    );
+    refused(
+        &["render", "folder", "--adapter", "cpu"],
+        "models in .glb, .gltf and .vrm files",
+    );
+    refused(
+        &["render", "facet", "--adapter", "cpu", "-o", "a.jpg"],
+        "a.jpg: pictures are written as PNG",
+    );
+    refused(
+        &["explain", "facet", "--adapter", "cpu", "--measure"],
+        "the built-in oracle, is not timed",
+    );
+    let missing = run_in(
+        folder.path(),
+        &[
+            "render",
+            "facet",
+            "--adapter",
+            "cpu",
+            "--size",
+            "4x3",
+            "-o",
+            "no/a.png",
+        ],
+    );
+    assert!(
+        missing.code != 0
+            && missing.err.contains("there is no folder no")
+            && !missing.err.contains(".tmp"),
+        "{}",
+        missing.err
+    );
+    assert!(!at("a.jpg").exists());
+    let listed = run_in(folder.path(), &["list", "effects"]);
+    assert!(
+        listed.code == 0 && listed.err.contains("mist.wgsl"),
+        "{}",
+        listed.err
+    );
+}
+
+#[cfg(unix)]
+mod special {
+    use std::os::unix::fs::{FileTypeExt as _, symlink};
+
+    use super::*;
+
+    fn pipe(path: &Path) {
+        assert!(
+            Command::new("mkfifo")
+                .arg(path)
+                .status()
+                .expect("mkfifo is there")
+                .success()
+        );
+    }
+
+    #[test]
+    fn pipes_and_devices_are_never_replaced_and_never_waited_for() {
+        let folder = studio();
+        pipe(&folder.path().join("out.png"));
+        pipe(&folder.path().join("pipe.toml"));
+        pipe(&folder.path().join("pipe.png"));
+        pipe(&folder.path().join(".rasterlab-abcdefabcdef.tmp"));
+        let refused = |args: &[&str], wanted: &str| {
+            let run = run_in(folder.path(), args);
+            assert!(
+                run.code == 2 && run.err.contains(wanted),
+                "{args:?}: {} {}",
+                run.code,
+                run.err
+            );
+        };
+        let render = |name: &str, to: &str, wanted: &str| {
+            refused(
+                &[
+                    "render",
+                    name,
+                    "--adapter",
+                    "cpu",
+                    "--size",
+                    "4x3",
+                    "--force",
+                    "-o",
+                    to,
+                ],
+                wanted,
+            );
+        };
+        render(
+            "facet",
+            "out.png",
+            "is a device, pipe or socket, not a regular file",
+        );
+        render(
+            "facet",
+            "/dev/null",
+            "is a device, pipe or socket, not a regular file",
+        );
+        render("facet", ".", "is a folder, not a regular file");
+        render("pipe.toml", "a.png", "it is not a regular file");
+        render("pipe.png", "a.png", "it is not a regular file");
+        assert!(
+            fs::metadata(folder.path().join("out.png"))
+                .unwrap()
+                .file_type()
+                .is_fifo()
+        );
+        // A pipe beside the frames, and one in the place of a frame.
+        assert_eq!(sequence(folder.path(), &[]).code, 0);
+        fs::remove_file(folder.path().join("f_003.png")).unwrap();
+        pipe(&folder.path().join("f_003.png"));
+        let output = [
+            "sequence",
+            "move.toml",
+            "-o",
+            "f_{frame:3}.png",
+            "--fps",
+            "8",
+            "--adapter",
+            "cpu",
+        ];
+        refused(&output, "f_003.png exists and is no frame of this preset");
+        refused(
+            &[&output[..], &["--force"]].concat(),
+            "is a device, pipe or socket",
+        );
+    }
+
+    #[test]
+    fn links_are_written_through_and_a_link_takes_its_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::create_dir(at("deep")).unwrap();
+        symlink("deep/target.png", at("link.png")).unwrap();
+        let render = |extra: &[&str]| {
+            run_in(
+                folder.path(),
+                &[
+                    &[
+                        "render",
+                        "facet",
+                        "--adapter",
+                        "cpu",
+                        "--size",
+                        "4x3",
+                        "-o",
+                        "link.png",
+                    ],
+                    extra,
+                ]
+                .concat(),
+            )
+        };
+        let refused = render(&[]);
+        assert!(
+            refused.code == 2 && refused.err.contains("link.png exists"),
+            "{}",
+            refused.err
+        );
+        let written = render(&["--force"]);
+        assert_eq!(written.code, 0, "{}", written.err);
+        assert!(
+            fs::symlink_metadata(at("link.png")).unwrap().is_symlink()
+                && at("deep/target.png").is_file()
+        );
+        symlink("b.png", at("a.png")).unwrap();
+        symlink("a.png", at("b.png")).unwrap();
+        let circle = run_in(
+            folder.path(),
+            &[
+                "render",
+                "facet",
+                "--adapter",
+                "cpu",
+                "--size",
+                "4x3",
+                "--force",
+                "-o",
+                "a.png",
+            ],
+        );
+        assert!(
+            circle.code == 2 && circle.err.contains("lead in a circle"),
+            "{}",
+            circle.err
+        );
+    }
+
+    #[test]
+    fn unfinished_files_of_killed_processes_are_swept_and_others_stay() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let (dead, alive, young, not_ours) = (
+            at(".rasterlab-aaaaaaaaaaaa.tmp"),
+            at(".rasterlab-bbbbbbbbbbbb.tmp"),
+            at(".rasterlab-cccccccccccc.tmp"),
+            at(".rasterlab-notes"),
+        );
+        for path in [&dead, &alive, &young, &not_ours] {
+            let file = fs::File::create(path).unwrap();
+            if *path != young {
+                file.set_modified(
+                    std::time::SystemTime::now() - std::time::Duration::from_secs(7200),
+                )
+                .unwrap();
+            }
+        }
+        let held = fs::File::open(&alive).unwrap();
+        held.lock().unwrap();
+        assert_eq!(
+            run_in(
+                folder.path(),
+                &[
+                    "render",
+                    "facet",
+                    "--adapter",
+                    "cpu",
+                    "--size",
+                    "4x3",
+                    "-o",
+                    "a.png"
+                ]
+            )
+            .code,
+            0
+        );
+        assert_eq!(
+            [&dead, &alive, &young, &not_ours].map(|path| path.exists()),
+            [false, true, true, true]
+        );
+    }
+}

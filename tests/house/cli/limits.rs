@@ -153,7 +153,7 @@ fn a_scene_that_the_adapter_cannot_bind_names_its_buffer_and_its_limit() {
         "-o",
         "large.png",
     ]);
-    let wanted = "the buffer vertex_bytes would take 144000048 bytes; this adapter binds at most 134217728; take another adapter, or fewer";
+    let wanted = "the buffer vertex_bytes would take 144019656 bytes; this adapter binds at most 134217728; take another adapter, or fewer";
     assert!(
         run.code == 3 && run.err.contains(wanted),
         "{}: {}",

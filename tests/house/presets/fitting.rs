@@ -178,7 +178,7 @@ fn a_room_does_not_count_for_the_unit_of_the_scene() {
         ..look("[effects.inflate]\namount_m = 0.25\n")
     };
     let amount = |scene: &Scene| {
-        let stack = preset.stack_on(scene);
+        let stack = preset.stack_on(scene, preset.output.size);
         let inflate = stack.get("inflate").expect("it is enabled");
         inflate
             .effect
@@ -290,7 +290,7 @@ fn parameters_of_the_built_in_effects_know_what_they_measure() {
         ("facet.center", Measure::Point),
         ("facet.radius_m", Measure::Length),
         ("fog.level_m", Measure::Height),
-        ("fog.density", Measure::PerLength),
+        ("fog.density", Measure::PerDepth),
         ("wobble.direction", Measure::None),
         ("particles.half_axes", Measure::Length),
         ("particles.attractor", Measure::Point),

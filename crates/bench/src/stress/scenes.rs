@@ -181,6 +181,7 @@ pub fn pixel_view(width: u32, height: u32) -> View {
         ndc_axes: [DVec3::X * w / 2.0, DVec3::NEG_Y * h / 2.0],
         linear_depth_m: Some([0.0, 1.0]),
         depth_range_m: [0.0, 1.0],
+        content_depth_m: [0.0, 1.0],
         background: Default::default(),
         picture_from_world: None,
         scene_state: Default::default(),
@@ -201,6 +202,7 @@ pub fn square_perspective(width: u32, height: u32, near: f64) -> View {
         ndc_axes: [DVec3::X, DVec3::Y],
         linear_depth_m: None,
         depth_range_m: [near, near + 10.0],
+        content_depth_m: [near, near + 10.0],
         ..pixel_view(width, height)
     }
 }

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use crate::{
     math::rotation_y,
-    preset::{FRAMING_DIRECTION, Preset},
-    scene::{Scene, camera::Camera},
+    preset::{FRAMING_DIRECTION, Preset, turned_all_around},
+    scene::{Bounds, Scene, camera::Camera},
 };
 
 /// What turns once about a vertical axis.
@@ -17,9 +17,6 @@ pub enum Turntable {
     /// The scene turns about its own axis, in front of a camera and a light that stay.
     Scene,
 }
-
-/// Directions that are looked along to find a distance that shows the scene from all sides.
-const SIDES: u32 = 72;
 
 impl Turntable {
     /// Turns `preset` to a moment of the film of the range `range_s`: `fraction` of one turn, from
@@ -57,27 +54,21 @@ pub fn all_around(preset: &Preset, scene: &Scene) -> Option<Camera> {
         return None;
     }
     let [width, height] = preset.output.size.map(|side| f64::from(side.max(1)));
-    let mut bounds = scene.bounds();
-    if let Some(particles) = preset.stack_on(scene).particle_settings() {
-        let reach = particles.disc_bounds();
-        [reach.min, reach.max]
-            .into_iter()
-            .for_each(|corner| bounds.include(corner));
-    }
-    let from = |side: u32| {
-        let direction = rotation_y(f64::from(side) / f64::from(SIDES) * TAU)
-            .transform_vector3(FRAMING_DIRECTION);
-        Camera::framing(&bounds, direction, width / height)
-    };
-    let distance = |camera: &Camera| camera.eye.distance(camera.target);
-    let farthest = (0..SIDES)
-        .map(from)
-        .max_by(|a, b| distance(a).total_cmp(&distance(b)))
-        .map_or(0.0, |camera| distance(&camera));
-    let first = from(0);
+    let points = preset.framing_points(scene);
+    let mut bounds = Bounds::EMPTY;
+    points.iter().for_each(|point| bounds.include(*point));
+    let center = bounds.center();
+    let framed = Camera::around(
+        &turned_all_around(&points, center),
+        FRAMING_DIRECTION,
+        width / height,
+    );
+    // The camera goes around the axis of the scene.
+    let axis = center.with_y(framed.target.y);
     Some(Camera {
-        eye: first.target - first.forward() * farthest,
-        ..first
+        eye: framed.eye + (axis - framed.target),
+        target: axis,
+        ..framed
     })
 }
 

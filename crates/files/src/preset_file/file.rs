@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     effect_files::Catalog,
-    effects::{Effect, lambert},
+    effects::Effect,
     preset::{Preset, SceneSource},
 };
 
@@ -78,18 +78,11 @@ impl PresetFile {
         }
     }
 
-    /// The default preset for a model or built-in scene that was chosen: daylight and no other
-    /// effect.
+    /// The default preset for a model or built-in scene that was chosen: it stands in a studio.
     pub fn of_scene(id: &str, scene: SceneSource) -> Self {
-        let mut preset = Preset {
-            name: id.into(),
-            scene,
-            ..Preset::default()
-        };
-        preset.stack.enable(&lambert::EFFECT);
         Self {
             chose_scene: true,
-            ..Self::new(id, preset)
+            ..Self::new(id, Preset::studio(id, scene))
         }
     }
 

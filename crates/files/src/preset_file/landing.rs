@@ -7,7 +7,10 @@ use super::{
     file::{MAX_NAME, PresetFile, model_path, stem},
     look::Look,
 };
-use crate::preset::{Fit, LengthUnit, SceneSource};
+use crate::{
+    preset::{FRAMING_DIRECTION, Fit, LengthUnit, Preset, SceneSource},
+    scene::{Bounds, Scene, camera::Camera},
+};
 
 impl PresetFile {
     /// Is the scene the person's own, so that presets land on it: a model, or a built-in scene that
@@ -36,6 +39,19 @@ impl PresetFile {
     /// Must the boxes of both scenes be known to put this look on another scene?
     pub fn needs_fit(&self) -> bool {
         self.preset.unit == LengthUnit::Meter && self.preset.has_lengths()
+    }
+
+    /// The fit from the box of this preset's scene to that of `own`, and from what its camera sees
+    /// to what the other sees; none where a box has no extent.
+    pub fn fit_to(&self, own: &Self, [from, to]: [&Bounds; 2]) -> Option<Fit> {
+        let camera = |preset: &Preset, bounds: &Bounds| {
+            let [width, height] = preset.output.size.map(|side| f64::from(side.max(1)));
+            preset.camera.unwrap_or_else(|| {
+                Camera::around(&bounds.corners(), FRAMING_DIRECTION, width / height)
+            })
+        };
+        let cameras = [camera(&self.preset, from), camera(&own.preset, to)];
+        Fit::between(from, to).map(|fit| fit.with_cameras((&cameras[0], from), (&cameras[1], to)))
     }
 
     /// This look on the scene of `own`, as a new preset without a file. `fit` leads from the box of
@@ -75,6 +91,15 @@ impl PresetFile {
             look,
             ..Self::new(&file_name(&id), preset)
         }
+    }
+
+    /// Lets effects that were limited to parts which `scene` does not have act on all of it; the
+    /// warnings say so.
+    pub fn map_missing_parts(&mut self, scene: &Scene) {
+        let title = self.title().to_owned();
+        let notes = self.preset.map_missing_parts(scene);
+        self.warnings
+            .extend(notes.into_iter().map(|note| format!("{title}: {note}")));
     }
 
     /// The preset that the look comes from; none where it is only the default look of a scene.

@@ -15,7 +15,7 @@ use crate::{
     effects::{Conflict, EnabledEffect, Stack},
     preset::{
         Preset,
-        settings::{SECTIONS, Section},
+        settings::{OUTPUT, SECTIONS, Section},
     },
 };
 
@@ -52,6 +52,9 @@ pub fn read(
         if let Some(table) = table {
             section.add(&mut preset);
             read_section(&mut reader, table, section, &mut preset)?;
+            if std::ptr::eq(*section, &OUTPUT) && table.get("reference_height_px").is_none() {
+                preset.output.reference_height_px = None;
+            }
         }
     }
     let brought_effects = match reader.table(root, "", EFFECT_FILES)? {

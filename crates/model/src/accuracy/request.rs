@@ -109,6 +109,19 @@ pub struct AccuracyRequest {
 }
 
 impl AccuracyRequest {
+    /// The same, with 2×2 samples for each pixel unless it pins how many: what a still or a film is
+    /// drawn with.
+    #[must_use]
+    pub fn anti_aliased(self) -> Self {
+        if self.pins.option::<RenderScale>().is_some() {
+            return self;
+        }
+        Self {
+            pins: self.pins.with(RenderScale::Double),
+            ..self
+        }
+    }
+
     /// How many pixels are drawn for one that is shown: as the preset pins it.
     pub fn scale(&self) -> RenderScale {
         self.pins.option().unwrap_or_default()

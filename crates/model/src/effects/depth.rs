@@ -18,7 +18,7 @@ params! {
         /// Spread the two colors over the depth range of the scene.
         fit: Flag = 1;
         /// Without fit: how much of the way to the far color one meter takes.
-        scale: f32 = 0.2, hard -1e6..=1e6, soft 0.0..=2.0, unit "per m";
+        scale: f32 = 0.2, hard -1e6..=1e6, soft 0.0..=2.0, unit "per m", depth true;
         /// Without fit: position of the eye between the two colors, 0 near and 1 far.
         offset: f32 = 0.0, hard -1e6..=1e6, soft -2.0..=2.0;
     }

@@ -44,7 +44,7 @@ params! {
         /// Size of the matrix.
         matrix: Matrix = Matrix::Bayer8 as u32;
         /// Side of a cell of the matrix.
-        cell_px: u32 = 1, hard 1.0..=64.0, soft 1.0..=8.0, unit "px";
+        cell_px: u32 = 1, hard 1.0..=1024.0, soft 1.0..=8.0, unit "px";
     }
 }
 

@@ -11,9 +11,9 @@ params! {
         /// Color of the fog, linear.
         color: Color = [0.36, 0.44, 0.55, 1.0];
         /// Extinction coefficient: light falls as exp(-density · path).
-        density: f32 = 0.35, hard 0.0..=1e4, soft 0.0..=2.0, unit "per m";
+        density: f32 = 0.35, hard 0.0..=1e4, soft 0.0..=2.0, unit "per m", depth true;
         /// Depth at which the fog begins.
-        start_m: f32 = 3.0, hard 0.0..=1e6, soft 0.0..=20.0, unit "m";
+        start_m: f32 = 3.0, hard 0.0..=1e6, soft 0.0..=20.0, unit "m", depth true;
         /// How fast the fog thins out above the level; 0 is as thick everywhere.
         falloff: f32 = 0.0, hard 0.0..=1e3, soft 0.0..=4.0, unit "per m";
         /// Height up to which the fog is whole, world space.

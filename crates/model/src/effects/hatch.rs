@@ -32,7 +32,7 @@ params! {
         /// The space in which the lines are drawn.
         space: LineSpace = LineSpace::Screen as u32;
         /// Distance of two lines in the picture.
-        spacing_px: f32 = 6.0, hard 2.0..=64.0, soft 3.0..=24.0, unit "px", when ("space", &["screen"]);
+        spacing_px: f32 = 6.0, hard 0.25..=1024.0, soft 3.0..=24.0, unit "px", when ("space", &["screen"]);
         /// Distance of two planes.
         spacing_m: f32 = 0.06, hard 0.001..=1e3, soft 0.01..=0.5, unit "m", log true, when ("space", &["surface"]);
         /// Direction of the first layer; the second crosses it, two more lie between.

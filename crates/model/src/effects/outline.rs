@@ -31,7 +31,7 @@ params! {
         /// Color of the line, linear; its alpha is the strength.
         color: Color = [0.004, 0.004, 0.008, 1.0];
         /// Width of the line.
-        width_px: u32 = 2, hard 1.0..=8.0, unit "px";
+        width_px: u32 = 2, hard 1.0..=64.0, soft 1.0..=8.0, unit "px";
         /// Which side of an edge the line lies on.
         side: Side = Side::Outside as u32;
         /// Lines between what is drawn and the background.
@@ -62,9 +62,11 @@ impl ImageEffect for Outline {
     fn finish(mut pixel: Pixel, picture: &Picture, p: &Self) -> Pixel {
         let (x, y) = (i64::from(pixel.x), i64::from(pixel.y));
         let here = picture.at(x, y);
-        let reach = i64::from(p.width_px);
-        let is_line = (-reach..=reach).any(|dy| {
-            (-reach..=reach).any(|dx| {
+        let (step, reach) = (i64::from(p.step()), i64::from(p.width_px));
+        let steps = reach / step;
+        let is_line = (-steps..=steps).any(|down| {
+            (-steps..=steps).any(|right| {
+                let (dx, dy) = (right * step, down * step);
                 (1..=reach * reach).contains(&(dx * dx + dy * dy))
                     && picture.has(x + dx, y + dy)
                     && p.is_edge(here, picture.at(x + dx, y + dy), || {
@@ -83,6 +85,12 @@ impl ImageEffect for Outline {
 }
 
 impl Outline {
+    /// Distance of two neighbors that are looked at, in pixels: a wide line looks at as many as one
+    /// of 8 pixels.
+    fn step(&self) -> u32 {
+        self.width_px.div_ceil(8).max(1)
+    }
+
     /// Is there a line at a pixel because of its neighbor `there`? `beyond` is the neighbor on the
     /// opposite side.
     fn is_edge(&self, here: Seen, there: Seen, beyond: impl Fn() -> Option<Seen>) -> bool {

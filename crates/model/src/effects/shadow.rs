@@ -73,7 +73,12 @@ impl Shadow {
 }
 
 impl SurfaceEffect for Shadow {
-    const INPUTS: &[SurfaceInput] = &[SurfaceInput::Normal, SurfaceInput::Lit, SurfaceInput::Color];
+    const INPUTS: &[SurfaceInput] = &[
+        SurfaceInput::Normal,
+        SurfaceInput::Lit,
+        SurfaceInput::Color,
+        SurfaceInput::Glow,
+    ];
 
     fn apply(mut s: Surface, p: &Self) -> Surface {
         let facing = s.normal.dot(p.toward()).max(0.0);
@@ -90,7 +95,7 @@ impl SurfaceEffect for Shadow {
                 DVec3::splat(1.0 - f64::from(p.strength) * (1.0 - s.lit * (4.0 * facing).min(1.0)))
             }
         };
-        s.color = (s.color.truncate() * light).extend(s.color.w);
+        s.color = ((s.color.truncate() - s.glow) * light + s.glow).extend(s.color.w);
         s
     }
 }

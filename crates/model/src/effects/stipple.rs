@@ -25,7 +25,7 @@ params! {
         /// Matrix whose order the samples follow: the larger, the more levels.
         matrix: Matrix = Matrix::Eight as u32;
         /// Side of one cell of the matrix.
-        cell_px: u32 = 1, hard 1.0..=64.0, soft 1.0..=8.0, unit "px";
+        cell_px: u32 = 1, hard 1.0..=1024.0, soft 1.0..=8.0, unit "px";
         /// Shifts the matrix from triangle to triangle, so that layers do not hide behind each other.
         shift_per_triangle: Flag = 0;
         /// Seed of the shifts.

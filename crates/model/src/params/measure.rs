@@ -12,6 +12,10 @@ pub enum Measure {
     Length,
     /// The inverse of a length, such as a density.
     PerLength,
+    /// A distance from the eye along the viewing direction.
+    Depth,
+    /// The inverse of a length along the viewing direction.
+    PerDepth,
     /// A point in world space.
     Point,
     /// A height in world space, along y.

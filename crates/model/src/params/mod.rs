@@ -40,6 +40,8 @@ pub struct Param {
     pub log: bool,
     /// A height in world space: a length that counts from the origin, along y.
     pub height: bool,
+    /// A depth: it counts from the eye, along the viewing direction.
+    pub depth: bool,
     /// Shown only while the choice of this name has one of these words.
     pub when: Option<(String, Vec<String>)>,
 }
@@ -58,6 +60,7 @@ impl Param {
             unit,
             log: false,
             height: false,
+            depth: false,
             when: None,
         }
     }
@@ -89,6 +92,11 @@ impl Param {
         self
     }
 
+    pub fn depth(mut self, depth: bool) -> Self {
+        self.depth = depth;
+        self
+    }
+
     /// Shown only while the choice of this name has one of these words.
     pub fn when(mut self, (choice, words): (&str, &[&str])) -> Self {
         self.when = Some((
@@ -108,7 +116,11 @@ impl Param {
 
     /// What the value measures in space.
     pub fn measure(&self) -> Measure {
-        Measure::of(&self.value_type, &self.unit, self.hard[0], self.height)
+        match Measure::of(&self.value_type, &self.unit, self.hard[0], self.height) {
+            Measure::Length if self.depth => Measure::Depth,
+            Measure::PerLength if self.depth => Measure::PerDepth,
+            measure => measure,
+        }
     }
 
     /// What is allowed, for listings: `0..=1`, `smooth | flat`, `4 numbers, each 0..=1`.

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::{
     params::{Field, Measure},
-    scene::Bounds,
+    scene::{Bounds, camera::Camera},
 };
 
 /// Largest coordinate of a polyline, meters.
@@ -34,6 +34,8 @@ pub struct Fit {
     from: DVec3,
     to: DVec3,
     scale: f64,
+    /// Nearest and farthest depth of both boxes as their cameras see them, meters.
+    depths: Option<[[f64; 2]; 2]>,
 }
 
 impl Fit {
@@ -45,6 +47,7 @@ impl Fit {
             from: from.center(),
             to: to.center(),
             scale,
+            depths: None,
         })
     }
 
@@ -55,6 +58,7 @@ impl Fit {
             from: DVec3::ZERO,
             to: bounds.center(),
             scale,
+            depths: None,
         })
     }
 
@@ -65,7 +69,35 @@ impl Fit {
             from: self.to,
             to: self.from,
             scale: 1.0 / self.scale,
+            depths: self.depths.map(|[from, to]| [to, from]),
         }
+    }
+
+    /// The fit of depths from what one camera sees of its box to what another sees of its own.
+    /// Without it depths are lengths.
+    #[must_use]
+    pub fn with_cameras(self, from: (&Camera, &Bounds), to: (&Camera, &Bounds)) -> Self {
+        let depths = [from, to].map(|(camera, bounds)| {
+            let forward = camera.forward();
+            let depths = bounds.corners().map(|p| (p - camera.eye).dot(forward));
+            let near = depths.into_iter().fold(f64::INFINITY, f64::min);
+            let far = depths.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            [near.max(0.0), far]
+        });
+        let is_known = depths
+            .iter()
+            .all(|[near, far]| far.is_finite() && far > near);
+        Self {
+            depths: is_known.then_some(depths),
+            ..self
+        }
+    }
+
+    /// A depth of the first box is `offset` plus `scale` times one of the second.
+    pub(super) fn depth_line(&self) -> Option<[f64; 2]> {
+        let [[near, far], [other_near, other_far]] = self.depths?;
+        let scale = (far - near) / (other_far - other_near);
+        Some([near - other_near * scale, scale])
     }
 
     /// Where a point comes to lie.
@@ -74,7 +106,7 @@ impl Fit {
     }
 
     pub(super) fn is_identity(&self) -> bool {
-        self.from == self.to && self.scale == 1.0
+        self.from == self.to && self.scale == 1.0 && self.depths.is_none_or(|[from, to]| from == to)
     }
 
     /// The components of a value of `field`, inside its range, and whether they had to be moved
@@ -83,6 +115,13 @@ impl Fit {
         let fitted: Vec<f64> = match (field.measure(), value) {
             (Measure::Length, _) => value.iter().map(|v| v * self.scale).collect(),
             (Measure::PerLength, _) => value.iter().map(|v| v / self.scale).collect(),
+            (Measure::Depth | Measure::PerDepth, [value]) => {
+                let [offset, per] = self.depth_line().unwrap_or([0.0, 1.0 / self.scale]);
+                vec![match field.measure() {
+                    Measure::Depth => ((value - offset) / per).max(field.hard[0]),
+                    _ => value * per,
+                }]
+            }
             (Measure::Height, [height]) => vec![self.point(DVec3::Y * *height).y],
             (Measure::Point, [x, y, z]) => self.point(DVec3::new(*x, *y, *z)).to_array().to_vec(),
             _ => value.to_vec(),

@@ -9,7 +9,7 @@ use super::{
     setting::Storage,
 };
 use crate::{
-    effects::EnabledEffect,
+    effects::{EnabledEffect, depth, read},
     params::{Field, Measure, Value, ValueType, format_number},
     scene::Scene,
 };
@@ -55,6 +55,17 @@ impl Preset {
                         .is_none()
                 {
                     warnings.push(clamped(&before.effect.name, field));
+                }
+            }
+        }
+        if let Some([offset, per]) = fit.depth_line() {
+            for enabled in &mut fitted.stack.0 {
+                let original = enabled.effect.base.as_ref().unwrap_or(&enabled.effect);
+                if **original == **depth::EFFECT {
+                    let mut depth: depth::Depth = read(&enabled.words);
+                    depth.offset = (f64::from(depth.offset) + f64::from(depth.scale) / per * offset)
+                        .clamp(-1e6, 1e6) as f32;
+                    enabled.put(&depth);
                 }
             }
         }

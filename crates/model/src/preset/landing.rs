@@ -1,10 +1,11 @@
 //! Landing: the look of one preset on the scene of another.
 //!
-//! To the scene belong: what is shown (`scene.builtin` or `scene.path`), `room`, `spin_deg_per_s`,
-//! the clips and how they play, the cameras, and the size of the picture, whose frame the camera
-//! fills. To the look belongs everything else: the effects with their parameters (lights among
-//! them), keyframes, polyline and unit, the clock, the accuracy, the background and the ground. A
-//! golden is a picture of both, so what has landed has none.
+//! To the scene belong: what is shown (`scene.builtin` or `scene.path`), `spin_deg_per_s`, the clips
+//! and how they play, the cameras, and the size of the picture, whose frame the camera fills. To the
+//! look belongs everything else: the effects with their parameters (lights among them), keyframes,
+//! polyline and unit, the clock, the accuracy, the background, what the scene stands on (ground and
+//! room), and the height that lengths in pixels are of. A golden is a picture of both, so what has
+//! landed has none.
 
 use super::{Output, Preset};
 
@@ -16,7 +17,6 @@ impl Preset {
         // Every field is named, so that a new one must be given to the scene or to the look.
         let Self {
             scene,
-            room,
             spin_deg_per_s,
             playback,
             camera,
@@ -34,10 +34,12 @@ impl Preset {
             stack,
             animation,
             accuracy,
-            output,
+            mut output,
             ground,
+            room,
             ..
         } = self.clone();
+        output.resize(size);
         Self {
             name,
             about,
@@ -55,7 +57,7 @@ impl Preset {
             stack,
             animation,
             accuracy,
-            output: Output { size, ..output },
+            output,
             test: None,
         }
     }

@@ -6,7 +6,7 @@ use crate::{
     scene::{
         Scene,
         particle_discs::PARTICLES,
-        parts::{PartPattern, parts},
+        parts::{PartPattern, Scope, parts},
     },
 };
 
@@ -38,6 +38,40 @@ impl Preset {
                 )
             })
             .collect()
+    }
+}
+
+impl Preset {
+    /// Lets effects whose scope matches no part of `scene`, on which the preset has landed, act on
+    /// the whole scene. A sentence for each says so.
+    pub fn map_missing_parts(&mut self, scene: &Scene) -> Vec<String> {
+        // Ground, room and particles join the scene.
+        let joined: Vec<&str> = [
+            (self.ground.is_some(), "ground"),
+            (self.room > 0.0, "room"),
+            (self.stack.particle_settings().is_some(), PARTICLES),
+        ]
+        .into_iter()
+        .filter_map(|(is_there, name)| is_there.then_some(name))
+        .collect();
+        let mut notes = Vec::new();
+        for enabled in &mut self.stack.0 {
+            let patterns = enabled.on.patterns();
+            let missing = enabled.on.unmatched(scene);
+            let is_joined = |pattern: &PartPattern| joined.iter().any(|name| pattern.matches(name));
+            if patterns.is_empty()
+                || missing.len() < patterns.len()
+                || patterns.iter().any(is_joined)
+            {
+                continue;
+            }
+            notes.push(format!(
+                "effects.{}.on: the scene has none of its parts, so the effect acts on the whole scene",
+                enabled.effect.name
+            ));
+            enabled.on = Scope::default();
+        }
+        notes
     }
 }
 

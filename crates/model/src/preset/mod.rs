@@ -15,6 +15,7 @@ pub mod rebind;
 mod rules;
 mod setting;
 pub mod settings;
+mod studio;
 
 use std::{path::PathBuf, sync::Arc};
 
@@ -177,6 +178,9 @@ pub struct Output {
     pub background: [f32; 4],
     /// Linear RGBA of the bottom edge; none: the background is one color.
     pub background_bottom: Option<[f32; 4]>,
+    /// The height of a picture in which lengths in pixels are what they say, 1 to 16,384; in others
+    /// they grow and shrink with the height. None: that of `size`.
+    pub reference_height_px: Option<u32>,
 }
 
 impl Output {
@@ -187,6 +191,23 @@ impl Output {
             bottom: self.background_bottom.unwrap_or(self.background),
         }
     }
+
+    /// Another size, in which lengths in pixels fill the same part of the picture.
+    pub fn resize(&mut self, size: [u32; 2]) {
+        let reference = self.reference_height_px.unwrap_or(self.size[1]);
+        self.size = size;
+        self.reference_height_px = (reference != size[1] && reference > 0).then_some(reference);
+    }
+
+    /// Factor of lengths in pixels in a picture of this height.
+    pub fn length_scale(&self, height: f64) -> f64 {
+        let reference = f64::from(self.reference_height_px.unwrap_or(self.size[1]));
+        if reference > 0.0 && height > 0.0 {
+            height / reference
+        } else {
+            1.0
+        }
+    }
 }
 
 impl Default for Output {
@@ -195,6 +216,7 @@ impl Default for Output {
             size: [320, 240],
             background: [0.012, 0.014, 0.02, 1.0],
             background_bottom: None,
+            reference_height_px: None,
         }
     }
 }
@@ -287,6 +309,18 @@ impl Default for Preset {
 /// The view direction of a camera that frames the scene: from the front, slightly right and above.
 pub const FRAMING_DIRECTION: DVec3 = DVec3::new(-0.45, -0.42, -1.0);
 
+/// The points as they come to lie while a scene turns once about a vertical axis through `center`.
+pub fn turned_all_around(points: &[DVec3], center: DVec3) -> Vec<DVec3> {
+    const SIDES: u32 = 16;
+    let turned = |side: u32| {
+        let turn = rotation_y(f64::from(side) / f64::from(SIDES) * std::f64::consts::TAU);
+        points
+            .iter()
+            .map(move |point| center + turn.transform_vector3(*point - center))
+    };
+    (0..SIDES).flat_map(turned).collect()
+}
+
 impl Preset {
     /// The stack at the time of the clock, in the unit of the preset. What is drawn is that of
     /// [`Preset::in_meters`].
@@ -294,9 +328,21 @@ impl Preset {
         self.stack_at(self.clock.time_s)
     }
 
-    /// The stack at the time of the clock for `scene`, in meters, which is drawn.
-    pub fn stack_on(&self, scene: &Scene) -> Stack {
-        self.in_meters(scene).evaluated_stack()
+    /// The stack at the time of the clock for a picture of `scene` of this size, with lengths in
+    /// meters and in its pixels, which is drawn.
+    pub fn stack_on(&self, scene: &Scene, [_, height]: [u32; 2]) -> Stack {
+        self.in_meters(scene)
+            .evaluated_stack()
+            .drawn(self.output.length_scale(height.into()))
+    }
+
+    /// The preset as a picture of `scene` of this height draws it: with its values at its time, in
+    /// meters and in pixels of that picture.
+    pub fn drawn_on(&self, scene: &Scene, height: u32) -> Self {
+        let mut drawn = self.in_meters(scene).evaluated();
+        drawn.stack = drawn.stack.drawn(self.output.length_scale(height.into()));
+        drawn.output.reference_height_px = Some(height.max(1));
+        drawn
     }
 
     /// The stack at another time.
@@ -392,14 +438,26 @@ impl Preset {
                 camera.carried(&scene_from_nodes(&scene.rig, &self.motion(scene))[node])
             }))
         };
-        let framing = || {
-            Camera::framing(
-                &self.in_meters(scene).with_particles(scene.bounds()),
-                FRAMING_DIRECTION,
-                aspect,
-            )
-        };
+        let framing = || Camera::around(&self.framing_points(scene), FRAMING_DIRECTION, aspect);
         self.camera.or_else(own).unwrap_or_else(framing)
+    }
+
+    /// The points of `scene` that its automatic camera frames, before the scene's spin: of its clips
+    /// from their begin to their end and of its particles, and of a scene that spins from all
+    /// sides.
+    pub fn framing_points(&self, scene: &Scene) -> Vec<DVec3> {
+        let Motion { clip, other, .. } = self.motion(scene);
+        let mut points = scene.framing_points(clip).to_vec();
+        if other.is_some() {
+            points.extend(scene.framing_points(other).iter());
+        }
+        if let Some(particle_settings) = self.stack_on(scene, [1, 1]).particle_settings() {
+            points.extend(particle_settings.disc_bounds().corners());
+        }
+        if self.spin_deg_per_s != 0.0 {
+            points = turned_all_around(&points, DVec3::ZERO);
+        }
+        points
     }
 
     /// The view and stack of every frame that this picture depends on, in order; the last is the
@@ -419,7 +477,7 @@ impl Preset {
                 clock,
                 ..preset.clone().into_owned()
             };
-            (then.view(scene, size), then.evaluated_stack())
+            (then.view(scene, size), then.stack_on(scene, size))
         };
         (0..=frames).rev().map(moment).collect()
     }
@@ -475,19 +533,25 @@ impl Preset {
             polyline: preset.polyline.clone(),
             particles: preset.particle_timeline(),
         };
+        let camera = preset.camera_for(scene, aspect);
         let view = View::new(
-            &preset.camera_for(scene, aspect),
+            &camera,
             width,
             height,
             &bounds,
             spin,
             preset.output.backdrop(),
         );
-        View {
+        let view = View {
             scene_state,
             ..view
         }
-        .with_shadow(shadow)
+        .with_shadow(shadow);
+        if scene.ground_instances().is_empty() {
+            view
+        } else {
+            view.with_content(&camera, &scene.bounds())
+        }
     }
 }
 

@@ -441,7 +441,7 @@ pub static OUTPUT: Section = Section {
                     "size",
                     ValueType::Size,
                     "Width and height in pixels",
-                    field!(output.size),
+                    SIZE,
                 )
                 .range(0.0, 16_384.0),
                 Setting::new(
@@ -456,6 +456,13 @@ pub static OUTPUT: Section = Section {
                     "Color at the bottom edge: the background is a vertical gradient from background to it, in linear light",
                     option!(output.background_bottom),
                 ),
+                Setting::new(
+                    "reference_height_px",
+                    ValueType::U32,
+                    "Height of a picture in which lengths in pixels are what they say; in others they grow and shrink with it. Without it: the height of size",
+                    option!(output.reference_height_px),
+                )
+                .range(1.0, 16_384.0),
             ],
         )
     }),
@@ -523,6 +530,13 @@ const MODEL: Storage = Storage::State {
     set: |preset, value| {
         String::from_value(value).map(|path| preset.scene = SceneSource::File(PathBuf::from(path)))
     },
+    clear: None,
+};
+
+/// Lengths in pixels keep the part of the picture that they fill.
+const SIZE: Storage = Storage::State {
+    get: |preset| Some(preset.output.size.to_value()),
+    set: |preset, value| Stored::from_value(value).map(|size| preset.output.resize(size)),
     clear: None,
 };
 

@@ -8,6 +8,9 @@ use crate::math::view_from_world;
 /// Smallest near distance that keeps every quotient of the vertex stage finite.
 pub const MIN_NEAR_M: f64 = 1.0 / (1 << 20) as f64;
 
+/// How much of the picture's smaller side a framed scene fills.
+pub const FRAMED: f64 = 0.8;
+
 /// How depth becomes picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
@@ -63,6 +66,48 @@ impl Camera {
         Self {
             eye: bounds.center() - direction * distance,
             target: bounds.center(),
+            up: DVec3::Y,
+            projection: Projection::Perspective { fov_y_deg },
+            near_m: (distance * 1e-3).max(MIN_NEAR_M),
+        }
+    }
+
+    /// The camera that looks along `direction` and in whose picture `points` fill [`FRAMED`] of the
+    /// smaller side, in the middle. `aspect` is the picture's width over its height.
+    pub fn around(points: &[DVec3], direction: DVec3, aspect: f64) -> Self {
+        let fov_y_deg: f64 = 45.0;
+        let side = libm::tan(fov_y_deg.to_radians() * 0.5) * FRAMED * aspect.clamp(1e-3, 1.0);
+        let direction = direction.try_normalize().unwrap_or(DVec3::NEG_Z);
+        let turned = view_from_world(DVec3::ZERO, direction, DVec3::Y);
+        // Where the planes through the eye along the frame's sides must lie at least: x and y to
+        // the right, left, top and bottom, z towards the eye.
+        let (mut planes, mut near, mut far) =
+            ([f64::NEG_INFINITY; 4], f64::NEG_INFINITY, f64::INFINITY);
+        for point in points {
+            let p = turned.transform_point3(*point);
+            for (plane, aside) in planes.iter_mut().zip([p.x, -p.x, p.y, -p.y]) {
+                *plane = plane.max(aside + side * p.z);
+            }
+            (near, far) = (near.max(p.z), far.min(p.z));
+        }
+        if points.is_empty() {
+            return Self::framing(&Bounds::EMPTY, direction, aspect);
+        }
+        let [right, left, top, bottom] = planes;
+        let middle = (near + far) * 0.5;
+        let eye_z = ((right + left).max(top + bottom) / (2.0 * side)).max(near);
+        let distance = if eye_z - middle > 1e-9 * (1.0 + middle.abs()) {
+            eye_z - middle
+        } else {
+            2.5
+        };
+        let back = turned.inverse();
+        let at = |z: f64| {
+            back.transform_point3(DVec3::new((right - left) * 0.5, (top - bottom) * 0.5, z))
+        };
+        Self {
+            eye: at(middle + distance),
+            target: at(middle),
             up: DVec3::Y,
             projection: Projection::Perspective { fov_y_deg },
             near_m: (distance * 1e-3).max(MIN_NEAR_M),

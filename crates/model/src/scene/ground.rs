@@ -56,7 +56,7 @@ impl Default for Ground {
 }
 
 impl Scene {
-    /// Adds a ground below the lowest point of the scene's box, under its center. Triangles of the
+    /// Adds a ground below the lowest point of the scene at rest, under the center of its box. Triangles of the
     /// scene keep their ids, and [`Scene::bounds`] stays the box of the scene alone.
     #[must_use]
     pub fn on_ground(mut self, ground: &Ground) -> Self {
@@ -65,7 +65,15 @@ impl Scene {
             return self;
         }
         let height = (bounds.max.y - bounds.min.y).max(1e-3 * bounds.radius());
-        let center = bounds.center().with_y(bounds.min.y - GAP * height);
+        // A clip may reach below the pose at rest, whose feet stand on the ground.
+        let lowest = if self.rig.is_empty() {
+            bounds.min.y
+        } else {
+            let points = self.framing_points(None);
+            let at_rest = points.iter().map(|point| point.y).reduce(f64::min);
+            at_rest.unwrap_or(bounds.min.y)
+        };
+        let center = bounds.center().with_y(lowest - GAP * height);
         let reach = ground.size * bounds.radius().max(1e-6);
         self.materials.push(Material {
             name: "ground".into(),
@@ -85,6 +93,15 @@ impl Scene {
             },
         );
         self.grounds += 1;
+        self
+    }
+
+    /// The scene without its grounds; triangles of the others keep their ids.
+    #[must_use]
+    pub fn without_ground(mut self) -> Self {
+        let end = self.instances.len() - self.walls;
+        self.instances.drain(end - self.grounds..end);
+        self.grounds = 0;
         self
     }
 
@@ -192,7 +209,13 @@ mod tests {
                     mesh.triangle_count(),
                     per_cell * ground.cells * ground.cells
                 );
-                let gap = model.min.y - mesh.bounds.max.y;
+                let at_rest = alone.framing_points(None);
+                let lowest = if alone.rig.is_empty() {
+                    model.min.y
+                } else {
+                    at_rest.iter().map(|p| p.y).fold(f64::INFINITY, f64::min)
+                };
+                let gap = lowest - mesh.bounds.max.y;
                 assert!(
                     mesh.bounds.min.y == mesh.bounds.max.y
                         && gap > 0.0

@@ -12,6 +12,7 @@ pub mod builtin;
 pub mod camera;
 pub mod deformation;
 pub mod draw;
+pub mod framing;
 pub mod gltf;
 pub mod ground;
 pub mod joint_transforms;

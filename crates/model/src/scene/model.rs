@@ -7,6 +7,7 @@ use super::{
     bounds::{Bounds, MAX_MAGNITUDE},
     camera::Camera,
     deformation::Deformation,
+    framing::FramingPoints,
     material::Material,
     rig::Rig,
     texture::Image,
@@ -259,6 +260,8 @@ pub struct Scene {
     pub notes: Vec<String>,
     /// Those of the messages that say how the file breaks its standard.
     pub faults: Vec<String>,
+    /// The points that a camera frames.
+    pub framing: FramingPoints,
 }
 
 impl Scene {

@@ -36,6 +36,8 @@ pub struct View {
     /// Nearest and farthest distance along `forward` of the scene's box; in a perspective not
     /// nearer than the near plane.
     pub depth_range_m: [f64; 2],
+    /// The same of what the scene shows without a ground: the range over which effects shade.
+    pub content_depth_m: [f64; 2],
     /// What pixels without a triangle show.
     pub background: Background,
     /// Positions in the picture for which this view, a light's, draws a shadow map; none in a
@@ -95,20 +97,8 @@ impl View {
             f64::from(width) / f64::from(height)
         };
         let forward = camera.forward();
-        let distances = bounds
-            .corners()
-            .map(|c| (world_from_scene.transform_point3(c) - camera.eye).dot(forward));
-        let (mut nearest, mut farthest) = distances
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(n, f), d| {
-                (n.min(*d), f.max(*d))
-            });
-        if bounds.is_empty() || !(nearest.is_finite() && farthest.is_finite()) {
-            (nearest, farthest) = (camera.near_m, camera.near_m + 1.0);
-        }
-        let margin = ((farthest - nearest) * 0.01)
-            .max(1e-3 * farthest.abs())
-            .max(1e-6);
+        let [nearest, farthest] = distances_m(camera, bounds, &world_from_scene);
+        let margin = margin_m([nearest, farthest]);
         let (clip_from_view, linear_depth_m) = match camera.projection {
             Projection::Perspective { fov_y_deg } => {
                 let focal = 1.0 / libm::tan(fov_y_deg.to_radians() * 0.5);
@@ -130,11 +120,7 @@ impl View {
         let ndc_axes = [0, 1]
             .map(|i| clip_from_world.row(i).truncate())
             .map(|row| row / row.length_squared());
-        let from = if linear_depth_m.is_none() {
-            nearest.max(camera.near_m)
-        } else {
-            nearest
-        };
+        let depth_range_m = depth_range_m(camera, [nearest, farthest]);
         Self {
             width,
             height,
@@ -143,7 +129,8 @@ impl View {
             forward,
             ndc_axes,
             linear_depth_m,
-            depth_range_m: [from, farthest.max(from + margin)],
+            depth_range_m,
+            content_depth_m: depth_range_m,
             background: background.into(),
             picture_from_world: None,
             scene_state: SceneState {
@@ -151,6 +138,16 @@ impl View {
                 ..SceneState::default()
             },
             precision: ViewPrecision::default(),
+        }
+    }
+
+    /// The same view, in which effects shade over the depths of another box than the scene's.
+    #[must_use]
+    pub fn with_content(self, camera: &Camera, bounds: &Bounds) -> Self {
+        let distances = distances_m(camera, bounds, &self.scene_state.world_from_scene);
+        Self {
+            content_depth_m: depth_range_m(camera, distances),
+            ..self
         }
     }
 
@@ -175,6 +172,23 @@ impl View {
         Self {
             width: side(self.width),
             height: side(self.height),
+            ..self.clone()
+        }
+    }
+
+    /// The same view with everything moved by a part of a pixel, to the right and down.
+    #[must_use]
+    pub fn shifted(&self, [right, down]: [f64; 2]) -> Self {
+        let shift = DVec4::new(
+            2.0 * right / f64::from(self.width),
+            -2.0 * down / f64::from(self.height),
+            0.0,
+            1.0,
+        );
+        let clip_from_world =
+            DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::Z, shift) * self.clip_from_world;
+        Self {
+            clip_from_world,
             ..self.clone()
         }
     }
@@ -222,6 +236,38 @@ impl View {
     pub fn pixels(&self) -> usize {
         self.width as usize * self.height as usize
     }
+}
+
+/// Nearest and farthest distance of a box from the eye along the viewing direction, meters.
+fn distances_m(camera: &Camera, bounds: &Bounds, world_from_scene: &DMat4) -> [f64; 2] {
+    let forward = camera.forward();
+    let distances = bounds
+        .corners()
+        .map(|c| (world_from_scene.transform_point3(c) - camera.eye).dot(forward));
+    let (nearest, farthest) = distances
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(n, f), d| {
+            (n.min(*d), f.max(*d))
+        });
+    if bounds.is_empty() || !(nearest.is_finite() && farthest.is_finite()) {
+        [camera.near_m, camera.near_m + 1.0]
+    } else {
+        [nearest, farthest]
+    }
+}
+
+fn margin_m([nearest, farthest]: [f64; 2]) -> f64 {
+    ((farthest - nearest) * 0.01)
+        .max(1e-3 * farthest.abs())
+        .max(1e-6)
+}
+
+fn depth_range_m(camera: &Camera, distances: [f64; 2]) -> [f64; 2] {
+    let from = match camera.projection {
+        Projection::Perspective { .. } => distances[0].max(camera.near_m),
+        Projection::Orthographic { .. } => distances[0],
+    };
+    [from, distances[1].max(from + margin_m(distances))]
 }
 
 /// z_c = near, w_c = -z_view: depth is near / w, 1 on the near plane and 0 at infinity.

@@ -1,19 +1,18 @@
 //! Reference pictures, against which accuracy options are measured: on the finest grid, with traced
 //! shadows, at every render scale.
 
-use glam::{DMat4, DVec4};
 use rayon::prelude::*;
 
 use super::{
     super::shot::Shot,
     picture::{render, render_sequence},
     project::project,
-    resample::{LightSum, linear_bytes, resampled},
+    resample::resampled,
     shadow::leaves_samples_out,
 };
 use crate::{
     effects::Stack,
-    frame::{Frame, Geometry},
+    frame::{Frame, Geometry, LightSum, linear_bytes},
     math::{GUARD_BAND, SUBPIXEL_BITS},
     measure::References,
     scene::{Scene, draw::DrawError, shadow_resolution::ShadowResolution, view::View},
@@ -152,25 +151,9 @@ fn supersampled(scene: &Scene, view: &View, stack: &Stack) -> Result<Vec<[u8; 4]
     let light = linear_bytes();
     let mut sums = vec![LightSum::default(); view.pixels()];
     for sample in 0..SAMPLES * SAMPLES {
-        let [x, y] = [sample % SAMPLES, sample / SAMPLES]
+        let shift = [sample % SAMPLES, sample / SAMPLES]
             .map(|i| 0.5 - (f64::from(i) + 0.5) / f64::from(SAMPLES));
-        // Pixels to the right and down, in normalized device coordinates.
-        let shift = DVec4::new(
-            2.0 * x / f64::from(view.width),
-            -2.0 * y / f64::from(view.height),
-            0.0,
-            1.0,
-        );
-        let clip_from_world =
-            DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::Z, shift) * view.clip_from_world;
-        let frame = render_finest(
-            scene,
-            &View {
-                clip_from_world,
-                ..view.clone()
-            },
-            stack,
-        )?;
+        let frame = render_finest(scene, &view.shifted(shift), stack)?;
         let weight = 1.0 / f64::from(SAMPLES * SAMPLES);
         sums.par_iter_mut()
             .zip(&frame.color)

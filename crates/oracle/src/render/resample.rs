@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::math::{linear_light, srgb_byte};
+use crate::frame::{LightSum, linear_bytes};
 
 /// A picture at another size, in linear light: the mean of square blocks of pixels if it shrinks by
 /// a whole factor, otherwise bilinear.
@@ -52,53 +52,10 @@ pub fn resampled(color: &[[u8; 4]], from: [u32; 2], to: [u32; 2]) -> Vec<[u8; 4]
         .collect()
 }
 
-/// Linear light of every byte.
-pub fn linear_bytes() -> Vec<f64> {
-    (0..=255u8)
-        .map(|byte| linear_light(f64::from(byte) / 255.0))
-        .collect()
-}
-
-/// A weighted sum of pixels in linear light.
-#[derive(Clone, Copy, Default)]
-pub struct LightSum {
-    /// Weighted by alpha.
-    opaque: [f64; 3],
-    /// Not weighted by alpha.
-    plain: [f64; 3],
-    alpha: f64,
-}
-
-impl LightSum {
-    /// Adds a pixel; `light` is [`linear_bytes`].
-    pub fn add(&mut self, bytes: &[u8; 4], weight: f64, light: &[f64]) {
-        let alpha = weight * f64::from(bytes[3]) / 255.0;
-        self.alpha += alpha;
-        for (channel, &byte) in bytes[..3].iter().enumerate() {
-            self.opaque[channel] += alpha * light[usize::from(byte)];
-            self.plain[channel] += weight * light[usize::from(byte)];
-        }
-    }
-
-    /// The sum as a gamma-encoded pixel; without alpha it has the colors of its transparent pixels.
-    pub fn bytes(&self) -> [u8; 4] {
-        let [r, g, b] = if self.alpha > 0.0 {
-            self.opaque.map(|v| v / self.alpha)
-        } else {
-            self.plain
-        };
-        [
-            srgb_byte(r),
-            srgb_byte(g),
-            srgb_byte(b),
-            (self.alpha.min(1.0) * 255.0 + 0.5) as u8,
-        ]
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::linear_light;
 
     #[test]
     fn an_even_picture_does_not_change_and_means_are_taken_in_linear_light() {

@@ -362,7 +362,7 @@ impl<'a> SurfaceTriangle<'a> {
                     depth_m
                 },
             flat_depth_m: self.depths_m.iter().sum::<f64>() / 3.0,
-            depth_range_m: DVec2::from_array(view.depth_range_m),
+            depth_range_m: DVec2::from_array(view.content_depth_m),
             triangle_id: self.id,
             rank: 0.0,
             lit: 0.0,

@@ -3,6 +3,8 @@
 //! dragged, side by side, one instead of the other, or as their difference; below each are its time
 //! and its error.
 
+use std::sync::Arc;
+
 use eframe::egui::Rect;
 
 use crate::{
@@ -15,6 +17,7 @@ use crate::{
         shell::{log::Level, state::State},
     },
     preset::{AccuracyRequest, Preset, Tier},
+    scene::{Ground, Scene},
 };
 
 /// How A and B are shown.
@@ -44,6 +47,8 @@ pub struct Compare {
     pub kept: Option<Box<Preset>>,
     pub screen: Option<Screen>,
     pub verdict: Option<Verdict>,
+    /// The scene of B, and the same on the ground of A.
+    grounded: Option<(Option<Ground>, [Arc<Scene>; 2])>,
     /// Factor of the difference.
     pub gain: u8,
     /// The newest difference between verdicts on A and B.
@@ -58,6 +63,7 @@ impl Default for Compare {
             kept: None,
             screen: None,
             verdict: None,
+            grounded: None,
             gain: 16,
             difference: None,
         }
@@ -228,20 +234,30 @@ impl Compare {
             stack,
             animation,
             accuracy,
+            mut output,
             ..
         } = kept.in_meters(&live.scene).into_owned();
+        let own = session.next_preset();
+        output.resize(own.output.size);
         let preset = Preset {
             stack,
             animation,
             accuracy,
-            ..session.next_preset()
+            output,
+            ..own
         };
-        let stack = preset.evaluated_stack();
+        let scene = match &self.grounded {
+            Some((_, [of, grounded])) if Arc::ptr_eq(of, &live.scene) => grounded,
+            _ => &live.scene,
+        };
+        let stack = preset
+            .evaluated_stack()
+            .drawn(session.length_scale(&preset, full));
         Inputs {
-            view: session.view_of(preset, &live.scene, full),
+            view: session.view_of(preset, scene, full),
             stack,
             accuracy,
-            scene: live.scene.clone(),
+            scene: scene.clone(),
         }
     }
 
@@ -253,6 +269,20 @@ impl Compare {
         let Some(live) = state.picture.screen.requested() else {
             return;
         };
+        let (live_scene, own_ground) = (&live.scene, state.session.preset().ground);
+        match &self.kept {
+            Some(kept) if kept.ground != own_ground => {
+                let is_known = self.grounded.as_ref().is_some_and(|(ground, [of, _])| {
+                    *ground == kept.ground && Arc::ptr_eq(of, live_scene)
+                });
+                if !is_known {
+                    let bare = Scene::clone(live_scene).without_ground();
+                    let grounded = kept.ground.iter().fold(bare, Scene::on_ground);
+                    self.grounded = Some((kept.ground, [live_scene.clone(), Arc::new(grounded)]));
+                }
+            }
+            _ => self.grounded = None,
+        }
         let inputs = self.inputs(state, live);
         let screen = self
             .screen

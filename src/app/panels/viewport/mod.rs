@@ -132,7 +132,10 @@ impl Viewport {
             state.picture.verification.reset();
             self.compare.reset_measurements();
         }
-        let stack = state.session.next_stack();
+        let session = &state.session;
+        let stack = session
+            .next_stack()
+            .drawn(session.length_scale(session.preset(), interaction.size));
         let accuracy = self.accuracy(state, &scene, &stack, interaction.size);
         let requested = Inputs {
             view: state.session.view_at(&scene, interaction.size),
