@@ -7,6 +7,7 @@
 #   sh scripts/setup.sh --swiftshader   and Chromium, whose libvk_swiftshader.so is a second Vulkan driver for the tests
 #   sh scripts/setup.sh --web           and Chromium, Rust's target for pages and the wasm-bindgen command, for scripts/web.sh and tests/web
 set -eu
+cd "$(dirname "$0")/.."
 
 swiftshader=no
 films=no
@@ -66,8 +67,8 @@ fi
 if [ "$web" = yes ]; then
     rustup target add wasm32-unknown-unknown
     # The command must have the version of the crate.
-    folder="$(dirname "$0")/../${CARGO_TARGET_DIR:-target}/web"
-    version=$(sed -n '/^name = "wasm-bindgen"$/{n;s/version = "\(.*\)"/\1/p}' "$(dirname "$0")/../Cargo.lock")
+    folder="${CARGO_TARGET_DIR:-target}/web"
+    version=$(sed -n '/^name = "wasm-bindgen"$/{n;s/version = "\(.*\)"/\1/p}' Cargo.lock)
     if [ "$("$folder/bin/wasm-bindgen" --version 2>/dev/null)" != "wasm-bindgen $version" ]; then
         cargo install --quiet wasm-bindgen-cli --version "=$version" --root "$folder"
     fi
