@@ -3,7 +3,12 @@
 use std::sync::Arc;
 
 use rasterlab_files::preset_file::{self, PresetFile};
-use rasterlab_model::{measure::compare, scene::Scene};
+use rasterlab_model::{
+    accuracy::{AccuracyRequest, DepthFormat, PinnedOptions, VertexTransform, Visibility},
+    measure::compare,
+    preset::{Preset, SceneSource},
+    scene::Scene,
+};
 use rasterlab_oracle as oracle;
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 
@@ -27,6 +32,28 @@ impl OpenPreset {
         } else {
             preset_file::parse(text, id)?
         };
+        let scene = preset_file::load_scene(&file.preset, None)?;
+        Ok(Self { file, scene })
+    }
+
+    /// A built-in scene at 320 x 240 with strict accuracy, as `tests/strict_hashes.txt` has it.
+    ///
+    /// # Errors
+    /// No such scene.
+    pub fn strict(query: &str) -> Result<OpenPreset, JsError> {
+        let mut file = preset_file::parse("schema = 2", query)?;
+        let pins = PinnedOptions::of(Visibility::Split32)
+            .with(VertexTransform::Strict)
+            .with(DepthFormat::Integer);
+        file.preset = Preset {
+            scene: SceneSource::Builtin(query.into()),
+            accuracy: AccuracyRequest {
+                pins,
+                ..AccuracyRequest::default()
+            },
+            ..Preset::default()
+        };
+        file.preset.output.size = [320, 240];
         let scene = preset_file::load_scene(&file.preset, None)?;
         Ok(Self { file, scene })
     }
