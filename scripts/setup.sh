@@ -5,16 +5,20 @@
 #   sh scripts/setup.sh                 everything that cargo run and cargo test need
 #   sh scripts/setup.sh --films         and ffmpeg, GNU parallel and Slurm, for videos and long films
 #   sh scripts/setup.sh --swiftshader   and Chromium, whose libvk_swiftshader.so is a second Vulkan driver for the tests
+#   sh scripts/setup.sh --web           and Chromium, Rust's target for pages and the wasm-bindgen command, for scripts/web.sh and tests/web
 set -eu
+cd "$(dirname "$0")/.."
 
 swiftshader=no
 films=no
+web=no
 for argument in "$@"; do
     case "$argument" in
         --swiftshader) swiftshader=yes ;;
         --films) films=yes ;;
+        --web) web=yes ;;
         *)
-            echo "usage: sh scripts/setup.sh [--films] [--swiftshader]" >&2
+            echo "usage: sh scripts/setup.sh [--films] [--swiftshader] [--web]" >&2
             exit 2
             ;;
     esac
@@ -47,7 +51,7 @@ if ! command -v cc >/dev/null 2>&1; then
     packages="$packages gcc libc6-dev"
 fi
 
-if [ "$swiftshader" = yes ]; then
+if [ "$swiftshader" = yes ] || [ "$web" = yes ]; then
     packages="$packages chromium"
 fi
 
@@ -58,6 +62,16 @@ fi
 if ! command -v cargo >/dev/null 2>&1; then
     echo "setup: cargo is missing; https://rustup.rs installs Rust, of which 1.95 or newer is needed" >&2
     exit 1
+fi
+
+if [ "$web" = yes ]; then
+    rustup target add wasm32-unknown-unknown
+    # The command must have the version of the crate.
+    folder="${CARGO_TARGET_DIR:-target}/web"
+    version=$(sed -n '/^name = "wasm-bindgen"$/{n;s/version = "\(.*\)"/\1/p}' Cargo.lock)
+    if [ "$("$folder/bin/wasm-bindgen" --version 2>/dev/null)" != "wasm-bindgen $version" ]; then
+        cargo install --quiet wasm-bindgen-cli --version "=$version" --root "$folder"
+    fi
 fi
 
 if ! command -v apt-get >/dev/null 2>&1; then

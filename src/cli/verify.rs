@@ -199,23 +199,9 @@ pub fn check(
         let name = option.map_or("exact", Visibility::name);
         let capture = backend.capture(&pinned, scene)?;
         let verdict = backend.judged(scene, &view, &stack, &capture)?;
-        // Where wrong triangles are allowed, colors are compared only where the triangle is right.
-        let mut expected = verdict.expected.color.clone();
-        if budget.max_wrong_triangles > 0 {
-            let wrong = capture
-                .frame
-                .triangle_id
-                .iter()
-                .zip(&verdict.expected.triangle_id)
-                .enumerate()
-                .filter(|(_, (a, b))| a != b);
-            wrong.for_each(|(i, _)| expected[i] = capture.frame.color[i]);
-        }
-        let pixels_over_tolerance =
-            pictures(&capture.frame.color, &expected, budget.max_channel).pixels_over_tolerance;
-        let mut failures = failures(
+        let pixels_over_tolerance = budget.pixels_over_tolerance(&verdict, &capture.frame);
+        let mut failures = budget.faults(
             &verdict.report,
-            &budget,
             pixels_over_tolerance,
             options.allows_any_band,
         );
@@ -325,39 +311,6 @@ fn volume_fraction(preset: &Preset, scene: &Scene) -> Result<Option<f64>, CliErr
     };
     let (linear, dual) = (volume(Skinning::Linear)?, volume(Skinning::Dual)?);
     Ok((dual != 0.0).then_some(linear / dual))
-}
-
-/// Integers must be exact unless the preset has a budget for wrong triangles; colors have the
-/// preset's budget.
-fn failures(
-    accuracy: &ErrorReport,
-    test: &GoldenTest,
-    pixels_over_tolerance: u64,
-    allows_any_band: bool,
-) -> Vec<String> {
-    let forgiven = pixels_over_tolerance <= u64::from(test.max_pixels);
-    let max_color_delta = if forgiven { u8::MAX } else { test.max_channel };
-    let mut budget = Budget {
-        max_color_delta,
-        max_wrong_triangles: test.max_wrong_triangles.into(),
-        ..Budget::default()
-    };
-    if test.max_channel > 1 {
-        budget.max_rounding_fraction = 1.0;
-    }
-    if allows_any_band {
-        budget = Budget {
-            max_depth_band_pixels: u64::MAX,
-            max_step_band_fraction: f64::INFINITY,
-            ..budget
-        };
-    }
-    accuracy
-        .within(&budget)
-        .err()
-        .map_or_else(Vec::new, |reasons| {
-            reasons.split("; ").map(str::to_owned).collect()
-        })
 }
 
 /// Writes expected, actual and difference side by side; pixels with another triangle are magenta.

@@ -56,7 +56,8 @@ pub use look::Look;
 pub use manage::{duplicate, file_stem, rename};
 pub use merge::{Merged, merge};
 pub use picture::{
-    Provenance, png_bytes, png_of_frame, png_pixels, png_with_preset, preset_from_png,
+    Provenance, pixels_of_png, png_bytes, png_of_frame, png_pixels, png_with_preset,
+    preset_from_png,
 };
 pub use scene::{SceneError, load_scene, scene_bounds};
 pub use share::{from_line, to_line};

@@ -129,11 +129,21 @@ pub(super) fn encoder<W: Write>(
 
 /// Pixels of any PNG as row-major RGBA, with width and height; at most 16,384 pixels a side.
 pub fn png_pixels(path: &Path) -> Result<(Vec<[u8; 4]>, [u32; 2]), PresetError> {
+    pixels_of_png(
+        &read_capped(path, MAX_FILE_BYTES)?,
+        &path.display().to_string(),
+    )
+}
+
+/// [`png_pixels`] of the bytes of a file, which errors call `file`.
+///
+/// # Errors
+/// No PNG, or a larger one.
+pub fn pixels_of_png(bytes: &[u8], file: &str) -> Result<(Vec<[u8; 4]>, [u32; 2]), PresetError> {
     let failed = |reason: String| PresetError::Read {
-        file: path.display().to_string(),
+        file: file.into(),
         reason,
     };
-    let bytes = read_capped(path, MAX_FILE_BYTES)?;
     let mut reader = image::ImageReader::with_format(Cursor::new(bytes), image::ImageFormat::Png);
     let mut limits = image::Limits::default();
     (limits.max_image_width, limits.max_image_height) = (Some(16_384), Some(16_384));

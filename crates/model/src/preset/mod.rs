@@ -7,6 +7,7 @@
 pub mod animation;
 mod fit;
 mod fitted;
+mod golden_test;
 mod landing;
 mod missing_parts;
 mod particle_timeline;
@@ -34,6 +35,7 @@ use crate::{
 };
 pub use animation::{Animation, Track};
 pub use fit::{Fit, LengthUnit};
+pub use golden_test::GoldenTest;
 
 pub use crate::accuracy::{AccuracyRequest, PinnedOptions, Tier, Visibility};
 
@@ -217,31 +219,6 @@ impl Default for Output {
             background: [0.012, 0.014, 0.02, 1.0],
             background_bottom: None,
             reference_height_px: None,
-        }
-    }
-}
-
-/// How far a picture may differ from the golden; a preset without it has no golden.
-#[derive(Clone, Debug, PartialEq)]
-pub struct GoldenTest {
-    /// Largest difference of a color channel, of 255.
-    pub max_channel: u8,
-    /// Number of pixels that may differ by more.
-    pub max_pixels: u32,
-    /// Number of pixels that may show another triangle than the reference, where an option that is
-    /// not exact is pinned.
-    pub max_wrong_triangles: u32,
-    /// Why a budget above the default is needed.
-    pub why: String,
-}
-
-impl Default for GoldenTest {
-    fn default() -> Self {
-        Self {
-            max_channel: 1,
-            max_pixels: 0,
-            max_wrong_triangles: 0,
-            why: String::new(),
         }
     }
 }

@@ -1,0 +1,80 @@
+//! The budget of a preset's golden, and what a verdict says against it.
+
+use crate::{
+    frame::Frame,
+    measure::{Budget, ErrorReport, Verdict, compare},
+};
+
+/// How far a picture may differ from the golden; a preset without it has no golden.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GoldenTest {
+    /// Largest difference of a color channel, of 255.
+    pub max_channel: u8,
+    /// Number of pixels that may differ by more.
+    pub max_pixels: u32,
+    /// Number of pixels that may show another triangle than the reference, where an option that is
+    /// not exact is pinned.
+    pub max_wrong_triangles: u32,
+    /// Why a budget above the default is needed.
+    pub why: String,
+}
+
+impl Default for GoldenTest {
+    fn default() -> Self {
+        Self {
+            max_channel: 1,
+            max_pixels: 0,
+            max_wrong_triangles: 0,
+            why: String::new(),
+        }
+    }
+}
+
+impl GoldenTest {
+    /// How many pixels of a picture differ by more than the budget from what the oracle draws from
+    /// the same vertices. Where wrong triangles are allowed, colors are compared only where the
+    /// triangle is right.
+    pub fn pixels_over_tolerance(&self, verdict: &Verdict, drawn: &Frame) -> u64 {
+        let mut expected = verdict.expected.color.clone();
+        if self.max_wrong_triangles > 0 {
+            let ids = drawn.triangle_id.iter().zip(&verdict.expected.triangle_id);
+            let wrong = ids.enumerate().filter(|(_, (a, b))| a != b);
+            wrong.for_each(|(i, _)| expected[i] = drawn.color[i]);
+        }
+        compare::pictures(&drawn.color, &expected, self.max_channel).pixels_over_tolerance
+    }
+
+    /// The reasons why a picture is wrong, none if it is right: integers must be exact unless there is
+    /// a budget for wrong triangles, and colors within the budget. With `allows_any_band` any number of
+    /// pixels may have two right answers.
+    pub fn faults(
+        &self,
+        report: &ErrorReport,
+        pixels_over_tolerance: u64,
+        allows_any_band: bool,
+    ) -> Vec<String> {
+        let forgiven = pixels_over_tolerance <= u64::from(self.max_pixels);
+        let max_color_delta = if forgiven { u8::MAX } else { self.max_channel };
+        let mut budget = Budget {
+            max_color_delta,
+            max_wrong_triangles: self.max_wrong_triangles.into(),
+            ..Budget::default()
+        };
+        if self.max_channel > 1 {
+            budget.max_rounding_fraction = 1.0;
+        }
+        if allows_any_band {
+            budget = Budget {
+                max_depth_band_pixels: u64::MAX,
+                max_step_band_fraction: f64::INFINITY,
+                ..budget
+            };
+        }
+        report
+            .within(&budget)
+            .err()
+            .map_or_else(Vec::new, |reasons| {
+                reasons.split("; ").map(str::to_owned).collect()
+            })
+    }
+}

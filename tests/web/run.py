@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+"""Promise: in a page of Chromium the kernels draw the presets as the oracle judges them, and the oracle's pictures are the goldens.
+
+Serves dist/ (sh scripts/web.sh) and tests/web/test.html to headless Chromium on SwiftShader, and prints what the page reports. Fails if a
+report names a fault, or if none comes for five minutes."""
+
+import functools
+import http.server
+import json
+import pathlib
+import queue
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PATIENCE_S = 300
+# All of them are needed for WebGPU on SwiftShader without a screen; --no-sandbox is for root.
+FLAGS = """--headless --no-sandbox --enable-unsafe-webgpu --enable-features=Vulkan --use-vulkan=swiftshader --use-angle=swiftshader
+--enable-unsafe-swiftshader --ignore-gpu-blocklist --enable-gpu --disable-quic --disable-background-networking --disable-component-update
+--disable-sync --no-first-run""".split()
+BESIDE_DIST = {"/test.html": ROOT / "tests/web/test.html", "/strict_hashes.txt": ROOT / "tests/strict_hashes.txt"}
+
+
+class Pages(http.server.SimpleHTTPRequestHandler):
+    """The files of dist/, the test's page, and a place for its reports."""
+
+    def __init__(self, *arguments, reports, **names):
+        self.reports = reports
+        super().__init__(*arguments, directory=ROOT / "dist", **names)
+
+    def translate_path(self, path):
+        return str(BESIDE_DIST.get(path) or super().translate_path(path))
+
+    def do_POST(self):
+        length = int(self.headers["Content-Length"])
+        self.reports.put(json.loads(self.rfile.read(length)))
+        self.send_response(204)
+        self.end_headers()
+
+    def log_message(self, *_):
+        pass
+
+
+def main():
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    if chromium is None:
+        print("web: no Chromium here; sh scripts/setup.sh --web installs it", file=sys.stderr)
+        return 2
+    reports = queue.Queue()
+    server = http.server.ThreadingHTTPServer(("localhost", 0), functools.partial(Pages, reports=reports))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    page = f"http://localhost:{server.server_port}/test.html"
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        browser = subprocess.Popen(
+            [chromium, *FLAGS, f"--user-data-dir={profile}", page], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+        passed = failed = 0
+        try:
+            while not (report := reports.get(timeout=PATIENCE_S)).get("end"):
+                faults = report["faults"]
+                print(f"{report['test']}: {'; '.join(faults) or 'ok'}", flush=True)
+                passed, failed = (passed, failed + 1) if faults else (passed + 1, failed)
+        except queue.Empty:
+            print(f"web: the page has reported nothing for {PATIENCE_S} s", file=sys.stderr)
+            failed += 1
+        finally:
+            browser.kill()
+            browser.wait()
+    print(f"{passed} passed, {failed} failed")
+    return 1 if failed or not passed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
