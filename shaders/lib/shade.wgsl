@@ -8,7 +8,6 @@
 //@ use lib/shape
 //@ use lib/surface
 //@ use variants/loads
-//@ use lib/clip_corners
 //@ use variants/vertex_effects
 //@ use steps/shade_step
 
@@ -76,10 +75,10 @@ fn linear_depths(z: vec3f) -> vec3f {
 
 // A triangle that was clipped has no snapped corners: homogeneous barycentrics (Olano and Greer 1997).
 fn sample_clipped(t: Triangle, at: vec3u, pixel: vec2u) -> SamplePosition {
-    let corners = clip_corners(t.draw, at, t.id);
-    let a = corners.a;
-    let b = corners.b;
-    let c = corners.c;
+    let corners = vertex_effects_corners(t.draw, at, t.id);
+    let a = corners[0];
+    let b = corners[1];
+    let c = corners[2];
     let sample = (vec2f(pixel) + 0.5) / vec2f(frame.size);
     let p = vec3f(sample.x * 2.0 - 1.0, 1.0 - sample.y * 2.0, 1.0);
     // Counter-clockwise in clip space, y up, is a positive determinant, whose sign all terms inside have. A snapped clipped

@@ -14,7 +14,7 @@
 //@ use lib/surface
 //@ use lib/shade
 //@ use lib/material_atlas
-//@ use lib/clip_corners
+//@ use variants/vertex_effects
 
 fn shade_step_textures(surface: Surface, t: Triangle, at: vec3u, position: SamplePosition) -> Surface {
     var s = surface;
@@ -60,10 +60,10 @@ fn slopes_of(t: Triangle, at: vec3u, position: SamplePosition, screen: vec2f) ->
 
 // The same on the plane of a triangle that was clipped, at a position in the picture from 0 to 1.
 fn slopes_clipped(t: Triangle, at: vec3u, weights: vec3f, screen: vec2f) -> Slopes {
-    let corners = clip_corners(t.draw, at, t.id);
-    let a = corners.a;
-    let b = corners.b;
-    let c = corners.c;
+    let corners = vertex_effects_corners(t.draw, at, t.id);
+    let a = corners[0];
+    let b = corners[1];
+    let c = corners[2];
     let lines = transpose(mat3x3f(cross(b.xyw, c.xyw), cross(c.xyw, a.xyw), cross(a.xyw, b.xyw)));
     let terms = lines * vec3f(screen.x * 2.0 - 1.0, 1.0 - screen.y * 2.0, 1.0);
     let sum = dot(terms, vec3f(1.0));

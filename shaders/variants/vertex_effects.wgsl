@@ -5,6 +5,9 @@
 //@ declare fn vertex_effects_clip(draw: u32, vertex: u32, id: u32, p: vec3f) -> vec4f
 // The same of a vertex that was not rejected.
 //@ declare fn vertex_effects_clip_of(draw: u32, vertex: u32, id: u32) -> vec4f
+// The same of the corners of a triangle, `at`: its vertices within its draw. A loop, because compilers inline the vertex effects
+// wherever they are called. It fills no array: NVIDIA's driver 580.159 loses members of array elements that a loop writes.
+//@ declare fn vertex_effects_corners(draw: u32, at: vec3u, id: u32) -> mat3x4f
 // Before samples of a triangle are shaded: computes what they share.
 //@ declare fn vertex_effects_begin(id: u32, draw: u32, at: vec3u)
 // Interpolated and flat normal after the effects, before they are turned towards the viewer, given those of the file.
@@ -21,6 +24,18 @@ fn vertex_effects_clip(draw: u32, vertex: u32, id: u32, p: vec3f) -> vec4f {
 
 fn vertex_effects_clip_of(draw: u32, vertex: u32, id: u32) -> vec4f {
     return vertex_effects_clip(draw, vertex, id, floats_of_class(position_bits(draw, vertex), 0u));
+}
+
+fn vertex_effects_corners(draw: u32, at: vec3u, id: u32) -> mat3x4f {
+    var a: vec4f;
+    var b: vec4f;
+    var c: vec4f;
+    for (var i = 0u; i < 3u; i += 1u) {
+        let vertex = select(select(at.z, at.y, i == 1u), at.x, i == 0u);
+        let corner = vertex_effects_clip_of(draw, vertex, id);
+        if i == 0u { a = corner; } else if i == 1u { b = corner; } else { c = corner; }
+    }
+    return mat3x4f(a, b, c);
 }
 
 fn vertex_effects_begin(id: u32, draw: u32, at: vec3u) {}
@@ -65,6 +80,18 @@ fn vertex_effects_clip(draw: u32, vertex: u32, id: u32, p: vec3f) -> vec4f {
 
 fn vertex_effects_clip_of(draw: u32, vertex: u32, id: u32) -> vec4f {
     return vertex_effects_clip(draw, vertex, id, floats_of_class(position_bits(draw, vertex), 0u));
+}
+
+fn vertex_effects_corners(draw: u32, at: vec3u, id: u32) -> mat3x4f {
+    var a: vec4f;
+    var b: vec4f;
+    var c: vec4f;
+    for (var i = 0u; i < 3u; i += 1u) {
+        let vertex = select(select(at.z, at.y, i == 1u), at.x, i == 0u);
+        let corner = vertex_effects_clip_of(draw, vertex, id);
+        if i == 0u { a = corner; } else if i == 1u { b = corner; } else { c = corner; }
+    }
+    return mat3x4f(a, b, c);
 }
 
 // What the samples of a triangle share.

@@ -18,7 +18,7 @@ use crate::{
     frame::Frame,
     gpu::Capture,
     measure::{
-        Budget, ErrorReport,
+        ErrorReport,
         compare::{difference_picture, pictures, triangle_ids},
     },
     oracle,

@@ -401,8 +401,8 @@ fn mutants() -> Vec<Mutant> {
         ),
         mutant(
             "a piece of what was clipped is turned over",
-            "ClippedTriangle(records[0], records[i], records[i + 1u],",
-            "ClippedTriangle(records[0], records[select(i, i + 1u, i == 2u)], records[select(i + 1u, i, i == 2u)],",
+            "emit_triangle(t, records[0], records[i], records[i + 1u],",
+            "emit_triangle(t, records[0], records[select(i, i + 1u, i == 2u)], records[select(i + 1u, i, i == 2u)],",
             hall(),
             CLIPS,
         ),

@@ -6,7 +6,7 @@
 //@ use lib/queued_triangle
 //@ use lib/sample
 //@ use lib/sample_setup_write
-//@ use lib/clip_corners
+//@ use variants/vertex_effects
 // What is computed besides the setups of sample effects: alpha_mask where a material has an alpha mask. `at`: vertices of the triangle, or of
 // the parent of a clipped triangle, within the draw.
 //@ steps fn setup_step(t: Triangle, at: vec3u)
@@ -27,8 +27,8 @@ fn sample_setup(
     let at = triangle_vertices(t.draw, t.id - draws[t.draw].first_triangle);
     var center_screen: vec2f;
     if IS_CLIPPED_TRIANGLES {
-        let corners = clip_corners(t.draw, at, t.id);
-        center_screen = center_clipped(corners.a, corners.b, corners.c, vec2f(0.5));
+        let corners = vertex_effects_corners(t.draw, at, t.id);
+        center_screen = center_clipped(corners[0], corners[1], corners[2], vec2f(0.5));
     } else {
         if ((t.a.x | t.b.x | t.c.x) & 255u) != 0u { return; }
         center_screen = center_unclipped(t.a, t.b, t.c);
@@ -48,7 +48,7 @@ fn sample_setup(
 //@ use lib/sample_setup
 //@ use lib/sample_setup_write
 //@ use lib/material_atlas
-//@ use lib/clip_corners
+//@ use variants/vertex_effects
 
 // Two records: x and y of three corners, and behind them 1 + the word of the material's record; 0 without a mask.
 fn setup_step_alpha_mask(t: Triangle, at: vec3u) {
@@ -64,8 +64,8 @@ fn setup_step_alpha_mask(t: Triangle, at: vec3u) {
     var corners = array<vec2i, 3>(a, b, c);
     if IS_CLIPPED_TRIANGLES {
         // Homogeneous barycentrics in the parent (Olano and Greer 1997).
-        let v = clip_corners(t.draw, at, t.id);
-        let lines = mat3x3f(cross(v.b.xyw, v.c.xyw), cross(v.c.xyw, v.a.xyw), cross(v.a.xyw, v.b.xyw));
+        let v = vertex_effects_corners(t.draw, at, t.id);
+        let lines = mat3x3f(cross(v[1].xyw, v[2].xyw), cross(v[2].xyw, v[0].xyw), cross(v[0].xyw, v[1].xyw));
         corners[0] = a + alpha_mask_offset(lines, vertex_at(t.a), b - a, c - a);
         corners[1] = a + alpha_mask_offset(lines, vertex_at(t.b), b - a, c - a);
         corners[2] = a + alpha_mask_offset(lines, vertex_at(t.c), b - a, c - a);

@@ -320,7 +320,7 @@ fn a_picture_that_is_too_large_for_the_oracle_is_refused_in_a_moment() {
     for (args, wanted) in [
         (
             &["render", "facet", "--size", "16384x16384"][..],
-            "the picture would take about 14.",
+            "the picture would take about 56.",
         ),
         (
             &["render", "xray", "--size", "16384x8192"],

@@ -106,7 +106,7 @@ const EXPECTED: &[(&str, &str)] = &[
         "the file: its scene is 0, but there are only 0 scenes",
     ),
     (
-        "glTF2/wrongTypes",
+        "glTF2/wrongTypes/badArray",
         "mesh \"Mesh\": its primitives is an object; it must be a list",
     ),
 ];
