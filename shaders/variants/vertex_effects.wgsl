@@ -22,10 +22,6 @@ fn vertex_effects_clip(draw: u32, vertex: u32, id: u32, p: vec3f) -> vec4f {
     return transform_clip(draw, p);
 }
 
-fn vertex_effects_clip_of(draw: u32, vertex: u32, id: u32) -> vec4f {
-    return vertex_effects_clip(draw, vertex, id, floats_of_class(position_bits(draw, vertex), 0u));
-}
-
 fn vertex_effects_corners(draw: u32, at: vec3u, id: u32) -> mat3x4f {
     var a: vec4f;
     var b: vec4f;
@@ -36,6 +32,10 @@ fn vertex_effects_corners(draw: u32, at: vec3u, id: u32) -> mat3x4f {
         if i == 0u { a = corner; } else if i == 1u { b = corner; } else { c = corner; }
     }
     return mat3x4f(a, b, c);
+}
+
+fn vertex_effects_clip_of(draw: u32, vertex: u32, id: u32) -> vec4f {
+    return vertex_effects_clip(draw, vertex, id, floats_of_class(position_bits(draw, vertex), 0u));
 }
 
 fn vertex_effects_begin(id: u32, draw: u32, at: vec3u) {}
@@ -78,10 +78,6 @@ fn vertex_effects_clip(draw: u32, vertex: u32, id: u32, p: vec3f) -> vec4f {
     return vec4f(clip.xy, max(clip.z, 0.0), clip.w);
 }
 
-fn vertex_effects_clip_of(draw: u32, vertex: u32, id: u32) -> vec4f {
-    return vertex_effects_clip(draw, vertex, id, floats_of_class(position_bits(draw, vertex), 0u));
-}
-
 fn vertex_effects_corners(draw: u32, at: vec3u, id: u32) -> mat3x4f {
     var a: vec4f;
     var b: vec4f;
@@ -92,6 +88,10 @@ fn vertex_effects_corners(draw: u32, at: vec3u, id: u32) -> mat3x4f {
         if i == 0u { a = corner; } else if i == 1u { b = corner; } else { c = corner; }
     }
     return mat3x4f(a, b, c);
+}
+
+fn vertex_effects_clip_of(draw: u32, vertex: u32, id: u32) -> vec4f {
+    return vertex_effects_clip(draw, vertex, id, floats_of_class(position_bits(draw, vertex), 0u));
 }
 
 // What the samples of a triangle share.

@@ -33,7 +33,7 @@ use rasterlab::{
     measure::Verdict,
     oracle,
     plan::AccuracyRequest,
-    preset::{Preset, SceneSource},
+    preset::Preset,
     scene::{Scene, builtin, view::View},
     shader::library::Library,
     stress,
@@ -184,13 +184,9 @@ pub fn scene(query: &str) -> Arc<Scene> {
     built().entry(query.to_owned()).or_insert(scene).clone()
 }
 
-/// A scene as a preset without a camera shows it.
+/// A scene within the picture ([`Preset::of_sphere`]).
 pub fn view(scene: &Scene, size: [u32; 2]) -> View {
-    Preset {
-        scene: SceneSource::Builtin(scene.name.clone()),
-        ..Preset::default()
-    }
-    .view(scene, size)
+    Preset::of_sphere(scene, size).view(scene, size)
 }
 
 /// Draws and judges.

@@ -111,7 +111,7 @@ fn the_next_film_begins_as_the_last_one_was_exported_also_after_a_new_start() {
     };
     press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::E);
     assert!(
-        lab.query_by_label_contains("2 frames, 0.50 s: mine_")
+        lab.query_by_label_contains("2 frames, 0.50 s: mine")
             .is_some(),
         "range, rate or format is another"
     );

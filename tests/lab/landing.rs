@@ -405,7 +405,7 @@ fn what_is_left_out_is_said_once_and_the_rest_is_shown() {
     drop_files(&mut lab, &[&look]);
     assert_eq!(stack(&lab).len(), 2);
     let log = lab.state().log_text();
-    let words = "no node that matches \"walker 1\"";
+    let words = "effects.hatch.on: the scene has none of its parts";
     assert_eq!(
         log.lines()
             .filter(|line| line.starts_with("warning") && line.contains(words))
@@ -517,7 +517,8 @@ fn a_look_brings_its_ground_and_its_gradient_to_the_model() {
     let ground = plinth.preset.ground.expect("it stands on a ground");
     assert_eq!(
         lab.state().scene_triangles(),
-        alone + u64::from(6 * ground.cells * ground.cells)
+        1 + u64::from(6 * ground.cells * ground.cells),
+        "its ground instead of the studio's"
     );
     undo(&mut lab);
     settle(&mut lab);

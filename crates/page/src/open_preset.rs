@@ -6,8 +6,8 @@ use rasterlab_files::preset_file::{self, PresetFile};
 use rasterlab_model::{
     accuracy::{AccuracyRequest, DepthFormat, PinnedOptions, VertexTransform, Visibility},
     measure::compare,
-    preset::{Preset, SceneSource},
-    scene::Scene,
+    preset::Preset,
+    scene::{Scene, builtin},
 };
 use rasterlab_oracle as oracle;
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
@@ -45,16 +45,16 @@ impl OpenPreset {
         let pins = PinnedOptions::of(Visibility::Split32)
             .with(VertexTransform::Strict)
             .with(DepthFormat::Integer);
+        let size = [320, 240];
+        let scene = Arc::new(builtin::build(query)?);
         file.preset = Preset {
-            scene: SceneSource::Builtin(query.into()),
             accuracy: AccuracyRequest {
                 pins,
                 ..AccuracyRequest::default()
             },
-            ..Preset::default()
+            ..Preset::of_sphere(&scene, size)
         };
-        file.preset.output.size = [320, 240];
-        let scene = preset_file::load_scene(&file.preset, None)?;
+        file.preset.output.size = size;
         Ok(Self { file, scene })
     }
 

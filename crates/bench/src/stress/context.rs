@@ -19,7 +19,7 @@ use crate::{
     measure::{Budget, Verdict, compare},
     oracle,
     plan::{AccuracyRequest, Tier},
-    preset::{Preset, SceneSource},
+    preset::Preset,
     scene::{Scene, builtin, view::View},
 };
 
@@ -246,13 +246,9 @@ impl<'a> CaseContext<'a> {
             .map_err(|error| EarlyEnd::Failed(format!("{query}: {error}")))
     }
 
-    /// The view of a scene with the default camera.
+    /// The view of a scene within the picture ([`Preset::of_sphere`]).
     pub(super) fn view(&self, scene: &Scene, size: [u32; 2]) -> View {
-        Preset {
-            scene: SceneSource::Builtin(scene.name.clone()),
-            ..Preset::default()
-        }
-        .view(scene, size)
+        Preset::of_sphere(scene, size).view(scene, size)
     }
 
     /// Draws without judging.

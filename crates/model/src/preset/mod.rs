@@ -437,6 +437,19 @@ impl Preset {
         points
     }
 
+    /// A preset of a built-in scene whose camera, unless the scene has one, stands where the sphere
+    /// about the scene's box fills the picture of `size` pixels: pictures of tests, which stay as
+    /// they are when what presets frame by themselves changes.
+    pub fn of_sphere(scene: &Scene, size: [u32; 2]) -> Self {
+        let aspect = f64::from(size[0].max(1)) / f64::from(size[1].max(1));
+        let framing = || Camera::framing(&scene.bounds(), FRAMING_DIRECTION, aspect);
+        Self {
+            scene: SceneSource::Builtin(scene.name.clone()),
+            camera: scene.cameras.is_empty().then(framing),
+            ..Self::default()
+        }
+    }
+
     /// The view and stack of every frame that this picture depends on, in order; the last is the
     /// picture itself. There are several where an effect reads the previous picture.
     pub fn moments(&self, scene: &Scene, size: [u32; 2]) -> Vec<(View, Stack)> {

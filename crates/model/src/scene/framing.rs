@@ -16,6 +16,8 @@ use super::{
 
 /// Most vertices that are looked at, of all poses together.
 const MAX_VERTICES: usize = 200_000;
+/// Farther places cannot be drawn (`DrawError::Matrix`), nor can those that are not finite.
+const MAX_PLACE_M: f64 = (1u64 << 40) as f64;
 /// Directions in which the farthest points are kept.
 const DIRECTIONS: usize = 256;
 /// Times of a clip at which the scene is looked at.
@@ -99,7 +101,7 @@ fn parts(scene: &Scene, clip: Option<usize>) -> Vec<Vec<DVec3>> {
                         |deform| deform.position(scene, primitive, vertex),
                     );
                     let place = transform.transform_point3(position);
-                    if place.is_finite() {
+                    if place.abs().max_element() < MAX_PLACE_M {
                         places.push(place);
                     }
                 }
