@@ -75,7 +75,7 @@ fn linear_depths(z: vec3f) -> vec3f {
 
 // A triangle that was clipped has no snapped corners: homogeneous barycentrics (Olano and Greer 1997).
 fn sample_clipped(t: Triangle, at: vec3u, pixel: vec2u) -> SamplePosition {
-    let corners = vertex_effects_corners(t.draw, at, t.id);
+    let corners = vertex_effects_triangle(t.draw, at, t.id);
     let a = corners[0];
     let b = corners[1];
     let c = corners[2];

@@ -60,7 +60,7 @@ fn slopes_of(t: Triangle, at: vec3u, position: SamplePosition, screen: vec2f) ->
 
 // The same on the plane of a triangle that was clipped, at a position in the picture from 0 to 1.
 fn slopes_clipped(t: Triangle, at: vec3u, weights: vec3f, screen: vec2f) -> Slopes {
-    let corners = vertex_effects_corners(t.draw, at, t.id);
+    let corners = vertex_effects_triangle(t.draw, at, t.id);
     let a = corners[0];
     let b = corners[1];
     let c = corners[2];

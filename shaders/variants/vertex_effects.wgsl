@@ -7,7 +7,7 @@
 //@ declare fn vertex_effects_clip_of(draw: u32, vertex: u32, id: u32) -> vec4f
 // The same of the corners of a triangle, `at`: its vertices within its draw. A loop, because compilers inline the vertex effects
 // wherever they are called. It fills no array: NVIDIA's driver 580.159 loses members of array elements that a loop writes.
-//@ declare fn vertex_effects_corners(draw: u32, at: vec3u, id: u32) -> mat3x4f
+//@ declare fn vertex_effects_triangle(draw: u32, at: vec3u, id: u32) -> mat3x4f
 // Before samples of a triangle are shaded: computes what they share.
 //@ declare fn vertex_effects_begin(id: u32, draw: u32, at: vec3u)
 // Interpolated and flat normal after the effects, before they are turned towards the viewer, given those of the file.
@@ -22,7 +22,7 @@ fn vertex_effects_clip(draw: u32, vertex: u32, id: u32, p: vec3f) -> vec4f {
     return transform_clip(draw, p);
 }
 
-fn vertex_effects_corners(draw: u32, at: vec3u, id: u32) -> mat3x4f {
+fn vertex_effects_triangle(draw: u32, at: vec3u, id: u32) -> mat3x4f {
     var a: vec4f;
     var b: vec4f;
     var c: vec4f;
@@ -78,7 +78,7 @@ fn vertex_effects_clip(draw: u32, vertex: u32, id: u32, p: vec3f) -> vec4f {
     return vec4f(clip.xy, max(clip.z, 0.0), clip.w);
 }
 
-fn vertex_effects_corners(draw: u32, at: vec3u, id: u32) -> mat3x4f {
+fn vertex_effects_triangle(draw: u32, at: vec3u, id: u32) -> mat3x4f {
     var a: vec4f;
     var b: vec4f;
     var c: vec4f;

@@ -27,7 +27,7 @@ fn sample_setup(
     let at = triangle_vertices(t.draw, t.id - draws[t.draw].first_triangle);
     var center_screen: vec2f;
     if IS_CLIPPED_TRIANGLES {
-        let corners = vertex_effects_corners(t.draw, at, t.id);
+        let corners = vertex_effects_triangle(t.draw, at, t.id);
         center_screen = center_clipped(corners[0], corners[1], corners[2], vec2f(0.5));
     } else {
         if ((t.a.x | t.b.x | t.c.x) & 255u) != 0u { return; }
@@ -64,7 +64,7 @@ fn setup_step_alpha_mask(t: Triangle, at: vec3u) {
     var corners = array<vec2i, 3>(a, b, c);
     if IS_CLIPPED_TRIANGLES {
         // Homogeneous barycentrics in the parent (Olano and Greer 1997).
-        let v = vertex_effects_corners(t.draw, at, t.id);
+        let v = vertex_effects_triangle(t.draw, at, t.id);
         let lines = mat3x3f(cross(v[1].xyw, v[2].xyw), cross(v[2].xyw, v[0].xyw), cross(v[0].xyw, v[1].xyw));
         corners[0] = a + alpha_mask_offset(lines, vertex_at(t.a), b - a, c - a);
         corners[1] = a + alpha_mask_offset(lines, vertex_at(t.b), b - a, c - a);

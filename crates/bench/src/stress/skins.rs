@@ -333,7 +333,7 @@ fn skins_beside_other_meshes(context: &mut CaseContext) -> Result<(), EarlyEnd> 
                     pins: PinnedOptions::of(*skinning),
                     ..AccuracyRequest::default()
                 },
-                ..Preset::default()
+                ..Preset::of_sphere(scene, [160, 96])
             };
             let (scene, view) = (Arc::new(scene.clone()), preset.view(scene, [160, 96]));
             let accuracy = pinned(context.quick_option());
