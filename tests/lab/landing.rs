@@ -507,6 +507,7 @@ fn a_look_brings_its_ground_and_its_gradient_to_the_model() {
         return;
     };
     let alone = lab.state().scene_triangles();
+    let studio = lab.state().preset_file().preset.ground;
     let plinth = gallery("plinth");
     choose(&mut lab, plinth.title(), Modifiers::NONE);
     let landed = &lab.state().preset_file().preset;
@@ -527,7 +528,7 @@ fn a_look_brings_its_ground_and_its_gradient_to_the_model() {
             lab.state().preset_file().preset.ground,
             lab.state().scene_triangles()
         ),
-        (None, alone)
+        (studio, alone)
     );
 }
 

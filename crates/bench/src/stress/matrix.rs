@@ -436,8 +436,8 @@ fn scenes_by_effects(context: &mut CaseContext) -> Result<(), EarlyEnd> {
     let mut rng = context.rng(37);
     let (options, default) = (context.options(), context.renderer.gpu().caps.tuning());
     let tunings: Vec<Tuning> = tunings().into_iter().chain([default]).collect();
-    let mut turn = 0;
-    for effect in EFFECTS.iter().filter(|effect| effect.name != "lambert") {
+    let effects = EFFECTS.iter().filter(|effect| effect.name != "lambert");
+    for (turn, effect) in effects.enumerate() {
         for query in all_scenes() {
             let scene = context.scene(query)?;
             for is_random in [false, true] {
@@ -450,8 +450,9 @@ fn scenes_by_effects(context: &mut CaseContext) -> Result<(), EarlyEnd> {
                 let (view, stack) = moments
                     .last()
                     .ok_or_else(|| EarlyEnd::Failed(format!("{query} shows no moment")))?;
-                // Every effect meets the options and tunings in turn.
-                turn += 1;
+                // Effects meet the options and tunings in turn, and all scenes of an effect the same,
+                // so that they share its kernels.
+                let turn = 2 * turn + usize::from(is_random);
                 let (option, tuning) =
                     (options[turn % options.len()], tunings[turn % tunings.len()]);
                 context.renderer.set_tuning(tuning);
