@@ -107,8 +107,8 @@ mod tests {
                 glam::DMat4::IDENTITY,
                 [0.0; 4],
             );
-            for corner in scene.bounds().corners() {
-                let clip = view.clip_from_world * corner.extend(1.0);
+            for point in preset.framing_points(&scene) {
+                let clip = view.clip_from_world * point.extend(1.0);
                 assert!(
                     clip.x.abs() < clip.w && clip.y.abs() < clip.w,
                     "step {step}: {clip}"

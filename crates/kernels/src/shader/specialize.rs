@@ -145,16 +145,15 @@ fn kernel(@builtin(global_invocation_id) id: vec3u) {
     #[test]
     fn a_specialized_text_is_translated_where_naga_fails_at_its_overrides() {
         let reflected = reflect(&linked(TEXT), false).expect("valid");
-        let (module, info) = naga::back::pipeline_constants::process_overrides(
+        let folded = naga::back::pipeline_constants::process_overrides(
             &reflected.module,
             &reflected.info,
             None,
             &Default::default(),
-        )
-        .expect("overrides have their defaults");
+        );
         // Where naga is mended, nothing here is needed any more.
-        let error = translate(&module, &info).expect_err("naga fails at what it has folded");
-        assert_eq!(error.interface, "Vulkan (SPIR-V)");
+        let is_translated = folded.is_ok_and(|(module, info)| translate(&module, &info).is_ok());
+        assert!(!is_translated, "naga does not fail at what it has folded");
 
         let text = specialized(&linked(TEXT), &reflected.overrides(), &[("SIDE", 16.0)]);
         let module = naga::front::wgsl::parse_str(&text.expect("specialized")).expect("valid");
