@@ -3,7 +3,6 @@
 //! Input begins with five bytes that choose the kind, the stride, the filter and the count, or of
 //! Draco the number of indices and of points; the stream follows.
 
-use rasterlab::scene::gltf::LoadError;
 use serde_json::{Value, json};
 
 use super::{Outcome, Target, model};

@@ -1,6 +1,6 @@
 //! Images that models show: PNG, JPEG and WebP.
 
-use rasterlab::scene::{gltf::LoadError, texture::Level};
+use rasterlab::scene::texture::Level;
 use serde_json::json;
 
 use super::{Outcome, Target, model};
