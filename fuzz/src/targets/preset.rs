@@ -97,9 +97,10 @@ fn check(bytes: &[u8]) -> Outcome {
     outcome
 }
 
-/// What is read also comes back.
+/// What is read also comes back, with the model that it may name outside of its folder.
 pub fn opens(read: Result<PresetFile, PresetError>) -> Outcome {
-    comes_back(&read.map_err(|error| error.to_string())?);
+    let preset_file = read.map_err(|error| error.to_string())?;
+    comes_back(&preset_file.with_outside_model());
     Ok(())
 }
 

@@ -1,6 +1,6 @@
 //! Shared lines, as they are pasted.
 
-use rasterlab::preset_file;
+use rasterlab::{preset::SceneSource, preset_file};
 
 use super::{Outcome, Target, preset};
 use crate::{guard::Limit, views};
@@ -22,10 +22,17 @@ fn check(bytes: &[u8]) -> Outcome {
         let line = preset_file::to_line(preset_file);
         let again = preset_file::from_line(&line)
             .unwrap_or_else(|error| panic!("the line made of it is refused: {error}"));
+        // A line names a model by its whole path, which is outside of any folder.
+        let [mut again, own] =
+            [again, preset_file.clone()].map(|one| one.with_outside_model().preset);
         assert_eq!(
-            format!("{:?}", again.preset),
-            format!("{:?}", preset_file.preset)
+            matches!(again.scene, SceneSource::File(_)),
+            matches!(own.scene, SceneSource::File(_))
         );
+        if let SceneSource::File(_) = own.scene {
+            again.scene = own.scene.clone();
+        }
+        assert_eq!(format!("{again:?}"), format!("{own:?}"));
     }
     preset::opens(read)
 }
