@@ -100,7 +100,10 @@ fn check(bytes: &[u8]) -> Outcome {
 /// What is read also comes back, with the model that it may name outside of its folder.
 pub fn opens(read: Result<PresetFile, PresetError>) -> Outcome {
     let preset_file = read.map_err(|error| error.to_string())?;
-    comes_back(&preset_file.with_outside_model());
+    // The text of a newer schema stays as it is, with the path as it was written.
+    if !(preset_file.read_only && preset_file.outside_model.is_some()) {
+        comes_back(&preset_file.with_outside_model());
+    }
     Ok(())
 }
 
