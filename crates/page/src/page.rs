@@ -84,7 +84,7 @@ impl Picture {
         let preset = &open.file.preset;
         let (view, stack) = (
             preset.view(&open.scene, preset.output.size),
-            preset.stack_on(&open.scene),
+            preset.stack_on(&open.scene, preset.output.size),
         );
         let verdict = oracle::judge(&open.scene, &view, &stack, &self.capture.picture())?;
         let budget = preset.test.clone().unwrap_or_default();
