@@ -52,14 +52,17 @@ pub fn may_exist() -> bool {
 }
 
 /// The dialog, beginning at `start`; what it returns shows it and waits for its end.
-pub fn prepare(purpose: Purpose, start: &Path) -> impl FnOnce() -> Answer + Send + 'static {
+pub fn prepare(
+    purpose: Purpose,
+    start: &Path,
+) -> impl AsyncFnOnce() -> Answer + Send + use<> {
     let show = desktop_dialog::prepare(
         types_name(purpose),
         &extensions(purpose),
         start,
         purpose == Purpose::Open,
     );
-    move || match show() {
+    async move || match show().await {
         Ok(Some(path)) => Answer::Chosen(path),
         Ok(None) => Answer::Canceled,
         Err(reason) => Answer::Unavailable(reason),
