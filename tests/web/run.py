@@ -44,7 +44,7 @@ class Pages(http.server.SimpleHTTPRequestHandler):
         pass
 
 
-def main():
+def main(page_name="test.html"):
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")
     if chromium is None:
         print("web: no Chromium here; sh scripts/setup.sh --web installs it", file=sys.stderr)
@@ -52,7 +52,7 @@ def main():
     reports = queue.Queue()
     server = http.server.ThreadingHTTPServer(("localhost", 0), functools.partial(Pages, reports=reports))
     threading.Thread(target=server.serve_forever, daemon=True).start()
-    page = f"http://localhost:{server.server_port}/test.html"
+    page = f"http://localhost:{server.server_port}/{page_name}"
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         browser = subprocess.Popen(
             [chromium, *FLAGS, f"--user-data-dir={profile}", page], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL

@@ -21,7 +21,8 @@ pub fn extensions(purpose: Purpose) -> Vec<&'static str> {
         Purpose::Open => ["toml"]
             .into_iter()
             .chain(MODEL_FORMATS.iter().map(|format| format.extension))
-            .chain(["png", "wgsl"])
+            .chain(["png"])
+            .chain(cfg!(not(target_arch = "wasm32")).then_some("wgsl"))
             .collect(),
         Purpose::SaveAs => vec!["toml"],
         Purpose::Export => vec!["png"],
@@ -38,6 +39,9 @@ const fn types_name(purpose: Purpose) -> &'static str {
 
 /// False if it is certain that there is no system's dialog: no desktop to ask, and no `zenity`.
 pub fn may_exist() -> bool {
+    if cfg!(target_arch = "wasm32") {
+        return false;
+    }
     if cfg!(not(target_os = "linux")) {
         return true;
     }

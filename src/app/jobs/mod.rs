@@ -22,6 +22,8 @@ use std::{
 use eframe::egui;
 
 use self::computing::{Computing, Count};
+#[cfg(target_arch = "wasm32")]
+use crate::app::shell::page;
 use crate::{
     app::{
         files::{
@@ -49,6 +51,7 @@ use crate::{
     effect_files,
     effects::Stack,
     gpu::{Capture, CompileWatch, Gpu, Renderer},
+    host::disk,
     oracle,
     preset::{AccuracyRequest, Preset, SceneSource},
     preset_file::{self, Existing, PresetFile, Provenance},
@@ -83,6 +86,9 @@ pub enum Done {
     Favorites(Result<(), String>),
     Export(PathBuf, Result<(), String>),
     Film(Arc<film::Progress>, Result<film::Finished, film::Failure>),
+    /// Files that a page was given, which lie in its memory now.
+    #[cfg(target_arch = "wasm32")]
+    Given(Result<Vec<PathBuf>, String>),
     /// How the system's file dialog ended.
     Path(Purpose, system_dialog::Answer),
     /// What is in a folder.
@@ -145,7 +151,7 @@ impl Jobs {
     }
 
     /// The same for work that waits for a device meanwhile.
-    fn spawn_waiting<F: Future<Output = Done>>(
+    fn spawn_waiting<F: Future<Output = Done> + 'static>(
         &self,
         name: &str,
         work: impl FnOnce() -> F + Send + 'static,
@@ -158,7 +164,7 @@ impl Jobs {
     }
 
     /// Starts work that mostly waits. None if no thread could be started, or in a page.
-    fn spawn_idle<F: Future<Output = Done>>(
+    fn spawn_idle<F: Future<Output = Done> + 'static>(
         &self,
         name: &str,
         work: impl FnOnce() -> F + Send + 'static,
@@ -350,8 +356,18 @@ impl Jobs {
         });
     }
 
+    /// Fetches the golden of a preset of the gallery. A page has no thread for the oracle.
+    #[cfg(target_arch = "wasm32")]
+    pub fn thumbnail(&self, preset_file: PresetFile, _: [u32; 2]) {
+        self.spawn_idle("thumbnail", async move || {
+            let golden = page::golden(&preset_file.id).await;
+            Done::Thumbnail(preset_file.id, golden.ok())
+        });
+    }
+
     /// Draws the picture of a preset with the oracle, which needs no device. Width and height are
     /// in pixels.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn thumbnail(&self, preset_file: PresetFile, size: [u32; 2]) {
         self.spawn_oracle("thumbnail", move || {
             let image = caught("drawing a thumbnail", || {
@@ -467,6 +483,19 @@ impl Jobs {
         self.spawn_idle("file dialog", move || async move { Done::Path(purpose, show().await) });
     }
 
+    /// Asks for files to be opened.
+    #[cfg(target_arch = "wasm32")]
+    pub fn ask_files(&self) {
+        let extensions = system_dialog::extensions(Purpose::Open);
+        self.spawn_idle("files", async move || Done::Given(page::ask_files(&extensions).await));
+    }
+
+    /// Reads files that were dropped.
+    #[cfg(target_arch = "wasm32")]
+    pub fn take_dropped(&self, files: Vec<egui::DroppedFileHandle>) {
+        self.spawn_idle("files", async move || Done::Given(page::take_dropped(files).await));
+    }
+
     /// Reads what is in a folder.
     pub fn list_folder(&self, folder: PathBuf) {
         self.spawn_idle("folder", move || async move { Done::Folder(Listing::read(&folder)) });
@@ -475,7 +504,7 @@ impl Jobs {
     /// Looks which of these files are not there.
     pub fn find_missing(&self, files: Vec<PathBuf>) {
         self.spawn_idle("recent files", move || async move {
-            Done::Missing(files.into_iter().filter(|file| !file.exists()).collect())
+            Done::Missing(files.into_iter().filter(|file| !disk::exists(file)).collect())
         });
     }
 }

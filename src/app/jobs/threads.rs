@@ -21,7 +21,7 @@ mod native {
     ///
     /// # Errors
     /// The system has no room for a thread.
-    pub fn start<F: Future<Output = ()>>(
+    pub fn start<F: Future<Output = ()> + 'static>(
         name: &str,
         work: impl FnOnce() -> F + Send + 'static,
     ) -> io::Result<Option<JoinHandle<()>>> {
@@ -39,10 +39,10 @@ mod native {
 mod page {
     use std::{io, thread::JoinHandle, time::Duration};
 
-    use js_sys::Promise;
+    use js_sys::{Function, Promise};
     use wasm_bindgen_futures::{JsFuture, spawn_local};
 
-    pub fn start<F: Future<Output = ()>>(
+    pub fn start<F: Future<Output = ()> + 'static>(
         _: &str,
         work: impl FnOnce() -> F + 'static,
     ) -> io::Result<Option<JoinHandle<()>>> {
@@ -56,7 +56,7 @@ mod page {
 
     pub async fn pause(wait: Duration) {
         let ms = i32::try_from(wait.as_millis()).unwrap_or(i32::MAX);
-        let mut begin = |resolve, _| {
+        let mut begin = |resolve: Function, _: Function| {
             if let Some(window) = web_sys::window() {
                 // Refused by no browser; the wait would then be endless.
                 let _ = window.set_timeout_with_callback_and_timeout_and_arguments_0(&resolve, ms);

@@ -220,7 +220,8 @@ pub fn follow(ctx: &egui::Context, state: &mut State, is_busy: bool) {
     let rest_s = state.picture.tier_times.rest_s(requested, state.now_s);
     let screen = &state.picture.screen;
     // What else runs would be measured, too.
-    if state.session.playback.playing
+    if cfg!(target_arch = "wasm32") // A page has one device and one thread for everything.
+        || state.session.playback.playing
         || state.jobs.is_computing()
         || screen.is_waiting()
         || !screen.timings().is_settled()
