@@ -56,10 +56,7 @@ pub fn may_exist() -> bool {
 }
 
 /// The dialog, beginning at `start`; what it returns shows it and waits for its end.
-pub fn prepare(
-    purpose: Purpose,
-    start: &Path,
-) -> impl AsyncFnOnce() -> Answer + Send + use<> {
+pub fn prepare(purpose: Purpose, start: &Path) -> impl AsyncFnOnce() -> Answer + Send + use<> {
     let show = desktop_dialog::prepare(
         types_name(purpose),
         &extensions(purpose),

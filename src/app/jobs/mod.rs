@@ -388,7 +388,10 @@ impl Jobs {
                     ctx.request_repaint();
                 }
             };
-            let draw = async { Ok(cells::draw(&gpu, &cells, take).await) };
+            let draw = async {
+                cells::draw(&gpu, &cells, take).await;
+                Ok(())
+            };
             if let Err(error) = caught_future("drawing a small picture", draw).await {
                 eprintln!("rasterlab: {error}");
             }
@@ -480,31 +483,44 @@ impl Jobs {
     /// Shows the system's file dialog.
     pub fn ask_path(&self, purpose: Purpose, start: &Path) {
         let show = system_dialog::prepare(purpose, start);
-        self.spawn_idle("file dialog", move || async move { Done::Path(purpose, show().await) });
+        self.spawn_idle("file dialog", move || async move {
+            Done::Path(purpose, show().await)
+        });
     }
 
     /// Asks for files to be opened.
     #[cfg(target_arch = "wasm32")]
     pub fn ask_files(&self) {
         let extensions = system_dialog::extensions(Purpose::Open);
-        self.spawn_idle("files", async move || Done::Given(page::ask_files(&extensions).await));
+        self.spawn_idle("files", async move || {
+            Done::Given(page::ask_files(&extensions).await)
+        });
     }
 
     /// Reads files that were dropped.
     #[cfg(target_arch = "wasm32")]
     pub fn take_dropped(&self, files: Vec<egui::DroppedFileHandle>) {
-        self.spawn_idle("files", async move || Done::Given(page::take_dropped(files).await));
+        self.spawn_idle("files", async move || {
+            Done::Given(page::take_dropped(files).await)
+        });
     }
 
     /// Reads what is in a folder.
     pub fn list_folder(&self, folder: PathBuf) {
-        self.spawn_idle("folder", move || async move { Done::Folder(Listing::read(&folder)) });
+        self.spawn_idle("folder", move || async move {
+            Done::Folder(Listing::read(&folder))
+        });
     }
 
     /// Looks which of these files are not there.
     pub fn find_missing(&self, files: Vec<PathBuf>) {
         self.spawn_idle("recent files", move || async move {
-            Done::Missing(files.into_iter().filter(|file| !disk::exists(file)).collect())
+            Done::Missing(
+                files
+                    .into_iter()
+                    .filter(|file| !disk::exists(file))
+                    .collect(),
+            )
         });
     }
 }
@@ -546,10 +562,7 @@ async fn compile(
     }: &Inputs,
 ) -> Result<(), String> {
     let mut renderer = Renderer::new(gpu);
-    renderer
-        .set_scene(scene)
-        .await
-        .map_err(|e| e.to_string())?;
+    renderer.set_scene(scene).await.map_err(|e| e.to_string())?;
     renderer
         .draw(view, stack, accuracy)
         .await
@@ -570,10 +583,7 @@ async fn verify(
     } = inputs;
     work.begin("drawing");
     let mut renderer = Renderer::new(gpu);
-    renderer
-        .set_scene(scene)
-        .await
-        .map_err(|e| e.to_string())?;
+    renderer.set_scene(scene).await.map_err(|e| e.to_string())?;
     let capture = renderer
         .capture(view, stack, accuracy)
         .await
@@ -695,10 +705,7 @@ async fn export(
         driver: gpu.summary.driver.clone(),
     };
     let mut renderer = Renderer::new(gpu);
-    renderer
-        .set_scene(scene)
-        .await
-        .map_err(|e| e.to_string())?;
+    renderer.set_scene(scene).await.map_err(|e| e.to_string())?;
     let moments = [(view.clone(), stack.clone())];
     let still = renderer
         .still(&moments, accuracy)

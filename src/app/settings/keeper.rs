@@ -178,7 +178,12 @@ impl Keeper {
             .flatten()
             .reduce(f64::min);
         if !writes.is_empty() {
-            let write = || writes.into_iter().filter_map(|write| write().err()).collect();
+            let write = || {
+                writes
+                    .into_iter()
+                    .filter_map(|write| write().err())
+                    .collect()
+            };
             if cfg!(target_arch = "wasm32") {
                 // A page writes at once, and has no other thread.
                 let written: Vec<String> = write();

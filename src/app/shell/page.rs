@@ -76,7 +76,8 @@ fn read_kept() {
 /// The browser keeps files of [`KEPT`], and all others are downloads.
 fn keep(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if !path.starts_with(KEPT) {
-        return download(path, bytes).map_err(|_| io::Error::other("the browser refuses a download"));
+        return download(path, bytes)
+            .map_err(|_| io::Error::other("the browser refuses a download"));
     }
     let storage =
         storage().ok_or_else(|| io::Error::other("the browser keeps nothing for this page"))?;
@@ -113,7 +114,13 @@ pub async fn ask_files(extensions: &[&str]) -> Result<Vec<PathBuf>, String> {
         .unchecked_into();
     input.set_type("file");
     input.set_multiple(true);
-    input.set_accept(&extensions.iter().map(|e| format!(".{e}")).collect::<Vec<_>>().join(","));
+    input.set_accept(
+        &extensions
+            .iter()
+            .map(|e| format!(".{e}"))
+            .collect::<Vec<_>>()
+            .join(","),
+    );
     let ended = Promise::new(&mut |resolve: Function, _: Function| {
         for event in ["change", "cancel"] {
             let resolve = resolve.clone();
@@ -128,7 +135,9 @@ pub async fn ask_files(extensions: &[&str]) -> Result<Vec<PathBuf>, String> {
     let chosen = input.files();
     let count = chosen.as_ref().map_or(0, |files| files.length());
     for file in (0..count).filter_map(|at| chosen.as_ref()?.get(at)) {
-        let bytes = bytes_of(&file).await.map_err(|_| format!("{}: the browser cannot read it", file.name()))?;
+        let bytes = bytes_of(&file)
+            .await
+            .map_err(|_| format!("{}: the browser cannot read it", file.name()))?;
         paths.push(given(Path::new(&file.name()), &bytes));
     }
     Ok(paths)

@@ -29,7 +29,7 @@ mod native {
     /// There is no such file.
     pub fn size_of(path: &Path) -> io::Result<Option<u64>> {
         let about = std::fs::metadata(path)?;
-        Ok(about.is_file().then(|| about.len()))
+        Ok(about.is_file().then_some(about.len()))
     }
 
     /// Is there a file or a folder?
