@@ -23,11 +23,15 @@ use std::{path::PathBuf, sync::Arc};
 use glam::{DMat4, DVec3};
 
 use crate::{
-    effects::Stack,
+    effects::{
+        Stack, read,
+        tonemap::{self, Tonemap},
+    },
     math::rotation_y,
     scene::{
         Background, Bounds, Ground, Scene,
         camera::Camera,
+        parts::Scope,
         pose::{Motion, Pose, scene_from_nodes},
         shadow_resolution::ShadowResolution,
         view::{SceneState, View},
@@ -183,6 +187,26 @@ pub struct Output {
     /// The height of a picture in which lengths in pixels are what they say, 1 to 16,384; in others
     /// they grow and shrink with the height. None: that of `size`.
     pub reference_height_px: Option<u32>,
+}
+
+impl Preset {
+    /// What pixels without a triangle show: the background of the output, through the tone mapping
+    /// that asks for it.
+    pub fn backdrop(&self) -> Background {
+        let mut backdrop = self.output.backdrop();
+        for enabled in &self.evaluated_stack().0 {
+            let original = enabled.effect.base.as_ref().unwrap_or(&enabled.effect);
+            if *original != *tonemap::EFFECT || enabled.on != Scope::default() {
+                continue;
+            }
+            let tonemap: Tonemap = read(&enabled.words);
+            if tonemap.background != 0 {
+                [backdrop.top, backdrop.bottom] =
+                    [backdrop.top, backdrop.bottom].map(|color| tonemap.shown_color(color));
+            }
+        }
+        backdrop
+    }
 }
 
 impl Output {
@@ -524,14 +548,7 @@ impl Preset {
             particles: preset.particle_timeline(),
         };
         let camera = preset.camera_for(scene, aspect);
-        let view = View::new(
-            &camera,
-            width,
-            height,
-            &bounds,
-            spin,
-            preset.output.backdrop(),
-        );
+        let view = View::new(&camera, width, height, &bounds, spin, preset.backdrop());
         let view = View {
             scene_state,
             ..view
