@@ -31,7 +31,7 @@ fn the_slider_chooses_a_tier_beside_its_cost_and_error() {
         "what the precise tier may err by"
     );
     assert!(
-        lab.query_by_label_contains("error not measured (V)")
+        lab.query_by_label_contains("– wrong pixels (V)")
             .is_some()
     );
     click(&mut lab, Role::Button, "Verify");
