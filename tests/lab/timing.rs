@@ -147,9 +147,7 @@ fn a_new_size_and_another_preset_reset_time_and_verdict() {
         size,
         "a verdict changes the size of the picture"
     );
-    assert!(
-        texts(&lab, "– wrong pixels").is_empty() && !texts(&lab, "no wrong pixel").is_empty()
-    );
+    assert!(texts(&lab, "– wrong pixels").is_empty() && !texts(&lab, "no wrong pixel").is_empty());
     lab.set_size(vec2(1216.0, 800.0));
     lab.run_steps(2);
     assert!(

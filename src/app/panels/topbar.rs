@@ -378,9 +378,17 @@ fn number_ui(ui: &mut Ui, width: f32, side: Align, text: RichText, hint: String)
     } else {
         Layout::left_to_right(Align::Center)
     };
+    let font = egui::TextStyle::Body;
+    let galley = egui::WidgetText::from(text).into_galley(
+        ui,
+        Some(egui::TextWrapMode::Extend),
+        f32::INFINITY,
+        font,
+    );
+    let width = width.max(galley.size().x);
     ui.allocate_ui_with_layout(vec2(width, theme::ROW), layout, |ui| {
         ui.set_min_width(width);
-        ui.label(text).on_hover_text(hint);
+        ui.label(galley).on_hover_text(hint);
     });
 }
 

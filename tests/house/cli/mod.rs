@@ -1101,7 +1101,20 @@ fn bless_finds_what_every_command_finds() {
     // An effect without a preset gets its first one.
     let blessed = go(&["bless", "ink"]);
     assert_eq!(blessed.code, 0, "{}", blessed.err);
-    // An effect is no preset: PLACEHOLDER
+    assert!(
+        blessed.out.contains("(its preset is created, too)"),
+        "{}",
+        blessed.out
+    );
+    let first = rasterlab::preset_file::load_with(
+        &folder.path().join("presets/ink.toml"),
+        &rasterlab::effect_files::Catalog::of_folders([&*folder.path().join("effects")]),
+    );
+    assert!(first.is_ok_and(|first| first.preset.test.is_some()));
+    assert_eq!(
+        go(&["check", "ink", "--render", "--adapter", "cpu"]).code,
+        0
+    );
     let unknown = go(&["bless", "no-such-effect"]);
     assert!(
         unknown.code == 2 && unknown.err.contains("no preset and no effect"),

@@ -60,9 +60,7 @@ impl AnimatedPng {
         encoder
             .set_frame_delay(numerator, denominator)
             .map_err(failed)?;
-        encoder
-            .set_sep_def_img(options.has_still)
-            .map_err(failed)?;
+        encoder.set_sep_def_img(options.has_still).map_err(failed)?;
         encoder.validate_sequence(true);
         Ok(Self {
             writer: encoder.write_header().map_err(failed)?,
