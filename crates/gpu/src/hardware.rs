@@ -86,6 +86,9 @@ pub struct Hardware {
     group: wgpu::BindGroup,
     materials: Option<HardwareMaterials>,
     calls: Vec<Call>,
+    /// The first triangle of every draw, in the order of the calls.
+    order: Vec<u32>,
+    deform_count: u32,
     color: wgpu::Texture,
     depth: wgpu::Texture,
 }
@@ -160,14 +163,54 @@ impl Hardware {
             group,
             materials,
             calls,
+            order: draws.iter().map(|draw| draw.first_triangle).collect(),
+            deform_count: counts.deform_count,
             color,
             depth,
         }))
     }
 
+    /// Looks at the same scene, with the same stack, from elsewhere; the size stays.
+    ///
+    /// # Errors
+    /// When a transform of the scene is out of range.
+    pub async fn look(
+        &self,
+        gpu: &Gpu,
+        scene: &Scene,
+        view: &View,
+        stack: &Stack,
+    ) -> Result<(), RenderError> {
+        let mut draws = stack.draws(scene, view)?;
+        draws.sort_by_cached_key(|draw| {
+            let is_it = |first: &u32| *first == draw.first_triangle;
+            self.order.iter().position(is_it)
+        });
+        let attributes = AttributeLayout::new(scene, None);
+        let records: Vec<DrawRecord> = draws
+            .iter()
+            .map(|draw| DrawRecord::new(draw, scene, &attributes))
+            .collect();
+        let frame = FrameUniform {
+            draw_count: draws.len() as u32,
+            deform_count: self.deform_count,
+            ..FrameUniform::of_view(view)
+        };
+        let frame = bytemuck::bytes_of(&frame);
+        let buffers = &self.buffers;
+        buffers.write_at(gpu, BufferId::Frame, 0, frame).await?;
+        let records = bytemuck::cast_slice(&records);
+        buffers.write_at(gpu, BufferId::Draws, 0, records).await
+    }
+
     /// Number of draw calls in a frame.
     pub fn call_count(&self) -> usize {
         self.calls.len()
+    }
+
+    /// What it draws into: gamma-encoded bytes, which may be copied from.
+    pub fn texture(&self) -> &wgpu::Texture {
+        &self.color
     }
 
     /// Records one frame.

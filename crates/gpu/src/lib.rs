@@ -69,6 +69,7 @@ pub mod frame_times;
 
 pub use buffers::BufferNote;
 pub use capture::Capture;
+pub use completion::idle;
 pub use compile_watch::CompileWatch;
 pub use device::Gpu;
 pub use error::RenderError;

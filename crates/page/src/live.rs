@@ -1,0 +1,228 @@
+//! Pictures that move: drawn on the device and shown on a canvas without being read back.
+
+use std::sync::Arc;
+
+use rasterlab_gpu::{
+    Gpu, RenderError, Renderer, hardware::Hardware, idle, particles::Wait, timer::Detail,
+};
+use wasm_bindgen::prelude::{JsError, wasm_bindgen};
+use web_sys::HtmlCanvasElement;
+use web_time::Instant;
+
+use crate::{open_preset::OpenPreset, page::Page};
+
+/// How often a frame is drawn again because a queue overflowed.
+const MOST_REDRAWS: usize = 11;
+
+/// Frames are repeated until they take so long together, since a browser rounds its clock.
+const MEASURED_MS: f64 = 20.0;
+/// Most frames of one measurement.
+const MOST_FRAMES: u32 = 64;
+
+/// What draws the frames.
+enum Painter {
+    /// Our kernels.
+    Kernels(Box<Renderer>),
+    /// The adapter's own rasterizer.
+    Hardware(Option<Box<Hardware>>),
+}
+
+/// A canvas and what is drawn on it.
+#[wasm_bindgen]
+pub struct Live {
+    gpu: Arc<Gpu>,
+    surface: wgpu::Surface<'static>,
+    size: [u32; 2],
+    painter: Painter,
+}
+
+#[wasm_bindgen]
+impl Live {
+    /// Our kernels on a canvas.
+    ///
+    /// # Errors
+    /// When the canvas gives no WebGPU surface.
+    #[wasm_bindgen(constructor)]
+    pub fn new(page: &Page, canvas: HtmlCanvasElement) -> Result<Live, JsError> {
+        let renderer = Renderer::new(page.gpu.clone());
+        Self::with(page, canvas, Painter::Kernels(Box::new(renderer)))
+    }
+
+    /// The adapter's own rasterizer on a canvas.
+    ///
+    /// # Errors
+    /// As [`Live::new`].
+    pub fn hardware(page: &Page, canvas: HtmlCanvasElement) -> Result<Live, JsError> {
+        Self::with(page, canvas, Painter::Hardware(None))
+    }
+
+    /// Draws a frame, and shows it when it is finished.
+    ///
+    /// # Errors
+    /// One sentence on what cannot be drawn here.
+    pub async fn show(&mut self, open: &OpenPreset) -> Result<(), JsError> {
+        self.draw(open, 1).await?;
+        self.present(open.file.preset.output.size);
+        self.faultless()
+    }
+
+    /// Milliseconds of a frame, measured over many: with what the page needs to ask for them.
+    ///
+    /// # Errors
+    /// One sentence on what cannot be drawn here.
+    pub async fn milliseconds(&mut self, open: &OpenPreset) -> Result<f64, JsError> {
+        self.draw(open, 1).await?;
+        let mut frames = 1;
+        loop {
+            let begin = Instant::now();
+            self.draw(open, frames).await?;
+            let passed_ms = begin.elapsed().as_secs_f64() * 1e3;
+            if passed_ms >= MEASURED_MS || frames >= MOST_FRAMES {
+                self.faultless()?;
+                return Ok(passed_ms / f64::from(frames));
+            }
+            frames *= 2;
+        }
+    }
+
+    /// Draws a frame and reads it back: RGBA, 8 bits each; alpha is 0 where the adapter's own
+    /// rasterizer drew nothing.
+    ///
+    /// # Errors
+    /// One sentence on what cannot be drawn here.
+    pub async fn colors(&mut self, open: &OpenPreset) -> Result<Vec<u8>, JsError> {
+        self.draw(open, 1).await?;
+        let colors = match &mut self.painter {
+            Painter::Kernels(renderer) => renderer.read_shown().await?.unwrap_or_default(),
+            Painter::Hardware(Some(hardware)) => hardware.picture(&self.gpu).await?,
+            Painter::Hardware(None) => Vec::new(),
+        };
+        self.faultless()?;
+        Ok(colors.into_flattened())
+    }
+}
+
+impl Live {
+    fn with(page: &Page, canvas: HtmlCanvasElement, painter: Painter) -> Result<Live, JsError> {
+        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+        descriptor.backends = wgpu::Backends::BROWSER_WEBGPU;
+        let surface =
+            wgpu::Instance::new(descriptor).create_surface(wgpu::SurfaceTarget::Canvas(canvas))?;
+        Ok(Self {
+            gpu: page.gpu.clone(),
+            surface,
+            size: [0; 2],
+            painter,
+        })
+    }
+
+    fn faultless(&self) -> Result<(), JsError> {
+        match self.gpu.take_error() {
+            Some(error) => Err(JsError::new(&format!("the device reports {error}"))),
+            None => Ok(()),
+        }
+    }
+
+    /// Draws so many frames and returns when they are finished.
+    async fn draw(&mut self, open: &OpenPreset, frames: u32) -> Result<(), JsError> {
+        match &mut self.painter {
+            Painter::Kernels(renderer) => draw_kernels(renderer, open, frames).await,
+            Painter::Hardware(hardware) => {
+                draw_hardware(&self.gpu, hardware, open, frames).await
+            }
+        }
+    }
+
+    fn texture(&self) -> Option<&wgpu::Texture> {
+        match &self.painter {
+            Painter::Kernels(renderer) => renderer.texture(),
+            Painter::Hardware(hardware) => Some(hardware.as_ref()?.texture()),
+        }
+    }
+
+    /// Copies the picture to the canvas, whose texture the browser takes away when this task ends.
+    fn present(&mut self, size: [u32; 2]) {
+        let [width, height] = size;
+        if width == 0 || height == 0 {
+            return;
+        }
+        if self.size != size {
+            self.size = size;
+            let configuration = wgpu::SurfaceConfiguration {
+                usage: wgpu::TextureUsages::COPY_DST,
+                format: wgpu::TextureFormat::Rgba8Unorm,
+                width,
+                height,
+                present_mode: wgpu::PresentMode::Fifo,
+                desired_maximum_frame_latency: 2,
+                alpha_mode: wgpu::CompositeAlphaMode::Opaque,
+                view_formats: Vec::new(),
+                color_space: Default::default(),
+            };
+            self.surface.configure(&self.gpu.device, &configuration);
+        }
+        let (wgpu::CurrentSurfaceTexture::Success(target)
+        | wgpu::CurrentSurfaceTexture::Suboptimal(target)) = self.surface.get_current_texture()
+        else {
+            return;
+        };
+        if let Some(picture) = self.texture() {
+            let device = &self.gpu.device;
+            let mut encoder = device.create_command_encoder(&Default::default());
+            encoder.copy_texture_to_texture(
+                picture.as_image_copy(),
+                target.texture.as_image_copy(),
+                picture.size(),
+            );
+            self.gpu.queue.submit([encoder.finish()]);
+        }
+        target.present();
+    }
+}
+
+async fn draw_kernels(
+    renderer: &mut Renderer,
+    open: &OpenPreset,
+    frames: u32,
+) -> Result<(), JsError> {
+    renderer.set_scene(&open.scene).await?;
+    let ((view, stack), accuracy) = (open.moment(), &open.file.preset.accuracy);
+    for _ in 0..MOST_REDRAWS {
+        for _ in 0..frames {
+            renderer
+                .draw_timed(&view, &stack, accuracy, Detail::Whole, Wait::Simulation)
+                .await?;
+        }
+        if view.pixels() == 0 || !renderer.finish().await?.redraw {
+            return Ok(());
+        }
+    }
+    Err(RenderError::Overflow(0).into())
+}
+
+async fn draw_hardware(
+    gpu: &Arc<Gpu>,
+    hardware: &mut Option<Box<Hardware>>,
+    open: &OpenPreset,
+    frames: u32,
+) -> Result<(), JsError> {
+    let (view, stack) = open.moment();
+    if hardware.is_none() {
+        // The key of our own kernels for the same picture says what its shaders are linked from.
+        let mut renderer = Renderer::new(gpu.clone());
+        draw_kernels(&mut renderer, open, 1).await?;
+        let key = renderer.key().ok_or(RenderError::NoScene)?;
+        let made = Hardware::new(gpu, &open.scene, &view, &stack, key).await?;
+        *hardware = Some(Box::new(made.map_err(|why| JsError::new(&why))?));
+    }
+    let Some(hardware) = hardware else {
+        return Ok(());
+    };
+    hardware.look(gpu, &open.scene, &view, &stack).await?;
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    for _ in 0..frames {
+        hardware.record(&mut encoder, None)?;
+    }
+    gpu.queue.submit([encoder.finish()]);
+    Ok(idle(gpu).await?)
+}
