@@ -176,7 +176,7 @@ impl Live {
             );
             self.gpu.queue.submit([encoder.finish()]);
         }
-        target.present();
+        self.gpu.queue.present(target);
     }
 }
 
