@@ -65,7 +65,9 @@ pub fn line(preset_file: &PresetFile) -> Result<String, CliError> {
 fn portable_bits(preset: &Preset, scene: &Scene) -> Result<[String; 2], String> {
     let size = preset.output.size;
     let (view, stack) = (preset.view(scene, size), preset.stack_on(scene, size));
-    let draws = stack.draws(scene, &view).map_err(|error| error.to_string())?;
+    let draws = stack
+        .draws(scene, &view)
+        .map_err(|error| error.to_string())?;
     let needs = Arc::new(Needs::of(scene, &draws, &view));
     let (caps, request) = (Caps::ALL, AccuracyRequest::portable_bits());
     Planner::default()

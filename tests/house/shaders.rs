@@ -95,7 +95,9 @@ fn translates(linked: &Linked, reflected: &Reflected, constants: &[(&str, f64)],
         let folder = std::path::PathBuf::from(folder);
         let hash = preset_file::Fnv::new().bytes(specialized.text.as_bytes());
         let name = format!("{}.wgsl", preset_file::hex(hash));
-        std::fs::create_dir_all(&folder).and_then(|()| std::fs::write(folder.join(name), &specialized.text)).expect("the folder takes files");
+        std::fs::create_dir_all(&folder)
+            .and_then(|()| std::fs::write(folder.join(name), &specialized.text))
+            .expect("the folder takes files");
     }
     if let Err(error) = translate(&reflected.module, &reflected.info) {
         panic!("{error}\n{}", specialized.text);

@@ -127,9 +127,7 @@ impl Live {
     async fn draw(&mut self, open: &OpenPreset, frames: u32) -> Result<(), JsError> {
         match &mut self.painter {
             Painter::Kernels(renderer) => draw_kernels(renderer, open, frames).await,
-            Painter::Hardware(hardware) => {
-                draw_hardware(&self.gpu, hardware, open, frames).await
-            }
+            Painter::Hardware(hardware) => draw_hardware(&self.gpu, hardware, open, frames).await,
         }
     }
 
@@ -155,7 +153,11 @@ impl Live {
                 height,
                 present_mode: wgpu::PresentMode::Fifo,
                 desired_maximum_frame_latency: 2,
-                alpha_mode: wgpu::CompositeAlphaMode::Opaque,
+                alpha_mode: match self.painter {
+                    Painter::Kernels(_) => wgpu::CompositeAlphaMode::Opaque,
+                    // Where it draws nothing, the canvas shows its own background.
+                    Painter::Hardware(_) => wgpu::CompositeAlphaMode::PreMultiplied,
+                },
                 view_formats: Vec::new(),
                 color_space: Default::default(),
             };

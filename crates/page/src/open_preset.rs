@@ -163,9 +163,7 @@ impl OpenPreset {
         let up_by = (rises + up_deg.to_radians()).clamp(-limit, limit) - rises;
         // Around an axis of length 1, after Rodrigues.
         let turned = |v: glam::DVec3, axis: glam::DVec3, angle: f64| {
-            v * angle.cos()
-                + axis.cross(v) * angle.sin()
-                + axis * axis.dot(v) * (1.0 - angle.cos())
+            v * angle.cos() + axis.cross(v) * angle.sin() + axis * axis.dot(v) * (1.0 - angle.cos())
         };
         let arm = turned(turned(arm, side, -up_by), up, aside_deg.to_radians());
         camera.eye = camera.target + arm * closer.clamp(0.05, 20.0);

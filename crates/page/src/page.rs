@@ -32,7 +32,11 @@ impl Page {
     pub fn adapter(&self) -> String {
         let summary = &self.gpu.summary;
         let known = [&summary.name, &summary.driver];
-        let known: Vec<&str> = known.iter().map(|word| word.trim()).filter(|word| !word.is_empty()).collect();
+        let known: Vec<&str> = known
+            .iter()
+            .map(|word| word.trim())
+            .filter(|word| !word.is_empty())
+            .collect();
         known.join(", ")
     }
 

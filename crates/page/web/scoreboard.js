@@ -16,7 +16,6 @@ builtin = "town?houses=40"
 eye = [8.0, 7.6, 23.0]
 target = [0.0, 2.3, 0.0]
 fov_y_deg = 27.0
-[effects.facet]
 [effects.lambert]
 sun = [1.0, 0.78, 0.52, 1.0]
 sky = [0.16, 0.22, 0.36, 1.0]
@@ -32,21 +31,23 @@ const WAYS = [
   { name: "Race", about: "Depth loaded, compared and stored without atomics: what many software rasterizers ship", pins: { visibility: "race" } },
   { name: "16-bit depth", about: "Evenly spaced depths in 16 bits, as in shadow maps and old engines", pins: { visibility: "split32", depth: "ndc16" } },
   { name: "Float edges", about: "Edge functions in 32-bit floats with the top-left rule", pins: { visibility: "split32", coverage: "float-top-left" } },
-  { name: "Hardware", about: "This device's own rasterizer, through render pipelines", hardware: true },
+  { name: "Hardware", about: "This device's own rasterizer, which rounds corners and depths in its own way", hardware: true },
 ];
 
 const element = (tag, name, text = "") => Object.assign(document.createElement(tag), { className: name, textContent: text });
 const grouped = (number) => number.toLocaleString("en-US");
 
-/** Wrong pixels and holes of a picture, each with its index; alpha is 0 where hardware drew nothing. */
-export function compared(colors, oracles, background) {
-  const differs = (a, at, b, from) => [0, 1, 2].some((c) => Math.abs(a[at + c] - b[from + c]) > TOLERANCE);
+/** Pixels with another color than the oracle's, and those of them that show the background instead; alpha is 0 where hardware drew nothing. */
+function compared(colors, oracles) {
+  const background = oracles.slice(0, 3);
+  const differ = (a, at, b, from) => [0, 1, 2].some((c) => Math.abs(a[at + c] - b[from + c]) > TOLERANCE);
   const [wrong, holes] = [[], []];
   for (let at = 0; at < oracles.length; at += 4) {
-    const is_drawn = colors[at + 3] !== 0 && differs(colors, at, background, 0);
-    const is_owned = differs(oracles, at, background, 0);
-    if (is_owned && !is_drawn) holes.push(at / 4);
-    if (is_drawn !== is_owned || (is_drawn && differs(colors, at, oracles, at))) wrong.push(at / 4);
+    const isDrawn = colors[at + 3] !== 0 && differ(colors, at, background, 0);
+    const isOwned = differ(oracles, at, background, 0);
+    if (isDrawn === isOwned && (!isDrawn || !differ(colors, at, oracles, at))) continue;
+    wrong.push(at / 4);
+    if (isOwned && !isDrawn) holes.push(at / 4);
   }
   return { wrong, holes };
 }
@@ -80,7 +81,7 @@ function mark({ faults }, wrong) {
 async function measure(way, oracles) {
   try {
     await way.live.show(way.preset);
-    const { wrong, holes } = compared(await way.live.colors(way.preset), oracles, oracles.slice(0, 4));
+    const { wrong, holes } = compared(await way.live.colors(way.preset), oracles);
     mark(way, wrong);
     const ms = await way.live.milliseconds(way.preset);
     way.result = { wrong: wrong.length, holes: holes.length, ms };
@@ -142,7 +143,7 @@ export async function scoreboard(main, page) {
     heldUntil = performance.now() + 1000 * HELD_S;
     copy.disabled = again.disabled = false;
     main.classList.add("counted");
-    status.textContent = `Counted at ${Math.round(measuredAt)}°: wrong where a channel differs from the oracle's by more than ${TOLERANCE} of 255. Times of repeated frames, by the browser's clock.`;
+    status.textContent = `Counted at ${Math.round(measuredAt)}°. Wrong: a channel differs from the oracle's by more than ${TOLERANCE} of 255. Milliseconds: repeated frames, by the browser's clock.`;
   }
 
   await count();
@@ -156,7 +157,7 @@ export async function scoreboard(main, page) {
         angle += step;
         for (const way of ways) {
           way.preset.orbit(step, 0, 1);
-          if (!way.result?.error) await way.live.show(way.preset);
+          if (!way.result.error) await way.live.show(way.preset);
         }
       }
     }
