@@ -137,6 +137,8 @@ async function embed() {
   document.documentElement.classList.add("embed");
   const { text, id } = await wanted();
   opened = text;
+  // The still of the gallery, until the first frame covers it.
+  if (id !== "link") canvas.style.background = `url("goldens/${id}.png") center / contain no-repeat`;
   await init();
   const preset = new OpenPreset(text, id);
   opened = preset.text();
