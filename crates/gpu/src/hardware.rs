@@ -9,7 +9,7 @@ use super::{
     deforms::{Deforms, deformed_ranges},
     device::Gpu,
     error::RenderError,
-    frame_layout::folded,
+    hardware_deform::DeformPass,
     hardware_geometry::{COMPONENTS, Fetched, HardwareGeometry, STREAMS},
     hardware_materials::HardwareMaterials,
     hardware_pipeline::{self, HardwarePipeline},
@@ -67,13 +67,6 @@ struct Call {
     vertices: u32,
     /// The draws that it draws, as instances.
     instances: Range<u32>,
-}
-
-/// The kernel that bends meshes, which our own frames run too.
-struct DeformPass {
-    pipeline: Arc<Pipeline>,
-    group: wgpu::BindGroup,
-    groups: [u32; 2],
 }
 
 /// The exhibit, set up for one scene and view.
@@ -460,61 +453,6 @@ fn calls(
         }
     }
     calls
-}
-
-impl DeformPass {
-    async fn new(
-        gpu: &Gpu,
-        key: &KernelKey,
-        buffers: &mut Buffers,
-        deforms: &Deforms,
-        deformable: u32,
-    ) -> Result<Self, RenderError> {
-        buffers
-            .fill(
-                gpu,
-                BufferId::Deforms,
-                bytemuck::cast_slice(&deforms.records),
-            )
-            .await?;
-        buffers
-            .fill(gpu, BufferId::Joints, bytemuck::cast_slice(&deforms.joints))
-            .await?;
-        buffers
-            .fill(
-                gpu,
-                BufferId::MorphTargets,
-                bytemuck::cast_slice(&deforms.morph_targets),
-            )
-            .await?;
-        let pipeline = Pipelines::new(Library::of_process())
-            .get(gpu, key, Pass::Skin)
-            .await?;
-        let group = Resources {
-            buffers: vec![buffers],
-            textures: Vec::new(),
-            light: None,
-        }
-        .bind_group(gpu, &pipeline)?;
-        Ok(Self {
-            pipeline,
-            group,
-            groups: folded(deformable.div_ceil(key.work.group_size)),
-        })
-    }
-
-    fn record(&self, encoder: &mut wgpu::CommandEncoder, timer: Option<&mut Timer>) {
-        let label = &self.pipeline.label;
-        let timestamp_writes = timer.and_then(|timer| timer.compute(label, false));
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some(label),
-            timestamp_writes,
-        });
-        pass.set_pipeline(&self.pipeline.pipeline);
-        pass.set_bind_group(0, &self.group, &[]);
-        let [x, y] = self.groups;
-        pass.dispatch_workgroups(x, y, 1);
-    }
 }
 
 /// The pipelines of all recipes, and what all of them bind.

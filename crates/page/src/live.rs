@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use rasterlab_gpu::{
-    Gpu, RenderError, Renderer, hardware::Hardware, idle, particles::Wait, timer::Detail,
+    Gpu, RenderError, Renderer, canvas::Canvas, hardware::Hardware, idle, particles::Wait,
+    timer::Detail,
 };
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 use web_sys::HtmlCanvasElement;
@@ -31,8 +32,7 @@ enum Painter {
 #[wasm_bindgen]
 pub struct Live {
     gpu: Arc<Gpu>,
-    surface: wgpu::Surface<'static>,
-    size: [u32; 2],
+    canvas: Canvas,
     painter: Painter,
 }
 
@@ -62,7 +62,7 @@ impl Live {
     /// One sentence on what cannot be drawn here.
     pub async fn show(&mut self, open: &OpenPreset) -> Result<(), JsError> {
         self.draw(open, 1).await?;
-        self.present(open.file.preset.output.size);
+        self.present();
         self.faultless()
     }
 
@@ -104,14 +104,10 @@ impl Live {
 
 impl Live {
     fn with(page: &Page, canvas: HtmlCanvasElement, painter: Painter) -> Result<Live, JsError> {
-        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-        descriptor.backends = wgpu::Backends::BROWSER_WEBGPU;
-        let surface =
-            wgpu::Instance::new(descriptor).create_surface(wgpu::SurfaceTarget::Canvas(canvas))?;
+        let is_transparent = matches!(painter, Painter::Hardware(_));
         Ok(Self {
             gpu: page.gpu.clone(),
-            surface,
-            size: [0; 2],
+            canvas: Canvas::new(canvas, is_transparent)?,
             painter,
         })
     }
@@ -131,54 +127,16 @@ impl Live {
         }
     }
 
-    fn texture(&self) -> Option<&wgpu::Texture> {
-        match &self.painter {
+    /// Shows what was drawn; nothing where the picture has no pixels.
+    fn present(&mut self) {
+        let picture = match &self.painter {
             Painter::Kernels(renderer) => renderer.texture(),
-            Painter::Hardware(hardware) => Some(hardware.as_ref()?.texture()),
-        }
-    }
-
-    /// Copies the picture to the canvas, whose texture the browser takes away when this task ends.
-    fn present(&mut self, size: [u32; 2]) {
-        let [width, height] = size;
-        if width == 0 || height == 0 {
-            return;
-        }
-        if self.size != size {
-            self.size = size;
-            let configuration = wgpu::SurfaceConfiguration {
-                usage: wgpu::TextureUsages::COPY_DST,
-                format: wgpu::TextureFormat::Rgba8Unorm,
-                width,
-                height,
-                present_mode: wgpu::PresentMode::Fifo,
-                desired_maximum_frame_latency: 2,
-                alpha_mode: match self.painter {
-                    Painter::Kernels(_) => wgpu::CompositeAlphaMode::Opaque,
-                    // Where it draws nothing, the canvas shows its own background.
-                    Painter::Hardware(_) => wgpu::CompositeAlphaMode::PreMultiplied,
-                },
-                view_formats: Vec::new(),
-                color_space: Default::default(),
-            };
-            self.surface.configure(&self.gpu.device, &configuration);
-        }
-        let (wgpu::CurrentSurfaceTexture::Success(target)
-        | wgpu::CurrentSurfaceTexture::Suboptimal(target)) = self.surface.get_current_texture()
-        else {
-            return;
+            // Where it draws nothing, the canvas shows its own background.
+            Painter::Hardware(hardware) => hardware.as_ref().map(|hardware| hardware.texture()),
         };
-        if let Some(picture) = self.texture() {
-            let device = &self.gpu.device;
-            let mut encoder = device.create_command_encoder(&Default::default());
-            encoder.copy_texture_to_texture(
-                picture.as_image_copy(),
-                target.texture.as_image_copy(),
-                picture.size(),
-            );
-            self.gpu.queue.submit([encoder.finish()]);
+        if let Some(picture) = picture {
+            self.canvas.show(&self.gpu, picture);
         }
-        self.gpu.queue.present(target);
     }
 }
 
