@@ -23,7 +23,7 @@ wasm_bindgen="$target/web/bin/wasm-bindgen"
 [ -x "$wasm_bindgen" ] || wasm_bindgen=wasm-bindgen
 rm -rf dist
 mkdir -p dist/presets dist/goldens
-"$wasm_bindgen" --target web --no-typescript --out-dir dist "$target/wasm32-unknown-unknown/web/rasterlab_page.wasm"
+"$wasm_bindgen" --target web --no-typescript --remove-name-section --remove-producers-section --out-dir dist "$target/wasm32-unknown-unknown/web/rasterlab_page.wasm"
 # --fast-math would change what the oracle computes.
 if command -v wasm-opt > /dev/null; then
     wasm-opt -Oz --all-features dist/rasterlab_page_bg.wasm -o dist/optimized.wasm && mv dist/optimized.wasm dist/rasterlab_page_bg.wasm

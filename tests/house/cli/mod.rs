@@ -7,6 +7,7 @@ mod faults;
 mod files_kept;
 mod films;
 mod limits;
+mod links;
 mod looks;
 mod manual;
 mod parts;
