@@ -1,6 +1,7 @@
 #!/bin/sh
 # Builds the web page into dist/, a folder of static files: plain cargo for wasm32-unknown-unknown, then wasm-bindgen, then wasm-opt where it
-# is installed. What it needs: sh scripts/setup.sh --web
+# is installed. The module of the page and that of the window are apart, so that a page with a picture alone stays small. What it needs:
+# sh scripts/setup.sh --web
 #
 #   sh scripts/web.sh           builds dist/
 #   sh scripts/web.sh --serve   builds it and serves it on http://localhost:8000
@@ -16,22 +17,25 @@ case "${1:-}" in
 esac
 
 target="${CARGO_TARGET_DIR:-target}"
-cargo build --profile web -p rasterlab-page --target wasm32-unknown-unknown
+cargo build --profile web -p rasterlab-page -p rasterlab-window --target wasm32-unknown-unknown
 
 # The command must have the version of the crate; setup.sh installs it into the target folder.
 wasm_bindgen="$target/web/bin/wasm-bindgen"
 [ -x "$wasm_bindgen" ] || wasm_bindgen=wasm-bindgen
 rm -rf dist
 mkdir -p dist/presets dist/goldens
-"$wasm_bindgen" --target web --no-typescript --remove-name-section --remove-producers-section --out-dir dist "$target/wasm32-unknown-unknown/web/rasterlab_page.wasm"
-# --fast-math would change what the oracle computes.
-if command -v wasm-opt > /dev/null; then
-    wasm-opt -Oz --all-features dist/rasterlab_page_bg.wasm -o dist/optimized.wasm && mv dist/optimized.wasm dist/rasterlab_page_bg.wasm
-fi
+for module in page window; do
+    "$wasm_bindgen" --target web --no-typescript --remove-name-section --remove-producers-section --out-dir dist "$target/wasm32-unknown-unknown/web/rasterlab_$module.wasm"
+    wasm="dist/rasterlab_${module}_bg.wasm"
+    # --fast-math would change what the oracle computes.
+    if command -v wasm-opt > /dev/null; then
+        wasm-opt -Oz --all-features "$wasm" -o dist/optimized.wasm && mv dist/optimized.wasm "$wasm"
+    fi
+    printf '%s: %s bytes, %s as gzip\n' "$wasm" "$(wc -c < "$wasm")" "$(gzip -9 -c "$wasm" | wc -c)"
+done
 cp crates/page/web/* dist/
 cp presets/*.toml dist/presets/
 cp tests/snapshots/*.png dist/goldens/
-printf 'dist: %s bytes of wasm, %s as gzip\n' "$(wc -c < dist/rasterlab_page_bg.wasm)" "$(gzip -9 -c dist/rasterlab_page_bg.wasm | wc -c)"
 
 if [ "${1:-}" = --serve ]; then
     exec python3 -m http.server --bind localhost --directory dist 8000

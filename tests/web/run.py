@@ -68,7 +68,7 @@ class Pages(http.server.SimpleHTTPRequestHandler):
         pass
 
 
-def main():
+def main(page_name="test.html"):
     parser = argparse.ArgumentParser()
     parser.add_argument("--only", action="append", default=[])
     parser.add_argument("--kernels", type=pathlib.Path)
@@ -80,7 +80,7 @@ def main():
     reports = queue.Queue()
     server = http.server.ThreadingHTTPServer(("localhost", 0), functools.partial(Pages, reports=reports, kernels=asked.kernels))
     threading.Thread(target=server.serve_forever, daemon=True).start()
-    page = f"http://localhost:{server.server_port}/test.html?" + urllib.parse.urlencode({"only": asked.only}, doseq=True)
+    page = f"http://localhost:{server.server_port}/{page_name}?" + urllib.parse.urlencode({"only": asked.only}, doseq=True)
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         browser = subprocess.Popen(
             [chromium, *FLAGS, f"--user-data-dir={profile}", page], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL

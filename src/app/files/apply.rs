@@ -19,12 +19,15 @@ use crate::{
         picture::screen::Inputs,
         shell::{log::Level, state::State},
     },
+    host::disk,
     preset::SceneSource,
     preset_file::{self, Existing, PresetFile},
 };
 
 pub fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: FileCommand) {
     match command {
+        #[cfg(target_arch = "wasm32")]
+        FileCommand::Ask(Purpose::Open) => state.jobs.ask_files(),
         FileCommand::Ask(purpose) => {
             let output = state.session.preset().output.size;
             let size = state
@@ -223,7 +226,7 @@ fn resolve(
 /// about.
 fn may_write(state: &mut State, panels: &mut Panels, path: &Path) -> bool {
     let open = &state.session.preset_file;
-    if open.path.as_deref() != Some(path) || open.read_only || !path.exists() {
+    if open.path.as_deref() != Some(path) || open.read_only || !disk::exists(path) {
         return true;
     }
     match preset_file::load_with(path, &open.effects) {
@@ -272,7 +275,7 @@ pub fn make_folder_of(path: &Path) -> Result<(), String> {
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty());
     folder.map_or(Ok(()), |folder| {
-        std::fs::create_dir_all(folder).map_err(|error| {
+        disk::create_folder(folder).map_err(|error| {
             format!(
                 "{}: the folder cannot be created: {error}",
                 folder.display()

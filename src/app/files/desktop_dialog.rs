@@ -20,7 +20,7 @@ mod native {
         extensions: &[&str],
         start: &Path,
         is_to_open: bool,
-    ) -> impl FnOnce() -> Result<Option<PathBuf>, String> + Send + use<> {
+    ) -> impl AsyncFnOnce() -> Result<Option<PathBuf>, String> + Send + use<> {
         let mut dialog = rfd::AsyncFileDialog::new().add_filter(types_name, extensions);
         if let Some(folder) = start.parent().filter(|folder| folder.is_dir()) {
             dialog = dialog.set_directory(folder);
@@ -35,8 +35,8 @@ mod native {
             false => Box::pin(dialog.set_file_name(name).save_file()),
         };
         let listens = listen();
-        move || {
-            let chosen = pollster::block_on(chosen).map(|file| file.path().to_owned());
+        async move || {
+            let chosen = chosen.await.map(|file| file.path().to_owned());
             outcome(chosen, if listens { take_failures() } else { Vec::new() })
         }
     }
@@ -123,7 +123,7 @@ mod page {
         _: &[&str],
         _: &Path,
         _: bool,
-    ) -> impl FnOnce() -> Result<Option<PathBuf>, String> + Send + use<> {
-        || Err("a page has no folders".into())
+    ) -> impl AsyncFnOnce() -> Result<Option<PathBuf>, String> + Send + use<> {
+        async || Err("a page has no folders".into())
     }
 }

@@ -9,7 +9,10 @@ use serde::{
 };
 use toml_edit::{DocumentMut, Item, Table, TableLike, TomlError, de::from_document};
 
-use crate::preset_file::{Existing, write_atomically};
+use crate::{
+    host::disk,
+    preset_file::{Existing, write_atomically},
+};
 
 /// Reads the file at `path`, the default value where there is none, and its document with the
 /// user's comments. Each remark is something that cannot be used. A file that is no TOML becomes
@@ -19,7 +22,7 @@ pub fn read<T: Default + DeserializeOwned>(
     remarks: &mut Vec<String>,
 ) -> (T, DocumentMut) {
     let name = path.display().to_string();
-    let text = match std::fs::read_to_string(path) {
+    let text = match disk::read_to_string(path) {
         Ok(text) => text,
         Err(error) if error.kind() == ErrorKind::NotFound => return Default::default(),
         Err(error) => {
@@ -184,7 +187,7 @@ pub fn write<T: Serialize>(
 /// The file cannot be written: why, in one line.
 pub fn write_text(text: &str, path: &Path) -> Result<(), String> {
     let folder = path.parent().unwrap_or(Path::new("."));
-    std::fs::create_dir_all(folder).map_err(|error| {
+    disk::create_folder(folder).map_err(|error| {
         format!(
             "{}: the folder cannot be created: {error}",
             folder.display()

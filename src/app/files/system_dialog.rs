@@ -21,7 +21,8 @@ pub fn extensions(purpose: Purpose) -> Vec<&'static str> {
         Purpose::Open => ["toml"]
             .into_iter()
             .chain(MODEL_FORMATS.iter().map(|format| format.extension))
-            .chain(["png", "wgsl"])
+            .chain(["png"])
+            .chain(cfg!(not(target_arch = "wasm32")).then_some("wgsl"))
             .collect(),
         Purpose::SaveAs => vec!["toml"],
         Purpose::Export => vec!["png"],
@@ -38,6 +39,9 @@ const fn types_name(purpose: Purpose) -> &'static str {
 
 /// False if it is certain that there is no system's dialog: no desktop to ask, and no `zenity`.
 pub fn may_exist() -> bool {
+    if cfg!(target_arch = "wasm32") {
+        return false;
+    }
     if cfg!(not(target_os = "linux")) {
         return true;
     }
@@ -52,14 +56,14 @@ pub fn may_exist() -> bool {
 }
 
 /// The dialog, beginning at `start`; what it returns shows it and waits for its end.
-pub fn prepare(purpose: Purpose, start: &Path) -> impl FnOnce() -> Answer + Send + 'static {
+pub fn prepare(purpose: Purpose, start: &Path) -> impl AsyncFnOnce() -> Answer + Send + use<> {
     let show = desktop_dialog::prepare(
         types_name(purpose),
         &extensions(purpose),
         start,
         purpose == Purpose::Open,
     );
-    move || match show() {
+    async move || match show().await {
         Ok(Some(path)) => Answer::Chosen(path),
         Ok(None) => Answer::Canceled,
         Err(reason) => Answer::Unavailable(reason),

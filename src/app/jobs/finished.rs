@@ -120,6 +120,10 @@ pub fn finish(
             );
             state.notify(Level::Warning, text);
         }
+        #[cfg(target_arch = "wasm32")]
+        Done::Given(Ok(paths)) => crate::app::shell::input::open_given(paths, commands),
+        #[cfg(target_arch = "wasm32")]
+        Done::Given(Err(error)) => state.notify(Level::Error, error),
         Done::Path(purpose, answer) => {
             panels
                 .dialogs

@@ -6,6 +6,7 @@ pub mod computing;
 pub mod film;
 pub mod finished;
 pub mod memory;
+pub mod threads;
 
 use std::{
     collections::HashSet,
@@ -19,9 +20,10 @@ use std::{
 };
 
 use eframe::egui;
-use pollster::FutureExt as _;
 
 use self::computing::{Computing, Count};
+#[cfg(target_arch = "wasm32")]
+use crate::app::shell::page;
 use crate::{
     app::{
         files::{
@@ -48,7 +50,8 @@ use crate::{
     },
     effect_files,
     effects::Stack,
-    gpu::{CompileWatch, Gpu, Renderer},
+    gpu::{Capture, CompileWatch, Gpu, Renderer},
+    host::disk,
     oracle,
     preset::{AccuracyRequest, Preset, SceneSource},
     preset_file::{self, Existing, PresetFile, Provenance},
@@ -83,6 +86,9 @@ pub enum Done {
     Favorites(Result<(), String>),
     Export(PathBuf, Result<(), String>),
     Film(Arc<film::Progress>, Result<film::Finished, film::Failure>),
+    /// Files that a page was given, which lie in its memory now.
+    #[cfg(target_arch = "wasm32")]
+    Given(Result<Vec<PathBuf>, String>),
     /// How the system's file dialog ended.
     Path(Purpose, system_dialog::Answer),
     /// What is in a folder.
@@ -134,45 +140,48 @@ impl Jobs {
         self.computing.is_any()
     }
 
-    /// Draws or judges pictures with the oracle.
+    /// Draws pictures with the oracle.
     fn spawn_oracle(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
         self.spawn(name, || background::compute(work));
     }
 
-    /// The same for work that takes much memory; the system gets it back at the end.
-    fn spawn_large_oracle(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
-        self.spawn(name, || giving_back(|| background::compute(work)));
-    }
-
     /// Starts work that keeps the processor busy.
     fn spawn(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
+        self.spawn_waiting(name, || async { work() });
+    }
+
+    /// The same for work that waits for a device meanwhile.
+    fn spawn_waiting<F: Future<Output = Done> + 'static>(
+        &self,
+        name: &str,
+        work: impl FnOnce() -> F + Send + 'static,
+    ) {
         let computing = self.busy();
-        self.spawn_idle(name, move || {
+        self.spawn_idle(name, move || async {
             let _computing = computing;
-            work()
+            work().await
         });
     }
 
-    /// Starts work that mostly waits. None if no thread could be started.
-    fn spawn_idle(
+    /// Starts work that mostly waits. None if no thread could be started, or in a page.
+    fn spawn_idle<F: Future<Output = Done> + 'static>(
         &self,
         name: &str,
-        work: impl FnOnce() -> Done + Send + 'static,
+        work: impl FnOnce() -> F + Send + 'static,
     ) -> Option<JoinHandle<()>> {
         let (sender, ctx) = (self.sender.clone(), self.ctx.clone());
-        let started = std::thread::Builder::new()
-            .name(name.into())
-            .spawn(move || {
-                // The window may be closed by now; then the result is dropped.
-                if sender.send(work()).is_ok() {
-                    ctx.request_repaint();
-                }
-            });
+        let started = threads::start(name, move || async move {
+            // The window may be closed by now; then the result is dropped.
+            if sender.send(work().await).is_ok() {
+                ctx.request_repaint();
+            }
+        });
         started
             .inspect_err(|error| {
                 eprintln!("rasterlab: no thread could be started for {name}: {error}")
             })
             .ok()
+            .flatten()
     }
 
     /// Loads a scene as `work`.
@@ -209,27 +218,27 @@ impl Jobs {
 
     /// Draws `inputs` with a second renderer, reads everything back and judges it with the oracle.
     pub fn verify(&self, gpu: Arc<Gpu>, inputs: Inputs, work: Arc<Work>) {
-        self.spawn_large_oracle("verify", move || {
-            let verdict = caught("judging the picture", || {
-                work.run(|| verify(gpu, &inputs, &work)).transpose()
-            });
-            Done::Verdict(Box::new(inputs), work, verdict)
+        self.spawn_waiting("verify", move || async move {
+            let judged = caught_future("judging the picture", verify(gpu, &inputs, &work)).await;
+            memory::give_back();
+            Done::Verdict(Box::new(inputs), work, judged)
         });
     }
 
     /// Compiles what `inputs` need, with the shaders as they are on disk now.
     pub fn compile(&self, gpu: Arc<Gpu>, inputs: Inputs, reload: Reload) {
-        self.spawn("compile", move || {
-            let compiled = caught("compiling", || compile(gpu, &inputs));
+        self.spawn_waiting("compile", move || async move {
+            let compiled = caught_future("compiling", compile(gpu, &inputs)).await;
             Done::Compiled(reload, compiled)
         });
     }
 
     /// Measures the f32 errors of the user's effects with the oracle.
     pub fn measure_precision(&self, inputs: Inputs, cancelled: Arc<AtomicBool>) {
-        self.spawn_large_oracle("precision", move || {
+        self.spawn("precision", move || {
+            let measure = || precision::measure(&inputs, &cancelled);
             let measured = caught("measuring the f32 error", || {
-                precision::measure(&inputs, &cancelled).map(|measured| measured.map(Box::new))
+                giving_back(|| background::compute(measure)).map(|measured| measured.map(Box::new))
             });
             Done::Precision(Box::new(inputs), measured)
         });
@@ -245,11 +254,10 @@ impl Jobs {
         drawing: TierDrawing,
         watch: Arc<CompileWatch>,
     ) -> Option<JoinHandle<()>> {
-        self.spawn_idle("tier", move || {
+        self.spawn_idle("tier", move || async move {
             let (picture, mut drawing) = (inputs, drawing);
-            let outcome = caught("timing a tier", || {
-                tier_times::measure(&gpu, &picture, &mut drawing, &watch)
-            });
+            let measured = tier_times::measure(&gpu, &picture, &mut drawing, &watch);
+            let outcome = caught_future("timing a tier", measured).await;
             Done::TierTime(Box::new(Timed {
                 picture,
                 kernel,
@@ -348,8 +356,18 @@ impl Jobs {
         });
     }
 
+    /// Fetches the golden of a preset of the gallery. A page has no thread for the oracle.
+    #[cfg(target_arch = "wasm32")]
+    pub fn thumbnail(&self, preset_file: PresetFile, _: [u32; 2]) {
+        self.spawn_idle("thumbnail", async move || {
+            let golden = page::golden(&preset_file.id).await;
+            Done::Thumbnail(preset_file.id, golden.ok())
+        });
+    }
+
     /// Draws the picture of a preset with the oracle, which needs no device. Width and height are
     /// in pixels.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn thumbnail(&self, preset_file: PresetFile, size: [u32; 2]) {
         self.spawn_oracle("thumbnail", move || {
             let image = caught("drawing a thumbnail", || {
@@ -362,7 +380,7 @@ impl Jobs {
     /// Draws small pictures on the device of the picture and hands over one after another.
     pub fn draw_cells(&self, gpu: Arc<Gpu>, cells: Cells) {
         let (sender, ctx, computing) = (self.sender.clone(), self.ctx.clone(), self.busy());
-        let work = move || {
+        let work = move || async move {
             let _computing = computing;
             let take = |of, picture| {
                 // The window may be closed by now; then the picture is dropped.
@@ -370,15 +388,15 @@ impl Jobs {
                     ctx.request_repaint();
                 }
             };
-            let drawn = caught("drawing a small picture", || {
-                cells::draw(&gpu, &cells, take);
+            let draw = async {
+                cells::draw(&gpu, &cells, take).await;
                 Ok(())
-            });
-            if let Err(error) = drawn {
+            };
+            if let Err(error) = caught_future("drawing a small picture", draw).await {
                 eprintln!("rasterlab: {error}");
             }
         };
-        if let Err(error) = std::thread::Builder::new().name("cells".into()).spawn(work) {
+        if let Err(error) = threads::start("cells", work) {
             eprintln!("rasterlab: no thread could be started for small pictures: {error}");
         }
     }
@@ -422,10 +440,9 @@ impl Jobs {
 
     /// Draws `inputs` and writes a PNG that contains the preset.
     pub fn export(&self, gpu: Arc<Gpu>, inputs: Inputs, preset_file: PresetFile, path: PathBuf) {
-        self.spawn("export", move || {
-            let saved = caught("saving the picture", || {
-                export(gpu, &inputs, &preset_file, &path)
-            });
+        self.spawn_waiting("export", move || async move {
+            let exported = export(gpu, &inputs, &preset_file, &path);
+            let saved = caught_future("saving the picture", exported).await;
             Done::Export(path, saved)
         });
     }
@@ -466,18 +483,44 @@ impl Jobs {
     /// Shows the system's file dialog.
     pub fn ask_path(&self, purpose: Purpose, start: &Path) {
         let show = system_dialog::prepare(purpose, start);
-        self.spawn_idle("file dialog", move || Done::Path(purpose, show()));
+        self.spawn_idle("file dialog", move || async move {
+            Done::Path(purpose, show().await)
+        });
+    }
+
+    /// Asks for files to be opened.
+    #[cfg(target_arch = "wasm32")]
+    pub fn ask_files(&self) {
+        let extensions = system_dialog::extensions(Purpose::Open);
+        self.spawn_idle("files", async move || {
+            Done::Given(page::ask_files(&extensions).await)
+        });
+    }
+
+    /// Reads files that were dropped.
+    #[cfg(target_arch = "wasm32")]
+    pub fn take_dropped(&self, files: Vec<egui::DroppedFileHandle>) {
+        self.spawn_idle("files", async move || {
+            Done::Given(page::take_dropped(files).await)
+        });
     }
 
     /// Reads what is in a folder.
     pub fn list_folder(&self, folder: PathBuf) {
-        self.spawn_idle("folder", move || Done::Folder(Listing::read(&folder)));
+        self.spawn_idle("folder", move || async move {
+            Done::Folder(Listing::read(&folder))
+        });
     }
 
     /// Looks which of these files are not there.
     pub fn find_missing(&self, files: Vec<PathBuf>) {
-        self.spawn_idle("recent files", move || {
-            Done::Missing(files.into_iter().filter(|file| !file.exists()).collect())
+        self.spawn_idle("recent files", move || async move {
+            Done::Missing(
+                files
+                    .into_iter()
+                    .filter(|file| !disk::exists(file))
+                    .collect(),
+            )
         });
     }
 }
@@ -492,15 +535,24 @@ fn giving_back<T>(work: impl FnOnce() -> T) -> T {
 /// Runs `work`. A panic becomes an error, so that the window does not wait for a result that never
 /// comes.
 fn caught<T>(what: &str, work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
-    std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)).unwrap_or_else(|_| {
-        Err(format!(
-            "{what} failed because of a bug; see the terminal for details"
-        ))
-    })
+    std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)).unwrap_or_else(|_| Err(bug(what)))
+}
+
+/// The same for work that waits.
+async fn caught_future<T>(
+    what: &str,
+    work: impl Future<Output = Result<T, String>>,
+) -> Result<T, String> {
+    let done = threads::caught(work).await;
+    done.unwrap_or_else(|_| Err(bug(what)))
+}
+
+fn bug(what: &str) -> String {
+    format!("{what} failed because of a bug; see the terminal for details")
 }
 
 /// Draws `inputs` with a second renderer; all renderers of a device share their pipelines.
-fn compile(
+async fn compile(
     gpu: Arc<Gpu>,
     Inputs {
         scene,
@@ -510,36 +562,46 @@ fn compile(
     }: &Inputs,
 ) -> Result<(), String> {
     let mut renderer = Renderer::new(gpu);
-    renderer
-        .set_scene(scene)
-        .block_on()
-        .map_err(|e| e.to_string())?;
+    renderer.set_scene(scene).await.map_err(|e| e.to_string())?;
     renderer
         .draw(view, stack, accuracy)
-        .block_on()
+        .await
         .map_err(|e| e.to_string())
 }
 
-fn verify(
+/// Draws `inputs` and judges the picture; none if `work` was canceled.
+async fn verify(
     gpu: Arc<Gpu>,
+    inputs: &Inputs,
+    work: &Arc<Work>,
+) -> Result<Option<Box<Findings>>, String> {
+    let Inputs {
+        scene,
+        view,
+        stack,
+        accuracy,
+    } = inputs;
+    work.begin("drawing");
+    let mut renderer = Renderer::new(gpu);
+    renderer.set_scene(scene).await.map_err(|e| e.to_string())?;
+    let capture = renderer
+        .capture(view, stack, accuracy)
+        .await
+        .map_err(|e| e.to_string())?;
+    drop(renderer);
+    background::compute(|| work.run(|| judge(inputs, capture, work))).transpose()
+}
+
+fn judge(
     Inputs {
         scene,
         view,
         stack,
         accuracy,
     }: &Inputs,
+    capture: Capture,
     work: &Work,
 ) -> Result<Box<Findings>, String> {
-    work.begin("drawing");
-    let mut renderer = Renderer::new(gpu);
-    renderer
-        .set_scene(scene)
-        .block_on()
-        .map_err(|e| e.to_string())?;
-    let capture = renderer
-        .capture(view, stack, accuracy)
-        .block_on()
-        .map_err(|e| e.to_string())?;
     let judged = effect_files::crossings(stack, |stack| {
         oracle::judge(scene, view, stack, &capture.picture())
     });
@@ -627,7 +689,7 @@ fn thumbnail_of(preset: &Preset, scene: &Scene, size: [u32; 2]) -> Option<egui::
     ))
 }
 
-fn export(
+async fn export(
     gpu: Arc<Gpu>,
     Inputs {
         scene,
@@ -643,14 +705,11 @@ fn export(
         driver: gpu.summary.driver.clone(),
     };
     let mut renderer = Renderer::new(gpu);
-    renderer
-        .set_scene(scene)
-        .block_on()
-        .map_err(|e| e.to_string())?;
+    renderer.set_scene(scene).await.map_err(|e| e.to_string())?;
     let moments = [(view.clone(), stack.clone())];
     let still = renderer
         .still(&moments, accuracy)
-        .block_on()
+        .await
         .map_err(|e| e.to_string())?;
     let png = preset_file::png_with_preset(&still, &preset_file.for_picture(path), &provenance)
         .map_err(|e| e.to_string())?;

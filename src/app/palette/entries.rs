@@ -10,7 +10,7 @@ use crate::{
         editing::session::Session,
         panels::inspector::rows::has_row,
         picture::anti_aliasing::{CHOICES, name},
-        shell::action::{ACTIONS, Action},
+        shell::action::{Action, actions},
         widgets::theme::ThemeChoice,
     },
     effects::Effect,
@@ -28,8 +28,7 @@ const MAX_VALUE: usize = 40;
 
 /// Every entry, those of the open preset first.
 pub fn entries(session: &Session, presets: &[GalleryEntry]) -> Vec<Entry> {
-    let mut entries: Vec<Entry> = ACTIONS
-        .iter()
+    let mut entries: Vec<Entry> = actions()
         .filter(|(action, ..)| *action != Action::Palette)
         .map(|row| action(row.0))
         .collect();
@@ -285,6 +284,7 @@ fn written(param: &Param, value: &Value) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::shell::action::ACTIONS;
     use crate::{
         effects::EFFECTS,
         preset_file::{Folders, gallery},

@@ -4,7 +4,7 @@ use eframe::egui::{self, Key, RichText, Ui};
 
 use crate::app::{
     shell::{
-        action::{ACTIONS, Action, POINTER, shortcut_text},
+        action::{Action, POINTER, actions, shortcut_text},
         command::{Command, Commands, Toggle},
         state::State,
     },
@@ -59,7 +59,7 @@ impl Panel for CheatSheet {
 /// Actions and pointer gestures that contain `search`.
 fn rows_ui(ui: &mut Ui, search: &str, state: &State) {
     let search = search.to_lowercase();
-    let actions = ACTIONS.iter().map(|(action, label, _)| {
+    let actions = actions().map(|(action, label, _)| {
         let shortcuts = state
             .settings
             .keys

@@ -5,7 +5,7 @@ use eframe::egui::{self, Event, Key, RichText, Ui, vec2};
 use crate::app::{
     settings::{SCALES, keymap},
     shell::{
-        action::{ACTIONS, Action, shortcut_text},
+        action::{Action, actions, shortcut_text},
         command::{Command, Commands, SettingsCommand, Toggle},
         state::State,
     },
@@ -86,7 +86,7 @@ impl SettingsWindow {
             .max_height(height)
             .auto_shrink([false, false])
             .show(ui, |ui| {
-                for (action, label, _) in ACTIONS {
+                for (action, label, _) in actions() {
                     let shortcuts = keys
                         .of(*action)
                         .iter()

@@ -177,6 +177,9 @@ fn menu_ui(
             ui.separator();
             continue;
         };
+        if !action.is_here() {
+            continue;
+        }
         let button = egui::Button::new(action.label())
             .shortcut_text(action.shortcut_text())
             .min_size(vec2(208.0, theme::ROW));

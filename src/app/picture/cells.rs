@@ -7,7 +7,6 @@ use std::sync::{
 };
 
 use eframe::egui::ColorImage;
-use pollster::FutureExt as _;
 
 use super::screen::Inputs;
 use crate::gpu::{Gpu, Renderer};
@@ -32,17 +31,17 @@ pub struct Cells {
 pub type CellResult = Result<ColorImage, String>;
 
 /// Draws cells one after another and hands out each.
-pub fn draw(gpu: &Arc<Gpu>, cells: &Cells, mut take: impl FnMut(CellOf, CellResult)) {
+pub async fn draw(gpu: &Arc<Gpu>, cells: &Cells, mut take: impl FnMut(CellOf, CellResult)) {
     let mut renderer = Renderer::new(gpu.clone());
     for (of, inputs) in &cells.cells {
         if cells.is_canceled.load(Ordering::Relaxed) {
             return;
         }
-        take(*of, picture(&mut renderer, inputs));
+        take(*of, picture(&mut renderer, inputs).await);
     }
 }
 
-fn picture(
+async fn picture(
     renderer: &mut Renderer,
     Inputs {
         scene,
@@ -53,11 +52,11 @@ fn picture(
 ) -> CellResult {
     renderer
         .set_scene(scene)
-        .block_on()
+        .await
         .map_err(|error| error.to_string())?;
     let frame = renderer
         .capture(view, stack, accuracy)
-        .block_on()
+        .await
         .map_err(|error| error.to_string())?
         .into_shown();
     Ok(ColorImage::from_rgba_unmultiplied(

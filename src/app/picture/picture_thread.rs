@@ -10,18 +10,18 @@
 //! texture of the window's device: the same memory, copied twice.
 
 use std::{
-    panic::AssertUnwindSafe,
+    future::poll_fn,
     sync::{
         Arc, Condvar, Mutex, MutexGuard,
         atomic::{AtomicBool, AtomicU64, Ordering},
         mpsc,
     },
+    task::{Poll, Waker},
     thread::JoinHandle,
     time::Duration,
 };
 
 use eframe::{egui, wgpu};
-use pollster::FutureExt as _;
 use web_time::Instant;
 
 use super::{
@@ -30,9 +30,12 @@ use super::{
 };
 use crate::{
     accuracy::AccuracyOptions,
-    app::shell::{
-        device::{Devices, Painter},
-        ending::EndingThreads,
+    app::{
+        jobs::threads,
+        shell::{
+            device::{Devices, Painter},
+            ending::EndingThreads,
+        },
     },
     gpu::{
         CompileWatch, Explanation, Gpu, RenderError, Renderer, Report, preparations::Preparation,
@@ -91,12 +94,13 @@ struct Orders {
     /// The device is to be asked whether it is still there.
     checks: bool,
     ends: bool,
+    /// Wakes the thread, which waits for an order.
+    waker: Option<Waker>,
 }
 
 /// What the window and the thread share.
 struct Shared {
     orders: Mutex<Orders>,
-    changed: Condvar,
     ctx: egui::Context,
     is_compiling: AtomicBool,
     /// Frames dispatched so far.
@@ -113,6 +117,15 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Shared {
+    /// Changes the orders and wakes the thread.
+    fn order(&self, change: impl FnOnce(&mut Orders)) {
+        let mut orders = lock(&self.orders);
+        change(&mut orders);
+        let waker = orders.waker.take();
+        drop(orders);
+        waker.into_iter().for_each(Waker::wake);
+    }
+
     /// Something is about to be compiled.
     fn begin_compiling(&self) {
         if !self.is_compiling.swap(true, Ordering::Relaxed) {
@@ -145,6 +158,7 @@ pub struct PictureThread {
     watch: Arc<CompileWatch>,
     sender: mpsc::Sender<Finished>,
     finished: mpsc::Receiver<Finished>,
+    is_started: bool,
     handle: Option<JoinHandle<()>>,
     ending: Arc<EndingThreads>,
 }
@@ -154,7 +168,6 @@ impl PictureThread {
     pub fn start(devices: Devices, ctx: egui::Context, ending: Arc<EndingThreads>) -> Self {
         let shared = Arc::new(Shared {
             orders: Mutex::default(),
-            changed: Condvar::new(),
             ctx,
             is_compiling: AtomicBool::new(false),
             draws: AtomicU64::new(0),
@@ -180,16 +193,14 @@ impl PictureThread {
             texture: None,
             renderer: None,
         };
-        let handle = std::thread::Builder::new()
-            .name("picture".into())
-            .spawn(move || worker.run())
-            .ok();
+        let started = threads::start("picture", move || worker.run());
         Self {
             shared,
             watch,
             sender,
             finished,
-            handle,
+            is_started: started.is_ok(),
+            handle: started.ok().flatten(),
             ending,
         }
     }
@@ -197,45 +208,41 @@ impl PictureThread {
     /// Draws this picture, which was asked for at `asked_at`, instead of any that was asked for and
     /// is not begun.
     pub fn draw(&self, inputs: Inputs, asked_at: Instant) {
-        if self.handle.is_none() {
+        if !self.is_started {
             let outcome = Outcome::Refused(
                 "no thread could be started for the picture; the system has no room for one".into(),
             );
             // The receiver lives as long as `self`.
             return drop(self.sender.send(Finished { inputs, outcome }));
         }
-        let mut orders = lock(&self.shared.orders);
-        if orders
-            .current
-            .as_ref()
-            .is_some_and(|current| !current.shares_kernels(&inputs))
-        {
-            self.watch.stop();
-        }
-        orders.next = Some(Order::Draw(inputs, asked_at));
-        self.shared.changed.notify_one();
+        self.shared.order(|orders| {
+            let current = orders.current.as_ref();
+            if current.is_some_and(|current| !current.shares_kernels(&inputs)) {
+                self.watch.stop();
+            }
+            orders.next = Some(Order::Draw(inputs, asked_at));
+        });
     }
 
     /// Draws the newest picture again, as often as it takes to know its cost, unless another is
     /// asked for.
     pub fn measure(&self, inputs: Inputs) {
-        lock(&self.shared.orders)
-            .next
-            .get_or_insert(Order::Measure(inputs));
-        self.shared.changed.notify_one();
+        self.shared.order(|orders| {
+            orders.next.get_or_insert(Order::Measure(inputs));
+        });
     }
 
     /// Draws the next picture with the shaders as they are now.
     pub fn reload_shaders(&self) {
-        lock(&self.shared.orders).reloads = true;
-        self.watch.stop();
-        self.shared.changed.notify_one();
+        self.shared.order(|orders| {
+            orders.reloads = true;
+            self.watch.stop();
+        });
     }
 
     /// Asks the device whether it is still there, if the thread has nothing else to do.
     pub fn check_device(&self) {
-        lock(&self.shared.orders).checks = true;
-        self.shared.changed.notify_one();
+        self.shared.order(|orders| orders.checks = true);
     }
 
     pub fn next(&self) -> Option<Finished> {
@@ -261,9 +268,10 @@ impl PictureThread {
 
 impl Drop for PictureThread {
     fn drop(&mut self) {
-        lock(&self.shared.orders).ends = true;
-        self.watch.stop();
-        self.shared.changed.notify_one();
+        self.shared.order(|orders| {
+            orders.ends = true;
+            self.watch.stop();
+        });
         self.hold_compiling(false);
         if let Some(handle) = self.handle.take() {
             self.ending.add(handle);
@@ -290,7 +298,7 @@ struct Worker {
 /// `is_wanted` no more.
 ///
 /// The device may be the window's, and a wait inside of it would hold the window's submissions up.
-pub fn wait_for_frame(
+pub async fn wait_for_frame(
     renderer: &mut Renderer,
     is_wanted: impl Fn() -> bool,
 ) -> Result<Option<Report>, RenderError> {
@@ -300,31 +308,29 @@ pub fn wait_for_frame(
             Some(report) if !renderer.is_pending() => return Ok(Some(report)),
             _ if renderer.gpu().is_lost() => return Err(RenderError::Lost),
             _ if begun.elapsed() > PATIENCE || !is_wanted() => return Ok(None),
-            _ => std::thread::sleep(Duration::from_micros(
-                if begun.elapsed() < Duration::from_millis(20) {
-                    250
-                } else {
-                    1000
-                },
-            )),
+            _ => {
+                let is_young = begun.elapsed() < Duration::from_millis(20);
+                threads::pause(Duration::from_micros(if is_young { 250 } else { 1000 })).await;
+            }
         }
     }
     Ok(None)
 }
 
 impl Worker {
-    fn run(mut self) {
-        while let Some(order) = self.wait_for_order() {
-            let inputs = match &order {
-                Order::Draw(inputs, _) | Order::Measure(inputs) => inputs.clone(),
+    async fn run(mut self) {
+        while let Some(order) = self.wait_for_order().await {
+            let (Order::Draw(inputs, _) | Order::Measure(inputs)) = &order;
+            let inputs = inputs.clone();
+            let work = async {
+                match order {
+                    Order::Draw(inputs, asked_at) => self.draw(&inputs, asked_at).await,
+                    Order::Measure(inputs) => self.measure(&inputs).await,
+                }
             };
-            let work = AssertUnwindSafe(|| match order {
-                Order::Draw(inputs, asked_at) => self.draw(&inputs, asked_at),
-                Order::Measure(inputs) => self.measure(&inputs),
-            });
             // A panic becomes an error, so that the window does not wait for a picture that never
             // comes.
-            if std::panic::catch_unwind(work).is_err() {
+            if threads::caught(work).await.is_err() {
                 self.renderer = None;
                 let text =
                     "drawing the picture failed because of a bug; see the terminal for details";
@@ -335,13 +341,13 @@ impl Worker {
     }
 
     /// The next thing to do; none when the window closes.
-    fn wait_for_order(&mut self) -> Option<Order> {
+    async fn wait_for_order(&mut self) -> Option<Order> {
         let shared = self.shared.clone();
-        let mut orders = lock(&shared.orders);
-        orders.current = None;
-        loop {
+        lock(&shared.orders).current = None;
+        poll_fn(|context| {
+            let mut orders = lock(&shared.orders);
             if orders.ends {
-                return None;
+                return Poll::Ready(None);
             }
             if std::mem::take(&mut orders.reloads) {
                 self.renderer = None;
@@ -350,7 +356,7 @@ impl Worker {
                 let (Order::Draw(inputs, _) | Order::Measure(inputs)) = &order;
                 orders.current = Some(inputs.clone());
                 self.watch.allow();
-                return Some(order);
+                return Poll::Ready(Some(order));
             }
             if std::mem::take(&mut orders.checks) {
                 let _ = self.gpu.device.poll(wgpu::PollType::Poll);
@@ -358,11 +364,10 @@ impl Worker {
                     shared.ctx.request_repaint();
                 }
             }
-            orders = shared
-                .changed
-                .wait(orders)
-                .unwrap_or_else(|poisoned| poisoned.into_inner());
-        }
+            orders.waker = Some(context.waker().clone());
+            Poll::Pending
+        })
+        .await
     }
 
     /// Hands something to the window. The window may be closed by now; then it is dropped.
@@ -382,12 +387,9 @@ impl Worker {
 
     /// Draws a picture, and again if a queue had overflowed and has grown, or while its particles
     /// lag behind.
-    fn draw(&mut self, inputs: &Inputs, asked_at: Instant) {
+    async fn draw(&mut self, inputs: &Inputs, asked_at: Instant) {
         for redraws in 0.. {
-            let drawn = match self
-                .frame(inputs)
-                .and_then(|(report, is_compiled)| self.drawn(inputs, report, is_compiled))
-            {
+            let drawn = match self.picture(inputs).await {
                 Ok(drawn) => drawn,
                 Err(RenderError::Stopped) => return,
                 Err(error) => return self.finish(inputs, Outcome::Refused(error.to_string())),
@@ -408,14 +410,20 @@ impl Worker {
         }
     }
 
+    /// One frame, as the window shows it; none if the user has taken it back.
+    async fn picture(&mut self, inputs: &Inputs) -> Result<Option<Drawn>, RenderError> {
+        let (report, is_compiled) = self.frame(inputs).await?;
+        self.drawn(inputs, report, is_compiled).await
+    }
+
     /// Draws a picture again until its time has settled.
-    fn measure(&mut self, inputs: &Inputs) {
+    async fn measure(&mut self, inputs: &Inputs) {
         let mut samples = Vec::new();
         while !has_settled(&samples) {
             if self.shared.has_newer() {
                 return;
             }
-            match self.frame(inputs) {
+            match self.frame(inputs).await {
                 Ok((report, _)) => match report.as_ref().and_then(Sample::of) {
                     Some(sample) => samples.push(sample),
                     None => break,
@@ -428,7 +436,7 @@ impl Worker {
 
     /// Dispatches one frame and waits until the device has finished it; true if something was
     /// compiled for it.
-    fn frame(
+    async fn frame(
         &mut self,
         Inputs {
             scene,
@@ -448,15 +456,15 @@ impl Worker {
             renderer
         });
         let compiled = renderer.compiled();
-        renderer.set_scene(scene).block_on()?;
-        renderer.draw(view, stack, accuracy).block_on()?;
+        renderer.set_scene(scene).await?;
+        renderer.draw(view, stack, accuracy).await?;
         self.shared.draws.fetch_add(1, Ordering::Relaxed);
         let is_compiled = renderer.compiled() > compiled;
-        Ok((wait_for_frame(renderer, || true)?, is_compiled))
+        Ok((wait_for_frame(renderer, || true).await?, is_compiled))
     }
 
     /// The picture of the newest frame, for the window; none if the user has taken it back.
-    fn drawn(
+    async fn drawn(
         &mut self,
         inputs: &Inputs,
         report: Option<Report>,
@@ -492,7 +500,7 @@ impl Worker {
         let view = if Arc::ptr_eq(&self.gpu, &self.window) {
             renderer.texture_view().cloned()
         } else {
-            let shown = renderer.read_shown().block_on()?;
+            let shown = renderer.read_shown().await?;
             shown.map(|pixels| self.upload(&pixels, size))
         };
         Ok(Some(Drawn {

@@ -5,7 +5,6 @@
 use std::sync::Arc;
 
 use eframe::egui;
-use pollster::FutureExt as _;
 
 use super::{
     picture_thread::wait_for_frame,
@@ -221,7 +220,8 @@ pub fn follow(ctx: &egui::Context, state: &mut State, is_busy: bool) {
     let rest_s = state.picture.tier_times.rest_s(requested, state.now_s);
     let screen = &state.picture.screen;
     // What else runs would be measured, too.
-    if state.session.playback.playing
+    if cfg!(target_arch = "wasm32") // A page has one device and one thread for everything.
+        || state.session.playback.playing
         || state.jobs.is_computing()
         || screen.is_waiting()
         || !screen.timings().is_settled()
@@ -329,7 +329,7 @@ pub fn judge(state: &mut State, Verdict { of, findings }: &Verdict) {
 ///
 /// # Errors
 /// In a sentence for people.
-pub fn measure(
+pub async fn measure(
     gpu: &Arc<Gpu>,
     inputs: &Inputs,
     drawing: &mut TierDrawing,
@@ -339,19 +339,19 @@ pub fn measure(
     let gpu = match &drawing.gpu {
         Some(known) => known.clone(),
         None if gpu.summary.software => Gpu::open(&AdapterChoice::Named(gpu.summary.name.clone()))
-            .block_on()
+            .await
             .map_err(|error| error.to_string())?,
         None => gpu.clone(),
     };
     drawing.gpu = Some(gpu.clone());
-    match frame_ms(gpu, inputs, drawing, watch) {
+    match frame_ms(gpu, inputs, drawing, watch).await {
         Ok(ms) => Ok(ms),
         Err(RenderError::Stopped) => Ok(None),
         Err(error) => Err(error.to_string()),
     }
 }
 
-fn frame_ms(
+async fn frame_ms(
     gpu: Arc<Gpu>,
     Inputs {
         scene,
@@ -368,11 +368,11 @@ fn frame_ms(
         .take()
         .unwrap_or_else(|| Renderer::new(gpu));
     renderer.watch_compiling(watch.clone());
-    renderer.set_scene(scene).block_on()?;
+    renderer.set_scene(scene).await?;
     let mut samples = Vec::new();
     while !has_settled(&samples) {
-        renderer.draw(view, stack, accuracy).block_on()?;
-        match wait_for_frame(&mut renderer, || !watch.is_stopped())? {
+        renderer.draw(view, stack, accuracy).await?;
+        match wait_for_frame(&mut renderer, || !watch.is_stopped()).await? {
             None => break,
             Some(report) if report.redraw || report.simulation_pending => {}
             Some(report) => samples.push(Sample::of(&report).ok_or(RenderError::NoTimestamps)?),

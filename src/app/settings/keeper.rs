@@ -1,7 +1,6 @@
 //! Keeping settings and session in the folder of the user's configuration while the window runs.
 
 use std::{
-    fs::{File, TryLockError},
     path::{Path, PathBuf},
     thread::JoinHandle,
 };
@@ -17,6 +16,7 @@ use crate::{
         editing::session::{FileId, Session},
         files::plain_file,
     },
+    host::disk,
     preset::Preset,
     preset_file::Folders,
 };
@@ -30,7 +30,7 @@ pub struct Keeper {
     /// The settings file as it was read, with the user's comments.
     document: DocumentMut,
     /// Held while the window runs. Another window has it if this one keeps no session.
-    lock: Option<File>,
+    lock: Option<Lock>,
     /// The last session was read and decided about: it may be replaced.
     replaces_session: bool,
     /// What is written or about to be, and since when it waits.
@@ -115,11 +115,13 @@ impl Keeper {
             return PreviousSession::None;
         };
         let path = folder.join(SESSION);
-        let Ok(text) = std::fs::read_to_string(&path) else {
+        let Ok(text) = disk::read_to_string(&path) else {
             return PreviousSession::None;
         };
         let session = LastSession::parse(&text, &path.display().to_string());
-        let is_running = session.as_ref().is_ok_and(|session| session.is_running);
+        // A page is left at any time, which is no crash.
+        let is_running = session.as_ref().is_ok_and(|session| session.is_running)
+            && cfg!(not(target_arch = "wasm32"));
         match session.and_then(|session| session.restore(folders)) {
             Ok(restored) if is_running => PreviousSession::Crashed(restored.into()),
             Ok(restored) => PreviousSession::Closed(restored.into()),
@@ -155,7 +157,7 @@ impl Keeper {
         {
             return (None, Some(REST_S));
         }
-        let errors = self.finish_writing();
+        let mut errors = self.finish_writing();
         let mut writes: Vec<Write> = Vec::new();
         if self.settings.follow(settings, now_s) {
             writes.extend(self.write_settings(settings));
@@ -176,13 +178,20 @@ impl Keeper {
             .flatten()
             .reduce(f64::min);
         if !writes.is_empty() {
-            self.writing = Some(std::thread::spawn(|| {
+            let write = || {
                 writes
                     .into_iter()
                     .filter_map(|write| write().err())
                     .collect()
-            }));
-            wait_s = Some(wait_s.unwrap_or(REST_S));
+            };
+            if cfg!(target_arch = "wasm32") {
+                // A page writes at once, and has no other thread.
+                let written: Vec<String> = write();
+                errors.extend(written);
+            } else {
+                self.writing = Some(std::thread::spawn(write));
+                wait_s = Some(wait_s.unwrap_or(REST_S));
+            }
         }
         ((!errors.is_empty()).then(|| errors.join("; ")), wait_s)
     }
@@ -256,8 +265,21 @@ pub fn window_size(folder: &Path) -> super::WindowSize {
     )
 }
 
+/// The lock of a page: the newest that writes wins.
+#[cfg(target_arch = "wasm32")]
+type Lock = ();
+#[cfg(not(target_arch = "wasm32"))]
+type Lock = std::fs::File;
+
+#[cfg(target_arch = "wasm32")]
+fn lock(_: &Path, _: &mut Vec<String>) -> Option<Lock> {
+    Some(())
+}
+
 /// The lock of the session; none if another window has it.
-fn lock(folder: &Path, remarks: &mut Vec<String>) -> Option<File> {
+#[cfg(not(target_arch = "wasm32"))]
+fn lock(folder: &Path, remarks: &mut Vec<String>) -> Option<Lock> {
+    use std::fs::{File, TryLockError};
     let opened = std::fs::create_dir_all(folder).and_then(|()| {
         File::options()
             .create(true)

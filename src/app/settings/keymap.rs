@@ -6,7 +6,9 @@ use std::collections::BTreeMap;
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 use serde::{Deserialize, Serialize};
 
-use crate::app::shell::action::{ACTIONS, Action, modifiers_text, shortcut_text, show_shortcuts};
+use crate::app::shell::action::{
+    ACTIONS, Action, actions, modifiers_text, shortcut_text, show_shortcuts,
+};
 
 /// Which keys carry out which action.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -57,8 +59,7 @@ impl Keymap {
             let pressed = |shortcut: &KeyboardShortcut| {
                 shortcut.logical_key == key && matches(shortcut.modifiers) && is_allowed(shortcut)
             };
-            ACTIONS
-                .iter()
+            actions()
                 .map(|(action, ..)| *action)
                 .find(|action| self.of(*action).iter().any(pressed))
         };

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use toml_edit::DocumentMut;
 
 use crate::{
+    host::disk,
     preset::SceneSource,
     preset_file::{self, Folders, PresetFile},
 };
@@ -191,7 +192,7 @@ fn missing_model(preset_file: &PresetFile) -> Option<PathBuf> {
         .as_deref()
         .and_then(Path::parent)
         .unwrap_or(Path::new(""));
-    Some(folder.join(model)).filter(|model| !model.is_file())
+    Some(folder.join(model)).filter(|model| !disk::exists(model))
 }
 
 #[cfg(test)]

@@ -255,6 +255,23 @@ pub const POINTER: &[(&str, &str)] = &[
     ("Copy or paste the preset", "Ctrl+C, Ctrl+V elsewhere"),
 ];
 
+impl Action {
+    /// Does the window have it here? A page has no second device, no programs beside it, and no
+    /// thread for what takes minutes; its tab is closed by the browser.
+    pub const fn is_here(self) -> bool {
+        let is_native = matches!(
+            self,
+            Self::Film | Self::Quit | Self::NewEffect | Self::Extremes | Self::Trade
+        );
+        !is_native || cfg!(not(target_arch = "wasm32"))
+    }
+}
+
+/// Every action that the window has here.
+pub fn actions() -> impl Iterator<Item = &'static Entry> {
+    ACTIONS.iter().filter(|(action, ..)| action.is_here())
+}
+
 thread_local! {
     /// What the user has bound in the window that this thread shows: actions with their first shortcuts, for the texts that name one.
     static SHOWN: RefCell<Vec<(Action, Option<KeyboardShortcut>)>> = const { RefCell::new(Vec::new()) };

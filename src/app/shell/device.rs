@@ -93,7 +93,7 @@ impl Devices {
     pub fn of(window: Arc<Gpu>) -> Self {
         let choice = AdapterChoice::Named(window.summary.name.clone());
         let opened = || Gpu::open(&choice).block_on().ok();
-        let second = if window.summary.software {
+        let second = if window.summary.software && cfg!(not(target_arch = "wasm32")) {
             opened()
         } else {
             None

@@ -91,16 +91,25 @@ fn clipboard(ctx: &egui::Context, state: &State, commands: &Commands) {
     }
 }
 
-/// Opens one of the files that were dropped on the window: a preset before a model before a picture
-/// before an effect, since a model may be dropped with the files that it needs.
-pub fn dropped_files(ctx: &egui::Context, commands: &Commands) {
-    let mut dropped = ctx.input(|i| {
-        i.raw
-            .dropped_files
-            .iter()
-            .map(|file| file.path().to_owned())
-            .collect::<Vec<_>>()
-    });
+/// Opens one of the files that were dropped on the window. A page reads them first.
+pub fn dropped_files(ctx: &egui::Context, state: &State, commands: &Commands) {
+    let dropped = ctx.input(|i| i.raw.dropped_files.clone());
+    if dropped.is_empty() {
+        return;
+    }
+    #[cfg(target_arch = "wasm32")]
+    state.jobs.take_dropped(dropped);
+    #[cfg(not(target_arch = "wasm32"))]
+    {
+        let paths = dropped.iter().map(|file| file.path().to_owned());
+        open_given(paths.collect(), commands);
+    }
+    let _ = (state, commands); // Each target needs one of them.
+}
+
+/// Opens one of the files that were given to the window at once: a preset before a model before a
+/// picture before an effect, since a model may be given with the files that it needs.
+pub fn open_given(mut dropped: Vec<PathBuf>, commands: &Commands) {
     let rank = |path: &PathBuf| {
         let extension = path
             .extension()

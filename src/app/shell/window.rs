@@ -525,7 +525,7 @@ impl eframe::App for App {
         if ctx.input(|i| !i.events.is_empty()) || self.state.session.playback.playing {
             self.panels.trade.pause();
         }
-        input::dropped_files(&ctx, &self.commands);
+        input::dropped_files(&ctx, &self.state, &self.commands);
         self.apply(&ctx);
         escape(
             &ctx,

@@ -6,12 +6,12 @@
 
 use std::{
     cell::Cell,
-    fs,
     io::{self, Read as _, Seek as _, SeekFrom},
     ops::Range,
     path::Path,
 };
 
+use super::disk;
 use crate::{
     params::legible_line,
     scene::{
@@ -75,8 +75,8 @@ fn read_beside(
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty())
         .unwrap_or(Path::new("."));
-    let folder = folder.canonicalize().map_err(failed)?;
-    let path = folder.join(beside).canonicalize().map_err(failed)?;
+    let folder = disk::canonical(folder).map_err(failed)?;
+    let path = disk::canonical(&folder.join(beside)).map_err(failed)?;
     if !path.starts_with(&folder) {
         return Err(LoadError::new(
             "it lies outside the model's folder; copy it there",
@@ -91,7 +91,7 @@ fn read_beside(
 
 /// A regular file, and how much of it was read.
 struct OpenFile {
-    file: fs::File,
+    file: disk::File,
     size: u64,
     read: Cell<u64>,
 }
@@ -103,18 +103,17 @@ impl OpenFile {
     /// # Errors
     /// It is no such file.
     fn open(path: &Path, most: u64, limits: &Limits) -> Result<Self, LoadError> {
-        let about = fs::metadata(path).map_err(failed)?;
-        if !about.is_file() {
+        let Some(size) = disk::size_of(path).map_err(failed)? else {
             return Err(LoadError::new("it is not a regular file"));
+        };
+        if size > most {
+            return Err(limits.exceeded(format_args!("it has {size} bytes"), most));
         }
-        if about.len() > most {
-            return Err(limits.exceeded(format_args!("it has {} bytes", about.len()), most));
-        }
-        let file = fs::File::open(path).map_err(failed)?;
-        checkpoint().expect(about.len());
+        let file = disk::open(path).map_err(failed)?;
+        checkpoint().expect(size);
         Ok(Self {
             file,
-            size: about.len(),
+            size,
             read: Cell::new(0),
         })
     }
@@ -158,6 +157,8 @@ fn failed(error: io::Error) -> LoadError {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]

@@ -180,6 +180,20 @@ impl Write for AtomicFile {
 /// # Errors
 /// As [`AtomicFile::create`] and [`AtomicFile::commit`].
 pub fn write_atomically(path: &Path, bytes: &[u8], existing: Existing) -> Result<(), PresetError> {
+    #[cfg(target_arch = "wasm32")]
+    {
+        let _ = existing;
+        return crate::host::disk::write(path, bytes).map_err(|error| PresetError::Write {
+            file: path.display().to_string(),
+            reason: error.to_string(),
+        });
+    }
+    #[cfg(not(target_arch = "wasm32"))]
+    write_beside(path, bytes, existing)
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+fn write_beside(path: &Path, bytes: &[u8], existing: Existing) -> Result<(), PresetError> {
     let mut file = AtomicFile::create(path, existing)?;
     file.write_all(bytes).map_err(|e| file.failed(e))?;
     file.commit()

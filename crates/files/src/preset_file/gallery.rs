@@ -13,7 +13,7 @@ use super::{
     load::{load_with, parse_file},
     picture::load_picture,
 };
-use crate::{effect_files::Catalog, params::likeness, preset::SceneSource};
+use crate::{effect_files::Catalog, host::disk, params::likeness, preset::SceneSource};
 
 /// The most presets that an error suggests.
 const MAX_NEAR: usize = 3;
@@ -258,7 +258,7 @@ pub fn open(what: &str, folders: &Folders) -> Result<PresetFile, PresetError> {
             });
         }
     }
-    if path.exists() {
+    if disk::exists(path) {
         let models = ModelFormat::names(" and ");
         let reason = format!(
             "rasterlab opens .toml files, .png pictures that it has saved, and models in {models} files"

@@ -9,7 +9,7 @@ use super::{
     file::{PresetFile, stem},
     migrate, read, reader,
 };
-use crate::{effect_files::Catalog, params::legible_line};
+use crate::{effect_files::Catalog, host::disk, params::legible_line};
 
 /// Longest preset that is read, bytes.
 pub const MAX_BYTES: usize = 1 << 20;
@@ -106,14 +106,12 @@ pub(super) fn read_capped(path: &Path, max_bytes: u64) -> Result<Vec<u8>, Preset
         reason,
     };
     // A pipe would wait for its other end when it is opened.
-    if !std::fs::metadata(path)
-        .map_err(|e| failed(e.to_string()))?
-        .is_file()
-    {
+    let size = disk::size_of(path).map_err(|e| failed(e.to_string()))?;
+    if size.is_none() {
         return Err(failed("it is not a regular file".into()));
     }
     let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(|e| failed(e.to_string()))?;
+    let file = disk::open(path).map_err(|e| failed(e.to_string()))?;
     file.take(max_bytes + 1)
         .read_to_end(&mut bytes)
         .map_err(|e| failed(e.to_string()))?;

@@ -7,6 +7,7 @@ use super::{
     formats::{MODEL_FORMATS, ModelFormat},
 };
 use crate::{
+    host::disk,
     preset::{MissingInScene, Preset, SceneSource},
     scene::{Bounds, Scene, builtin, gltf},
 };
@@ -57,7 +58,7 @@ fn load_source(source: &SceneSource, preset_path: Option<&Path>) -> Result<Scene
         SceneSource::Builtin(query) => Ok(builtin::build(query)?),
         SceneSource::File(model) => {
             let path = model_path(model, preset_path);
-            if !path.exists() {
+            if !disk::exists(&path) {
                 return Err(SceneError::Absent {
                     path: path.display().to_string(),
                 });

@@ -358,9 +358,12 @@ pub fn path_ui(
         theme::notice(ui, theme::amber(), error);
     }
     if let Some(reason) = &dialog.no_system_dialog {
-        let text = format!(
-            "The system's file dialog is not available: {reason}. Type a path or choose from the list; Tab completes."
-        );
+        let text = match cfg!(target_arch = "wasm32") {
+            true => "The browser puts the file among its downloads.".to_owned(),
+            false => format!(
+                "The system's file dialog is not available: {reason}. Type a path or choose from the list; Tab completes."
+            ),
+        };
         ui.label(theme::weak(text).size(12.0));
     }
     ui.add_space(theme::HALF);

@@ -1,0 +1,150 @@
+//! Files by path. A page has none: there the files that a person gives it lie in memory, and a
+//! [`Keeper`](page::Keeper) takes what is written.
+
+#[cfg(not(target_arch = "wasm32"))]
+pub use native::*;
+#[cfg(target_arch = "wasm32")]
+pub use page::*;
+
+#[cfg(not(target_arch = "wasm32"))]
+mod native {
+    pub use std::fs::{File, create_dir_all as create_folder, read, read_to_string};
+    use std::{
+        io,
+        path::{Path, PathBuf},
+    };
+
+    /// Opens a file to be read.
+    ///
+    /// # Errors
+    /// It cannot be.
+    pub fn open(path: &Path) -> io::Result<File> {
+        File::open(path)
+    }
+
+    /// The size of a regular file, bytes; none if something else has the name. Nothing is opened,
+    /// so that a pipe does not wait.
+    ///
+    /// # Errors
+    /// There is no such file.
+    pub fn size_of(path: &Path) -> io::Result<Option<u64>> {
+        let about = std::fs::metadata(path)?;
+        Ok(about.is_file().then_some(about.len()))
+    }
+
+    /// Is there a file or a folder?
+    pub fn exists(path: &Path) -> bool {
+        path.exists()
+    }
+
+    /// Where a path leads to through symbolic links.
+    ///
+    /// # Errors
+    /// Nothing is there.
+    pub fn canonical(path: &Path) -> io::Result<PathBuf> {
+        path.canonicalize()
+    }
+}
+
+#[cfg(target_arch = "wasm32")]
+mod page {
+    use std::{
+        collections::BTreeMap,
+        io::{self, Cursor, ErrorKind, Read, Seek, SeekFrom},
+        path::{Path, PathBuf},
+        sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError},
+    };
+
+    static FILES: Mutex<BTreeMap<PathBuf, Arc<[u8]>>> = Mutex::new(BTreeMap::new());
+    static KEEPER: OnceLock<Keeper> = OnceLock::new();
+
+    /// What becomes of a file that is written: the page downloads it, or keeps it in the browser.
+    pub type Keeper = fn(&Path, &[u8]) -> io::Result<()>;
+
+    fn files() -> MutexGuard<'static, BTreeMap<PathBuf, Arc<[u8]>>> {
+        FILES.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// From now on files that are written go to `keeper`; only the first call counts.
+    pub fn keep_with(keeper: Keeper) {
+        KEEPER.get_or_init(|| keeper);
+    }
+
+    /// Puts a file into memory.
+    pub fn put(path: &Path, bytes: &[u8]) {
+        files().insert(path.to_owned(), bytes.into());
+    }
+
+    /// Writes a file: to memory, and to the keeper.
+    ///
+    /// # Errors
+    /// The keeper's; then memory is unchanged.
+    pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
+        KEEPER.get().map_or(Ok(()), |keeper| keeper(path, bytes))?;
+        put(path, bytes);
+        Ok(())
+    }
+
+    fn found(path: &Path) -> io::Result<Arc<[u8]>> {
+        let found = files().get(path).cloned();
+        found.ok_or_else(|| io::Error::new(ErrorKind::NotFound, "the page has no such file"))
+    }
+
+    /// A file that is read.
+    #[derive(Clone)]
+    pub struct File(Arc<Mutex<Cursor<Arc<[u8]>>>>);
+
+    impl File {
+        fn cursor(&self) -> MutexGuard<'_, Cursor<Arc<[u8]>>> {
+            self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        }
+    }
+
+    impl Read for &File {
+        fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+            self.cursor().read(bytes)
+        }
+    }
+
+    impl Read for File {
+        fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+            self.cursor().read(bytes)
+        }
+    }
+
+    impl Seek for &File {
+        fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+            self.cursor().seek(to)
+        }
+    }
+
+    pub fn open(path: &Path) -> io::Result<File> {
+        Ok(File(Arc::new(Mutex::new(Cursor::new(found(path)?)))))
+    }
+
+    pub fn size_of(path: &Path) -> io::Result<Option<u64>> {
+        Ok(Some(found(path)?.len() as u64))
+    }
+
+    pub fn exists(path: &Path) -> bool {
+        files().contains_key(path)
+    }
+
+    pub fn canonical(path: &Path) -> io::Result<PathBuf> {
+        Ok(path.to_owned())
+    }
+
+    pub fn read(path: &Path) -> io::Result<Vec<u8>> {
+        Ok(found(path)?.to_vec())
+    }
+
+    pub fn read_to_string(path: &Path) -> io::Result<String> {
+        String::from_utf8(read(path)?)
+            .map_err(|_| io::Error::new(ErrorKind::InvalidData, "it is not UTF-8 text"))
+    }
+
+    /// Folders need not be made.
+    pub fn create_folder(_: &Path) -> io::Result<()> {
+        Ok(())
+    }
+}

@@ -1,0 +1,86 @@
+//! Threads of the window. A page has one alone: there work goes on between its frames, and whatever
+//! waits gives the thread back.
+
+#[cfg(not(target_arch = "wasm32"))]
+pub use native::{pause, start};
+#[cfg(target_arch = "wasm32")]
+pub use page::{pause, start};
+
+#[cfg(not(target_arch = "wasm32"))]
+mod native {
+    use std::{
+        io,
+        thread::{self, JoinHandle},
+        time::Duration,
+    };
+
+    use pollster::FutureExt as _;
+
+    /// Starts work on a thread of this name. What is returned waits for its end; there is nothing to
+    /// wait for in a page.
+    ///
+    /// # Errors
+    /// The system has no room for a thread.
+    pub fn start<F: Future<Output = ()> + 'static>(
+        name: &str,
+        work: impl FnOnce() -> F + Send + 'static,
+    ) -> io::Result<Option<JoinHandle<()>>> {
+        let named = thread::Builder::new().name(name.into());
+        named.spawn(move || work().block_on()).map(Some)
+    }
+
+    /// Waits so long.
+    pub async fn pause(wait: Duration) {
+        thread::sleep(wait);
+    }
+}
+
+#[cfg(target_arch = "wasm32")]
+mod page {
+    use std::{io, thread::JoinHandle, time::Duration};
+
+    use js_sys::{Function, Promise};
+    use wasm_bindgen_futures::{JsFuture, spawn_local};
+
+    pub fn start<F: Future<Output = ()> + 'static>(
+        _: &str,
+        work: impl FnOnce() -> F + 'static,
+    ) -> io::Result<Option<JoinHandle<()>>> {
+        spawn_local(async move {
+            // The frame that asked for it is shown first.
+            pause(Duration::ZERO).await;
+            work().await;
+        });
+        Ok(None)
+    }
+
+    pub async fn pause(wait: Duration) {
+        let ms = i32::try_from(wait.as_millis()).unwrap_or(i32::MAX);
+        let mut begin = |resolve: Function, _: Function| {
+            if let Some(window) = web_sys::window() {
+                // Refused by no browser; the wait would then be endless.
+                let _ = window.set_timeout_with_callback_and_timeout_and_arguments_0(&resolve, ms);
+            }
+        };
+        let _ = JsFuture::from(Promise::new(&mut begin)).await;
+    }
+}
+
+/// What the future gives, or the panic that ended it.
+pub async fn caught<T>(work: impl Future<Output = T>) -> std::thread::Result<T> {
+    use std::{
+        future::poll_fn,
+        panic::{AssertUnwindSafe, catch_unwind},
+        pin::pin,
+        task::Poll,
+    };
+    let mut work = pin!(work);
+    poll_fn(
+        |context| match catch_unwind(AssertUnwindSafe(|| work.as_mut().poll(context))) {
+            Ok(Poll::Pending) => Poll::Pending,
+            Ok(Poll::Ready(done)) => Poll::Ready(Ok(done)),
+            Err(panic) => Poll::Ready(Err(panic)),
+        },
+    )
+    .await
+}
