@@ -68,11 +68,11 @@ class Pages(http.server.SimpleHTTPRequestHandler):
         pass
 
 
-def main(page_name="test.html"):
+def main(page_name="test.html", arguments=None):
     parser = argparse.ArgumentParser()
     parser.add_argument("--only", action="append", default=[])
     parser.add_argument("--kernels", type=pathlib.Path)
-    asked = parser.parse_args()
+    asked = parser.parse_args(arguments)
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")
     if chromium is None:
         print("web: no Chromium here; sh scripts/setup.sh --web installs it", file=sys.stderr)
