@@ -496,6 +496,7 @@ fn a_dropped_effect_is_enabled_and_a_model_that_changes_is_loaded_again() {
         times(lab, "The model was reloaded") == 1
     });
     assert!(!has_badge(&lab, "is faulty"));
+    settle(&mut lab);
     // The corner has come down to half its height.
     let wider = aspect(&mut lab) / before;
     assert!((1.7..2.3).contains(&wider), "wider by a factor of {wider}");
