@@ -444,8 +444,8 @@ impl Preset {
     }
 
     /// The points of `scene` that its automatic camera frames, before the scene's spin: of its clips
-    /// from their begin to their end and of its particles, and of a scene that spins from all
-    /// sides.
+    /// from their begin to their end and of its particles near them, and of a scene that spins from
+    /// all sides.
     pub fn framing_points(&self, scene: &Scene) -> Vec<DVec3> {
         let Motion { clip, other, .. } = self.motion(scene);
         let mut points = scene.framing_points(clip).to_vec();
@@ -453,7 +453,18 @@ impl Preset {
             points.extend(scene.framing_points(other).iter());
         }
         if let Some(particle_settings) = self.stack_on(scene, [1, 1]).particle_settings() {
-            points.extend(particle_settings.disc_bounds().corners());
+            // Particles may fly far, but the scene is what is looked at.
+            let mut near = Bounds::EMPTY;
+            points.iter().for_each(|point| near.include(*point));
+            let aside = 0.35 * near.radius();
+            let corners = particle_settings.disc_bounds().corners();
+            points.extend(corners.map(|corner| {
+                if near.is_empty() {
+                    corner
+                } else {
+                    corner.clamp(near.min - aside, near.max + aside)
+                }
+            }));
         }
         if self.spin_deg_per_s != 0.0 {
             points = turned_all_around(&points, DVec3::ZERO);

@@ -80,7 +80,9 @@ mod tests {
     #[test]
     fn the_brightest_white_face_is_light_and_not_clipped() {
         let mut light = stack();
-        ["shadow", "fog"].map(|name| light.disable(name));
+        for name in ["shadow", "fog"] {
+            light.disable(name);
+        }
         let brightest = (0..=32)
             .flat_map(|up| (0..64).map(move |around| (up, around)))
             .map(|(up, around)| {
