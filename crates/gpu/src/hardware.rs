@@ -1,7 +1,7 @@
 //! The hardware baseline: ordinary render pipelines that draw the same buffers, kept as a
 //! yardstick.
 
-use std::{ops::Range, sync::Arc};
+use std::ops::Range;
 
 use super::{
     attributes::AttributeLayout,
@@ -14,9 +14,7 @@ use super::{
     hardware_materials::HardwareMaterials,
     hardware_pipeline::{self, HardwarePipeline},
     meshlets::is_outside,
-    pipeline_store::Pipeline,
-    pipelines::{Pipelines, layout_entry},
-    recording::Resources,
+    pipelines::layout_entry,
     records::{DrawRecord, FrameUniform},
     resource_id::{BufferId, ResourceId},
     timer::Timer,
