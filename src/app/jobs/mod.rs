@@ -356,12 +356,14 @@ impl Jobs {
         });
     }
 
-    /// Fetches the golden of a preset of the gallery. A page has no thread for the oracle.
+    /// Fetches the golden of a preset of the gallery: a page has no thread for the oracle, which
+    /// draws the others.
     #[cfg(target_arch = "wasm32")]
-    pub fn thumbnail(&self, preset_file: PresetFile, _: [u32; 2]) {
+    pub fn thumbnail(&self, preset_file: PresetFile, size: [u32; 2]) {
         self.spawn_idle("thumbnail", async move || {
             let golden = page::golden(&preset_file.id).await;
-            Done::Thumbnail(preset_file.id, golden.ok())
+            let image = golden.ok().or_else(|| thumbnail(&preset_file, size));
+            Done::Thumbnail(preset_file.id, image)
         });
     }
 

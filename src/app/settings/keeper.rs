@@ -252,6 +252,7 @@ impl Drop for Keeper {
 /// Names of the files.
 const SETTINGS: &str = "settings.toml";
 const SESSION: &str = "session.toml";
+#[cfg(not(target_arch = "wasm32"))]
 const LOCK: &str = "session.lock";
 
 /// The size that the window had, by the settings of `folder`. What is wrong with them is said by
