@@ -32,6 +32,7 @@ fn tonemap_shown(color: vec3f, p: Tonemap) -> vec3f {
 // Khronos PBR Neutral.
 const TONEMAP_DIELECTRIC = 0.04;
 const TONEMAP_COMPRESSED_FROM = 0.76;
+const TONEMAP_COMPRESSED_ROOM = 0.24;
 const TONEMAP_DESATURATION = 0.15;
 
 fn tonemap_neutral(light: vec3f) -> vec3f {
@@ -40,7 +41,7 @@ fn tonemap_neutral(light: vec3f) -> vec3f {
     let color = light - offset;
     let peak = max(max(color.r, color.g), color.b);
     if peak < TONEMAP_COMPRESSED_FROM { return color; }
-    let room = 1.0 - TONEMAP_COMPRESSED_FROM;
+    let room = TONEMAP_COMPRESSED_ROOM;
     let new_peak = 1.0 - room * room / (peak + room - TONEMAP_COMPRESSED_FROM);
     let whiteness = 1.0 - 1.0 / (TONEMAP_DESATURATION * (peak - new_peak) + 1.0);
     return mix(color * (new_peak / peak), vec3f(new_peak), whiteness);
@@ -63,14 +64,13 @@ const TONEMAP_AGX_IN =
     mat3x3f(vec3f(0.85662715, 0.13731897, 0.11189821), vec3f(0.09512124, 0.76124199, 0.07679942), vec3f(0.04825161, 0.10143904, 0.81130237));
 const TONEMAP_AGX_OUT =
     mat3x3f(vec3f(1.12710058, -0.14132976, -0.14132976), vec3f(-0.11060664, 1.15782370, -0.11060664), vec3f(-0.01649394, -0.01649394, 1.25193641));
-// Stops that become black and white.
+// The binary logarithm of light that becomes black, and the stops from there to white.
 const TONEMAP_AGX_DARKEST = -12.47393;
-const TONEMAP_AGX_BRIGHTEST = 4.026069;
+const TONEMAP_AGX_STOPS = 16.5;
 
 fn tonemap_agx(light: vec3f) -> vec3f {
     let inset = max(TONEMAP_AGX_IN * (TONEMAP_REC2020_OF_SRGB * light), vec3f(1e-10));
-    let stops = log2(inset);
-    let x = clamp((stops - TONEMAP_AGX_DARKEST) / (TONEMAP_AGX_BRIGHTEST - TONEMAP_AGX_DARKEST), vec3f(0.0), vec3f(1.0));
+    let x = clamp((log2(inset) - TONEMAP_AGX_DARKEST) / TONEMAP_AGX_STOPS, vec3f(0.0), vec3f(1.0));
     let curved = (((((15.5 * x - 40.14) * x + 31.96) * x - 6.868) * x + 0.4298) * x + 0.1191) * x - 0.00232;
     return TONEMAP_SRGB_OF_REC2020 * pow(max(TONEMAP_AGX_OUT * curved, vec3f(0.0)), vec3f(2.2));
 }
