@@ -374,7 +374,8 @@ fn cost_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     pins_ui(ui, &state.session.preset().accuracy.pins.words());
 }
 
-/// A text at the left (`Min`) or right (`Max`) of a room of at least `width` points.
+/// A text at the left (`Min`) or right (`Max`) of a room of at least `width` points, in a narrow window
+/// of its own width.
 fn number_ui(ui: &mut Ui, width: f32, side: Align, text: RichText, hint: String) {
     let layout = if side == Align::Max {
         Layout::right_to_left(Align::Center)
@@ -388,7 +389,13 @@ fn number_ui(ui: &mut Ui, width: f32, side: Align, text: RichText, hint: String)
         f32::INFINITY,
         font,
     );
-    let width = width.max(galley.size().x);
+    // In a narrow window the name of the preset needs the room more.
+    let reserved = if ui.ctx().content_rect().width() < NARROW {
+        0.0
+    } else {
+        width
+    };
+    let width = reserved.max(galley.size().x);
     ui.allocate_ui_with_layout(vec2(width, theme::ROW), layout, |ui| {
         ui.set_min_width(width);
         ui.label(galley).on_hover_text(hint);
