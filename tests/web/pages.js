@@ -81,21 +81,26 @@ function seen(canvas) {
 export async function embed() {
   await page("embed", "?embed&preset=hero-walk", async ({ find, heard, frame }) => {
     const said = await Promise.race([heard, new Promise((resolve) => setTimeout(resolve, 120_000, "nothing"))]);
-    const canvas = find("#picture");
-    const first = seen(canvas);
-    const at = (type, clientX, clientY) => canvas.dispatchEvent(new frame.contentWindow.PointerEvent(type, { pointerId: 1, clientX, clientY, bubbles: true }));
+    const [canvas, window] = [find("#picture"), frame.contentWindow];
+    let shown = [];
+    canvas.addEventListener("shown", () => shown.push(seen(canvas)));
+    /** What `act` does shows another picture, more than a black one. */
+    const shows = async (act, what) => {
+      shown = [];
+      act();
+      await until(() => shown.some((sum) => sum > 255 * canvas.width * canvas.height), what);
+    };
+    const at = (type, clientX, clientY) => canvas.dispatchEvent(new window.PointerEvent(type, { pointerId: 1, clientX, clientY, bubbles: true }));
     canvas.setPointerCapture = () => {};
-    at("pointerdown", 100, 100);
-    at("pointermove", 220, 120);
-    at("pointerup", 220, 120);
-    await until(() => seen(canvas) !== first, "the picture turns");
-    const turned = seen(canvas);
-    canvas.dispatchEvent(new frame.contentWindow.WheelEvent("wheel", { deltaY: -100, bubbles: true, cancelable: true }));
-    await until(() => seen(canvas) !== turned, "it comes closer");
+    await shows(() => {
+      at("pointerdown", 100, 100);
+      at("pointermove", 220, 120);
+      at("pointerup", 220, 120);
+    }, "the picture turns");
+    await shows(() => canvas.dispatchEvent(new window.WheelEvent("wheel", { deltaY: -100, bubbles: true, cancelable: true })), "it comes closer");
     const play = find("#play");
-    const closer = seen(canvas);
-    frame.contentWindow.dispatchEvent(new frame.contentWindow.KeyboardEvent("keydown", { key: " ", bubbles: true, cancelable: true }));
-    await until(() => seen(canvas) !== closer, "it plays");
+    await shows(() => window.dispatchEvent(new window.KeyboardEvent("keydown", { key: " ", bubbles: true, cancelable: true })), "it plays");
+    await until(() => new Set(shown).size > 2, "it shows one frame after another");
     const names = play.getAttribute("aria-label");
     play.click();
     return [said !== "rasterlab shows a picture" && `it says ${said}`, names !== "Pause" && `the button says ${names}`, play.getAttribute("aria-label") !== "Play" && "it goes on"];

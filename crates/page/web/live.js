@@ -26,6 +26,8 @@ export async function alive(page, preset, canvas, trouble) {
     isWanted = false;
     const began = performance.now();
     await live.show(preset);
+    // Until the browser takes the frame, the canvas can be read.
+    canvas.dispatchEvent(new Event("shown"));
     const ms = performance.now() - began;
     if (before && ms > SLOW_MS && scale > 0.25) {
       scale *= 0.7;
