@@ -68,9 +68,9 @@ begin() {
     step="$1"
 }
 
-# Waits until a command succeeds, at most so many seconds; then the picture of the step is taken.
+# Waits until a command succeeds, at most so many seconds at the usual pace; then the picture of the step is taken.
 until_true() {
-    patience="$1"
+    patience="$(awk "BEGIN { print int($1 * ${PACE:-1} + 0.5) }")"
     shift
     tries=$((patience * 4))
     while ! "$@" > /dev/null 2>&1; do
@@ -320,7 +320,7 @@ key m
 sleep 1
 click 54 $((height - 346))
 # It waits while the pointer moves, so nothing is done until it ends.
-until_true 240 log_has "Trade: combinations measured: "
+until_true 480 log_has "Trade: combinations measured: "
 done_step
 
 if grep "^error: " "$log"; then

@@ -25,7 +25,7 @@ wasm_bindgen="$target/web/bin/wasm-bindgen"
 rm -rf dist
 mkdir -p dist/presets dist/goldens
 for module in page window; do
-    "$wasm_bindgen" --target web --no-typescript --out-dir dist "$target/wasm32-unknown-unknown/web/rasterlab_$module.wasm"
+    "$wasm_bindgen" --target web --no-typescript --remove-name-section --remove-producers-section --out-dir dist "$target/wasm32-unknown-unknown/web/rasterlab_$module.wasm"
     wasm="dist/rasterlab_${module}_bg.wasm"
     # --fast-math would change what the oracle computes.
     if command -v wasm-opt > /dev/null; then

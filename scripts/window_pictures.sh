@@ -17,6 +17,7 @@ if [ "${WINDOW_PICTURES:-}" != inside ]; then
         exec xvfb-run -a -s "-screen 0 1400x860x24 -noreset" sh "$0" "${1:-docs/images}"
 fi
 
+mkdir -p "$1"
 pictures="$1"
 work="$(mktemp -d)"
 export XDG_CONFIG_HOME="$work"
@@ -61,8 +62,7 @@ nap 15
 shot window 1400x860
 stop
 
-start 1200 760
-key space
+start 1200 760 hero-day
 shot guide-start 1200x760
 click 120 92   # the search of the presets
 write cel

@@ -133,7 +133,8 @@ fn shade_begin(id: u32) {
 fn draw_smooth_normal(draw: u32, a: vec4f, b: vec4f, c: vec4f, weights: vec3f) -> vec3f {
     let flags = draws[draw].flags;
     if (flags & DRAW_FACETED) != 0u { return vec3f(0.0); }
-    if (flags & DRAW_UNEVEN) != 0u {
+    // Equal corners, as on boxes, need one transform and not four.
+    if (flags & DRAW_UNEVEN) != 0u && (any(a.xyz != b.xyz) || any(a.xyz != c.xyz)) {
         return normal_direction(normal_interpolated(draw_even_normal(draw, a), draw_even_normal(draw, b), draw_even_normal(draw, c), weights));
     }
     return normal_direction((draws[draw].normal_from_object * vec4f(normal_interpolated(a, b, c, weights), 0.0)).xyz);

@@ -5,8 +5,7 @@
 //@ declare fn vertex_effects_clip(draw: u32, vertex: u32, id: u32, p: vec3f) -> vec4f
 // The same of a vertex that was not rejected.
 //@ declare fn vertex_effects_clip_of(draw: u32, vertex: u32, id: u32) -> vec4f
-// The same of the corners of a triangle, `at`: its vertices within its draw. A loop, because compilers inline the vertex effects
-// wherever they are called. It fills no array: NVIDIA's driver 580.159 loses members of array elements that a loop writes.
+// The same of the corners of a triangle, `at`: its vertices within its draw.
 //@ declare fn vertex_effects_triangle(draw: u32, at: vec3u, id: u32) -> mat3x4f
 // Before samples of a triangle are shaded: computes what they share.
 //@ declare fn vertex_effects_begin(id: u32, draw: u32, at: vec3u)
@@ -23,15 +22,7 @@ fn vertex_effects_clip(draw: u32, vertex: u32, id: u32, p: vec3f) -> vec4f {
 }
 
 fn vertex_effects_triangle(draw: u32, at: vec3u, id: u32) -> mat3x4f {
-    var a: vec4f;
-    var b: vec4f;
-    var c: vec4f;
-    for (var i = 0u; i < 3u; i += 1u) {
-        let vertex = select(select(at.z, at.y, i == 1u), at.x, i == 0u);
-        let corner = vertex_effects_clip_of(draw, vertex, id);
-        if i == 0u { a = corner; } else if i == 1u { b = corner; } else { c = corner; }
-    }
-    return mat3x4f(a, b, c);
+    return mat3x4f(vertex_effects_clip_of(draw, at.x, id), vertex_effects_clip_of(draw, at.y, id), vertex_effects_clip_of(draw, at.z, id));
 }
 
 fn vertex_effects_clip_of(draw: u32, vertex: u32, id: u32) -> vec4f {
@@ -78,6 +69,8 @@ fn vertex_effects_clip(draw: u32, vertex: u32, id: u32, p: vec3f) -> vec4f {
     return vec4f(clip.xy, max(clip.z, 0.0), clip.w);
 }
 
+// A loop, because compilers inline the vertex effects wherever they are called. It fills no array: NVIDIA's driver 580.159 loses
+// members of array elements that a loop writes.
 fn vertex_effects_triangle(draw: u32, at: vec3u, id: u32) -> mat3x4f {
     var a: vec4f;
     var b: vec4f;

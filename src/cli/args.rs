@@ -198,6 +198,10 @@ pub enum Command {
     Check(Check),
     /// Write a commented effect file to begin with
     NewEffect(NewEffect),
+    /// Print the link under which a page draws a preset, with the bits that its picture must have
+    Link(Link),
+    /// Write a web page with the picture of a preset, alive where the browser has WebGPU
+    Page(Page),
     /// Print a completion script
     Completions { shell: clap_complete::Shell },
     /// Print the manual page, or write it and those of all commands into a folder
@@ -217,6 +221,8 @@ impl Command {
                 | Self::Explain(_)
                 | Self::Parts(_)
                 | Self::Bench(_)
+                | Self::Link(_)
+                | Self::Page(_)
         )
     }
 
@@ -238,6 +244,8 @@ impl Command {
             Self::Gallery(_) => "gallery",
             Self::Check(_) => "check",
             Self::NewEffect(_) => "new-effect",
+            Self::Link(_) => "link",
+            Self::Page(_) => "page",
             Self::Completions { .. } => "completions",
             Self::Man { .. } => "man",
         }
@@ -256,6 +264,33 @@ pub struct NewEffect {
     #[arg(long, value_name = "EFFECT", conflicts_with = "hook")]
     pub from: Option<String>,
 }
+
+#[derive(Args, Debug)]
+pub struct Link {
+    #[arg(value_name = "PRESET")]
+    pub input: String,
+    /// Address of the page (docs/web.md)
+    #[arg(long, value_name = "URL", default_value = PAGE)]
+    pub page: String,
+}
+
+#[derive(Args, Debug)]
+pub struct Page {
+    #[arg(value_name = "PRESET")]
+    pub input: String,
+    /// File to write
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Address of the page that shows the picture alive (docs/web.md)
+    #[arg(long, value_name = "URL", default_value = PAGE)]
+    pub page: String,
+    /// Size in pixels, e.g. 1920x1080
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+}
+
+/// Where `sh scripts/web.sh --serve` serves the page.
+const PAGE: &str = "http://localhost:8000/";
 
 #[derive(Args, Debug)]
 pub struct Gallery {

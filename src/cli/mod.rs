@@ -19,12 +19,14 @@ mod finding;
 mod fuzz;
 pub mod gallery;
 pub mod golden;
+mod link;
 mod list;
 mod loading;
 mod man;
 mod measured;
 mod new_effect;
 mod open;
+mod page;
 mod parts;
 mod render;
 mod report;
@@ -86,7 +88,7 @@ pub fn run(cli: &Cli) -> Result<Exit, CliError> {
     };
     if cli.common.preset.is_some() && !command.takes_look() {
         return Err(CliError::usage(format!(
-            "--preset has no meaning for {}; it puts a look on the scene that render, sequence, verify, compare, explain, parts, bench or the \
+            "--preset has no meaning for {}; it puts a look on the scene that render, sequence, verify, compare, explain, parts, bench, link, page or the \
              window shows",
             command.name()
         )));
@@ -130,6 +132,8 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
         Command::Gallery(args) => gallery::run(args, streams),
         Command::Check(args) => check::run(common, args, streams),
         Command::NewEffect(args) => new_effect::run(common, args, streams),
+        Command::Link(args) => link::run(common, args, streams),
+        Command::Page(args) => page::run(common, args, streams),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(*shell, &mut Cli::command(), "rasterlab", &mut script);

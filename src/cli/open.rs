@@ -75,8 +75,8 @@ pub fn read(common: &Common, what: &str) -> Result<PresetFile, CliError> {
     })
 }
 
-/// Puts a look on the scene of `own`. The boxes of both scenes are found only if the look has
-/// lengths.
+/// Puts a look on the scene of `own`. Both scenes are read only if the look has lengths, that of
+/// `own` also if it has effects on parts.
 ///
 /// # Errors
 /// One of the scenes cannot be read; with `--strict` also what the look had to leave out.
@@ -86,9 +86,16 @@ pub fn land(common: &Common, look: &PresetFile, own: &PresetFile) -> Result<Pres
             preset_file::scene_bounds(&preset_file.preset.scene, preset_file.path.as_deref());
         bounds.map_err(|error| CliError::from(error).during(format!("preset {}", preset_file.id)))
     };
+    let own_scene = || {
+        preset_file::load_scene(&own.preset, own.path.as_deref())
+            .map_err(|error| CliError::from(error).during(format!("preset {}", own.id)))
+    };
     let is_measurable = look.outside_model.is_none();
+    let mut scene = None;
     let fit = if look.needs_fit() && is_measurable {
-        look.fit_to(own, [&bounds(look)?, &bounds(own)?])
+        let own_scene = &**scene.insert(own_scene()?);
+        let boxes = [&bounds(look)?, &own_scene.content_bounds()];
+        look.fit_to(own, boxes, Some(own_scene))
     } else {
         None
     };
@@ -101,8 +108,10 @@ pub fn land(common: &Common, look: &PresetFile, own: &PresetFile) -> Result<Pres
     }
     let is_limited = |enabled: &EnabledEffect| !enabled.on.is_whole_scene();
     if landed.preset.stack.0.iter().any(is_limited) {
-        let scene = preset_file::load_scene(&own.preset, own.path.as_deref())
-            .map_err(|error| CliError::from(error).during(format!("preset {}", own.id)))?;
+        let scene = match scene {
+            Some(scene) => scene,
+            None => own_scene()?,
+        };
         landed.map_missing_parts(&scene);
     }
     if common.strict && !landed.warnings.is_empty() {

@@ -2,6 +2,9 @@
 //! and validates, with 64-bit atomics only where an option asks for them, within eight storage
 //! buffers, and is translated for Vulkan, Direct3D 12 and Metal; every file names only what it and the files that it uses declare; and few files must be
 //! opened to read a pass. Needs no adapter.
+//!
+//! With `RASTERLAB_LINKED=FOLDER` every linked text that a browser may be given is also written there:
+//! `tests/web/run.py --kernels FOLDER` has the browser's own compiler read them.
 
 use std::{
     collections::BTreeMap,
@@ -16,7 +19,7 @@ use rasterlab::{
         draw_order::Mode,
         hooks::{Shape, Slot},
     },
-    host,
+    host, preset_file,
     shader::{
         Fetch, KernelKey, Pass,
         backends::translate,
@@ -87,6 +90,15 @@ fn translates(linked: &Linked, reflected: &Reflected, constants: &[(&str, f64)],
     };
     let reflected = reflect::reflect(&specialized, int64).unwrap_or_else(|error| panic!("{error}"));
     assert!(reflected.module.overrides.is_empty());
+    // No browser has 64-bit words.
+    if let Some(folder) = std::env::var_os("RASTERLAB_LINKED").filter(|_| !int64) {
+        let folder = std::path::PathBuf::from(folder);
+        let hash = preset_file::Fnv::new().bytes(specialized.text.as_bytes());
+        let name = format!("{}.wgsl", preset_file::hex(hash));
+        std::fs::create_dir_all(&folder)
+            .and_then(|()| std::fs::write(folder.join(name), &specialized.text))
+            .expect("the folder takes files");
+    }
     if let Err(error) = translate(&reflected.module, &reflected.info) {
         panic!("{error}\n{}", specialized.text);
     }

@@ -30,10 +30,7 @@ fn the_slider_chooses_a_tier_beside_its_cost_and_error() {
         lab.query_all_by_label_contains("≤ 0 ppm, Δ ≤ 0").count() > 0,
         "what the precise tier may err by"
     );
-    assert!(
-        lab.query_by_label_contains("error not measured (V)")
-            .is_some()
-    );
+    assert!(lab.query_by_label_contains("– wrong pixels (V)").is_some());
     click(&mut lab, Role::Button, "Verify");
     assert!(
         lab.query_all_by_label_contains(" 0 ppm, ").count() > 0,

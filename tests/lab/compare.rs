@@ -32,7 +32,7 @@ fn the_wipe_shows_the_reference_on_its_left_and_is_dragged() {
         differing(&alone, &wiped)
     );
     assert_eq!(
-        lab.query_all_by_label("error not measured").count(),
+        lab.query_all_by_label("– wrong pixels").count(),
         3,
         "in the bar and under both sides"
     );
@@ -102,7 +102,7 @@ fn a_key_flips_between_a_and_b_and_both_sides_are_measured() {
     assert!(middle(&mut lab) == a);
     press(&mut lab, Modifiers::SHIFT, Key::Backslash);
     press(&mut lab, Modifiers::NONE, Key::V);
-    assert_eq!(lab.query_all_by_label("error not measured").count(), 0);
+    assert_eq!(lab.query_all_by_label("– wrong pixels").count(), 0);
     assert!(
         lab.query_all_by_label_contains("no wrong pixel").count() >= 3,
         "in the bar and under both sides"

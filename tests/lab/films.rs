@@ -111,7 +111,7 @@ fn the_next_film_begins_as_the_last_one_was_exported_also_after_a_new_start() {
     };
     press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::E);
     assert!(
-        lab.query_by_label_contains("2 frames, 0.50 s: mine")
+        lab.query_by_label("2 frames, 0.50 s: mine-film_0000.png to mine-film_0001.png")
             .is_some(),
         "range, rate or format is another"
     );
@@ -328,7 +328,7 @@ fn frames_are_kept_after_a_cancel_that_takes_effect_at_once() {
     lab.get_by_role_and_label(Role::Button, "Cancel").click();
     lab.run_steps(3);
     assert!(
-        shows(&lab, "Stopped.") && is_open(&lab),
+        shows(&lab, "Stopped. Frames kept") && is_open(&lab),
         "the dialog is there again"
     );
     settle(&mut lab);
@@ -351,6 +351,45 @@ fn frames_are_kept_after_a_cancel_that_takes_effect_at_once() {
     {
         preset_file::png_pixels(path).unwrap_or_else(|error| panic!("{error}"));
     }
+}
+
+#[test]
+fn nothing_plays_behind_a_film_and_a_canceled_animation_promises_no_frames() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab_of(folder.path(), SECOND) else {
+        return;
+    };
+    open_dialog(&mut lab, "Animated PNG", &folder.path().join("out"), "240");
+    lab.get_by_role_and_label(Role::Button, "Close").click();
+    lab.run_steps(3);
+    lab.key_press(Key::Space);
+    lab.run_steps(5);
+    press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::E);
+    let playing_s = lab.state().shown_time_s();
+    lab.get_by_role_and_label(Role::Button, "Export film")
+        .click();
+    // The pictures that were asked for before still come.
+    let patience = Instant::now() + Duration::from_secs(120);
+    while !shows(&lab, " left") {
+        lab.step();
+        assert!(Instant::now() < patience, "{}", lab.state().log_text());
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let before = (lab.state().shown_time_s(), lab.state().draws());
+    assert!(before.0 > 0.0 || playing_s > 0.0, "it does not play");
+    lab.run_steps(20);
+    assert!(shows(&lab, "Cancel"), "the film is done: it proves nothing");
+    assert_eq!((lab.state().shown_time_s(), lab.state().draws()), before);
+    lab.get_by_role_and_label(Role::Button, "Cancel").click();
+    lab.run_steps(3);
+    assert!(shows(&lab, "Stopped. No file was written") && !shows(&lab, "Frames kept"));
+    let after_s = lab.state().shown_time_s();
+    let patience = Instant::now() + Duration::from_secs(120);
+    while lab.state().shown_time_s() == after_s {
+        lab.step();
+        assert!(Instant::now() < patience, "it does not play on");
+    }
+    assert_eq!(files_in(folder.path()).len(), 0);
 }
 
 #[test]

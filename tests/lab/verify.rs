@@ -15,7 +15,7 @@ fn verify_measures_the_picture_and_a_change_makes_the_result_stale() {
     let Some(mut lab) = lab("facet-sweep") else {
         return;
     };
-    assert!(lab.query_by_label("error not measured").is_some());
+    assert!(lab.query_by_label("– wrong pixels").is_some());
     click(&mut lab, Role::Button, "Verify");
     let accuracy = lab
         .state()

@@ -1,9 +1,16 @@
 #!/usr/bin/env python3
-"""Promise: in a page of Chromium the kernels draw the presets as the oracle judges them, and the oracle's pictures are the goldens.
+"""Promise: in a page of Chromium the kernels draw the presets as the oracle judges them, the oracle's pictures are the goldens, and links,
+embed, scoreboard and troubles say what docs/web.md says.
 
-Serves dist/ (sh scripts/web.sh) and tests/web/test.html to headless Chromium on SwiftShader, and prints what the page reports. Fails if a
-report names a fault, or if none comes for five minutes."""
+Serves dist/ (sh scripts/web.sh) and tests/web to headless Chromium on SwiftShader, and prints what the page reports. Fails if a report
+names a fault, or if none comes for five minutes.
 
+  tests/web/run.py                    everything
+  tests/web/run.py --only NAME        one function of tests/web/*.js; may be given several times
+  tests/web/run.py --kernels FOLDER   also has the browser's compiler read the kernels there:
+                                      RASTERLAB_LINKED=FOLDER cargo test --release --test house shaders::"""
+
+import argparse
 import functools
 import http.server
 import json
@@ -14,6 +21,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import urllib.parse
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PATIENCE_S = 300
@@ -22,17 +30,33 @@ FLAGS = """--headless --no-sandbox --enable-unsafe-webgpu --enable-features=Vulk
 --enable-unsafe-swiftshader --ignore-gpu-blocklist --enable-gpu --disable-quic --disable-background-networking --disable-component-update
 --disable-sync --no-first-run""".split()
 BESIDE_DIST = {"/test.html": ROOT / "tests/web/test.html", "/strict_hashes.txt": ROOT / "tests/strict_hashes.txt"}
+PRESETS_WITH_GOLDENS = sorted(file.stem for file in (ROOT / "presets").glob("*.toml") if (ROOT / f"tests/snapshots/{file.stem}.png").exists())
 
 
 class Pages(http.server.SimpleHTTPRequestHandler):
     """The files of dist/, the test's page, and a place for its reports."""
 
-    def __init__(self, *arguments, reports, **names):
-        self.reports = reports
+    def __init__(self, *arguments, reports, kernels, **names):
+        self.reports, self.kernels = reports, kernels
         super().__init__(*arguments, directory=ROOT / "dist", **names)
 
     def translate_path(self, path):
-        return str(BESIDE_DIST.get(path) or super().translate_path(path))
+        folder, _, name = path.rpartition("/")
+        if folder == "/tests" and name:
+            return str(ROOT / "tests/web" / name)
+        if folder == "/kernels" and self.kernels:
+            return str(self.kernels / name)
+        return str(BESIDE_DIST.get(path.partition("?")[0]) or super().translate_path(path))
+
+    def do_GET(self):
+        lists = {"/presets.json": PRESETS_WITH_GOLDENS, "/kernels.json": self.kernels and sorted(file.name for file in self.kernels.glob("*.wgsl"))}
+        if self.path not in lists:
+            return super().do_GET()
+        body = json.dumps(lists[self.path]).encode()
+        self.send_response(200)
+        self.send_header("Content-Length", str(len(body)))
+        self.end_headers()
+        self.wfile.write(body)
 
     def do_POST(self):
         length = int(self.headers["Content-Length"])
@@ -44,15 +68,19 @@ class Pages(http.server.SimpleHTTPRequestHandler):
         pass
 
 
-def main(page_name="test.html"):
+def main(page_name="test.html", arguments=None):
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--only", action="append", default=[])
+    parser.add_argument("--kernels", type=pathlib.Path)
+    asked = parser.parse_args(arguments)
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")
     if chromium is None:
         print("web: no Chromium here; sh scripts/setup.sh --web installs it", file=sys.stderr)
         return 2
     reports = queue.Queue()
-    server = http.server.ThreadingHTTPServer(("localhost", 0), functools.partial(Pages, reports=reports))
+    server = http.server.ThreadingHTTPServer(("localhost", 0), functools.partial(Pages, reports=reports, kernels=asked.kernels))
     threading.Thread(target=server.serve_forever, daemon=True).start()
-    page = f"http://localhost:{server.server_port}/{page_name}"
+    page = f"http://localhost:{server.server_port}/{page_name}?" + urllib.parse.urlencode({"only": asked.only}, doseq=True)
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         browser = subprocess.Popen(
             [chromium, *FLAGS, f"--user-data-dir={profile}", page], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL

@@ -27,4 +27,4 @@ if __name__ == "__main__":
     run.BESIDE_DIST["/window_test.html"] = run.ROOT / "tests/web/window_test.html"
     run.Pages = Pages
     run.FLAGS.append("--window-size=1280,800")
-    sys.exit(run.main("window_test.html"))
+    sys.exit(run.main("window_test.html", []))

@@ -1,7 +1,7 @@
 //! The hardware baseline: ordinary render pipelines that draw the same buffers, kept as a
 //! yardstick.
 
-use std::{ops::Range, sync::Arc};
+use std::ops::Range;
 
 use super::{
     attributes::AttributeLayout,
@@ -9,14 +9,12 @@ use super::{
     deforms::{Deforms, deformed_ranges},
     device::Gpu,
     error::RenderError,
-    frame_layout::folded,
+    hardware_deform::DeformPass,
     hardware_geometry::{COMPONENTS, Fetched, HardwareGeometry, STREAMS},
     hardware_materials::HardwareMaterials,
     hardware_pipeline::{self, HardwarePipeline},
     meshlets::is_outside,
-    pipeline_store::Pipeline,
-    pipelines::{Pipelines, layout_entry},
-    recording::Resources,
+    pipelines::layout_entry,
     records::{DrawRecord, FrameUniform},
     resource_id::{BufferId, ResourceId},
     timer::Timer,
@@ -69,13 +67,6 @@ struct Call {
     instances: Range<u32>,
 }
 
-/// The kernel that bends meshes, which our own frames run too.
-struct DeformPass {
-    pipeline: Arc<Pipeline>,
-    group: wgpu::BindGroup,
-    groups: [u32; 2],
-}
-
 /// The exhibit, set up for one scene and view.
 pub struct Hardware {
     size: [u32; 2],
@@ -86,6 +77,9 @@ pub struct Hardware {
     group: wgpu::BindGroup,
     materials: Option<HardwareMaterials>,
     calls: Vec<Call>,
+    /// The first triangle of every draw, in the order of the calls.
+    order: Vec<u32>,
+    deform_count: u32,
     color: wgpu::Texture,
     depth: wgpu::Texture,
 }
@@ -160,14 +154,54 @@ impl Hardware {
             group,
             materials,
             calls,
+            order: draws.iter().map(|draw| draw.first_triangle).collect(),
+            deform_count: counts.deform_count,
             color,
             depth,
         }))
     }
 
+    /// Looks at the same scene, with the same stack, from elsewhere; the size stays.
+    ///
+    /// # Errors
+    /// When a transform of the scene is out of range.
+    pub async fn look(
+        &self,
+        gpu: &Gpu,
+        scene: &Scene,
+        view: &View,
+        stack: &Stack,
+    ) -> Result<(), RenderError> {
+        let mut draws = stack.draws(scene, view)?;
+        draws.sort_by_cached_key(|draw| {
+            let is_it = |first: &u32| *first == draw.first_triangle;
+            self.order.iter().position(is_it)
+        });
+        let attributes = AttributeLayout::new(scene, None);
+        let records: Vec<DrawRecord> = draws
+            .iter()
+            .map(|draw| DrawRecord::new(draw, scene, &attributes))
+            .collect();
+        let frame = FrameUniform {
+            draw_count: draws.len() as u32,
+            deform_count: self.deform_count,
+            ..FrameUniform::of_view(view)
+        };
+        let frame = bytemuck::bytes_of(&frame);
+        let buffers = &self.buffers;
+        buffers.write_at(gpu, BufferId::Frame, 0, frame).await?;
+        let records = bytemuck::cast_slice(&records);
+        buffers.write_at(gpu, BufferId::Draws, 0, records).await
+    }
+
     /// Number of draw calls in a frame.
     pub fn call_count(&self) -> usize {
         self.calls.len()
+    }
+
+    /// What it draws into: gamma-encoded bytes, which may be copied from.
+    pub fn texture(&self) -> &wgpu::Texture {
+        &self.color
     }
 
     /// Records one frame.
@@ -417,61 +451,6 @@ fn calls(
         }
     }
     calls
-}
-
-impl DeformPass {
-    async fn new(
-        gpu: &Gpu,
-        key: &KernelKey,
-        buffers: &mut Buffers,
-        deforms: &Deforms,
-        deformable: u32,
-    ) -> Result<Self, RenderError> {
-        buffers
-            .fill(
-                gpu,
-                BufferId::Deforms,
-                bytemuck::cast_slice(&deforms.records),
-            )
-            .await?;
-        buffers
-            .fill(gpu, BufferId::Joints, bytemuck::cast_slice(&deforms.joints))
-            .await?;
-        buffers
-            .fill(
-                gpu,
-                BufferId::MorphTargets,
-                bytemuck::cast_slice(&deforms.morph_targets),
-            )
-            .await?;
-        let pipeline = Pipelines::new(Library::of_process())
-            .get(gpu, key, Pass::Skin)
-            .await?;
-        let group = Resources {
-            buffers: vec![buffers],
-            textures: Vec::new(),
-            light: None,
-        }
-        .bind_group(gpu, &pipeline)?;
-        Ok(Self {
-            pipeline,
-            group,
-            groups: folded(deformable.div_ceil(key.work.group_size)),
-        })
-    }
-
-    fn record(&self, encoder: &mut wgpu::CommandEncoder, timer: Option<&mut Timer>) {
-        let label = &self.pipeline.label;
-        let timestamp_writes = timer.and_then(|timer| timer.compute(label, false));
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some(label),
-            timestamp_writes,
-        });
-        pass.set_pipeline(&self.pipeline.pipeline);
-        pass.set_bind_group(0, &self.group, &[]);
-        let [x, y] = self.groups;
-        pass.dispatch_workgroups(x, y, 1);
-    }
 }
 
 /// The pipelines of all recipes, and what all of them bind.

@@ -18,6 +18,9 @@ pub mod device_memory;
 
 mod completion;
 
+#[cfg(target_arch = "wasm32")]
+pub mod canvas;
+
 pub mod buffers;
 mod textures;
 pub mod timer;
@@ -51,6 +54,7 @@ mod pass_purpose;
 mod shadow_pass;
 
 mod explain;
+mod hardware_deform;
 mod hardware_geometry;
 mod hardware_materials;
 mod hardware_pipeline;
@@ -70,6 +74,7 @@ pub mod frame_times;
 pub use buffers::BufferNote;
 pub use capture::Capture;
 pub use compile_watch::CompileWatch;
+pub use completion::idle;
 pub use device::Gpu;
 pub use error::RenderError;
 pub use explain::{Explanation, SizesNote};

@@ -408,7 +408,9 @@ impl Renderer {
                     sample_count: 1,
                     dimension: wgpu::TextureDimension::D2,
                     format: wgpu::TextureFormat::Rgba8Unorm,
-                    usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING,
+                    usage: wgpu::TextureUsages::COPY_DST
+                        | wgpu::TextureUsages::COPY_SRC
+                        | wgpu::TextureUsages::TEXTURE_BINDING,
                     view_formats: &[],
                 });
             self.device.gpu.prepared.count(Preparation::Texture);
@@ -448,6 +450,13 @@ impl Renderer {
         self.presentation
             .as_ref()
             .map(|presentation| &presentation.view)
+    }
+
+    /// The texture of [`Self::texture_view`], which may be copied from.
+    pub fn texture(&self) -> Option<&wgpu::Texture> {
+        self.presentation
+            .as_ref()
+            .map(|presentation| &presentation.texture)
     }
 
     /// The pixels of the finished picture, row by row, as many as the view had. None before the

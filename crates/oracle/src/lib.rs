@@ -44,7 +44,7 @@ pub use render::{
     dots::{dot_records, dot_strengths},
     draw_order::limited,
     particles,
-    picture::{render, render_next, render_sequence, strict_frame},
+    picture::{render, render_next, render_rows, render_sequence, strict_frame},
     project::project,
     references::{
         finest_bits, project_finest, references, render_finest, render_reference, render_scaled,

@@ -1,19 +1,30 @@
-//! rasterlab in a web page. [`Page`] draws presets on the page's device; [`OraclePicture`] is the
-//! oracle's, drawn in a worker, which has an instance of the module for itself. Both take the text
+//! rasterlab in a web page. [`Page`] draws presets on the page's device, [`Live`]
+//! shows them on a canvas; [`oracle_rows`] are the oracle's, drawn in a worker, which has an instance
+//! of the module for itself. Both take the text
 //! of a preset and give plain arrays, so that the page needs no other library.
 
 #![cfg(target_arch = "wasm32")]
 
+mod live;
 mod open_preset;
 mod page;
 
 use wasm_bindgen::prelude::wasm_bindgen;
 
-pub use open_preset::{OpenPreset, OraclePicture, oracle_picture};
+pub use live::Live;
+pub use open_preset::{OpenPreset, can_share_rows, oracle_bits, oracle_rows};
 pub use page::{Page, Picture};
 
-/// Panics name their words and place on the console.
+/// The words and place of a panic go to the console, and to `rasterlabPanic` of the page, which shows
+/// them.
 #[wasm_bindgen(start)]
 pub fn start() {
-    console_error_panic_hook::set_once();
+    std::panic::set_hook(Box::new(|panic| {
+        console_error_panic_hook::hook(panic);
+        let _ = js_sys::Reflect::set(
+            &js_sys::global(),
+            &"rasterlabPanic".into(),
+            &panic.to_string().into(),
+        );
+    }));
 }

@@ -1,16 +1,21 @@
-//! An open preset: its text, its scene, and what the oracle makes of it.
+//! An open preset: its text, its scene, and the camera and time that a visitor gives it.
 
 use std::sync::Arc;
 
 use rasterlab_files::preset_file::{self, PresetFile};
 use rasterlab_model::{
-    accuracy::{AccuracyRequest, DepthFormat, PinnedOptions, VertexTransform, Visibility},
+    accuracy::AccuracyRequest,
+    effects::Stack,
+    math::fnv1a,
     measure::compare,
     preset::Preset,
-    scene::{Scene, builtin},
+    scene::{Scene, builtin, view::View},
 };
 use rasterlab_oracle as oracle;
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
+
+/// How close to a pole the camera of a visitor comes, as the sine of its elevation.
+const HIGHEST: f64 = 0.995;
 
 /// A preset and its scene.
 #[wasm_bindgen]
@@ -42,25 +47,55 @@ impl OpenPreset {
     /// No such scene.
     pub fn strict(query: &str) -> Result<OpenPreset, JsError> {
         let mut file = preset_file::parse("schema = 2", query)?;
-        let pins = PinnedOptions::of(Visibility::Split32)
-            .with(VertexTransform::Strict)
-            .with(DepthFormat::Integer);
         let size = [320, 240];
         let scene = Arc::new(builtin::build(query)?);
         file.preset = Preset {
-            accuracy: AccuracyRequest {
-                pins,
-                ..AccuracyRequest::default()
-            },
+            accuracy: AccuracyRequest::portable_bits(),
             ..Preset::of_sphere(&scene, size)
         };
         file.preset.output.size = size;
         Ok(Self { file, scene })
     }
 
+    /// The same preset, drawn so that its triangle ids and depth keys are the same bits everywhere.
+    pub fn in_portable_bits(&self) -> OpenPreset {
+        let mut file = self.file.clone();
+        file.preset.accuracy = AccuracyRequest::portable_bits();
+        Self {
+            file,
+            scene: self.scene.clone(),
+        }
+    }
+
     /// The name that is shown.
     pub fn name(&self) -> String {
         self.file.preset.name.clone()
+    }
+
+    /// The code that it brings: the text of every effect that came inside it, which nobody here has
+    /// seen yet; empty if there is none.
+    pub fn brought_code(&self) -> String {
+        let is_brought = |stem: &String| self.file.brought_effects.contains(stem);
+        let effects = self.file.preset.stack.0.iter();
+        effects
+            .filter_map(|enabled| enabled.effect.source.as_ref())
+            .filter(|source| is_brought(&source.stem))
+            .map(|source| format!("// {}.wgsl\n{}", source.stem, source.written))
+            .collect::<Vec<_>>()
+            .join("\n")
+    }
+
+    /// The text of a file that holds it.
+    pub fn text(&self) -> String {
+        preset_file::to_shared_toml(&self.file)
+    }
+
+    /// Changes one value, for instance `accuracy.depth`.
+    ///
+    /// # Errors
+    /// One sentence on what is wrong with the path or the value.
+    pub fn set(&mut self, path: &str, value: &str) -> Result<(), JsError> {
+        Ok(preset_file::set(&mut self.file, path, value)?)
     }
 
     /// The colors of a golden: the RGBA of a PNG.
@@ -94,9 +129,46 @@ impl OpenPreset {
         self.file.preset.output.size.to_vec()
     }
 
-    /// Draws it at another size from now on, pixels.
+    /// Draws it at another size from now on, pixels; lengths in pixels grow and shrink with it.
     pub fn resize(&mut self, width: u32, height: u32) {
-        self.file.preset.output.size = [width, height];
+        self.file.preset.output.resize([width, height]);
+    }
+
+    /// Does its picture depend on the time?
+    pub fn is_moving(&self) -> bool {
+        self.file.preset.is_moving()
+    }
+
+    /// Lets so many seconds of playback pass. Returns false at the end of a range that does not
+    /// start again.
+    pub fn play(&mut self, passed_s: f64) -> bool {
+        let clock = &mut self.file.preset.clock;
+        let (time_s, goes_on) = clock.after(clock.time_s, passed_s);
+        clock.time_s = time_s;
+        goes_on
+    }
+
+    /// Moves the eye around what the camera looks at, by angles in degrees, and to `closer` times
+    /// its distance.
+    pub fn orbit(&mut self, aside_deg: f64, up_deg: f64, closer: f64) {
+        let [width, height] = self.file.preset.output.size;
+        let aspect = f64::from(width.max(1)) / f64::from(height.max(1));
+        let mut preset = self.file.preset.in_meters(&self.scene).into_owned();
+        let mut camera = preset.camera_for(&self.scene, aspect);
+        let arm = camera.eye - camera.target;
+        let up = camera.up.normalize_or_zero();
+        let side = up.cross(arm).normalize_or_zero();
+        let rises = up.dot(arm.normalize_or_zero()).clamp(-1.0, 1.0).asin();
+        let limit = HIGHEST.asin();
+        let up_by = (rises + up_deg.to_radians()).clamp(-limit, limit) - rises;
+        // Around an axis of length 1, after Rodrigues.
+        let turned = |v: glam::DVec3, axis: glam::DVec3, angle: f64| {
+            v * angle.cos() + axis.cross(v) * angle.sin() + axis * axis.dot(v) * (1.0 - angle.cos())
+        };
+        let arm = turned(turned(arm, side, -up_by), up, aside_deg.to_radians());
+        camera.eye = camera.target + arm * closer.clamp(0.05, 20.0);
+        preset.camera = Some(camera);
+        self.file.preset = preset;
     }
 
     /// The line that a link carries after `#`.
@@ -105,37 +177,59 @@ impl OpenPreset {
     }
 }
 
-/// A picture of the oracle.
-#[wasm_bindgen]
-pub struct OraclePicture {
-    colors: Vec<u8>,
-    triangle_ids: Vec<u32>,
-}
-
-#[wasm_bindgen]
-impl OraclePicture {
-    /// RGBA, 8 bits each, row by row from the top.
-    pub fn colors(&self) -> Vec<u8> {
-        self.colors.clone()
-    }
-
-    /// The id of the nearest triangle at every pixel.
-    pub fn triangle_ids(&self) -> Vec<u32> {
-        self.triangle_ids.clone()
+impl OpenPreset {
+    /// View and stack of its picture.
+    pub(crate) fn moment(&self) -> (View, Stack) {
+        let (preset, size) = (&self.file.preset, self.file.preset.output.size);
+        (
+            preset.view(&self.scene, size),
+            preset.stack_on(&self.scene, size),
+        )
     }
 }
 
-/// Draws a preset with the oracle, on this thread: for a worker.
+/// How many workers can share the oracle's picture: any number, or 1.
+#[wasm_bindgen]
+pub fn can_share_rows(open: &OpenPreset) -> bool {
+    let (_, stack) = open.moment();
+    let has_layers = stack.layers(open.scene.triangle_count()).is_some();
+    open.file.preset.accuracy.scale().factor() == 1.0 && !has_layers
+}
+
+/// Draws rows of a preset with the oracle, on this thread: for a worker. RGBA, 8 bits each, row by
+/// row from the top; `rows_end` is the first row that is not drawn. A preset whose rows cannot be
+/// shared is drawn whole.
 ///
 /// # Errors
 /// One sentence on what it cannot draw.
 #[wasm_bindgen]
-pub fn oracle_picture(open: &OpenPreset) -> Result<OraclePicture, JsError> {
+pub fn oracle_rows(open: &OpenPreset, rows_begin: u32, rows_end: u32) -> Result<Vec<u8>, JsError> {
     let preset = &open.file.preset;
     let moments = preset.moments(&open.scene, preset.output.size);
-    let frame = oracle::render_scaled(&open.scene, &moments, preset.accuracy.scale().factor())?;
-    Ok(OraclePicture {
-        colors: frame.color.into_flattened(),
-        triangle_ids: frame.triangle_id,
-    })
+    let Some((last, before)) = moments.split_last().filter(|_| can_share_rows(open)) else {
+        let frame = oracle::render_scaled(&open.scene, &moments, preset.accuracy.scale().factor())?;
+        return Ok(frame.color.into_flattened());
+    };
+    let previous = match before {
+        [] => None,
+        before => Some(oracle::render_sequence(&open.scene, before)?.color),
+    };
+    let (view, stack) = last;
+    let rows = rows_begin..rows_end;
+    let frame = oracle::render_rows(&open.scene, view, stack, previous.as_deref(), rows)?;
+    Ok(frame.color.into_flattened())
+}
+
+/// FNV-1a of the triangle ids and of the depth keys that the oracle finds in portable bits, 16
+/// hexadecimal digits each: what `rasterlab link` writes behind a line.
+///
+/// # Errors
+/// One sentence on what it cannot draw.
+#[wasm_bindgen]
+pub fn oracle_bits(open: &OpenPreset) -> Result<Vec<String>, JsError> {
+    let (view, stack) = open.moment();
+    let (triangle_ids, depth_keys) = oracle::strict_frame(&open.scene, &view, &stack)?;
+    Ok([triangle_ids, depth_keys]
+        .map(|words| format!("{:016x}", fnv1a(&words)))
+        .to_vec())
 }

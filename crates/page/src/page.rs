@@ -12,7 +12,7 @@ use crate::open_preset::OpenPreset;
 /// Draws on the page's device.
 #[wasm_bindgen]
 pub struct Page {
-    gpu: Arc<Gpu>,
+    pub(crate) gpu: Arc<Gpu>,
     renderer: Renderer,
 }
 
@@ -26,6 +26,23 @@ impl Page {
         let gpu = Gpu::open(&AdapterChoice::Any).await?;
         let renderer = Renderer::new(gpu.clone());
         Ok(Self { gpu, renderer })
+    }
+
+    /// The adapter's name, as far as the browser tells it.
+    pub fn adapter(&self) -> String {
+        let summary = &self.gpu.summary;
+        let known = [&summary.name, &summary.driver];
+        let known: Vec<&str> = known
+            .iter()
+            .map(|word| word.trim())
+            .filter(|word| !word.is_empty())
+            .collect();
+        known.join(", ")
+    }
+
+    /// Has the device been lost? Then the page opens another one, if it can.
+    pub fn is_lost(&self) -> bool {
+        self.gpu.is_lost()
     }
 
     /// Draws a preset and reads the picture back.

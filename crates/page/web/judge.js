@@ -1,16 +1,28 @@
-// A judge: draws a preset on a device of its own and judges it with the oracle, beside the page. With
-// wantsOracle it also sends the oracle's own picture.
-import init, { OpenPreset, Page, oracle_picture } from "./rasterlab_page.js";
+// A worker with an instance of the module, and where it draws a device, for itself: the page goes on meanwhile.
+//
+//   { ask: "verdict", text, id }           the preset drawn on a device and judged: { faults }
+//   { ask: "rows", text, id, begin, end }  those rows of the oracle's picture: { colors }, RGBA
+//   { ask: "bits", text, id }              the hashes of the oracle's triangle ids and depth keys: { bits }
+import init, { OpenPreset, Page, oracle_bits, oracle_rows } from "./rasterlab_page.js";
 
-onmessage = async ({ data: { text, id, wantsOracle } }) => {
+const answers = {
+  verdict: async (preset) => {
+    const picture = await (await Page.open()).draw(preset);
+    return { faults: picture.faults(preset) };
+  },
+  rows: (preset, { begin, end }) => ({ colors: oracle_rows(preset, begin, end) }),
+  bits: (preset) => ({ bits: oracle_bits(preset.in_portable_bits()) }),
+};
+
+let preset;
+let presetText;
+
+onmessage = async ({ data }) => {
   try {
     await init();
-    const preset = new OpenPreset(text, id);
-    const page = await Page.open();
-    const picture = await page.draw(preset);
-    const faults = picture.faults(preset);
-    postMessage({ faults, oracle: wantsOracle ? oracle_picture(preset).colors() : undefined });
+    if (data.text !== presetText) [preset, presetText] = [new OpenPreset(data.text, data.id), data.text];
+    postMessage(await answers[data.ask](preset, data));
   } catch (error) {
-    postMessage({ error: error.message ?? String(error) });
+    postMessage({ error: globalThis.rasterlabPanic ?? error.message ?? String(error) });
   }
 };

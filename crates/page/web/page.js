@@ -1,33 +1,47 @@
-// The page: draws the preset that its address names on the page's device, and has a worker judge it.
-//
-//   ?preset=ID   a preset of the gallery, from presets/ID.toml; by default hero-night
-//   #rasterlab1: the line that the window copies
-//   ?embed       the picture alone
+// The page: a picture with the oracle's verdict, the picture alone (?embed), or the scoreboard (?scoreboard).
 import init, { OpenPreset, Page } from "./rasterlab_page.js";
+import { wanted } from "./address.js";
+import { alive } from "./live.js";
+import { scoreboard } from "./scoreboard.js";
+import { BROWSERS, gallery, saver, words } from "./trouble.js";
+import { asked, oraclePicture } from "./workers.js";
 
+const main = document.querySelector("main");
 const canvas = document.getElementById("picture");
 const caption = document.getElementById("caption");
+const query = new URLSearchParams(location.search);
+/** The text of what is open, for whoever wants to save it. */
+let opened;
 
 function say(text, kind = "") {
   caption.textContent = text;
   caption.className = kind;
 }
 
-/** The text of the preset that the address names, and what errors call it. */
-async function wanted() {
-  const link = decodeURIComponent(location.hash.slice(1));
-  if (link) return [link, "link"];
-  const id = new URLSearchParams(location.search).get("preset") ?? "hero-night";
-  if (!/^[\w-]+$/.test(id)) throw new Error(`"${id}" is no id of a preset; ids have letters, digits and hyphens`);
-  const answer = await fetch(`presets/${id}.toml`);
-  if (!answer.ok) throw new Error(`the gallery has no preset "${id}"`);
-  return [await answer.text(), id];
+/** Another line below the caption. */
+function add(text, kind = "") {
+  const line = document.createElement("p");
+  [line.textContent, line.className] = [text, kind];
+  main.append(line);
+  return line;
+}
+
+function trouble(error) {
+  say(words(error), "wrong");
+  document.documentElement.classList.add("trouble");
+  if (opened) caption.append(" · ", saver(opened));
+}
+
+function button(text, act) {
+  const made = document.createElement("button");
+  made.textContent = text;
+  made.onclick = act;
+  return made;
 }
 
 function show(colors, [width, height]) {
   [canvas.width, canvas.height] = [width, height];
-  const pixels = new ImageData(new Uint8ClampedArray(colors), width, height);
-  canvas.getContext("2d").putImageData(pixels, 0, 0);
+  canvas.getContext("2d").putImageData(new ImageData(new Uint8ClampedArray(colors), width, height), 0, 0);
 }
 
 /** The golden as a still, until the kernels are compiled. */
@@ -39,41 +53,121 @@ async function showGolden(id) {
   canvas.getContext("2d").drawImage(still, 0, 0);
 }
 
-/** What the oracle says of the picture, from a worker. */
-function judged(text, id) {
-  return new Promise((resolve, reject) => {
-    const worker = new Worker("judge.js", { type: "module" });
-    worker.onmessage = ({ data }) => {
-      worker.terminate();
-      if (data.error) reject(new Error(data.error));
-      else resolve(data);
-    };
-    worker.onerror = (event) => reject(new Error(event.message));
-    worker.postMessage({ text, id });
+/** Shows code that a link brings, and returns when the visitor wants it to run. */
+function allowed(code) {
+  return new Promise((resolve) => {
+    say("This link brings effects of its own. Their code runs on your graphics card, in the browser's sandbox. Read it, then decide.");
+    const text = document.createElement("pre");
+    text.id = "code";
+    text.textContent = code;
+    const run = button("Run it", () => {
+      text.remove();
+      run.remove();
+      resolve();
+    });
+    main.append(text, run);
   });
 }
 
-async function main() {
-  if (new URLSearchParams(location.search).has("embed")) document.documentElement.classList.add("embed");
-  const [text, id] = await wanted();
-  showGolden(id);
-  if (!navigator.gpu) {
-    say("This browser has no WebGPU, so the picture is a still. Chrome and Edge 113, Safari 26 and Firefox 141 have it.", "wrong");
-    return;
+/** Draws the preset in portable bits, and says whether they are the oracle's and the link's. */
+async function prove(page, preset, text, id, bits) {
+  const proof = add("The bits of its triangles and depths are compared …");
+  proof.id = "proof";
+  const adapter = page.adapter() || "this device";
+  try {
+    const mine = (await page.draw(preset.in_portable_bits())).hashes();
+    const { bits: oracles } = await asked({ ask: "bits", text, id });
+    const differ = (a, b) => ["triangle ids", "depths"].filter((_, i) => a[i] !== b[i]).join(" and ");
+    const [own, linked] = [differ(mine, oracles), differ(oracles, bits)];
+    proof.className = own || linked ? "wrong" : "right";
+    if (linked) proof.textContent = `The link's ${linked} are not the oracle's: it was made by another version, or changed`;
+    else if (own) proof.textContent = `${adapter}: ${own} differ from the oracle's`;
+    else proof.textContent = `${adapter}: the same bits as the oracle's, triangles ${mine[0]}, depths ${mine[1]}`;
+  } catch (error) {
+    [proof.textContent, proof.className] = [`Its bits cannot be compared: ${words(error)}`, "wrong"];
   }
+}
+
+/** A button that draws the oracle's picture in workers, with progress, and one to stop. */
+function offerOracle(preset) {
+  const line = add("");
+  const offer = () => line.replaceChildren(button("Draw the oracle's picture", draw));
+  const draw = async () => {
+    const stop = new AbortController();
+    const told = document.createElement("span");
+    line.replaceChildren(button("Stop", () => stop.abort()), told);
+    const progress = (part) => (told.textContent = ` the oracle draws: ${Math.round(100 * part)} %`);
+    progress(0);
+    try {
+      show(await oraclePicture(preset, { progress, signal: stop.signal }), preset.size());
+      line.textContent = "This is the oracle's picture, drawn on your processor in exact arithmetic";
+    } catch (error) {
+      if (stop.signal.aborted) offer();
+      else [line.textContent, line.className] = [words(error), "wrong"];
+    }
+  };
+  line.id = "oracle";
+  offer();
+}
+
+async function picture() {
+  const { text, id, bits } = await wanted();
+  opened = text;
+  showGolden(id);
   await init();
   const preset = new OpenPreset(text, id);
+  opened = preset.text();
   document.title = `${preset.name()} · rasterlab`;
+  const code = preset.brought_code();
+  if (code) await allowed(code);
   say(`${preset.name()}: the kernels are compiled …`);
   const page = await Page.open();
   const began = performance.now();
-  const picture = await page.draw(preset);
-  const ms = performance.now() - began;
-  show(picture.colors(), picture.size());
-  say(`${preset.name()}: drawn in ${ms.toFixed(0)} ms with its kernels; the oracle judges it …`);
-  const { faults } = await judged(text, id);
+  const drawn = await page.draw(preset);
+  show(drawn.colors(), drawn.size());
+  say(`${preset.name()}: drawn in ${(performance.now() - began).toFixed(0)} ms with its kernels; the oracle judges it …`);
+  const { faults } = await asked({ ask: "verdict", text, id });
   if (faults.length === 0) say(`${preset.name()}: every pixel is the oracle's`, "right");
   else say(`${preset.name()}: ${faults.join("; ")}`, "wrong");
+  if (bits) await prove(page, preset, text, id, bits);
+  offerOracle(preset);
 }
 
-main().catch((error) => say(error.message ?? String(error), "wrong"));
+async function embed() {
+  document.documentElement.classList.add("embed");
+  const { text, id } = await wanted();
+  opened = text;
+  // The still of the gallery, until the first frame covers it.
+  if (id !== "link") canvas.style.background = `url("goldens/${id}.png") center / contain no-repeat`;
+  await init();
+  const preset = new OpenPreset(text, id);
+  opened = preset.text();
+  document.title = preset.name();
+  const code = preset.brought_code();
+  if (code) await allowed(code);
+  await alive(await Page.open(), preset, canvas, trouble);
+  parent.postMessage("rasterlab shows a picture", "*");
+}
+
+async function begin() {
+  if (!navigator.gpu) {
+    const { text, id } = await wanted().catch(() => ({ id: "hero-night" }));
+    opened = text;
+    await showGolden(id);
+    say(`This browser has no WebGPU, so this page shows stills. ${BROWSERS}.`, "wrong");
+    if (!query.has("embed")) main.append(gallery());
+    return;
+  }
+  if (query.has("scoreboard")) {
+    document.documentElement.classList.add("scoreboard");
+    await init();
+    await scoreboard(main, await Page.open());
+  } else if (query.has("embed")) await embed();
+  else await picture();
+}
+
+begin().catch(trouble);
+// What fails outside of any promise that somebody waits for, such as a panic in a callback.
+addEventListener("error", ({ error, message }) => trouble(error ?? message));
+addEventListener("unhandledrejection", ({ reason }) => trouble(reason));
+addEventListener("hashchange", () => location.reload());

@@ -59,8 +59,8 @@ fn order_limit(@builtin(local_invocation_index) invocation_index: u32) {
         }
         sum = next;
     }
-    workgroupBarrier();
-    let block = found;
+    // Its value is uniform, so that what follows may hold barriers.
+    let block = workgroupUniformLoad(&found);
     if block == ORDER_NONE {
         if invocation_index == 0u {
             order.boundary_triangle = frame.triangle_count;

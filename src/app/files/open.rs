@@ -165,8 +165,8 @@ fn land(state: &mut State, panels: &mut Panels, request: Request, boxes: Option<
         Manner::Look => (&*opened, open),
         _ => (open, &*opened),
     };
-    let fit = boxes.and_then(|(from, to)| looks.fit_to(owner, [&from, &to]));
     let own = state.session.scenes.get(&SceneKey::of(owner)).cloned();
+    let fit = boxes.and_then(|(from, to)| looks.fit_to(owner, [&from, &to], own.as_deref()));
     let mut landed = if manner == Manner::Look {
         // A model that cannot move misses no clip.
         let mut landed = match own.as_ref().is_some_and(|scene| scene.rig.clips.is_empty()) {

@@ -18,8 +18,7 @@ use crate::{
     preset_file::{self, Folders, PresetFile},
 };
 
-/// The preset of a window that was opened without one; it plays. A software driver draws it fast
-/// enough for that.
+/// The preset of a window that was opened without one; it plays, except on a software adapter.
 pub const FIRST_PRESET: &str = "hero-day";
 
 /// What the window begins with.

@@ -72,6 +72,11 @@ impl Format {
         }
     }
 
+    /// Frames of a film that was stopped stay, and the next export goes on after them.
+    pub const fn keeps_frames(self) -> bool {
+        matches!(self, Self::Frames)
+    }
+
     pub const fn needs_ffmpeg(self) -> bool {
         matches!(self, Self::Video(_))
     }

@@ -653,6 +653,7 @@ fn thumbnail_on(
                 &preset_file::scene_bounds(&look.scene_source(), None).ok()?,
                 &scene.content_bounds(),
             ],
+            Some(scene),
         ),
         false => None,
     };

@@ -259,11 +259,13 @@ impl FilmPanel {
             .and_then(|form| form.fault(&state.session.preset().clock));
         match (&fault, &self.failure) {
             (Some(fault), _) => theme::notice(ui, theme::amber(), fault),
-            (None, Some(Failure::Stopped)) => theme::notice(
-                ui,
-                theme::amber(),
-                "Stopped. Finished frames stay, and are not drawn again.",
-            ),
+            (None, Some(Failure::Stopped)) => {
+                let is_kept = self
+                    .form
+                    .as_ref()
+                    .is_some_and(|form| form.format.keeps_frames());
+                theme::notice(ui, theme::amber(), stopped_text(is_kept));
+            }
             (None, Some(Failure::Taken(reason))) => theme::notice(
                 ui,
                 theme::amber(),
@@ -457,6 +459,15 @@ fn form_ui(ui: &mut Ui, form: &mut Form, clock: &Clock, takes_focus: bool) -> bo
         });
     ui.add_space(theme::HALF);
     is_entered
+}
+
+/// What is left of a film that was stopped.
+const fn stopped_text(keeps_frames: bool) -> &'static str {
+    if keeps_frames {
+        "Stopped. Frames kept: the next export goes on after them."
+    } else {
+        "Stopped. No file was written: the next export begins again. PNG frames can go on."
+    }
 }
 
 /// `120 frames, 4 s`, and the names of the files.

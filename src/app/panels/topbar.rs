@@ -31,6 +31,11 @@ pub struct TopBar;
 /// Below this width of the window the adapter is a dot, points.
 const NARROW: f32 = 1080.0;
 
+/// Room for milliseconds and for a count of wrong pixels, points: a number that comes or changes
+/// moves nothing beside it.
+const TIME_WIDTH: f32 = 104.0;
+const ERROR_WIDTH: f32 = 96.0;
+
 /// Menus with their entries; none is a separator.
 const MENUS: [(&str, &[Option<Action>]); 4] = [
     (
@@ -342,6 +347,7 @@ fn cost_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         state.picture.screen.requested(),
     );
     match state.picture.verification.progress() {
+        // How far it is stands where the error will.
         Some(progress) => verifying_ui(ui, &progress, commands),
         None => {
             let verify = ui.add_enabled(
@@ -357,15 +363,43 @@ fn cost_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             {
                 commands.perform(Action::Verify);
             }
+            let error = RichText::new(error).color(color);
+            number_ui(ui, ERROR_WIDTH, Align::Min, error, hint);
         }
     }
-    ui.label(RichText::new(error).color(color))
-        .on_hover_text(hint);
     ui.label(theme::weak("·"));
     let (time, hint) = time_line(Some(&state.picture.screen));
-    ui.label(RichText::new(time).color(theme::text_strong()))
-        .on_hover_text(hint);
+    let time = RichText::new(time).color(theme::text_strong());
+    number_ui(ui, TIME_WIDTH, Align::Max, time, hint);
     pins_ui(ui, &state.session.preset().accuracy.pins.words());
+}
+
+/// A text at the left (`Min`) or right (`Max`) of a room of at least `width` points, in a narrow window
+/// of its own width.
+fn number_ui(ui: &mut Ui, width: f32, side: Align, text: RichText, hint: String) {
+    let layout = if side == Align::Max {
+        Layout::right_to_left(Align::Center)
+    } else {
+        Layout::left_to_right(Align::Center)
+    };
+    let font = egui::TextStyle::Body;
+    let galley = egui::WidgetText::from(text).into_galley(
+        ui,
+        Some(egui::TextWrapMode::Extend),
+        f32::INFINITY,
+        font,
+    );
+    // In a narrow window the name of the preset needs the room more.
+    let reserved = if ui.ctx().content_rect().width() < NARROW {
+        0.0
+    } else {
+        width
+    };
+    let width = reserved.max(galley.size().x);
+    ui.allocate_ui_with_layout(vec2(width, theme::ROW), layout, |ui| {
+        ui.set_min_width(width);
+        ui.label(galley).on_hover_text(hint);
+    });
 }
 
 /// How far the oracle is, and a button that ends it.
@@ -379,7 +413,7 @@ fn verifying_ui(ui: &mut Ui, progress: &Progress, commands: &Commands) {
     }
     let text = RichText::new(format!("{} left", about(progress.left_s))).size(11.0);
     let bar = egui::ProgressBar::new(progress.fraction as f32)
-        .desired_width(96.0)
+        .desired_width(ERROR_WIDTH)
         .text(text)
         .fill(theme::accent_ground());
     ui.add(bar)

@@ -16,10 +16,16 @@ pub const WRONG_HINT: &str = "Snapped: pixels that show another triangle than th
      rasterizer. True: pixels that show another triangle than the exact picture of the true positions, so the error that snapping and every other \
      option of accuracy make.";
 
+/// What stands in place of milliseconds that are not known yet.
+const UNTIMED: &str = "– ms";
+
+/// What stands in place of an error that is not known yet.
+pub const UNJUDGED: &str = "– wrong pixels";
+
 /// The cost of the picture on a screen, and what the number is.
 pub fn time_line(screen: Option<&Screen>) -> (String, String) {
     let Some(screen) = screen.filter(|screen| screen.drawn().is_some()) else {
-        return ("not timed".into(), "There is no picture yet.".into());
+        return (UNTIMED.into(), "There is no picture yet.".into());
     };
     if !screen.gpu.caps.timestamps {
         return ("no GPU timer".into(), "This adapter has no timer.".into());
@@ -28,9 +34,9 @@ pub fn time_line(screen: Option<&Screen>) -> (String, String) {
         Cost::Settled(summary) => (format!("{:.2} ms GPU", summary.frame.median), summary_text(summary)),
         Cost::Moving(ms) => (format!("≈ {ms:.1} ms GPU"), "Median of the newest frames while the picture changes.".into()),
         Cost::Pending => {
-            ("timing…".into(), "The first frames after a change are not the cost. A few are measured when the picture is at rest.".into())
+            (UNTIMED.into(), "The first frames after a change are not the cost. A few are measured when the picture is at rest.".into())
         }
-        Cost::Unknown => ("not timed".into(), "The picture could not be measured.".into()),
+        Cost::Unknown => (UNTIMED.into(), "The picture could not be measured.".into()),
     }
 }
 
@@ -47,8 +53,8 @@ pub fn error_line(verdict: Option<&Verdict>, shown: Option<&Inputs>) -> (Color32
     let Some(Verdict { of, findings }) = verdict else {
         return (
             theme::text_weak(),
-            "error not measured".into(),
-            "Verify compares every pixel with the oracle".into(),
+            UNJUDGED.into(),
+            "Not measured yet: Verify compares every pixel with the oracle".into(),
         );
     };
     let (text, detail) = (error_text(findings), details(findings));

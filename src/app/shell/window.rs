@@ -155,9 +155,12 @@ impl App {
             panels.dialogs.ask_restore(crashed);
         }
         let mut session = start.session;
-        // The start preset plays; a preset that the user named does not.
-        session.playback.playing =
-            options.open.is_none() && !start.is_restored && session.preset().is_moving();
+        // The start preset plays, unless on a software adapter, which draws moving pictures at half
+        // their size: there its own moment stands whole. A preset that the user named does not play.
+        session.playback.playing = options.open.is_none()
+            && !start.is_restored
+            && session.preset().is_moving()
+            && !devices.picture.summary.software;
         let (favorites, remarks) = Favorites::load(options.folders.user.as_deref());
         remarks
             .into_iter()
@@ -261,7 +264,8 @@ impl App {
         }
     }
 
-    /// Advances the time while the preset plays.
+    /// Advances the time while the preset plays. A film that is drawn gets the device and the
+    /// processor for itself: meanwhile nothing plays, and no pictures of the panels are drawn.
     fn play(&mut self, ctx: &egui::Context) {
         let State {
             session,
@@ -269,7 +273,7 @@ impl App {
             now_s,
             ..
         } = &mut self.state;
-        if !session.playback.playing {
+        if !session.playback.playing || self.panels.film.is_exporting() {
             self.played_at_s = None;
             return;
         }
@@ -299,7 +303,8 @@ impl App {
             &self.state.picture.screen,
             self.state.session.playback.playing,
         );
-        if self.state.session.scenes.is_loading()
+        if self.panels.film.is_exporting()
+            || self.state.session.scenes.is_loading()
             || screen.is_awaited(is_playing)
             || (!is_playing && screen.needs_measuring())
         {
@@ -466,7 +471,9 @@ impl App {
         self.panels
             .viewport
             .draw(ui.ctx(), &mut self.state, &interaction);
-        if self.panels.viewport.needs_verdict(ui.ctx(), &self.state) {
+        if !self.panels.film.is_exporting()
+            && self.panels.viewport.needs_verdict(ui.ctx(), &self.state)
+        {
             verify_shown(&mut self.state);
         }
         self.panels
@@ -551,7 +558,7 @@ impl eframe::App for App {
         self.panel_ui(ui, |panels| &mut panels.sweep);
         self.panel_ui(ui, |panels| &mut panels.film);
         self.request_thumbnail(&ctx);
-        self.request_precision(&ctx, is_held);
+        self.request_precision(&ctx, is_held || self.panels.film.is_exporting());
         let compare = &self.panels.viewport.compare;
         tier_times::follow(
             &ctx,

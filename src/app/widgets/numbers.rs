@@ -97,7 +97,12 @@ impl NumberField<'_> {
         // A small number must not become 0.
         let is_true =
             |text: &String| number == 0.0 || text.contains(|c: char| ('1'..='9').contains(&c));
-        if let Some(text) = with_unit.filter(is_true) {
+        // Rather no unit than 1 per m for 0.7.
+        let is_near = |text: &String| {
+            parsed(text, self.unit)
+                .is_some_and(|shown| (shown - number).abs() <= 0.02 * number.abs())
+        };
+        if let Some(text) = with_unit.filter(is_true).filter(is_near) {
             return text;
         }
         let without = (0..=decimals)
@@ -176,6 +181,14 @@ mod tests {
         assert_eq!(
             [0.0, 0.001, -1234.5].map(text),
             ["0.00 °/s", "0.001", "-1234.50"]
+        );
+        let per_meter = NumberField {
+            unit: " per m",
+            ..FIELD
+        };
+        assert_eq!(
+            [0.7, 2.0, 0.06].map(|number| per_meter.text(number, 8)),
+            ["0.700", "2 per m", "0.060"]
         );
         for number in [
             123_456_789.0,

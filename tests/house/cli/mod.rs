@@ -7,6 +7,7 @@ mod faults;
 mod files_kept;
 mod films;
 mod limits;
+mod links;
 mod looks;
 mod manual;
 mod parts;
@@ -630,6 +631,27 @@ fn a_film_shows_the_frames() {
 }
 
 #[test]
+fn a_film_that_stands_still_shows_the_moment_of_its_preset() {
+    let folder = studio();
+    let text = MOVING.replace("[clock]\n", "[clock]\ntime_s = 0.5\n");
+    fs::write(folder.path().join("move.toml"), text).unwrap();
+    let drawn = sequence(folder.path(), &["--apng", "film.apng"]);
+    assert_eq!(drawn.code, 0, "{}", drawn.err);
+    let film = fs::File::open(folder.path().join("film.apng")).unwrap();
+    let mut film = png::Decoder::new(std::io::BufReader::new(film))
+        .read_info()
+        .unwrap();
+    assert_eq!(film.info().animation_control().unwrap().num_frames, 8);
+    let mut pixels = vec![0; film.output_buffer_size().unwrap()];
+    film.next_frame(&mut pixels).unwrap();
+    assert!(film.info().frame_control().is_none(), "it is no frame");
+    let frame = |name| rasterlab::preset_file::png_pixels(&folder.path().join(name)).unwrap();
+    assert_eq!(pixels, frame("f_004.png").0.concat());
+    film.next_frame(&mut pixels).unwrap();
+    assert_eq!(pixels, frame("f_000.png").0.concat());
+}
+
+#[test]
 fn frames_of_another_preset_are_overwritten_with_force_alone() {
     let folder = studio();
     sequence(folder.path(), &[]);
@@ -1080,10 +1102,18 @@ fn bless_finds_what_every_command_finds() {
     // An effect without a preset gets its first one.
     let blessed = go(&["bless", "ink"]);
     assert_eq!(blessed.code, 0, "{}", blessed.err);
-    let first = rasterlab::preset_file::load(&folder.path().join("presets/ink.toml"));
     assert!(
-        first.is_ok_and(|first| first.preset.test.is_some()) || go(&["check", "ink"]).code == 0
+        blessed.out.contains("(its preset is created, too)"),
+        "{}",
+        blessed.out
     );
+    let first = rasterlab::preset_file::load_with(
+        &folder.path().join("presets/ink.toml"),
+        &rasterlab::effect_files::Catalog::of_folders([&*folder.path().join("effects")]),
+    );
+    assert!(first.is_ok_and(|first| first.preset.test.is_some()));
+    let checked = go(&["check", "ink"]);
+    assert_eq!(checked.code, 0, "{}{}", checked.out, checked.err);
     let unknown = go(&["bless", "no-such-effect"]);
     assert!(
         unknown.code == 2 && unknown.err.contains("no preset and no effect"),

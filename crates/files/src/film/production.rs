@@ -163,6 +163,12 @@ impl Production {
             provenance,
             ..
         } = self;
+        for reel in &mut *reels {
+            if let (Reel::Apng(animation), Some(still)) = (reel, film.still()) {
+                let frame = painter.paint(&still.preset, &film.scene)?;
+                animation.push(&frame.color).map_err(FilmError::from)?;
+            }
+        }
         for jobs in jobs.chunks(batch) {
             let mut drawn: Vec<Option<Frame>> = Vec::new();
             for job in jobs {
@@ -211,6 +217,7 @@ fn animated_png(
         frames: jobs.len() as u32,
         delay_s,
         is_looping: film.is_looping(),
+        has_still: film.still().is_some(),
     };
     let all = jobs.iter().fold(Fnv::new(), |hash, job| {
         hash.bytes(job.fingerprint.as_bytes())

@@ -61,6 +61,13 @@ impl Film {
         &self.preset_file
     }
 
+    /// The preset at its own moment: a film that stands still shows that, rather than a first frame
+    /// in which perhaps nothing is to be seen yet. None if the film begins with that moment.
+    pub fn still(&self) -> Option<&PresetFile> {
+        let first_s = self.schedule.time_s(self.schedule.frames.start);
+        (self.preset_file.preset.clock.time_s != first_s).then_some(&self.preset_file)
+    }
+
     /// The preset at the time of a frame, with the turn of a turntable.
     pub fn at(&self, frame: u32) -> PresetFile {
         let mut preset_file = self.preset_file.clone();

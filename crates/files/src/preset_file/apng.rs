@@ -20,6 +20,9 @@ pub struct AnimationOptions {
     pub delay_s: [u16; 2],
     /// Starts again after its end; otherwise it stops there.
     pub is_looping: bool,
+    /// The picture that is pushed first is no frame: it is the default picture, which programs that
+    /// do not know animations show. Without one they show the first frame.
+    pub has_still: bool,
 }
 
 /// An animated PNG that is being written. The file appears when it is finished, and otherwise not
@@ -57,6 +60,7 @@ impl AnimatedPng {
         encoder
             .set_frame_delay(numerator, denominator)
             .map_err(failed)?;
+        encoder.set_sep_def_img(options.has_still).map_err(failed)?;
         encoder.validate_sequence(true);
         Ok(Self {
             writer: encoder.write_header().map_err(failed)?,
@@ -64,7 +68,7 @@ impl AnimatedPng {
         })
     }
 
-    /// Adds the next frame, row-major RGBA.
+    /// Adds the next frame, or first the default picture if there is one; row-major RGBA.
     ///
     /// # Errors
     /// The file cannot be written.

@@ -42,15 +42,28 @@ impl PresetFile {
     }
 
     /// The fit from the box of this preset's scene to that of `own`, and from what its camera sees
-    /// to what the other sees; none where a box has no extent.
-    pub fn fit_to(&self, own: &Self, [from, to]: [&Bounds; 2]) -> Option<Fit> {
-        let camera = |preset: &Preset, bounds: &Bounds| {
+    /// to what the other sees; none where a box has no extent. Where `scene`, that of `own`, is not
+    /// known, its camera is taken to frame the box, from farther away than it frames the shape.
+    pub fn fit_to(
+        &self,
+        own: &Self,
+        [from, to]: [&Bounds; 2],
+        scene: Option<&Scene>,
+    ) -> Option<Fit> {
+        let aspect = |preset: &Preset| {
             let [width, height] = preset.output.size.map(|side| f64::from(side.max(1)));
+            width / height
+        };
+        let camera = |preset: &Preset, bounds: &Bounds| {
             preset.camera.unwrap_or_else(|| {
-                Camera::around(&bounds.corners(), FRAMING_DIRECTION, width / height)
+                Camera::around(&bounds.corners(), FRAMING_DIRECTION, aspect(preset))
             })
         };
-        let cameras = [camera(&self.preset, from), camera(&own.preset, to)];
+        let own_camera = scene.map_or_else(
+            || camera(&own.preset, to),
+            |scene| own.preset.camera_for(scene, aspect(&own.preset)),
+        );
+        let cameras = [camera(&self.preset, from), own_camera];
         Fit::between(from, to).map(|fit| fit.with_cameras((&cameras[0], from), (&cameras[1], to)))
     }
 

@@ -31,7 +31,8 @@ pub fn to_line(preset_file: &PresetFile) -> String {
     )
 }
 
-/// Reads a pasted line; white space from a mail or chat is forgiven. A model outside of the current
+/// Reads a pasted line, or the link of a page that carries one; white space from a mail or chat is
+/// forgiven. A model outside of the current
 /// folder is not its scene before [`PresetFile::with_outside_model`].
 ///
 /// # Errors
@@ -41,6 +42,9 @@ pub fn from_line(line: &str) -> Result<PresetFile, PresetError> {
         what: "the pasted text".into(),
         reason: reason.into(),
     };
+    // A link to a page carries the line after its address, and what its picture is after the line.
+    let line = line.rsplit_once('#').map_or(line, |(_, line)| line);
+    let line = line.split_once(';').map_or(line, |(line, _)| line);
     let packed = line
         .trim()
         .strip_prefix(PREFIX)

@@ -122,6 +122,18 @@ impl AccuracyRequest {
         }
     }
 
+    /// The request whose triangle ids and depth keys are the same bits on every adapter, in every
+    /// browser and on the CPU.
+    pub fn portable_bits() -> Self {
+        let pins = PinnedOptions::of(Visibility::Split32)
+            .with(VertexTransform::Strict)
+            .with(DepthFormat::Integer);
+        Self {
+            pins,
+            ..Self::default()
+        }
+    }
+
     /// How many pixels are drawn for one that is shown: as the preset pins it.
     pub fn scale(&self) -> RenderScale {
         self.pins.option().unwrap_or_default()

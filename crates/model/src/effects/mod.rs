@@ -26,6 +26,7 @@ macro_rules! for_each_effect {
             hatch,
             wireframe,
             fog,
+            tonemap,
             xray,
             overdraw,
             race,

@@ -23,11 +23,15 @@ use std::{path::PathBuf, sync::Arc};
 use glam::{DMat4, DVec3};
 
 use crate::{
-    effects::Stack,
+    effects::{
+        Stack, read,
+        tonemap::{self, Tonemap},
+    },
     math::rotation_y,
     scene::{
         Background, Bounds, Ground, Scene,
         camera::Camera,
+        parts::Scope,
         pose::{Motion, Pose, scene_from_nodes},
         shadow_resolution::ShadowResolution,
         view::{SceneState, View},
@@ -183,6 +187,26 @@ pub struct Output {
     /// The height of a picture in which lengths in pixels are what they say, 1 to 16,384; in others
     /// they grow and shrink with the height. None: that of `size`.
     pub reference_height_px: Option<u32>,
+}
+
+impl Preset {
+    /// What pixels without a triangle show: the background of the output, through the tone mapping
+    /// that asks for it.
+    pub fn backdrop(&self) -> Background {
+        let mut backdrop = self.output.backdrop();
+        for enabled in &self.evaluated_stack().0 {
+            let original = enabled.effect.base.as_ref().unwrap_or(&enabled.effect);
+            if *original != *tonemap::EFFECT || enabled.on != Scope::default() {
+                continue;
+            }
+            let tonemap: Tonemap = read(&enabled.words);
+            if tonemap.background != 0 {
+                [backdrop.top, backdrop.bottom] =
+                    [backdrop.top, backdrop.bottom].map(|color| tonemap.shown_color(color));
+            }
+        }
+        backdrop
+    }
 }
 
 impl Output {
@@ -420,8 +444,8 @@ impl Preset {
     }
 
     /// The points of `scene` that its automatic camera frames, before the scene's spin: of its clips
-    /// from their begin to their end and of its particles, and of a scene that spins from all
-    /// sides.
+    /// from their begin to their end and of its particles near them, and of a scene that spins from
+    /// all sides.
     pub fn framing_points(&self, scene: &Scene) -> Vec<DVec3> {
         let Motion { clip, other, .. } = self.motion(scene);
         let mut points = scene.framing_points(clip).to_vec();
@@ -429,7 +453,18 @@ impl Preset {
             points.extend(scene.framing_points(other).iter());
         }
         if let Some(particle_settings) = self.stack_on(scene, [1, 1]).particle_settings() {
-            points.extend(particle_settings.disc_bounds().corners());
+            // Particles may fly far, but the scene is what is looked at.
+            let mut near = Bounds::EMPTY;
+            points.iter().for_each(|point| near.include(*point));
+            let aside = 0.35 * near.radius();
+            let corners = particle_settings.disc_bounds().corners();
+            points.extend(corners.map(|corner| {
+                if near.is_empty() {
+                    corner
+                } else {
+                    corner.clamp(near.min - aside, near.max + aside)
+                }
+            }));
         }
         if self.spin_deg_per_s != 0.0 {
             points = turned_all_around(&points, DVec3::ZERO);
@@ -524,14 +559,7 @@ impl Preset {
             particles: preset.particle_timeline(),
         };
         let camera = preset.camera_for(scene, aspect);
-        let view = View::new(
-            &camera,
-            width,
-            height,
-            &bounds,
-            spin,
-            preset.output.backdrop(),
-        );
+        let view = View::new(&camera, width, height, &bounds, spin, preset.backdrop());
         let view = View {
             scene_state,
             ..view

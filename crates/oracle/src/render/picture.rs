@@ -1,5 +1,7 @@
 //! Whole pictures: from a scene to a frame.
 
+use std::ops::Range;
+
 use super::{
     super::{
         budget::{self, Purpose},
@@ -11,7 +13,7 @@ use super::{
     layers::{LayerInput, layer_image},
     particles::{check_particles, scene_with_particles},
     project::project,
-    resolve::{ResolveInput, finish, shade},
+    resolve::{ResolveInput, finish, shade_rows},
     sample_setup::sample_setups,
     sample_tests::SampleTests,
     shadow::shadow_map,
@@ -44,6 +46,23 @@ pub fn render_next(
     stack: &Stack,
     previous: Option<&[[u8; 4]]>,
 ) -> Result<Frame, DrawError> {
+    render_rows(scene, view, stack, previous, 0..view.height)
+}
+
+/// The same, with the colors of `rows` alone, the bytes that the whole picture has there. All else
+/// is that of the whole picture. So several processes share the shading of a picture; layers are
+/// drawn whole by each of them.
+///
+/// # Errors
+/// As [`render`].
+pub fn render_rows(
+    scene: &Scene,
+    view: &View,
+    stack: &Stack,
+    previous: Option<&[[u8; 4]]>,
+    rows: Range<u32>,
+) -> Result<Frame, DrawError> {
+    let rows = rows.start.min(view.height)..rows.end.min(view.height);
     if view.pixels() == 0 {
         stack.draws(scene, view)?;
         return Ok(Frame {
@@ -84,8 +103,13 @@ pub fn render_next(
         depth_keys,
     };
     let (color, counted) = match layer_image(&layer_input, || coverage.layers())? {
-        Some(image) => (finish(&shot, &input, &image.colors, 0.0)?, image.counted),
-        None => (shade(&shot, &input, &geometry)?, Vec::new()),
+        Some(image) => {
+            let mut color = finish(&shot, &input, &image.colors, 0.0)?;
+            let [first, end] = [rows.start, rows.end].map(|row| (row * view.width) as usize);
+            color.truncate(end);
+            (color.split_off(first.min(end)), image.counted)
+        }
+        None => (shade_rows(&shot, &input, &geometry, rows)?, Vec::new()),
     };
     Ok(Frame {
         width: view.width,

@@ -1,6 +1,8 @@
 //! Resolve: from surface colors to the bytes of the picture. Dots, image effects, and the one
 //! rounding.
 
+use std::ops::Range;
+
 use glam::DVec4;
 use rayon::prelude::*;
 
@@ -44,10 +46,28 @@ pub fn shade(
     input: &ResolveInput,
     geometry: &Geometry,
 ) -> Result<Vec<[u8; 4]>, Canceled> {
-    shade_perturbed(shot, input, geometry, &Perturbation::default())
+    shade_rows(shot, input, geometry, 0..shot.view.height)
 }
 
-/// The same under a perturbation.
+/// The same, only of the pixels in `rows`.
+///
+/// # Errors
+/// The work was canceled.
+pub fn shade_rows(
+    shot: &Shot,
+    input: &ResolveInput,
+    geometry: &Geometry,
+    rows: Range<u32>,
+) -> Result<Vec<[u8; 4]>, Canceled> {
+    let steady = Perturbation::default();
+    let colors = surface_colors(shot, input.triangle_ids, geometry, &steady, rows.clone())?;
+    let first = (rows.start * shot.view.width) as usize;
+    finished_each(shot, input, &colors, |finish, i, color| {
+        finish.pixel(first + i, color, 0.0)
+    })
+}
+
+/// Bytes of all pixels under a perturbation.
 ///
 /// # Errors
 /// The work was canceled.
@@ -57,7 +77,8 @@ pub fn shade_perturbed(
     geometry: &Geometry,
     perturbation: &Perturbation,
 ) -> Result<Vec<[u8; 4]>, Canceled> {
-    let colors = surface_colors(shot, input.triangle_ids, geometry, perturbation)?;
+    let rows = 0..shot.view.height;
+    let colors = surface_colors(shot, input.triangle_ids, geometry, perturbation, rows)?;
     finish(shot, input, &colors, perturbation.color_step)
 }
 

@@ -1,6 +1,8 @@
 //! Shading in f64: what is known of the surface at a sample, and the surface effects on it
 //! (`docs/exactness.md` §7).
 
+use std::ops::Range;
+
 use glam::{DMat3, DVec2, DVec3, DVec4};
 use rayon::prelude::*;
 
@@ -34,8 +36,8 @@ use crate::{
     work::{Canceled, checkpoint},
 };
 
-/// Surface colors of all pixels, given the triangle of each; the background without one. Row-major,
-/// gamma-encoded.
+/// Surface colors of all pixels in `rows`, given the triangle of each pixel of the picture; the
+/// background without one. Row-major, gamma-encoded.
 ///
 /// `geometry` supplies the snapped corners from which weights follow; triangles that were clipped
 /// are weighted in clip space.
@@ -44,11 +46,12 @@ pub fn surface_colors(
     triangle_ids: &[u32],
     geometry: &Geometry,
     perturbation: &Perturbation,
+    rows: Range<u32>,
 ) -> Result<Vec<DVec4>, Canceled> {
     let background = background(shot.view);
     let ranks = ranks(shot, geometry)?;
     let light = Light::of(shot, geometry);
-    each_surface(shot, triangle_ids, geometry, perturbation, |y, found| {
+    let color = |y: usize, found: Option<(&SurfaceTriangle, Surface)>| {
         let Some((triangle, surface)) = found else {
             return background[y];
         };
@@ -61,7 +64,8 @@ pub fn surface_colors(
             light.as_ref(),
             perturbation.color_step,
         )
-    })
+    };
+    each_surface_in(rows, shot, triangle_ids, geometry, perturbation, color)
 }
 
 /// The gamma-encoded color of a surface of `triangle`, whose steps are moved by `color_step`.
@@ -98,6 +102,19 @@ pub fn each_surface<T: Send>(
     perturbation: &Perturbation,
     visit: impl Fn(usize, Option<(&SurfaceTriangle, Surface)>) -> T + Sync,
 ) -> Result<Vec<T>, Canceled> {
+    let rows = 0..shot.view.height;
+    each_surface_in(rows, shot, triangle_ids, geometry, perturbation, visit)
+}
+
+/// The same, only in `rows`.
+fn each_surface_in<T: Send>(
+    rows: Range<u32>,
+    shot: &Shot,
+    triangle_ids: &[u32],
+    geometry: &Geometry,
+    perturbation: &Perturbation,
+    visit: impl Fn(usize, Option<(&SurfaceTriangle, Surface)>) -> T + Sync,
+) -> Result<Vec<T>, Canceled> {
     let width = shot.view.width.max(1) as usize;
     let checkpoint = checkpoint();
     let row = |(y, ids): (usize, &[u32])| {
@@ -117,13 +134,15 @@ pub fn each_surface<T: Send>(
         };
         Ok(ids.iter().enumerate().map(pixel).collect::<Vec<_>>())
     };
-    let rows = triangle_ids
+    let found = triangle_ids
         .par_chunks(width)
         .enumerate()
+        .skip(rows.start as usize)
+        .take(rows.len())
         .map(row)
         .collect::<Result<Vec<_>, Canceled>>()?;
-    let mut all = Vec::with_capacity(triangle_ids.len());
-    rows.into_iter().for_each(|row| all.extend(row));
+    let mut all = Vec::with_capacity(rows.len() * width);
+    found.into_iter().for_each(|row| all.extend(row));
     Ok(all)
 }
 

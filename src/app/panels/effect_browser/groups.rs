@@ -232,7 +232,9 @@ mod tests {
         );
         assert_eq!(
             of(Group::Surface),
-            ["facet", "lambert", "shadow", "toon", "hatch", "fog"]
+            [
+                "facet", "lambert", "shadow", "toon", "hatch", "fog", "tonemap"
+            ]
         );
         assert_eq!(
             of(Group::Image),

@@ -11,7 +11,7 @@ use crate::{
         picture::{
             anti_aliasing,
             findings::Findings,
-            measured::time_line,
+            measured::{UNJUDGED, time_line},
             tier_times::{self, TierNumbers, TierTime},
         },
         shell::{
@@ -219,7 +219,7 @@ fn numbers_ui(ui: &mut Ui, state: &State) {
         .verdict_on(state.picture.screen.drawn())
     {
         Some(verdict) => measured_texts(&time, &verdict.findings),
-        None => (time, "error not measured (V)".to_owned()),
+        None => (time, format!("{UNJUDGED} (V)")),
     };
     line_ui(ui, "measured", measured, theme::text_strong());
     line_ui(ui, "", wrong, theme::text_strong());

@@ -1,0 +1,168 @@
+// The scoreboard: ways to rasterize, side by side on the visitor's device, each with its wrong pixels as the oracle counts them.
+import { Live, OpenPreset } from "./rasterlab_page.js";
+import { oraclePicture } from "./workers.js";
+
+const SIZE = [400, 300];
+/** A channel may be so far from the oracle's, of 255: more is another surface, no rounding. */
+const TOLERANCE = 2;
+const HELD_S = 4;
+const DEG_PER_S = 9;
+
+const SCENE = `schema = 2
+name = "Scoreboard"
+[scene]
+builtin = "town?houses=40"
+[camera]
+eye = [8.0, 7.6, 23.0]
+target = [0.0, 2.3, 0.0]
+fov_y_deg = 27.0
+[effects.lambert]
+sun = [1.0, 0.78, 0.52, 1.0]
+sky = [0.16, 0.22, 0.36, 1.0]
+ground = [0.10, 0.07, 0.05, 1.0]
+sun_direction = [-0.9, 0.5, 0.45]
+[output]
+size = [${SIZE}]
+background = [0.02, 0.025, 0.04, 1.0]
+`;
+
+const WAYS = [
+  { name: "Exact", about: "Edges in integers, the nearest triangle by atomics: what rasterlab draws", pins: { visibility: "split32" } },
+  { name: "Race", about: "Depth loaded, compared and stored without atomics: what many software rasterizers ship", pins: { visibility: "race" } },
+  { name: "16-bit depth", about: "Evenly spaced depths in 16 bits, as in shadow maps and old engines", pins: { visibility: "split32", depth: "ndc16" } },
+  { name: "Float edges", about: "Edge functions in 32-bit floats with the top-left rule", pins: { visibility: "split32", coverage: "float-top-left" } },
+  { name: "Hardware", about: "This device's own rasterizer, which rounds corners and depths in its own way", hardware: true },
+];
+
+const element = (tag, name, text = "") => Object.assign(document.createElement(tag), { className: name, textContent: text });
+const grouped = (number) => number.toLocaleString("en-US");
+
+/** Pixels with another color than the oracle's, and those of them that show the background instead; alpha is 0 where hardware drew nothing. */
+function compared(colors, oracles) {
+  const background = oracles.slice(0, 3);
+  const differ = (a, at, b, from) => [0, 1, 2].some((c) => Math.abs(a[at + c] - b[from + c]) > TOLERANCE);
+  const [wrong, holes] = [[], []];
+  for (let at = 0; at < oracles.length; at += 4) {
+    const isDrawn = colors[at + 3] !== 0 && differ(colors, at, background, 0);
+    const isOwned = differ(oracles, at, background, 0);
+    if (isDrawn === isOwned && (!isDrawn || !differ(colors, at, oracles, at))) continue;
+    wrong.push(at / 4);
+    if (isOwned && !isDrawn) holes.push(at / 4);
+  }
+  return { wrong, holes };
+}
+
+/** A way with its card in the table and its preset. */
+function card(way, page, grid) {
+  const own = element("article", "way");
+  const frame = element("div", "frame");
+  const [canvas, faults] = [element("canvas", "picture"), element("canvas", "faults")];
+  for (const layer of [canvas, faults]) [layer.width, layer.height] = SIZE;
+  const [number, unit, times] = [element("strong", "number", "…"), element("span", "unit", "wrong pixels"), element("p", "times")];
+  const figure = element("p", "figure");
+  figure.append(number, unit);
+  frame.append(canvas, faults);
+  own.append(frame, element("h2", "", way.name), figure, times, element("p", "about", way.about));
+  grid.append(own);
+  const preset = new OpenPreset(SCENE, "scoreboard");
+  for (const [axis, option] of Object.entries(way.pins ?? {})) preset.set(`accuracy.${axis}`, option);
+  const live = way.hardware ? Live.hardware(page, canvas) : new Live(page, canvas);
+  return { ...way, own, faults, number, unit, times, preset, live };
+}
+
+/** Red over every wrong pixel. */
+function mark({ faults }, wrong) {
+  const marks = new ImageData(...SIZE);
+  for (const pixel of wrong) marks.data.set([255, 45, 70, 255], 4 * pixel);
+  faults.getContext("2d").putImageData(marks, 0, 0);
+}
+
+/** Draws, counts and times one way at this moment. */
+async function measure(way, oracles) {
+  try {
+    await way.live.show(way.preset);
+    const { wrong, holes } = compared(await way.live.colors(way.preset), oracles);
+    mark(way, wrong);
+    const ms = await way.live.milliseconds(way.preset);
+    way.result = { wrong: wrong.length, holes: holes.length, ms };
+    way.number.textContent = grouped(wrong.length);
+    way.unit.textContent = wrong.length === 1 ? "wrong pixel" : "wrong pixels";
+    way.times.textContent = `${holes.length ? `${grouped(holes.length)} ${holes.length === 1 ? "hole" : "holes"} · ` : ""}${ms.toFixed(ms < 10 ? 2 : 0)} ms`;
+    way.own.dataset.state = wrong.length ? "wrong" : "right";
+  } catch (error) {
+    way.result = { error: error.message ?? String(error) };
+    way.number.textContent = "–";
+    way.times.textContent = way.result.error;
+    way.own.dataset.state = "missing";
+  }
+}
+
+function text(ways, adapter, angle) {
+  const rows = ways.map(({ name, result: { error, wrong, holes, ms } }) =>
+    error ? `${name}: ${error}` : `${name}: ${grouped(wrong)} wrong of ${grouped(SIZE[0] * SIZE[1])} pixels, ${grouped(holes)} holes, ${ms.toFixed(2)} ms`,
+  );
+  const link = `${location.origin}${location.pathname}?scoreboard`;
+  return [`rasterlab scoreboard: ${adapter}, ${SIZE.join(" x ")}, seen from ${Math.round(angle)}°`, ...rows, link].join("\n");
+}
+
+/** Shows the scoreboard for good, and returns when its first moment is measured. */
+export async function scoreboard(main, page) {
+  const adapter = page.adapter() || "this device";
+  const [head, grid, status] = [element("header", ""), element("div", "ways"), element("p", "status", "The oracle draws …")];
+  const copy = element("button", "", "Copy the result");
+  const again = element("button", "", "Count here");
+  copy.disabled = again.disabled = true;
+  head.append(element("h1", "", "Who draws the right pixel?"), element("p", "lead", `One scene on ${adapter}, five ways to find the triangle of each pixel. An exact oracle on your processor draws it too, and every pixel that differs is red.`));
+  const foot = element("footer", "");
+  foot.append(status, again, copy);
+  main.replaceChildren(head, grid, foot);
+  const ways = WAYS.map((way) => card(way, page, grid));
+  let [angle, isWanted] = [0, true];
+  again.onclick = () => (isWanted = true);
+  copy.onclick = async () => {
+    try {
+      await navigator.clipboard.writeText(text(ways, adapter, measuredAt));
+      copy.textContent = "Copied";
+    } catch {
+      copy.textContent = "The browser refused";
+    }
+    setTimeout(() => (copy.textContent = "Copy the result"), 2000);
+  };
+
+  let [measuredAt, heldUntil] = [0, 0];
+  async function count() {
+    isWanted = false;
+    again.disabled = true;
+    status.textContent = "The oracle draws …";
+    const oracles = await oraclePicture(ways[0].preset, { progress: (part) => (status.textContent = `The oracle draws: ${Math.round(100 * part)} %`) });
+    for (const way of ways) {
+      status.textContent = `Counting: ${way.name} …`;
+      await measure(way, oracles);
+    }
+    measuredAt = ((angle % 360) + 360) % 360;
+    heldUntil = performance.now() + 1000 * HELD_S;
+    copy.disabled = again.disabled = false;
+    main.classList.add("counted");
+    status.textContent = `Counted at ${Math.round(measuredAt)}°. Wrong: a channel differs from the oracle's by more than ${TOLERANCE} of 255. Milliseconds: repeated frames, by the browser's clock.`;
+  }
+
+  await count();
+  let last = performance.now();
+  const next = async (now) => {
+    if (now > heldUntil || isWanted) {
+      const step = Math.min(0.25, (now - last) / 1000) * DEG_PER_S;
+      if (isWanted) await count();
+      else {
+        main.classList.remove("counted");
+        angle += step;
+        for (const way of ways) {
+          way.preset.orbit(step, 0, 1);
+          if (!way.result.error) await way.live.show(way.preset);
+        }
+      }
+    }
+    last = now;
+    requestAnimationFrame((then) => next(then).catch((error) => (status.textContent = error.message ?? String(error))));
+  };
+  requestAnimationFrame((now) => next(now).catch((error) => (status.textContent = error.message ?? String(error))));
+}

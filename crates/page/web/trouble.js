@@ -1,0 +1,34 @@
+// What a page says where it cannot go on: no WebGPU, a lost device, a mistake of the program.
+const GALLERY = ["hero-day", "hero-night", "hero-walk", "hero-herd", "hero-etching", "hero-swarm", "hero-blast", "hero-xray", "hero-town"];
+
+export const BROWSERS = "Chrome and Edge have it since version 113, Safari since 26, Firefox since 141 on Windows and 145 on macOS";
+
+/** The words for an error; those of a panic are kept by the module. */
+export function words(error) {
+  if (globalThis.rasterlabPanic) return `rasterlab made a mistake and has stopped: ${globalThis.rasterlabPanic}. Load the page again to go on`;
+  const said = error?.message ?? String(error);
+  if (/device (was|is) lost/i.test(said)) return "The device was lost: its driver has restarted, or another page took its memory. Load the page again to go on";
+  return said;
+}
+
+/** A link that saves the text of the preset as a file. */
+export function saver(text) {
+  const link = document.createElement("a");
+  link.className = "save";
+  link.textContent = "Save the preset";
+  link.download = "preset.toml";
+  link.href = URL.createObjectURL(new Blob([text], { type: "text/plain" }));
+  return link;
+}
+
+/** Pictures of the gallery, in place of what cannot be drawn. */
+export function gallery() {
+  const pictures = document.createElement("div");
+  pictures.className = "gallery";
+  for (const id of GALLERY) {
+    const picture = new Image();
+    [picture.src, picture.alt, picture.loading] = [`goldens/${id}.png`, id, "lazy"];
+    pictures.append(picture);
+  }
+  return pictures;
+}

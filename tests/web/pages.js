@@ -1,0 +1,155 @@
+// The pages themselves, in frames.
+import { OpenPreset, oracle_bits } from "/rasterlab_page.js";
+import { report, text, until } from "/tests/report.js";
+
+
+/** A page in a frame; with `before`, a script runs there first. */
+async function opened(address, before) {
+  const frame = document.createElement("iframe");
+  [frame.width, frame.height] = [480, 360];
+  if (before) frame.srcdoc = (await text("/index.html")).replace("<script", `<script>${before}</script><script`);
+  else frame.src = `/index.html${address}`;
+  document.body.append(frame);
+  const loaded = new Promise((resolve) => (frame.onload = resolve));
+  const heard = new Promise((resolve) => addEventListener("message", ({ source, data }) => source === frame.contentWindow && resolve(data)));
+  await loaded;
+  const find = (name) => frame.contentDocument.querySelector(name);
+  return { frame, find, heard, says: (words, name = "#caption") => until(() => words.test(find(name)?.textContent ?? "") && find(name), `${address} says ${words}; it says "${find(name)?.textContent}"`) };
+}
+
+/** A test of a page: its faults are what `check` returns, or what it throws. */
+async function page(name, address, check, before) {
+  let faults;
+  const shown = await opened(address, before);
+  try {
+    faults = (await check(shown)) ?? [];
+  } catch (error) {
+    faults = [`${error.message}; the page says "${shown.find("main")?.innerText}"`];
+  }
+  shown.frame.remove();
+  await report(`page ${name}`, faults);
+}
+
+const line = async (id) => new OpenPreset(await text(`/presets/${id}.toml`), id).line();
+
+export async function links() {
+  const preset = new OpenPreset(await text("/presets/facet.toml"), "facet");
+  const bits = oracle_bits(preset.in_portable_bits());
+  await page("proof", `#${preset.line()};${bits.join("-")}`, async ({ says, find }) => {
+    await says(/every pixel is the oracle's/);
+    await says(/the same bits as the oracle's/, "#proof");
+    find("#oracle button").click();
+    await says(/This is the oracle's picture/, "#oracle");
+  });
+  const other = `${"0".repeat(16)}-${bits[1]}`;
+  await page("other bits", `#${preset.line()};${other}`, async ({ says }) => {
+    const proof = await says(/triangle ids are not the oracle's/, "#proof");
+    return [proof.className !== "wrong" && "it looks right"];
+  });
+  await page("unproven", `#${await line("wobble")};${other}`, async ({ says }) => void (await says(/cannot be compared: .*strict/, "#proof")));
+  for (const [name, address, words] of [
+    ["cut link", "#rasterlab1:AAAA", /cut off or garbled/],
+    ["strange link", "#other", /none of rasterlab's/],
+    ["cut bits", `#${preset.line()};12`, /bits behind the link's line/],
+    ["bad escapes", "#%E0%A4%A", /cut off or garbled/],
+    ["no preset", "?preset=nothing", /no preset "nothing"/],
+  ]) {
+    await page(name, address, async ({ says }) => [(await says(words)).className !== "wrong" && "it looks right"]);
+  }
+}
+
+export async function brought() {
+  const wash = await text("/tests/wash.wgsl");
+  const own = `schema = 2\n[scene]\nbuiltin = "teapot?tess=4"\n[effects.wash]\n[effect_files]\nwash = '''\n${wash}'''\n[output]\nsize = [64, 48]\n`;
+  const carried = new OpenPreset(own, "own").line();
+  await page("brought code", `#${carried}`, async ({ says, find }) => {
+    await says(/fn wash/, "#code");
+    const early = /drawn|oracle's/.test(find("#caption").textContent);
+    find("button").click();
+    await says(/every pixel is the oracle's/);
+    return [early && "it was drawn unasked", find("#code") && "the code stays"];
+  });
+}
+
+/** The sum of the bytes that a canvas shows. */
+function seen(canvas) {
+  const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
+  copy.drawImage(canvas, 0, 0);
+  return copy.getImageData(0, 0, canvas.width, canvas.height).data.reduce((sum, byte) => sum + byte, 0);
+}
+
+export async function embed() {
+  await page("embed", "?embed&preset=hero-walk", async ({ find, heard, frame }) => {
+    const said = await Promise.race([heard, new Promise((resolve) => setTimeout(resolve, 120_000, "nothing"))]);
+    const [canvas, window] = [find("#picture"), frame.contentWindow];
+    let shown = [];
+    canvas.addEventListener("shown", () => shown.push(seen(canvas)));
+    /** What `act` does shows another picture, more than a black one. */
+    const shows = async (act, what) => {
+      shown = [];
+      act();
+      await until(() => shown.some((sum) => sum > 255 * canvas.width * canvas.height), what);
+    };
+    const at = (type, clientX, clientY) => canvas.dispatchEvent(new window.PointerEvent(type, { pointerId: 1, clientX, clientY, bubbles: true }));
+    canvas.setPointerCapture = () => {};
+    await shows(() => {
+      at("pointerdown", 100, 100);
+      at("pointermove", 220, 120);
+      at("pointerup", 220, 120);
+    }, "the picture turns");
+    await shows(() => canvas.dispatchEvent(new window.WheelEvent("wheel", { deltaY: -100, bubbles: true, cancelable: true })), "it comes closer");
+    const play = find("#play");
+    await shows(() => window.dispatchEvent(new window.KeyboardEvent("keydown", { key: " ", bubbles: true, cancelable: true })), "it plays");
+    await until(() => new Set(shown).size > 2, "it shows one frame after another");
+    const names = play.getAttribute("aria-label");
+    play.click();
+    return [said !== "rasterlab shows a picture" && `it says ${said}`, names !== "Pause" && `the button says ${names}`, play.getAttribute("aria-label") !== "Play" && "it goes on"];
+  });
+  await page("embed of a still preset", "?embed&preset=facet", async ({ find, heard }) => {
+    await heard;
+    return [find("#play") && "it has a button to play"];
+  });
+}
+
+export async function troubles() {
+  await page("no WebGPU", "", async ({ says, find }) => {
+    await says(/has no WebGPU.*Firefox/);
+    const pictures = [...find(".gallery").children];
+    await until(() => pictures.every(({ complete }) => complete), "the gallery");
+    return [pictures.length < 6 && "few pictures", ...pictures.filter(({ naturalWidth }) => !naturalWidth).map(({ alt }) => `no picture ${alt}`)];
+  }, "Object.defineProperty(navigator, 'gpu', { value: undefined })");
+  const lose = "const open = GPUAdapter.prototype.requestDevice; GPUAdapter.prototype.requestDevice = async function (...all) { const device = await open.apply(this, all); setTimeout(() => device.destroy(), 1); return device; };";
+  await page("lost device", "", async ({ says, find }) => {
+    await says(/device was lost/);
+    return [!(await (await fetch(find(".save").href)).text()).includes("schema") && "it saves no preset"];
+  }, lose);
+  const fail = "GPUDevice.prototype.createBuffer = () => { throw new TypeError('a mistake for the test') };";
+  await page("panic", "", async ({ says, find }) => {
+    await says(/made a mistake and has stopped: .*panicked at/);
+    return [!find(".save") && "it saves no preset"];
+  }, fail);
+}
+
+export async function scoreboard() {
+  await page("scoreboard", "?scoreboard", async ({ find, frame, says }) => {
+    await says(/^Counted at 0°/, ".status");
+    const ways = [...frame.contentDocument.querySelectorAll(".way")].map((way) => ({
+      name: way.querySelector("h2").textContent,
+      state: way.dataset.state,
+      wrong: Number(way.querySelector(".number").textContent.replaceAll(",", "")),
+      red: way.querySelector(".faults").getContext("2d").getImageData(0, 0, 400, 300).data.filter((byte, at) => at % 4 === 3 && byte).length,
+    }));
+    const faults = ways.filter(({ wrong, red }) => wrong !== red).map(({ name, wrong, red }) => `${name}: ${wrong} wrong, ${red} red`);
+    const wrong = Object.fromEntries(ways.map(({ name, wrong }) => [name, wrong]));
+    if (ways.length !== 5) faults.push(`${ways.length} ways`);
+    if (!(wrong.Exact <= 4)) faults.push(`exact: ${wrong.Exact} wrong`);
+    if (!(wrong["16-bit depth"] > 100)) faults.push(`16-bit depth: ${wrong["16-bit depth"]} wrong`);
+    let copied;
+    Object.defineProperty(frame.contentWindow.navigator, "clipboard", { value: { writeText: async (text) => (copied = text) } });
+    [...find("footer").querySelectorAll("button")].at(-1).click();
+    await until(() => copied, "the result is copied", 5);
+    if (!/Exact: \d+ wrong of 120,000 pixels[^]*http:.*\?scoreboard/.test(copied)) faults.push(`copied: ${copied}`);
+    console.log(copied);
+    return faults;
+  });
+}
