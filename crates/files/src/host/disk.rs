@@ -1,5 +1,5 @@
 //! Files by path. A page has none: there the files that a person gives it lie in memory, and a
-//! [`Keeper`](page::Keeper) takes what is written.
+//! `Keeper` takes what is written.
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use native::*;
