@@ -18,6 +18,7 @@ use crate::{
         shell::{log::Level, state::State},
     },
     effects::Effect,
+    host::disk,
     preset_file::{self, EffectValues, PresetError, PresetFile},
 };
 
@@ -134,7 +135,7 @@ fn rename(
 
 /// The preset that was opened from the file at `path` and is open, or was since the start.
 fn open_at(state: &State, path: &Path) -> Option<FileId> {
-    let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let absolute = |path: &Path| disk::absolute(path).unwrap_or_else(|_| path.to_owned());
     let is_there = |id: &&FileId| {
         id.path
             .as_deref()

@@ -57,7 +57,7 @@ impl LastSession {
             path: open
                 .path
                 .as_deref()
-                .and_then(|path| std::path::absolute(path).ok())
+                .and_then(|path| disk::absolute(path).ok())
                 .map(|path| path.to_string_lossy().into_owned().into()),
             is_read_only: open.read_only,
             filed: preset_file::to_shared_toml(&absolute(filed)),
@@ -175,7 +175,7 @@ fn absolute(preset_file: &PresetFile) -> PresetFile {
     let mut preset_file = preset_file.clone();
     if preset_file.path.is_none()
         && let SceneSource::File(model) = &preset_file.preset.scene
-        && let Ok(model) = std::path::absolute(model)
+        && let Ok(model) = disk::absolute(model)
     {
         preset_file.preset.scene = SceneSource::File(model);
     }

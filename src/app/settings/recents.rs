@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{preset::SceneSource, preset_file::PresetFile};
+use crate::{host::disk, preset::SceneSource, preset_file::PresetFile};
 
 /// Files that are remembered.
 pub const CAPACITY: usize = 12;
@@ -17,7 +17,7 @@ pub struct Recents(Vec<PathBuf>);
 impl Recents {
     /// Puts `path` first.
     pub fn add(&mut self, path: &Path) {
-        let Ok(path) = std::path::absolute(path) else {
+        let Ok(path) = disk::absolute(path) else {
             return;
         };
         self.0.retain(|known| *known != path);
@@ -36,7 +36,7 @@ impl Recents {
 
     /// The file `from` is called `to` now.
     pub fn rename(&mut self, from: &Path, to: &Path) {
-        let [Ok(from), Ok(to)] = [from, to].map(std::path::absolute) else {
+        let [Ok(from), Ok(to)] = [from, to].map(disk::absolute) else {
             return;
         };
         if self.0.contains(&from) {
@@ -50,7 +50,7 @@ impl Recents {
 
     /// Forgets `path`.
     pub fn remove(&mut self, path: &Path) {
-        if let Ok(path) = std::path::absolute(path) {
+        if let Ok(path) = disk::absolute(path) {
             self.0.retain(|known| *known != path);
         }
     }

@@ -8,7 +8,10 @@ pub use page::*;
 
 #[cfg(not(target_arch = "wasm32"))]
 mod native {
-    pub use std::fs::{File, create_dir_all as create_folder, read, read_to_string};
+    pub use std::{
+        fs::{File, create_dir_all as create_folder, read, read_to_string},
+        path::absolute,
+    };
     use std::{
         io,
         path::{Path, PathBuf},
@@ -132,6 +135,11 @@ mod page {
 
     pub fn canonical(path: &Path) -> io::Result<PathBuf> {
         Ok(path.to_owned())
+    }
+
+    /// The standard library has none here, not even of an absolute path.
+    pub fn absolute(path: impl AsRef<Path>) -> io::Result<PathBuf> {
+        Ok(Path::new("/").join(path))
     }
 
     pub fn read(path: &Path) -> io::Result<Vec<u8>> {

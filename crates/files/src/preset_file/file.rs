@@ -16,6 +16,7 @@ use super::{
 use crate::{
     effect_files::Catalog,
     effects::Effect,
+    host::disk,
     preset::{Preset, SceneSource},
 };
 
@@ -355,7 +356,7 @@ pub(super) fn stays_inside(model: &Path) -> bool {
 /// are not followed, and nothing is read.
 pub fn normalized(path: &Path) -> Option<PathBuf> {
     let mut normalized = PathBuf::new();
-    for part in std::path::absolute(path).ok()?.components() {
+    for part in disk::absolute(path).ok()?.components() {
         match part {
             Component::ParentDir => drop(normalized.pop()),
             Component::CurDir => {}

@@ -222,7 +222,7 @@ pub fn open(what: &str, folders: &Folders) -> Result<PresetFile, PresetError> {
         return load_picture(path);
     }
     if ModelFormat::of(path).is_some() {
-        let absolute = std::path::absolute(path).map_err(|e| PresetError::Read {
+        let absolute = disk::absolute(path).map_err(|e| PresetError::Read {
             file: what.into(),
             reason: e.to_string(),
         })?;

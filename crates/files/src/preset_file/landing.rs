@@ -8,6 +8,7 @@ use super::{
     look::Look,
 };
 use crate::{
+    host::disk,
     preset::{FRAMING_DIRECTION, Fit, LengthUnit, Preset, SceneSource},
     scene::{Bounds, Scene, camera::Camera},
 };
@@ -80,7 +81,7 @@ impl PresetFile {
         warnings.extend(self.preset.left_out_on(&own.preset));
         let mut preset = fitted.applied_to(&own.preset);
         if let SceneSource::File(model) = own.scene_source() {
-            preset.scene = SceneSource::File(std::path::absolute(&model).unwrap_or(model));
+            preset.scene = SceneSource::File(disk::absolute(&model).unwrap_or(model));
         }
         let look = self.origin();
         let model = own.scene_name();
@@ -146,9 +147,7 @@ impl PresetFile {
 fn is_same_file(a: Option<&Path>, b: Option<&Path>) -> bool {
     match (a, b) {
         (Some(a), Some(b)) => {
-            a == b
-                || std::path::absolute(a)
-                    .is_ok_and(|a| std::path::absolute(b).is_ok_and(|b| a == b))
+            a == b || disk::absolute(a).is_ok_and(|a| disk::absolute(b).is_ok_and(|b| a == b))
         }
         (a, b) => a == b,
     }
