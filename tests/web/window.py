@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Promise: the window opens in a page of Chromium and draws its preset, an edit changes the picture, and settings survive a reload.
+"""Promise: the window opens in a page of Chromium and draws its preset, an edit changes the picture, a preset is
+saved by a download, a dropped model is shown, and settings survive a reload.
 
 Serves dist/ (sh scripts/web.sh) and tests/web/window_test.html as run.py does. With a folder as argument it leaves pictures of the window
 there."""
