@@ -61,7 +61,6 @@ pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit,
                 writes,
                 &golden,
                 &snapshots,
-                &common.presets_folder(),
                 change["changes"] == json!(true),
             )?;
         }
@@ -143,7 +142,10 @@ fn named(common: &Common, name: &str) -> Result<(PresetFile, Option<Writes>), Cl
         Some(PresetError::NoPreset { .. })
     );
     match common.folders().effects.find(name) {
-        Ok(Some(effect)) if is_unknown => Ok((first_preset(effect), Some(Writes::Preset))),
+        Ok(Some(effect)) if is_unknown => {
+            let preset_file = first_preset(effect, &common.presets_folder());
+            Ok((preset_file, Some(Writes::Preset)))
+        }
         _ if is_unknown => Err(CliError::usage(format!(
             "there is no preset and no effect {name:?}; rasterlab list shows all of them"
         ))),
@@ -151,8 +153,8 @@ fn named(common: &Common, name: &str) -> Result<(PresetFile, Option<Writes>), Cl
     }
 }
 
-/// The first preset of a new effect: on the teapot, with default parameters.
-fn first_preset(effect: &Arc<Effect>) -> PresetFile {
+/// The first preset of a new effect, to be saved in `folder`: on the teapot, with default parameters.
+fn first_preset(effect: &Arc<Effect>, folder: &Path) -> PresetFile {
     let mut preset = Preset {
         name: effect.name.replace('_', " "),
         about: effect.about.clone(),
@@ -165,7 +167,9 @@ fn first_preset(effect: &Arc<Effect>) -> PresetFile {
         ..Preset::default()
     };
     preset.stack.enable(effect);
-    PresetFile::new(&effect.name, preset)
+    let mut preset_file = PresetFile::new(&effect.name, preset);
+    preset_file.path = Some(folder.join(format!("{}.toml", effect.name)));
+    preset_file
 }
 
 fn store(
@@ -173,12 +177,10 @@ fn store(
     writes: Option<Writes>,
     golden: &Golden,
     snapshots: &Path,
-    folder: &Path,
     changes: bool,
 ) -> Result<(), CliError> {
-    if writes.is_some() {
-        let own = preset_file.path.clone();
-        let path = own.unwrap_or_else(|| folder.join(format!("{}.toml", preset_file.id)));
+    if let (Some(_), Some(path)) = (writes, preset_file.path.clone()) {
+        std::fs::create_dir_all(path.parent().unwrap_or(Path::new("")))?;
         preset_file::save(&mut preset_file, &path)?;
     }
     if changes {

@@ -22,11 +22,6 @@ const TOLERANCE: f64 = 1e-9;
 /// Effects whose text and function are meant to differ by more, and why.
 const LOOSER: &[(&str, f64, &str)] = &[
     (
-        "tonemap",
-        1e-5,
-        "constants are f32 on one side where the compiler folds them, decimal where it reads them",
-    ),
-    (
         "explode",
         1e-7,
         "lib/angle has a polynomial for the sine, within 3.4e-9 of it, which is multiplied by the arm",

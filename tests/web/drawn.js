@@ -33,7 +33,7 @@ export async function presets() {
   }
 }
 
-/** Every golden, its rows shared by three workers, whatever the machine has. */
+/** The oracle draws every preset in three workers, however many cores the machine has, and its pictures are the goldens. */
 export async function oracle() {
   let shared = 0;
   for (const id of JSON.parse(await text("/presets.json"))) {

@@ -1,7 +1,6 @@
-//! rasterlab in a web page. [`Page`] draws presets on the page's device, [`Live`]
-//! shows them on a canvas; [`oracle_rows`] are the oracle's, drawn in a worker, which has an instance
-//! of the module for itself. Both take the text
-//! of a preset and give plain arrays, so that the page needs no other library.
+//! rasterlab in a web page. [`Page`] draws presets on the page's device and reads them back, [`Live`]
+//! shows them on a canvas. [`oracle_rows`] draws rows of the oracle's picture in a worker, which has an
+//! instance of the module for itself. All take an [`OpenPreset`].
 
 #![cfg(target_arch = "wasm32")]
 

@@ -167,16 +167,16 @@ async fn draw_hardware(
     frames: u32,
 ) -> Result<(), JsError> {
     let (view, stack) = open.moment();
-    if hardware.is_none() {
-        // The key of our own kernels for the same picture says what its shaders are linked from.
-        let mut renderer = Renderer::new(gpu.clone());
-        draw_kernels(&mut renderer, open, 1).await?;
-        let key = renderer.key().ok_or(RenderError::NoScene)?;
-        let made = Hardware::new(gpu, &open.scene, &view, &stack, key).await?;
-        *hardware = Some(Box::new(made.map_err(|why| JsError::new(&why))?));
-    }
-    let Some(hardware) = hardware else {
-        return Ok(());
+    let hardware = match hardware {
+        Some(made) => made,
+        None => {
+            // The key of our own kernels for the same picture says what its shaders are linked from.
+            let mut renderer = Renderer::new(gpu.clone());
+            draw_kernels(&mut renderer, open, 1).await?;
+            let key = renderer.key().ok_or(RenderError::NoScene)?;
+            let made = Hardware::new(gpu, &open.scene, &view, &stack, key).await?;
+            hardware.insert(Box::new(made.map_err(|why| JsError::new(&why))?))
+        }
     };
     hardware.look(gpu, &open.scene, &view, &stack).await?;
     let mut encoder = gpu.device.create_command_encoder(&Default::default());

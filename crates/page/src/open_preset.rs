@@ -9,13 +9,14 @@ use rasterlab_model::{
     math::fnv1a,
     measure::compare,
     preset::Preset,
-    scene::{Scene, builtin, view::View},
+    scene::{
+        Scene, builtin,
+        camera_moves::{orbit, zoom},
+        view::View,
+    },
 };
 use rasterlab_oracle as oracle;
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
-
-/// How close to a pole the camera of a visitor comes, as the sine of its elevation.
-const HIGHEST: f64 = 0.995;
 
 /// A preset and its scene.
 #[wasm_bindgen]
@@ -72,8 +73,8 @@ impl OpenPreset {
         self.file.preset.name.clone()
     }
 
-    /// The code that it brings: the text of every effect that came inside it, which nobody here has
-    /// seen yet; empty if there is none.
+    /// The WGSL of the effects that the preset's own text contains, for the visitor to read before it
+    /// runs; empty if it contains none.
     pub fn brought_code(&self) -> String {
         let is_brought = |stem: &String| self.file.brought_effects.contains(stem);
         let effects = self.file.preset.stack.0.iter();
@@ -155,18 +156,8 @@ impl OpenPreset {
         let aspect = f64::from(width.max(1)) / f64::from(height.max(1));
         let mut preset = self.file.preset.in_meters(&self.scene).into_owned();
         let mut camera = preset.camera_for(&self.scene, aspect);
-        let arm = camera.eye - camera.target;
-        let up = camera.up.normalize_or_zero();
-        let side = up.cross(arm).normalize_or_zero();
-        let rises = up.dot(arm.normalize_or_zero()).clamp(-1.0, 1.0).asin();
-        let limit = HIGHEST.asin();
-        let up_by = (rises + up_deg.to_radians()).clamp(-limit, limit) - rises;
-        // Around an axis of length 1, after Rodrigues.
-        let turned = |v: glam::DVec3, axis: glam::DVec3, angle: f64| {
-            v * angle.cos() + axis.cross(v) * angle.sin() + axis * axis.dot(v) * (1.0 - angle.cos())
-        };
-        let arm = turned(turned(arm, side, -up_by), up, aside_deg.to_radians());
-        camera.eye = camera.target + arm * closer.clamp(0.05, 20.0);
+        orbit(&mut camera, -aside_deg.to_radians(), up_deg.to_radians());
+        zoom(&mut camera, closer);
         preset.camera = Some(camera);
         self.file.preset = preset;
     }

@@ -10,7 +10,7 @@ const main = document.querySelector("main");
 const canvas = document.getElementById("picture");
 const caption = document.getElementById("caption");
 const query = new URLSearchParams(location.search);
-/** The text of what is open, for whoever wants to save it. */
+/** The text of the open preset: the visitor can save it where the page cannot go on. */
 let opened;
 
 function say(text, kind = "") {

@@ -6,15 +6,12 @@ use glam::DVec3;
 
 use super::{first_values::first_words, session::Session};
 use crate::{
-    app::{
-        picture::orbit,
-        shell::command::{Edit, Parameter},
-    },
+    app::shell::command::{Edit, Parameter},
     effects::Effect,
     params::Value,
     preset::{Preset, SceneSource},
     preset_file,
-    scene::camera::Camera,
+    scene::{camera::Camera, camera_moves},
 };
 
 impl Session {
@@ -111,9 +108,9 @@ impl Session {
                 }
             }
             Edit::LookAlong(direction) => {
-                self.move_camera(|camera| orbit::look_along(camera, direction))
+                self.move_camera(|camera| camera_moves::look_along(camera, direction))
             }
-            Edit::ToggleOrthographic => self.move_camera(orbit::toggle_orthographic),
+            Edit::ToggleOrthographic => self.move_camera(camera_moves::toggle_orthographic),
         }
         Ok(())
     }
@@ -144,7 +141,7 @@ impl Session {
     fn move_camera(&mut self, change: impl FnOnce(&mut Camera)) {
         if let Some(mut camera) = self.camera() {
             change(&mut camera);
-            if orbit::is_finite(&camera) {
+            if camera_moves::is_finite(&camera) {
                 self.preset_mut().camera = Some(camera);
             }
         }
@@ -163,7 +160,7 @@ impl Session {
             .into_iter()
             .map(|point| turn.transform_point3(point))
             .collect();
-        orbit::framing(camera, &points, super::session::aspect(preset.output.size))
+        camera_moves::framing(camera, &points, super::session::aspect(preset.output.size))
     }
 
     /// Gives every parameter of the enabled effects that is neither locked nor animated a random

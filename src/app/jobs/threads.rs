@@ -1,5 +1,5 @@
-//! Threads of the window. A page has one alone: there work goes on between its frames, and whatever
-//! waits gives the thread back.
+//! Threads of the window. A page has a single thread: its jobs are futures that run between frames,
+//! and a job that waits lets the next frame be drawn.
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use native::{pause, start};

@@ -461,7 +461,7 @@ fn form_ui(ui: &mut Ui, form: &mut Form, clock: &Clock, takes_focus: bool) -> bo
     is_entered
 }
 
-/// What is left of a film that was stopped.
+/// What a person reads when a film was stopped: which of its files are there.
 const fn stopped_text(keeps_frames: bool) -> &'static str {
     if keeps_frames {
         "Stopped. Frames kept: the next export goes on after them."

@@ -11,7 +11,6 @@ pub mod findings;
 pub mod golden_check;
 pub mod inputs;
 pub mod measured;
-pub mod orbit;
 pub mod overlay;
 pub mod picture_thread;
 pub mod precision;

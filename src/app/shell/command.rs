@@ -143,7 +143,7 @@ pub enum SettingsCommand {
 
 impl From<Action> for Command {
     fn from(action: Action) -> Self {
-        use crate::app::picture::orbit::{FRONT, SIDE, TOP};
+        use crate::scene::camera_moves::{FRONT, SIDE, TOP};
         match action {
             Action::Open => Self::File(FileCommand::Ask(Purpose::Open)),
             Action::Save => Self::File(FileCommand::Save),

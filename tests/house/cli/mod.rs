@@ -1069,7 +1069,13 @@ fn bless_finds_what_every_command_finds() {
     let folder = tempfile::tempdir().unwrap();
     let go = |args: &[&str]| run_in(folder.path(), args);
     assert_eq!(go(&["new-effect", "ink"]).code, 0);
-    fs::create_dir(folder.path().join("presets")).unwrap();
+    // The folder of presets is made with the first one.
+    assert_eq!(go(&["new-effect", "wash"]).code, 0);
+    assert_eq!(go(&["bless", "wash"]).code, 0);
+    assert_eq!(
+        go(&["check", "wash", "--render", "--adapter", "cpu"]).code,
+        0
+    );
     let text = "schema = 2\nname = \"Inked\"\n[scene]\nbuiltin = \"knot?tess=3\"\n[effects.ink]\n[output]\nsize = [64, 48]\n[test]\n";
     fs::write(folder.path().join("presets/inked.toml"), text).unwrap();
     for args in [
@@ -1112,7 +1118,7 @@ fn bless_finds_what_every_command_finds() {
         &rasterlab::effect_files::Catalog::of_folders([&*folder.path().join("effects")]),
     );
     assert!(first.is_ok_and(|first| first.preset.test.is_some()));
-    let checked = go(&["check", "ink"]);
+    let checked = go(&["check", "ink", "--render", "--adapter", "cpu"]);
     assert_eq!(checked.code, 0, "{}{}", checked.out, checked.err);
     let unknown = go(&["bless", "no-such-effect"]);
     assert!(

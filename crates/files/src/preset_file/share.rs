@@ -32,8 +32,7 @@ pub fn to_line(preset_file: &PresetFile) -> String {
 }
 
 /// Reads a pasted line, or the link of a page that carries one; white space from a mail or chat is
-/// forgiven. A model outside of the current
-/// folder is not its scene before [`PresetFile::with_outside_model`].
+/// forgiven. A model outside of the current folder is not its scene before [`PresetFile::with_outside_model`].
 ///
 /// # Errors
 /// The text is no such line, or its preset cannot be read.

@@ -80,99 +80,93 @@ impl Tonemap {
     }
 }
 
-// Constants are f32, as the shader's are.
-
 /// Light that Khronos PBR Neutral leaves as it is, apart from the reflection of a dielectric.
-const COMPRESSED_FROM: f32 = 0.76;
-/// What is left between that and white.
-const COMPRESSED_ROOM: f32 = 0.24;
+const COMPRESSED_FROM: f64 = 0.76;
+/// 1 - [`COMPRESSED_FROM`]: the range of what is shown into which brighter light is compressed.
+const COMPRESSED_ROOM: f64 = 0.24;
 /// Reflection of a dielectric that looks straight on.
-const DIELECTRIC: f32 = 0.04;
-const DESATURATION: f32 = 0.15;
+const DIELECTRIC: f64 = 0.04;
+const DESATURATION: f64 = 0.15;
 
 fn neutral(light: DVec3) -> DVec3 {
-    let [from, room, dielectric, desaturation] =
-        [COMPRESSED_FROM, COMPRESSED_ROOM, DIELECTRIC, DESATURATION].map(f64::from);
     let least = light.min_element();
-    let offset = if least < 2.0 * dielectric {
-        least - least * least / (4.0 * dielectric)
+    let offset = if least < 2.0 * DIELECTRIC {
+        least - least * least / (4.0 * DIELECTRIC)
     } else {
-        dielectric
+        DIELECTRIC
     };
     let color = light - offset;
     let peak = color.max_element();
-    if peak < from {
+    if peak < COMPRESSED_FROM {
         return color;
     }
-    let new_peak = 1.0 - room * room / (peak + room - from);
-    let whiteness = 1.0 - 1.0 / (desaturation * (peak - new_peak) + 1.0);
+    let new_peak = 1.0 - COMPRESSED_ROOM * COMPRESSED_ROOM / (peak + COMPRESSED_ROOM - COMPRESSED_FROM);
+    let whiteness = 1.0 - 1.0 / (DESATURATION * (peak - new_peak) + 1.0);
     let color = color * (new_peak / peak);
     color + (DVec3::splat(new_peak) - color) * whiteness
 }
 
 fn aces(light: DVec3) -> DVec3 {
-    let [a, b, c, d, e] = ACES_CURVE.map(f64::from);
+    let [a, b, c, d, e] = ACES_CURVE;
     // The same quotient for light up to 1e9, whose squares f32 still holds.
     let v = (matrix(ACES_IN) * light).min(DVec3::splat(1e9));
     matrix(ACES_OUT) * ((v * (v + a) - b) / (v * (v * c + d) + e))
 }
 
 fn agx(light: DVec3) -> DVec3 {
-    let [darkest, stops] = [AGX_DARKEST, AGX_STOPS].map(f64::from);
     let inset = matrix(AGX_IN) * (matrix(REC2020_OF_SRGB) * light);
-    let exposed = inset.max(DVec3::splat(1e-10)).map(libm::log2) - darkest;
-    let x = (exposed / stops).clamp(DVec3::ZERO, DVec3::ONE);
+    let exposed = inset.max(DVec3::splat(1e-10)).map(libm::log2) - AGX_DARKEST;
+    let x = (exposed / AGX_STOPS).clamp(DVec3::ZERO, DVec3::ONE);
     let curved = AGX_POLYNOMIAL
         .iter()
-        .fold(DVec3::ZERO, |sum, &coefficient| sum * x + f64::from(coefficient));
+        .fold(DVec3::ZERO, |sum, &coefficient| sum * x + coefficient);
     let out = (matrix(AGX_OUT) * curved).max(DVec3::ZERO);
-    let gamma = f64::from(AGX_GAMMA);
-    matrix(SRGB_OF_REC2020) * out.map(|value| libm::pow(value, gamma))
+    matrix(SRGB_OF_REC2020) * out.map(|value| libm::pow(value, AGX_GAMMA))
 }
 
 /// Hill's quotient: (v (v + a) - b) / (v (c v + d) + e).
-const ACES_CURVE: [f32; 5] = [0.024_578_6, 0.000_090_537, 0.983_729, 0.432_951, 0.238_081];
+const ACES_CURVE: [f64; 5] = [0.024_578_6, 0.000_090_537, 0.983_729, 0.432_951, 0.238_081];
 /// The binary logarithm of light that AgX maps to black, and the stops from there to white.
-const AGX_DARKEST: f32 = -12.473_93;
-const AGX_STOPS: f32 = 16.5;
+const AGX_DARKEST: f64 = -12.473_93;
+const AGX_STOPS: f64 = 16.5;
 /// The curve of AgX, highest power first.
-const AGX_POLYNOMIAL: [f32; 7] = [15.5, -40.14, 31.96, -6.868, 0.4298, 0.1191, -0.002_32];
-const AGX_GAMMA: f32 = 2.2;
+const AGX_POLYNOMIAL: [f64; 7] = [15.5, -40.14, 31.96, -6.868, 0.4298, 0.1191, -0.002_32];
+const AGX_GAMMA: f64 = 2.2;
 
-const ACES_IN: [[f32; 3]; 3] = [
+const ACES_IN: [[f64; 3]; 3] = [
     [0.597_19, 0.354_58, 0.048_23],
     [0.076, 0.908_34, 0.015_66],
     [0.028_4, 0.133_83, 0.837_77],
 ];
-const ACES_OUT: [[f32; 3]; 3] = [
+const ACES_OUT: [[f64; 3]; 3] = [
     [1.604_75, -0.531_08, -0.073_67],
     [-0.102_08, 1.108_13, -0.006_05],
     [-0.003_27, -0.072_76, 1.076_02],
 ];
-const REC2020_OF_SRGB: [[f32; 3]; 3] = [
+const REC2020_OF_SRGB: [[f64; 3]; 3] = [
     [0.6274, 0.3293, 0.0433],
     [0.0691, 0.9195, 0.0113],
     [0.0164, 0.0880, 0.8956],
 ];
-const SRGB_OF_REC2020: [[f32; 3]; 3] = [
+const SRGB_OF_REC2020: [[f64; 3]; 3] = [
     [1.6605, -0.5876, -0.0728],
     [-0.1246, 1.1329, -0.0083],
     [-0.0182, -0.1006, 1.1187],
 ];
-const AGX_IN: [[f32; 3]; 3] = [
+const AGX_IN: [[f64; 3]; 3] = [
     [0.856_627_15, 0.095_121_24, 0.048_251_61],
-    [0.137_318_97, 0.761_242, 0.101_439_04],
+    [0.137_318_97, 0.761_241_99, 0.101_439_04],
     [0.111_898_21, 0.076_799_42, 0.811_302_37],
 ];
-const AGX_OUT: [[f32; 3]; 3] = [
-    [1.127_100_6, -0.110_606_64, -0.016_493_94],
-    [-0.141_329_76, 1.157_823_7, -0.016_493_94],
-    [-0.141_329_76, -0.110_606_64, 1.251_936_4],
+const AGX_OUT: [[f64; 3]; 3] = [
+    [1.127_100_58, -0.110_606_64, -0.016_493_94],
+    [-0.141_329_76, 1.157_823_70, -0.016_493_94],
+    [-0.141_329_76, -0.110_606_64, 1.251_936_41],
 ];
 
 /// A matrix from its rows.
-fn matrix(rows: [[f32; 3]; 3]) -> DMat3 {
-    DMat3::from_cols_array_2d(&rows.map(|row| row.map(f64::from))).transpose()
+fn matrix(rows: [[f64; 3]; 3]) -> DMat3 {
+    DMat3::from_cols_array_2d(&rows).transpose()
 }
 
 #[cfg(test)]

@@ -43,6 +43,9 @@ pub use golden_test::GoldenTest;
 
 pub use crate::accuracy::{AccuracyRequest, PinnedOptions, Tier, Visibility};
 
+/// How far beyond the scene's box particles widen what the automatic camera frames, in radii of it.
+const PARTICLES_ASIDE: f64 = 0.35;
+
 /// Which scene a preset shows.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SceneSource {
@@ -456,7 +459,7 @@ impl Preset {
             // Particles may fly far, but the scene is what is looked at.
             let mut near = Bounds::EMPTY;
             points.iter().for_each(|point| near.include(*point));
-            let aside = 0.35 * near.radius();
+            let aside = PARTICLES_ASIDE * near.radius();
             let corners = particle_settings.disc_bounds().corners();
             points.extend(corners.map(|corner| {
                 if near.is_empty() {

@@ -10,6 +10,7 @@ pub mod background;
 pub mod bounds;
 pub mod builtin;
 pub mod camera;
+pub mod camera_moves;
 pub mod deformation;
 pub mod draw;
 pub mod framing;

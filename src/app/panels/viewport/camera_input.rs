@@ -3,8 +3,8 @@
 use eframe::egui::{Key, PointerButton, Response, Ui, Vec2};
 
 use crate::{
-    app::{editing::session::Session, picture::orbit},
-    scene::camera::Camera,
+    app::editing::session::Session,
+    scene::{camera::Camera, camera_moves},
 };
 
 /// Radians that a drag over one point turns the camera by.
@@ -27,7 +27,7 @@ impl Moving {
     fn change(&mut self, change: impl FnOnce(&mut Camera)) {
         let mut camera = self.camera;
         change(&mut camera);
-        if orbit::is_finite(&camera) {
+        if camera_moves::is_finite(&camera) {
             (self.camera, self.is_moved) = (camera, true);
         }
     }
@@ -48,12 +48,13 @@ pub fn navigate(ui: &Ui, response: &Response, session: &Session, widening: f64) 
         let pans = response.dragged_by(PointerButton::Middle)
             || (response.dragged_by(PointerButton::Primary) && shift);
         if pans {
-            moving.change(|c| orbit::pan(c, right / height, down / height));
+            moving.change(|c| camera_moves::pan(c, right / height, down / height));
         } else if response.dragged_by(PointerButton::Primary) {
-            moving.change(|c| orbit::orbit(c, right * TURN_PER_POINT, down * TURN_PER_POINT));
+            moving
+                .change(|c| camera_moves::orbit(c, right * TURN_PER_POINT, down * TURN_PER_POINT));
         } else if response.dragged_by(PointerButton::Secondary) {
             moving.change(|c| {
-                orbit::turn(c, right * TURN_PER_POINT * 0.5, down * TURN_PER_POINT * 0.5)
+                camera_moves::turn(c, right * TURN_PER_POINT * 0.5, down * TURN_PER_POINT * 0.5)
             });
         }
     }
@@ -71,7 +72,7 @@ pub fn navigate(ui: &Ui, response: &Response, session: &Session, widening: f64) 
         });
         if scroll != 0.0 || pinch != 1.0 {
             moving.change(|c| {
-                orbit::zoom(c, (-scroll * ZOOM_PER_POINT).exp() / pinch.clamp(0.2, 5.0))
+                camera_moves::zoom(c, (-scroll * ZOOM_PER_POINT).exp() / pinch.clamp(0.2, 5.0))
             });
         }
     }
@@ -99,6 +100,6 @@ fn fly(ui: &Ui, session: &Session, moving: &mut Moving) {
         .map_or(1.0, |scene| scene.bounds().radius())
         .max(1e-3);
     let step = radius * FLY_PER_S * f64::from(ui.input(|i| i.stable_dt)).min(0.1);
-    moving.change(|c| orbit::fly(c, x * step, y * step, z * step));
+    moving.change(|c| camera_moves::fly(c, x * step, y * step, z * step));
     ui.ctx().request_repaint();
 }

@@ -7,14 +7,13 @@ use glam::{DQuat, DVec3};
 use crate::{
     app::{
         editing::session::Session,
-        picture::orbit,
         shell::command::{Commands, Edit, Parameter},
         widgets::theme,
     },
     effects::{Stack, shadow},
     math::srgb_byte,
     params::{Stored as _, Value, ValueType},
-    scene::camera::Camera,
+    scene::{camera::Camera, camera_moves},
 };
 
 /// Radius of the ball, and its distance from the corner, points.
@@ -143,7 +142,7 @@ fn angles(toward: DVec3) -> [f64; 2] {
 
 /// A direction turned like a ball that is dragged right and down, radians.
 fn turned(toward: DVec3, camera: &Camera, right: f64, down: f64) -> DVec3 {
-    let (x, y) = orbit::axes(camera);
+    let (x, y) = camera_moves::axes(camera);
     (DQuat::from_axis_angle(x, down) * (DQuat::from_axis_angle(y, right) * toward))
         .normalize_or(toward)
 }
@@ -151,7 +150,7 @@ fn turned(toward: DVec3, camera: &Camera, right: f64, down: f64) -> DVec3 {
 /// The ball as the camera sees it, with a mark in the direction of the light: a disc in front, a
 /// ring behind.
 fn ball_ui(ui: &Ui, center: Pos2, light: &Light, camera: &Camera, is_active: bool) {
-    let (x, y) = orbit::axes(camera);
+    let (x, y) = camera_moves::axes(camera);
     let (back, toward) = (-camera.forward(), light.toward);
     let tint = |brightness: f64, alpha: u8| {
         let [r, g, b] =
@@ -214,7 +213,7 @@ mod tests {
             eye: DVec3::new(1.0, 2.0, 5.0),
             ..Camera::default()
         };
-        let (x, y) = orbit::axes(&camera);
+        let (x, y) = camera_moves::axes(&camera);
         let front = -camera.forward();
         assert!(
             turned(front, &camera, 0.1, 0.0).dot(x) > 0.09
