@@ -17,7 +17,10 @@ case "${1:-}" in
 esac
 
 target="${CARGO_TARGET_DIR:-target}"
-cargo build --profile web -p rasterlab-page -p rasterlab-window --target wasm32-unknown-unknown
+# One after the other: together, the page would be built with the features that only the window needs.
+for module in page window; do
+    cargo build --profile web -p "rasterlab-$module" --target wasm32-unknown-unknown
+done
 
 # The command must have the version of the crate; setup.sh installs it into the target folder.
 wasm_bindgen="$target/web/bin/wasm-bindgen"
