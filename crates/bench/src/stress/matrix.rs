@@ -238,7 +238,7 @@ fn factors(caps: &Caps) -> Vec<Vec<Level>> {
         ]),
         effects(&[&[], &["explode"], &["inflate"], &["wobble"]]),
         effects(&[&[], &["xray"], &["overdraw"], &["race"]]),
-        effects(&[&[], &["posterize"], &["outline"], &["dither"]]),
+        effects(&[&[], &["posterize"], &["outline"], &["dither"], &["tonemap"]]),
         effects(&[&[], &["shadow"], &["dots"], &["particles"]]),
         pins(&options(caps)),
         pins(&[Culling::None, Culling::Frustum, Culling::TwoPass]),
