@@ -254,7 +254,9 @@ fn loading_takes_at_most_two_and_a_half_times_what_is_loaded() {
         fs::write(&path, cloth(side).glb()).unwrap();
         path
     });
-    let (before, peak) = (peak(&small), peak(&large));
+    // A program that ends between two looks at it is seen smaller than it was.
+    let before = (0..5).map(|_| peak(&small)).max().expect("five runs");
+    let peak = peak(&large);
     let decoded = host::model::load(&large)
         .expect("a good model")
         .byte_count();
