@@ -14,7 +14,7 @@ use crate::{
         device::{AdapterChoice, AdapterSummary, Caps},
     },
     measure::{ErrorReport, Verdict},
-    oracle::{self, Shot},
+    oracle,
     preset::{Preset, Visibility},
     preset_file::{self, PresetError, PresetFile, Provenance},
     scene::{Scene, draw::DrawError, view::View},
@@ -205,13 +205,9 @@ impl Backend {
                     Some(oracle::render_sequence(scene, before)?.color)
                 };
                 let frame = oracle::render_next(scene, view, stack, previous.as_deref())?;
-                let mut geometry =
-                    oracle::project(&Shot::new(scene, &stack.draws(scene, view)?, view, stack))
-                        .map_err(DrawError::from)?;
-                geometry.shadow_map = oracle::shadow_map(scene, view, stack)?;
                 Ok(Capture {
                     frame,
-                    geometry,
+                    geometry: oracle::geometry(scene, view, stack)?,
                     layers: None,
                     previous,
                     shown: None,

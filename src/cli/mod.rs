@@ -28,6 +28,7 @@ mod new_effect;
 mod open;
 mod page;
 mod parts;
+mod probe;
 mod render;
 mod report;
 mod sequence;
@@ -88,7 +89,7 @@ pub fn run(cli: &Cli) -> Result<Exit, CliError> {
     };
     if cli.common.preset.is_some() && !command.takes_look() {
         return Err(CliError::usage(format!(
-            "--preset has no meaning for {}; it puts a look on the scene that render, sequence, verify, compare, explain, parts, bench, link, page or the \
+            "--preset has no meaning for {}; it puts a look on the scene that render, sequence, verify, compare, explain, probe, parts, bench, link, page or the \
              window shows",
             command.name()
         )));
@@ -123,6 +124,7 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
         Command::Verify(args) => verify::run(common, args, streams),
         Command::Compare(args) => compare::run(common, args, streams),
         Command::Explain(args) => explain::run(common, args, streams),
+        Command::Probe(args) => probe::run(common, args, streams),
         Command::Parts(args) => parts::run(common, args, streams),
         Command::Bless(args) => bless::run(common, args, streams),
         Command::Bench(args) => bench::run(common, args, streams),
@@ -188,7 +190,6 @@ fn window(cli: &Cli) -> Result<Exit, CliError> {
         adapter,
         devices: None,
         folders: cli.common.window_folders(),
-        opens_editor: true,
         config: crate::app::config_folder(),
         log: log.transpose()?.map(std::sync::Arc::new),
     };

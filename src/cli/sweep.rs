@@ -20,7 +20,7 @@ use crate::{
         self, PresetFile,
         sweep::{Sheet, Variation},
     },
-    scene::{Ground, Scene},
+    scene::{Ground, Scene, parts::ShownParts},
 };
 
 /// Largest side of a sheet, pixels: what the decoders of pictures and most programs take.
@@ -144,6 +144,7 @@ fn open_with_flags(common: &Common, args: &Sweep) -> Result<PresetFile, CliError
 /// The scene of the newest cell; most cells share it.
 struct Shown {
     source: SceneSource,
+    parts: ShownParts,
     room: f64,
     ground: Option<Ground>,
     scene: Arc<Scene>,
@@ -153,6 +154,7 @@ impl Shown {
     fn new(preset: &Preset, scene: Arc<Scene>) -> Self {
         Self {
             source: preset.scene.clone(),
+            parts: preset.parts.clone(),
             room: preset.room,
             ground: preset.ground,
             scene,
@@ -160,6 +162,9 @@ impl Shown {
     }
 
     fn is_of(&self, preset: &Preset) -> bool {
-        self.source == preset.scene && self.room == preset.room && self.ground == preset.ground
+        self.source == preset.scene
+            && self.parts == preset.parts
+            && self.room == preset.room
+            && self.ground == preset.ground
     }
 }

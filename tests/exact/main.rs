@@ -19,6 +19,7 @@ mod grounds;
 mod hardware;
 mod judge_at_extremes;
 mod oracle;
+mod probe;
 #[path = "../common/rounds.rs"]
 mod rounds;
 mod specialization;

@@ -330,7 +330,6 @@ fn built(
         adapter,
         devices,
         folders,
-        opens_editor: false,
         config,
         log,
     };

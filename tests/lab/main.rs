@@ -7,6 +7,7 @@ mod common;
 mod accuracy;
 mod anti_aliasing;
 mod brought_code;
+mod code;
 mod compare;
 mod dialogs;
 mod duplicates;

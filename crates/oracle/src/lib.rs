@@ -13,6 +13,7 @@
 //! * `render`: draws exact pictures
 //! * `bounds`: how far an f32 renderer may be from them
 //! * `judge`: compares an adapter's picture with both
+//! * `probe`: tells why a sample shows what it shows
 //!
 //! [`project`] deforms, moves, projects and snaps vertices and clips triangles; [`triangles`]
 //! assembles and orients them; [`sample_setups`] computes what sample effects test against;
@@ -25,6 +26,7 @@ mod bounds;
 mod budget;
 mod judge;
 mod perturbation;
+mod probe;
 mod render;
 mod shot;
 
@@ -38,13 +40,14 @@ pub use judge::{
     picture::{JUDGE_STAGES, judge},
     shadow::shadow_errors,
 };
+pub use probe::{Outcome, ProbedSample, ProbedTriangle, probe};
 pub use render::{
-    coverage::{Coverage, Sample, cover, cover_with},
+    coverage::{Coverage, EdgeAtSample, Sample, cover, cover_with},
     deform::volume,
     dots::{dot_records, dot_strengths},
     draw_order::limited,
     particles,
-    picture::{render, render_next, render_rows, render_sequence, strict_frame},
+    picture::{geometry, render, render_next, render_rows, render_sequence, strict_frame},
     project::project,
     references::{
         finest_bits, project_finest, references, render_finest, render_reference, render_scaled,

@@ -94,6 +94,7 @@ impl Session {
                 let moved = usize::from(preset.stack.0.len() > before && from < index);
                 preset.stack.move_effect(from, index + moved);
             }
+            Edit::Parts(parts) => preset.parts = parts,
             Edit::BuiltinQuery(query) => preset.scene = SceneSource::Builtin(query),
             Edit::SceneCamera(name) => {
                 preset.scene_camera = name;

@@ -42,8 +42,7 @@ fn write(path: &Path, text: &str) -> Result<(), String> {
     written.map_err(|error| format!("{}: it cannot be written: {error}", path.display()))
 }
 
-/// Enables an effect that was written, in place of the one that it duplicates, and opens it in the
-/// user's editor.
+/// Enables an effect that was written, in place of the one that it duplicates.
 pub fn written(state: &mut State, path: PathBuf, origin: Origin, outcome: Result<(), String>) {
     state.files.live.writing = state.files.live.writing.saturating_sub(1);
     if let Err(error) = outcome {
@@ -56,13 +55,10 @@ pub fn written(state: &mut State, path: PathBuf, origin: Origin, outcome: Result
     state.notify(
         Level::Info,
         format!(
-            "Wrote {}. Edit it, and the picture changes when you save it.",
+            "Wrote {}. The picture follows its text here, and its file in any editor.",
             path.display()
         ),
     );
-    if state.files.live.opens_editor {
-        state.jobs.open_editor(path);
-    }
 }
 
 /// Where a new effect is written: beside the preset, in the folder of effects that is in use, or in

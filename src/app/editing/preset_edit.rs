@@ -8,7 +8,10 @@ use crate::{
     effects::Effect,
     params::{Field, Value},
     preset::{ClipPlayback, Clock, settings::Setting},
-    scene::{camera::Camera, parts::Scope},
+    scene::{
+        camera::Camera,
+        parts::{Scope, ShownParts},
+    },
 };
 
 /// A parameter of an effect.
@@ -34,6 +37,8 @@ pub enum Edit {
     Move(usize, usize),
     /// Enables an effect in front of the one at this index of the stack.
     EnableAt(Arc<Effect>, usize),
+    /// The parts of the scene that are shown.
+    Parts(ShownParts),
     /// The same built-in scene with other parameters.
     BuiltinQuery(String),
     /// Removes the preset's camera and uses the scene camera of this name; empty = the first.

@@ -97,6 +97,9 @@ pub fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command
             .ask_new_effect(duplicated, &state.session.preset_file.effects),
         FileCommand::NewEffect { name, origin } => new_effect::create(state, &name, origin),
         FileCommand::Edit(path) => state.jobs.open_editor(path),
+        FileCommand::ShowCode(path) => state.jobs.read_code(path),
+        FileCommand::TryCode { path, text } => state.jobs.try_code(path, text),
+        FileCommand::SaveCode { path, text } => state.jobs.save_code(path, text),
         FileCommand::Resolve {
             theirs,
             side,

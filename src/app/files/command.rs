@@ -95,6 +95,18 @@ pub enum FileCommand {
     },
     /// Opens a file in the user's editor.
     Edit(PathBuf),
+    /// Shows the text of an effect file in the window.
+    ShowCode(PathBuf),
+    /// Compiles the text of an effect file as it was typed, without saving it.
+    TryCode {
+        path: PathBuf,
+        text: String,
+    },
+    /// Writes the text of an effect file.
+    SaveCode {
+        path: PathBuf,
+        text: String,
+    },
     /// Decides between the open preset and what another program has made of its file. The outcome
     /// is saved to `saving`, if that led to the question.
     Resolve {

@@ -65,12 +65,10 @@ pub struct Live {
     /// A preset's file as it was when the user decided for the changes made here: saving may
     /// overwrite that.
     pub overruled: Option<Box<PresetFile>>,
-    /// Files may be opened in the user's editor.
-    pub opens_editor: bool,
 }
 
 impl Live {
-    pub fn new(watcher: Watcher, opens_editor: bool) -> Self {
+    pub fn new(watcher: Watcher) -> Self {
         Self {
             watcher,
             faults: BTreeMap::new(),
@@ -82,7 +80,6 @@ impl Live {
             requests: 0,
             enable: None,
             overruled: None,
-            opens_editor,
         }
     }
 

@@ -18,7 +18,7 @@ use crate::{
         picture::screen::Inputs,
         shell::{command::Edit, log::Level, state::State},
     },
-    effect_files::Catalog,
+    effect_files::{Catalog, EffectError},
     effects::Effect,
     host,
     preset::{
@@ -95,7 +95,56 @@ fn effects_changed(state: &mut State, panels: &mut Panels, effects: Effects) {
         .map(|(name, _)| name.to_owned())
         .collect();
     let open = kept.joined(&open);
+    let is_faulty = |name: &str| {
+        faults.iter().any(|(faulty, _)| faulty == name) || gone.iter().any(|gone| gone == name)
+    };
+    state.files.live.keep_effect_faults(is_faulty);
+    for (name, error) in faults {
+        fault(state, Subject::Effect(name), error.to_string());
+    }
+    for name in gone {
+        let text = format!(
+            "{name}.wgsl: no folder of effects has this file any more; the picture keeps the effect as it was"
+        );
+        fault(state, Subject::Effect(name), text);
+    }
+    if let Some(path) = panels.code.path().map(Path::to_owned)
+        && let Some(text) = shared.written(&path).or_else(|| open.written(&path))
+    {
+        panels.code.take_saved(&path, text);
+    }
+    compile_effects(state, panels, shared, open);
+}
+
+/// Takes in an effect as its text was typed in the window; the file keeps its own.
+pub fn code_tried(
+    state: &mut State,
+    panels: &mut Panels,
+    path: &Path,
+    read: Result<Arc<Effect>, EffectError>,
+) {
+    let name = path
+        .file_stem()
+        .map(|stem| stem.to_string_lossy().into_owned())
+        .unwrap_or_default();
+    match read {
+        Err(error) => fault(state, Subject::Effect(name), error.to_string()),
+        Ok(effect) => {
+            state.files.live.clear_fault(&Subject::Effect(name));
+            let [shared, open] = [
+                &state.files.folders.effects,
+                &state.session.preset_file.effects,
+            ]
+            .map(|catalog| catalog.with_text_of(path, &effect));
+            compile_effects(state, panels, shared, open);
+        }
+    }
+}
+
+/// Compiles what the picture shows of effects that have changed, and uses them then.
+fn compile_effects(state: &mut State, panels: &mut Panels, shared: Catalog, open: Catalog) {
     let good = |catalog: &Catalog, name: &str| catalog.find(name).ok().flatten().cloned();
+    let before = &state.session.preset_file.effects;
     let mut replaced: Vec<Replaced> = Vec::new();
     for (old, new) in [(before, &open), (&state.files.folders.effects, &shared)] {
         for (name, _) in new.custom() {
@@ -126,19 +175,6 @@ fn effects_changed(state: &mut State, panels: &mut Panels, effects: Effects) {
         }
     }
     let open = open.replaced(&replaced);
-    let is_faulty = |name: &str| {
-        faults.iter().any(|(faulty, _)| faulty == name) || gone.iter().any(|gone| gone == name)
-    };
-    state.files.live.keep_effect_faults(is_faulty);
-    for (name, error) in faults {
-        fault(state, Subject::Effect(name), error.to_string());
-    }
-    for name in gone {
-        let text = format!(
-            "{name}.wgsl: no folder of effects has this file any more; the picture keeps the effect as it was"
-        );
-        fault(state, Subject::Effect(name), text);
-    }
     let number = state.files.live.request();
     let reload = Box::new(EffectReload {
         number,

@@ -6,15 +6,16 @@ use std::{collections::VecDeque, sync::Arc};
 use crate::{
     preset::SceneSource,
     preset_file::PresetFile,
-    scene::{Bounds, Ground, Scene, memory::MemoryBudget},
+    scene::{Bounds, Ground, Scene, memory::MemoryBudget, parts::ShownParts},
     work::{Progress, Work},
 };
 
-/// Identifies a scene: its source, with the path of a model as it is read, the room round it, and
-/// the ground under it.
+/// Identifies a scene: its source, with the path of a model as it is read, the parts that are shown,
+/// the room round it, and the ground under it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneKey {
     pub source: SceneSource,
+    pub parts: ShownParts,
     /// Width of the room over that of the scene; 0 for none.
     pub room: f64,
     pub ground: Option<Ground>,
@@ -24,6 +25,7 @@ impl SceneKey {
     pub fn of(preset_file: &PresetFile) -> Self {
         Self {
             source: preset_file.scene_source(),
+            parts: preset_file.preset.parts.clone(),
             room: preset_file.preset.room,
             ground: preset_file.preset.ground,
         }

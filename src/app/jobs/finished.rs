@@ -9,7 +9,7 @@ use crate::app::{
         apply::save_failed,
         command::Purpose,
         library, open,
-        reload::{compiled, model_reloaded},
+        reload::{code_tried, compiled, model_reloaded},
     },
     panels::Panels,
     picture::{
@@ -111,7 +111,20 @@ pub fn finish(
             }
         }
         Done::EffectWritten(path, origin, outcome) => {
-            new_effect::written(state, path, origin, outcome)
+            let is_written = outcome.is_ok();
+            new_effect::written(state, path.clone(), origin, outcome);
+            if is_written {
+                state.jobs.read_code(path);
+            }
+        }
+        Done::Code(path, Ok(text)) => panels.code.show(path, text),
+        Done::CodeTried(path, text, read) => {
+            panels.code.take_error(&text, read.as_ref().err());
+            code_tried(state, panels, &path, read);
+        }
+        Done::CodeSaved(path, text, Ok(())) => panels.code.take_saved(&path, &text),
+        Done::Code(_, Err(error)) | Done::CodeSaved(_, _, Err(error)) => {
+            state.notify(Level::Error, error)
         }
         Done::NoEditor(path, reason) => {
             let text = format!(

@@ -48,8 +48,8 @@ use crate::{
             request::{Progress, Request},
         },
     },
-    effect_files,
-    effects::Stack,
+    effect_files::{self, EffectError},
+    effects::{Effect, Stack},
     gpu::{Capture, CompileWatch, Gpu, Renderer},
     host::disk,
     oracle,
@@ -106,6 +106,12 @@ pub enum Done {
     Golden(u64, Option<GoldenCheck>),
     /// The file of a new effect.
     EffectWritten(PathBuf, Origin, Result<(), String>),
+    /// The text of an effect file that is to be edited.
+    Code(PathBuf, Result<String, String>),
+    /// The text of an effect as it was typed, and what it is read as.
+    CodeTried(PathBuf, String, Result<Arc<Effect>, EffectError>),
+    /// The text of an effect file that was to be written.
+    CodeSaved(PathBuf, String, Result<(), String>),
     /// A file that could not be opened in the user's editor.
     NoEditor(PathBuf, String),
 }
@@ -189,6 +195,7 @@ impl Jobs {
         self.spawn("scene", move || {
             let preset = Preset {
                 scene: key.source.clone(),
+                parts: key.parts.clone(),
                 room: key.room,
                 ground: key.ground,
                 ..Preset::default()
@@ -287,6 +294,43 @@ impl Jobs {
         self.spawn("new effect", move || {
             let outcome = caught("writing the effect", || write(&path));
             Done::EffectWritten(path, origin, outcome)
+        });
+    }
+
+    /// Reads the text of an effect file.
+    pub fn read_code(&self, path: PathBuf) {
+        self.spawn("effect text", move || {
+            let text = match disk::size_of(&path) {
+                Ok(Some(size)) if size > effect_files::MAX_BYTES as u64 => Err(format!(
+                    "it has {size} bytes; an effect has at most {}",
+                    effect_files::MAX_BYTES
+                )),
+                _ => disk::read_to_string(&path)
+                    .map_err(|error| format!("it cannot be read: {error}")),
+            };
+            let text = text.map_err(|reason| format!("{}: {reason}", path.display()));
+            Done::Code(path, text)
+        });
+    }
+
+    /// Reads an effect from a text that was typed.
+    pub fn try_code(&self, path: PathBuf, text: String) {
+        self.spawn("effect typed", move || {
+            let name = |part: Option<&std::ffi::OsStr>| {
+                part.map(|part| part.to_string_lossy().into_owned())
+                    .unwrap_or_default()
+            };
+            let read = effect_files::read(&name(path.file_name()), &name(path.file_stem()), &text);
+            Done::CodeTried(path, text, read)
+        });
+    }
+
+    /// Writes the text of an effect file.
+    pub fn save_code(&self, path: PathBuf, text: String) {
+        self.spawn("effect file", move || {
+            let saved = preset_file::write_atomically(&path, text.as_bytes(), Existing::Replace)
+                .map_err(|error| format!("{}: it cannot be written: {error}", path.display()));
+            Done::CodeSaved(path, text, saved)
         });
     }
 

@@ -3,6 +3,7 @@
 pub mod anti_aliasing;
 pub mod brought_code;
 pub mod cheat_sheet;
+pub mod code;
 pub mod dialogs;
 pub mod effect_browser;
 pub mod extremes;
@@ -23,8 +24,8 @@ pub mod trade;
 pub mod viewport;
 
 use self::{
-    cheat_sheet::CheatSheet, dialogs::Dialogs, extremes::Extremes, film::FilmPanel,
-    inspector::Inspector, log::LogPanel, naming::NameDialog, palette::Palette,
+    cheat_sheet::CheatSheet, code::CodePanel, dialogs::Dialogs, extremes::Extremes,
+    film::FilmPanel, inspector::Inspector, log::LogPanel, naming::NameDialog, palette::Palette,
     preset_browser::PresetBrowser, randomize::RandomizePanel, settings::SettingsWindow,
     sweep::SweepPanel, timeline::Timeline, timing::TimingPanel, topbar::TopBar, trade::TradePanel,
     viewport::Viewport,
@@ -50,6 +51,7 @@ pub struct Panels {
     pub film: FilmPanel,
     pub palette: Palette,
     pub naming: NameDialog,
+    pub code: CodePanel,
 }
 
 impl Panels {
@@ -89,6 +91,7 @@ impl Panels {
             film: FilmPanel::default(),
             palette: Palette::default(),
             naming: NameDialog::default(),
+            code: CodePanel::default(),
         }
     }
 }

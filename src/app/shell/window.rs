@@ -1,6 +1,11 @@
 //! The window: its state and its panels, and what happens in a frame.
 
-use std::{collections::HashSet, path::PathBuf, sync::Arc, time::Duration};
+use std::{
+    collections::HashSet,
+    path::{Path, PathBuf},
+    sync::Arc,
+    time::Duration,
+};
 
 use eframe::egui::{self, Ui, ViewportCommand};
 
@@ -58,8 +63,6 @@ pub struct Options {
     pub devices: Option<Devices>,
     /// Where presets and effects are, beside the user's own presets.
     pub folders: Folders,
-    /// A new effect is opened in the user's editor.
-    pub opens_editor: bool,
     /// The folder where settings and session are kept; none keeps nothing.
     pub config: Option<PathBuf>,
     /// The file that messages of the log are appended to.
@@ -173,10 +176,10 @@ impl App {
             panels,
             state: State {
                 files: FileState {
-                    live: Live::new(
-                        Watcher::new(cc.egui_ctx.clone(), session.preset_file.effects.clone()),
-                        options.opens_editor,
-                    ),
+                    live: Live::new(Watcher::new(
+                        cc.egui_ctx.clone(),
+                        session.preset_file.effects.clone(),
+                    )),
                     folders: options.folders,
                     trust,
                     favorites,
@@ -261,6 +264,13 @@ impl App {
         {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.panels.dialogs.ask_unsaved();
+        } else if ctx.input(|i| i.viewport().close_requested())
+            && let Some(path) = self.panels.code.unsaved().map(Path::to_owned)
+        {
+            ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.panels.code.ask();
+            let text = format!("{} has changes that are not saved", path.display());
+            self.state.notify(Level::Warning, text);
         }
     }
 
@@ -438,6 +448,13 @@ impl App {
         self.state.open.left = is_open;
         if !is_open {
             self.panels.browser.close();
+        }
+        if self.panels.code.is_open() {
+            egui::Panel::left("code")
+                .frame(theme::panel_frame())
+                .default_size(440.0)
+                .size_range(260.0..=(0.6 * window).max(260.0))
+                .show(ui, |ui| self.panel_ui(ui, |panels| &mut panels.code));
         }
         let right = egui::Panel::right("right")
             .frame(theme::panel_frame())

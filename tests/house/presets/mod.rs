@@ -9,6 +9,7 @@ mod round_trip;
 mod saving;
 mod scopes;
 mod sharing;
+mod shown_parts;
 mod text;
 
 use std::path::{Path, PathBuf};

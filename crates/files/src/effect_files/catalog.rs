@@ -181,6 +181,27 @@ impl Catalog {
         error
     }
 
+    /// The text of the effect whose file is at `path`; none if there is none, or if it is faulty.
+    pub fn written(&self, path: &Path) -> Option<&str> {
+        let effect = self.custom.get(&stem(path))?;
+        let is_of_file = effect.path.as_deref() == Some(path);
+        let source = effect.read.as_ref().ok()?.source.as_ref()?;
+        is_of_file.then_some(source.written.as_str())
+    }
+
+    /// The same with this effect in place of the one whose file is at `path`, if there is one.
+    #[must_use]
+    pub fn with_text_of(&self, path: &Path, effect: &Arc<Effect>) -> Self {
+        let mut changed = self.clone();
+        if let Some(custom) = Arc::make_mut(&mut changed.custom)
+            .get_mut(&stem(path))
+            .filter(|custom| custom.path.as_deref() == Some(path))
+        {
+            custom.read = Ok(effect.clone());
+        }
+        changed
+    }
+
     /// These effects and those of `other`; where both have a name, this one's effect stays.
     #[must_use]
     pub fn joined(&self, other: &Self) -> Self {

@@ -21,19 +21,28 @@ pub enum SceneError {
     Absent { path: String },
     #[error(transparent)]
     Model(#[from] gltf::LoadError),
+    #[error(
+        "scene.only and scene.hidden leave no part of the scene; show some part of it (rasterlab parts SCENE lists them)"
+    )]
+    NothingShown,
     #[error(transparent)]
     Missing(#[from] MissingInScene),
 }
 
-/// Builds or loads the scene of a preset, with its ground and its room; a relative model path
+/// Builds or loads the scene of a preset: the parts that it shows, its ground and its room; a relative model path
 /// starts at the folder of `preset_path`.
 ///
 /// # Errors
-/// No such built-in scene or model, a model that cannot be read, or a clip or camera that the scene
-/// does not have.
+/// No such built-in scene or model, a model that cannot be read, no part that is shown, or a clip or
+/// camera that the scene does not have.
 pub fn load_scene(preset: &Preset, preset_path: Option<&Path>) -> Result<Arc<Scene>, SceneError> {
     let scene = load_source(&preset.scene, preset_path)?;
     preset.check(&scene)?;
+    let has_parts = !scene.instances.is_empty();
+    let scene = scene.showing(&preset.parts);
+    if has_parts && scene.instances.is_empty() {
+        return Err(SceneError::NothingShown);
+    }
     let scene = preset.ground.iter().fold(scene, Scene::on_ground);
     Ok(Arc::new(if preset.room > 0.0 {
         scene.in_room(preset.room)

@@ -1,6 +1,6 @@
 //! Landing: the look of one preset on the scene of another.
 //!
-//! To the scene belong: what is shown (`scene.builtin` or `scene.path`), `spin_deg_per_s`, the clips
+//! To the scene belong: what is shown (`scene.builtin` or `scene.path`) with its parts, `spin_deg_per_s`, the clips
 //! and how they play, the cameras, and the size of the picture, whose frame the camera fills. To the
 //! look belongs everything else: the effects with their parameters (lights among them), keyframes,
 //! polyline and unit, the clock, the accuracy, the background, what the scene stands on (ground and
@@ -17,6 +17,7 @@ impl Preset {
         // Every field is named, so that a new one must be given to the scene or to the look.
         let Self {
             scene,
+            parts,
             spin_deg_per_s,
             playback,
             camera,
@@ -45,6 +46,7 @@ impl Preset {
             about,
             tags,
             scene,
+            parts,
             room,
             ground,
             spin_deg_per_s,

@@ -31,7 +31,7 @@ use crate::{
     scene::{
         Background, Bounds, Ground, Scene,
         camera::Camera,
-        parts::Scope,
+        parts::{Scope, ShownParts},
         pose::{Motion, Pose, scene_from_nodes},
         shadow_resolution::ShadowResolution,
         view::{SceneState, View},
@@ -261,6 +261,8 @@ pub struct Preset {
     /// Distance of the walls of a room around the scene, as a multiple of the scene's width; 0: no
     /// room.
     pub room: f64,
+    /// The parts of the scene that are shown.
+    pub parts: ShownParts,
     /// What the scene stands on; none: nothing.
     pub ground: Option<Ground>,
     /// Turns the whole scene about +y.
@@ -293,6 +295,7 @@ impl Default for Preset {
             tags: Vec::new(),
             scene: SceneSource::Builtin("teapot".into()),
             room: 0.0,
+            parts: ShownParts::default(),
             ground: None,
             spin_deg_per_s: 0.0,
             playback: ClipPlayback::default(),

@@ -2,7 +2,10 @@
 //! setting's name.
 
 use super::{GoldenTest, Preset, polyline};
-use crate::params::{Stored as _, Value, format_number};
+use crate::{
+    params::{Stored as _, Value, format_number},
+    scene::parts::Scope,
+};
 
 pub fn rises(range: &Value) -> Result<(), String> {
     let [begin, end] = <[f64; 2]>::from_value(range).map_err(|error| error.to_string())?;
@@ -29,6 +32,10 @@ pub fn encloses_scene(room: &Value) -> Result<(), String> {
 
 pub fn is_polyline(text: &Value) -> Result<(), String> {
     polyline::parse(&String::from_value(text).map_err(|error| error.to_string())?).map(drop)
+}
+
+pub fn are_patterns(list: &Value) -> Result<(), String> {
+    Scope::of_texts(&Vec::from_value(list).map_err(|error| error.to_string())?).map(drop)
 }
 
 pub fn is_file(path: &Value) -> Result<(), String> {

@@ -11,7 +11,7 @@ use super::{
     LengthUnit, Preset, SceneSource,
     fitted::UNIT,
     polyline,
-    rules::{encloses_scene, is_file, is_polyline, rises},
+    rules::{are_patterns, encloses_scene, is_file, is_polyline, rises},
     setting::Storage,
 };
 use crate::{
@@ -21,6 +21,7 @@ use crate::{
         GroundShape,
         camera::{Camera, MIN_NEAR_M, Projection},
         ground::MAX_CELLS,
+        parts::{MAX_PATTERNS, Scope},
     },
 };
 
@@ -193,6 +194,20 @@ pub static SCENE: Section = Section {
                 )
                 .rule(is_file)
                 .or("builtin"),
+                Setting::new(
+                    "only",
+                    PATTERNS,
+                    "The only parts of the scene that are shown, as patterns such as \"node:Body\" or \"mesh:Lens*\"; empty: all",
+                    ONLY,
+                )
+                .rule(are_patterns),
+                Setting::new(
+                    "hidden",
+                    PATTERNS,
+                    "Parts of the scene that are not shown, as patterns such as \"material:Glass\"",
+                    HIDDEN,
+                )
+                .rule(are_patterns),
                 Setting::new(
                     "room",
                     ValueType::F64,
@@ -537,6 +552,30 @@ const MODEL: Storage = Storage::State {
 const SIZE: Storage = Storage::State {
     get: |preset| Some(preset.output.size.to_value()),
     set: |preset, value| Stored::from_value(value).map(|size| preset.output.resize(size)),
+    clear: None,
+};
+
+const PATTERNS: ValueType = ValueType::TextList {
+    max_entries: MAX_PATTERNS,
+    max_chars: 300,
+};
+
+const ONLY: Storage = Storage::State {
+    get: |preset| Some(preset.parts.only.texts().to_value()),
+    set: |preset, value| {
+        preset.parts.only = Scope::of_texts(&Vec::from_value(value)?).map_err(ValueError::Rule)?;
+        Ok(())
+    },
+    clear: None,
+};
+
+const HIDDEN: Storage = Storage::State {
+    get: |preset| Some(preset.parts.hidden.texts().to_value()),
+    set: |preset, value| {
+        preset.parts.hidden =
+            Scope::of_texts(&Vec::from_value(value)?).map_err(ValueError::Rule)?;
+        Ok(())
+    },
     clear: None,
 };
 

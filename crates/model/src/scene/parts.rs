@@ -169,6 +169,21 @@ impl Scope {
         Self((!kept.is_empty()).then(|| kept.into()))
     }
 
+    /// The scope of these texts, each a pattern such as `mesh:Lens*`.
+    ///
+    /// # Errors
+    /// The first faulty pattern, in words that complete a sentence beginning with a key.
+    pub fn of_texts(texts: &[String]) -> Result<Self, String> {
+        let patterns = texts.iter().map(|text| text.parse());
+        let patterns: Result<Vec<PartPattern>, PatternError> = patterns.collect();
+        Ok(Self::new(patterns.map_err(|error| error.to_string())?))
+    }
+
+    /// The texts that [`Self::of_texts`] takes back to the same scope.
+    pub fn texts(&self) -> Vec<String> {
+        self.patterns().iter().map(PartPattern::to_string).collect()
+    }
+
     pub fn is_whole_scene(&self) -> bool {
         self.0.is_none()
     }
@@ -208,6 +223,33 @@ impl fmt::Display for Scope {
         }
         let patterns: Vec<String> = self.patterns().iter().map(PartPattern::to_string).collect();
         f.write_str(&patterns.join(", "))
+    }
+}
+
+/// Which parts of a scene are shown; by default all.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ShownParts {
+    /// Nothing else is shown.
+    pub only: Scope,
+    /// Parts that are not shown; none where it is the whole scene.
+    pub hidden: Scope,
+}
+
+impl Scene {
+    /// The scene with the instances of these parts alone.
+    #[must_use]
+    pub fn showing(mut self, parts: &ShownParts) -> Self {
+        if *parts == ShownParts::default() {
+            return self;
+        }
+        let masks = scope_masks(&self, &[parts.only.clone(), parts.hidden.clone()]);
+        let hides = !parts.hidden.is_whole_scene();
+        let mut mask = masks.into_iter();
+        self.instances.retain(|_| {
+            let mask = mask.next().expect("every instance has a mask");
+            mask & 1 != 0 && !(hides && mask & 2 != 0)
+        });
+        self
     }
 }
 

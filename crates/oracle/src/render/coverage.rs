@@ -121,6 +121,22 @@ pub struct Hit {
     pub is_interpolated: bool,
 }
 
+/// An edge of a triangle wound clockwise, seen from a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EdgeAtSample {
+    /// Twice the area of edge and sample, square sub-pixel units; positive on the inner side.
+    pub value: i64,
+    /// From its first end to its second, sub-pixel units.
+    pub along: [i32; 2],
+}
+
+impl EdgeAtSample {
+    /// Does the sample lie on the inner side, or on an edge that owns what lies on it?
+    pub fn is_inside(&self) -> bool {
+        owns(self.value, self.along[0], self.along[1])
+    }
+}
+
 /// Visits every drawn sample of `view`, triangle by triangle, with the cell of its pixel; `visitor`
 /// makes the visitor of a triangle. Parallel by bands of rows, so a triangle may have several
 /// visitors, each sample one visit.
@@ -197,27 +213,44 @@ impl OrientedTriangle {
 
     /// The triangle at the center of a pixel; none if it is not drawn there.
     pub fn at(&self, x: usize, y: usize, tests: &SampleTests) -> Option<Hit> {
+        let edges = self.edges(x, y, tests.unit);
+        let hit = self.covers(x, y, &edges, tests)?;
+        tests
+            .is_drawn(self, x as u32, y as u32, edges.map(|edge| edge.value))
+            .then_some(hit)
+    }
+
+    /// The edges opposite the corners, at the center of a pixel of `unit` sub-pixel units.
+    pub fn edges(&self, x: usize, y: usize, unit: i64) -> [EdgeAtSample; 3] {
         let [a, b, c] = &self.corners;
+        let [px, py] = [x, y].map(|k| unit * k as i64 + unit / 2);
+        [(b, c), (c, a), (a, b)].map(|(from, to)| EdgeAtSample {
+            value: edge(from, to, px, py),
+            along: [to.x - from.x, to.y - from.y],
+        })
+    }
+
+    /// What the triangle has at the center of a pixel with these edges; none if it does not cover
+    /// it. Sample tests may still leave it out.
+    pub fn covers(
+        &self,
+        x: usize,
+        y: usize,
+        edges: &[EdgeAtSample; 3],
+        tests: &SampleTests,
+    ) -> Option<Hit> {
         let [px, py] = [x, y].map(|k| tests.unit * k as i64 + tests.unit / 2);
-        let opposite = [(b, c), (c, a), (a, b)];
-        let weights = opposite.map(|(from, to)| edge(from, to, px, py));
         let exact = |depth: f32| Hit {
             depth: depth.into(),
             is_interpolated: false,
         };
-        let hit = match tests.shape {
+        match tests.shape {
             Shape::Triangles => {
-                let inside = |i: usize| {
-                    owns(
-                        weights[i],
-                        opposite[i].1.x - opposite[i].0.x,
-                        opposite[i].1.y - opposite[i].0.y,
-                    )
-                };
-                if !(inside(0) && inside(1) && inside(2)) {
+                if !edges.iter().all(EdgeAtSample::is_inside) {
                     return None;
                 }
-                if tests.has_integer_keys {
+                let weights = edges.map(|edge| edge.value);
+                Some(if tests.has_integer_keys {
                     // The key holds the bits of a float.
                     exact(f32::from_bits(integer_key(
                         self.corners.map(|corner| corner.depth),
@@ -228,7 +261,7 @@ impl OrientedTriangle {
                         depth: self.depth(weights),
                         is_interpolated: true,
                     }
-                }
+                })
             }
             Shape::Boxes => self.fills_box(px, py).then(|| {
                 exact(
@@ -236,12 +269,11 @@ impl OrientedTriangle {
                         .iter()
                         .fold(0.0, |nearest, c| c.depth.max(nearest)),
                 )
-            })?,
-            Shape::Points => exact(self.corners[self.corner_under(px, py, tests.radius)?].depth),
-        };
-        tests
-            .is_drawn(self, x as u32, y as u32, weights)
-            .then_some(hit)
+            }),
+            Shape::Points => self
+                .corner_under(px, py, tests.radius)
+                .map(|k| exact(self.corners[k].depth)),
+        }
     }
 
     /// Returns true in the bounding box, including its left and top borders and excluding the right

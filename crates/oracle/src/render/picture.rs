@@ -23,7 +23,7 @@ use super::{
 };
 use crate::{
     effects::Stack,
-    frame::Frame,
+    frame::{Frame, Geometry},
     scene::{Scene, draw::DrawError, view::View},
 };
 
@@ -122,6 +122,23 @@ pub fn render_rows(
         counters,
         ..Frame::default()
     })
+}
+
+/// What the exact picture of `scene` is drawn from: vertices, what clipping made, setups of sample
+/// effects, dots and the shadow map.
+///
+/// # Errors
+/// As [`render`].
+pub fn geometry(scene: &Scene, view: &View, stack: &Stack) -> Result<Geometry, DrawError> {
+    check_particles(view, stack)?;
+    let scene = &*scene_with_particles(scene, view, stack, None)?;
+    let draws = stack.draws(scene, view)?;
+    let shot = Shot::new(scene, &draws, view, stack);
+    let mut geometry = project(&shot)?;
+    geometry.sample_setups = sample_setups(&shot, &geometry);
+    geometry.dots = dot_records(&shot)?;
+    geometry.shadow_map = shadow_map(scene, view, stack)?;
+    Ok(geometry)
 }
 
 /// The exact picture of the last of `sequence`, drawn after those before it, all of the same size.

@@ -42,7 +42,21 @@ pub struct SampleTests<'a> {
     limit: Option<(DrawLimit, u32)>,
 }
 
+/// What leaves a covered sample out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LeftOut<'a> {
+    /// It comes after the limit of the draw order.
+    DrawOrder,
+    /// It lies outside the disc of a particle.
+    Disc,
+    /// The sample effect of this name.
+    Effect(&'a str),
+    /// The mask of the material.
+    Mask,
+}
+
 struct EffectTest<'a> {
+    name: &'a str,
     hook: &'a SampleHook,
     words: &'a [u32],
     /// Index among the setups of an entry; none for an effect without one.
@@ -112,6 +126,7 @@ impl<'a> SampleTests<'a> {
                 let setup = hook.has_setup.then_some(effect_setups);
                 effect_setups += usize::from(hook.has_setup);
                 Some(EffectTest {
+                    name: &enabled.effect.name,
                     hook,
                     words: &enabled.words,
                     setup,
@@ -160,19 +175,30 @@ impl<'a> SampleTests<'a> {
     /// Returns true if a covered sample is drawn. `weights` are the doubled areas opposite the
     /// corners of the oriented triangle.
     pub fn is_drawn(&self, triangle: &OrientedTriangle, x: u32, y: u32, weights: [i64; 3]) -> bool {
+        self.left_out_by(triangle, x, y, weights).is_none()
+    }
+
+    /// What leaves a covered sample out; none if it is drawn.
+    pub fn left_out_by(
+        &self,
+        triangle: &OrientedTriangle,
+        x: u32,
+        y: u32,
+        weights: [i64; 3],
+    ) -> Option<LeftOut<'a>> {
         if !self.is_within_limit(triangle.id, x, y) {
-            return false;
+            return Some(LeftOut::DrawOrder);
         }
         let is_disc = self.discs.contains(&triangle.id);
         if self.effects.is_empty() && self.masked.is_none() && !is_disc {
-            return true;
+            return None;
         }
         let area: i64 = weights.iter().sum();
         let shift = (64 - area.unsigned_abs().leading_zeros()).saturating_sub(31);
         let parts = triangle.in_file_order(weights.map(|weight| (weight.max(0) >> shift) as u32));
         // A disc that would have to be clipped is not drawn.
         if is_disc && (triangle.is_clipped() || !is_in_disc(parts)) {
-            return false;
+            return Some(LeftOut::Disc);
         }
         let records = self.effect_setups
             + if self.masked.is_some() {
@@ -210,7 +236,10 @@ impl<'a> SampleTests<'a> {
                 &setups[self.effect_setups..],
             )
         };
-        self.effects.iter().all(passes) && self.masked.is_none_or(passes_mask)
+        if let Some(effect) = self.effects.iter().find(|effect| !passes(effect)) {
+            return Some(LeftOut::Effect(effect.name));
+        }
+        (!self.masked.is_none_or(passes_mask)).then_some(LeftOut::Mask)
     }
 }
 

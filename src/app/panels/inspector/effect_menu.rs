@@ -44,13 +44,16 @@ pub fn menu_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Eff
             .find(|(name, _)| *name == source.stem)
             .and_then(|(_, found)| found.path.clone())
     });
-    if let Some(path) = file
-        && ui
-            .add(entry("Open in my editor"))
-            .on_hover_text(path.display().to_string())
-            .clicked()
-    {
-        chosen = Some(Command::File(FileCommand::Edit(path)));
+    if let Some(path) = file {
+        let shown = path.display().to_string();
+        let edit = ui.add(entry("Edit the text"));
+        if edit.on_hover_text(&shown).clicked() {
+            chosen = Some(Command::File(FileCommand::ShowCode(path.clone())));
+        }
+        let open = ui.add(entry("Open in my editor"));
+        if open.on_hover_text(&shown).clicked() {
+            chosen = Some(Command::File(FileCommand::Edit(path)));
+        }
     }
     if state.session.preset().stack.get(&effect.name).is_some()
         && ui.add(entry("Reset all parameters")).clicked()

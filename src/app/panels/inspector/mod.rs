@@ -6,6 +6,7 @@ mod clips;
 pub mod effect_menu;
 mod effects;
 mod overlays;
+mod parts;
 mod precision;
 mod report;
 pub mod rows;

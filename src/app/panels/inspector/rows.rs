@@ -18,6 +18,8 @@ const FOLDERS: &[(&str, &[&str])] = &[
     (
         "Scene",
         &[
+            "scene.only",
+            "scene.hidden",
             "scene.room",
             "scene.spin_deg_per_s",
             "output.background",

@@ -2,7 +2,10 @@
 
 use eframe::egui::{ComboBox, Ui};
 
-use super::rows::{folder, setting_ui};
+use super::{
+    parts::parts_ui,
+    rows::{folder, setting_ui},
+};
 use crate::{
     app::{
         shell::{
@@ -22,6 +25,7 @@ use crate::{
 pub fn scene_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     folder(ui, "Scene", true, |ui| {
         let preset = state.session.preset();
+        parts_ui(ui, state, commands);
         setting_ui(ui, state, commands, "scene.room");
         setting_ui(ui, state, commands, "scene.spin_deg_per_s");
         setting_ui(ui, state, commands, "output.background");

@@ -21,17 +21,17 @@ use crate::{
     },
 };
 
-const LIST_WIDTH: f32 = 240.0;
-const LIST_HEIGHT: f32 = 260.0;
+pub(super) const LIST_WIDTH: f32 = 240.0;
+pub(super) const LIST_HEIGHT: f32 = 260.0;
 
 /// An entry of the list: a part of the scene, or a pattern of the scope that is not the name of
 /// one.
 #[derive(Clone)]
-struct Entry {
-    pattern: PartPattern,
+pub(super) struct Entry {
+    pub pattern: PartPattern,
     /// What the row shows: the name, indented below its parent, and the number of draws.
-    text: String,
-    indent: f32,
+    pub text: String,
+    pub indent: f32,
 }
 
 /// What is known of a scene while its parts are shown: finding them takes a while in a large scene.
@@ -205,7 +205,7 @@ fn entry_ui(ui: &mut Ui, on: &Scope, entry: &Entry, shows_kind: bool) -> Option<
 }
 
 /// The parts of a scene.
-fn entries(ui: &Ui, scene: &Arc<Scene>) -> Arc<[Entry]> {
+pub(super) fn entries(ui: &Ui, scene: &Arc<Scene>) -> Arc<[Entry]> {
     const INDENT: f32 = 10.0;
     const MAX_DEPTH: usize = 6;
     let id = egui::Id::unique("parts of the scene");
