@@ -18,7 +18,7 @@ use crate::{
     effects::{EnabledEffect, hooks::Slot},
     frame::{Geometry, NO_TRIANGLE},
     gpu::Capture,
-    oracle::{self, Outcome, ProbedSample, ProbedTriangle},
+    oracle::{self, ProbedSample, ProbedTriangle},
     preset::Preset,
     scene::Scene,
 };
@@ -73,7 +73,10 @@ pub fn run(common: &Common, args: &Probe, streams: &mut Streams) -> Result<Exit,
     } else {
         let mut text = String::new();
         for (sample, id) in samples.iter().zip(&drawn) {
-            text += &sample_text(sample, *id, &capture.geometry);
+            text += &sample.text(capture.geometry.subpixel_bits);
+            if *id != sample.decided.triangle_id {
+                text += &format!("the adapter drew triangle {}\n", id_word(*id));
+            }
         }
         text += &format!("\n{}", steps_text(&steps, &backend));
         if !options.is_empty() {
@@ -213,104 +216,6 @@ fn id_word(id: u32) -> String {
     }
 }
 
-fn outcome_word(outcome: &Outcome) -> String {
-    match outcome {
-        Outcome::Shown => "shown".into(),
-        Outcome::Hidden => "behind".into(),
-        Outcome::Outside => "outside".into(),
-        Outcome::FacesAway => "faces away".into(),
-        Outcome::AfterDrawOrder => "after the draw order's end".into(),
-        Outcome::OutsideDisc => "outside its disc".into(),
-        Outcome::CutByMask => "cut out by its mask".into(),
-        Outcome::LeftOutBy(effect) => format!("left out by {effect}"),
-    }
-}
-
-/// Distance of the sample from an edge, pixels; positive inside.
-fn distance_px(edge: &oracle::EdgeAtSample, unit: f64) -> f64 {
-    let [dx, dy] = edge.along.map(f64::from);
-    let length = dx.hypot(dy);
-    if length > 0.0 {
-        edge.value as f64 / length / unit
-    } else {
-        0.0
-    }
-}
-
-fn edge_word(edge: &oracle::EdgeAtSample, unit: f64) -> String {
-    match (edge.value, edge.is_inside()) {
-        (0, true) => "on it, its own".into(),
-        (0, false) => "on it, not its own".into(),
-        _ => format!("{:+.4}", distance_px(edge, unit)),
-    }
-}
-
-fn sample_text(sample: &ProbedSample, drawn: u32, geometry: &Geometry) -> String {
-    let unit = f64::from(1u32 << geometry.subpixel_bits);
-    let decided = &sample.decided;
-    let shows = match sample
-        .triangles
-        .iter()
-        .find(|t| t.outcome == Outcome::Shown)
-    {
-        Some(shown) => format!(
-            "triangle {} of {}, depth key {:#010x}",
-            shown.id, shown.primitive, decided.depth_key
-        ),
-        None => "the background".into(),
-    };
-    let agrees = if drawn == decided.triangle_id {
-        String::new()
-    } else {
-        format!("; the adapter drew {}", id_word(drawn))
-    };
-    let mut text = format!(
-        "drawn pixel {},{} shows {shows}; {} drawn layers{agrees}\n",
-        sample.pixel[0], sample.pixel[1], decided.layers
-    );
-    let heads = [
-        "TRIANGLE",
-        "OUTCOME",
-        "DEPTH KEY",
-        "EDGES PX",
-        "",
-        "",
-        "CORNERS PX",
-        "",
-        "",
-        "PART",
-    ];
-    let mut rows = vec![heads.map(str::to_owned).to_vec()];
-    rows.extend(sample.triangles.iter().map(|triangle| {
-        let name = if triangle.is_clipped {
-            format!("{} clipped", triangle.id)
-        } else {
-            triangle.id.to_string()
-        };
-        let key = triangle
-            .depth_key
-            .map_or_else(|| "-".into(), |key| format!("{key:#010x}"));
-        let edges = triangle.edges.iter().map(|edge| edge_word(edge, unit));
-        let corners = triangle.corners.iter().map(|corner| {
-            format!(
-                "{:.4},{:.4}",
-                f64::from(corner.x) / unit,
-                f64::from(corner.y) / unit
-            )
-        });
-        [name, outcome_word(&triangle.outcome), key]
-            .into_iter()
-            .chain(edges)
-            .chain(corners)
-            .chain([triangle.primitive.clone()])
-            .collect()
-    }));
-    if rows.len() > 1 {
-        text += &table(&rows);
-    }
-    text
-}
-
 fn color_word([r, g, b, a]: [u8; 4]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}{a:02x}")
 }
@@ -370,7 +275,7 @@ fn sample_json(sample: &ProbedSample, drawn: u32, geometry: &Geometry) -> Value 
     let triangle = |triangle: &ProbedTriangle| {
         json!({
             "id": triangle.id, "part": triangle.primitive, "is_clipped": triangle.is_clipped,
-            "outcome": outcome_word(&triangle.outcome), "depth_key": triangle.depth_key,
+            "outcome": triangle.outcome.to_string(), "depth_key": triangle.depth_key,
             "edges": triangle.edges.map(|edge| json!({ "value": edge.value, "along": edge.along, "is_inside": edge.is_inside() })),
             "corners": triangle.corners.map(|corner| json!({ "x": corner.x, "y": corner.y, "depth": corner.depth })),
         })

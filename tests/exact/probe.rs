@@ -68,10 +68,7 @@ fn nearest_edge_px(triangle: &ProbedTriangle, unit: f64) -> f64 {
     triangle
         .edges
         .iter()
-        .map(|edge| {
-            let [dx, dy] = edge.along.map(f64::from);
-            (edge.value as f64 / dx.hypot(dy) / unit).abs()
-        })
+        .map(|edge| (edge.distance() / unit).abs())
         .fold(f64::INFINITY, f64::min)
 }
 

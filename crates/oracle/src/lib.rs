@@ -27,6 +27,7 @@ mod budget;
 mod judge;
 mod perturbation;
 mod probe;
+mod probe_text;
 mod render;
 mod shot;
 

@@ -117,6 +117,8 @@ pub fn finish(
                 state.jobs.read_code(path);
             }
         }
+        Done::Probed(Ok(probed)) => state.picture.probed = Some(*probed),
+        Done::Probed(Err(error)) => state.notify(Level::Error, error),
         Done::Code(path, Ok(text)) => panels.code.show(path, text),
         Done::CodeTried(path, text, read) => {
             panels.code.take_error(&text, read.as_ref().err());

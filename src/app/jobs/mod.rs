@@ -35,6 +35,7 @@ use crate::{
         },
         picture::{
             cells::{self, CellOf, CellResult, Cells},
+            command::Probed,
             effect_picture::EffectPicture,
             findings::Findings,
             golden_check::{self, GoldenCheck},
@@ -50,6 +51,7 @@ use crate::{
     },
     effect_files::{self, EffectError},
     effects::{Effect, Stack},
+    frame::Geometry,
     gpu::{Capture, CompileWatch, Gpu, Renderer},
     host::disk,
     oracle,
@@ -99,6 +101,8 @@ pub enum Done {
     Compiled(Reload, Result<(), String>),
     /// The f32 errors of the user's effects in a picture; none if the measurement was cancelled.
     Precision(Box<Inputs>, Result<Option<Box<Measured>>, String>),
+    /// What was told of a pixel.
+    Probed(Result<Box<Probed>, String>),
     /// A tier of the open picture was timed.
     TierTime(Box<Timed>),
     /// The golden of a preset, compared again, by the number of its request; none if the preset has
@@ -248,6 +252,24 @@ impl Jobs {
                 giving_back(|| background::compute(measure)).map(|measured| measured.map(Box::new))
             });
             Done::Precision(Box::new(inputs), measured)
+        });
+    }
+
+    /// Looks into a pixel of a picture with this geometry.
+    pub fn probe(&self, of: Inputs, geometry: Arc<Geometry>, pixel: [u32; 2]) {
+        self.spawn_oracle("probe", move || {
+            let told = caught("looking into a pixel", || {
+                let Inputs {
+                    scene, view, stack, ..
+                } = &of;
+                let samples = oracle::probe(scene, view, stack, &geometry, &[pixel])
+                    .map_err(|error| error.to_string())?;
+                let texts = samples
+                    .iter()
+                    .map(|sample| sample.text(geometry.subpixel_bits));
+                Ok(texts.collect::<String>())
+            });
+            Done::Probed(told.map(|text| Box::new(Probed { of, pixel, text })))
         });
     }
 

@@ -18,7 +18,19 @@ pub fn view(state: &mut State, panels: &mut Panels, command: ViewCommand) {
         ViewCommand::CycleCompare => panels.viewport.compare.cycle(),
         ViewCommand::FlipCompare => panels.viewport.compare.flip(),
         ViewCommand::Mark(marker) => state.picture.marker = marker.map(|marker| *marker),
+        ViewCommand::Probe(pixel) => probe(state, pixel),
+        ViewCommand::EndProbe => state.picture.probed = None,
         ViewCommand::Pick(picking) => state.picture.picking = picking,
+    }
+}
+
+/// Looks into a pixel of the judged picture.
+fn probe(state: &State, pixel: [u32; 2]) {
+    if let (Some(findings), Some(of)) = (state.picture.findings(), state.picture.screen.requested())
+    {
+        state
+            .jobs
+            .probe(of.clone(), findings.geometry.clone(), pixel);
     }
 }
 

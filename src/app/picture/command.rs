@@ -33,6 +33,16 @@ pub struct Marker {
     pub text: String,
 }
 
+/// Why a pixel shows what it shows, in words.
+#[derive(Clone, Debug)]
+pub struct Probed {
+    /// The picture; in another one the words are not shown.
+    pub of: Inputs,
+    /// Column and row.
+    pub pixel: [u32; 2],
+    pub text: String,
+}
+
 pub enum ViewCommand {
     ToggleOverlays,
     ShowOverlay(Overlay, bool),
@@ -43,6 +53,10 @@ pub enum ViewCommand {
     FlipCompare,
     /// What the next click on the model sets; none cancels.
     Pick(Option<Picking>),
+    /// Tells why the pixel in this column and row of the judged picture shows what it shows.
+    Probe([u32; 2]),
+    /// Hides what a probe has told.
+    EndProbe,
     /// Marks a place in the picture; none removes the mark.
     Mark(Option<Box<Marker>>),
 }

@@ -1,10 +1,12 @@
 //! Findings: what the oracle found in a picture, pixel by pixel.
 
+use std::sync::Arc;
+
 use super::overlay::Overlay;
 use crate::{
     app::widgets::text::grouped,
     effect_files::Crossing,
-    frame::NO_TRIANGLE,
+    frame::{Geometry, NO_TRIANGLE},
     gpu::Capture,
     measure::{
         ErrorReport, Verdict,
@@ -21,6 +23,8 @@ pub struct Findings {
     pub faults: ErrorMap,
     pub triangle_ids: Vec<u32>,
     pub color: Vec<[u8; 4]>,
+    /// What decided the picture: what a probe looks into.
+    pub geometry: Arc<Geometry>,
     /// Triangle ids in the exact picture on the finest grid; none if the effects are not
     /// reproducible.
     reference: Option<Vec<u32>>,
@@ -46,6 +50,7 @@ impl Findings {
             faults: verdict.error_map,
             triangle_ids: capture.frame.triangle_id,
             color: capture.frame.color,
+            geometry: Arc::new(capture.geometry),
             reference: reference.filter(|reference| reference.len() == pixels),
             crossings,
             layers: capture.layers.unwrap_or_default(),

@@ -7,7 +7,7 @@ use super::{
     tier_times::TierTimes, verification::Verification,
 };
 use crate::{
-    app::picture::command::{Marker, Picking},
+    app::picture::command::{Marker, Picking, Probed},
     measure::ErrorReport,
 };
 
@@ -22,6 +22,8 @@ pub struct PictureState {
     pub precision: PrecisionState,
     /// The place in the picture that is marked.
     pub marker: Option<Marker>,
+    /// What was told of a pixel.
+    pub probed: Option<Probed>,
     /// What the next click on the model sets.
     pub picking: Option<Picking>,
 }
@@ -35,6 +37,7 @@ impl PictureState {
             overlays: OverlaySelection::default(),
             precision: PrecisionState::default(),
             marker: None,
+            probed: None,
             picking: None,
         }
     }

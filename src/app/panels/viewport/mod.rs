@@ -19,12 +19,17 @@ mod overlays;
 mod particle_input;
 mod pick_input;
 mod points;
+mod probe;
 
 use std::sync::Arc;
 
 use eframe::egui::{self, Align2, FontId, Rect, Response, Sense, Ui, vec2};
 
-use self::{compare::Compare, layout::fitted, overlays::OverlayPainter};
+use self::{
+    compare::Compare,
+    layout::{fitted, whole_size},
+    overlays::OverlayPainter,
+};
 use crate::{
     app::{
         editing::session::FileId,
@@ -100,6 +105,10 @@ impl Viewport {
                 state,
                 commands,
             );
+        }
+        if !self.compare.hides_b() {
+            let at = fitted(self.compare.side_b(rect), whole_size(rect));
+            probe::take_click(&response, state, at, commands);
         }
         Interaction {
             response,
@@ -268,6 +277,7 @@ impl Viewport {
         chips::chips_ui(ui, state, commands, rect, self.compare.is_open());
         if !self.compare.hides_b() {
             marker::marker_ui(ui, state, at);
+            probe::probed_ui(ui, state, at, commands);
             if state.open.handles {
                 handles::handles_ui(ui, state, commands, rect, at);
             }

@@ -1,7 +1,7 @@
 //! The legend of the overlays: what each shows and on how many pixels. An overlay that paints
 //! nothing has no line.
 
-use eframe::egui::{self, Color32, Rect, RichText, Ui, pos2, vec2};
+use eframe::egui::{self, Color32, Pos2, Rect, RichText, Ui, pos2, vec2};
 
 use crate::{
     app::{
@@ -134,18 +134,24 @@ fn line(overlay: Overlay, gain: u8, found: &Findings) -> Line {
     }
 }
 
-/// What is known of the pixel under the pointer.
-fn hovered_line(ui: &Ui, state: &State, at: Rect) -> Option<Line> {
+/// The judged pixel at `pointer` over the picture at `at`, while it is whole.
+pub fn judged_pixel(state: &State, at: Rect, pointer: Pos2) -> Option<[u32; 2]> {
     let found = state
         .picture
         .findings()
-        .filter(|_| state.picture.screen.divisor() == 1)?;
+        .filter(|_| state.picture.screen.divisor() == 1 && at.contains(pointer))?;
+    let uv = (pointer - at.min) / at.size();
+    let place = |t: f32, side: u32| ((t * side as f32) as u32).min(side.saturating_sub(1));
+    Some([place(uv.x, found.size[0]), place(uv.y, found.size[1])])
+}
+
+/// What is known of the pixel under the pointer.
+fn hovered_line(ui: &Ui, state: &State, at: Rect) -> Option<Line> {
     let pointer = ui
         .input(|i| i.pointer.hover_pos())
-        .filter(|pointer| at.contains(*pointer) && ui.rect_contains_pointer(at))?;
-    let uv = (pointer - at.min) / at.size();
-    let [x, y] = [(uv.x, found.size[0]), (uv.y, found.size[1])]
-        .map(|(t, side)| ((t * side as f32) as u32).min(side - 1));
+        .filter(|_| ui.rect_contains_pointer(at))?;
+    let [x, y] = judged_pixel(state, at, pointer)?;
+    let found = state.picture.findings()?;
     let i = (y * found.size[0] + x) as usize;
     let crossing = found
         .crossing(i)
@@ -158,7 +164,7 @@ fn hovered_line(ui: &Ui, state: &State, at: Rect) -> Option<Line> {
     });
     Some(Line::sentence(
         theme::text_weak(),
-        format!("{x}, {y}: {}{crossing}", found.pixel_text(i)),
+        format!("{x}, {y}: {}{crossing}; click: why", found.pixel_text(i)),
     ))
 }
 
