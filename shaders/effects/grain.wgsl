@@ -14,9 +14,9 @@ fn grain(at: ImageAt, p: Grain) -> vec4f {
     let size = i32(p.size_px);
     let cell = vec2u(vec2i(at.x, at.y) / size);
     let seed = hash(hash(cell.x + p.seed * HASH_GOLDEN) + cell.y);
-    let shared = grain_noise(seed);
+    let gray = grain_noise(seed);
     let own = vec3f(grain_noise(seed + 1u), grain_noise(seed + 2u), grain_noise(seed + 3u));
-    let noise = mix(vec3f(shared), own, p.color);
+    let noise = mix(vec3f(gray), own, p.color);
     let color = image_color(at.x, at.y);
     // Square roots are about what the eye sees.
     let tone = sqrt(clamp(color.rgb, vec3f(0.0), vec3f(1.0)));

@@ -450,7 +450,13 @@ fn image_passes_agree() {
             for turn in 0..TRIES / 1000 {
                 let words = parameters(&mut rng, effect, turn);
                 let triangle_ids: Vec<u32> = (0..pixels)
-                    .map(|i| if i % 7 < 2 { u32::MAX } else { whole(&mut rng, 60) })
+                    .map(|i| {
+                        if i % 7 < 2 {
+                            u32::MAX
+                        } else {
+                            whole(&mut rng, 60)
+                        }
+                    })
                     .collect();
                 let keys: Vec<u32> = triangle_ids
                     .iter()

@@ -1,17 +1,33 @@
 //! Depth of field: what is not at the distance in focus spreads to discs of light.
 
-use glam::DVec4;
+use glam::{DVec2, DVec4};
 
 use super::{
     BuiltIn, Effect,
     hooks::{ImageAt, PassEffect, tone::turned},
 };
-use crate::params;
+use crate::{choice, params};
+
+choice! {
+    /// What is in focus.
+    pub enum Focus {
+        /// What is seen at a place of the picture.
+        Place = "place",
+        /// A distance.
+        Distance = "distance",
+    }
+}
 
 params! {
     pub struct DepthOfField {
+        /// What is in focus.
+        focus: Focus = Focus::Place as u32;
+        /// The place in focus, from the left edge at 0 to the right one at 1.
+        focus_x: f32 = 0.5, hard 0.0..=1.0, when ("focus", &["place"]);
+        /// The same from the top to the bottom.
+        focus_y: f32 = 0.5, hard 0.0..=1.0, when ("focus", &["place"]);
         /// Distance in focus, along the viewing direction.
-        focus_m: f32 = 6.0, hard 0.001..=1000000.0, soft 0.1..=100.0, log true, unit "m";
+        focus_m: f32 = 6.0, hard 0.001..=1000000.0, soft 0.1..=100.0, log true, unit "m", when ("focus", &["distance"]);
         /// Radius of the disc to which a point infinitely far away spreads.
         aperture_px: f32 = 16.0, hard 0.0..=1024.0, soft 0.0..=64.0, unit "px";
         /// The largest such radius.
@@ -39,7 +55,8 @@ impl PassEffect for DepthOfField {
 
     fn pass(_: usize, at: &ImageAt, p: &Self) -> DVec4 {
         let here_m = at.depth_m(at.x, at.y);
-        let here_px = p.radius(here_m);
+        let focus_m = p.focus_m(at);
+        let here_px = p.radius(here_m, focus_m);
         let (mut sum, mut weights) = (at.color(at.x, at.y), 1.0);
         for i in 0..TAPS {
             // A spiral that fills a disc evenly.
@@ -49,7 +66,7 @@ impl PassEffect for DepthOfField {
             let step = away * turned(360.0 * turns);
             let step = [step.x, step.y].map(|by| by.round_ties_even() as i64);
             let there_m = at.depth_m(at.x + step[0], at.y + step[1]);
-            let mut there_px = p.radius(there_m);
+            let mut there_px = p.radius(there_m, focus_m);
             // Light from behind does not spread over what is sharp before it.
             if there_m > here_m {
                 there_px = there_px.min(here_px);
@@ -67,9 +84,20 @@ impl PassEffect for DepthOfField {
 }
 
 impl DepthOfField {
+    /// The distance in focus. A little is added, so that a number that is about whole falls on its
+    /// pixel everywhere.
+    fn focus_m(&self, at: &ImageAt) -> f64 {
+        if Focus::of(self.focus) == Focus::Distance {
+            return self.focus_m.into();
+        }
+        let place = DVec2::new(self.focus_x.into(), self.focus_y.into());
+        let place = (place * at.picture_size() + 0.003_906_25).floor();
+        at.depth_m(place.x as i64, place.y as i64)
+    }
+
     /// Radius of the disc to which a point so far away spreads, pixels.
-    fn radius(&self, depth_m: f64) -> f64 {
-        let spread = f64::from(self.aperture_px) * (1.0 - f64::from(self.focus_m) / depth_m).abs();
+    fn radius(&self, depth_m: f64, focus_m: f64) -> f64 {
+        let spread = f64::from(self.aperture_px) * (1.0 - focus_m / depth_m).abs();
         spread.min(f64::from(self.most_px))
     }
 }

@@ -25,7 +25,7 @@ params! {
         /// How many blocks slip beside rows.
         blocks: f32 = 0.4, hard 0.0..=1.0;
         /// Strength of the snow where the picture is torn.
-        noise: f32 = 0.15, hard 0.0..=1.0;
+        noise: f32 = 0.05, hard 0.0..=1.0;
         /// Another seed tears the picture elsewhere.
         seed: u32 = 7, hard 0.0..=65535.0;
     }

@@ -37,9 +37,9 @@ impl PassEffect for Grain {
         let [x, y] = [at.x, at.y].map(|place| (place / i64::from(p.size_px)) as u32);
         let row = hash(x.wrapping_add(p.seed.wrapping_mul(HASH_GOLDEN)));
         let seed = hash(row.wrapping_add(y));
-        let shared = DVec3::splat(noise(seed));
+        let gray = DVec3::splat(noise(seed));
         let own = DVec3::from([1, 2, 3].map(|channel| noise(seed.wrapping_add(channel))));
-        let noise = shared + (own - shared) * f64::from(p.color);
+        let noise = gray + (own - gray) * f64::from(p.color);
         let color = at.color(at.x, at.y);
         let light = color.truncate();
         // Square roots are about what the eye sees.

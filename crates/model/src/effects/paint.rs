@@ -15,13 +15,13 @@ use crate::params;
 params! {
     pub struct Paint {
         /// Size of the brush.
-        radius_px: f32 = 3.5, hard 1.0..=24.0, soft 1.0..=10.0, unit "px";
+        radius_px: f32 = 4.0, hard 1.0..=24.0, soft 1.0..=10.0, unit "px";
         /// How much longer strokes get along shapes.
-        stretch: f32 = 0.9, hard 0.0..=2.0;
+        stretch: f32 = 1.2, hard 0.0..=2.0;
         /// How far the directions of strokes are smoothed.
         smooth_px: f32 = 3.0, hard 0.0..=32.0, soft 0.0..=8.0, unit "px";
         /// How sharply the edges of strokes are cut.
-        hardness: f32 = 600.0, hard 0.0..=100000.0, soft 1.0..=10000.0, log true;
+        hardness: f32 = 1000.0, hard 0.0..=100000.0, soft 1.0..=10000.0, log true;
         /// Strength of the colors: 1 as they are.
         saturation: f32 = 1.15, hard 0.0..=4.0, soft 0.0..=2.0;
     }

@@ -11,11 +11,11 @@ use crate::params;
 params! {
     pub struct Sharpen {
         /// Strength: 1 doubles the difference.
-        amount: f32 = 1.2, hard 0.0..=8.0, soft 0.0..=3.0;
+        amount: f32 = 0.8, hard 0.0..=8.0, soft 0.0..=3.0;
         /// Distance of the pixels that count as surroundings.
         radius_px: u32 = 1, hard 1.0..=64.0, soft 1.0..=8.0, unit "px";
         /// How far edges may rise above and fall below their surroundings: 0 leaves no halo.
-        halo: f32 = 0.15, hard 0.0..=1.0;
+        halo: f32 = 0.1, hard 0.0..=1.0;
     }
 }
 
