@@ -202,7 +202,7 @@ impl Backend {
                 let previous = if before.is_empty() {
                     None
                 } else {
-                    Some(oracle::render_sequence(scene, before)?.color)
+                    Some(oracle::render_sequence(scene, before)?.resolved().to_vec())
                 };
                 let frame = oracle::render_next(scene, view, stack, previous.as_deref())?;
                 Ok(Capture {

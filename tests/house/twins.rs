@@ -4,14 +4,18 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3};
+use glam::{DMat4, DVec2, DVec3};
 use rasterlab::{
     effect_files::{duplicate, evaluated, read},
     effects::{
         EFFECTS, Effect,
-        hooks::{Hooks, Picture, Pixel, Sample, Surface, TriangleSetup, Vertex},
+        hooks::{
+            Hooks, Image, ImageAt, Lens, PassInput, Picture, Pixel, Sample, Signs, Surface,
+            TriangleSetup, Vertex,
+        },
     },
     params::ValueType,
+    scene::{Bounds, camera::Camera, view::View},
     shader::library::Library,
     stress::scenes::Rng,
 };
@@ -35,6 +39,16 @@ const LOOSER: &[(&str, f64, &str)] = &[
         "hatch",
         5e-6,
         "lib/angle has a series for the direction, within 2^-24 of it, which is multiplied by the position in spacings",
+    ),
+    (
+        "halftone",
+        1e-5,
+        "lib/angle has a series for the direction and a polynomial for the cosine, which are multiplied by the position in cells",
+    ),
+    (
+        "crt",
+        1e-6,
+        "lib/angle has a polynomial for the cosine, within 3.4e-9 of it",
     ),
 ];
 
@@ -406,6 +420,95 @@ fn image_functions_agree() {
                         "{}",
                         effect.name
                     );
+                }
+            }
+        },
+    );
+}
+
+#[test]
+fn image_passes_agree() {
+    each_effect(
+        |hooks| hooks.passes.is_some(),
+        |effect, hooks| {
+            let mut rng = Rng(15);
+            let size = [9_u32, 7];
+            let pixels = (size[0] * size[1]) as usize;
+            let bounds = Bounds {
+                min: DVec3::splat(-1.0),
+                max: DVec3::ONE,
+            };
+            let (camera, background) = (Camera::default(), [0.0; 4]);
+            let lens = Lens::of(&View::new(
+                &camera,
+                size[0],
+                size[1],
+                &bounds,
+                DMat4::IDENTITY,
+                background,
+            ));
+            for turn in 0..TRIES / 1000 {
+                let words = parameters(&mut rng, effect, turn);
+                let triangle_ids: Vec<u32> = (0..pixels)
+                    .map(|i| {
+                        if i % 7 < 2 {
+                            u32::MAX
+                        } else {
+                            whole(&mut rng, 60)
+                        }
+                    })
+                    .collect();
+                let keys: Vec<u32> = triangle_ids
+                    .iter()
+                    .map(|&id| match id {
+                        u32::MAX => 0,
+                        _ => (0.05 + 0.01 * rng.real(0.0, 1.0) as f32).to_bits(),
+                    })
+                    .collect();
+                let picture = Picture {
+                    width: size[0],
+                    height: size[1],
+                    triangle_ids: &triangle_ids,
+                    keys: &keys,
+                    draws: &[0, 20, 40],
+                    previous: None,
+                    background: &[],
+                };
+                let mut image = |size: [u32; 2]| Image {
+                    size,
+                    colors: (0..size[0] * size[1])
+                        .map(|_| vector(&mut rng, 0.0, 1.0).extend(1.0))
+                        .collect(),
+                };
+                let passes = &hooks.passes.as_ref().expect("it has passes").passes;
+                let source = image(size);
+                let mut last = source.clone();
+                for (index, pass) in passes.iter().enumerate() {
+                    let input = PassInput {
+                        picture: &picture,
+                        lens,
+                        source: &source,
+                        last: &last,
+                        signs: Signs::None,
+                    };
+                    let size = pass.size(size);
+                    for i in 0..size[0] * size[1] {
+                        let at = ImageAt {
+                            x: i64::from(i % size[0]),
+                            y: i64::from(i / size[0]),
+                            size,
+                            scale: pass.scale,
+                            step_offset: 0.0,
+                            input: &input,
+                        };
+                        let of = |hooks: &Hooks| {
+                            let hook = hooks.passes.as_ref().expect("it has passes");
+                            (hook.run)(index, &at, &words).to_array()
+                        };
+                        let (given, expected) = (of(hooks), of(&effect.hooks));
+                        same(effect, &pass.name, &given, &expected, &(&words, i));
+                    }
+                    last = image(size);
                 }
             }
         },

@@ -161,12 +161,20 @@ impl Renderer {
             .into_iter()
             .map(|stored| key.depth_bits(stored))
             .collect();
+        let resolved = picture.picture(BufferId::Color, [width, height]).await?;
+        let (color, resolved) = if key.has_passes() {
+            let finished = picture.picture(BufferId::Finished, [width, height]).await?;
+            (finished, Some(resolved))
+        } else {
+            (resolved, None)
+        };
         let frame = Frame {
             width,
             height,
             triangle_id,
             depth_key: depth_keys,
-            color: picture.picture(BufferId::Color, [width, height]).await?,
+            color,
+            resolved,
             layer_sums: picture.layer_sums().await?,
             dots: picture.dot_strengths().await?,
             counters,

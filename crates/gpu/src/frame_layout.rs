@@ -21,6 +21,7 @@ use crate::{
     math::rounded_columns,
     scene::view::View,
     shader::{
+        image_passes::IMAGE_SLOTS,
         key::{FramebufferLayout, KernelKey},
         pass::{Pass, TriangleSource},
     },
@@ -165,6 +166,16 @@ const WORD: u64 = 4;
 const TILE_ENTRY: u64 = 8;
 /// Bytes of a visible meshlet.
 const VISIBLE_MESHLET: u64 = 16;
+
+/// Bytes of a pixel in linear light.
+const LINEAR_PIXEL: u64 = 16;
+
+/// The pictures that image passes read and write by turns.
+pub const IMAGE_BUFFERS: [BufferId; IMAGE_SLOTS] = [
+    BufferId::ImageSource,
+    BufferId::ImageBefore,
+    BufferId::ImageTarget,
+];
 
 /// Side of a tile of the resolve, which can be dispatched over listed tiles alone; pixels.
 const RESOLVE_TILE: u32 = 8;
@@ -601,6 +612,12 @@ impl FrameLayout {
             );
             self.clear_only(BufferId::Color, None);
         }
+        for &slot in IMAGE_BUFFERS.iter().take(key.image_slots()) {
+            self.add(slot, LINEAR_PIXEL * self.pixels());
+        }
+        if key.has_passes() {
+            self.add(BufferId::Finished, picture);
+        }
         if key.is_scaled() {
             self.add(BufferId::ScaledColor, rows(self.shown));
         }
@@ -803,6 +820,11 @@ impl FrameLayout {
             }
             Pass::Resolve => Dispatch::once(self.tiles(key.tile_side())),
             Pass::ResolveBackground => Dispatch::args(offset_of!(DispatchArgs, background)),
+            Pass::ImageBegin => Dispatch::once(self.tiles(RESOLVE_TILE)),
+            Pass::Image(_) => {
+                let scale = key.image_step(pass).map_or(1, |step| step.scale);
+                Dispatch::once(self.tiles(scale).map(|side| side.div_ceil(RESOLVE_TILE)))
+            }
             Pass::Scale => Dispatch::once(self.shown.map(|side| side.div_ceil(RESOLVE_TILE))),
         }
     }

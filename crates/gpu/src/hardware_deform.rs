@@ -48,6 +48,7 @@ impl DeformPass {
             buffers: vec![buffers],
             textures: Vec::new(),
             light: None,
+            stand_ins: Vec::new(),
         }
         .bind_group(gpu, &pipeline)?;
         Ok(Self {

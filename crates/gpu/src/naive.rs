@@ -86,6 +86,7 @@ impl Naive {
                 buffers: vec![&buffers],
                 textures: Vec::new(),
                 light: None,
+                stand_ins: Vec::new(),
             };
             let group = resources.bind_group(gpu, &pipeline)?;
             Ok::<_, RenderError>((pipeline, group, groups))

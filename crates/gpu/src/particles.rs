@@ -242,6 +242,7 @@ impl ParticleSimulation {
             buffers: vec![frame, &scene.buffers, &self.buffers],
             textures: Vec::new(),
             light: None,
+            stand_ins: Vec::new(),
         };
         let group = resources.bind_group(gpu, &pipeline)?;
         let mut encoder = gpu

@@ -84,6 +84,8 @@ pub fn pass_purpose(pass: Pass) -> &'static str {
         Pass::ListTiles => "gathers the tiles that hold something",
         Pass::Resolve => "shades every pixel once",
         Pass::ResolveBackground => "finishes the pixels of tiles that no triangle touches",
+        Pass::ImageBegin => "takes the picture to linear light for image effects",
+        Pass::Image(_) => "writes one pass of an image effect over the picture",
         Pass::Scale => "brings the pixels that were drawn to the size that is shown",
     }
 }

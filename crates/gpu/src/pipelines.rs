@@ -222,7 +222,7 @@ impl Pipelines {
         self.desc(
             gpu,
             &pass.path(),
-            &pass.label(),
+            &key.label_of(pass),
             pass.stem(),
             key,
             &key.variants(pass),

@@ -7,7 +7,7 @@ use super::{
     buffers::{BufferNote, Buffers, next_revision},
     device::Gpu,
     error::RenderError,
-    frame_layout::{Dispatch, FrameLayout},
+    frame_layout::{Dispatch, FrameLayout, IMAGE_BUFFERS},
     pipeline_store::{Pipeline, PipelineStore},
     pipelines::Pipelines,
     preparations::Preparation,
@@ -38,6 +38,8 @@ pub struct Resources<'a> {
     pub textures: Vec<(TextureId, &'a WordTexture)>,
     /// The buffers of a light, whose depth keys are the shadow map.
     pub light: Option<&'a Buffers>,
+    /// Buffers that stand in for others: what a kernel calls the first is the second.
+    pub stand_ins: Vec<(BufferId, BufferId)>,
 }
 
 impl<'a> Resources<'a> {
@@ -48,11 +50,14 @@ impl<'a> Resources<'a> {
                     .get(BufferId::DepthKeys)
                     .map(wgpu::Buffer::as_entire_binding)
             }),
-            ResourceId::Buffer(id) => self
-                .buffers
-                .iter()
-                .find(|buffers| buffers.has(id))
-                .map(|buffers| buffers.get(id).map(wgpu::Buffer::as_entire_binding)),
+            ResourceId::Buffer(id) => {
+                let stand_in = self.stand_ins.iter().find(|(name, _)| *name == id);
+                let id = stand_in.map_or(id, |(_, held)| *held);
+                self.buffers
+                    .iter()
+                    .find(|buffers| buffers.has(id))
+                    .map(|buffers| buffers.get(id).map(wgpu::Buffer::as_entire_binding))
+            }
             ResourceId::Texture(id) => {
                 let texture = self.textures.iter().find(|(other, _)| *other == id);
                 texture.map(|(_, texture)| Ok(wgpu::BindingResource::TextureView(&texture.view)))
@@ -71,6 +76,7 @@ impl<'a> Resources<'a> {
             buffers: vec![&scene.buffers],
             textures: atlas.collect(),
             light: None,
+            stand_ins: Vec::new(),
         }
     }
 
@@ -86,6 +92,33 @@ impl<'a> Resources<'a> {
             buffers,
             textures: self.textures.clone(),
             light: self.light,
+            stand_ins: Vec::new(),
+        }
+    }
+
+    /// The same for one pass: the pictures that image passes read and write change places from
+    /// pass to pass, and what is scaled is what the last of them wrote.
+    fn of_pass(&self, key: &KernelKey, pass: Pass) -> Self {
+        let stand_ins = match (pass, key.image_step(pass)) {
+            (Pass::ImageBegin, _) => vec![(BufferId::ImageTarget, IMAGE_BUFFERS[0])],
+            (_, Some(step)) => {
+                let target = step.target.map(|slot| (BufferId::ImageTarget, slot));
+                let read = [
+                    (BufferId::ImageSource, step.source),
+                    (BufferId::ImageBefore, step.last),
+                ];
+                let all = read.into_iter().chain(target);
+                all.map(|(name, slot)| (name, IMAGE_BUFFERS[slot]))
+                    .collect()
+            }
+            (Pass::Scale, None) if key.has_passes() => {
+                vec![(BufferId::Color, BufferId::Finished)]
+            }
+            _ => Vec::new(),
+        };
+        Self {
+            stand_ins,
+            ..self.clone()
         }
     }
 
@@ -223,10 +256,10 @@ impl CommandList {
         let mut commands = Vec::with_capacity(passes.len());
         for &pass in &passes {
             let pipeline = pipelines.get(gpu, key, pass).await?;
-            let group = resources.bind_group(gpu, &pipeline)?;
+            let group = resources.of_pass(key, pass).bind_group(gpu, &pipeline)?;
             commands.push(Command {
                 pass,
-                label: format!("{prefix}{}", pass.label()),
+                label: format!("{prefix}{}", key.label_of(pass)),
                 pipeline,
                 group,
             });

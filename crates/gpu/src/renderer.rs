@@ -437,11 +437,10 @@ impl Renderer {
 
     /// The buffer that holds what is shown.
     fn shown_buffer(&self) -> BufferId {
-        if self.picture.buffers.has(BufferId::ScaledColor) {
-            BufferId::ScaledColor
-        } else {
-            BufferId::Color
-        }
+        [BufferId::ScaledColor, BufferId::Finished]
+            .into_iter()
+            .find(|&id| self.picture.buffers.has(id))
+            .unwrap_or(BufferId::Color)
     }
 
     /// The finished picture: Rgba8Unorm with gamma-encoded bytes; none before the first draw and

@@ -91,6 +91,10 @@ buffers! {
     Color = "color", STORAGE, Picture, "the picture, 4 bytes per pixel";
     Background = "background", STORAGE, Nothing, "a few rows of background, copied all over the picture first";
     Previous = "previous", STORAGE, Nothing, "the previous picture, which an effect reads";
+    ImageSource = "image_source", STORAGE, Nothing, "the picture in linear light, 16 bytes per pixel, that image passes read and write by turns";
+    ImageBefore = "image_before", STORAGE, Nothing, "a second such picture";
+    ImageTarget = "image_target", STORAGE, Nothing, "a third such picture";
+    Finished = "finished", STORAGE, Nothing, "the picture after image passes, 4 bytes per pixel";
     Scaling = "scaling", UNIFORM, Nothing, "size of what is shown";
     ScaledColor = "shown", STORAGE, Nothing, "the picture at the size that is shown, 4 bytes per pixel";
     ShadowMapView = "light", UNIFORM, Nothing, "maps positions to the shadow map";

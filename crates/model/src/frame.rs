@@ -281,6 +281,8 @@ pub struct Frame {
     pub depth_keys_are_approximate: bool,
     /// Gamma-encoded sRGB and alpha.
     pub color: Vec<[u8; 4]>,
+    /// The picture before the passes of image effects; none where no effect has passes.
+    pub resolved: Option<Vec<[u8; 4]>>,
     /// Sum of the weights of all layers of a pixel, or their number, if an effect fills the
     /// visibility slot; otherwise empty.
     pub layer_sums: Vec<u32>,
@@ -320,8 +322,15 @@ impl Frame {
             color,
             layer_sums: of(&self.layer_sums),
             dots: of(&self.dots),
+            resolved: None,
             ..*self
         }
+    }
+
+    /// The picture before the passes of image effects: what the next picture of a sequence starts
+    /// from.
+    pub fn resolved(&self) -> &[[u8; 4]] {
+        self.resolved.as_deref().unwrap_or(&self.color)
     }
 
     /// Number of pixels with a triangle.

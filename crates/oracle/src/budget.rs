@@ -18,6 +18,9 @@ const MAX_POSITIONS: u64 = 1 << 32;
 
 /// Bytes of each pixel: its sample, triangle id, depth key, color in f64 and in bytes.
 const PIXEL_BYTES: u64 = 12 + 4 + 4 + 32 + 4;
+/// More bytes of each pixel where an effect has passes: two pictures in linear light beside the
+/// one that is written, and two of right answers.
+const PASS_BYTES: u64 = 5 * 32;
 /// More bytes of each pixel where layers are summed.
 const LAYER_BYTES: u64 = 32 + 4;
 /// Bytes of each texel of a shadow map: its depth in f64 and its key.
@@ -72,6 +75,11 @@ fn bytes(shot: &Shot) -> u64 {
     let pixel = PIXEL_BYTES
         + if shot.stack.layers(triangles).is_some() {
             LAYER_BYTES
+        } else {
+            0
+        }
+        + if shot.stack.has_passes() {
+            PASS_BYTES
         } else {
             0
         };

@@ -203,7 +203,11 @@ pub fn oracle_rows(open: &OpenPreset, rows_begin: u32, rows_end: u32) -> Result<
     };
     let previous = match before {
         [] => None,
-        before => Some(oracle::render_sequence(&open.scene, before)?.color),
+        before => Some(
+            oracle::render_sequence(&open.scene, before)?
+                .resolved()
+                .to_vec(),
+        ),
     };
     let (view, stack) = last;
     let rows = rows_begin..rows_end;

@@ -125,6 +125,7 @@ const fn about(hook: Hook) -> &'static str {
         Hook::Surface => "Surface: colors what is visible",
         Hook::Vertex => "Vertex: moves vertices",
         Hook::Sample => "Sample: decides which samples are drawn",
-        Hook::Pixel => "Pixel: changes the finished picture",
+        Hook::Pixel => "Pixel: changes the color of finished pixels",
+        Hook::Image => "Image: passes over the finished picture, which read their neighbors",
     }
 }

@@ -710,3 +710,36 @@ fn wrong_counters_and_overflow_are_caught() {
     );
     assert_eq!(miscounted.counters_wrong, 1);
 }
+
+#[test]
+fn passes_of_image_effects_are_judged_from_the_adapters_picture_before_them() {
+    let (scene, view) = still_life([48, 32]);
+    let mut stack = all_effects();
+    for name in ["ambient", "blur", "bloom", "halftone"] {
+        stack.enable(Effect::find(name).expect("a listed effect"));
+    }
+    let frame = render(&scene, &view, &stack).unwrap();
+    let geometry = projected(&scene, &view);
+    let report = |frame: &Frame| {
+        let picture = AdapterPicture::new(frame, &geometry);
+        judge(&scene, &view, &stack, &picture).unwrap().report
+    };
+    let honest = report(&frame);
+    assert_eq!(honest.within(&Budget::default()), Ok(()), "{honest:?}");
+    assert_eq!(honest.max_color_delta, 0);
+    let changed = |change: &dyn Fn(&mut Frame)| {
+        let mut changed = frame.clone();
+        change(&mut changed);
+        report(&changed)
+    };
+    let spot = changed(&|frame| frame.color[700][1] ^= 8);
+    assert!(spot.max_color_delta >= 7, "{spot:?}");
+    let skipped = changed(&|frame| frame.color = frame.resolved().to_vec());
+    assert!(skipped.max_color_delta > 20, "{skipped:?}");
+    // Right passes over a wrong picture are no excuse.
+    let before = changed(&|frame| {
+        let resolved = frame.resolved.as_mut().expect("the picture before");
+        resolved.rotate_right(1);
+    });
+    assert!(before.within(&Budget::default()).is_err(), "{before:?}");
+}

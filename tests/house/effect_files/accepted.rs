@@ -88,6 +88,17 @@ fn turns(pixel: Pixel, p: Ink) -> Pixel {
     q.color += vec4f(image_previous(pixel)) / 255.0 * helper(p.helper);
     return q;
 }",
+    "// Ink: passes of several sizes, with a helper and a loop.
+struct Ink { @range(1, 8, 3) radius: i32 }
+fn helper(at: ImageAt, p: Ink, step: i32) -> vec4f { return image_last(at.x + step * p.radius, at.y); }
+@pass(quarter) fn small(at: ImageAt, p: Ink) -> vec4f { return image_color_at(image_middle(at).x, image_middle(at).y); }
+@pass(full)
+fn ink(at: ImageAt, p: Ink) -> vec4f {
+    var sum = vec4f(0.0);
+    for (var i = -2; i <= 2; i++) { sum += helper(at, p, i); }
+    if image_at(at.x, at.y).x == IMAGE_NO_TRIANGLE { sum.r += image_depth_m(at.x, at.y) * image_pixel_size_m(1.0); }
+    return sum;
+}",
     "// Ink: constants in let, of which naga's pipelines once made what its writers could not write; half words.
 struct Ink { @range(0.0, 1.0, 0.5) helper: f32 }
 fn ink(surface: Surface, p: Ink) -> Surface {

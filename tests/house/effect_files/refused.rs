@@ -470,6 +470,26 @@ fn hooks_with_a_mistake() {
             "//@ use lib/image\nfn f(s: Surface, p: Q) -> Surface { return s; }",
             "no other hook",
         ),
+        (
+            "fn f(s: Surface, p: Q) -> Surface { return s; }\nfn g(at: ImageAt, p: Q) -> vec4f { return vec4f(0.0); }",
+            "no other hook",
+        ),
+        (
+            "@pass(half)\nfn «f(at: ImageAt, p: Q) -> vec4f { return vec4f(0.0); }",
+            "last pass",
+        ),
+        (
+            "«@pass(third)\nfn f(at: ImageAt, p: Q) -> vec4f { return vec4f(0.0); }",
+            "full, half or quarter",
+        ),
+        (
+            "@pass(half)\nfn «g(x: f32) -> f32 { return x; }\nfn f(at: ImageAt, p: Q) -> vec4f { return vec4f(0.0); }",
+            "no pass",
+        ),
+        (
+            "fn f(at: ImageAt, p: Q) -> vec4f { return «image_background(); }",
+            "pixel effect",
+        ),
     ];
     for (case, words) in cases {
         refused(&format!("{member}{case}\n"), words);

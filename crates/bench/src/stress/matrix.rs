@@ -239,6 +239,13 @@ fn factors(caps: &Caps) -> Vec<Vec<Level>> {
         effects(&[&[], &["explode"], &["inflate"], &["wobble"]]),
         effects(&[&[], &["xray"], &["overdraw"], &["race"]]),
         effects(&[&[], &["posterize"], &["outline"], &["dither"], &["tonemap"]]),
+        effects(&[
+            &[],
+            &["ambient", "depth_of_field", "bloom"],
+            &["sharpen", "blur", "glow_edges", "vignette"],
+            &["paint", "aberration", "grain"],
+            &["halftone", "pixelate", "glitch", "crt"],
+        ]),
         effects(&[&[], &["shadow"], &["dots"], &["particles"]]),
         pins(&options(caps)),
         pins(&[Culling::None, Culling::Frustum, Culling::TwoPass]),

@@ -4,27 +4,50 @@
 use std::collections::BTreeSet;
 
 use super::{
+    attributes::{self, Attribute},
     bounds,
     error::{EffectError, Text},
     parameters::{self, Parameters},
     tokens::{Token, closing, tokens},
     words,
 };
-use crate::effects::HookFunctions;
+use crate::effects::{HookFunctions, hooks::ImagePass};
 
 /// Files of `shaders/lib` that an effect file may use: pure functions and the types of hooks.
-pub const LIBRARY: [&str; 9] = [
-    "angle", "color", "front", "hash", "image", "lattice", "sample", "surface", "vertex",
+pub const LIBRARY: [&str; 10] = [
+    "angle",
+    "color",
+    "front",
+    "hash",
+    "image",
+    "image_pass",
+    "lattice",
+    "sample",
+    "surface",
+    "vertex",
 ];
 
 /// The hooks: type of the first parameter, type of the result, and the library file that declares
 /// the former.
-const HOOKS: [(&str, &str, &str); 4] = [
+const HOOKS: [(&str, &str, &str); 5] = [
     ("Vertex", "Vertex", "vertex"),
     ("Sample", "bool", "sample"),
     ("Surface", "Surface", "surface"),
     ("Pixel", "Pixel", "image"),
+    ("ImageAt", "vec4f", "image_pass"),
 ];
+
+/// Index of the one hook that several functions may be on, each a pass.
+const PASSES: usize = 4;
+
+/// Most passes of one effect.
+const MOST_PASSES: usize = 8;
+
+/// Words of `@pass`, and pixels of the picture for one that such a pass writes, along a side.
+const PASS_SIZES: [(&str, u32); 3] = [("full", 1), ("half", 2), ("quarter", 4)];
+
+/// Functions of `lib/image` that only a pixel effect may call.
+const OF_PIXELS: [&str; 2] = ["image_background", "image_previous"];
 
 /// What an effect file says.
 #[derive(Debug)]
@@ -36,6 +59,8 @@ pub struct Declaration<'a> {
     pub struct_name: &'a str,
     pub parameters: Parameters,
     pub hooks: HookFunctions,
+    /// The passes over the finished picture, in order.
+    pub passes: Vec<ImagePass>,
     /// Names declared at module scope, and the constants of choices.
     pub declared: BTreeSet<String>,
     /// Files that it uses, as `lib/surface`; those of its hooks' types are among them.
@@ -50,6 +75,8 @@ struct Function<'a> {
     /// Where the type of the last parameter begins.
     last_type: Option<Token<'a>>,
     result: String,
+    /// What `@pass` before it says: pixels of the picture for one that it writes, along a side.
+    scale: Option<u32>,
 }
 
 /// Reads an effect file; its constants of choices begin with `stem`.
@@ -62,6 +89,7 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
     bounds::check(text, &tokens)?;
     let uses = uses(text)?;
     let (mut structs, mut functions, mut declared) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut scale, mut attributes) = (None, Vec::new());
     let mut at = 0;
     while at < tokens.len() {
         let token = tokens[at];
@@ -99,7 +127,11 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
                     return Err(text.error(name.offset, name.text.len(), message));
                 };
                 declared.push(name);
-                functions.push(function(text, &tokens, at, name, body));
+                let scale = scale.take();
+                functions.push(Function {
+                    scale,
+                    ..function(text, &tokens, at, name, body)
+                });
                 at = closing(&tokens, body) + 1;
             }
             ("const" | "alias", Some(name)) => {
@@ -121,6 +153,15 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
             ("enable" | "requires" | "diagnostic", _) => {
                 return refuse("an effect file has no directives of WGSL; remove this one");
             }
+            ("@", Some(name)) if name.text == "pass" => {
+                let (attribute, next) = attributes::read(text, &tokens, at)?;
+                scale = Some(pass_scale(text, &attribute)?);
+                if tokens.get(next).is_none_or(|token| token.text != "fn") {
+                    return Err(attribute.error(text, "@pass stands before the fn of a pass"));
+                }
+                attributes.push(attribute.begin..attribute.end);
+                at = next;
+            }
             ("@", _) => {
                 return refuse(
                     "attributes belong to the parameters of an effect; an effect has no entry point and no binding",
@@ -136,7 +177,7 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
     }
     words::check_declared(text, &declared)?;
     words::refuse(text, &tokens, &declared)?;
-    let (hooks, struct_name) = hooks(text, &functions)?;
+    let (hooks, passes, struct_name) = hooks(text, &functions)?;
     let Some((_, open)) = structs
         .iter()
         .find(|(name, _)| name.text == struct_name.text)
@@ -147,7 +188,8 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
         );
         return Err(text.error(struct_name.offset, struct_name.text.len(), message));
     };
-    let parameters = parameters::read(text, &tokens, *open)?;
+    let mut parameters = parameters::read(text, &tokens, *open)?;
+    parameters.attributes.extend(attributes);
     let mut uses = uses;
     for (kind, _, file) in HOOKS {
         let path = format!("lib/{file}");
@@ -159,14 +201,26 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
             return Err(text.error(name.offset, name.text.len(), message));
         }
     }
+    if !passes.is_empty() {
+        if let Some(token) = tokens.iter().find(|token| OF_PIXELS.contains(&token.text)) {
+            let message = format!("{} is there in a pixel effect alone", token.text);
+            return Err(text.error(token.offset, token.text.len(), message));
+        }
+        if !uses.iter().any(|used| used == "lib/image") {
+            uses.push("lib/image".into());
+        }
+    }
     // The library's file for pixels reads buffers, which passes with the other hooks do not have.
-    let has_others = hooks.vertex.is_some() || hooks.sample.is_some() || hooks.surface.is_some();
+    let has_others = hooks.vertex.is_some()
+        || hooks.sample.is_some()
+        || hooks.surface.is_some()
+        || (hooks.image.is_some() && !passes.is_empty());
     if has_others && uses.iter().any(|used| used == "lib/image") {
         let name = functions
             .iter()
             .map(|function| function.name)
             .find(|name| hooks.image.as_deref() == Some(name.text));
-        let message = "only an effect with no other hook reads the picture; put the hook of Pixel and lib/image into a file of their own";
+        let message = "only an effect with no other hook reads the picture; put the hook of Pixel, or the passes, into a file of their own";
         return Err(name.map_or_else(
             || text.whole(message),
             |name| text.error(name.offset, name.text.len(), message),
@@ -191,6 +245,7 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
         struct_name: struct_name.text,
         parameters,
         hooks,
+        passes,
         declared,
         uses,
     })
@@ -257,6 +312,7 @@ fn function<'a>(
         parameters,
         last_type,
         result,
+        scale: None,
     }
 }
 
@@ -264,8 +320,9 @@ fn function<'a>(
 fn hooks<'a>(
     text: &Text<'a>,
     functions: &[Function<'a>],
-) -> Result<(HookFunctions, Token<'a>), EffectError> {
-    let mut found: [Option<&Function<'a>>; 4] = [None; 4];
+) -> Result<(HookFunctions, Vec<ImagePass>, Token<'a>), EffectError> {
+    let mut found: [Option<&Function<'a>>; 5] = [None; 5];
+    let mut passes: Vec<&Function<'a>> = Vec::new();
     for function in functions {
         let [first, second] = &function.parameters[..] else {
             continue;
@@ -283,7 +340,9 @@ fn hooks<'a>(
         if !is_struct {
             continue;
         }
-        if let Some(other) = found[hook] {
+        if hook == PASSES {
+            passes.push(function);
+        } else if let Some(other) = found[hook] {
             let message = format!(
                 "{} and {} both have the signature of the hook {}; change one of them",
                 other.name.text, function.name.text, HOOKS[hook].0
@@ -292,7 +351,7 @@ fn hooks<'a>(
         }
         found[hook] = Some(function);
     }
-    let Some(first) = found.iter().flatten().next() else {
+    let Some(first) = found.iter().flatten().chain(&passes).next().copied() else {
         let kind_of = |function: &Function<'_>| {
             HOOKS.iter().find(|(kind, ..)| {
                 function
@@ -314,12 +373,13 @@ fn hooks<'a>(
             return Err(text.error(name.offset, name.text.len(), message));
         }
         let message = "no function has the signature of a hook: fn name(surface: Surface, p: Parameters) -> Surface, or the same with Vertex, \
-                       with Pixel, or fn name(sample: Sample, p: Parameters) -> bool";
+                       with Pixel, fn name(at: ImageAt, p: Parameters) -> vec4f, or fn name(sample: Sample, p: Parameters) -> bool";
         return Err(text.whole(message));
     };
     if let Some(other) = found
         .iter()
         .flatten()
+        .chain(&passes)
         .find(|function| function.parameters[1] != first.parameters[1])
     {
         let message = format!(
@@ -335,11 +395,72 @@ fn hooks<'a>(
         sample_setup: None,
         surface: name(2),
         image: name(3),
+        passes: Vec::new(),
     };
+    let passes = image_passes(text, functions, &passes)?;
     let struct_name = first
         .last_type
         .expect("a hook's second parameter is a struct");
-    Ok((hooks, struct_name))
+    Ok((hooks, passes, struct_name))
+}
+
+/// Pixels of the picture for one of a pass, along a side, as `@pass` says.
+fn pass_scale(text: &Text<'_>, attribute: &Attribute<'_>) -> Result<u32, EffectError> {
+    let known = PASS_SIZES
+        .iter()
+        .find(|(word, _)| attribute.arguments == [*word]);
+    known.map(|(_, scale)| *scale).ok_or_else(|| {
+        attribute.error(
+            text,
+            "@pass takes one word: full, half or quarter, the size of what the pass writes",
+        )
+    })
+}
+
+/// The passes of an effect, of which the last one writes the picture.
+fn image_passes<'a>(
+    text: &Text<'a>,
+    functions: &[Function<'a>],
+    passes: &[&Function<'a>],
+) -> Result<Vec<ImagePass>, EffectError> {
+    let error = |function: &Function<'_>, message: String| {
+        text.error(function.name.offset, function.name.text.len(), message)
+    };
+    let is_pass = |function: &&Function<'_>| {
+        passes
+            .iter()
+            .any(|pass| pass.name.offset == function.name.offset)
+    };
+    if let Some(other) = functions
+        .iter()
+        .find(|function| function.scale.is_some() && !is_pass(function))
+    {
+        let message = format!(
+            "@pass stands before {}, which is no pass: fn {0}(at: ImageAt, p: Parameters) -> vec4f",
+            other.name.text
+        );
+        return Err(error(other, message));
+    }
+    if let Some(last) = passes.last().filter(|last| last.scale.unwrap_or(1) != 1) {
+        let message = format!(
+            "{} is the last pass and writes the picture, which has its full size; remove @pass, or write another pass after it",
+            last.name.text
+        );
+        return Err(error(last, message));
+    }
+    if let Some(extra) = passes.get(MOST_PASSES) {
+        let message = format!(
+            "{} is pass number {}; an effect has at most {MOST_PASSES}",
+            extra.name.text,
+            MOST_PASSES + 1
+        );
+        return Err(error(extra, message));
+    }
+    let pass = |function: &&Function<'_>| ImagePass {
+        name: function.name.text.to_owned(),
+        scale: function.scale.unwrap_or(1),
+    };
+    Ok(passes.iter().map(pass).collect())
 }
 
 /// The lines `//@ use lib/NAME`.

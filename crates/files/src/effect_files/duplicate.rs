@@ -11,7 +11,7 @@ use super::{
 use crate::{
     effects::Effect,
     params::{Field, ValueType, format_number},
-    shader::library::Library,
+    shader::{image_passes::pass_function, library::Library},
 };
 
 /// The text of an effect file `name` that does what `effect` does.
@@ -120,6 +120,13 @@ fn renamed(effect: &Effect, name: &str, text: &str) -> String {
                 at,
             )
         };
+        let pass = hooks_pass(effect, token.text).filter(|_| before == "fn");
+        if let Some(scale) = pass {
+            // The attribute stands before `fn`, which was not copied yet.
+            result.push_str(&text[copied..tokens[at - 1].offset]);
+            result.push_str(scale);
+            copied = tokens[at - 1].offset;
+        }
         if let Some(replacement) = replacement {
             result.push_str(&text[copied..token.offset]);
             result.push_str(&replacement);
@@ -148,6 +155,17 @@ fn renamed(effect: &Effect, name: &str, text: &str) -> String {
         .expect("writing to a string");
     }
     result
+}
+
+/// The attribute of the pass that a function of a built-in effect is, where it needs one.
+fn hooks_pass(effect: &Effect, function: &str) -> Option<&'static str> {
+    let hook = effect.hooks.passes.as_ref()?;
+    let index = (0..hook.passes.len()).find(|&index| pass_function(effect, index) == function)?;
+    match hook.passes[index].scale {
+        2 => Some("@pass(half)\n"),
+        4 => Some("@pass(quarter)\n"),
+        _ => None,
+    }
 }
 
 /// The struct with its documentation and attributes. Choices come first, since the other parameters

@@ -14,6 +14,7 @@ use crate::{
     evaluator::{LowerError, Precision},
     shader::{
         glue::Chain,
+        image_passes::pass_function,
         library::Library,
         link::{self, LinkError},
         reflect::capabilities,
@@ -92,6 +93,15 @@ pub fn evaluated_in(
     if let Some(hook) = hooks.image {
         let function = function(Chain::Image, precision)?;
         hooks.image = Some(twin::image(function.clone(), function, hook.reads_previous));
+    }
+    if let Some(hook) = hooks.passes {
+        let functions = (0..hook.passes.len())
+            .map(|pass| {
+                let name = pass_function(effect, pass);
+                Function::new(&module, text, &name, &effect.fields, precision)
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        hooks.passes = Some(twin::passes(hook.passes, functions.clone(), functions));
     }
     Ok(hooks)
 }

@@ -224,6 +224,17 @@ fn read_anew(file: &str, stem: &str, written: &str) -> Result<Effect, EffectErro
             reads_previous,
         ));
     }
+    if !source.functions.passes.is_empty() {
+        let all = |precision: Precision| -> Result<Vec<Function>, EffectError> {
+            let names = source.functions.passes.iter();
+            names.map(|name| function(name, precision)).collect()
+        };
+        hooks.passes = Some(twin::passes(
+            declaration.passes.clone(),
+            all(Precision::Double)?,
+            all(Precision::Single)?,
+        ));
+    }
     // Any comparison in the text may be a step of color.
     hooks.has_steps = source.functions.surface.is_some() || source.functions.image.is_some();
     Ok(effect)

@@ -202,7 +202,17 @@ fn append_hooks(
         Some(wrapper)
     };
     let hooks = &declaration.hooks;
+    let passes = declaration
+        .passes
+        .iter()
+        .enumerate()
+        .filter_map(|(i, pass)| {
+            let name = Some(pass.name.clone());
+            wrapped(&name, &format!("pass_{i}"), "ImageAt", "vec4f")
+        });
+    let passes = passes.collect();
     HookFunctions {
+        passes,
         vertex: wrapped(&hooks.vertex, "vertex", "Vertex", "Vertex"),
         sample: wrapped(&hooks.sample, "sample", "Sample", "bool"),
         sample_setup: None,
@@ -221,6 +231,9 @@ pub fn in_names_of_author(stem: &str, declaration: &Declaration<'_>, message: &s
         ("image", &hooks.image),
     ];
     let mut message = message.replace(&EffectSource::unique(stem, ""), "");
+    for (i, pass) in declaration.passes.iter().enumerate().rev() {
+        message = message.replace(&generated(stem, &format!("pass_{i}")), &pass.name);
+    }
     for (hook, name) in named {
         message = message.replace(&generated(stem, hook), name.as_deref().unwrap_or(hook));
     }

@@ -9,10 +9,17 @@ pub enum Hook {
     Sample,
     Surface,
     Pixel,
+    Image,
 }
 
 impl Hook {
-    pub const ALL: [Self; 4] = [Self::Surface, Self::Vertex, Self::Sample, Self::Pixel];
+    pub const ALL: [Self; 5] = [
+        Self::Surface,
+        Self::Vertex,
+        Self::Sample,
+        Self::Pixel,
+        Self::Image,
+    ];
 
     /// The word for it on the command line.
     pub const fn name(self) -> &'static str {
@@ -21,6 +28,7 @@ impl Hook {
             Self::Sample => "sample",
             Self::Surface => "surface",
             Self::Pixel => "pixel",
+            Self::Image => "image",
         }
     }
 
@@ -60,6 +68,7 @@ pub fn template(name: &str, hook: Hook) -> String {
         Hook::Vertex => include_str!("templates/vertex.wgsl"),
         Hook::Sample => include_str!("templates/sample.wgsl"),
         Hook::Pixel => include_str!("templates/pixel.wgsl"),
+        Hook::Image => include_str!("templates/image.wgsl"),
     };
     text.replace("NAME", name).replace("Type", &type_name(name))
 }

@@ -12,8 +12,8 @@ use glam::{DVec2, DVec3, DVec4};
 use super::rewrite::lengths;
 use crate::{
     effects::hooks::{
-        ErrorBound, ImageHook, Picture, Pixel, ROUNDING, Sample, SampleHook, SetupFunction,
-        Surface, SurfaceFunction, TriangleSetup, Vertex, VertexHook,
+        ErrorBound, ImageAt, ImageHook, ImagePass, PassHook, Picture, Pixel, ROUNDING, Sample,
+        SampleHook, SetupFunction, Surface, SurfaceFunction, TriangleSetup, Vertex, VertexHook,
     },
     evaluator::{Host, LowerError, NoHost, Options, Precision, Program, Word},
     math::hash,
@@ -22,13 +22,20 @@ use crate::{
 
 /// Instructions of one call. The loops of an effect end long before.
 const MAX_STEPS: u64 = 100_000_000;
-/// Functions of `lib/image` that read the picture.
-const EXTERNALS: [&str; 5] = [
+/// Functions of `lib/image` and `lib/image_pass` that read the picture.
+const EXTERNALS: [&str; 12] = [
     "image_has",
     "image_at",
     "image_background",
     "image_size",
     "image_previous",
+    "image_color",
+    "image_color_at",
+    "image_last",
+    "image_last_at",
+    "image_depth_m",
+    "image_meters",
+    "image_pixel_size_m",
 ];
 /// How much the inputs of a color may be off on the f32 side, relative to the largest component of
 /// each.
@@ -295,6 +302,61 @@ pub fn image(exact: Function, rounded: Function, reads_previous: bool) -> ImageH
     ImageHook {
         reads_previous,
         finish: Arc::new(finish),
+    }
+}
+
+/// Answers what a pass asks of the picture and of the pass before it.
+struct PassHost<'a>(&'a ImageAt<'a>);
+
+impl Host for PassHost<'_> {
+    fn external(&mut self, index: usize, arguments: &[Word], result: &mut [Word]) {
+        let at = self.0;
+        let pixel = || [0, 1].map(|axis| i64::from(arguments[axis].to_i32()));
+        let place = || DVec2::new(arguments[0].to_f64(), arguments[1].to_f64());
+        let color = match index {
+            5 => at.color(pixel()[0], pixel()[1]),
+            6 => at.color_at(place()),
+            7 => at.last(pixel()[0], pixel()[1]),
+            8 => at.last_at(place()),
+            9 => {
+                result[0] = Word::from_f64(at.depth_m(pixel()[0], pixel()[1]));
+                return;
+            }
+            10 => {
+                result[0] = Word::from_f64(at.input.lens.meters(arguments[0].to_f64()));
+                return;
+            }
+            11 => {
+                result[0] = Word::from_f64(at.input.lens.pixel_size_m(arguments[0].to_f64()));
+                return;
+            }
+            _ => return PictureHost(at.input.picture, 0).external(index, arguments, result),
+        };
+        result.copy_from_slice(&color.to_array().map(Word::from_f64));
+    }
+}
+
+/// The passes of an effect, each evaluated in f64, and in f32 to one side of a step as
+/// [`surface`].
+pub fn passes(passes: Vec<ImagePass>, exact: Vec<Function>, rounded: Vec<Function>) -> PassHook {
+    let run = move |index: usize, at: &ImageAt<'_>, words: &[u32]| {
+        let functions = if at.step_offset > 0.0 {
+            &rounded
+        } else {
+            &exact
+        };
+        let mut arguments = Writer::default();
+        for word in [at.x as u32, at.y as u32, at.size[0], at.size[1], at.scale] {
+            arguments.whole(word);
+        }
+        let read = |result: &mut Reader<'_>| DVec4::from_array(result.floats());
+        functions[index]
+            .call(arguments.0, words, &mut PassHost(at), read)
+            .unwrap_or(DVec4::NAN)
+    };
+    PassHook {
+        passes,
+        run: Arc::new(run),
     }
 }
 

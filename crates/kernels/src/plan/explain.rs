@@ -39,6 +39,7 @@ impl Plan {
             self.material_reason(),
             self.mask_reason(),
             self.image_reason(),
+            self.passes_reason(),
             self.dots_reason(),
             self.layers_reason(),
         ];
@@ -216,6 +217,14 @@ impl Plan {
         self.key
             .finishes_pixels()
             .then(|| note("image effects", why))
+    }
+
+    fn passes_reason(&self) -> Option<Note> {
+        let count = self.key.image_steps().len();
+        let why = format!(
+            "{count} of them read the finished picture in linear light, 16 bytes a pixel, and the last one writes what is shown"
+        );
+        (count > 0).then(|| note("image passes", why))
     }
 
     fn dots_reason(&self) -> Option<Note> {

@@ -27,6 +27,7 @@ impl KernelKey {
         if self.lists_background() {
             passes.push(Pass::ResolveBackground);
         }
+        passes.extend(self.image_passes());
         if self.is_scaled() {
             passes.push(Pass::Scale);
         }

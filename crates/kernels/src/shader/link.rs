@@ -24,6 +24,7 @@ use std::{
 
 use super::{
     glue::{self, Chain},
+    image_passes::glue_text,
     key::{Fetch, KernelKey},
     library::{Library, sections},
     pass::Pass,
@@ -455,6 +456,9 @@ impl<'a> Linker<'a> {
             self.has_effects = true;
             return Some(Ok(()));
         }
+        if name == "image_pass" {
+            return Some(self.take_image_pass());
+        }
         let chain = Chain::ALL.into_iter().find(|chain| chain.name() == name)?;
         let key = self.key;
         if self.generate(&format!("glue of {name}"), || chain.text(&key.effects)) {
@@ -471,6 +475,30 @@ impl<'a> Linker<'a> {
             }
         }
         Some(Ok(()))
+    }
+
+    /// Takes the effect of the image pass whose number stands among the variants.
+    fn take_image_pass(&mut self) -> Result<(), LinkError> {
+        let none = || LinkError::NoVariant {
+            user: "glue/image_pass".into(),
+            file: "image_pass".into(),
+        };
+        let chosen = self.variants.iter().find(|(name, _)| *name == "image_pass");
+        let number: usize = chosen
+            .and_then(|(_, number)| number.parse().ok())
+            .ok_or_else(none)?;
+        let step = *self.key.image_steps().get(number).ok_or_else(none)?;
+        let effect = self.key.effects.list[step.effect].clone();
+        if self.generate("glue of image_pass", || glue_text(&effect, step.pass)) {
+            self.has_effects = true;
+            self.generated
+                .insert("glue_image_pass".into(), "glue/image_pass".into());
+            self.take_head(
+                &format!("effects/{}", effect.file_stem()),
+                "glue/image_pass",
+            )?;
+        }
+        Ok(())
     }
 
     /// Declares the buffers of `//@ binding` lines that the stage does not declare with another

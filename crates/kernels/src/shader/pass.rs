@@ -58,6 +58,10 @@ pub enum Pass {
     Resolve,
     /// Finishes the pixels of the tiles that no triangle touched.
     ResolveBackground,
+    /// Takes the picture to linear light, for image passes.
+    ImageBegin,
+    /// The image pass of this number.
+    Image(u8),
     /// Resamples the drawn picture to the shown size.
     Scale,
 }
@@ -158,6 +162,8 @@ impl Pass {
             Self::ListTiles => "list_tiles",
             Self::Resolve => "resolve",
             Self::ResolveBackground => "resolve_background",
+            Self::ImageBegin => "image_begin",
+            Self::Image(_) => "image_pass",
             Self::Scale => "scale",
         }
     }
@@ -183,7 +189,8 @@ impl Pass {
             Self::DotsEnds | Self::DotsCull | Self::DotsArgs | Self::DotsDraw | Self::DotsProbe => {
                 "lines"
             }
-            Self::ListTiles | Self::Resolve | Self::ResolveBackground | Self::Scale => "shade",
+            Self::ListTiles | Self::Resolve | Self::ResolveBackground => "shade",
+            Self::ImageBegin | Self::Image(_) | Self::Scale => "shade",
         };
         format!("stages/{folder}/{}", self.stem())
     }

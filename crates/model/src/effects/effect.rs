@@ -3,8 +3,8 @@
 use std::sync::{Arc, LazyLock};
 
 use super::hooks::{
-    Hooks, ImageEffect, ImageHook, Picture, SampleEffect, SampleHook, Slot, SurfaceEffect,
-    SurfaceInput, VertexEffect, VertexHook,
+    Hooks, ImageAt, ImageEffect, ImageHook, ImagePass, PassEffect, PassHook, Picture, SampleEffect,
+    SampleHook, Slot, SurfaceEffect, SurfaceInput, VertexEffect, VertexHook,
 };
 use crate::{
     params::{Field, Params},
@@ -106,6 +106,21 @@ impl Effect {
         self
     }
 
+    /// The same effect, also in passes over the finished picture.
+    pub fn on_passes<P: PassEffect>(mut self) -> Self {
+        let named = |&(name, scale): &(&str, u32)| ImagePass {
+            name: name.into(),
+            scale,
+        };
+        self.hooks.passes = Some(PassHook {
+            passes: P::PASSES.iter().map(named).collect(),
+            run: Arc::new(|index, at: &ImageAt<'_>, words: &[u32]| {
+                P::pass(index, at, &read(words))
+            }),
+        });
+        self
+    }
+
     /// The same effect, with steps in its color: the judge then accepts either side of a step that
     /// is very near.
     pub fn in_steps(mut self) -> Self {
@@ -173,6 +188,7 @@ impl Effect {
     pub const fn has_scope(&self) -> bool {
         let hooks = &self.hooks;
         let is_elsewhere = hooks.image.is_some()
+            || hooks.passes.is_some()
             || hooks.slot.is_some()
             || hooks.has_lines
             || hooks.particle_settings.is_some();
@@ -257,6 +273,8 @@ pub struct HookFunctions {
     pub sample_setup: Option<String>,
     pub surface: Option<String>,
     pub image: Option<String>,
+    /// Of every pass over the finished picture, in order.
+    pub passes: Vec<String>,
 }
 
 /// Parameter words as the struct they were made from.

@@ -35,6 +35,20 @@ macro_rules! for_each_effect {
             smear,
             outline,
             dither,
+            ambient,
+            sharpen,
+            paint,
+            depth_of_field,
+            blur,
+            bloom,
+            glow_edges,
+            halftone,
+            pixelate,
+            aberration,
+            grain,
+            vignette,
+            glitch,
+            crt,
         ];
     };
 }
@@ -54,5 +68,5 @@ pub use self::{
     effect::{BuiltIn, Effect, EffectSource, HookFunctions, constant_name, read},
     hooks::{Surface, SurfaceEffect, SurfaceInput},
     list::EFFECTS,
-    stack::{Conflict, EnabledEffect, Stack},
+    stack::{Conflict, EnabledEffect, MAX_IMAGE_PASSES, Stack},
 };

@@ -23,6 +23,9 @@ use crate::{
     },
 };
 
+/// Most passes over the finished picture that the effects of a stack have together.
+pub const MAX_IMAGE_PASSES: usize = 32;
+
 /// An effect with its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnabledEffect {
@@ -207,6 +210,11 @@ impl Stack {
     /// Does an effect finish pixels?
     pub fn finishes(&self) -> bool {
         self.each(|hooks| hooks.image.as_ref()).next().is_some()
+    }
+
+    /// Does an effect have passes over the finished picture?
+    pub fn has_passes(&self) -> bool {
+        self.each(|hooks| hooks.passes.as_ref()).next().is_some()
     }
 
     /// Does an effect read the previous picture?
@@ -398,8 +406,8 @@ impl Stack {
         })
     }
 
-    /// Checks that no two effects take one slot, and that at most [`MAX_SCOPES`] effects have a
-    /// scope.
+    /// Checks that no two effects take one slot, that at most [`MAX_SCOPES`] effects have a scope,
+    /// and that there are at most [`MAX_IMAGE_PASSES`].
     ///
     /// # Errors
     /// Names the effects.
@@ -414,6 +422,19 @@ impl Stack {
                 count: scoped.len(),
                 last: last.effect.name.clone(),
             });
+        }
+        let mut passes = 0;
+        for EnabledEffect { effect, .. } in &self.0 {
+            passes += effect
+                .hooks
+                .passes
+                .as_ref()
+                .map_or(0, |hook| hook.passes.len());
+            if passes > MAX_IMAGE_PASSES {
+                return Err(Conflict::Passes {
+                    last: effect.name.clone(),
+                });
+            }
         }
         for slot in Slot::ALL {
             let mut takers = self
@@ -500,6 +521,10 @@ pub enum Conflict {
         "{count} effects are limited to parts of the scene, but at most {MAX_SCOPES} can be; remove on from {last} or another of them"
     )]
     Scopes { count: usize, last: String },
+    #[error(
+        "up to {last} the effects have more than {MAX_IMAGE_PASSES} passes over the picture; switch {last} or another of them off"
+    )]
+    Passes { last: String },
 }
 
 impl Conflict {
@@ -507,7 +532,7 @@ impl Conflict {
     pub fn effect(&self) -> &str {
         match self {
             Self::Slot { second, .. } => second,
-            Self::Scopes { last, .. } => last,
+            Self::Scopes { last, .. } | Self::Passes { last } => last,
         }
     }
 }

@@ -13,6 +13,7 @@
 //! * `end_to_end`, `outline`: the whole picture against the oracle's own; only what snapped
 //!   vertices explain may differ
 //! * `error_map`: what is wrong at each pixel
+//! * `passes`: the passes of image effects, from the adapter's picture before them
 //!
 //! The *claimed* triangle of a pixel is the one whose id the adapter stored there.
 
@@ -27,6 +28,7 @@ mod error_map;
 mod freedom;
 mod outline;
 mod particles;
+mod passes;
 mod sample_setups;
 mod samples;
 mod vertices;

@@ -35,6 +35,7 @@ use super::{
     error_map::error_map,
     freedom::Freedom,
     particles::judge_particles,
+    passes::judge_passes,
     sample_setups::wrong_setups,
     samples::{judge_layers, judge_samples, judge_scheduled_layers},
     shadow::judge_shadow_map,
@@ -59,6 +60,38 @@ pub const JUDGE_STAGES: u32 = 5;
 /// # Panics
 /// If an image or the geometry has another size than the view and the scene ask for.
 pub fn judge(
+    scene: &Scene,
+    view: &View,
+    stack: &Stack,
+    picture: &AdapterPicture,
+) -> Result<Verdict, DrawError> {
+    if !stack.has_passes() || view.pixels() == 0 {
+        return judge_resolved(scene, view, stack, picture);
+    }
+    // What the passes read is judged like any picture.
+    let resolved = Frame {
+        color: picture.frame.resolved().to_vec(),
+        resolved: None,
+        ..picture.frame.clone()
+    };
+    let picture_before = AdapterPicture {
+        frame: &resolved,
+        ..*picture
+    };
+    let mut verdict = judge_resolved(scene, view, stack, &picture_before)?;
+    let geometry = picture.geometry;
+    let (view, stack) = (&drawn_view(view, geometry), &stack.scaled(geometry.scale));
+    let particles = geometry.particle_readback.as_ref();
+    let words = particles.map(|readback| readback.words.as_slice());
+    let scene = &*scene_with_particles(scene, view, stack, words)?;
+    let draws = stack.draws(scene, view)?;
+    let shot = Shot::new(scene, &draws, view, stack);
+    judge_passes(&mut verdict, &shot, picture.frame)?;
+    Ok(verdict)
+}
+
+/// Judges the picture before the passes of image effects.
+fn judge_resolved(
     scene: &Scene,
     view: &View,
     stack: &Stack,

@@ -23,6 +23,7 @@ pub mod background;
 pub mod dots;
 pub mod layers;
 pub mod material;
+pub mod passes;
 pub mod rays;
 pub mod resolve;
 pub mod shadow;

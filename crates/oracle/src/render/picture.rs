@@ -12,6 +12,7 @@ use super::{
     draw_order::limited,
     layers::{LayerInput, layer_image},
     particles::{check_particles, scene_with_particles},
+    passes::passed,
     project::project,
     resolve::{ResolveInput, finish, shade_rows},
     sample_setup::sample_setups,
@@ -102,6 +103,10 @@ pub fn render_rows(
         triangle_ids,
         depth_keys,
     };
+    // Passes read pixels of all rows.
+    let has_passes = stack.has_passes();
+    let kept = rows.clone();
+    let rows = if has_passes { 0..view.height } else { rows };
     let (color, counted) = match layer_image(&layer_input, || coverage.layers())? {
         Some(image) => {
             let mut color = finish(&shot, &input, &image.colors, 0.0)?;
@@ -111,12 +116,20 @@ pub fn render_rows(
         }
         None => (shade_rows(&shot, &input, &geometry, rows)?, Vec::new()),
     };
+    let (color, resolved) = if has_passes {
+        let passed = passed(&shot, &input, &color)?;
+        let [first, end] = [kept.start, kept.end].map(|row| (row * view.width) as usize);
+        (passed[first..end.max(first)].to_vec(), Some(color))
+    } else {
+        (color, None)
+    };
     Ok(Frame {
         width: view.width,
         height: view.height,
         triangle_id,
         depth_key,
         color,
+        resolved,
         layer_sums: counted,
         dots,
         counters,
@@ -155,7 +168,7 @@ pub fn render_sequence(scene: &Scene, sequence: &[(View, Stack)]) -> Result<Fram
             scene,
             view,
             stack,
-            last.as_ref().map(|frame| frame.color.as_slice()),
+            last.as_ref().map(Frame::resolved),
         )?);
     }
     Ok(last.expect("a sequence has a picture"))

@@ -35,7 +35,7 @@ pub struct ResolveInput<'a> {
 
 /// A color that is this close to the middle between two bytes, 1/1024 of a step, may be either in
 /// f32.
-const TIE: f64 = 1.0 / (255.0 * 1024.0);
+pub const TIE: f64 = 1.0 / (255.0 * 1024.0);
 
 /// Bytes of all pixels, row-major, gamma-encoded.
 ///
@@ -130,9 +130,9 @@ fn finished_each<T: Send>(
 /// What image effects read beside the images.
 pub struct PictureTables {
     /// First triangle of every draw.
-    draws: Vec<u32>,
+    pub(super) draws: Vec<u32>,
     /// The background of every row.
-    background: Vec<[u8; 4]>,
+    pub(super) background: Vec<[u8; 4]>,
 }
 
 impl PictureTables {
@@ -156,15 +156,7 @@ pub struct Finish<'a> {
 impl<'a> Finish<'a> {
     /// Over the images of `input`.
     pub fn new(shot: &Shot<'a>, input: &ResolveInput<'a>, tables: &'a PictureTables) -> Self {
-        let picture = Picture {
-            width: shot.view.width,
-            height: shot.view.height,
-            triangle_ids: input.triangle_ids,
-            keys: input.depth_keys,
-            draws: &tables.draws,
-            previous: input.previous,
-            background: &tables.background,
-        };
+        let picture = tables.picture(shot, input);
         let dots = shot.stack.dots().filter(|_| !input.dots.is_empty());
         Self {
             stack: shot.stack,

@@ -77,7 +77,7 @@ impl Group {
             Self::Vertex
         } else if hooks.sample.is_some() {
             Self::Sample
-        } else if hooks.image.is_some() {
+        } else if hooks.image.is_some() || hooks.passes.is_some() {
             Self::Image
         } else if shows_data(effect) {
             Self::Inspect
@@ -191,6 +191,7 @@ pub fn depends_on_order<'a>(effect: &Effect, stack: &[&'a Arc<Effect>]) -> Vec<&
         (a.vertex.is_some() && b.vertex.is_some())
             || (a.surface.is_some() && b.surface.is_some())
             || (a.image.is_some() && b.image.is_some())
+            || (a.passes.is_some() && b.passes.is_some())
     };
     stack
         .iter()
@@ -238,7 +239,26 @@ mod tests {
         );
         assert_eq!(
             of(Group::Image),
-            ["posterize", "smear", "outline", "dither"]
+            [
+                "posterize",
+                "smear",
+                "outline",
+                "dither",
+                "ambient",
+                "sharpen",
+                "paint",
+                "depth_of_field",
+                "blur",
+                "bloom",
+                "glow_edges",
+                "halftone",
+                "pixelate",
+                "aberration",
+                "grain",
+                "vignette",
+                "glitch",
+                "crt"
+            ]
         );
         assert_eq!(Group::ALL.map(of).concat().len(), EFFECTS.len());
     }

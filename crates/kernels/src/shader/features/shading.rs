@@ -1,11 +1,11 @@
 //! Shading features: surface inputs, light, layers, dots, image effects and the size of the
 //! picture.
 
-use super::feature::{Feature, Part, flag, step_if, word_if};
+use super::feature::{Feature, NO_STEP, Part, flag, step_if, word_if};
 use crate::{
     accuracy::{DotCulling, Perspective},
     effects::{dots::LineSource, hooks::Layers, shadow::MAX_SHADOW_SLOPE},
-    shader::key::KernelKey,
+    shader::{image_passes::NUMBERS, key::KernelKey, pass::Pass},
 };
 
 pub(super) const FEATURES: &[Feature] = &[
@@ -18,6 +18,7 @@ pub(super) const FEATURES: &[Feature] = &[
     LIGHT,
     DOTS,
     IMAGE_EFFECTS,
+    IMAGE_PASSES,
     RENDER_SCALE,
     EFFECTS,
 ];
@@ -173,6 +174,35 @@ const IMAGE_EFFECTS: Feature = Feature {
         step_if(key.finishes_pixels(), "effects")
     })],
     ..Feature::NONE
+};
+
+const IMAGE_PASSES: Feature = Feature {
+    label: |key| word_if(key.has_passes(), "passes"),
+    part: Some(Part {
+        name: "image passes",
+        is_used: KernelKey::has_passes,
+        why_omitted: |_| "no effect of the stack has passes over the finished picture".into(),
+    }),
+    variants: &[
+        ("image_pass", |_, pass| match pass {
+            Pass::Image(number) => NUMBERS[usize::from(number)],
+            _ => NO_STEP,
+        }),
+        ("image_store", |key, pass| match key.image_step(pass) {
+            Some(step) if step.target.is_some() => "between",
+            Some(_) => "finished",
+            None => NO_STEP,
+        }),
+    ],
+    constants: &[
+        ("IMAGE_SCALE", |key, pass| {
+            key.image_step(pass).map_or(1.0, |step| step.scale.into())
+        }),
+        ("IMAGE_LAST_SCALE", |key, pass| {
+            key.image_step(pass)
+                .map_or(1.0, |step| step.last_scale.into())
+        }),
+    ],
 };
 
 const RENDER_SCALE: Feature = Feature {

@@ -3,6 +3,7 @@
 
 mod front;
 mod image;
+mod passes;
 mod sample;
 mod slot;
 mod surface;
@@ -11,6 +12,10 @@ mod vertex;
 
 pub use front::{Front, Pattern};
 pub use image::{ImageEffect, ImageHook, Picture, Pixel};
+pub use passes::{
+    EMPTY_DEPTH_M, Image, ImageAt, ImagePass, Lens, PassEffect, PassFunction, PassHook, PassInput,
+    Signs,
+};
 pub use sample::{Sample, SampleEffect, SampleHook, SetupFunction, TriangleSetup};
 pub use slot::{Layers, Shape, Slot};
 pub use surface::{Surface, SurfaceEffect, SurfaceInput};
@@ -34,6 +39,8 @@ pub struct Hooks {
     pub surface: Option<Arc<SurfaceFunction>>,
     /// Finish the pixel.
     pub image: Option<ImageHook>,
+    /// Passes over the finished picture.
+    pub passes: Option<PassHook>,
     /// The part of the rasterizer that the effect replaces.
     pub slot: Option<Slot>,
     /// It draws along lines, in separate passes before pixels are shaded.
@@ -61,7 +68,8 @@ impl Hooks {
             (self.sample.is_some(), "sample"),
             (self.surface.is_some(), "surface"),
             (self.has_lines, "lines"),
-            (self.image.is_some(), "image"),
+            (self.image.is_some(), "pixel"),
+            (self.passes.is_some(), "image"),
         ];
         let names: Vec<&str> = hooks
             .iter()

@@ -1,0 +1,123 @@
+//! Image passes: effects that read the finished picture, in linear light.
+
+use glam::DVec4;
+use rayon::prelude::*;
+
+use super::{
+    super::shot::Shot,
+    resolve::{PictureTables, ResolveInput, bytes},
+};
+use crate::{
+    effects::hooks::{Image, ImageAt, Lens, PassInput, Picture, Signs},
+    frame::linear_bytes,
+    math::srgb,
+    work::{Canceled, map_each},
+};
+
+/// How much a color that a pass reads may be off in f32, as a fraction of its largest channel:
+/// what `pow` may err by, and some 2^6 operations.
+const COLOR_ERROR: f64 = 1.0 / (1 << 17) as f64;
+
+/// How a chain of passes errs: every value that decides a step by `step_offset`, and every color
+/// that is written by [`COLOR_ERROR`], in the direction of `signs`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PassPerturbation {
+    pub step_offset: f64,
+    pub signs: Signs,
+}
+
+/// Bytes of the picture that the passes of a stack make of `resolved`; those of `resolved` without
+/// passes.
+///
+/// # Errors
+/// The work was canceled.
+pub fn passed(
+    shot: &Shot,
+    input: &ResolveInput,
+    resolved: &[[u8; 4]],
+) -> Result<Vec<[u8; 4]>, Canceled> {
+    let colors = passed_colors(shot, input, resolved, PassPerturbation::default())?;
+    Ok(colors.into_iter().map(bytes).collect())
+}
+
+/// The same before it is rounded to bytes: gamma-encoded.
+///
+/// # Errors
+/// The work was canceled.
+pub fn passed_colors(
+    shot: &Shot,
+    input: &ResolveInput,
+    resolved: &[[u8; 4]],
+    perturbation: PassPerturbation,
+) -> Result<Vec<DVec4>, Canceled> {
+    let tables = PictureTables::of(shot);
+    let picture = tables.picture(shot, input);
+    let light = linear_bytes();
+    let size = [shot.view.width, shot.view.height];
+    let of_bytes = |(i, bytes): (usize, &[u8; 4])| {
+        let [r, g, b, alpha] = bytes.map(usize::from);
+        let color = DVec4::new(light[r], light[g], light[b], alpha as f64 / 255.0);
+        perturbed(color, i, size, perturbation)
+    };
+    let mut source = Image {
+        size,
+        colors: map_each(resolved.par_iter().enumerate(), of_bytes)?,
+    };
+    for (hook, words) in shot.stack.each(|hooks| hooks.passes.as_ref()) {
+        let mut last: Option<Image> = None;
+        for (index, pass) in hook.passes.iter().enumerate() {
+            let input = PassInput {
+                picture: &picture,
+                lens: Lens::of(shot.view),
+                source: &source,
+                last: last.as_ref().unwrap_or(&source),
+                signs: perturbation.signs,
+            };
+            let size = pass.size(size);
+            let pixels = size[0] as usize * size[1] as usize;
+            let write = |i: usize| {
+                let at = ImageAt {
+                    x: (i % size[0] as usize) as i64,
+                    y: (i / size[0] as usize) as i64,
+                    size,
+                    scale: pass.scale,
+                    step_offset: perturbation.step_offset,
+                    input: &input,
+                };
+                perturbed((hook.run)(index, &at, words), i, size, perturbation)
+            };
+            let colors = map_each((0..pixels).into_par_iter(), write)?;
+            last = Some(Image { size, colors });
+        }
+        source = last.unwrap_or(source);
+    }
+    let encoded = |color: DVec4| DVec4::new(srgb(color.x), srgb(color.y), srgb(color.z), color.w);
+    Ok(source.colors.into_iter().map(encoded).collect())
+}
+
+/// A color of the pixel with this index, moved as a perturbation says.
+fn perturbed(
+    color: DVec4,
+    index: usize,
+    [width, _]: [u32; 2],
+    PassPerturbation { signs, .. }: PassPerturbation,
+) -> DVec4 {
+    let (x, y) = (index % width as usize, index / width as usize);
+    let by = signs.at(x as i64, y as i64) * COLOR_ERROR * color.truncate().abs().max_element();
+    (color.truncate() + by).extend(color.w)
+}
+
+impl PictureTables {
+    /// What image effects read of the images of `input`.
+    pub fn picture<'a>(&'a self, shot: &Shot, input: &ResolveInput<'a>) -> Picture<'a> {
+        Picture {
+            width: shot.view.width,
+            height: shot.view.height,
+            triangle_ids: input.triangle_ids,
+            keys: input.depth_keys,
+            draws: &self.draws,
+            previous: input.previous,
+            background: &self.background,
+        }
+    }
+}

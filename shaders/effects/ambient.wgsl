@@ -1,0 +1,71 @@
+// Ambient: corners and folds darken where little of the sky reaches them.
+//@ use lib/angle
+//@ use lib/hash
+//@ use lib/image
+//@ use lib/image_pass
+
+struct Ambient {
+    shade: vec4f,
+    radius_m: f32,
+    strength: f32,
+    most_px: f32,
+    soft_px: u32,
+}
+
+const AMBIENT_TAPS = 20;
+
+// How much is hidden from each pixel, in red, and its depth, in alpha.
+fn ambient_find(at: ImageAt, p: Ambient) -> vec4f {
+    let here = image_at(at.x, at.y);
+    let here_m = image_depth_m(at.x, at.y);
+    if here.x == IMAGE_NO_TRIANGLE { return vec4f(0.0, 0.0, 0.0, here_m); }
+    let depth = bitcast<f32>(here.y);
+    // On a plane, depths change evenly across the picture.
+    let slope = vec2f(ambient_slope(at, depth, vec2i(1, 0)), ambient_slope(at, depth, vec2i(0, 1)));
+    let reach_px = clamp(p.radius_m / image_pixel_size_m(here_m), 1.0, p.most_px);
+    let first = hash_unit(hash(u32(at.x)) + u32(at.y));
+    var hidden = 0.0;
+    for (var i = 0; i < AMBIENT_TAPS; i += 1) {
+        let turns = first + f32(i) * 0.6180339887498949;
+        let away = reach_px * (f32(i) + 0.5) / f32(AMBIENT_TAPS);
+        let step = vec2i(floor(away * vec2f(cosine_turns(turns), sine_turns(turns)) + 0.5));
+        let plane_m = image_meters(depth + dot(slope, vec2f(step)));
+        // How far what is seen there stands out from the plane of this pixel.
+        let height = (plane_m - image_depth_m(at.x + step.x, at.y + step.y)) / p.radius_m;
+        hidden += clamp(4.0 * height - 0.1, 0.0, 1.0) * clamp(2.0 - height, 0.0, 1.0);
+    }
+    return vec4f(hidden / f32(AMBIENT_TAPS), 0.0, 0.0, here_m);
+}
+
+fn ambient_across(at: ImageAt, p: Ambient) -> vec4f {
+    return ambient_mean(at, vec2i(1, 0), p);
+}
+
+fn ambient_shade(at: ImageAt, p: Ambient) -> vec4f {
+    let color = image_color(at.x, at.y);
+    let hidden = clamp(p.strength * p.shade.a * ambient_mean(at, vec2i(0, 1), p).r, 0.0, 1.0);
+    return vec4f(color.rgb * mix(vec3f(1.0), p.shade.rgb, hidden), color.a);
+}
+
+// The smaller of the changes of depth to both sides.
+fn ambient_slope(at: ImageAt, depth: f32, step: vec2i) -> f32 {
+    let ahead = bitcast<f32>(image_at(at.x + step.x, at.y + step.y).y) - depth;
+    let behind = depth - bitcast<f32>(image_at(at.x - step.x, at.y - step.y).y);
+    return select(behind, ahead, abs(ahead) < abs(behind));
+}
+
+// Mean along a direction of pixels at about the same depth.
+fn ambient_mean(at: ImageAt, along: vec2i, p: Ambient) -> vec4f {
+    let here = image_last(at.x, at.y);
+    var sum = 0.0;
+    var weights = 0.0;
+    let reach = i32(p.soft_px);
+    for (var i = -reach; i <= reach; i += 1) {
+        let there = image_last(at.x + i * along.x, at.y + i * along.y);
+        let apart = (there.a - here.a) / p.radius_m;
+        let weight = 1.0 / (1.0 + 16.0 * apart * apart);
+        sum += weight * there.r;
+        weights += weight;
+    }
+    return vec4f(sum / weights, 0.0, 0.0, here.a);
+}

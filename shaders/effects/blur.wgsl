@@ -1,0 +1,47 @@
+// Blur: the picture out of focus, everywhere or away from a sharp band or disc.
+//@ use lib/image
+//@ use lib/image_pass
+
+struct Blur {
+    area: u32,
+    radius_px: f32,
+    center_x: f32,
+    center_y: f32,
+    sharp: f32,
+    soft: f32,
+}
+
+fn blur_across(at: ImageAt, p: Blur) -> vec4f {
+    return blur_along(at, vec2i(1, 0), p);
+}
+
+fn blur_down(at: ImageAt, p: Blur) -> vec4f {
+    return blur_along(at, vec2i(0, 1), p);
+}
+
+// Weighted mean of the pixels along a direction, as far as the radius here.
+fn blur_along(at: ImageAt, along: vec2i, p: Blur) -> vec4f {
+    let radius = p.radius_px * blur_strength(image_middle(at), p);
+    let reach = i32(ceil(radius));
+    var sum = vec4f(0.0);
+    var weights = 0.0;
+    for (var i = -reach; i <= reach; i += 1) {
+        let t = f32(i) / (radius + 1.0);
+        let near = max(1.0 - t * t, 0.0);
+        let weight = near * near * near;
+        sum += weight * image_last(at.x + i * along.x, at.y + i * along.y);
+        weights += weight;
+    }
+    return sum / weights;
+}
+
+// Fraction of the radius at a place.
+fn blur_strength(place: vec2f, p: Blur) -> f32 {
+    if p.area == BLUR_AREA_EVERYWHERE { return 1.0; }
+    let size = vec2f(image_size());
+    let away = (place - vec2f(p.center_x, p.center_y) * size) / size.y;
+    var distance = abs(away.y);
+    if p.area == BLUR_AREA_DISC { distance = length(away); }
+    let past = clamp((distance - p.sharp) / p.soft, 0.0, 1.0);
+    return past * past * (3.0 - 2.0 * past);
+}

@@ -1,0 +1,53 @@
+// Depth of field: what is not at the distance in focus spreads to discs of light.
+//@ use lib/angle
+//@ use lib/image
+//@ use lib/image_pass
+
+struct DepthOfField {
+    focus: u32,
+    focus_x: f32,
+    focus_y: f32,
+    focus_m: f32,
+    aperture_px: f32,
+    most_px: f32,
+    highlights: f32,
+}
+
+const DEPTH_OF_FIELD_TAPS = 96;
+
+fn depth_of_field(at: ImageAt, p: DepthOfField) -> vec4f {
+    let focus_m = depth_of_field_focus(p);
+    let here_m = image_depth_m(at.x, at.y);
+    let here_px = depth_of_field_radius(here_m, focus_m, p);
+    var sum = image_color(at.x, at.y);
+    var weights = 1.0;
+    for (var i = 0; i < DEPTH_OF_FIELD_TAPS; i += 1) {
+        // A spiral that fills a disc evenly.
+        let turns = f32(i) * 0.6180339887498949;
+        let away = p.most_px * sqrt((f32(i) + 0.5) / f32(DEPTH_OF_FIELD_TAPS));
+        let step = vec2i(round(away * vec2f(cosine_turns(turns), sine_turns(turns))));
+        let there_m = image_depth_m(at.x + step.x, at.y + step.y);
+        var there_px = depth_of_field_radius(there_m, focus_m, p);
+        // Light from behind does not spread over what is sharp before it.
+        if there_m > here_m { there_px = min(there_px, here_px); }
+        let color = image_color(at.x + step.x, at.y + step.y);
+        let brightest = clamp(max(max(color.r, color.g), color.b), 0.0, 1.0);
+        let weight = clamp(there_px - length(vec2f(step)) + 1.0, 0.0, 1.0) * (1.0 + p.highlights * brightest * brightest);
+        sum += weight * color;
+        weights += weight;
+    }
+    return vec4f(sum.rgb / weights, sum.a / weights);
+}
+
+// Radius of the disc to which a point so far away spreads, pixels.
+fn depth_of_field_radius(depth_m: f32, focus_m: f32, p: DepthOfField) -> f32 {
+    return min(p.aperture_px * abs(1.0 - focus_m / depth_m), p.most_px);
+}
+
+// The distance in focus, meters. A little is added, so that a number that is about whole falls on its pixel everywhere.
+fn depth_of_field_focus(p: DepthOfField) -> f32 {
+    if p.focus == DEPTH_OF_FIELD_FOCUS_DISTANCE { return p.focus_m; }
+    let size = vec2f(image_size());
+    let place = vec2i(floor(vec2f(p.focus_x, p.focus_y) * size + 0.00390625));
+    return image_depth_m(place.x, place.y);
+}

@@ -1,0 +1,113 @@
+// Paint: brush strokes that follow the shapes of the picture (anisotropic Kuwahara filter).
+//@ use lib/image_pass
+
+struct Paint {
+    radius_px: f32,
+    stretch: f32,
+    smooth_px: f32,
+    hardness: f32,
+    saturation: f32,
+}
+
+const PAINT_SECTORS = 8u;
+
+// How the picture changes across and down: squares and product, as the eye sees it.
+fn paint_tensor(at: ImageAt, p: Paint) -> vec4f {
+    var across = vec3f(0.0);
+    var down = vec3f(0.0);
+    for (var i = -1; i <= 1; i += 1) {
+        let weight = f32(2 - abs(i));
+        across += weight * (paint_tone(at.x + 1, at.y + i) - paint_tone(at.x - 1, at.y + i));
+        down += weight * (paint_tone(at.x + i, at.y + 1) - paint_tone(at.x + i, at.y - 1));
+    }
+    return vec4f(dot(across, across), dot(across, down), dot(down, down), 1.0);
+}
+
+fn paint_across(at: ImageAt, p: Paint) -> vec4f {
+    return paint_mean(at, vec2i(1, 0), p.smooth_px);
+}
+
+fn paint_down(at: ImageAt, p: Paint) -> vec4f {
+    return paint_mean(at, vec2i(0, 1), p.smooth_px);
+}
+
+// Of eight sectors around a pixel, stretched along the shape that it lies on, the calmest give their color.
+fn paint_stroke(at: ImageAt, p: Paint) -> vec4f {
+    let tensor = image_last(at.x, at.y);
+    let difference = tensor.x - tensor.z;
+    let root = sqrt(difference * difference + 4.0 * tensor.y * tensor.y);
+    let trace = tensor.x + tensor.z;
+    // Along the shape: the direction of least change.
+    let first = vec2f(root - difference, -2.0 * tensor.y);
+    let second = vec2f(-2.0 * tensor.y, root + difference);
+    let along = select(second, first, difference < 0.0);
+    let size = length(along);
+    let calm = select(vec2f(1.0, 0.0), along / max(size, 1e-12), size > 1e-9);
+    let narrow = 1.0 + p.stretch * root / (trace + 0.002);
+    let long = p.radius_px * narrow;
+    let wide = p.radius_px / narrow;
+    let reach = vec2i(ceil(sqrt(calm * calm * long * long + calm.yx * calm.yx * wide * wide)));
+
+    var means: array<vec4f, 8>;
+    var squares: array<vec3f, 8>;
+    let middle = paint_tone(at.x, at.y);
+    for (var j = -reach.y; j <= reach.y; j += 1) {
+        for (var i = -reach.x; i <= reach.x; i += 1) {
+            let step = vec2f(vec2i(i, j));
+            let v = vec2f(dot(step, calm) / long, dot(step, vec2f(-calm.y, calm.x)) / wide);
+            let near = 1.0 - dot(v, v);
+            if near > 0.0 {
+                let tone = paint_tone(at.x + i, at.y + j) - middle;
+                let diagonal = 0.7071067811865476 * vec2f(v.x - v.y, v.x + v.y);
+                let straight = paint_sectors(v);
+                let slanted = paint_sectors(diagonal);
+                for (var k = 0u; k < PAINT_SECTORS; k += 1u) {
+                    let shape = select(straight[k / 2u], slanted[k / 2u], (k & 1u) == 1u);
+                    let weight = near * near * shape * shape;
+                    means[k] += vec4f(tone * weight, weight);
+                    squares[k] += tone * tone * weight;
+                }
+            }
+        }
+    }
+    var sum = vec3f(0.0);
+    var weights = 0.0;
+    for (var k = 0u; k < PAINT_SECTORS; k += 1u) {
+        let share = max(means[k].w, 1e-9);
+        let mean = means[k].rgb / share;
+        let spread = max(squares[k] / share - mean * mean, vec3f(0.0));
+        let rough = p.hardness * (spread.r + spread.g + spread.b);
+        let weight = 1.0 / (1.0 + rough * rough);
+        sum += weight * mean;
+        weights += weight;
+    }
+    let tone = max(middle + sum / weights, vec3f(0.0));
+    let gray = (tone.r + tone.g + tone.b) / 3.0;
+    let vivid = max(gray + p.saturation * (tone - gray), vec3f(0.0));
+    return vec4f(vivid * vivid, image_color(at.x, at.y).a);
+}
+
+// How far a place belongs to the sectors on the right, below, on the left and above; of all, the neighbors overlap.
+fn paint_sectors(v: vec2f) -> vec4f {
+    let across = 0.25 - 0.6 * v.y * v.y;
+    let down = 0.25 - 0.6 * v.x * v.x;
+    return max(vec4f(v.x + across, v.y + down, -v.x + across, -v.y + down), vec4f(0.0));
+}
+
+// Square roots are about what the eye sees.
+fn paint_tone(x: i32, y: i32) -> vec3f {
+    return sqrt(max(image_color(x, y).rgb, vec3f(0.0)));
+}
+
+fn paint_mean(at: ImageAt, along: vec2i, radius: f32) -> vec4f {
+    let reach = i32(ceil(radius));
+    var sum = vec4f(0.0);
+    var weights = 0.0;
+    for (var i = -reach; i <= reach; i += 1) {
+        let t = f32(i) / (radius + 1.0);
+        let weight = max(1.0 - t * t, 0.0);
+        sum += weight * image_last(at.x + i * along.x, at.y + i * along.y);
+        weights += weight;
+    }
+    return sum / weights;
+}

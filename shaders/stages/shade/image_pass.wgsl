@@ -1,0 +1,12 @@
+// image_pass: one pass of one image effect over all pixels of the picture, or of a half or a quarter of its size.
+//@ use lib/image_pass
+//@ use glue/image_pass
+//@ use variants/image_store
+
+@compute @workgroup_size(8, 8)
+fn image_pass(@builtin(global_invocation_id) global: vec3u) {
+    let size = image_size_at(IMAGE_SCALE);
+    if any(global.xy >= size) { return; }
+    let at = ImageAt(i32(global.x), i32(global.y), size, IMAGE_SCALE);
+    image_store(global.xy, size.x, glue_image_pass(at));
+}
