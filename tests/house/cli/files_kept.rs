@@ -406,7 +406,7 @@ fn a_damaged_picture_is_called_damaged() {
 fn files_that_cannot_be_what_they_are_called_are_refused_with_what_to_do() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    fs::write(at("model.obj"), "v 0 0 0\n").unwrap();
+    fs::write(at("model.fbx"), "v 0 0 0\n").unwrap();
     fs::create_dir(at("folder")).unwrap();
     fs::create_dir(at("effects")).unwrap();
     fs::write(at("effects/mist.wgsl"), "fn mist(").unwrap();
@@ -420,12 +420,12 @@ fn files_that_cannot_be_what_they_are_called_are_refused_with_what_to_do() {
         );
     };
     refused(
-        &["render", "model.obj", "--adapter", "cpu"],
-        "models in .glb, .gltf and .vrm files",
+        &["render", "model.fbx", "--adapter", "cpu"],
+        "models in .glb, .gltf, .vrm, .obj, .stl and .ply files",
     );
     refused(
         &["render", "folder", "--adapter", "cpu"],
-        "models in .glb, .gltf and .vrm files",
+        "models in .glb, .gltf, .vrm, .obj, .stl and .ply files",
     );
     refused(
         &["render", "facet", "--adapter", "cpu", "-o", "a.jpg"],

@@ -9,6 +9,8 @@ mod files;
 mod hostile;
 mod kinds;
 mod materials;
+mod mesh_files;
+mod mesh_hostile;
 mod model;
 mod motion;
 mod refused;

@@ -18,18 +18,15 @@ use crate::{
         Scene,
         gltf::{self, LoadError, PART_BYTES, Source, limits::Limits, reserve},
         memory::MemoryBudget,
+        mesh_files::LoadModel,
     },
     work::checkpoint,
 };
 
-/// Loads a `.gltf`, `.glb` or `.vrm` file within the memory budget of the process. Only files in its folder
-/// and below are read.
-///
-/// Within [`Work`](crate::work::Work) it counts its bytes, and unwinds where that was canceled.
+/// Loads a glTF file (`.gltf`, `.glb`, `.vrm`) within the memory budget of the process.
 ///
 /// # Errors
-/// If a file cannot be read, is malformed, or exceeds [`limits`](gltf::limits); the sentence begins
-/// with the file name.
+/// As [`load_as`].
 pub fn load(path: &Path) -> Result<Scene, LoadError> {
     load_within(path, MemoryBudget::of_process())
 }
@@ -37,8 +34,23 @@ pub fn load(path: &Path) -> Result<Scene, LoadError> {
 /// [`load`] within another memory budget.
 ///
 /// # Errors
-/// As [`load`].
+/// As [`load_as`].
 pub fn load_within(path: &Path, budget: MemoryBudget) -> Result<Scene, LoadError> {
+    load_as(path, budget, gltf::load_within)
+}
+
+/// Loads a model file with a loader of its format. Only files in its folder and below are read.
+///
+/// Within [`Work`](crate::work::Work) it counts its bytes, and unwinds where that was canceled.
+///
+/// # Errors
+/// If a file cannot be read, is malformed, or exceeds [`limits`](gltf::limits); the sentence begins
+/// with the file name.
+pub fn load_as(
+    path: &Path,
+    budget: MemoryBudget,
+    load_model: LoadModel,
+) -> Result<Scene, LoadError> {
     let file = path
         .file_name()
         .unwrap_or(path.as_os_str())
@@ -51,7 +63,7 @@ pub fn load_within(path: &Path, budget: MemoryBudget) -> Result<Scene, LoadError
     let limits = Limits::of_files(budget);
     let load = || {
         let model = OpenFile::open(path, limits.file_bytes, &limits)?;
-        let scene = gltf::load_within(&model, budget, &mut |beside, most| {
+        let scene = load_model(&model, budget, &mut |beside, most| {
             read_beside(path, beside, most, &limits)
         })?;
         checkpoint().advance(model.unread())?;

@@ -4,7 +4,12 @@ use std::path::Path;
 
 use crate::{
     host::model,
-    scene::{Scene, gltf::LoadError},
+    scene::{
+        Scene,
+        gltf::{self, LoadError},
+        memory::MemoryBudget,
+        mesh_files::{self, LoadModel},
+    },
 };
 
 /// A format of model files.
@@ -13,26 +18,41 @@ pub struct ModelFormat {
     pub extension: &'static str,
     /// Extensions of the files beside a model that it may refer to.
     pub beside: &'static [&'static str],
-    pub(super) load: fn(&Path) -> Result<Scene, LoadError>,
+    read: LoadModel,
 }
 
-/// Every format that is read. `tests/house/registry.rs` compares the help texts that name them.
+/// Every format that is read. `tests/house/registry.rs` compares the texts that name them.
 pub const MODEL_FORMATS: &[ModelFormat] = &[
     ModelFormat {
         extension: "glb",
         beside: &[],
-        load: model::load,
+        read: gltf::load_within,
     },
     ModelFormat {
         extension: "gltf",
         beside: &["bin", "png", "jpg", "jpeg", "ktx2"],
-        load: model::load,
+        read: gltf::load_within,
     },
     // A GLB with a person in it.
     ModelFormat {
         extension: "vrm",
         beside: &[],
-        load: model::load,
+        read: gltf::load_within,
+    },
+    ModelFormat {
+        extension: "obj",
+        beside: &["mtl", "png", "jpg", "jpeg", "webp"],
+        read: mesh_files::load_obj,
+    },
+    ModelFormat {
+        extension: "stl",
+        beside: &[],
+        read: mesh_files::load_stl,
+    },
+    ModelFormat {
+        extension: "ply",
+        beside: &["png", "jpg", "jpeg", "webp"],
+        read: mesh_files::load_ply,
     },
 ];
 
@@ -43,6 +63,14 @@ impl ModelFormat {
             path.extension()
                 .is_some_and(|extension| extension.eq_ignore_ascii_case(format.extension))
         })
+    }
+
+    /// Loads a file of this format within the memory budget of the process.
+    ///
+    /// # Errors
+    /// As [`model::load_as`].
+    pub fn load(&self, path: &Path) -> Result<Scene, LoadError> {
+        model::load_as(path, MemoryBudget::of_process(), self.read)
     }
 
     /// Every extension with its dot, with commas between them, and `last` before the last.

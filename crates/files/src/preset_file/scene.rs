@@ -74,7 +74,7 @@ fn load_source(source: &SceneSource, preset_path: Option<&Path>) -> Result<Scene
             }
             // What has another extension is loaded too, if it is one by its content.
             let format = ModelFormat::of(&path).unwrap_or(&MODEL_FORMATS[0]);
-            Ok((format.load)(&path)?)
+            Ok(format.load(&path)?)
         }
     }
 }

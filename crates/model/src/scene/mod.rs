@@ -22,6 +22,7 @@ pub mod lines;
 pub mod material;
 pub mod memory;
 pub mod mesh_builder;
+pub mod mesh_files;
 pub mod meshlets;
 pub mod model;
 pub mod needs;

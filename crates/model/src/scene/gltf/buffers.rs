@@ -616,7 +616,10 @@ fn make_room(limits: &Limits, bytes: &mut Vec<u8>, more: usize) -> Result<u32, L
 }
 
 /// Appends at a multiple of 4 bytes and pads to one; returns the offset.
-fn append(limits: &Limits, bytes: &mut Vec<u8>, more: &[u8]) -> Result<u32, LoadError> {
+///
+/// # Errors
+/// There would be too many bytes, or loading was canceled.
+pub fn append(limits: &Limits, bytes: &mut Vec<u8>, more: &[u8]) -> Result<u32, LoadError> {
     let start = make_room(limits, bytes, more.len())?;
     let checkpoint = checkpoint();
     for part in more.chunks(PART_BYTES) {

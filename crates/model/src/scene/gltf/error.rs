@@ -23,7 +23,7 @@ impl LoadError {
     }
 
     /// Why loading ends: a limit, or because nobody waits for it any more.
-    pub(super) fn end(reason: impl Display) -> Self {
+    pub(in crate::scene) fn end(reason: impl Display) -> Self {
         Self {
             ends: true,
             ..Self::new(reason)
@@ -36,7 +36,7 @@ impl LoadError {
     }
 
     /// Prepends the beginning of the sentence.
-    pub(super) fn after(self, beginning: impl Display) -> Self {
+    pub(in crate::scene) fn after(self, beginning: impl Display) -> Self {
         Self {
             reason: format!("{beginning}{}", self.reason),
             ..self
@@ -47,7 +47,7 @@ impl LoadError {
     ///
     /// # Errors
     /// Loading ends.
-    pub(super) fn of_part(self) -> Result<String, Self> {
+    pub(in crate::scene) fn of_part(self) -> Result<String, Self> {
         match self.ends {
             true => Err(self),
             false => Ok(self.reason),
@@ -66,7 +66,7 @@ impl From<Canceled> for LoadError {
 pub type ReadFile<'a> = dyn FnMut(&Path, u64) -> Result<Vec<u8>, LoadError> + 'a;
 
 /// A name from a file, made safe for messages: quoted, escaped and at most 60 characters.
-pub(super) fn quoted(name: &str) -> String {
+pub(in crate::scene) fn quoted(name: &str) -> String {
     let most = 60;
     let end = if name.chars().nth(most).is_some() {
         "…"
@@ -80,7 +80,7 @@ pub(super) fn quoted(name: &str) -> String {
 }
 
 /// `kind "name"`, or `kind 3` if it has no name.
-pub(super) fn called(kind: &str, index: usize, name: Option<&str>) -> String {
+pub(in crate::scene) fn called(kind: &str, index: usize, name: Option<&str>) -> String {
     match name {
         Some(name) if !name.is_empty() => format!("{kind} {}", quoted(name)),
         _ => format!("{kind} {index}"),
@@ -89,7 +89,7 @@ pub(super) fn called(kind: &str, index: usize, name: Option<&str>) -> String {
 
 /// The name by which patterns find a part: that of the file, at most [`MAX_NAME_CHARS`] long and
 /// with hidden characters written out, or `kind 3`.
-pub(super) fn part_name(kind: &str, index: usize, name: Option<&str>) -> String {
+pub(in crate::scene) fn part_name(kind: &str, index: usize, name: Option<&str>) -> String {
     match name {
         Some(name) if !name.is_empty() => legible_name(name, MAX_NAME_CHARS),
         _ => format!("{kind} {index}"),
@@ -97,7 +97,7 @@ pub(super) fn part_name(kind: &str, index: usize, name: Option<&str>) -> String 
 }
 
 /// The name of a clip or camera in menus and presets, or `kind 3`.
-pub(super) fn menu_name(kind: &str, index: usize, name: Option<&str>) -> String {
+pub(in crate::scene) fn menu_name(kind: &str, index: usize, name: Option<&str>) -> String {
     let name = legible_name(name.unwrap_or_default(), 60);
     match name.trim() {
         "" => format!("{kind} {index}"),

@@ -61,6 +61,20 @@ pub fn load_within(
 /// Of a smaller model the near plane would cut off all.
 const LEAST_RADIUS_M: f64 = 2.0 * MIN_NEAR_M;
 
+/// # Errors
+/// The model is too small to draw.
+pub fn check_size(scene: &Scene) -> Result<(), LoadError> {
+    let radius_m = scene.bounds().radius();
+    if radius_m > 0.0 && radius_m < LEAST_RADIUS_M {
+        return Err(LoadError::new(format!(
+            "the model is {:.1e} m large; models below {:.0e} m are too small to draw: scale it up",
+            2.0 * radius_m,
+            2.0 * LEAST_RADIUS_M
+        )));
+    }
+    Ok(())
+}
+
 /// Reads a whole model. `file` is the size of its file.
 fn read_model(
     document: &Document,
@@ -107,14 +121,7 @@ fn read_model(
     if !scene.rig.is_empty() {
         scene.rig.motion_bounds = pose::motion_bounds(&scene);
     }
-    let radius_m = scene.bounds().radius();
-    if radius_m > 0.0 && radius_m < LEAST_RADIUS_M {
-        return Err(LoadError::new(format!(
-            "the model is {:.1e} m large; models below {:.0e} m are too small to draw: scale it up",
-            2.0 * radius_m,
-            2.0 * LEAST_RADIUS_M
-        )));
-    }
+    check_size(&scene)?;
     scene.cameras = tree.cameras(document, &scene.bounds(), !scene.rig.is_empty(), notes);
     Ok(scene)
 }

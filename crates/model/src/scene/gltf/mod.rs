@@ -11,27 +11,28 @@
 //! an entry in [`Scene::notes`](crate::scene::Scene::notes): points, lines, normal maps and the
 //! rest of physically based shading.
 
-mod buffers;
-mod checks;
+pub(super) mod buffers;
+pub(super) mod checks;
 mod clips;
 mod compression;
 mod container;
 mod deformation;
 mod document;
 mod draco;
-mod error;
+pub(super) mod error;
+pub(super) mod images;
 pub mod limits;
-mod load;
+pub(super) mod load;
 mod mask;
 mod materials;
 mod meshes;
 mod meshopt;
 mod nodes;
-mod notes;
-mod other_file;
+pub(super) mod notes;
+pub(super) mod other_file;
 mod skin;
 mod source;
-mod uri;
+pub(super) mod uri;
 
 pub use error::{LoadError, ReadFile};
 pub use load::{load, load_within};

@@ -63,42 +63,47 @@ fn decode(data: &str) -> Result<Vec<u8>, LoadError> {
         .map_err(|error| LoadError::new(format!("its data URI is malformed: {error}")))
 }
 
-/// A path inside the model's folder: no scheme, no root and no `..` that leads out, after
-/// percent-decoding.
+/// A path inside the model's folder, after percent-decoding.
 pub fn relative(uri: &str) -> Result<PathBuf, LoadError> {
     let refused = |reason: &str| LoadError::new(format!("URI {} {reason}", quoted(uri)));
     let decoded = percent_decoded(uri)
         .and_then(|bytes| String::from_utf8(bytes).ok())
         .ok_or_else(|| refused("is not percent-encoded UTF-8"))?;
-    if decoded.contains('\0') {
-        return Err(refused("contains a NUL"));
+    inside(&decoded).map_err(refused)
+}
+
+/// A path inside the model's folder: no scheme, no root and no `..` that leads out.
+///
+/// # Errors
+/// It is none: the end of a sentence that begins with the path.
+pub fn inside(path: &str) -> Result<PathBuf, &'static str> {
+    const LEADS_OUT: &str = "leads out of the model's folder; copy the file there";
+    if path.contains('\0') {
+        return Err("contains a NUL");
     }
     // Writers on Windows leave its separators.
-    let decoded = decoded.replace('\\', "/");
+    let path = path.replace('\\', "/");
     // A colon before the first slash ends a scheme or a drive letter.
-    if decoded
+    if path
         .split('/')
         .next()
         .is_some_and(|first| first.contains(':'))
     {
-        return Err(refused(
-            "has a scheme; only data: URIs and relative paths are supported",
-        ));
+        return Err("has a scheme; only data: URIs and relative paths are supported");
     }
-    let leads_out = || refused("leads out of the model's folder; copy the file there");
-    if decoded.starts_with('/') {
-        return Err(leads_out());
+    if path.starts_with('/') {
+        return Err(LEADS_OUT);
     }
     let mut parts = Vec::new();
-    for part in decoded.split('/') {
+    for part in path.split('/') {
         match part {
             "" | "." => {}
-            ".." => drop(parts.pop().ok_or_else(leads_out)?),
+            ".." => drop(parts.pop().ok_or(LEADS_OUT)?),
             name => parts.push(name),
         }
     }
     match parts.is_empty() {
-        true => Err(refused("names no file")),
+        true => Err("names no file"),
         false => Ok(parts.iter().collect()),
     }
 }

@@ -1,0 +1,498 @@
+//! Parts of a model with one material each, which faces are added to, and the scene of them.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use super::{findings::Findings, polygons};
+use crate::{
+    scene::{
+        accessor::{Accessor, ComponentType},
+        bounds::Bounds,
+        gltf::{
+            LoadError,
+            buffers::append,
+            checks,
+            error::{called, part_name},
+            limits::Limits,
+            load::check_size,
+            notes::Notes,
+        },
+        material::Material,
+        memory::MemoryBudget,
+        model::{Instance, NamedNode, Primitive, Scene, Topology},
+    },
+    work::checkpoint,
+};
+
+/// What reading a model may take.
+pub struct Room {
+    limits: Limits,
+    taken: u64,
+}
+
+impl Room {
+    /// For a model file of so many bytes.
+    pub fn of(budget: MemoryBudget, file: u64) -> Self {
+        Self {
+            limits: Limits::of_model(budget, file),
+            taken: 0,
+        }
+    }
+
+    /// Counts so many bytes of a list that grows, before it does. Such a list takes up to twice as
+    /// much.
+    ///
+    /// # Errors
+    /// There is no room for them.
+    pub fn take(&mut self, bytes: usize) -> Result<(), LoadError> {
+        self.taken += 2 * bytes as u64;
+        let most = 2 * self.limits.total_bytes;
+        match self.taken > most {
+            true => Err(self.limits.exceeded(
+                format_args!("reading it takes {} bytes or more", self.taken),
+                most,
+            )),
+            false => Ok(()),
+        }
+    }
+}
+
+/// A vertex of a face. Files with the same key for two vertices have only one.
+#[derive(Clone, Copy, Debug)]
+pub struct Vertex {
+    /// Among the vertices of its part.
+    pub key: [u32; 4],
+    /// It is finite.
+    pub position: [f32; 3],
+    pub normal: [f32; 3],
+    /// Linear, in units of 1/65535.
+    pub color: [u16; 4],
+    /// The origin is the upper left corner of the image.
+    pub texcoord: [f32; 2],
+}
+
+impl Vertex {
+    /// A white vertex at a place.
+    pub fn at(key: [u32; 4], position: [f32; 3]) -> Self {
+        Self {
+            key,
+            position,
+            normal: [0.0; 3],
+            color: [u16::MAX; 4],
+            texcoord: [0.0; 2],
+        }
+    }
+}
+
+/// How light falls on a part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Shading {
+    /// On the planes of its faces.
+    Flat,
+    /// By the normals of its vertices.
+    Given,
+}
+
+/// What the faces of a part have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Kind {
+    /// The node that shows it, of `Scene::named_nodes`.
+    pub node: Option<usize>,
+    /// Of `Scene::materials`.
+    pub material: usize,
+    pub shading: Shading,
+    pub has_colors: bool,
+    pub has_texcoords: bool,
+}
+
+/// Faces of one kind.
+pub struct Part {
+    kind: Kind,
+    positions: Vec<[f32; 3]>,
+    normals: Vec<[f32; 3]>,
+    colors: Vec<[u16; 4]>,
+    texcoords: Vec<[f32; 2]>,
+    indices: Vec<u32>,
+    known: HashMap<[u32; 4], u32>,
+}
+
+impl Part {
+    /// Gives every vertex the normal that `normal` has for its key.
+    pub fn set_normals(&mut self, normal: impl Fn([u32; 4]) -> Option<[f32; 3]>) {
+        for (&key, &vertex) in &self.known {
+            if let Some(normal) = normal(key) {
+                self.normals[vertex as usize] = normal;
+            }
+        }
+    }
+}
+
+/// The bytes that a vertex takes in a table of those that are known.
+const TABLE_BYTES: usize = 24;
+
+/// The bytes that a corner of a face takes while the face is cut.
+const FACE_BYTES: usize = 2 * size_of::<Vertex>();
+
+/// Collects faces.
+pub struct Builder {
+    /// Its materials, images and named nodes; the rest is added at the end.
+    pub scene: Scene,
+    pub room: Room,
+    pub parts: Vec<Part>,
+    by_kind: HashMap<Kind, usize>,
+    vertices: u64,
+    triangles: u64,
+    /// Corners of the largest face.
+    widest: usize,
+    /// Of the face that is added.
+    corners: Vec<DVec3>,
+    cut: Vec<[u32; 3]>,
+}
+
+impl Builder {
+    pub fn new(scene: Scene, room: Room) -> Self {
+        Self {
+            scene,
+            room,
+            parts: Vec::new(),
+            by_kind: HashMap::new(),
+            vertices: 0,
+            triangles: 0,
+            widest: 0,
+            corners: Vec::new(),
+            cut: Vec::new(),
+        }
+    }
+
+    /// Adds a node that patterns find by its name.
+    pub fn node(&mut self, name: &str, parent: Option<usize>) -> usize {
+        let nodes = &mut self.scene.named_nodes;
+        let name = part_name("node", nodes.len(), Some(name));
+        nodes.push(NamedNode { name, parent });
+        nodes.len() - 1
+    }
+
+    /// The index of the part with faces of this kind.
+    ///
+    /// # Errors
+    /// There are too many parts.
+    pub fn part(&mut self, kind: Kind) -> Result<usize, LoadError> {
+        if let Some(&part) = self.by_kind.get(&kind) {
+            return Ok(part);
+        }
+        let (count, most) = (self.parts.len() + 1, self.room.limits.instances);
+        if count > most {
+            return Err(self
+                .room
+                .limits
+                .exceeded(format_args!("it has {count} parts or more"), most as u64));
+        }
+        self.room.take(size_of::<Part>() + size_of::<Primitive>())?;
+        self.parts.push(Part {
+            kind,
+            positions: Vec::new(),
+            normals: Vec::new(),
+            colors: Vec::new(),
+            texcoords: Vec::new(),
+            indices: Vec::new(),
+            known: HashMap::new(),
+        });
+        self.by_kind.insert(kind, count - 1);
+        Ok(count - 1)
+    }
+
+    /// Counts what a face of so many corners takes while it is read.
+    ///
+    /// # Errors
+    /// There is no room for it.
+    pub fn widen(&mut self, corners: usize) -> Result<(), LoadError> {
+        if corners > self.widest {
+            self.room.take((corners - self.widest) * FACE_BYTES)?;
+            self.widest = corners;
+        }
+        Ok(())
+    }
+
+    /// Adds a face with at least three corners, cut into triangles. `place` names it in messages.
+    ///
+    /// # Errors
+    /// A limit is exceeded, or loading was canceled.
+    pub fn face(
+        &mut self,
+        part: usize,
+        face: &mut Vec<Vertex>,
+        findings: &mut Findings,
+        place: impl FnOnce() -> String,
+    ) -> Result<(), LoadError> {
+        if let [a, b, c] = face[..] {
+            return self.triangle(part, [a, b, c]);
+        } else {
+            face.dedup_by_key(|corner| corner.position);
+            if face.len() > 1 && face[0].position == face[face.len() - 1].position {
+                face.pop();
+            }
+        }
+        self.corners.clear();
+        self.corners.extend(
+            face.iter()
+                .map(|corner| DVec3::from(corner.position.map(f64::from))),
+        );
+        self.cut.clear();
+        if !polygons::cut(&self.corners, &mut self.cut)? {
+            findings.fault("it is left out", || {
+                format!(
+                    "{}: it is not convex and has {} corners; allowed: at most {}",
+                    place(),
+                    face.len(),
+                    polygons::MOST_CORNERS
+                )
+            });
+        }
+        for triangle in 0..self.cut.len() {
+            let [a, b, c] = self.cut[triangle].map(|corner| face[corner as usize]);
+            self.triangle(part, [a, b, c])?;
+        }
+        Ok(())
+    }
+
+    /// Adds a triangle.
+    ///
+    /// # Errors
+    /// A limit is exceeded.
+    pub fn triangle(&mut self, part: usize, corners: [Vertex; 3]) -> Result<(), LoadError> {
+        self.triangles += 1;
+        let most = self.room.limits.triangles;
+        if self.triangles > most {
+            return Err(self.room.limits.exceeded(
+                format_args!("the model has {} triangles or more", self.triangles),
+                most,
+            ));
+        }
+        self.room.take(size_of::<[u32; 3]>())?;
+        for corner in corners {
+            let index = self.vertex(part, corner)?;
+            self.parts[part].indices.push(index);
+        }
+        Ok(())
+    }
+
+    fn vertex(&mut self, part: usize, vertex: Vertex) -> Result<u32, LoadError> {
+        let part = &mut self.parts[part];
+        if let Some(&index) = part.known.get(&vertex.key) {
+            return Ok(index);
+        }
+        self.vertices += 1;
+        let most = self.room.limits.vertices;
+        if self.vertices > most {
+            return Err(self.room.limits.exceeded(
+                format_args!("the model has {} vertices or more", self.vertices),
+                most,
+            ));
+        }
+        self.room.take(size_of::<Vertex>() + TABLE_BYTES)?;
+        let index = part.positions.len() as u32;
+        part.positions.push(vertex.position);
+        if part.kind.shading == Shading::Given {
+            part.normals.push(vertex.normal);
+        }
+        if part.kind.has_colors {
+            part.colors.push(vertex.color);
+        }
+        if part.kind.has_texcoords {
+            part.texcoords.push(vertex.texcoord);
+        }
+        part.known.insert(vertex.key, index);
+        Ok(index)
+    }
+
+    /// The scene. `nothing` says what the file has where nothing is wrong with it and there is
+    /// nothing to draw.
+    ///
+    /// # Errors
+    /// There is nothing to draw, or a limit is exceeded.
+    pub fn finish(
+        self,
+        notes: Notes,
+        nothing: impl FnOnce() -> String,
+    ) -> Result<Scene, LoadError> {
+        let Self {
+            mut scene,
+            parts,
+            room: Room { limits, .. },
+            by_kind,
+            ..
+        } = self;
+        drop(by_kind);
+        if scene.materials.is_empty() {
+            scene.materials.push(plain_material());
+        }
+        let mut plain = HashMap::new();
+        for part in parts {
+            if !part.indices.is_empty() {
+                add(part, &limits, &mut scene, &mut plain, &notes)?;
+            }
+        }
+        if scene.instances.is_empty() {
+            return Err(LoadError::new(format_args!(
+                "there is nothing to draw: {}",
+                notes.first_fault().unwrap_or_else(nothing)
+            )));
+        }
+        check_size(&scene)?;
+        [scene.notes, scene.faults] = notes.into_lists();
+        Ok(scene)
+    }
+}
+
+/// The material of faces without another: none of the formats tells the front of a face.
+pub fn plain_material() -> Material {
+    Material {
+        double_sided: true,
+        ..Material::default()
+    }
+}
+
+/// Adds a part to a scene. `plain` are the materials without their textures.
+fn add(
+    part: Part,
+    limits: &Limits,
+    scene: &mut Scene,
+    plain: &mut HashMap<usize, usize>,
+    notes: &Notes,
+) -> Result<(), LoadError> {
+    let Part {
+        kind,
+        positions,
+        normals,
+        colors,
+        texcoords,
+        indices,
+        known,
+    } = part;
+    drop(known);
+    let vertices = positions.len();
+    let mut stored = |bytes: &[u8]| append(limits, &mut scene.vertex_bytes, bytes);
+    let positions_at = stored(bytemuck::cast_slice(&positions))? as usize;
+    drop(positions);
+    let normals_at = stored(bytemuck::cast_slice(&normals))? as usize;
+    drop(normals);
+    let colors_at = stored(bytemuck::cast_slice(&colors))?;
+    drop(colors);
+    let texcoords_at = stored(bytemuck::cast_slice(&texcoords))? as usize;
+    drop(texcoords);
+    let indices_at = append(
+        limits,
+        &mut scene.index_bytes,
+        bytemuck::cast_slice(&indices),
+    )?;
+    let mesh = kind.node.map(|node| scene.named_nodes[node].name.clone());
+    let positions = Accessor::packed_f32(positions_at, 3, vertices);
+    let is_faceted = kind.shading == Shading::Flat;
+    let mut primitive = Primitive {
+        name: called("mesh", 0, mesh.as_deref()),
+        mesh: part_name("mesh", 0, mesh.as_deref()),
+        topology: Topology::List,
+        indices: Some(Accessor {
+            offset: indices_at,
+            stride: 4,
+            component_type: ComponentType::U32,
+            components: 1,
+            normalized: false,
+            count: indices.len() as u32,
+        }),
+        positions,
+        normals: match is_faceted {
+            true => positions,
+            false => Accessor::packed_f32(normals_at, 3, vertices),
+        },
+        is_faceted,
+        colors: kind.has_colors.then_some(Accessor {
+            offset: colors_at,
+            stride: size_of::<[u16; 4]>() as u32,
+            component_type: ComponentType::U16,
+            components: 3,
+            normalized: true,
+            count: vertices as u32,
+        }),
+        texcoords: [None; 2],
+        material: kind.material,
+        bounds: Bounds::EMPTY,
+        longest_edge: 0.0,
+        normals_agree: false,
+        deformation: Default::default(),
+    };
+    drop(indices);
+    checkpoint().pass()?;
+    checks::measure(scene, &mut primitive)?;
+    if is_faceted {
+        let smooth = checks::smooth_normals(scene, &primitive)?;
+        let normals: Vec<[f32; 3]> = smooth.into_iter().map(checks::normal).collect();
+        let at = append(
+            limits,
+            &mut scene.vertex_bytes,
+            bytemuck::cast_slice(&normals),
+        )?;
+        primitive.normals = Accessor::packed_f32(at as usize, 3, vertices);
+    } else {
+        primitive.normals_agree = primitive.normals_agree(scene)?;
+    }
+    let texcoords = Accessor::packed_f32(texcoords_at, 2, vertices);
+    texture(
+        scene,
+        &mut primitive,
+        kind.has_texcoords.then_some(texcoords),
+        plain,
+        notes,
+    )?;
+    let instance = Instance {
+        named_node: kind.node,
+        ..Instance::fixed(scene.primitives.len(), glam::DMat4::IDENTITY)
+    };
+    scene.instances.push(instance);
+    scene.primitives.push(primitive);
+    Ok(())
+}
+
+/// Gives a primitive its texture coordinates, or a material without the textures that it has none
+/// for.
+fn texture(
+    scene: &mut Scene,
+    primitive: &mut Primitive,
+    texcoords: Option<Accessor>,
+    plain: &mut HashMap<usize, usize>,
+    notes: &Notes,
+) -> Result<(), LoadError> {
+    let textures = scene.materials[primitive.material]
+        .textures()
+        .map(|texture| texture.copied());
+    let Some(first) = textures.into_iter().flatten().next() else {
+        return Ok(());
+    };
+    let usable = match texcoords {
+        None => None,
+        Some(texcoords) => match checks::check_repeats(scene, &texcoords, &first) {
+            Ok(()) => Some(texcoords),
+            Err(error) => {
+                let reason = error.within(&primitive.name).of_part()?;
+                notes.add(|| format!("{reason}; the texture is left out"));
+                None
+            }
+        },
+    };
+    if usable.is_some() {
+        primitive.texcoords = textures.map(|texture| texture.and(usable));
+    } else {
+        let textured = primitive.material;
+        primitive.material = *plain.entry(textured).or_insert_with(|| {
+            scene.materials.push(Material {
+                base_texture: None,
+                emission_texture: None,
+                alpha_cutoff: None,
+                ..scene.materials[textured].clone()
+            });
+            scene.materials.len() - 1
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,133 @@
+//! The bytes of a model in their order, as lines or as records, of which few are in memory at once.
+
+use crate::scene::gltf::{LoadError, PART_BYTES, Source};
+
+/// A place in a model, up to which it was read.
+pub struct Stream<'a> {
+    source: &'a dyn Source,
+    /// Where the bytes behind those of `buffer` begin.
+    unread: u64,
+    buffer: Vec<u8>,
+    /// Where the next byte lies in `buffer`.
+    next: usize,
+    /// The number of lines that were read.
+    pub line: u64,
+}
+
+impl<'a> Stream<'a> {
+    /// The beginning of a model.
+    pub fn new(source: &'a dyn Source) -> Self {
+        Self {
+            source,
+            unread: 0,
+            buffer: Vec::new(),
+            next: 0,
+            line: 0,
+        }
+    }
+
+    /// Bytes of the model that are left.
+    pub fn left(&self) -> u64 {
+        self.source.size() - self.unread + (self.buffer.len() - self.next) as u64
+    }
+
+    /// Appends the next part of the model to the buffer; false at its end.
+    fn fill(&mut self) -> Result<bool, LoadError> {
+        let end = (self.unread + PART_BYTES as u64).min(self.source.size());
+        if end == self.unread {
+            return Ok(false);
+        }
+        self.buffer.drain(..self.next);
+        self.next = 0;
+        self.source.append_to(&mut self.buffer, self.unread..end)?;
+        self.unread = end;
+        Ok(true)
+    }
+
+    /// The next `count` bytes; none where fewer are left.
+    ///
+    /// # Errors
+    /// They cannot be read, or loading was canceled.
+    pub fn bytes(&mut self, count: usize) -> Result<Option<&[u8]>, LoadError> {
+        while self.buffer.len() - self.next < count {
+            if !self.fill()? {
+                return Ok(None);
+            }
+        }
+        let start = self.next;
+        self.next += count;
+        Ok(Some(&self.buffer[start..self.next]))
+    }
+
+    /// Passes over `count` bytes; false where fewer are left.
+    ///
+    /// # Errors
+    /// As [`Self::bytes`].
+    pub fn skip(&mut self, mut count: u64) -> Result<bool, LoadError> {
+        if count > self.left() {
+            return Ok(false);
+        }
+        while count > 0 {
+            let part = count.min(PART_BYTES as u64);
+            self.bytes(part as usize)?;
+            count -= part;
+        }
+        Ok(true)
+    }
+
+    /// Replaces `line` by the next line without its end, which is that of any system; false where
+    /// none is left.
+    ///
+    /// # Errors
+    /// As [`Self::bytes`].
+    pub fn line(&mut self, line: &mut Vec<u8>) -> Result<bool, LoadError> {
+        line.clear();
+        if self.left() == 0 {
+            return Ok(false);
+        }
+        self.line += 1;
+        loop {
+            let rest = &self.buffer[self.next..];
+            let end = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
+            let length = end.unwrap_or(rest.len());
+            line.extend_from_slice(&rest[..length]);
+            let ended = end.map(|end| rest[end]);
+            self.next += length + usize::from(ended.is_some());
+            if let Some(byte) = ended {
+                let more = self.next < self.buffer.len() || self.fill()?;
+                if byte == b'\r' && more && self.buffer[self.next] == b'\n' {
+                    self.next += 1;
+                }
+                return Ok(true);
+            }
+            if !self.fill()? {
+                return Ok(true);
+            }
+        }
+    }
+}
+
+/// A finite number, also one with a decimal comma.
+pub fn number(token: &str) -> Option<f32> {
+    let read = |text: &str| text.parse::<f32>().ok();
+    let value = read(token).or_else(|| read(&token.replacen(',', ".", 1)));
+    value.filter(|value| value.is_finite())
+}
+
+/// The first numbers of a line that are finite; none where one is missing or is no number.
+pub fn numbers<'a, const N: usize>(mut tokens: impl Iterator<Item = &'a str>) -> Option<[f32; N]> {
+    let mut values = [0.0; N];
+    for value in &mut values {
+        *value = number(tokens.next()?)?;
+    }
+    Some(values)
+}
+
+/// The first word of a line, and the rest of it without white space around.
+pub fn split(line: &str) -> (&str, &str) {
+    let line = line.trim_start_matches('\u{feff}').trim();
+    match line.split_once(|c: char| c.is_ascii_whitespace()) {
+        Some((keyword, rest)) => (keyword, rest.trim_start()),
+        None => (line, ""),
+    }
+}
