@@ -21,7 +21,7 @@ use super::{
 };
 use crate::{
     accuracy::PositionFormat,
-    effects::Stack,
+    effects::{Stack, glass::GlassDraws},
     math::SUBPIXEL_BITS,
     plan::{AccuracyRequest, Plan, Planner, Tuning},
     scene::{Background, Scene, draw::Draw, needs::Needs, parts::Scope, view::View},
@@ -55,8 +55,9 @@ pub struct PreparedFrame {
 struct Seen {
     scene: Arc<Scene>,
     view: View,
-    /// Scopes of the stack that the draws are for.
+    /// Scopes of the stack that the draws are for, and which of them are glass.
     scopes: Vec<Scope>,
+    glass: GlassDraws,
     draws: Arc<[Draw]>,
     needs: Arc<Needs>,
     /// The same where every path is kept.
@@ -274,9 +275,11 @@ impl ViewResources {
         view: &View,
         stack: &Stack,
     ) -> Result<usize, RenderError> {
-        let scopes = stack.scopes();
+        let (scopes, glass) = (stack.scopes(), stack.glass());
         let is_known = |seen: &Seen| {
-            Arc::ptr_eq(&seen.scene, scene) && seen.view == *view && seen.scopes == scopes
+            Arc::ptr_eq(&seen.scene, scene)
+                && seen.view == *view
+                && (&seen.scopes, seen.glass) == (&scopes, glass)
         };
         if let Some(known) = self.seen.iter().position(is_known) {
             return Ok(known);
@@ -296,6 +299,7 @@ impl ViewResources {
                 scene: scene.clone(),
                 view: view.clone(),
                 scopes,
+                glass,
                 draws,
                 needs: Arc::new(needs),
                 needs_all_paths,
@@ -352,6 +356,7 @@ impl ViewResources {
             culls: key.culls(),
             deforms_offscreen: !key.culls() || stack.light().is_some(),
             scopes: stack.scopes(),
+            glass: stack.glass(),
         };
         if self
             .draw_data

@@ -101,6 +101,7 @@ pub fn render_rows(
         triangles: &triangles,
         triangle_ids,
         depth_keys,
+        glass: None,
     };
     let (color, counted) = match layer_image(&layer_input, || coverage.layers())? {
         Some(image) => {
