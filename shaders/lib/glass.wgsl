@@ -27,10 +27,16 @@ const GLASS_NODE_ID = 1u;
 const GLASS_NODE_NEXT = 2u;
 const GLASS_NODE_LAYER = 3u;
 
+// Layers of a band from which on they are not counted, so that the count does not overflow.
+const GLASS_MOST = 0x80000000u;
+
 // Words behind the last pixel, where each begins; heads begin at 0.
 fn glass_counts() -> u32 { return frame.size.x * frame.size.y; }
 fn glass_composed(pixel: u32) -> u32 { return glass_counts() + GLASS_COUNTS + GLASS_COMPOSED * pixel; }
 fn glass_node(link: u32) -> u32 { return glass_composed(frame.size.x * frame.size.y) + GLASS_NODE * (link - 1u); }
+
+// Nodes that so many words behind the last pixel hold.
+fn glass_room(words: u32) -> u32 { return (words - glass_node(1u)) / GLASS_NODE; }
 
 // The layer of a shaded surface whose material blends.
 fn glass_blended(s: Surface) -> GlassLayer {

@@ -165,12 +165,10 @@ fn framebuffer_write(pixel: u32, key: u32, id: u32) {
 // Every layer of glass that may lie before the nearest opaque triangle is shaded and joins the list of its pixel. Lists are sorted
 // later (stages/shade/glass_compose), so the order in which layers join does not matter. Of many bands of pixels one is drawn.
 //@ use lib/frame
-//@ use lib/geometry
 //@ use lib/triangle
 //@ use lib/shade
 //@ use lib/glass
 //@ use lib/glass_band
-//@ use glue/draws
 //@ use glue/surface
 //@ use glue/glass
 //@ use variants/glass_buffer
@@ -183,13 +181,13 @@ fn framebuffer_begin(id: u32) -> bool {
 fn framebuffer_end(id: u32) {}
 
 fn framebuffer_write(pixel: u32, key: u32, id: u32) {
-    if !glass_band_has(pixel) || glass_buffer_hides(pixel, key) { return; }
+    if !glass_band_has(pixel) || glass_buffer_hides(pixel, key) || glass_buffer_load(glass_counts()) >= GLASS_MOST { return; }
     let surface = glue_surface(shade_surface(vec2u(pixel % frame.size.x, pixel / frame.size.x)), shaded.draw);
     let layer = glass_packed(glue_glass(surface, shaded.draw));
     let link = glass_buffer_add(glass_counts(), 1u) + 1u;
-    let node = glass_node(link);
     // The count keeps the true demand: what does not fit is drawn again with more room.
-    if node + GLASS_NODE > glass_buffer_words() { return; }
+    if link > glass_room(glass_buffer_words()) { return; }
+    let node = glass_node(link);
     glass_buffer_store(node, key);
     glass_buffer_store(node + GLASS_NODE_ID, id);
     glass_buffer_store(node + GLASS_NODE_LAYER, layer.x);

@@ -7,7 +7,6 @@
 // Passes that find the nearest opaque triangle leave out glass, which raster passes of its own draw. Light passes through it.
 //@ use lib/triangle
 //@ use lib/glass
-//@ use glue/draws
 
 fn sample_test_opaque(t: Triangle, at: vec2u, pixel: u32) -> bool {
     return (draws[t.draw].flags & DRAW_GLASS) == 0u;

@@ -72,7 +72,10 @@ fn every_exact_option_composes_crossing_layers_as_the_oracle_does() {
             option.name(),
         );
         let deepest = capture.frame.glass.counts().into_iter().max();
-        assert!(deepest > Some(6), "{deepest:?} layers are too few to tell orders apart");
+        assert!(
+            deepest > Some(6),
+            "{deepest:?} layers are too few to tell orders apart"
+        );
         assert_eq!(verdict.report.layer_counts_wrong, 0);
         let first = first.get_or_insert(capture.frame.clone());
         assert_eq!(
@@ -101,7 +104,11 @@ fn no_order_of_triangles_shows() {
     for round in 0..3 {
         let (scene, view) = (soup(&order), soup_view());
         let stack = Stack::default();
-        pictures.push(captured(&mut renderer, &scene, &view, &stack, &strict).frame.color);
+        pictures.push(
+            captured(&mut renderer, &scene, &view, &stack, &strict)
+                .frame
+                .color,
+        );
         order.reverse();
         order.rotate_left(7 + round);
     }
@@ -117,7 +124,13 @@ fn bands_of_pixels_draw_the_same_picture_in_less_memory() {
     // Rows of other lengths than bands, so that bands begin and end inside rows.
     let view = pixel_view(32, 32);
     let usual = renderer.gpu().caps.tuning();
-    let whole = captured(&mut renderer, &scene, &view, &stack, &AccuracyRequest::default());
+    let whole = captured(
+        &mut renderer,
+        &scene,
+        &view,
+        &stack,
+        &AccuracyRequest::default(),
+    );
     let layers = whole.frame.glass.layers.len() as u32;
     let mut banded = Renderer::new(renderer.gpu().clone());
     for part in [3, 11] {
@@ -216,7 +229,11 @@ fn mistakes_in_order_count_band_and_blend_are_caught() {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         wrong.set_tuning(Tuning {
-            glass_layers: if what.contains("band") { layers / 3 } else { usual.glass_layers },
+            glass_layers: if what.contains("band") {
+                layers / 3
+            } else {
+                usual.glass_layers
+            },
             ..usual
         });
         let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &accuracy);
@@ -241,10 +258,22 @@ fn glass_meets_other_effects() {
     };
     let bottle = "[effects.glass]\non = [\"node:bottle\", \"node:jug\"]\n";
     for (scene, text) in [
-        (&still, format!("{bottle}[effects.lambert]\n[effects.outline]\n[effects.dissolve]\n")),
-        (&still, format!("{bottle}[effects.shadow]\n[effects.explode]\n[effects.facet]\n")),
-        (&panes, "[effects.stipple]\n[effects.lambert]\n[effects.fog]\n".into()),
-        (&panes, "[effects.glass]\n[effects.dots]\n[effects.wobble]\n".into()),
+        (
+            &still,
+            format!("{bottle}[effects.lambert]\n[effects.outline]\n[effects.dissolve]\n"),
+        ),
+        (
+            &still,
+            format!("{bottle}[effects.shadow]\n[effects.explode]\n[effects.facet]\n"),
+        ),
+        (
+            &panes,
+            "[effects.stipple]\n[effects.lambert]\n[effects.fog]\n".into(),
+        ),
+        (
+            &panes,
+            "[effects.glass]\n[effects.dots]\n[effects.wobble]\n".into(),
+        ),
         (&panes, "[effects.xray]\n".into()),
     ] {
         let view = view(scene, [72, 54]);

@@ -815,7 +815,9 @@ impl FrameLayout {
             | Pass::GlassBand
             | Pass::DotsArgs => Dispatch::once([1, 1]),
             Pass::GlassCompose => {
-                let band = self.pixels().div_ceil(key.framebuffer.glass_bands.max(1).into());
+                let band = self
+                    .pixels()
+                    .div_ceil(key.framebuffer.glass_bands.max(1).into());
                 Dispatch::once(folded(band.div_ceil(GLASS_GROUP) as u32))
             }
             Pass::Clip | Pass::TileLarge | Pass::RasterMedium(_) | Pass::RasterLarge(_)

@@ -527,7 +527,10 @@ impl Renderer {
         let mut lost_layers = None;
         if key.has_glass() {
             counters.full_pixels = stats.glass.deep_pixels;
-            let lost = stats.glass.demand().saturating_sub(self.picture.capacities.glass);
+            let lost = stats
+                .glass
+                .demand()
+                .saturating_sub(self.picture.capacities.glass);
             counters.overflow = counters.overflow.saturating_add(lost);
             if lost > 0 {
                 let has_room = self.make_room_for_glass(&key, stats.glass.demand());
@@ -568,14 +571,20 @@ impl Renderer {
             return false;
         };
         let pixels = frame.view.pixels() as u64;
-        let most = most_layers(pixels, &self.device.gpu.caps, self.device.tuning.glass_layers);
+        let most = most_layers(
+            pixels,
+            &self.device.gpu.caps,
+            self.device.tuning.glass_layers,
+        );
         let capacity = &mut self.picture.capacities.glass;
         *capacity = demand.checked_next_power_of_two().unwrap_or(most).min(most);
         if demand <= most {
             return true;
         }
         let bands = more_bands(key.framebuffer.glass_bands, demand, most);
-        bands.iter().for_each(|bands| self.history.divide_glass(*bands));
+        bands
+            .iter()
+            .for_each(|bands| self.history.divide_glass(*bands));
         bands.is_some()
     }
 

@@ -119,14 +119,10 @@ impl KernelKey {
                 Pass::Args,
             ]);
         }
-        passes.extend(
-            others
-                .iter()
-                .flat_map(|&phase| match phase {
-                    RasterPhase::Glass => self.glass_passes(),
-                    _ => self.raster_passes(phase, false),
-                }),
-        );
+        passes.extend(others.iter().flat_map(|&phase| match phase {
+            RasterPhase::Glass => self.glass_passes(),
+            _ => self.raster_passes(phase, false),
+        }));
         passes
     }
 

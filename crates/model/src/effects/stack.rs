@@ -462,7 +462,9 @@ impl Stack {
             });
         }
         if let (Some(glass), Some(order)) = (
-            self.0.iter().find(|enabled| enabled.effect.hooks.makes_glass),
+            self.0
+                .iter()
+                .find(|enabled| enabled.effect.hooks.makes_glass),
             self.in_slot(Slot::Order),
         ) {
             return Err(Conflict::GlassInOrder {

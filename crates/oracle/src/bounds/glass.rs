@@ -104,13 +104,15 @@ pub fn glass_bounds(
                 let Some((surfaces, slack, scopes)) = shaded(hit.triangle_id, x) else {
                     return behind;
                 };
-                let layers = surfaces
-                    .iter()
-                    .map(|surface| shader.layer(surface, scopes));
+                let layers = surfaces.iter().map(|surface| shader.layer(surface, scopes));
                 let [least, most] = layer_span(layers, slack);
                 [through(&least, behind[0]), through(&most, behind[1])]
             });
-            let error = if hits.is_empty() { 0.0 } else { 2.0 * COMPOSED_ERROR };
+            let error = if hits.is_empty() {
+                0.0
+            } else {
+                2.0 * COMPOSED_ERROR
+            };
             widened(seen, 0.0, error).map(encoded)
         };
         Ok((0..width).map(pixel).collect::<Vec<_>>())

@@ -8,7 +8,6 @@ use glam::{DVec3, DVec4};
 use super::{
     super::{
         perturbation::Perturbation,
-        shot::Shot,
         render::{
             background::background,
             coverage::{Hit, scatter},
@@ -20,6 +19,7 @@ use super::{
             shadow::Light,
             surface::SurfaceTriangle,
         },
+        shot::Shot,
     },
     coverage::depth_interval,
     glass::glass_bounds,
@@ -186,9 +186,9 @@ impl SampleShade<'_> {
             .chain(textures(scene, stack, &offsets))
             .map(|perturbation| {
                 let step = perturbation.color_step;
-                let lit = self.light.map_or(0.0, |light| {
-                    light.arrives(&lit_point, known.id(), step)
-                });
+                let lit = self
+                    .light
+                    .map_or(0.0, |light| light.arrives(&lit_point, known.id(), step));
                 let surface = Surface {
                     rank: self.rank,
                     lit,

@@ -35,11 +35,12 @@ pub fn judge_glass(
     if lists.is_empty() {
         return Ok(());
     }
-    let is_glass = |triangle: &OrientedTriangle| {
-        shot.draw_of(triangle.id).is_some_and(|draw| draw.is_glass)
-    };
-    let (glass, opaque): (Vec<OrientedTriangle>, Vec<OrientedTriangle>) =
-        input.triangles.iter().partition(|triangle| is_glass(triangle));
+    let is_glass =
+        |triangle: &OrientedTriangle| shot.draw_of(triangle.id).is_some_and(|draw| draw.is_glass);
+    let (glass, opaque): (Vec<OrientedTriangle>, Vec<OrientedTriangle>) = input
+        .triangles
+        .iter()
+        .partition(|triangle| is_glass(triangle));
     let behind = cover_claims(input.tests, &opaque, shot.view, &lists.behind)?;
     let mut hits: Vec<Vec<BoundedHit>> = vec![Vec::new(); shot.view.pixels()];
     scatter(input.tests, &glass, shot.view, &mut hits, |triangle| {

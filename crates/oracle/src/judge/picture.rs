@@ -313,7 +313,10 @@ impl JudgedColors {
             self.accepted.nearest(&frame.color)
         };
         // Layers of glass are judged one by one.
-        let summed = self.layers.as_ref().filter(|(image, _)| !matches!(image.mode, LayerMode::Glass(_)));
+        let summed = self
+            .layers
+            .as_ref()
+            .filter(|(image, _)| !matches!(image.mode, LayerMode::Glass(_)));
         if let Some((_, bounds)) = summed {
             match freedom {
                 Freedom::Scheduled { limit } => {

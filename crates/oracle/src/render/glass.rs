@@ -160,8 +160,8 @@ pub fn glass_colors(input: &LayerInput, layers: &GlassLayers) -> Result<Vec<DVec
         };
         let pixel = |x: usize| {
             let pixel = y * width + x;
-            let behind = shaded(layers.behind[pixel], x)
-                .map_or(background[y], |(surface, _)| surface.color);
+            let behind =
+                shaded(layers.behind[pixel], x).map_or(background[y], |(surface, _)| surface.color);
             let seen = layers.at(pixel).iter().rev().fold(behind, |behind, hit| {
                 shaded(hit.triangle_id, x).map_or(behind, |(surface, scopes)| {
                     through(&shader.layer(&surface, scopes), behind)

@@ -88,9 +88,9 @@ impl<'a> TriangleMaterial<'a> {
 
     /// Alpha of the base color texture; 1 without one.
     pub fn alpha(&self, at: &SampleWeights, perturbation: TexturePerturbation) -> f64 {
-        self.base.as_ref().map_or(1.0, |lookup| {
-            lookup.texel(self.scene, at, perturbation).w
-        })
+        self.base
+            .as_ref()
+            .map_or(1.0, |lookup| lookup.texel(self.scene, at, perturbation).w)
     }
 
     /// Color of a surface with the base color `base`, and the part of it that no light changes.

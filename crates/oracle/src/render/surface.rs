@@ -373,9 +373,13 @@ impl<'a> SurfaceTriangle<'a> {
                 perturbation.texture,
             )
         });
-        let alpha = self.material.as_ref().filter(|_| self.is_glass).map_or(1.0, |material| {
-            material.alpha(&self.sample_weights(weights, &point), perturbation.texture)
-        });
+        let alpha = self
+            .material
+            .as_ref()
+            .filter(|_| self.is_glass)
+            .map_or(1.0, |material| {
+                material.alpha(&self.sample_weights(weights, &point), perturbation.texture)
+            });
         let (color, glow) = textured.unwrap_or((base.truncate(), DVec3::ZERO));
         let across_m = view.ndc_axes[1].length() * 2.0 / f64::from(view.height);
         Surface {

@@ -62,7 +62,9 @@ const LAYERS: Feature = Feature {
             Some(Layers::Glass) if !key.view.is_light => 1.0,
             _ => 0.0,
         }),
-        ("GLASS_BANDS", |key, _| key.framebuffer.glass_bands.max(1).into()),
+        ("GLASS_BANDS", |key, _| {
+            key.framebuffer.glass_bands.max(1).into()
+        }),
         ("GLASS_DEEPEST", |key, _| key.work.deepest_glass.into()),
     ],
     ..Feature::NONE
@@ -104,14 +106,17 @@ const MATERIAL_ATLAS: Feature = Feature {
         is_used: |key| key.surface.has_material_atlas,
         why_omitted: |_| "no material is more than a base color".into(),
     }),
-    variants: &[("shade_step", |key, _| {
-        step_if(key.surface.has_material_atlas, "textures")
-    }), ("shade_step", |key, _| {
-        step_if(
-            key.surface.has_material_atlas && key.surface.has_alpha,
-            "alpha",
-        )
-    })],
+    variants: &[
+        ("shade_step", |key, _| {
+            step_if(key.surface.has_material_atlas, "textures")
+        }),
+        ("shade_step", |key, _| {
+            step_if(
+                key.surface.has_material_atlas && key.surface.has_alpha,
+                "alpha",
+            )
+        }),
+    ],
     ..Feature::NONE
 };
 

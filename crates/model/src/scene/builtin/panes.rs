@@ -96,7 +96,12 @@ fn pillar(center: DVec3, half: f64, height: f64, color: [f64; 3]) -> MeshBuilder
     for i in 0..4 {
         let ((x0, z0), (x1, z1)) = (ring[i], ring[(i + 1) % 4]);
         mesh.quad(
-            [at(x0, 0.0, z0), at(x1, 0.0, z1), at(x1, 1.0, z1), at(x0, 1.0, z0)],
+            [
+                at(x0, 0.0, z0),
+                at(x1, 0.0, z1),
+                at(x1, 1.0, z1),
+                at(x0, 1.0, z0),
+            ],
             color,
         );
     }

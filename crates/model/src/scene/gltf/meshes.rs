@@ -415,7 +415,11 @@ impl<'a> Loader<'a> {
             }
         }
         // What does not blend is opaque, whatever the alpha of its colors.
-        if let Some(colors) = primitive.colors.as_mut().filter(|_| mode != AlphaMode::Blend) {
+        if let Some(colors) = primitive
+            .colors
+            .as_mut()
+            .filter(|_| mode != AlphaMode::Blend)
+        {
             colors.components = 3;
         }
         primitive.material = match material {
