@@ -521,16 +521,14 @@ impl Renderer {
         self.spare_stats.push(finished.into_spare());
         let record = &stats.picture;
         self.picture.demand = Some(*record);
-        let key = self.picture.frame().ok()?.plan.key.clone();
+        let frame = self.picture.frame().ok()?;
+        let (key, glass_room) = (frame.plan.key.clone(), frame.layout.capacities.glass);
         let mut counters = record.counters(&recorded_capacities(&key, &self.picture.capacities));
         let mut redraw = counters.overflow > 0 && self.picture.grow_queues(record);
         let mut lost_layers = None;
         if key.has_glass() {
             counters.full_pixels = stats.glass.deep_pixels;
-            let lost = stats
-                .glass
-                .demand()
-                .saturating_sub(self.picture.capacities.glass);
+            let lost = stats.glass.demand().saturating_sub(glass_room);
             counters.overflow = counters.overflow.saturating_add(lost);
             if lost > 0 {
                 let has_room = self.make_room_for_glass(&key, stats.glass.demand());

@@ -11,6 +11,7 @@ use super::{
     draws::{DrawData, DrawInputs},
     error::RenderError,
     frame_layout::{FrameLayout, LayoutInputs, Region, Span, Target},
+    glass::most_layers,
     layer_sums::RoomForLayers,
     preparations::Preparation,
     queues::{Capacities, first_capacities, recorded_capacities},
@@ -197,6 +198,12 @@ impl ViewResources {
                 DotStore::update(self.dots.take(), scene.scene(), &view, request.stack, key)?;
         }
         let parameters = uniform_bytes(&request.stack.0);
+        let mut capacities = recorded_capacities(key, &self.capacities);
+        capacities.glass = capacities.glass.min(most_layers(
+            view.pixels() as u64,
+            &gpu.caps,
+            device.tuning.glass_layers,
+        ));
         let has_parameters = !parameters.is_empty() && key.effects.baked.is_empty();
         let layout = FrameLayout::new(&LayoutInputs {
             key,
@@ -215,7 +222,7 @@ impl ViewResources {
             } else {
                 0
             },
-            capacities: recorded_capacities(key, &self.capacities),
+            capacities,
         });
         let new = self.allocate(gpu, &layout).await?;
         self.write_draw_data(gpu, scene, &layout, &new, is_changed)
