@@ -161,6 +161,41 @@ fn framebuffer_write(pixel: u32, key: u32, id: u32) {
     if xray_sums_overflow(before, weight) { atomicAdd(&counters.full_pixels, 1u); }
 }
 
+//@ variant glass
+// Every layer of glass that may lie before the nearest opaque triangle is shaded and joins the list of its pixel. Lists are sorted
+// later (stages/shade/glass_compose), so the order in which layers join does not matter. Of many bands of pixels one is drawn.
+//@ use lib/frame
+//@ use lib/triangle
+//@ use lib/shade
+//@ use lib/glass
+//@ use lib/glass_band
+//@ use glue/surface
+//@ use glue/glass
+//@ use variants/glass_buffer
+
+fn framebuffer_begin(id: u32) -> bool {
+    shade_begin(id);
+    return (draws[shaded.draw].flags & DRAW_GLASS) != 0u;
+}
+
+fn framebuffer_end(id: u32) {}
+
+fn framebuffer_write(pixel: u32, key: u32, id: u32) {
+    if !glass_band_has(pixel) || glass_buffer_hides(pixel, key) || glass_buffer_load(glass_counts()) >= GLASS_MOST { return; }
+    let surface = glue_surface(shade_surface(vec2u(pixel % frame.size.x, pixel / frame.size.x)), shaded.draw);
+    let layer = glass_packed(glue_glass(surface, shaded.draw));
+    let link = glass_buffer_add(glass_counts(), 1u) + 1u;
+    // The count keeps the true demand: what does not fit is drawn again with more room.
+    if link > glass_room(glass_buffer_words()) { return; }
+    let node = glass_node(link);
+    glass_buffer_store(node, key);
+    glass_buffer_store(node + GLASS_NODE_ID, id);
+    glass_buffer_store(node + GLASS_NODE_LAYER, layer.x);
+    glass_buffer_store(node + GLASS_NODE_LAYER + 1u, layer.y);
+    glass_buffer_store(node + GLASS_NODE_LAYER + 2u, layer.z);
+    glass_buffer_store(node + GLASS_NODE_NEXT, glass_buffer_exchange(pixel, link));
+}
+
 //@ variant sample_counts
 // Samples per triangle, exactly, before any depth test. Each invocation counts for itself and adds once.
 

@@ -1,7 +1,16 @@
-// Sample tests: is a covered sample drawn? All steps must pass, in this order: the sample effects, the shape of particle discs,
+// Sample tests: is a covered sample drawn? All steps must pass, in this order: glass is left out, the sample effects, the shape of particle discs,
 // the alpha mask of the material, and the draw order, which counts the samples that are left.
 // Chosen by the stack and the scene; without any, every covered sample is drawn.
 //@ steps fn sample_test(t: Triangle, at: vec2u, pixel: u32) -> bool
+
+//@ step opaque
+// Passes that find the nearest opaque triangle leave out glass, which raster passes of its own draw. Light passes through it.
+//@ use lib/triangle
+//@ use lib/glass
+
+fn sample_test_opaque(t: Triangle, at: vec2u, pixel: u32) -> bool {
+    return (draws[t.draw].flags & DRAW_GLASS) == 0u;
+}
 
 //@ step effects
 // The sample effects of the stack. The glue loads the setup of each from lib/sample_setup.

@@ -1,7 +1,11 @@
 // Shade steps: what is added to the surface at a sample before surface effects. `at`: vertices of the triangle within its draw.
-// Chosen by the scene and the stack: textures where materials are more than a base color, shadow_map where an effect reads
+// Chosen by the scene and the stack: textures where materials are more than a base color, alpha where some of them blend, shadow_map where an effect reads
 // how much light arrives.
 //@ steps fn shade_step(surface: Surface, t: Triangle, at: vec3u, position: SamplePosition) -> Surface
+// Of the step textures, for the one behind it.
+//@ may declare fn slopes_of(t: Triangle, at: vec3u, position: SamplePosition, screen: vec2f) -> Slopes
+//@ may declare fn texture_coordinates(lookup: Lookup, vertex: u32) -> vec2f
+//@ may declare fn texture_repeats(at: f32, wrap: u32) -> f32
 
 //@ step textures
 // The base color texture multiplies the color, and emitted light is added. The number of texels that a
@@ -102,6 +106,70 @@ fn texture_at(lookup: Lookup, at: vec3u, weights: vec3f, slopes: Slopes) -> vec3
     let down = (ab * slopes.down.y + ac * slopes.down.z) * size;
     let squared = max(dot(right, right), dot(down, down));
     return atlas_filtered(lookup, uv, 0.5 * log2(max(squared, 1e-30)));
+}
+
+//@ step alpha
+// The alpha of the base color texture of glass, filtered as its color is. Comes after textures.
+//@ use lib/triangle
+//@ use lib/surface
+//@ use lib/shade
+//@ use lib/glass
+//@ use lib/material_atlas
+//@ use variants/shade_step
+
+fn shade_step_alpha(surface: Surface, t: Triangle, at: vec3u, position: SamplePosition) -> Surface {
+    var s = surface;
+    let record = atlas_record(t.draw);
+    if (draws[t.draw].flags & DRAW_GLASS) == 0u || (atlas_material(record).flags & MATERIAL_BASE_TEXTURE) == 0u { return s; }
+    let lookup = atlas_lookup(record + ATLAS_MATERIAL);
+    let slopes = slopes_of(t, at, position, s.screen);
+    // The place is that of texture_at.
+    let a = texture_coordinates(lookup, at.x);
+    let ab = texture_coordinates(lookup, at.y) - a;
+    let ac = texture_coordinates(lookup, at.z) - a;
+    let whole = vec2f(texture_repeats(a.x, lookup.sampling & 3u), texture_repeats(a.y, (lookup.sampling >> 2u) & 3u));
+    let size = vec2f(vec2u(lookup.size & 0xffffu, lookup.size >> 16u));
+    let right = (ab * slopes.right.y + ac * slopes.right.z) * size;
+    let down = (ab * slopes.down.y + ac * slopes.down.z) * size;
+    let squared = max(dot(right, right), dot(down, down));
+    let uv = (a - whole) + ab * position.weights.y + ac * position.weights.z;
+    s.color.a *= alpha_filtered(lookup, uv, 0.5 * log2(max(squared, 1e-30)));
+    return s;
+}
+
+fn alpha_texel(lookup: Lookup, first: u32, size: vec2i, at: vec2i) -> f32 {
+    let x = atlas_wrapped(at.x, size.x, lookup.sampling & 3u);
+    let y = atlas_wrapped(at.y, size.y, (lookup.sampling >> 2u) & 3u);
+    return f32(atlas_word(first + u32(y * size.x + x)) >> 24u) / 255.0;
+}
+
+// Alpha at texture coordinates, from one level: as `atlas_level`.
+fn alpha_level(lookup: Lookup, level: u32, uv: vec2f, is_linear: bool) -> f32 {
+    let first = atlas_word(lookup.levels + level);
+    let size = vec2i(max(vec2u(lookup.size & 0xffffu, lookup.size >> 16u) >> vec2u(level), vec2u(1u)));
+    let at = clamp(uv * vec2f(size), vec2f(-1073741824.0), vec2f(1073741824.0));
+    if !is_linear { return alpha_texel(lookup, first, size, vec2i(floor(at))); }
+    let low = floor(at - 0.5);
+    let fraction = at - 0.5 - low;
+    let corner = vec2i(low);
+    let above = mix(alpha_texel(lookup, first, size, corner), alpha_texel(lookup, first, size, corner + vec2i(1, 0)), fraction.x);
+    let below = mix(
+        alpha_texel(lookup, first, size, corner + vec2i(0, 1)), alpha_texel(lookup, first, size, corner + vec2i(1, 1)), fraction.x);
+    return mix(above, below, fraction.y);
+}
+
+// Alpha at texture coordinates, where a pixel spans 2^detail texels: as `atlas_filtered`.
+fn alpha_filtered(lookup: Lookup, uv: vec2f, detail: f32) -> f32 {
+    if !(detail > 0.0) { return alpha_level(lookup, 0u, uv, ((lookup.sampling >> 4u) & 1u) != 0u); }
+    let is_linear = ((lookup.sampling >> 5u) & 1u) != 0u;
+    let mip_filter = (lookup.sampling >> 6u) & 3u;
+    let last = f32((lookup.sampling >> 8u) - 1u);
+    if mip_filter == MIP_NEAREST { return alpha_level(lookup, u32(min(floor(detail + 0.5), last)), uv, is_linear); }
+    let low = min(floor(detail), last);
+    if mip_filter != MIP_LINEAR { return alpha_level(lookup, 0u, uv, is_linear); }
+    let nearer = alpha_level(lookup, u32(low), uv, is_linear);
+    if low >= last { return nearer; }
+    return mix(nearer, alpha_level(lookup, u32(low) + 1u, uv, is_linear), detail - low);
 }
 
 //@ step shadow_map

@@ -77,6 +77,7 @@ const GRAPHICS_CARD: Tuning = Tuning {
     stored_uniforms: false,
     wide_loads: false,
     buffered_shadow_map: false,
+    glass_layers: rasterlab::plan::MOST_GLASS_LAYERS,
     specialized: true,
 };
 

@@ -109,6 +109,7 @@ fn both_tunings(renderer: &Renderer) -> [Tuning; 2] {
         stored_uniforms: false,
         wide_loads: false,
         buffered_shadow_map: false,
+        glass_layers: rasterlab::plan::MOST_GLASS_LAYERS,
         specialized: true,
     };
     [renderer.gpu().caps.tuning(), card]

@@ -269,6 +269,7 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles() {
         stored_uniforms: false,
         wide_loads: false,
         buffered_shadow_map: false,
+        glass_layers: rasterlab::plan::MOST_GLASS_LAYERS,
         specialized: true,
     };
     let explained = |query, tuning| explained(query, [320, 240], Visibility::Split32, tuning);

@@ -9,6 +9,7 @@ mod effects_layers;
 mod effects_move;
 mod effects_paint;
 mod effects_samples;
+mod glass;
 mod looks;
 mod materials;
 mod particles;

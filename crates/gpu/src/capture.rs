@@ -176,6 +176,7 @@ impl Renderer {
             color,
             resolved,
             layer_sums: picture.layer_sums().await?,
+            glass: picture.glass().await?,
             dots: picture.dot_strengths().await?,
             counters,
             depth_rounding: key.depth_rounding(),
@@ -341,7 +342,15 @@ impl Renderer {
             }
             let report = self.finish().await?;
             if !report.redraw && report.counters.full_pixels > 0 {
-                return Err(RenderError::FullSums(report.counters.full_pixels));
+                let pixels = report.counters.full_pixels;
+                return Err(if self.picture.frame()?.plan.key.has_glass() {
+                    RenderError::DeepGlass(pixels)
+                } else {
+                    RenderError::FullSums(pixels)
+                });
+            }
+            if let Some(layers) = report.lost_layers {
+                return Err(RenderError::ManyLayers(layers));
             }
             if let Some(order) = report
                 .order

@@ -14,6 +14,7 @@ use super::{
     records::{DrawRecord, InstanceRecord},
 };
 use crate::{
+    effects::glass::GlassDraws,
     math::rounded_columns,
     scene::{
         Accessor, Scene,
@@ -34,6 +35,8 @@ pub struct DrawInputs {
     pub deforms_offscreen: bool,
     /// Scopes of the stack.
     pub scopes: Vec<Scope>,
+    /// Which draws are glass.
+    pub glass: GlassDraws,
 }
 
 /// What a view's passes read about every instance, computed on the CPU when the scene, the
@@ -112,6 +115,7 @@ const MIRRORED: u32 = 2;
 const PARTICLES: u32 = 4;
 const UNEVEN: u32 = 8;
 const FACETED: u32 = 16;
+const GLASS: u32 = 32;
 const PRIMITIVE_SHIFT: u32 = 8;
 
 impl DrawRecord {
@@ -121,7 +125,13 @@ impl DrawRecord {
         let [x, y, z] = draw.origin;
         let primitive = &scene.primitives[draw.primitive];
         let material = &scene.materials[primitive.material];
-        let color = primitive.colors.as_ref();
+        let [red, green, blue, alpha] = material.base_color;
+        let is_opaque = material.is_blended && !draw.is_glass;
+        let color = primitive.colors.map(|colors| Accessor {
+            components: if is_opaque { 3 } else { colors.components },
+            ..colors
+        });
+        let color = color.as_ref();
         let deformed = |part: usize| {
             let offset = attributes.deformed_vertex(draw.first_deformable) as usize + 12 * part;
             Accessor {
@@ -138,7 +148,7 @@ impl DrawRecord {
             clip_from_object: draw.clip_from_object,
             world_from_object: rounded_columns(&draw.world_from_object),
             normal_from_object: normal_from_object(draw),
-            base_color: material.base_color,
+            base_color: [red, green, blue, if is_opaque { 1.0 } else { alpha }],
             origin: [x, y, z, 0.0],
             step: [0.0; 4],
             first_vertex: draw.first_vertex,
@@ -148,6 +158,7 @@ impl DrawRecord {
                 | flag(draw.mirrored, MIRRORED)
                 | flag(draw.is_uneven, UNEVEN)
                 | flag(draw.is_faceted, FACETED)
+                | flag(draw.is_glass, GLASS)
                 | flag(scene.particle_discs == Some(draw.primitive), PARTICLES)
                 | (draw.primitive as u32) << PRIMITIVE_SHIFT,
             topology: primitive.topology as u32,

@@ -7,6 +7,7 @@ use std::{collections::BTreeMap, mem::offset_of, ops::Range};
 
 use super::{
     buffers::color_stride,
+    glass::{COMPOSED_BYTES, GlassRecord, HEAD_BYTES, LAYER_BYTES},
     queues::Capacities,
     records::{
         ClippedTriangleRecord, CounterRecord, CullingUniform, DeformRecord, DispatchArgs,
@@ -112,6 +113,14 @@ pub enum Region {
     Nearest,
     /// The sums of the x-ray; behind the nearest samples.
     XraySums,
+    /// The heads of the lists of layers of glass; behind the nearest samples.
+    GlassHeads,
+    /// What a frame counts of these layers.
+    GlassCounts,
+    /// What the layers of each pixel compose to.
+    GlassComposed,
+    /// The layers; behind all of these.
+    GlassLayers,
     /// The picture.
     Pixels,
     /// Tiles that the resolve visits; behind the picture.
@@ -267,6 +276,11 @@ impl FrameLayout {
             CLEARED_IN_PASSES
                 .iter()
                 .for_each(|&id| layout.clear_only(id, None));
+        }
+        if let Some(span) = layout.region(Region::GlassCounts)
+            && key.work.clears_in_passes
+        {
+            layout.clear_only(span.buffer, Some(Region::GlassCounts));
         }
         if key.work.clears_order {
             [BufferId::SampleCounts, BufferId::BoundarySamples]
@@ -563,6 +577,9 @@ impl FrameLayout {
         if is_summed {
             self.describe(nearest, with_sums);
         }
+        if key.has_glass() && self.target != Target::ShadowMap {
+            self.add_glass(nearest, words * WORD * pixels);
+        }
         if key.framebuffer_layout() == FramebufferLayout::Split32
             && self.target != Target::ShadowMap
         {
@@ -573,6 +590,32 @@ impl FrameLayout {
         }
         if key.framebuffer.layers == Some(Layers::Overdraw) {
             self.add(BufferId::LayerCounts, WORD * pixels);
+        }
+    }
+
+    /// The layers of glass behind the nearest samples, which take so many bytes. Layers are written
+    /// before they are read.
+    fn add_glass(&mut self, nearest: BufferId, nearest_bytes: u64) {
+        let (pixels, counts) = (self.pixels(), size_of::<GlassRecord>() as u64);
+        self.add_regions(
+            nearest,
+            &[
+                (Region::Nearest, nearest_bytes),
+                (Region::GlassHeads, HEAD_BYTES * pixels),
+                (Region::GlassCounts, counts),
+                (Region::GlassComposed, COMPOSED_BYTES * pixels),
+                (
+                    Region::GlassLayers,
+                    LAYER_BYTES * u64::from(self.capacities.glass),
+                ),
+            ],
+        );
+        self.describe(
+            nearest,
+            "depth and triangle of the nearest sample per pixel, 20 bytes per pixel for the list of its layers of glass, then the layers, 24 bytes each",
+        );
+        if let Some(spec) = self.buffers.get_mut(&nearest) {
+            spec.cleared = 0..nearest_bytes + HEAD_BYTES * pixels + counts;
         }
     }
 
@@ -786,7 +829,14 @@ impl FrameLayout {
             | Pass::OrderCut
             | Pass::Args
             | Pass::AdvanceQueues { .. }
+            | Pass::GlassBand
             | Pass::DotsArgs => Dispatch::once([1, 1]),
+            Pass::GlassCompose => {
+                let band = self
+                    .pixels()
+                    .div_ceil(key.framebuffer.glass_bands.max(1).into());
+                Dispatch::once(folded(band.div_ceil(GLASS_GROUP) as u32))
+            }
             Pass::Clip | Pass::TileLarge | Pass::RasterMedium(_) | Pass::RasterLarge(_)
                 if key.work.queue_groups > 0 =>
             {
@@ -835,6 +885,8 @@ impl FrameLayout {
 const FEW_RUNS: u32 = 8;
 /// Invocations of a workgroup of the passes over dots.
 pub const DOT_GROUP: u32 = 64;
+/// Invocations of a workgroup of the pass that composes layers of glass.
+const GLASS_GROUP: u64 = 64;
 /// Invocations of a workgroup of the pass that lists tiles.
 const TILE_GROUP: u32 = 64;
 

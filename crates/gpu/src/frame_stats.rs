@@ -7,18 +7,21 @@ use super::{
     completion::Mapping,
     device::Gpu,
     error::RenderError,
+    glass::GlassRecord,
     records::{CounterRecord, OrderRecord},
     timer::{Timer, Times},
 };
 use crate::frame::CullingStats;
 
-/// What a frame counted; zeros where it has no shadow map or no draw order.
+/// What a frame counted; zeros where it has no shadow map, no draw order or no
+/// glass.
 #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct FrameStats {
     pub picture: CounterRecord,
     pub shadow: CounterRecord,
     pub order: OrderRecord,
+    pub glass: GlassRecord,
 }
 
 /// The buffers that hold what a frame counted.
@@ -27,6 +30,8 @@ pub struct StatSources<'a> {
     pub picture: Option<&'a wgpu::Buffer>,
     pub shadow: Option<&'a wgpu::Buffer>,
     pub order: Option<&'a wgpu::Buffer>,
+    /// And the byte at which its counts begin.
+    pub glass: Option<(&'a wgpu::Buffer, u64)>,
 }
 
 /// Statistics of a frame that is not submitted yet.
@@ -58,26 +63,38 @@ impl Staged {
         let staging = spare.unwrap_or_else(|| {
             buffers::new_staging(gpu, "frame stats", FIRST_STAMP + Timer::BYTES)
         });
+        let whole = |source: Option<&'_ wgpu::Buffer>| source.map(|source| (source.clone(), 0));
         let copies = [
             (
-                sources.picture,
+                whole(sources.picture),
                 offset_of!(FrameStats, picture),
                 size_of::<CounterRecord>(),
             ),
             (
-                sources.shadow,
+                whole(sources.shadow),
                 offset_of!(FrameStats, shadow),
                 size_of::<CounterRecord>(),
             ),
             (
-                sources.order,
+                whole(sources.order),
                 offset_of!(FrameStats, order),
                 size_of::<OrderRecord>(),
             ),
+            (
+                sources.glass.map(|(source, first)| (source.clone(), first)),
+                offset_of!(FrameStats, glass),
+                size_of::<GlassRecord>(),
+            ),
         ];
         for (source, offset, bytes) in copies {
-            if let Some(source) = source {
-                encoder.copy_buffer_to_buffer(source, 0, &staging, offset as u64, bytes as u64);
+            if let Some((source, first)) = source {
+                encoder.copy_buffer_to_buffer(
+                    &source,
+                    first,
+                    &staging,
+                    offset as u64,
+                    bytes as u64,
+                );
             }
         }
         if let Some(timer) = timer {

@@ -29,6 +29,8 @@ pub struct History {
     /// Pictures of this scene have had more layers on a pixel than sums in one 64-bit integer
     /// hold.
     is_deep: bool,
+    /// Bands in which pictures of this scene had to draw glass; 0 as 1.
+    glass_bands: u32,
 }
 
 impl History {
@@ -40,7 +42,7 @@ impl History {
     /// Forgets all pictures of a scene.
     pub fn change_scene(&mut self) {
         self.clear();
-        (self.full_sums, self.is_deep) = (None, false);
+        (self.full_sums, self.is_deep, self.glass_bands) = (None, false, 0);
     }
 
     /// Remembers the picture that was drawn.
@@ -48,7 +50,7 @@ impl History {
         self.last = Some((view.clone(), stack.clone()));
     }
 
-    /// What the x-ray's sums need on this picture, as far as earlier ones have shown.
+    /// What layers need on this picture, as far as earlier ones have shown.
     pub fn room_for_layers(&self, view: &View, stack: &Stack) -> RoomForLayers {
         let full = self
             .full_sums
@@ -57,7 +59,13 @@ impl History {
         RoomForLayers {
             fewer_bits: full.map(|(.., bits)| *bits),
             is_deep: self.is_deep,
+            glass_bands: self.glass_bands,
         }
+    }
+
+    /// Draws glass in so many bands from now on.
+    pub fn divide_glass(&mut self, bands: u32) {
+        self.glass_bands = bands;
     }
 
     /// Makes room for the layers of the last picture, whose sums overflowed: a word for each sum,

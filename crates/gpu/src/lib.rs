@@ -4,6 +4,8 @@
 // One place opts out, with its reason: the option `trusted` of pipelines.rs.
 #![deny(unsafe_code)]
 
+mod glass;
+
 pub mod error;
 mod gpu_record;
 pub mod records;

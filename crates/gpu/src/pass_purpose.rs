@@ -42,6 +42,9 @@ pub fn pass_purpose(pass: Pass) -> &'static str {
         Pass::RasterSmall(RasterPhase::Sum) => {
             "visits the small triangles again and adds every layer's color"
         }
+        Pass::RasterSmall(RasterPhase::Glass) => {
+            "visits the small triangles again and lists every layer of glass with its color"
+        }
         Pass::RasterSmall(RasterPhase::Count) => {
             "visits the small triangles again and counts layers"
         }
@@ -81,6 +84,8 @@ pub fn pass_purpose(pass: Pass) -> &'static str {
         Pass::DotsArgs => "turns the number of listed dots into a dispatch size",
         Pass::DotsDraw => "draws dots, one invocation each: the strongest on every pixel",
         Pass::DotsProbe => "reads back where every dot lies",
+        Pass::GlassBand => "begins the next band of pixels whose layers of glass are drawn",
+        Pass::GlassCompose => "sorts each pixel's layers of glass, in integers, and composes them",
         Pass::ListTiles => "gathers the tiles that hold something",
         Pass::Resolve => "shades every pixel once",
         Pass::ResolveBackground => "finishes the pixels of tiles that no triangle touches",

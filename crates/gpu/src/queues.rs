@@ -12,6 +12,8 @@ pub struct Capacities {
     pub medium: u32,
     pub large: u32,
     pub tiles: u32,
+    /// Layers of glass.
+    pub glass: u32,
 }
 
 impl Capacities {
@@ -23,15 +25,17 @@ impl Capacities {
             medium,
             large,
             tiles,
+            glass,
         } = self;
-        let [clip, clipped_triangles, medium, large, tiles] =
-            [clip, clipped_triangles, medium, large, tiles].map(|capacity| capacity.max(1));
+        let [clip, clipped_triangles, medium, large, tiles, glass] =
+            [clip, clipped_triangles, medium, large, tiles, glass].map(|capacity| capacity.max(1));
         Self {
             clip,
             clipped_triangles,
             medium,
             large,
             tiles,
+            glass,
         }
     }
 
@@ -64,8 +68,12 @@ pub fn recorded_capacities(key: &KernelKey, all: &Capacities) -> Capacities {
         medium: kept(key.paths.has_medium, all.medium),
         large: kept(key.paths.has_large, all.large),
         tiles: kept(key.paths.has_large, all.tiles),
+        glass: kept(key.has_glass(), all.glass),
     }
 }
+
+/// Layers of glass that the first picture of a scene has room for.
+const FIRST_GLASS_LAYERS: u32 = 1 << 16;
 
 /// Room for an ordinary picture of the scene; demand beyond it grows the queues and draws again.
 pub fn first_capacities(scene: &Scene) -> Capacities {
@@ -77,6 +85,7 @@ pub fn first_capacities(scene: &Scene) -> Capacities {
         medium: room(65_536),
         large: room(16_384),
         tiles: 16 * room(4096),
+        glass: FIRST_GLASS_LAYERS,
     }
 }
 

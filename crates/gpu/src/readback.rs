@@ -5,6 +5,7 @@ use super::{
     device::Gpu,
     error::RenderError,
     frame_layout::Region,
+    glass::{COMPOSED_BYTES, LAYER_BYTES},
     particles::ParticleSimulation,
     queues::recorded_capacities,
     recording::{CommandList, Device, DispatchSizes, Resources, Timing},
@@ -17,7 +18,7 @@ use super::{
 use crate::{
     accuracy::{DepthFormat, PositionFormat, VertexTransform, XraySums},
     effects::hooks::Layers,
-    frame::{BitExact, Geometry, ShadowMap},
+    frame::{BitExact, Geometry, GlassHit, GlassLayers, ShadowMap},
     shader::{
         key::{FramebufferLayout, KernelKey},
         pass::RasterPhase,
@@ -112,8 +113,45 @@ impl Readback<'_> {
                     .collect())
             }
             Some(Layers::Overdraw) => self.elements(BufferId::LayerCounts, self.pixels()?).await,
-            Some(Layers::Race) | None => Ok(Vec::new()),
+            Some(Layers::Glass | Layers::Race) | None => Ok(Vec::new()),
         }
+    }
+
+    /// The layers of glass of every pixel; empty without glass, and where bands of pixels were drawn
+    /// one after another, of which only the last is left.
+    pub async fn glass(&self) -> Result<GlassLayers, RenderError> {
+        const COMPOSED_WORDS: usize = COMPOSED_BYTES as usize / 4;
+        const LAYER_WORDS: usize = LAYER_BYTES as usize / 4;
+        let key = &self.frame()?.plan.key;
+        let mut lists = GlassLayers::default();
+        if key.framebuffer.glass_bands != 1 {
+            return Ok(lists);
+        }
+        let heads: Vec<u32> = self.region(Region::GlassHeads).await?;
+        let composed: Vec<u32> = self.region(Region::GlassComposed).await?;
+        let nodes: Vec<u32> = self.region(Region::GlassLayers).await?;
+        let (nearest, _) = self.visibility().await?;
+        let pixels = heads
+            .into_iter()
+            .zip(composed.chunks_exact(COMPOSED_WORDS))
+            .zip(nearest);
+        for ((head, composed), nearest) in pixels {
+            let behind = if head == 0 { nearest } else { !composed[0] };
+            let mut link = head;
+            while let Some(node) = (link as usize)
+                .checked_sub(1)
+                .and_then(|node| nodes.get(LAYER_WORDS * node..LAYER_WORDS * (node + 1)))
+                .filter(|_| lists.layers.len() * LAYER_WORDS < nodes.len())
+            {
+                lists.layers.push(GlassHit {
+                    triangle_id: node[1],
+                    depth_key: key.depth_bits(node[0]),
+                });
+                link = node[2];
+            }
+            lists.end_pixel(behind);
+        }
+        Ok(lists)
     }
 
     /// Strength of the strongest dot per pixel; empty without dots.

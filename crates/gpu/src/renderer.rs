@@ -9,8 +9,9 @@ use super::{
     device::Gpu,
     error::RenderError,
     explain::{Explained, Explanation},
-    frame_layout::Target,
+    frame_layout::{Region, Target},
     frame_stats::{Pending, Staged, StatSources},
+    glass::{more_bands, most_layers},
     hardware_ids,
     history::{History, fill_background},
     particles::{ParticleSimulation, Wait},
@@ -49,6 +50,8 @@ pub struct Report {
     pub culled: Option<CullingStats>,
     /// A queue overflowed and has grown: the picture is incomplete, draw it again.
     pub redraw: bool,
+    /// A band of pixels has so many layers of glass, more than there can be room for.
+    pub lost_layers: Option<u32>,
     /// The picture shows an earlier frame of the particles than it was asked for: draw it again.
     pub simulation_pending: bool,
 }
@@ -270,6 +273,13 @@ impl Renderer {
             picture: Some(buffers.get(BufferId::Counters)?),
             shadow,
             order: buffers.get(BufferId::DrawOrder).ok(),
+            glass: self
+                .picture
+                .frame()?
+                .layout
+                .region(Region::GlassCounts)
+                .map(|span| Ok::<_, RenderError>((buffers.get(span.buffer)?, span.bytes.start)))
+                .transpose()?,
         };
         let staged = Staged::stage(
             &gpu,
@@ -510,9 +520,21 @@ impl Renderer {
         self.spare_stats.push(finished.into_spare());
         let record = &stats.picture;
         self.picture.demand = Some(*record);
-        let key = self.picture.frame().ok()?.plan.key.clone();
+        let frame = self.picture.frame().ok()?;
+        let (key, glass_room) = (frame.plan.key.clone(), frame.layout.capacities.glass);
         let mut counters = record.counters(&recorded_capacities(&key, &self.picture.capacities));
         let mut redraw = counters.overflow > 0 && self.picture.grow_queues(record);
+        let mut lost_layers = None;
+        if key.has_glass() {
+            counters.full_pixels = stats.glass.deep_pixels;
+            let lost = stats.glass.demand().saturating_sub(glass_room);
+            counters.overflow = counters.overflow.saturating_add(lost);
+            if lost > 0 {
+                let has_room = self.make_room_for_glass(&key, stats.glass.demand());
+                redraw |= has_room;
+                lost_layers = (!has_room).then_some(stats.glass.demand());
+            }
+        }
         let lost_shadow = self
             .shadow
             .as_mut()
@@ -520,6 +542,7 @@ impl Renderer {
         counters.overflow = counters.overflow.saturating_add(lost_shadow);
         redraw |= lost_shadow > 0;
         redraw |= counters.full_pixels > 0
+            && !key.has_glass()
             && self.pending.is_empty()
             && self.history.make_room_for_layers(&key);
         let is_chosen = key.samples.draw_order == Some(Mode::Scheduler);
@@ -533,8 +556,33 @@ impl Renderer {
                 .then(|| stats.order.stats(is_chosen, record.next_sample_index)),
             culled: self.culled,
             redraw,
+            lost_layers,
             simulation_pending: self.particles.is_pending,
         })
+    }
+
+    /// Makes room for the layers of glass of a band, which are `demand`, or has the next pictures
+    /// drawn in more bands; false where they are as many as can be.
+    fn make_room_for_glass(&mut self, key: &KernelKey, demand: u32) -> bool {
+        let Ok(frame) = self.picture.frame() else {
+            return false;
+        };
+        let pixels = frame.view.pixels() as u64;
+        let most = most_layers(
+            pixels,
+            &self.device.gpu.caps,
+            self.device.tuning.glass_layers,
+        );
+        let capacity = &mut self.picture.capacities.glass;
+        *capacity = demand.checked_next_power_of_two().unwrap_or(most).min(most);
+        if demand <= most {
+            return true;
+        }
+        let bands = more_bands(key.framebuffer.glass_bands, demand, most);
+        bands
+            .iter()
+            .for_each(|bands| self.history.divide_glass(*bands));
+        bands.is_some()
     }
 
     /// Forgets what the next picture would start from: background comes before it.

@@ -11,6 +11,7 @@ use super::{
     draws::{DrawData, DrawInputs},
     error::RenderError,
     frame_layout::{FrameLayout, LayoutInputs, Region, Span, Target},
+    glass::most_layers,
     layer_sums::RoomForLayers,
     preparations::Preparation,
     queues::{Capacities, first_capacities, recorded_capacities},
@@ -21,7 +22,7 @@ use super::{
 };
 use crate::{
     accuracy::PositionFormat,
-    effects::Stack,
+    effects::{Stack, glass::GlassDraws},
     math::SUBPIXEL_BITS,
     plan::{AccuracyRequest, Plan, Planner, Tuning},
     scene::{Background, Scene, draw::Draw, needs::Needs, parts::Scope, view::View},
@@ -55,8 +56,9 @@ pub struct PreparedFrame {
 struct Seen {
     scene: Arc<Scene>,
     view: View,
-    /// Scopes of the stack that the draws are for.
+    /// Scopes of the stack that the draws are for, and which of them are glass.
     scopes: Vec<Scope>,
+    glass: GlassDraws,
     draws: Arc<[Draw]>,
     needs: Arc<Needs>,
     /// The same where every path is kept.
@@ -196,6 +198,12 @@ impl ViewResources {
                 DotStore::update(self.dots.take(), scene.scene(), &view, request.stack, key)?;
         }
         let parameters = uniform_bytes(&request.stack.0);
+        let mut capacities = recorded_capacities(key, &self.capacities);
+        capacities.glass = capacities.glass.min(most_layers(
+            view.pixels() as u64,
+            &gpu.caps,
+            device.tuning.glass_layers,
+        ));
         let has_parameters = !parameters.is_empty() && key.effects.baked.is_empty();
         let layout = FrameLayout::new(&LayoutInputs {
             key,
@@ -214,7 +222,7 @@ impl ViewResources {
             } else {
                 0
             },
-            capacities: recorded_capacities(key, &self.capacities),
+            capacities,
         });
         let new = self.allocate(gpu, &layout).await?;
         self.write_draw_data(gpu, scene, &layout, &new, is_changed)
@@ -274,9 +282,11 @@ impl ViewResources {
         view: &View,
         stack: &Stack,
     ) -> Result<usize, RenderError> {
-        let scopes = stack.scopes();
+        let (scopes, glass) = (stack.scopes(), stack.glass());
         let is_known = |seen: &Seen| {
-            Arc::ptr_eq(&seen.scene, scene) && seen.view == *view && seen.scopes == scopes
+            Arc::ptr_eq(&seen.scene, scene)
+                && seen.view == *view
+                && (&seen.scopes, seen.glass) == (&scopes, glass)
         };
         if let Some(known) = self.seen.iter().position(is_known) {
             return Ok(known);
@@ -296,6 +306,7 @@ impl ViewResources {
                 scene: scene.clone(),
                 view: view.clone(),
                 scopes,
+                glass,
                 draws,
                 needs: Arc::new(needs),
                 needs_all_paths,
@@ -352,6 +363,7 @@ impl ViewResources {
             culls: key.culls(),
             deforms_offscreen: !key.culls() || stack.light().is_some(),
             scopes: stack.scopes(),
+            glass: stack.glass(),
         };
         if self
             .draw_data

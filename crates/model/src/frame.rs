@@ -265,6 +265,52 @@ impl DepthRounding {
     }
 }
 
+/// A layer of glass on a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GlassHit {
+    pub triangle_id: u32,
+    /// Bits of the reversed depth.
+    pub depth_key: u32,
+}
+
+/// The layers of glass of every pixel that nothing opaque hides, and the opaque triangle behind
+/// them.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct GlassLayers {
+    /// Of one pixel after another, row-major, each with its nearest first.
+    pub layers: Vec<GlassHit>,
+    /// For every pixel the index in `layers` behind its last.
+    ends: Vec<usize>,
+    /// Nearest opaque triangle per pixel, or [`NO_TRIANGLE`].
+    pub behind: Vec<u32>,
+}
+
+impl GlassLayers {
+    /// Ends the layers of a pixel, which were pushed.
+    pub fn end_pixel(&mut self, behind: u32) {
+        self.ends.push(self.layers.len());
+        self.behind.push(behind);
+    }
+
+    /// Layers of a pixel, nearest first.
+    pub fn at(&self, pixel: usize) -> &[GlassHit] {
+        let first = pixel.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.layers[first..self.ends[pixel]]
+    }
+
+    /// Number of layers per pixel.
+    pub fn counts(&self) -> Vec<u32> {
+        (0..self.ends.len())
+            .map(|pixel| self.at(pixel).len() as u32)
+            .collect()
+    }
+
+    /// Does it hold no pixels?
+    pub fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+}
+
 /// A finished picture with its integer images. Images are row-major, top row first, `width *
 /// height` long.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -286,6 +332,8 @@ pub struct Frame {
     /// Sum of the weights of all layers of a pixel, or their number, if an effect fills the
     /// visibility slot; otherwise empty.
     pub layer_sums: Vec<u32>,
+    /// Layers of glass, where something is seen through glass and an adapter can tell; else empty.
+    pub glass: GlassLayers,
     /// Strength of the strongest dot per pixel, 0 to 256. Empty without dots.
     pub dots: Vec<u32>,
     pub counters: Counters,
@@ -323,6 +371,7 @@ impl Frame {
             layer_sums: of(&self.layer_sums),
             dots: of(&self.dots),
             resolved: None,
+            glass: GlassLayers::default(),
             ..*self
         }
     }

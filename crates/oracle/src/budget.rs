@@ -73,7 +73,7 @@ fn bytes(shot: &Shot) -> u64 {
         vertices
     };
     let pixel = PIXEL_BYTES
-        + if shot.stack.layers(triangles).is_some() {
+        + if shot.stack.layers(triangles).is_some() || shot.has_glass() {
             LAYER_BYTES
         } else {
             0

@@ -31,6 +31,11 @@ impl<'a> Shot<'a> {
         }
     }
 
+    /// Is something seen through glass?
+    pub fn has_glass(&self) -> bool {
+        self.draws.iter().any(|draw| draw.is_glass)
+    }
+
     /// The draw with triangle `id`, a global id; none if there is no such triangle.
     pub fn draw_of(&self, id: u32) -> Option<&'a Draw> {
         draw_of(self.scene, self.draws, id)

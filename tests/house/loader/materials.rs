@@ -307,28 +307,25 @@ fn alpha_modes_say_what_is_cut_out() {
     with_mode("TRANSLUCENT")
         .dropped("its alphaMode is \"TRANSLUCENT\"; it must be one of OPAQUE, MASK, BLEND");
 
-    let blended = with_mode("BLEND").scene();
-    assert_eq!(
-        blended.materials[0].alpha_cutoff,
-        Some(0.5),
-        "its image has a texel of 100 of 255"
-    );
-    let note = "material \"paper\": blending is not supported; the material is masked where its alpha is below one half";
-    assert!(
-        blended.notes.iter().any(|given| given == note),
-        "{:?}",
-        blended.notes
-    );
-    let solid = with_mode("BLEND")
-        .showing(&encoded(ImageFormat::Jpeg))
+    // What blends keeps its alpha, and discards nothing.
+    let blended = with_mode("BLEND")
+        .with(
+            "/materials/0/pbrMetallicRoughness/baseColorFactor",
+            json!([1, 1, 1, 0.25]),
+        )
         .scene();
-    assert!(
-        solid.materials[0].alpha_cutoff.is_none()
-            && solid
-                .notes
-                .iter()
-                .any(|note| note.ends_with("blending is not supported; the material is opaque"))
+    let material = &blended.materials[0];
+    assert_eq!(
+        (
+            material.is_blended,
+            material.alpha_cutoff,
+            material.base_color[3],
+            material.base_texture.is_some()
+        ),
+        (true, None, 0.25, true)
     );
+    assert!(blended.notes.is_empty(), "{:?}", blended.notes);
+    assert!(!with_mode("OPAQUE").material().is_blended);
 
     let plain = |alpha: f64| {
         let model = with_mode("MASK").with(

@@ -12,7 +12,7 @@ use crate::{
     gpu::{Capture, Renderer},
     measure::{Budget, ErrorReport, Verdict},
     oracle,
-    plan::{AccuracyRequest, Caps, Tuning},
+    plan::{AccuracyRequest, Caps, MOST_GLASS_LAYERS, Tuning},
     scene::{Scene, view::View},
 };
 
@@ -76,6 +76,7 @@ impl WorkDistribution {
             stored_uniforms: false,
             wide_loads: false,
             buffered_shadow_map: false,
+            glass_layers: MOST_GLASS_LAYERS,
             clears_in_passes: self == Self::Card,
             specialized: true,
         }

@@ -83,6 +83,9 @@ pub const SCENES: &[&str] = &[
 /// Scenes of the gallery that stress nothing in particular.
 pub const GALLERY_SCENES: &[&str] = &["town?houses=3", "still-life?tess=1"];
 
+/// Scenes of glass, which the hardware baseline draws as if it were opaque.
+pub const GLASS_SCENES: &[&str] = &["panes"];
+
 /// Scenes with deformed meshes, which the strict vertex stage refuses.
 pub const DEFORMED_SCENES: &[&str] = &["tentacle?tess=3", "walker?tess=1"];
 
@@ -92,6 +95,7 @@ const SCENES_OF_PAIRS: &[&str] = &[
     "teapot?tess=8",
     "panels",
     "leaves?n=40",
+    "panes",
     "near",
     "sizes",
     "stack",
@@ -102,7 +106,7 @@ const SCENES_OF_PAIRS: &[&str] = &[
 
 /// A scene of every builtin.
 fn all_scenes() -> Vec<&'static str> {
-    [SCENES, GALLERY_SCENES, DEFORMED_SCENES].concat()
+    [SCENES, GALLERY_SCENES, GLASS_SCENES, DEFORMED_SCENES].concat()
 }
 
 /// Most particles of a picture.
@@ -232,12 +236,19 @@ fn factors(caps: &Caps) -> Vec<Vec<Level>> {
             &["dissolve"],
             &["stipple"],
             &["wireframe"],
-            &["draw_order"],
             &["boxes"],
             &["points"],
         ]),
         effects(&[&[], &["explode"], &["inflate"], &["wobble"]]),
-        effects(&[&[], &["xray"], &["overdraw"], &["race"]]),
+        effects(&[
+            &[],
+            &["xray"],
+            &["overdraw"],
+            &["race"],
+            &["glass"],
+            &["draw_order"],
+            &["draw_order", "xray"],
+        ]),
         effects(&[&[], &["posterize"], &["outline"], &["dither"], &["tonemap"]]),
         effects(&[
             &[],

@@ -257,6 +257,7 @@ fn workgroups_indirect(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         medium: 1,
         large: 65_600,
         tiles: 65_600,
+        glass: 1,
     };
     equal(
         &context.renderer.capacities(),
@@ -336,6 +337,7 @@ impl Demand {
             medium: 4096,
             large: 4096,
             tiles: 4096,
+            glass: 4096,
         };
         *capacity(&mut capacities) = entries;
         Self {

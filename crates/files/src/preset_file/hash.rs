@@ -71,6 +71,9 @@ pub fn scene_hash(scene: &Scene) -> Fnv {
         hash = hash
             .words(&material.base_color.map(f32::to_bits))
             .words(&[material.double_sided.into()]);
+        if material.is_blended {
+            hash = hash.words(&[1]);
+        }
     }
     for instance in &scene.instances {
         hash = hash.words(&[instance.primitive as u32]);

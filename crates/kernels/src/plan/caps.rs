@@ -73,6 +73,7 @@ impl Caps {
             stored_uniforms: self.software && self.max_storage_buffers >= MANY_STORAGE_BUFFERS,
             wide_loads: self.software && self.int64_atomics,
             buffered_shadow_map: self.max_storage_buffers > MANY_STORAGE_BUFFERS,
+            glass_layers: MOST_GLASS_LAYERS,
             specialized: true,
         }
     }
@@ -80,6 +81,9 @@ impl Caps {
 
 /// The most samples of a triangle that one invocation may walk.
 pub const MOST_SMALL_SAMPLES: u32 = 128 * 128;
+
+/// Layers of glass that take 256 MiB.
+pub const MOST_GLASS_LAYERS: u32 = (256 << 20) / 24;
 
 /// How the kernels divide their work: it changes speed alone, never a picture. [`Caps::tuning`]
 /// knows what suits an adapter; benches and tests try others.
@@ -127,6 +131,9 @@ pub struct Tuning {
     /// A shadow map is read from the buffer that the light's passes wrote, which is one storage
     /// buffer more in the resolve; else it is copied to a texture first.
     pub buffered_shadow_map: bool,
+    /// Layers of glass that are in memory at a time, at least 1: a picture that has more is drawn
+    /// in bands of pixels.
+    pub glass_layers: u32,
     /// Omit what the scene does not need; else keep every path and every branch.
     pub specialized: bool,
 }

@@ -255,6 +255,13 @@ impl Plan {
                 "layers",
                 "overdraw: one more raster pass counts every covered sample",
             ),
+            Layers::Glass => note(
+                "layers",
+                format!(
+                    "glass: {} of {} draws are seen through; their layers are listed pixel by pixel, sorted in integers and composed",
+                    self.needs.glass_draws, self.needs.draws
+                ),
+            ),
             Layers::Race => note(
                 "layers",
                 "race: the picture depends on chance, so it is not reproducible",

@@ -67,6 +67,11 @@ pub(super) fn key_of(
             stored_uniforms: tuning.stored_uniforms,
             wide_loads: tuning.wide_loads,
             buffered_shadow_map: tuning.buffered_shadow_map && stack.reads_light(),
+            deepest_glass: if caps.software {
+                loops::DEEPEST_GLASS
+            } else {
+                u32::MAX
+            },
             paired_sums,
             sums_with_nearest: paired_sums
                 && !options.culling.occludes()
@@ -79,6 +84,7 @@ pub(super) fn key_of(
         },
         framebuffer: Framebuffer {
             layers,
+            glass_bands: u32::from(layers == Some(Layers::Glass)),
             has_one64_sums: paired_sums && has_one64_sums(&options, layers, stack),
             triangle_id_bits: if options.visibility == Visibility::Packed32 {
                 bit_length(needs.triangles)
@@ -88,6 +94,7 @@ pub(super) fn key_of(
         },
         surface: SurfaceInputs {
             has_material_atlas: needs.material_count > 0,
+            has_alpha: layers == Some(Layers::Glass) && needs.has_blended_textures,
             has_planes: stack.reads_planes() || !needs.normals_agree,
         },
         view: ViewKind {

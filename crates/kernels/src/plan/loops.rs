@@ -13,6 +13,10 @@ use crate::{
 /// Iterations that an invocation may make for its samples; the others are for what precedes them.
 pub const MAX_ITERATIONS: u32 = 64_000;
 
+/// Most layers of glass that one invocation sorts: it visits each twice for every doubling of the
+/// sorted runs, and twice more.
+pub const DEEPEST_GLASS: u32 = 2048;
+
 /// Most samples and rows under the discs of a triangle: three of 64 px, the largest that `points`
 /// draws.
 const DISC_SAMPLES: u32 = 3 * (66 * 66 + 66);
@@ -28,7 +32,7 @@ pub fn of_a_sample(has_mask: bool, layers: Option<Layers>, options: &AccuracyOpt
     // Two quotients, of two guesses and eight corrections each.
     let mask = if has_mask { 20 } else { 0 };
     let taps = options.shadow_taps.side();
-    let shading = if matches!(layers, Some(Layers::Xray { .. })) {
+    let shading = if matches!(layers, Some(Layers::Xray { .. } | Layers::Glass)) {
         taps * (taps + 1) + 6
     } else {
         0

@@ -15,8 +15,9 @@ use std::sync::Arc;
 pub use crate::accuracy::{AccuracyRequest, MeasuredCosts, Tier, Tolerance};
 
 pub use self::{
-    caps::{Caps, MOST_SMALL_SAMPLES, Tuning},
+    caps::{Caps, MOST_GLASS_LAYERS, MOST_SMALL_SAMPLES, Tuning},
     error::PlanError,
+    loops::DEEPEST_GLASS as MOST_CPU_GLASS_LAYERS,
     traits::{InexactEffect, StackTraits},
 };
 use self::{
@@ -72,7 +73,10 @@ pub fn plan(
 ) -> Result<Plan, PlanError> {
     let f32_positions = needs.f32_positions;
     let needs = needs_of_stack(needs, stack, tuning);
-    let mut layers = stack.layers(needs.triangles);
+    let mut layers = match stack.layers(needs.triangles) {
+        None | Some(Layers::Glass) => (needs.glass_draws > 0).then_some(Layers::Glass),
+        other => other,
+    };
     let Choice {
         options,
         causes,

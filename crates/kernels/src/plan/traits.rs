@@ -99,6 +99,7 @@ impl StackTraits {
             Some(xray) => Layers::Xray {
                 bits: xray.first_bits(triangles),
             },
+            None if effect.hooks.makes_glass => Layers::Glass,
             None if *effect == *overdraw::EFFECT => Layers::Overdraw,
             None => Layers::Race,
         })

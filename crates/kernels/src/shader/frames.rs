@@ -17,7 +17,7 @@ impl KernelKey {
     pub fn frame(&self) -> Vec<Pass> {
         let mut passes = self.passes(&self.phases());
         passes.extend(self.dot_passes());
-        if self.options.culling == Culling::Hiz {
+        if self.options.culling == Culling::Hiz && !self.has_glass() {
             passes.push(Pass::DepthReduce);
         }
         if self.work.listed_tiles {
@@ -57,6 +57,7 @@ impl KernelKey {
         let layers: &[RasterPhase] = match self.framebuffer.layers {
             Some(Layers::Xray { .. }) if !self.work.sums_with_nearest => &[RasterPhase::Sum],
             Some(Layers::Overdraw) => &[RasterPhase::Count],
+            Some(Layers::Glass) => &[RasterPhase::Glass],
             Some(Layers::Xray { .. } | Layers::Race) | None => &[],
         };
         [self.order_phases(), nearest, layers].concat()
@@ -119,11 +120,10 @@ impl KernelKey {
                 Pass::Args,
             ]);
         }
-        passes.extend(
-            others
-                .iter()
-                .flat_map(|&phase| self.raster_passes(phase, false)),
-        );
+        passes.extend(others.iter().flat_map(|&phase| match phase {
+            RasterPhase::Glass => self.glass_passes(),
+            _ => self.raster_passes(phase, false),
+        }));
         passes
     }
 
@@ -160,6 +160,22 @@ impl KernelKey {
             }
             RasterPhase::BoundaryTriangle => passes.push(Pass::OrderCut),
             _ => {}
+        }
+        passes
+    }
+
+    /// The passes that draw and compose layers of glass, band after band. They put the first layer in
+    /// the place of what is opaque, so the depths that the next picture is culled against are taken
+    /// before.
+    fn glass_passes(&self) -> Vec<Pass> {
+        let mut passes = Vec::new();
+        if self.options.culling == Culling::Hiz {
+            passes.push(Pass::DepthReduce);
+        }
+        for _ in 0..self.framebuffer.glass_bands {
+            passes.push(Pass::GlassBand);
+            passes.extend(self.raster_passes(RasterPhase::Glass, false));
+            passes.push(Pass::GlassCompose);
         }
         passes
     }
@@ -229,7 +245,7 @@ impl KernelKey {
     /// itself shows the count.
     pub(super) fn uses_second_counter(&self, pass: Pass) -> bool {
         match pass.phase() {
-            Some(RasterPhase::Sum) => true,
+            Some(RasterPhase::Sum | RasterPhase::Glass) => true,
             Some(RasterPhase::Count) => self.framebuffer.layers == Some(Layers::Overdraw),
             _ => false,
         }

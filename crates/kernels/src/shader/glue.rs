@@ -119,15 +119,18 @@ pub enum Chain {
     /// What sample effects compute once per triangle.
     SampleSetup,
     Surface,
+    /// What a shaded surface of glass does to the color behind it.
+    Glass,
     Image,
 }
 
 impl Chain {
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Vertex,
         Self::Sample,
         Self::SampleSetup,
         Self::Surface,
+        Self::Glass,
         Self::Image,
     ];
 
@@ -138,6 +141,7 @@ impl Chain {
             Self::Sample => "sample",
             Self::SampleSetup => "sample_setup",
             Self::Surface => "surface",
+            Self::Glass => "glass",
             Self::Image => "image",
         }
     }
@@ -145,7 +149,10 @@ impl Chain {
     /// Are its effects called for parts of the scene? Setups of samples are computed for all
     /// triangles, and pixels belong to no part.
     const fn is_scoped(self) -> bool {
-        matches!(self, Self::Vertex | Self::Sample | Self::Surface)
+        matches!(
+            self,
+            Self::Vertex | Self::Sample | Self::Surface | Self::Glass
+        )
     }
 
     /// The effects of a stack that this chain calls, in order.
@@ -161,6 +168,7 @@ impl Chain {
             Self::Sample => hooks.sample.is_some(),
             Self::SampleSetup => hooks.sample.as_ref().is_some_and(|hook| hook.has_setup),
             Self::Surface => hooks.surface.is_some(),
+            Self::Glass => hooks.makes_glass,
             Self::Image => hooks.image.is_some(),
         }
     }
@@ -174,6 +182,8 @@ impl Chain {
                 Self::Sample => &functions.sample,
                 Self::SampleSetup => &functions.sample_setup,
                 Self::Surface => &functions.surface,
+                // No file brings glass.
+                Self::Glass => &None,
                 Self::Image => &functions.image,
             };
             return name.clone().unwrap_or_default();
@@ -208,6 +218,10 @@ impl Chain {
                 "fn glue_surface(surface: Surface, draw: u32) -> Surface {\n    var s = surface;\n",
                 "    return s;\n}\n",
             ),
+            Self::Glass => (
+                "fn glue_glass(surface: Surface, draw: u32) -> GlassLayer {\n    var layer = glass_blended(surface);\n",
+                "    return layer;\n}\n",
+            ),
             Self::Image => (
                 "fn glue_image(pixel: Pixel) -> Pixel {\n    var q = pixel;\n",
                 "    return q;\n}\n",
@@ -235,6 +249,7 @@ impl Chain {
             let line = match self {
                 Self::Vertex => format!("    v = {function}(v, effects.{name});"),
                 Self::Surface => format!("    s = {function}(s, effects.{name});"),
+                Self::Glass => format!("    layer = {function}(surface, effects.{name});"),
                 Self::Image => format!("    q = {function}(q, effects.{name});"),
                 Self::Sample => {
                     let load = setup_of(effect).map_or(String::new(), |index| {

@@ -147,6 +147,8 @@ pub struct WorkSharing {
     /// A shadow map is read from the buffer that the light's passes wrote, not from a texture; see
     /// `plan::Tuning`.
     pub buffered_shadow_map: bool,
+    /// Most layers of glass of a pixel that are sorted.
+    pub deepest_glass: u32,
     /// The sums of an x-ray are added two words at a time, as 64-bit integers.
     pub paired_sums: bool,
     /// They are added by the passes that find the nearest, instead of passes of their own.
@@ -160,6 +162,8 @@ pub struct Framebuffer {
     pub layers: Option<Layers>,
     /// The sums of an x-ray share one 64-bit integer, which holds [`ONE64_LAYERS`] layers.
     pub has_one64_sums: bool,
+    /// Bands of pixels whose layers of glass are drawn one after another; 0 without glass.
+    pub glass_bands: u32,
     /// Bits of a triangle's id where it shares a word with its depth, else 0.
     pub triangle_id_bits: u32,
 }
@@ -180,6 +184,8 @@ pub enum FramebufferLayout {
 pub struct SurfaceInputs {
     /// Some material is more than a base color.
     pub has_material_atlas: bool,
+    /// The alpha of a texture tells how much some glass covers.
+    pub has_alpha: bool,
     /// Plane normals and triangle centers: an effect reads them, or a normal may need a
     /// substitute.
     pub has_planes: bool,
@@ -300,12 +306,14 @@ impl KernelKey {
                 stored_uniforms: false,
                 wide_loads: false,
                 buffered_shadow_map: false,
+                deepest_glass: u32::MAX,
                 paired_sums: false,
                 sums_with_nearest: false,
             },
             framebuffer: Framebuffer {
                 layers,
                 has_one64_sums: false,
+                glass_bands: u32::from(layers == Some(Layers::Glass)),
                 triangle_id_bits: if visibility == Visibility::Packed32 {
                     24
                 } else {
@@ -314,6 +322,7 @@ impl KernelKey {
             },
             surface: SurfaceInputs {
                 has_material_atlas: true,
+                has_alpha: layers == Some(Layers::Glass),
                 has_planes: true,
             },
             view: ViewKind {
@@ -424,6 +433,11 @@ impl KernelKey {
         self.generated.has_joints || self.generated.has_morph_targets
     }
 
+    /// Is something seen through layers of glass?
+    pub fn has_glass(&self) -> bool {
+        self.framebuffer.layers == Some(Layers::Glass)
+    }
+
     /// Are particles drawn as discs? Boxes and points show no triangles.
     pub fn has_discs(&self) -> bool {
         self.generated.has_particles && self.samples.shape == Shape::Triangles
@@ -435,6 +449,7 @@ impl KernelKey {
         let draws_all = !self.has_sample_effects()
             && !self.has_discs()
             && !self.samples.has_mask
+            && !self.has_glass()
             && self.samples.draw_order.is_none();
         self.work.hides_blocks && draws_all && self.samples.shape == Shape::Triangles
     }

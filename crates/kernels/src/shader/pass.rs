@@ -52,6 +52,10 @@ pub enum Pass {
     DotsDraw,
     /// Writes the positions of all dots, for the judge alone.
     DotsProbe,
+    /// Goes on to the next band of pixels whose layers of glass are drawn.
+    GlassBand,
+    /// Sorts and composes the layers of glass of a band.
+    GlassCompose,
     /// Lists the tiles that a triangle touched.
     ListTiles,
     /// Shades every pixel, or those of the listed tiles.
@@ -105,6 +109,8 @@ pub enum RasterPhase {
     Sum,
     /// Both in the same pass: the nearest in one 64-bit atomic, and the colors of all layers.
     NearestAndSum,
+    /// Every layer of glass before what is opaque, with its color.
+    Glass,
     /// Depth key and triangle id without atomics.
     Race,
     /// Samples per triangle.
@@ -123,6 +129,7 @@ impl RasterPhase {
             Self::Count => "count",
             Self::Sum => "sum",
             Self::NearestAndSum => "nearest and sum",
+            Self::Glass => "glass",
             Self::Race => "race",
             Self::CountSamples => "count samples",
             Self::BoundaryTriangle => "boundary triangle",
@@ -159,6 +166,8 @@ impl Pass {
             Self::DotsArgs => "dots_args",
             Self::DotsDraw => "dots_draw",
             Self::DotsProbe => "dots_probe",
+            Self::GlassBand => "glass_band",
+            Self::GlassCompose => "glass_compose",
             Self::ListTiles => "list_tiles",
             Self::Resolve => "resolve",
             Self::ResolveBackground => "resolve_background",
@@ -189,6 +198,7 @@ impl Pass {
             Self::DotsEnds | Self::DotsCull | Self::DotsArgs | Self::DotsDraw | Self::DotsProbe => {
                 "lines"
             }
+            Self::GlassBand | Self::GlassCompose => "shade",
             Self::ListTiles | Self::Resolve | Self::ResolveBackground => "shade",
             Self::ImageBegin | Self::Image(_) | Self::Scale => "shade",
         };

@@ -140,6 +140,12 @@ impl Effect {
         self
     }
 
+    /// The same effect, which turns the parts on which it acts into glass.
+    pub fn with_glass(mut self) -> Self {
+        self.hooks.makes_glass = true;
+        self.in_slot(Slot::Visibility)
+    }
+
     /// The same effect, which draws along lines.
     pub fn with_lines(mut self) -> Self {
         self.hooks.has_lines = true;
@@ -184,9 +190,12 @@ impl Effect {
     }
 
     /// Can it be limited to parts of a scene? Pixels, lines, slots of the rasterizer and particles
-    /// belong to no draw.
+    /// belong to no draw; glass is told from what is opaque draw by draw.
     pub const fn has_scope(&self) -> bool {
         let hooks = &self.hooks;
+        if hooks.makes_glass {
+            return true;
+        }
         let is_elsewhere = hooks.image.is_some()
             || hooks.passes.is_some()
             || hooks.slot.is_some()

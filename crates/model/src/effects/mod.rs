@@ -27,6 +27,7 @@ macro_rules! for_each_effect {
             wireframe,
             fog,
             tonemap,
+            glass,
             xray,
             overdraw,
             race,

@@ -7,6 +7,7 @@ use glam::{DVec3, Vec4};
 use super::{
     dots, draw_order,
     effect::{Effect, read},
+    glass::GlassDraws,
     hooks::{self, Hooks, Layers, Picture, Pixel, Shape, Slot, Surface},
     lambert, points, race, shadow, smear, xray,
 };
@@ -154,7 +155,32 @@ impl Stack {
     /// # Errors
     /// As [`draws`](crate::scene::draw::draws).
     pub fn draws(&self, scene: &Scene, view: &View) -> Result<Vec<Draw>, DrawError> {
-        scoped_draws(scene, view, &self.scopes())
+        let mut draws = scoped_draws(scene, view, &self.scopes())?;
+        let glass = self.glass();
+        for draw in &mut draws {
+            draw.is_glass = glass.has(draw.is_glass, draw.scopes);
+        }
+        Ok(draws)
+    }
+
+    /// Which draws are glass. What other effects in the visibility slot and a draw order show is
+    /// shown of every draw alike.
+    pub fn glass(&self) -> GlassDraws {
+        let is_glass = |enabled: &EnabledEffect| enabled.effect.hooks.makes_glass;
+        if self.in_slot(Slot::Order).is_some() {
+            return GlassDraws::Nothing;
+        }
+        match self.in_slot(Slot::Visibility) {
+            None => GlassDraws::Blended,
+            Some(enabled) if !is_glass(enabled) => GlassDraws::Nothing,
+            Some(_) => self
+                .0
+                .iter()
+                .zip(self.scope_bits())
+                .find(|(enabled, _)| is_glass(enabled))
+                .and_then(|(_, bit)| bit)
+                .map_or(GlassDraws::Everything, GlassDraws::Scope),
+        }
     }
 
     /// Applies every surface effect in order, as far as they act on a draw with these `scopes`
@@ -315,10 +341,12 @@ impl Stack {
         }
     }
 
-    /// The effects that decide which samples stop a light, and where they are.
+    /// The effects that decide which samples stop a light, and where they are. Light passes through
+    /// glass.
     pub fn shadow_casters(&self) -> Self {
         let casts = |enabled: &&EnabledEffect| {
-            enabled.effect.hooks.vertex.is_some() || enabled.effect.hooks.sample.is_some()
+            let hooks = &enabled.effect.hooks;
+            hooks.vertex.is_some() || hooks.sample.is_some() || hooks.makes_glass
         };
         Self(self.0.iter().filter(casts).cloned().collect())
     }
@@ -366,6 +394,7 @@ impl Stack {
                 bits: read::<xray::Xray>(words).first_bits(triangles),
             },
             "overdraw" => Layers::Overdraw,
+            "glass" => Layers::Glass,
             _ => Layers::Race,
         })
     }
@@ -387,18 +416,35 @@ impl Stack {
         Ok(())
     }
 
-    /// The effect that enabling `effect` would conflict with: another one in its slot.
+    /// The effect that enabling `effect` would conflict with: another one in its slot, or a draw
+    /// order beside glass.
     pub fn rival_of(&self, effect: &Effect) -> Option<&Arc<Effect>> {
         let slot = effect.hooks.slot?;
-        self.in_slot(slot)
-            .map(|enabled| &enabled.effect)
+        let other = |slot: Slot| self.in_slot(slot).map(|enabled| &enabled.effect);
+        let beside_glass = match slot {
+            Slot::Order => other(Slot::Visibility).filter(|first| first.hooks.makes_glass),
+            _ if effect.hooks.makes_glass => other(Slot::Order),
+            _ => None,
+        };
+        other(slot)
             .filter(|first| ***first != *effect)
+            .or(beside_glass)
     }
 
     /// The conflict that enabling `effect` would cause.
     pub fn conflict_with(&self, effect: &Effect) -> Option<Conflict> {
         let slot = effect.hooks.slot?;
         let first = self.rival_of(effect)?;
+        let [glass, order] = match first.hooks.slot {
+            Some(Slot::Order) => [effect, first],
+            _ => [first, effect],
+        };
+        if first.hooks.slot != Some(slot) {
+            return Some(Conflict::GlassInOrder {
+                order: order.name.clone(),
+                glass: glass.name.clone(),
+            });
+        }
         Some(Conflict::Slot {
             slot: slot.name(),
             first: first.name.clone(),
@@ -435,6 +481,17 @@ impl Stack {
                     last: effect.name.clone(),
                 });
             }
+        }
+        if let (Some(glass), Some(order)) = (
+            self.0
+                .iter()
+                .find(|enabled| enabled.effect.hooks.makes_glass),
+            self.in_slot(Slot::Order),
+        ) {
+            return Err(Conflict::GlassInOrder {
+                order: order.effect.name.clone(),
+                glass: glass.effect.name.clone(),
+            });
         }
         for slot in Slot::ALL {
             let mut takers = self
@@ -525,6 +582,10 @@ pub enum Conflict {
         "up to {last} the effects have more than {MAX_IMAGE_PASSES} passes over the picture; switch {last} or another of them off"
     )]
     Passes { last: String },
+    #[error(
+        "{order} counts the samples of opaque surfaces, so {glass} cannot be drawn with it; switch one of them off"
+    )]
+    GlassInOrder { order: String, glass: String },
 }
 
 impl Conflict {
@@ -533,6 +594,7 @@ impl Conflict {
         match self {
             Self::Slot { second, .. } => second,
             Self::Scopes { last, .. } | Self::Passes { last } => last,
+            Self::GlassInOrder { glass, .. } => glass,
         }
     }
 }

@@ -39,6 +39,8 @@ pub struct Draw {
     pub is_uneven: bool,
     /// Normals are those of the triangles' planes.
     pub is_faceted: bool,
+    /// What lies behind it is seen through it.
+    pub is_glass: bool,
     /// What deforms its vertices before they are transformed.
     pub deform: Option<Deform>,
     /// Index of its vertex 0 among the vertices of all draws that can deform.
@@ -271,6 +273,7 @@ pub fn scoped_draws(scene: &Scene, view: &View, scopes: &[Scope]) -> Result<Vec<
                 != deform.as_ref().is_some_and(Deform::mirrors),
             is_uneven: is_uneven(&world_from_object),
             is_faceted: primitive.is_faceted,
+            is_glass: scene.materials[primitive.material].is_blended,
             deform,
             first_deformable,
             scopes: masks.get(index).copied().unwrap_or_default(),

@@ -8,11 +8,14 @@ pub struct Material {
     pub name: String,
     /// Linear RGBA, each in [0, 1].
     pub base_color: [f32; 4],
-    /// Multiplies the base color. Its alpha is used only with an `alpha_cutoff`.
+    /// Multiplies the base color. Its alpha is used only with an `alpha_cutoff`, and where the
+    /// material blends.
     pub base_texture: Option<Texture>,
     /// Samples are drawn only where the alpha of the base texture is at least this. From 0 up;
     /// nothing is drawn above 1.
     pub alpha_cutoff: Option<f32>,
+    /// What lies behind is seen through it: alpha is the fraction that its color covers.
+    pub is_blended: bool,
     /// Emitted light, linear RGB, from 0 up.
     pub emission: [f32; 3],
     /// Multiplies the emission.
@@ -52,6 +55,7 @@ impl Default for Material {
             base_color: [1.0; 4],
             base_texture: None,
             alpha_cutoff: None,
+            is_blended: false,
             emission: [0.0; 3],
             emission_texture: None,
             unlit: false,

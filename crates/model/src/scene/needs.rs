@@ -40,6 +40,10 @@ pub struct Needs {
     pub textured: usize,
     /// The alpha of a texture discards samples of some material.
     pub masked: bool,
+    /// Draws through which others are seen.
+    pub glass_draws: usize,
+    /// Some material that blends has a texture.
+    pub has_blended_textures: bool,
     /// How finely shadows are drawn.
     pub shadow: ShadowResolution,
     /// The view is a light's.
@@ -124,6 +128,11 @@ impl Needs {
                 .filter(|material| scene.materials[**material].textures() != [None, None])
                 .count(),
             masked: drawn().any(|p| scene.materials[p.material].alpha_threshold().is_some()),
+            glass_draws: draws.iter().filter(|draw| draw.is_glass).count(),
+            has_blended_textures: drawn().any(|p| {
+                let material = &scene.materials[p.material];
+                material.is_blended && material.base_texture.is_some()
+            }),
             morph_targets: draws.iter().any(|draw| {
                 draw.deform
                     .as_ref()

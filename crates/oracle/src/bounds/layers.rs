@@ -19,10 +19,12 @@ use super::{
             shadow::Light,
             surface::SurfaceTriangle,
         },
+        shot::Shot,
     },
     coverage::depth_interval,
+    glass::glass_bounds,
     perturbations::{Search, WIDE_SLACK, color_steps, interpolations, of_layers, textures},
-    surface::{CornerErrors, Doubt},
+    surface::{CornerErrors, Doubt, SampleErrors},
 };
 use crate::{
     effects::{Surface, xray, xray::Xray},
@@ -49,6 +51,9 @@ pub struct LayerBounds {
 /// # Errors
 /// The work was canceled.
 pub fn layer_bounds(input: &LayerInput, image: &LayerImage) -> Result<LayerBounds, Canceled> {
+    if let LayerMode::Glass(layers) = &image.mode {
+        return glass_bounds(input, layers, None);
+    }
     let LayerMode::Xray { params, bits } = &image.mode else {
         let colors = image.colors.iter().map(|&color| [color; 2]).collect();
         return Ok(LayerBounds {
@@ -79,6 +84,13 @@ impl LayerBounds {
         image: &LayerImage,
         pixels: &[bool],
     ) -> Result<(), Canceled> {
+        if let LayerMode::Glass(layers) = &image.mode {
+            let wide = glass_bounds(input, layers, Some(pixels))?;
+            for (i, _) in pixels.iter().enumerate().filter(|(_, asked)| **asked) {
+                self.colors[i] = wide.colors[i];
+            }
+            return Ok(());
+        }
         let LayerMode::Xray { params, bits } = &image.mode else {
             return Ok(());
         };
@@ -135,6 +147,61 @@ struct Layer {
     is_certain: bool,
 }
 
+/// How a sample of a layer is shaded to find all that f32 may make of it.
+pub(super) struct SampleShade<'a> {
+    pub shot: &'a Shot<'a>,
+    pub light: Option<&'a Light<'a>>,
+    pub rank: f64,
+    /// Those of all layers.
+    pub perturbations: &'a [Perturbation],
+    pub search: Search,
+}
+
+impl SampleShade<'_> {
+    /// The shaded surface of `known` at a pixel under every perturbation, the exact one first.
+    /// `errors` are those of the sample, with whether its side may turn.
+    pub fn surfaces(
+        &self,
+        known: &SurfaceTriangle<'_>,
+        (errors, may_turn): (SampleErrors, bool),
+        [x, y]: [usize; 2],
+    ) -> impl Iterator<Item = Surface> {
+        let (scene, stack) = (self.shot.scene, self.shot.stack);
+        let lit_point = known.lit_point(&known.surface(x, y, &Perturbation::default()));
+        let offsets = match self.search {
+            Search::Quick => [Vec::new(), Vec::new()],
+            Search::Wide => known.texture_offsets(x, y),
+        };
+        let turned = color_steps(stack).iter().map(|&color_step| Perturbation {
+            is_turned: true,
+            color_step,
+            ..Perturbation::default()
+        });
+        let all: Vec<Surface> = self
+            .perturbations
+            .iter()
+            .copied()
+            .chain(interpolations(stack, errors, self.search))
+            .chain(turned.filter(|_| may_turn))
+            .chain(textures(scene, stack, &offsets))
+            .map(|perturbation| {
+                let step = perturbation.color_step;
+                let lit = self
+                    .light
+                    .map_or(0.0, |light| light.arrives(&lit_point, known.id(), step));
+                let surface = Surface {
+                    rank: self.rank,
+                    lit,
+                    step_offset: step,
+                    ..known.surface(x, y, &perturbation)
+                };
+                stack.shade(surface, known.scopes)
+            })
+            .collect();
+        all.into_iter()
+    }
+}
+
 /// Bounds of the sums of every pixel; of a wider search, at the pixels for which it is asked.
 fn sums(
     input: &LayerInput,
@@ -181,35 +248,15 @@ fn sums(
             let Some((known, errors)) = surface.get_or_insert_with(of_triangle) else {
                 return;
             };
-            let lit_point = known.lit_point(&known.surface(x, y, &Perturbation::default()));
             let (errors, may_turn) = (errors.at(known, x, y), errors.may_turn(known, x, y));
-            let offsets = match search {
-                Search::Quick => [Vec::new(), Vec::new()],
-                Search::Wide => known.texture_offsets(x, y),
+            let shade = SampleShade {
+                shot: &input.shot,
+                light,
+                rank,
+                perturbations,
+                search,
             };
-            let turned = color_steps(stack).iter().map(|&color_step| Perturbation {
-                is_turned: true,
-                color_step,
-                ..Perturbation::default()
-            });
-            let mut shaded = perturbations
-                .iter()
-                .copied()
-                .chain(interpolations(stack, errors, search))
-                .chain(turned.filter(|_| may_turn))
-                .chain(textures(input.shot.scene, stack, &offsets))
-                .map(|perturbation| {
-                    let step = perturbation.color_step;
-                    let lit =
-                        light.map_or(0.0, |light| light.arrives(&lit_point, triangle.id, step));
-                    let surface = Surface {
-                        rank,
-                        lit,
-                        step_offset: step,
-                        ..known.surface(x, y, &perturbation)
-                    };
-                    stack.shade(surface, known.scopes)
-                });
+            let mut shaded = shade.surfaces(known, (errors, may_turn), [x, y]);
             let exact = shaded.next().expect("the first perturbation is none");
             let color = exact.color.truncate();
             let weight = params.weight_of(&exact);

@@ -6,6 +6,7 @@ pub mod colors;
 pub mod coverage;
 pub mod deform;
 pub mod dots;
+pub mod glass;
 pub mod layers;
 pub mod mask;
 pub mod particles;

@@ -132,7 +132,9 @@ pub fn color_steps(stack: &Stack) -> &'static [f64] {
     match (stack.has_steps(), stack.layers(0)) {
         (false, _) => &[0.0],
         (true, None | Some(Layers::Race)) => &[0.0, -STEP, STEP],
-        (true, Some(Layers::Xray { .. } | Layers::Overdraw)) => &[0.0, -LAYERS, LAYERS],
+        (true, Some(Layers::Xray { .. } | Layers::Overdraw | Layers::Glass)) => {
+            &[0.0, -LAYERS, LAYERS]
+        }
     }
 }
 

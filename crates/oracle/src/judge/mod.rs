@@ -10,6 +10,7 @@
 //!   scene and coverage
 //! * `freedom`: what an adapter may choose for itself at a sample
 //! * `samples`: triangle ids, depth keys and layer counts, from the adapter's own geometry
+//! * `glass`: the layers of glass on every sample, and their order
 //! * `end_to_end`, `outline`: the whole picture against the oracle's own; only what snapped
 //!   vertices explain may differ
 //! * `error_map`: what is wrong at each pixel
@@ -26,6 +27,7 @@ mod dots;
 mod end_to_end;
 mod error_map;
 mod freedom;
+mod glass;
 mod outline;
 mod particles;
 mod passes;

@@ -16,7 +16,7 @@ use super::{
         render::{
             dots::dot_strengths,
             draw_order::limited,
-            layers::{LayerImage, LayerInput, layer_image},
+            layers::{LayerImage, LayerInput, LayerMode, layer_image},
             particles::{check_particles, scene_with_particles},
             project::project,
             resolve::ResolveInput,
@@ -34,6 +34,7 @@ use super::{
     end_to_end::EndToEnd,
     error_map::error_map,
     freedom::Freedom,
+    glass::judge_glass,
     particles::judge_particles,
     passes::judge_passes,
     sample_setups::wrong_setups,
@@ -166,10 +167,14 @@ fn judge_resolved(
         triangles: &triangles,
         triangle_ids,
         depth_keys: keys,
+        glass: Some(&picture.frame.glass).filter(|layers| !layers.is_empty()),
     };
     stage("colors")?;
     let colors = JudgedColors::new(&layer_input, &coverage, picture, &dots, freedom)?;
     let nearest = colors.judge(&mut report, &shot, &coverage, picture, freedom);
+    if shot.has_glass() {
+        judge_glass(&mut report, &layer_input, picture.frame)?;
+    }
     stage("the error map")?;
     let mut faults = error_map(&shot, &coverage, picture, &nearest, freedom);
     let step_band = colors.accepted.step_band();
@@ -340,7 +345,12 @@ impl JudgedColors {
         } else {
             self.accepted.nearest(&frame.color)
         };
-        if let Some((_, bounds)) = &self.layers {
+        // Layers of glass are judged one by one.
+        let summed = self
+            .layers
+            .as_ref()
+            .filter(|(image, _)| !matches!(image.mode, LayerMode::Glass(_)));
+        if let Some((_, bounds)) = summed {
             match freedom {
                 Freedom::Scheduled { limit } => {
                     judge_scheduled_layers(report, bounds, picture, coverage, limit)

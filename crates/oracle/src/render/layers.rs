@@ -8,6 +8,7 @@ use super::{
     background::background,
     coverage::{Hit, scatter},
     draw_order::ranks,
+    glass::{glass_colors, glass_layers},
     sample_tests::SampleTests,
     shadow::Light,
     surface::{SurfaceTriangle, encoded},
@@ -15,7 +16,7 @@ use super::{
 };
 use crate::{
     effects::{Surface, hooks::Layers, overdraw::Overdraw, xray, xray::Xray},
-    frame::Geometry,
+    frame::{Geometry, GlassLayers},
     math::linear_light,
     work::Canceled,
 };
@@ -36,6 +37,8 @@ pub enum LayerMode {
     Xray { params: Xray, bits: u32 },
     /// Counted.
     Overdraw,
+    /// Seen one through the other.
+    Glass(GlassLayers),
 }
 
 /// What is drawn, and what is nearest at each pixel.
@@ -46,15 +49,20 @@ pub struct LayerInput<'a> {
     pub triangles: &'a [OrientedTriangle],
     pub triangle_ids: &'a [u32],
     pub depth_keys: &'a [u32],
+    /// The layers of glass that an adapter found; none to find them.
+    pub glass: Option<&'a GlassLayers>,
 }
 
-/// The picture that the effect in the visibility slot makes, given the number of layers per pixel;
-/// none if the nearest triangle is shown.
+/// The picture that glass or the effect in the visibility slot makes, given the number of layers
+/// per pixel; none if the nearest triangle is shown.
 pub fn layer_image(
     input: &LayerInput,
     layers: impl FnOnce() -> Vec<u32>,
 ) -> Result<Option<LayerImage>, Canceled> {
     let stack = input.shot.stack;
+    if input.shot.has_glass() {
+        return seen_through(input).map(Some);
+    }
     Ok(match stack.layers(input.shot.scene.triangle_count()) {
         Some(Layers::Xray { bits }) => stack
             .params("xray")
@@ -63,7 +71,19 @@ pub fn layer_image(
         Some(Layers::Overdraw) => stack
             .params("overdraw")
             .map(|params| heat(input, layers(), &params)),
-        Some(Layers::Race) | None => None,
+        Some(Layers::Race | Layers::Glass) | None => None,
+    })
+}
+
+fn seen_through(input: &LayerInput) -> Result<LayerImage, Canceled> {
+    let layers = match input.glass {
+        Some(layers) => layers.clone(),
+        None => glass_layers(&input.shot, input.tests, input.triangles)?,
+    };
+    Ok(LayerImage {
+        colors: glass_colors(input, &layers)?,
+        counted: layers.counts(),
+        mode: LayerMode::Glass(layers),
     })
 }
 

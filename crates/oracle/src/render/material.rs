@@ -1,6 +1,6 @@
 //! Materials in f64: textures looked up as glTF 2.0 (section 3.8) and its samplers define it.
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, DVec4};
 
 use super::super::perturbation::TexturePerturbation;
 use crate::{
@@ -86,6 +86,13 @@ impl<'a> TriangleMaterial<'a> {
         })
     }
 
+    /// Alpha of the base color texture; 1 without one.
+    pub fn alpha(&self, at: &SampleWeights, perturbation: TexturePerturbation) -> f64 {
+        self.base
+            .as_ref()
+            .map_or(1.0, |lookup| lookup.texel(self.scene, at, perturbation).w)
+    }
+
     /// Color of a surface with the base color `base`, and the part of it that no light changes.
     pub fn color(
         &self,
@@ -95,7 +102,7 @@ impl<'a> TriangleMaterial<'a> {
     ) -> (DVec3, DVec3) {
         let looked_up = |lookup: &Option<TextureLookup>| {
             lookup.as_ref().map_or(DVec3::ONE, |lookup| {
-                lookup.color(self.scene, at, perturbation)
+                lookup.texel(self.scene, at, perturbation).truncate()
             })
         };
         let color = base * looked_up(&self.base);
@@ -137,7 +144,8 @@ impl TextureLookup<'_> {
         }
     }
 
-    fn color(&self, scene: &Scene, at: &SampleWeights, perturbation: TexturePerturbation) -> DVec3 {
+    /// Linear RGBA.
+    fn texel(&self, scene: &Scene, at: &SampleWeights, perturbation: TexturePerturbation) -> DVec4 {
         let place = self.place(scene, at);
         let [across, down, level] = perturbation;
         self.filtered(
@@ -172,7 +180,7 @@ impl TextureLookup<'_> {
     }
 
     /// The filtered color at texture coordinates `uv`, where a pixel spans 2^detail texels.
-    fn filtered(&self, levels: &[Level], uv: DVec2, detail: f64) -> DVec3 {
+    fn filtered(&self, levels: &[Level], uv: DVec2, detail: f64) -> DVec4 {
         let at = |level: f64, filter: Filter| self.level(&levels[level as usize], uv, filter);
         let last = levels.len() as f64 - 1.0;
         if detail <= 0.0 {
@@ -190,32 +198,33 @@ impl TextureLookup<'_> {
         }
     }
 
-    fn level(&self, level: &Level, uv: DVec2, filter: Filter) -> DVec3 {
+    fn level(&self, level: &Level, uv: DVec2, filter: Filter) -> DVec4 {
         let at = uv * DVec2::from(level.size.map(f64::from));
         match filter {
-            Filter::Nearest => self.texel(level, at.x.floor(), at.y.floor()),
+            Filter::Nearest => self.stored(level, at.x.floor(), at.y.floor()),
             Filter::Linear => {
                 // Texels lie at the centers of their squares.
                 let (x, y) = (at.x - 0.5, at.y - 0.5);
                 let (left, top) = (x.floor(), y.floor());
                 let row = |row: f64| {
-                    self.texel(level, left, row)
-                        .lerp(self.texel(level, left + 1.0, row), x - left)
+                    self.stored(level, left, row)
+                        .lerp(self.stored(level, left + 1.0, row), x - left)
                 };
                 row(top).lerp(row(top + 1.0), y - top)
             }
         }
     }
 
-    fn texel(&self, level: &Level, x: f64, y: f64) -> DVec3 {
+    fn stored(&self, level: &Level, x: f64, y: f64) -> DVec4 {
         let [width, height] = level.size;
         let [across, down] = self.texture.wrap;
         let (x, y) = (
             wrapped(x as i64, width.into(), across),
             wrapped(y as i64, height.into(), down),
         );
-        let [red, green, blue, _] = level.texels[(y * i64::from(width) + x) as usize];
+        let [red, green, blue, alpha] = level.texels[(y * i64::from(width) + x) as usize];
         DVec3::from([red, green, blue].map(|byte| linear_light(f64::from(byte) / 255.0)))
+            .extend(f64::from(alpha) / 255.0)
     }
 }
 

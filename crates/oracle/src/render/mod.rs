@@ -21,6 +21,7 @@ pub mod work_limits;
 
 pub mod background;
 pub mod dots;
+pub mod glass;
 pub mod layers;
 pub mod material;
 pub mod passes;

@@ -102,6 +102,7 @@ pub fn render_rows(
         triangles: &triangles,
         triangle_ids,
         depth_keys,
+        glass: None,
     };
     // Passes read pixels of all rows.
     let has_passes = stack.has_passes();

@@ -55,7 +55,11 @@ impl Rays {
         let toward = stack.light()?.toward();
         let light_view = stack.light_view(scene, &view.with_shadow(ShadowResolution::default()))?;
         let draws = stack.draws(scene, &light_view).ok()?;
-        let mut casters: Vec<Caster> = draws.iter().flat_map(|draw| casters(shot, draw)).collect();
+        let mut casters: Vec<Caster> = draws
+            .iter()
+            .filter(|draw| !draw.is_glass)
+            .flat_map(|draw| casters(shot, draw))
+            .collect();
         let radius = scene.bounds_of(scene.shadow_casters()).radius().max(1e-9);
         let mut nodes = Vec::new();
         if !casters.is_empty() {

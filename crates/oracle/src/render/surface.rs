@@ -161,6 +161,8 @@ pub struct SurfaceTriangle<'a> {
     id: u32,
     /// Those of its draw.
     pub scopes: u32,
+    /// Its draw is glass.
+    pub is_glass: bool,
     view: &'a View,
     weights: Weights,
     positions: [DVec3; 3],
@@ -224,9 +226,16 @@ impl<'a> SurfaceTriangle<'a> {
 
         let base = DVec4::from_array(material.base_color.map(f64::from));
         let color = |vertex| {
-            base * primitive
-                .colors
-                .map_or(DVec4::ONE, |colors| color(scene, &colors, vertex))
+            let color = base
+                * primitive
+                    .colors
+                    .map_or(DVec4::ONE, |colors| color(scene, &colors, vertex));
+            // Where no glass is drawn, what would blend is opaque.
+            if material.is_blended && !draw.is_glass {
+                color.truncate().extend(1.0)
+            } else {
+                color
+            }
         };
         let [n0, n1, n2] = vertices.map(|vertex| deform::normal(scene, draw, vertex));
         let side = if material.double_sided && screen.is_back {
@@ -238,6 +247,7 @@ impl<'a> SurfaceTriangle<'a> {
         let mut triangle = Self {
             id,
             scopes: draw.scopes,
+            is_glass: draw.is_glass,
             view,
             weights: screen.weights,
             center: draw
@@ -271,6 +281,11 @@ impl<'a> SurfaceTriangle<'a> {
             triangle.apply_vertex_effects(&evaluator, corners, side);
         }
         Some(triangle)
+    }
+
+    /// Its global id.
+    pub fn id(&self) -> u32 {
+        self.id
     }
 
     /// Have all corners the same normal and the same color, and is there no image?
@@ -358,10 +373,17 @@ impl<'a> SurfaceTriangle<'a> {
                 perturbation.texture,
             )
         });
+        let alpha = self
+            .material
+            .as_ref()
+            .filter(|_| self.is_glass)
+            .map_or(1.0, |material| {
+                material.alpha(&self.sample_weights(weights, &point), perturbation.texture)
+            });
         let (color, glow) = textured.unwrap_or((base.truncate(), DVec3::ZERO));
         let across_m = view.ndc_axes[1].length() * 2.0 / f64::from(view.height);
         Surface {
-            color: color.extend(base.w),
+            color: color.extend(base.w * alpha),
             glow,
             position,
             normal,

@@ -166,9 +166,11 @@ impl Assembly<'_> {
         }
     }
 
-    /// Draws a triangle, wound clockwise, unless it shows the back of a single-sided material.
+    /// Draws a triangle, wound clockwise, unless it shows the back of a single-sided material, or
+    /// glass to a light, which passes through it.
     fn oriented(&mut self, id: u32, entry: usize, corners: [SnappedVertex; 3], area: i64) {
-        if is_back(area, self.draw) && !self.draw.double_sided {
+        let passes_light = self.shot.view.is_light() && self.draw.is_glass;
+        if passes_light || is_back(area, self.draw) && !self.draw.double_sided {
             return;
         }
         let mut triangle = OrientedTriangle {

@@ -223,7 +223,7 @@ mod tests {
             of(Group::Inspect),
             ["draw_order", "triangle_id", "normals", "depth"]
         );
-        assert_eq!(of(Group::Layers), ["xray", "overdraw", "race"]);
+        assert_eq!(of(Group::Layers), ["glass", "xray", "overdraw", "race"]);
         assert_eq!(of(Group::Lines), ["dots"]);
         assert_eq!(of(Group::Scene), ["particles"]);
         assert_eq!(of(Group::Vertex), ["explode", "inflate", "wobble"]);
@@ -280,7 +280,7 @@ mod tests {
                 .collect::<std::collections::BTreeSet<_>>()
                 .into_iter()
                 .collect::<Vec<_>>(),
-            ["overdraw", "race", "xray"]
+            ["glass", "overdraw", "race", "xray"]
         );
         assert!(names("vertex").contains(&"wobble") && names("ink").contains(&"hatch"));
         assert_eq!(names("").len(), EFFECTS.len());

@@ -84,6 +84,8 @@ const FRAMEBUFFER: Feature = Feature {
         ("framebuffer_write", framebuffer_write),
         ("framebuffer_read", framebuffer_read),
         ("xray_buffer", xray_buffer),
+        ("glass_buffer", framebuffer_layout),
+        ("glass_front", framebuffer_layout),
     ],
     constants: &[
         ("FINDS_NEAREST", |_, pass| {
@@ -140,6 +142,7 @@ fn framebuffer_write(_: &KernelKey, pass: Pass) -> &'static str {
         Some(RasterPhase::CountSamples) => "sample_counts",
         Some(RasterPhase::BoundaryTriangle) => "boundary_samples",
         Some(RasterPhase::Sum | RasterPhase::NearestAndSum) => "xray",
+        Some(RasterPhase::Glass) => "glass",
         Some(RasterPhase::Race) => "race",
         None => NO_STEP,
     }
@@ -167,7 +170,7 @@ const SMALL_PATH: Feature = Feature {
         ("LISTS_SAMPLES", |key, pass| {
             let is_shaded = matches!(
                 pass.phase(),
-                Some(RasterPhase::Sum | RasterPhase::NearestAndSum)
+                Some(RasterPhase::Sum | RasterPhase::NearestAndSum | RasterPhase::Glass)
             );
             flag(
                 is_shaded
@@ -324,10 +327,10 @@ fn largest_triangle(needs: &Needs) -> String {
 /// The list of the tiles that a triangle touches, which the resolve then visits.
 const TILE_LIST: Feature = Feature {
     variants: &[("mark_tiles", |key, pass| {
-        use RasterPhase::{BoundaryTriangle, Count, CountSamples, Sum, TriangleId};
+        use RasterPhase::{BoundaryTriangle, Count, CountSamples, Glass, Sum, TriangleId};
         let is_repeated = matches!(
             pass.phase(),
-            Some(TriangleId | Count | Sum | CountSamples | BoundaryTriangle)
+            Some(TriangleId | Count | Sum | Glass | CountSamples | BoundaryTriangle)
         );
         step_if(key.work.listed_tiles && !is_repeated, "marked")
     })],
@@ -433,6 +436,16 @@ const COUNTERS: Feature = Feature {
     ..Feature::NONE
 };
 
+/// Does a pass draw what is opaque alone?
+fn leaves_out_glass(key: &KernelKey, pass: Pass) -> bool {
+    use RasterPhase::{Depth, Packed, Packed32, Race, TriangleId};
+    key.has_glass()
+        && matches!(
+            pass.phase(),
+            Some(Depth | TriangleId | Packed | Packed32 | Race)
+        )
+}
+
 const SAMPLE_EFFECTS: Feature = Feature {
     part: Some(Part {
         name: "sample effects",
@@ -441,6 +454,9 @@ const SAMPLE_EFFECTS: Feature = Feature {
     }),
     // In the order in which they are called.
     variants: &[
+        ("sample_test", |key, pass| {
+            step_if(leaves_out_glass(key, pass), "opaque")
+        }),
         ("sample_test", |key, _| {
             step_if(key.has_sample_effects(), "effects")
         }),

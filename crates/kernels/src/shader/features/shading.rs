@@ -30,12 +30,17 @@ const LAYERS: Feature = Feature {
         }
         Some(Layers::Xray { bits }) => format!("layers=xray/{bits}"),
         Some(Layers::Overdraw) => "layers=overdraw".into(),
+        Some(Layers::Glass) if key.framebuffer.glass_bands > 1 => {
+            format!("layers=glass/{}", key.framebuffer.glass_bands)
+        }
+        Some(Layers::Glass) => "layers=glass".into(),
         Some(Layers::Race) | None => String::new(),
     },
     variants: &[
         ("shading", |key, _| match key.framebuffer.layers {
             Some(Layers::Xray { .. }) => "xray",
             Some(Layers::Overdraw) => "overdraw",
+            Some(Layers::Glass) => "glass",
             Some(Layers::Race) | None => "nearest",
         }),
         ("store_step", |key, _| {
@@ -54,8 +59,14 @@ const LAYERS: Feature = Feature {
         }),
         ("CLEARED_SUMS", |key, _| match key.framebuffer.layers {
             Some(Layers::Xray { .. }) => key.sum_words().into(),
+            // The heads of lists.
+            Some(Layers::Glass) if !key.view.is_light => 1.0,
             _ => 0.0,
         }),
+        ("GLASS_BANDS", |key, _| {
+            key.framebuffer.glass_bands.max(1).into()
+        }),
+        ("GLASS_DEEPEST", |key, _| key.work.deepest_glass.into()),
     ],
     ..Feature::NONE
 };
@@ -96,9 +107,17 @@ const MATERIAL_ATLAS: Feature = Feature {
         is_used: |key| key.surface.has_material_atlas,
         why_omitted: |_| "no material is more than a base color".into(),
     }),
-    variants: &[("shade_step", |key, _| {
-        step_if(key.surface.has_material_atlas, "textures")
-    })],
+    variants: &[
+        ("shade_step", |key, _| {
+            step_if(key.surface.has_material_atlas, "textures")
+        }),
+        ("shade_step", |key, _| {
+            step_if(
+                key.surface.has_material_atlas && key.surface.has_alpha,
+                "alpha",
+            )
+        }),
+    ],
     ..Feature::NONE
 };
 

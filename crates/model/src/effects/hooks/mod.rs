@@ -43,6 +43,8 @@ pub struct Hooks {
     pub passes: Option<PassHook>,
     /// The part of the rasterizer that the effect replaces.
     pub slot: Option<Slot>,
+    /// It turns the parts on which it acts into glass.
+    pub makes_glass: bool,
     /// It draws along lines, in separate passes before pixels are shaded.
     pub has_lines: bool,
     /// It adds particles to the scene.

@@ -45,6 +45,8 @@ pub enum Layers {
     Overdraw,
     /// The nearest, unless invocations interfere.
     Race,
+    /// The nearest opaque one through all glass in front of it.
+    Glass,
 }
 
 impl Layers {
@@ -53,6 +55,7 @@ impl Layers {
             Self::Xray { .. } => "xray",
             Self::Overdraw => "overdraw",
             Self::Race => "race",
+            Self::Glass => "glass",
         }
     }
 }

@@ -8,6 +8,7 @@ mod extremes;
 mod field;
 mod leaves;
 mod painted;
+mod panes;
 mod plates;
 mod query;
 mod shapes;
@@ -198,6 +199,12 @@ pub const BUILTINS: &[Builtin] = &[
             1.0..=4096.0,
         )],
         build: painted::panels,
+    },
+    Builtin {
+        name: "panes",
+        about: "blended sheets that cross each other round colored posts, so that no order of whole sheets is right",
+        params: &[whole("sheets", "number of sheets", 5.0, 1.0..=256.0)],
+        build: panes::build,
     },
     Builtin {
         name: "leaves",

@@ -47,11 +47,13 @@ pub fn read(
     };
     let mut materials = Vec::with_capacity(document.materials.len());
     for (index, about) in document.materials.iter().enumerate() {
-        let [r, g, b, _] = about.base_color;
+        let [r, g, b, alpha] = about.base_color;
+        let is_blended = about.alpha_mode == AlphaMode::Blend;
         let plain = Material {
             name: part_name("material", index, about.name.as_deref()),
-            // What is drawn is opaque.
-            base_color: [r, g, b, 1.0],
+            // What does not blend is opaque.
+            base_color: [r, g, b, if is_blended { alpha } else { 1.0 }],
+            is_blended,
             emission: about.emission,
             double_sided: about.double_sided,
             unlit: about.unlit,
@@ -104,42 +106,13 @@ impl Reader<'_, '_, '_> {
         };
         let base_texture = texture(&about.base_texture, "baseColorTexture")?;
         let emission_texture = texture(&about.emission_texture, "emissiveTexture")?;
-        let alpha_cutoff = self.alpha_cutoff(about, base_texture.as_ref(), name);
+        let alpha_cutoff = alpha_cutoff(about, base_texture.is_some());
         Ok(Material {
             base_texture,
             emission_texture,
             alpha_cutoff,
             ..plain
         })
-    }
-
-    /// The alpha of the base texture below which nothing is drawn. Masks of vertices are found with
-    /// the primitives.
-    fn alpha_cutoff(
-        &self,
-        about: &document::Material,
-        base: Option<&Texture>,
-        name: &str,
-    ) -> Option<f32> {
-        match about.alpha_mode {
-            AlphaMode::Opaque => None,
-            AlphaMode::Mask => (about.alpha_cutoff > 0.0 && base.is_some())
-                .then(|| (about.alpha_cutoff / about.base_color[3]).min(2.0)),
-            AlphaMode::Blend => {
-                let texels = base.map(|texture| &self.images[texture.image].levels[0].texels);
-                let has_holes =
-                    texels.is_some_and(|texels| texels.iter().any(|texel| texel[3] < 128));
-                let instead = if has_holes {
-                    "masked where its alpha is below one half"
-                } else {
-                    "opaque"
-                };
-                self.notes.add(|| {
-                    format!("{name}: blending is not supported; the material is {instead}")
-                });
-                has_holes.then_some(0.5)
-            }
-        }
     }
 
     /// The texture of a material, which messages call `place`; none if it cannot be read.
@@ -247,4 +220,11 @@ impl Reader<'_, '_, '_> {
         self.bytes += 4 * texels.len() as u64;
         Ok(Image::new(name, size, texels))
     }
+}
+
+/// The alpha of the base texture below which nothing is drawn. Masks of vertices are found with the
+/// primitives.
+fn alpha_cutoff(about: &document::Material, has_base: bool) -> Option<f32> {
+    (about.alpha_mode == AlphaMode::Mask && about.alpha_cutoff > 0.0 && has_base)
+        .then(|| (about.alpha_cutoff / about.base_color[3]).min(2.0))
 }

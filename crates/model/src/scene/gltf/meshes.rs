@@ -414,8 +414,12 @@ impl<'a> Loader<'a> {
                 });
             }
         }
-        // What is drawn is opaque, whatever the alpha of its colors.
-        if let Some(colors) = &mut primitive.colors {
+        // What does not blend is opaque, whatever the alpha of its colors.
+        if let Some(colors) = primitive
+            .colors
+            .as_mut()
+            .filter(|_| mode != AlphaMode::Blend)
+        {
             colors.components = 3;
         }
         primitive.material = match material {
