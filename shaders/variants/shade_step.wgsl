@@ -1,6 +1,6 @@
 // Shade steps: what is added to the surface at a sample before surface effects. `at`: vertices of the triangle within its draw.
-// Chosen by the scene and the stack: textures where materials are more than a base color, shadow_map where an effect reads
-// how much light arrives.
+// Chosen by the scene and the stack: textures where materials are more than a base color, finish where an effect reads how they
+// reflect, shadow_map where an effect reads how much light arrives.
 //@ steps fn shade_step(surface: Surface, t: Triangle, at: vec3u, position: SamplePosition) -> Surface
 
 //@ step textures
@@ -102,6 +102,21 @@ fn texture_at(lookup: Lookup, at: vec3u, weights: vec3f, slopes: Slopes) -> vec3
     let down = (ab * slopes.down.y + ac * slopes.down.z) * size;
     let squared = max(dot(right, right), dot(down, down));
     return atlas_filtered(lookup, uv, 0.5 * log2(max(squared, 1e-30)));
+}
+
+//@ step finish
+// How the material reflects.
+//@ use lib/triangle
+//@ use lib/surface
+//@ use lib/shade
+//@ use lib/finish
+//@ use lib/finish_atlas
+//@ use lib/material_atlas
+
+fn shade_step_finish(surface: Surface, t: Triangle, at: vec3u, position: SamplePosition) -> Surface {
+    var s = surface;
+    s.finish = finish_of(finish_record(atlas_record(t.draw)));
+    return s;
 }
 
 //@ step shadow_map

@@ -81,7 +81,11 @@ pub const SCENES: &[&str] = &[
 ];
 
 /// Scenes of the gallery that stress nothing in particular.
-pub const GALLERY_SCENES: &[&str] = &["town?houses=3", "still-life?tess=1"];
+pub const GALLERY_SCENES: &[&str] = &[
+    "town?houses=3",
+    "still-life?tess=1",
+    "finishes?tess=4&columns=3",
+];
 
 /// Scenes with deformed meshes, which the strict vertex stage refuses.
 pub const DEFORMED_SCENES: &[&str] = &["tentacle?tess=3", "walker?tess=1"];
@@ -224,7 +228,7 @@ fn factors(caps: &Caps) -> Vec<Vec<Level>> {
             &["facet", "lambert"],
             &["triangle_id", "fog"],
             &["normals", "toon"],
-            &["lambert", "hatch"],
+            &["studio", "hatch"],
             &["depth"],
         ]),
         effects(&[

@@ -180,6 +180,8 @@ pub enum FramebufferLayout {
 pub struct SurfaceInputs {
     /// Some material is more than a base color.
     pub has_material_atlas: bool,
+    /// How materials reflect: an effect reads it.
+    pub has_finish: bool,
     /// Plane normals and triangle centers: an effect reads them, or a normal may need a
     /// substitute.
     pub has_planes: bool,
@@ -314,6 +316,7 @@ impl KernelKey {
             },
             surface: SurfaceInputs {
                 has_material_atlas: true,
+                has_finish: true,
                 has_planes: true,
             },
             view: ViewKind {
@@ -395,7 +398,7 @@ impl KernelKey {
         self.effects
             .list
             .iter()
-            .any(|effect| effect.hooks.reads_light())
+            .any(|effect| effect.hooks.casts_shadows)
     }
 
     /// Does an effect read the previous picture?

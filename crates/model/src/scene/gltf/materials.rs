@@ -24,10 +24,12 @@ use crate::scene::{
 };
 
 /// Supported material extensions.
-pub const EXTENSIONS: [&str; 4] = [
+pub const EXTENSIONS: [&str; 6] = [
     "KHR_texture_transform",
     "KHR_materials_unlit",
     "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_specular",
     "KHR_materials_pbrSpecularGlossiness",
 ];
 
@@ -58,6 +60,9 @@ pub fn read(
             name: part_name("material", index, about.name.as_deref()),
             // What is drawn is opaque.
             base_color: [r, g, b, 1.0],
+            metallic: about.metallic,
+            roughness: about.roughness,
+            specular: about.specular,
             emission: about.emission,
             double_sided: about.double_sided,
             unlit: about.unlit,
