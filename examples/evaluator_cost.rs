@@ -10,7 +10,7 @@ use rasterlab::{
     effect_files::evaluated,
     effects::{
         EFFECTS,
-        hooks::{Surface, SurfaceFunction},
+        hooks::{Finish, Surface, SurfaceFunction},
     },
     shader::library::Library,
     stress::scenes::Rng,
@@ -47,6 +47,7 @@ fn surface(rng: &mut Rng) -> Surface {
         triangle_id: rng.next_u32() >> 12,
         rank: rng.real(0.0, 1.0),
         lit: rng.real(0.0, 1.0),
+        finish: Finish::default(),
         step_offset: 0.0,
     }
 }

@@ -1,6 +1,6 @@
 // Shade steps: what is added to the surface at a sample before surface effects. `at`: vertices of the triangle within its draw.
-// Chosen by the scene and the stack: textures where materials are more than a base color, alpha where some of them blend, shadow_map where an effect reads
-// how much light arrives.
+// Chosen by the scene and the stack: textures where materials are more than a base color, alpha where some of them blend, finish where an effect reads
+// how they reflect, shadow_map where an effect reads how much light arrives.
 //@ steps fn shade_step(surface: Surface, t: Triangle, at: vec3u, position: SamplePosition) -> Surface
 // Of the step textures, for the one behind it.
 //@ may declare fn slopes_of(t: Triangle, at: vec3u, position: SamplePosition, screen: vec2f) -> Slopes
@@ -170,6 +170,21 @@ fn alpha_filtered(lookup: Lookup, uv: vec2f, detail: f32) -> f32 {
     let nearer = alpha_level(lookup, u32(low), uv, is_linear);
     if low >= last { return nearer; }
     return mix(nearer, alpha_level(lookup, u32(low) + 1u, uv, is_linear), detail - low);
+}
+
+//@ step finish
+// How the material reflects.
+//@ use lib/triangle
+//@ use lib/surface
+//@ use lib/shade
+//@ use lib/finish
+//@ use lib/finish_atlas
+//@ use lib/material_atlas
+
+fn shade_step_finish(surface: Surface, t: Triangle, at: vec3u, position: SamplePosition) -> Surface {
+    var s = surface;
+    s.finish = finish_of(finish_record(atlas_record(t.draw)));
+    return s;
 }
 
 //@ step shadow_map

@@ -10,7 +10,7 @@ use rasterlab::{
     effects::{
         EFFECTS, Effect,
         hooks::{
-            Hooks, Image, ImageAt, Lens, PassInput, Picture, Pixel, Sample, Signs, Surface,
+            Finish, Hooks, Image, ImageAt, Lens, PassInput, Picture, Pixel, Sample, Signs, Surface,
             TriangleSetup, Vertex,
         },
     },
@@ -34,6 +34,11 @@ const LOOSER: &[(&str, f64, &str)] = &[
         "wobble",
         1e-6,
         "lib/angle has a polynomial for the sine, within 3.4e-9 of it, which is multiplied by the slope",
+    ),
+    (
+        "studio",
+        1e-6,
+        "lib/angle has a polynomial for the sine, within 3.4e-9 of it, which turns a lamp as narrow as a tenth of a radian",
     ),
     (
         "hatch",
@@ -137,6 +142,12 @@ fn surface(rng: &mut Rng) -> Surface {
         triangle_id: whole(rng, 1 << 20),
         rank: rng.real(0.0, 1.0),
         lit: rng.real(0.0, 1.0),
+        finish: Finish {
+            specular: vector(rng, 0.0, 1.0).extend(rng.real(0.0, 1.0)),
+            metallic: rng.real(0.0, 1.0),
+            roughness: rng.real(0.0, 1.0),
+            occlusion: rng.real(0.0, 1.0),
+        },
         step_offset: 0.0,
     }
 }
@@ -209,6 +220,8 @@ fn surface_functions_agree() {
                             .flat_map(|v| v.to_array()),
                     );
                     all.extend([s.depth_m, s.pixel_size_m, s.flat_depth_m, s.rank, s.lit]);
+                    all.extend(s.finish.specular.to_array());
+                    all.extend([s.finish.metallic, s.finish.roughness, s.finish.occlusion]);
                     all
                 };
                 same(

@@ -294,6 +294,9 @@ fn obstacle(gpu: &Gpu, scene: &Scene, stack: &Stack) -> Option<String> {
         () if stack.moves() => "an effect moves vertices, which it does not",
         () if stack.dots().is_some() => "an effect strings dots, which it does not",
         () if stack.light().is_some() => "an effect asks for shadows, which it does not draw",
+        () if stack.reads_finish() => {
+            "an effect asks how materials reflect, which it does not know"
+        }
         () if scene.primitives.is_empty() => "the scene is empty",
         () => {
             let image = scene

@@ -2,9 +2,9 @@
 //! costs no storage buffer.
 //!
 //! The texture is used as a row of words, folded to [`WIDTH`] words a line and as many lines a
-//! layer: sRGB decoded, a word per byte; a record per primitive; where the vertices of masked ones
-//! lie in their images; then where the levels of each image begin, and the levels of all images, a
-//! texel a word. Mirrors of `shaders/lib/material_atlas.wgsl`.
+//! layer: sRGB decoded, a word per byte; a record per primitive; how primitives reflect, where an
+//! effect reads it; where the vertices of masked ones lie in their images; then where the levels of
+//! each image begin, and the levels of all images, a texel a word. Mirrors of `shaders/lib/material_atlas.wgsl`.
 
 use std::mem::size_of;
 
@@ -12,11 +12,12 @@ use super::{
     attributes::format_word,
     device::Gpu,
     error::RenderError,
-    records::{LookupRecord, MaterialRecord},
+    records::{FinishRecord, LookupRecord, MaterialRecord},
     resource_id::TextureId,
     textures::{self, WordTexture},
 };
 use crate::{
+    effects::hooks::Finish,
     math::linear_light,
     scene::{
         Accessor, Primitive, Scene,
@@ -35,14 +36,33 @@ const BASE_TEXTURE: u32 = 1;
 const EMISSION_TEXTURE: u32 = 2;
 const UNLIT: u32 = 4;
 const MASKED: u32 = 8;
+/// The word of the primitive's finish, from this bit on.
+const FINISH_SHIFT: u32 = 4;
 
-/// Uploads what the materials of `scene` need.
+/// The words that the bits above that count.
+const MAX_FINISH_WORD: usize = 1 << (32 - FINISH_SHIFT);
+/// Words of a primitive's finish.
+const FINISH_WORDS: usize = size_of::<FinishRecord>() / 4;
+
+/// Uploads what the materials of `scene` need, and how they reflect if `has_finish`.
 ///
 /// # Errors
 /// When they take more layers than the adapter's textures have, or more memory than there is.
-pub async fn upload(gpu: &Gpu, scene: &Scene) -> Result<WordTexture, RenderError> {
+pub async fn upload(
+    gpu: &Gpu,
+    scene: &Scene,
+    has_finish: bool,
+) -> Result<WordTexture, RenderError> {
     let id = TextureId::MaterialAtlas;
-    let mut words = words(scene);
+    let before_images = 256 + (RECORD_WORDS + FINISH_WORDS) * scene.primitives.len();
+    if has_finish && before_images >= MAX_FINISH_WORD {
+        return Err(RenderError::TooLarge {
+            buffer: id.name(),
+            bytes: 4 * before_images as u64,
+            limit: 4 * MAX_FINISH_WORD as u64,
+        });
+    }
+    let mut words = words(scene, has_finish);
     let line = WIDTH as usize;
     words.resize(words.len().next_multiple_of(line), 0);
     let lines = (words.len() / line) as u32;
@@ -93,13 +113,19 @@ pub async fn upload(gpu: &Gpu, scene: &Scene) -> Result<WordTexture, RenderError
 }
 
 /// Everything, word after word.
-fn words(scene: &Scene) -> Vec<u32> {
+fn words(scene: &Scene, has_finish: bool) -> Vec<u32> {
     let mut words: Vec<u32> = (0..256)
         .map(|byte| (linear_light(f64::from(byte) / 255.0) as f32).to_bits())
         .collect();
     // A record at least, even where nothing is to be drawn.
     let records = scene.primitives.len().max(1);
-    let mut first = words.len() + RECORD_WORDS * records;
+    let first_finish = words.len() + RECORD_WORDS * records;
+    let finish_words = if has_finish { FINISH_WORDS } else { 0 };
+    let mut first = first_finish + finish_words * records;
+    let finish_at = |index: usize| match has_finish {
+        true => ((first_finish + FINISH_WORDS * index) as u32) << FINISH_SHIFT,
+        false => 0,
+    };
     let corners = corners(scene, &mut first);
     let lists = Lists::of(scene, first as u32);
     let lookup =
@@ -130,14 +156,15 @@ fn words(scene: &Scene) -> Vec<u32> {
             }
             _ => LookupRecord::default(),
         };
-    for (primitive, corners) in scene.primitives.iter().zip(&corners) {
+    for (index, (primitive, corners)) in scene.primitives.iter().zip(&corners).enumerate() {
         let material = &scene.materials[primitive.material];
         let [base, glow] = material.textures();
         let flag = |is_there: bool, bit: u32| if is_there { bit } else { 0 };
         let textures = flag(base.is_some(), BASE_TEXTURE) | flag(glow.is_some(), EMISSION_TEXTURE);
         let flags = textures
             | flag(material.unlit, UNLIT)
-            | flag(material.alpha_threshold().is_some(), MASKED);
+            | flag(material.alpha_threshold().is_some(), MASKED)
+            | finish_at(index);
         let [red, green, blue] = material.emission;
         let (alpha_threshold, first_corner) =
             (material.alpha_threshold().unwrap_or(0), corners.first);
@@ -155,13 +182,33 @@ fn words(scene: &Scene) -> Vec<u32> {
         ];
         words.extend_from_slice(bytemuck::cast_slice(&lookups));
     }
-    words.resize(256 + RECORD_WORDS * records, 0);
+    words.resize(first_finish, 0);
+    if has_finish {
+        for primitive in &scene.primitives {
+            words.extend_from_slice(bytemuck::cast_slice(&[finish(primitive, scene)]));
+        }
+        words.resize(first_finish + FINISH_WORDS * records, 0);
+    }
     words.extend(corners.iter().flat_map(|corners| &corners.words));
     words.extend(&lists.words);
     for level in scene.images.iter().flat_map(|image| &image.levels) {
         words.extend(level.texels.iter().map(|&texel| u32::from_le_bytes(texel)));
     }
     words
+}
+
+/// How a primitive reflects.
+fn finish(primitive: &Primitive, scene: &Scene) -> FinishRecord {
+    let finish = Finish::from(&scene.materials[primitive.material]);
+    let [red, green, blue, grazing] = finish.specular.as_vec4().to_array();
+    FinishRecord {
+        red,
+        green,
+        blue,
+        grazing,
+        metallic: finish.metallic as f32,
+        roughness: finish.roughness as f32,
+    }
 }
 
 /// Where the levels of all images begin, an image after another.

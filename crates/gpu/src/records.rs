@@ -324,6 +324,18 @@ gpu_record! {
 }
 
 gpu_record! {
+    /// How one primitive reflects. Each member is explained in `shaders/lib/finish_atlas.wgsl`.
+    pub struct FinishRecord = "FinishRecord" {
+        pub red: f32,
+        pub green: f32,
+        pub blue: f32,
+        pub grazing: f32,
+        pub metallic: f32,
+        pub roughness: f32,
+    }
+}
+
+gpu_record! {
     /// Workgroups of an indirect dispatch.
     pub struct DispatchSize = "Dispatch" {
         pub x: u32,
@@ -398,6 +410,7 @@ pub const RECORDS: &[RecordLayout] = &[
     StepParams::LAYOUT,
     LookupRecord::LAYOUT,
     MaterialRecord::LAYOUT,
+    FinishRecord::LAYOUT,
     HardwareMaterial::LAYOUT,
     DispatchSize::LAYOUT,
     DispatchArgs::LAYOUT,

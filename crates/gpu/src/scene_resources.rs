@@ -18,6 +18,7 @@ use super::{
 use crate::{
     effects::Stack,
     scene::{Scene, particle_discs::ParticleSettings},
+    shader::key::SurfaceInputs,
 };
 
 /// A scene on the device: its attributes, index lists and materials. Every view of the scene reads
@@ -34,6 +35,8 @@ pub struct SceneResources {
     /// has them.
     packed_boxes: Vec<PackedBox>,
     pub material_atlas: Option<WordTexture>,
+    /// It says how materials reflect.
+    atlas_has_finish: bool,
     /// Meshlets of all primitives, once a view culls.
     meshlets: Option<Arc<MeshletBuffers>>,
 }
@@ -52,6 +55,7 @@ impl SceneResources {
             attributes: AttributeLayout::default(),
             packed_boxes: Vec::new(),
             material_atlas: None,
+            atlas_has_finish: false,
             meshlets: None,
         };
         resources.upload(gpu).await?;
@@ -172,17 +176,21 @@ impl SceneResources {
         }
     }
 
-    /// Uploads the materials where they are looked up, else drops them.
+    /// Uploads the materials where `inputs` look them up, else drops them.
     ///
     /// # Errors
     /// When they do not fit.
-    pub async fn keep_materials(&mut self, gpu: &Gpu, are_needed: bool) -> Result<(), RenderError> {
-        match (are_needed, &self.material_atlas) {
-            (true, None) => {
-                self.material_atlas = Some(material_atlas::upload(gpu, &self.scene).await?)
-            }
-            (false, Some(_)) => self.material_atlas = None,
-            _ => {}
+    pub async fn keep_materials(
+        &mut self,
+        gpu: &Gpu,
+        inputs: &SurfaceInputs,
+    ) -> Result<(), RenderError> {
+        if !inputs.has_material_atlas && !inputs.has_finish {
+            self.material_atlas = None;
+        } else if self.material_atlas.is_none() || inputs.has_finish && !self.atlas_has_finish {
+            self.material_atlas = None;
+            let atlas = material_atlas::upload(gpu, &self.scene, inputs.has_finish).await?;
+            (self.material_atlas, self.atlas_has_finish) = (Some(atlas), inputs.has_finish);
         }
         Ok(())
     }

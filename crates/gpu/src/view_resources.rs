@@ -188,9 +188,7 @@ impl ViewResources {
                 self.release_commands();
             }
             scene.pack_positions(gpu, packed_bits).await?;
-            scene
-                .keep_materials(gpu, key.surface.has_material_atlas)
-                .await?;
+            scene.keep_materials(gpu, &key.surface).await?;
         }
         let is_changed = self.update_draw_data(scene, key, &view, &draws, request.stack);
         if self.target == Target::Picture {

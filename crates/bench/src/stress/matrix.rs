@@ -81,7 +81,11 @@ pub const SCENES: &[&str] = &[
 ];
 
 /// Scenes of the gallery that stress nothing in particular.
-pub const GALLERY_SCENES: &[&str] = &["town?houses=3", "still-life?tess=1"];
+pub const GALLERY_SCENES: &[&str] = &[
+    "town?houses=3",
+    "still-life?tess=1",
+    "finishes?tess=4&columns=3",
+];
 
 /// Scenes of glass, which the hardware baseline draws as if it were opaque.
 pub const GLASS_SCENES: &[&str] = &["panes"];
@@ -228,7 +232,7 @@ fn factors(caps: &Caps) -> Vec<Vec<Level>> {
             &["facet", "lambert"],
             &["triangle_id", "fog"],
             &["normals", "toon"],
-            &["lambert", "hatch"],
+            &["studio", "hatch"],
             &["depth"],
         ]),
         effects(&[

@@ -36,7 +36,7 @@ pub fn duplicate(effect: &Effect, name: &str) -> Result<String, String> {
                 .into(),
         );
     }
-    if hooks.reads_light() {
+    if hooks.casts_shadows {
         return Err("draws the scene from its light, which an effect file cannot".into());
     }
     let file = format!("effects/{}", effect.file_stem());

@@ -12,7 +12,7 @@ use super::evaluated::{EvaluatedError, evaluated_in};
 use crate::{
     effects::{
         Effect, Stack,
-        hooks::{ImageHook, Pixel, SampleHook, Surface, Vertex, VertexHook},
+        hooks::{Finish, ImageHook, Pixel, SampleHook, Surface, Vertex, VertexHook},
     },
     evaluator::Precision,
     math::srgb,
@@ -332,6 +332,12 @@ pub(super) fn rounded(s: Surface) -> Surface {
         depth_range_m: two(s.depth_range_m),
         rank: one(s.rank),
         lit: one(s.lit),
+        finish: Finish {
+            specular: s.finish.specular.as_vec4().as_dvec4(),
+            metallic: one(s.finish.metallic),
+            roughness: one(s.finish.roughness),
+            occlusion: one(s.finish.occlusion),
+        },
         ..s
     }
 }

@@ -210,7 +210,7 @@ fn read_anew(file: &str, stem: &str, written: &str) -> Result<Effect, EffectErro
         ));
         hooks.surface_inputs = SurfaceInput::ALL
             .into_iter()
-            .filter(|input| *input != SurfaceInput::Lit && members.contains(&input.member()))
+            .filter(|input| members.contains(&input.member()))
             .collect();
     }
     if let Some(name) = &source.functions.image {

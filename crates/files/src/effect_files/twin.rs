@@ -207,7 +207,9 @@ pub fn surface(exact: Function, rounded: Function) -> Arc<SurfaceFunction> {
             .floats(perturbed([s.flat_depth_m], 14, strength))
             .floats(s.depth_range_m.to_array())
             .whole(s.triangle_id)
-            .floats([s.rank, s.lit]);
+            .floats([s.rank, s.lit])
+            .floats(perturbed(s.finish.specular.to_array(), 15, strength))
+            .floats([s.finish.metallic, s.finish.roughness, s.finish.occlusion]);
         let read = function.call(arguments.0, words, &mut NoHost, |result| {
             s.color = DVec4::from_array(result.floats());
             s.glow = DVec3::from_array(result.floats());
@@ -225,6 +227,9 @@ pub fn surface(exact: Function, rounded: Function) -> Arc<SurfaceFunction> {
             s.depth_range_m = DVec2::from_array(result.floats());
             s.triangle_id = result.word().to_u32();
             [s.rank, s.lit] = result.floats();
+            s.finish.specular = DVec4::from_array(result.floats());
+            let finish = &mut s.finish;
+            [finish.metallic, finish.roughness, finish.occlusion] = result.floats();
             s
         });
         read.unwrap_or(Surface {

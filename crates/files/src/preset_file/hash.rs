@@ -3,7 +3,7 @@
 use super::file::{PresetFile, to_toml};
 use crate::{
     preset::{Clock, Preset},
-    scene::{Accessor, Scene},
+    scene::{Accessor, Scene, material::Material},
 };
 
 /// Hash of everything that decides the picture, without names, comments, budgets and values at
@@ -73,6 +73,14 @@ pub fn scene_hash(scene: &Scene) -> Fnv {
             .words(&[material.double_sided.into()]);
         if material.is_blended {
             hash = hash.words(&[1]);
+        }
+        let [finish, usual] = [material, &Material::default()]
+            .map(|material| (material.metallic, material.roughness, material.specular));
+        if finish != usual {
+            let (metallic, roughness, specular) = finish;
+            hash = hash
+                .words(&[metallic, roughness].map(f32::to_bits))
+                .words(&specular.map(f32::to_bits));
         }
     }
     for instance in &scene.instances {

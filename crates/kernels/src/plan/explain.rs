@@ -37,6 +37,7 @@ impl Plan {
             self.vertex_effects_reason(),
             self.scopes_reason(),
             self.material_reason(),
+            self.finish_reason(),
             self.mask_reason(),
             self.image_reason(),
             self.passes_reason(),
@@ -205,6 +206,19 @@ impl Plan {
             .surface
             .has_material_atlas
             .then(|| note("material atlas", why))
+    }
+
+    fn finish_reason(&self) -> Option<Note> {
+        let readers: Vec<_> = self
+            .key
+            .effects
+            .list
+            .iter()
+            .filter(|effect| effect.hooks.reads_finish())
+            .map(|effect| effect.name.as_str())
+            .collect();
+        let why = "metallic, roughness and reflectance of every primitive stand in the atlas";
+        (!readers.is_empty()).then(|| note("finish", format!("{}: {why}", readers.join(", "))))
     }
 
     fn mask_reason(&self) -> Option<Note> {

@@ -95,6 +95,7 @@ pub(super) fn key_of(
         surface: SurfaceInputs {
             has_material_atlas: needs.material_count > 0,
             has_alpha: layers == Some(Layers::Glass) && needs.has_blended_textures,
+            has_finish: stack.reads_finish(),
             has_planes: stack.reads_planes() || !needs.normals_agree,
         },
         view: ViewKind {

@@ -125,9 +125,16 @@ impl StackTraits {
             .any(|effect| effect.hooks.image.is_some())
     }
 
+    /// Does an effect ask how materials reflect?
+    pub fn reads_finish(&self) -> bool {
+        self.effects
+            .iter()
+            .any(|effect| effect.hooks.reads_finish())
+    }
+
     /// Does an effect ask how much of a light arrives?
     pub fn reads_light(&self) -> bool {
-        self.effects.iter().any(|effect| effect.hooks.reads_light())
+        self.effects.iter().any(|effect| effect.hooks.casts_shadows)
     }
 
     /// Does an effect read what only the plane of a triangle tells? The taps of a shadow map do.

@@ -1,7 +1,7 @@
 //! Glue: generated WGSL. The parameters of the stack's effects with constants for their choices,
 //! one call chain per hook, and buffers that a kernel key declares in one of several ways.
 
-use std::{fmt::Write, sync::Arc};
+use std::{borrow::Cow, fmt::Write, sync::Arc};
 
 use crate::{
     effects::{Effect, EffectSource, EnabledEffect, constant_name},
@@ -351,6 +351,19 @@ const fn uniform(key: &KernelKey) -> &'static str {
         "storage, read"
     } else {
         "uniform"
+    }
+}
+
+/// The text of `lib/surface` with one more member of the surface: how its material reflects, which
+/// only kernels have whose effects read it.
+pub fn with_finish(surface: &str) -> Cow<'_, str> {
+    match surface.rfind('}') {
+        Some(end) => Cow::Owned(format!(
+            "{}    finish: Finish,\n{}",
+            &surface[..end],
+            &surface[end..]
+        )),
+        None => Cow::Borrowed(surface),
     }
 }
 

@@ -186,6 +186,8 @@ pub struct SurfaceInputs {
     pub has_material_atlas: bool,
     /// The alpha of a texture tells how much some glass covers.
     pub has_alpha: bool,
+    /// How materials reflect: an effect reads it.
+    pub has_finish: bool,
     /// Plane normals and triangle centers: an effect reads them, or a normal may need a
     /// substitute.
     pub has_planes: bool,
@@ -323,6 +325,7 @@ impl KernelKey {
             surface: SurfaceInputs {
                 has_material_atlas: true,
                 has_alpha: layers == Some(Layers::Glass),
+                has_finish: true,
                 has_planes: true,
             },
             view: ViewKind {
@@ -404,7 +407,7 @@ impl KernelKey {
         self.effects
             .list
             .iter()
-            .any(|effect| effect.hooks.reads_light())
+            .any(|effect| effect.hooks.casts_shadows)
     }
 
     /// Does an effect read the previous picture?

@@ -16,6 +16,7 @@
 //! can use a stage.
 
 use std::{
+    borrow::Cow,
     collections::{BTreeMap, BTreeSet, HashMap},
     fmt::Write,
     ops::Range,
@@ -299,13 +300,18 @@ impl<'a> Linker<'a> {
         if self.taken.contains_key(part) {
             return Ok(());
         }
-        self.append(
-            part,
-            Some((file.to_owned(), section.first_line)),
-            &section.text,
-        );
+        let has_finish = file == "lib/surface" && self.key.surface.has_finish;
+        let text = if has_finish {
+            glue::with_finish(&section.text)
+        } else {
+            Cow::Borrowed(&*section.text)
+        };
+        self.append(part, Some((file.to_owned(), section.first_line)), &text);
         self.taken
             .insert(part.to_owned(), (file.to_owned(), section.clone()));
+        if has_finish {
+            self.take_head("lib/finish", file)?;
+        }
         for (directive, line) in &section.source.directives {
             let line = section.first_line as u32 + line;
             let user = place(file, line as usize - 1);

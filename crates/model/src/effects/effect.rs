@@ -128,6 +128,12 @@ impl Effect {
         self
     }
 
+    /// The same effect, which is a light that casts shadows.
+    pub fn with_shadows(mut self) -> Self {
+        self.hooks.casts_shadows = true;
+        self
+    }
+
     /// The same effect, which reads members of the surface in passes of its slot.
     pub fn reading(mut self, inputs: &[SurfaceInput]) -> Self {
         self.hooks.surface_inputs = inputs.to_vec();
@@ -180,7 +186,7 @@ impl Effect {
         let is_alone = hooks.slot.is_some()
             || hooks.has_lines
             || hooks.particle_settings.is_some()
-            || hooks.reads_light();
+            || hooks.casts_shadows;
         !is_alone && !hooks.image.as_ref().is_some_and(|hook| hook.reads_previous)
     }
 

@@ -21,6 +21,7 @@ macro_rules! for_each_effect {
             normals,
             depth,
             lambert,
+            studio,
             shadow,
             toon,
             hatch,

@@ -53,6 +53,7 @@ pub static EFFECT: BuiltIn = BuiltIn::new(|| {
         "a directional light whose shadows the rasterizer draws itself",
     )
     .in_steps()
+    .with_shadows()
     .into()
 });
 
@@ -60,6 +61,22 @@ pub static EFFECT: BuiltIn = BuiltIn::new(|| {
 pub const MAX_SHADOW_SLOPE: f64 = 8.0;
 
 impl Shadow {
+    /// Turns the light to where `sun` is, a direction of any length. A light that is turned away
+    /// from its default turns the sun instead.
+    pub fn face(&mut self, sun: &mut [f32; 4]) {
+        let default = Self::default();
+        let is_turned = [self.azimuth_deg, self.elevation_deg]
+            != [default.azimuth_deg, default.elevation_deg];
+        let toward = DVec3::from([0, 1, 2].map(|axis| f64::from(sun[axis])));
+        if is_turned {
+            let [x, y, z] = self.toward().as_vec3().to_array();
+            *sun = [x, y, z, sun[3]];
+        } else if let Some(toward) = toward.try_normalize() {
+            self.azimuth_deg = libm::atan2(toward.x, toward.z).to_degrees() as f32;
+            self.elevation_deg = libm::asin(toward.y.clamp(-1.0, 1.0)).to_degrees() as f32;
+        }
+    }
+
     /// Unit vector towards the light.
     pub fn toward(&self) -> DVec3 {
         let [azimuth, elevation] =

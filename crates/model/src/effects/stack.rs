@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use glam::{DVec3, Vec4};
+use glam::Vec4;
 
 use super::{
     dots, draw_order,
     effect::{Effect, read},
     glass::GlassDraws,
     hooks::{self, Hooks, Layers, Picture, Pixel, Shape, Slot, Surface},
-    lambert, points, race, shadow, smear, xray,
+    lambert, points, race, shadow, smear, studio, xray,
 };
 use crate::{
     params::Params,
@@ -321,6 +321,12 @@ impl Stack {
         self.params(&shadow::EFFECT.name)
     }
 
+    /// Does an effect read how materials reflect?
+    pub fn reads_finish(&self) -> bool {
+        let reads = |enabled: &EnabledEffect| enabled.effect.hooks.reads_finish();
+        self.0.iter().any(reads)
+    }
+
     /// The view of that light, for its shadow map of `scene` in `view`.
     pub fn light_view(&self, scene: &Scene, view: &View) -> Option<View> {
         Some(light_view(
@@ -518,10 +524,10 @@ impl Stack {
         self.scaled(factor).with_one_sun()
     }
 
-    /// Where Lambert and Shadow both act on the whole scene, the light that casts shadows is that
-    /// of Lambert: from its direction, unless Shadow is turned away from its own default, and with
-    /// its colors. A shadow that only dims keeps what it does. Lambert's headlight then comes from
-    /// above and below.
+    /// Where Lambert or Studio and Shadow act on the whole scene, the light that casts shadows is
+    /// that of the former: from its direction, unless Shadow is turned away from its own default,
+    /// and with its colors. A shadow that only dims keeps what it does. Lambert's headlight then
+    /// comes from above and below.
     #[must_use]
     fn with_one_sun(mut self) -> Self {
         let at = |stack: &Self, name: &str| {
@@ -530,22 +536,31 @@ impl Stack {
             };
             stack.0.iter().position(is_it)
         };
-        let (Some(sun_at), Some(shadow_at)) = (
-            at(&self, &lambert::EFFECT.name),
-            at(&self, &shadow::EFFECT.name),
-        ) else {
+        let Some(shadow_at) = at(&self, &shadow::EFFECT.name) else {
             return self;
         };
-        let sun: lambert::Lambert = read(&self.0[sun_at].words);
         let mut shadow: shadow::Shadow = read(&self.0[shadow_at].words);
-        let default = shadow::Shadow::default();
-        let is_turned = [shadow.azimuth_deg, shadow.elevation_deg]
-            != [default.azimuth_deg, default.elevation_deg];
-        let toward = DVec3::from([0, 1, 2].map(|axis| f64::from(sun.sun_direction[axis])));
-        if !is_turned && let Some(toward) = toward.try_normalize() {
-            shadow.azimuth_deg = libm::atan2(toward.x, toward.z).to_degrees() as f32;
-            shadow.elevation_deg = libm::asin(toward.y.clamp(-1.0, 1.0)).to_degrees() as f32;
+        if let Some(studio_at) = at(&self, &studio::EFFECT.name) {
+            let mut sun: studio::Studio = read(&self.0[studio_at].words);
+            let dims = shadow::Shading::of(shadow.shading) == shadow::Shading::Dim;
+            if dims && shadow.strength == 0.0 {
+                return self;
+            }
+            shadow.face(&mut sun.sun_direction);
+            if !dims {
+                // Studio takes the shadow from its sun alone; Shadow itself then dims by nothing.
+                sun.sun_direction[3] = shadow.strength;
+                (shadow.shading, shadow.strength) = (shadow::Shading::Dim as u32, 0.0);
+            }
+            self.0[studio_at].put(&sun);
+            self.0[shadow_at].put(&shadow);
+            return self;
         }
+        let Some(sun_at) = at(&self, &lambert::EFFECT.name) else {
+            return self;
+        };
+        let mut sun: lambert::Lambert = read(&self.0[sun_at].words);
+        shadow.face(&mut sun.sun_direction);
         if shadow::Shading::of(shadow.shading) == shadow::Shading::Dim {
             self.0[shadow_at].put(&shadow);
             return self;
@@ -601,8 +616,10 @@ impl Conflict {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::{
-        super::{lambert::Lambert, shadow::Shadow},
+        super::{lambert::Lambert, shadow::Shadow, studio::Studio},
         *,
     };
 
@@ -622,6 +639,45 @@ mod tests {
         let toward = DVec3::from([0, 1, 2].map(|axis| f64::from(sun.sun_direction[axis])));
         assert!(shadow.toward().dot(toward.normalize()) > 0.999_999);
         assert_eq!(drawn.drawn(1.0), drawn, "again it is the same");
+    }
+
+    #[test]
+    fn studio_takes_a_shadow_from_its_sun_alone() {
+        let mut stack = Stack::default();
+        stack.enable(&studio::EFFECT);
+        stack.enable(&shadow::EFFECT).put(&Shadow {
+            strength: 0.75,
+            ..Shadow::default()
+        });
+        let drawn = stack.drawn(1.0);
+        let sun = sun_of(&drawn);
+        let light = drawn.light().expect("a light");
+        assert_eq!((sun.sun_direction[3], light.strength), (0.75, 0.0));
+        let toward = DVec3::from([0, 1, 2].map(|axis| f64::from(sun.sun_direction[axis])));
+        assert!(light.toward().dot(toward.normalize()) > 0.999_999);
+        assert_eq!(drawn.drawn(1.0), drawn, "again it is the same");
+        let shade = |sun: [f32; 4], lit: f64| {
+            let mut stack = drawn.clone();
+            let studio = Studio {
+                sun,
+                ..sun_of(&drawn)
+            };
+            stack.get_mut("studio").expect("it is on").put(&studio);
+            let surface = Surface {
+                lit,
+                ..Surface::example(DVec3::splat(0.5), 0)
+            };
+            stack.shade(surface, u32::MAX).color.truncate()
+        };
+        let (bright, none) = ([0.5, 0.4, 0.3, 1.0], [0.0, 0.0, 0.0, 1.0]);
+        let sky = shade(none, 1.0);
+        assert_eq!(shade(none, 0.0), sky, "the sky casts no shadow");
+        let (lit, dark) = (shade(bright, 1.0) - sky, shade(bright, 0.0) - sky);
+        assert!((dark - lit * 0.25).length() < 1e-12, "{dark} of {lit}");
+    }
+
+    fn sun_of(stack: &Stack) -> Studio {
+        read(&stack.get("studio").expect("it is on").words)
     }
 
     #[test]

@@ -16,6 +16,13 @@ pub struct Material {
     pub alpha_cutoff: Option<f32>,
     /// What lies behind is seen through it: alpha is the fraction that its color covers.
     pub is_blended: bool,
+    /// 0: not a metal; 1: a metal, which reflects its base color.
+    pub metallic: f32,
+    /// Perceptual roughness: 0 a mirror, 1 matt.
+    pub roughness: f32,
+    /// What it reflects where it is no metal: linear RGB of light that meets it straight on, and
+    /// the part of light that grazes it. Each 0 to 1.
+    pub specular: [f32; 4],
     /// Emitted light, linear RGB, from 0 up.
     pub emission: [f32; 3],
     /// Multiplies the emission.
@@ -56,6 +63,10 @@ impl Default for Material {
             base_texture: None,
             alpha_cutoff: None,
             is_blended: false,
+            metallic: 0.0,
+            roughness: 0.5,
+            // Glass, plastic and most else that is no metal: a refractive index of 1.5.
+            specular: [0.04, 0.04, 0.04, 1.0],
             emission: [0.0; 3],
             emission_texture: None,
             unlit: false,

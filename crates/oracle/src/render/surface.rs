@@ -28,7 +28,7 @@ use super::{
 use crate::{
     effects::{
         Surface,
-        hooks::{ROUNDING, Shape},
+        hooks::{Finish, ROUNDING, Shape},
     },
     frame::{Geometry, SnappedVertex},
     math::srgb,
@@ -169,6 +169,7 @@ pub struct SurfaceTriangle<'a> {
     /// Mean of the corners before any vertex effect.
     center: DVec3,
     colors: [DVec4; 3],
+    finish: Finish,
     /// None for a material that is only a base color.
     material: Option<TriangleMaterial<'a>>,
     /// In object space; none if a corner has no finite normal.
@@ -255,6 +256,7 @@ impl<'a> SurfaceTriangle<'a> {
                 .transform_point3(object.iter().sum::<DVec3>() / 3.0),
             positions: object.map(|position| draw.world_from_object.transform_point3(position)),
             colors: vertices.map(color),
+            finish: Finish::from(material),
             material: TriangleMaterial::of(scene, primitive, vertices),
             normals: n0
                 .zip(n1)
@@ -407,6 +409,7 @@ impl<'a> SurfaceTriangle<'a> {
             triangle_id: self.id,
             rank: 0.0,
             lit: 0.0,
+            finish: self.finish,
             step_offset: 0.0,
         }
     }

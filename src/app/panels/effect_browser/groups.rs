@@ -6,7 +6,10 @@ use glam::{DVec2, DVec3, DVec4};
 
 use crate::{
     app::widgets::fuzzy,
-    effects::{Effect, Surface, hooks::Slot},
+    effects::{
+        Effect, Surface,
+        hooks::{Finish, Slot},
+    },
 };
 
 /// What effects of a group do.
@@ -129,6 +132,7 @@ fn surface(index: f64, tone: f64) -> Surface {
         triangle_id: 7,
         rank: 0.5,
         lit: 0.5,
+        finish: Finish::default(),
         step_offset: 0.0,
     }
 }
@@ -234,7 +238,7 @@ mod tests {
         assert_eq!(
             of(Group::Surface),
             [
-                "facet", "lambert", "shadow", "toon", "hatch", "fog", "tonemap"
+                "facet", "lambert", "studio", "shadow", "toon", "hatch", "fog", "tonemap"
             ]
         );
         assert_eq!(

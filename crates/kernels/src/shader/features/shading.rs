@@ -14,6 +14,7 @@ pub(super) const FEATURES: &[Feature] = &[
     COLORS,
     ATTRIBUTES,
     MATERIAL_ATLAS,
+    FINISH,
     MASK,
     LIGHT,
     DOTS,
@@ -118,6 +119,19 @@ const MATERIAL_ATLAS: Feature = Feature {
             )
         }),
     ],
+    ..Feature::NONE
+};
+
+const FINISH: Feature = Feature {
+    label: |key| word_if(key.surface.has_finish, "finish"),
+    part: Some(Part {
+        name: "finish",
+        is_used: |key| key.surface.has_finish,
+        why_omitted: |_| "no effect reads how materials reflect".into(),
+    }),
+    variants: &[("shade_step", |key, _| {
+        step_if(key.surface.has_finish, "finish")
+    })],
     ..Feature::NONE
 };
 

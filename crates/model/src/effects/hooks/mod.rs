@@ -18,7 +18,7 @@ pub use passes::{
 };
 pub use sample::{Sample, SampleEffect, SampleHook, SetupFunction, TriangleSetup};
 pub use slot::{Layers, Shape, Slot};
-pub use surface::{Surface, SurfaceEffect, SurfaceInput};
+pub use surface::{Finish, Surface, SurfaceEffect, SurfaceInput};
 pub use vertex::{ErrorBound, ROUNDING, Vertex, VertexEffect, VertexHook};
 
 use std::sync::Arc;
@@ -51,14 +51,16 @@ pub struct Hooks {
     pub particle_settings: Option<fn(&[u32]) -> ParticleSettings>,
     /// Its color has steps, decided by a value plus [`Surface::step_offset`].
     pub has_steps: bool,
+    /// It is the light that casts shadows, so that the scene is drawn from the light as well.
+    pub casts_shadows: bool,
     /// The members of the surface that it reads.
     pub surface_inputs: Vec<SurfaceInput>,
 }
 
 impl Hooks {
-    /// Does it read [`Surface::lit`], so that the scene is drawn from the light as well?
-    pub fn reads_light(&self) -> bool {
-        self.surface_inputs.contains(&SurfaceInput::Lit)
+    /// Does it read how materials reflect?
+    pub fn reads_finish(&self) -> bool {
+        self.surface_inputs.contains(&SurfaceInput::Finish)
     }
 
     /// Names for listings: `sample + surface`.

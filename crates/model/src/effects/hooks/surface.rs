@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3, DVec4};
 
-use crate::params::Params;
+use crate::{params::Params, scene::material::Material};
 
 /// What the rasterizer knows about a visible sample; a surface effect changes it and passes it on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,8 +48,10 @@ pub struct Surface {
     pub triangle_id: u32,
     /// Fraction of all samples that precede the triangle's first in a draw order; 0 without one.
     pub rank: f64,
-    /// Fraction of the light that arrives, 0 to 1, where an effect reads it; else 0.
+    /// Fraction of the light that arrives, 0 to 1, where Shadow is in the stack; else 0.
     pub lit: f64,
+    /// How the material reflects.
+    pub finish: Finish,
     /// Added to each value that decides a step of color. It is 0 except for the judge, which finds
     /// with it the pixels so close to a step that either answer is right.
     pub step_offset: f64,
@@ -79,8 +81,46 @@ impl Surface {
             triangle_id,
             rank: 0.0,
             lit: 1.0,
+            finish: Finish::default(),
             step_offset: 0.0,
         }
+    }
+}
+
+/// How a material reflects light, in the terms of glTF 2.0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Finish {
+    /// What it reflects where it is no metal: linear RGB of light that meets it straight on, and
+    /// the part of light that grazes it. Each 0 to 1.
+    pub specular: DVec4,
+    /// 0: not a metal; 1: a metal, which reflects its base color.
+    pub metallic: f64,
+    /// Perceptual roughness: 0 a mirror, 1 matt.
+    pub roughness: f64,
+    /// Fraction of the light from all sides that reaches it.
+    pub occlusion: f64,
+}
+
+impl From<&Material> for Finish {
+    /// A material that lights do not change reflects nothing.
+    fn from(material: &Material) -> Self {
+        let (specular, metallic) = if material.unlit {
+            ([0.0; 4], 0.0)
+        } else {
+            (material.specular, material.metallic)
+        };
+        Self {
+            specular: DVec4::from_array(specular.map(f64::from)),
+            metallic: metallic.into(),
+            roughness: material.roughness.into(),
+            occlusion: 1.0,
+        }
+    }
+}
+
+impl Default for Finish {
+    fn default() -> Self {
+        Self::from(&Material::default())
     }
 }
 
@@ -106,10 +146,11 @@ pub enum SurfaceInput {
     TriangleId,
     Rank,
     Lit,
+    Finish,
 }
 
 impl SurfaceInput {
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::Color,
         Self::Glow,
         Self::Position,
@@ -129,6 +170,7 @@ impl SurfaceInput {
         Self::TriangleId,
         Self::Rank,
         Self::Lit,
+        Self::Finish,
     ];
 
     /// The member of the WGSL struct `Surface`.
@@ -153,6 +195,7 @@ impl SurfaceInput {
             Self::TriangleId => "triangle_id",
             Self::Rank => "rank",
             Self::Lit => "lit",
+            Self::Finish => "finish",
         }
     }
 

@@ -1,11 +1,12 @@
 //! Built-in scenes: meshes from formulas, selected by a query such as `sphere?triangles=160000`.
 //!
-//! Teapot, sphere, knot, cube-wall, tentacle, walker, town, still-life and chamber are meant to
-//! look good. The others stress one property of the rasterizer each and bring a camera for it. All
+//! Teapot, sphere, knot, cube-wall, tentacle, walker, town, still-life, finishes and chamber are
+//! meant to look good. The others stress one property of the rasterizer each and bring a camera for it. All
 //! are indexed, finite and identical on every machine.
 
 mod extremes;
 mod field;
+mod finishes;
 mod leaves;
 mod painted;
 mod panes;
@@ -166,6 +167,21 @@ pub const BUILTINS: &[Builtin] = &[
             1.0..=32.0,
         )],
         build: still_life::build,
+    },
+    Builtin {
+        name: "finishes",
+        about: "balls in rows, from metal behind to glaze in front, rougher from left to right",
+        params: &[
+            whole(
+                "tess",
+                "tessellation; a ball has about 16 * tess^2 triangles",
+                12.0,
+                2.0..=64.0,
+            ),
+            whole("columns", "number of columns", 6.0, 1.0..=16.0),
+            whole("rows", "number of rows", 3.0, 1.0..=16.0),
+        ],
+        build: finishes::build,
     },
     Builtin {
         name: "chamber",

@@ -18,10 +18,12 @@ use crate::scene::{
 };
 
 /// Supported material extensions.
-pub const EXTENSIONS: [&str; 4] = [
+pub const EXTENSIONS: [&str; 6] = [
     "KHR_texture_transform",
     "KHR_materials_unlit",
     "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_specular",
     "KHR_materials_pbrSpecularGlossiness",
 ];
 
@@ -54,6 +56,9 @@ pub fn read(
             // What does not blend is opaque.
             base_color: [r, g, b, if is_blended { alpha } else { 1.0 }],
             is_blended,
+            metallic: about.metallic,
+            roughness: about.roughness,
+            specular: about.specular,
             emission: about.emission,
             double_sided: about.double_sided,
             unlit: about.unlit,

@@ -429,7 +429,12 @@ impl<'a> Loader<'a> {
                 *self.variants.entry((material, variant)).or_insert_with(|| {
                     let plain = match material {
                         Some(material) => scene.materials[material].clone(),
-                        None => Material::default(),
+                        // As the specification says.
+                        None => Material {
+                            metallic: 1.0,
+                            roughness: 1.0,
+                            ..Material::default()
+                        },
                     };
                     let made = variant.made_of(plain, &mut scene.images);
                     scene.materials.push(made);

@@ -133,6 +133,9 @@ pub fn material(lists: &Lists, index: usize, value: &Value) -> Material {
         name: None,
         base_color: [1.0; 4],
         base_texture: None,
+        metallic: 1.0,
+        roughness: 1.0,
+        specular: [0.04, 0.04, 0.04, 1.0],
         emission: [0.0; 3],
         emission_texture: None,
         alpha_mode: AlphaMode::Opaque,
@@ -148,6 +151,7 @@ pub fn material(lists: &Lists, index: usize, value: &Value) -> Material {
     let reader = Reader { lists, lenient };
     material.name = part.text("name").ok().flatten().map(str::to_owned);
     reader.base(part, &mut material);
+    reader.reflection(part, &mut material);
     let mode = part.word("alphaMode", &ALPHA_MODES);
     material.alpha_mode = reader.lenient.field(mode).unwrap_or_default();
     let cutoff = reader.lenient.field(part.number("alphaCutoff"));
@@ -200,6 +204,56 @@ impl Reader<'_, '_> {
         material.has_more = ["metallicRoughnessTexture", "specularGlossinessTexture"]
             .iter()
             .any(|key| source.value(key).is_some());
+    }
+
+    /// How the material reflects: the metallic-roughness model with KHR_materials_ior and
+    /// KHR_materials_specular, or the specular-glossiness model.
+    fn reflection(&self, part: Object, material: &mut Material) {
+        let extension = |name: &str| self.lenient.field(part.extension(name));
+        if let Some(older) = extension("KHR_materials_pbrSpecularGlossiness") {
+            let [red, green, blue] = self
+                .lenient
+                .field(older.vector::<3>("specularFactor"))
+                .unwrap_or([1.0; 3])
+                .map(|channel| channel.clamp(0.0, 1.0));
+            material.metallic = 0.0;
+            material.roughness = 1.0 - self.fraction(older, "glossinessFactor");
+            material.specular = [red, green, blue, 1.0];
+            return;
+        }
+        if let Some(usual) = self.lenient.field(part.object("pbrMetallicRoughness")) {
+            material.metallic = self.fraction(usual, "metallicFactor");
+            material.roughness = self.fraction(usual, "roughnessFactor");
+        }
+        let given = extension("KHR_materials_ior");
+        let given = given.and_then(|given| self.lenient.field(given.number("ior")));
+        let straight = match given.unwrap_or(1.5) {
+            // As a material of the specular-glossiness model, whose Fresnel term is 1.
+            0.0 => 1.0,
+            index if index < 1.0 => {
+                let reason = format_args!("its ior is {index}; it must be 0 or at least 1");
+                self.lenient.fault(reason);
+                0.04
+            }
+            // Fresnel: ((n - 1) / (n + 1))².
+            index => (1.0 - 2.0 / (index + 1.0)).powi(2),
+        };
+        let specular = extension("KHR_materials_specular");
+        let factor = specular.map_or(1.0, |given| self.fraction(given, "specularFactor"));
+        let tint = specular
+            .and_then(|given| self.lenient.field(given.vector::<3>("specularColorFactor")))
+            .unwrap_or([1.0; 3]);
+        let [red, green, blue] = tint.map(|tint| (straight * tint).clamp(0.0, 1.0) * factor);
+        material.specular = [red, green, blue, factor];
+        let textures = ["specularTexture", "specularColorTexture"];
+        material.has_more |=
+            specular.is_some_and(|given| textures.iter().any(|key| given.value(key).is_some()));
+    }
+
+    /// A factor from 0 to 1, by default 1.
+    fn fraction(&self, part: Object, key: &str) -> f32 {
+        let given = self.lenient.field(part.number(key));
+        given.unwrap_or(1.0).clamp(0.0, 1.0)
     }
 
     fn emission(&self, part: Object, material: &mut Material) {

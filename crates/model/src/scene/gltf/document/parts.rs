@@ -170,6 +170,13 @@ pub struct Material {
     /// Linear RGBA, each in [0, 1].
     pub base_color: [f32; 4],
     pub base_texture: Option<TextureUse>,
+    /// 0 to 1.
+    pub metallic: f32,
+    /// Perceptual, 0 to 1.
+    pub roughness: f32,
+    /// What it reflects where it is no metal: linear RGB straight on, and where light grazes it; 0
+    /// to 1.
+    pub specular: [f32; 4],
     /// Linear RGB, from 0 up.
     pub emission: [f32; 3],
     pub emission_texture: Option<TextureUse>,

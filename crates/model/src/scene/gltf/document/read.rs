@@ -27,7 +27,7 @@ pub const QUANTIZATION: &str = "KHR_mesh_quantization";
 pub const READ: [&str; 4] = [QUANTIZATION, WEBP, MESHOPT, DRACO];
 
 /// Extensions that may be required and whose lack is said as of any other: they add no shape.
-const HARMLESS: [&str; 2] = ["KHR_lights_punctual", "KHR_materials_ior"];
+const HARMLESS: [&str; 1] = ["KHR_lights_punctual"];
 
 /// Is the extension read?
 pub fn is_read(extension: &str) -> bool {

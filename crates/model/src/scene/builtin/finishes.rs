@@ -1,0 +1,98 @@
+//! Finishes: balls in rows, from metal behind to glaze in front, rougher from left to right.
+
+use std::f64::consts::PI;
+
+use glam::{DMat4, DVec3};
+
+use super::query::{BuiltinError, Values};
+use crate::scene::{
+    material::Material,
+    mesh_builder::{MeshBuilder, Ring},
+    model::{Instance, Scene},
+};
+
+/// Radius of a ball, meters.
+const RADIUS_M: f64 = 0.45;
+/// Distances between the middles of neighbors in a row, and between rows, meters.
+const PITCH_M: [f64; 2] = [1.05, 1.15];
+
+/// Linear base colors of the rows, from metallic 0 to 1.
+const COLORS: [DVec3; 3] = [
+    DVec3::new(0.02, 0.19, 0.24),
+    DVec3::new(0.60, 0.13, 0.07),
+    DVec3::new(1.0, 0.72, 0.31),
+];
+
+/// Builds the scene `finishes`.
+pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
+    let (tess, columns, rows) = (
+        values.whole("tess"),
+        values.whole("columns"),
+        values.whole("rows"),
+    );
+    let mut scene = Scene::default();
+    for row in 0..rows {
+        let metallic = fraction(rows - 1 - row, rows);
+        for column in 0..columns {
+            let roughness = fraction(column, columns);
+            scene.materials.push(Material {
+                name: format!("metallic {metallic:.2}, roughness {roughness:.2}"),
+                base_color: color(metallic).as_vec3().extend(1.0).to_array(),
+                metallic: metallic as f32,
+                roughness: roughness as f32,
+                ..Material::default()
+            });
+            let material = scene.materials.len() - 1;
+            let primitive =
+                ball(tess).append(&mut scene, &format!("ball {column} {row}"), material);
+            let from_middle = |index: u32, count: u32| f64::from(2 * index + 1) - f64::from(count);
+            let place = DVec3::new(
+                0.5 * PITCH_M[0] * from_middle(column, columns),
+                RADIUS_M,
+                0.5 * PITCH_M[1] * from_middle(row, rows),
+            );
+            scene
+                .instances
+                .push(Instance::fixed(primitive, DMat4::from_translation(place)));
+        }
+    }
+    Ok(scene)
+}
+
+/// The place of one among `count`, from 0 to 1.
+fn fraction(index: u32, count: u32) -> f64 {
+    f64::from(index) / f64::from((count - 1).max(1))
+}
+
+fn color(metallic: f64) -> DVec3 {
+    let [glaze, lacquer, gold] = COLORS;
+    if metallic < 0.5 {
+        glaze.lerp(lacquer, 2.0 * metallic)
+    } else {
+        lacquer.lerp(gold, 2.0 * metallic - 1.0)
+    }
+}
+
+/// A closed ball about the origin.
+fn ball(tess: u32) -> MeshBuilder {
+    let (rings, around) = (2 * tess, 4 * tess);
+    let mut mesh = MeshBuilder::default();
+    let mut below: Option<Ring> = None;
+    for i in 0..=rings {
+        let (sin, cos) = libm::sincos(PI * f64::from(i) / f64::from(rings));
+        let is_pole = i == 0 || i == rings;
+        let ring = mesh.ring(if is_pole { 1 } else { around }, |mesh, j| {
+            let (s, c) = libm::sincos(2.0 * PI * f64::from(j) / f64::from(around));
+            let out = if is_pole {
+                DVec3::Y * -cos
+            } else {
+                DVec3::new(sin * s, -cos, sin * c)
+            };
+            mesh.vertex(out * RADIUS_M, out);
+        });
+        if let Some(below) = below.replace(ring) {
+            mesh.band(below, ring);
+        }
+    }
+    mesh
+}
