@@ -51,6 +51,8 @@ const MENUS: [(&str, &[Option<Action>]); 4] = [
             None,
             Some(Action::CopyPreset),
             Some(Action::PastePreset),
+            Some(Action::CopyLink),
+            Some(Action::ExportAll),
             None,
             Some(Action::Quit),
         ],

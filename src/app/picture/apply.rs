@@ -95,6 +95,10 @@ fn judge(state: &mut State, inputs: Inputs) {
         .picture
         .verification
         .start(inputs.view.pixels() as f64);
+    #[cfg(target_arch = "wasm32")]
+    if let Some(preset_file) = inputs.preset(&state.session) {
+        return state.jobs.verify_in_worker(preset_file, inputs, work);
+    }
     state
         .jobs
         .verify(state.picture.screen.gpu.clone(), inputs, work);

@@ -23,13 +23,13 @@ pub struct Findings {
     pub color: Vec<[u8; 4]>,
     /// Triangle ids in the exact picture on the finest grid; none if the effects are not
     /// reproducible.
-    reference: Option<Vec<u32>>,
+    pub(super) reference: Option<Vec<u32>>,
     /// Pixels at which an effect makes no color of a color, by row.
-    crossings: Vec<Crossing>,
+    pub(super) crossings: Vec<Crossing>,
     /// Triangles that cover each pixel.
     pub layers: Vec<u32>,
     /// Pixels that each overlay paints, in the order of [`Overlay::ALL`].
-    counts: [u64; Overlay::ALL.len()],
+    pub(super) counts: [u64; Overlay::ALL.len()],
 }
 
 impl Findings {

@@ -21,7 +21,7 @@ impl App {
         settings.open = OpenPanels {
             cheat_sheet: false,
             settings: false,
-            ..*open
+            ..self.fold.kept(*open)
         };
         settings.browsing = self.panels.browser.browsing();
         if settings.film != *self.panels.film.last() {
