@@ -12,7 +12,7 @@ use crate::{
         shell::{
             command::{Command, Commands},
             log::Level,
-            page::KEPT,
+            page::{self, KEPT},
             state::State,
         },
     },
@@ -34,9 +34,7 @@ pub fn export(state: &mut State) {
         .iter()
         .map(|(path, bytes)| (path.trim_start_matches('/'), &***bytes));
     let packed = archive::write(relative);
-    let saved = packed.and_then(|packed| {
-        disk::write(Path::new(ARCHIVE), &packed).map_err(|error| error.to_string())
-    });
+    let saved = packed.and_then(|packed| page::download(Path::new(ARCHIVE), &packed));
     match saved {
         Ok(()) => state.notify(
             Level::Info,

@@ -124,8 +124,7 @@ fn read_kept() {
 /// The browser keeps files of [`KEPT`], and all others are downloads.
 fn keep(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if !path.starts_with(KEPT) {
-        return download(path, bytes)
-            .map_err(|_| io::Error::other("the browser refuses a download"));
+        return download(path, bytes).map_err(io::Error::other);
     }
     let storage =
         storage().ok_or_else(|| io::Error::other("the browser keeps nothing for this page"))?;
@@ -154,7 +153,15 @@ fn note_open(path: &Path, text: &str) {
     }
 }
 
-fn download(path: &Path, bytes: &[u8]) -> Result<(), JsValue> {
+/// Has the browser put a file among its downloads.
+///
+/// # Errors
+/// It refuses: in words.
+pub fn download(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    try_download(path, bytes).map_err(|_| "the browser refuses a download".into())
+}
+
+fn try_download(path: &Path, bytes: &[u8]) -> Result<(), JsValue> {
     let document = web_sys::window().and_then(|window| window.document());
     let document = document.ok_or(JsValue::NULL)?;
     let blob = Blob::new_with_u8_array_sequence(&Array::of1(&Uint8Array::from(bytes)))?;
