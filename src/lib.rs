@@ -23,9 +23,11 @@ pub mod app;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod cli;
 
+pub mod link;
+
 pub use rasterlab_bench::{baselines, stress, trade};
 pub use rasterlab_evaluator as evaluator;
-pub use rasterlab_files::{effect_files, film, host, preset_file};
+pub use rasterlab_files::{archive, effect_files, film, host, preset_file};
 pub use rasterlab_gpu as gpu;
 pub use rasterlab_kernels::{plan, shader};
 pub use rasterlab_model::{accuracy, effects, frame, math, measure, params, preset, scene, work};

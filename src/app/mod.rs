@@ -18,11 +18,14 @@ mod trade;
 mod widgets;
 
 pub use files::recovery::{FIRST_PRESET, config_folder};
-#[cfg(target_arch = "wasm32")]
-pub use shell::page::start;
 #[cfg(not(target_arch = "wasm32"))]
 pub use shell::run::{DeviceLost, run};
 pub use shell::{
     device::{Devices, Painter, adopt, wgpu_setup},
     window::{App, Options},
+};
+#[cfg(target_arch = "wasm32")]
+pub use {
+    jobs::worker::answer,
+    shell::page::{open_given, refuse, start},
 };

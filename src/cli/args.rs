@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use crate::{
     effect_files::Hook,
     film::Turntable,
+    link::PAGE,
     oracle,
     preset_file::Folders,
     scene::memory::{MemoryBudget, read_size},
@@ -292,9 +293,6 @@ pub struct Page {
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
 }
-
-/// Where `sh scripts/web.sh --serve` serves the page.
-const PAGE: &str = "http://localhost:8000/";
 
 #[derive(Args, Debug)]
 pub struct Gallery {

@@ -9,11 +9,13 @@ use super::{
     backend::{Backend, scene_of},
     error::{CliError, Exit},
     files,
-    link::line,
     open::open,
     streams::Streams,
 };
-use crate::preset_file::{self, Existing, is_taken};
+use crate::{
+    link,
+    preset_file::{self, Existing, is_taken},
+};
 
 const PAGE: &str = include_str!("page.html");
 
@@ -29,7 +31,7 @@ pub fn run(common: &Common, args: &Page, streams: &mut Streams) -> Result<Exit, 
             preset_file.id, size[0], size[1]
         )));
     }
-    let line = line(&preset_file)?;
+    let line = link::line(&preset_file).map_err(CliError::usage)?;
     if is_taken(&args.output) && !common.force {
         return Err(CliError::usage(format!(
             "{} exists; --force overwrites it",

@@ -58,6 +58,33 @@ export async function links() {
   }
 }
 
+export async function addresses() {
+  const judged = async ({ says }) => void (await says(/every pixel is the oracle's/));
+  await page("model", "?model=models/three.gltf", async (shown) => {
+    await judged(shown);
+    shown.find("#oracle button").click();
+    await shown.says(/This is the oracle's picture/, "#oracle");
+  });
+  await page("look on a model", "?preset=toon&model=/models/three.gltf", async ({ says }) => void (await says(/ on three: every pixel is the oracle's/)));
+  await page("preset at an address", "?preset=presets/facet.toml", judged);
+  const elsewhere = `http://127.0.0.1:${location.port}`;
+  await page("model of another site", `?model=${elsewhere}/open/three.gltf`, judged);
+  for (const [name, address, words] of [
+    ["model of a site that refuses", `?model=${elsewhere}/models/three.gltf`, /three.gltf cannot be fetched: 127.0.0.1:\d+ cannot be reached, or does not let other pages read its files/],
+    ["no model", "?model=models/none.glb", /none.glb cannot be fetched: localhost:\d+ answers 404/],
+    ["large model", "?model=models/huge.glb", /huge.glb is larger than 256 MB/],
+    ["cut model", "?model=models/cut.gltf", /cut.gltf: /],
+    ["model that reaches out", "?model=models/out.gltf", /out.gltf: .*leads out of the model's folder/],
+    ["strange address", "?model=ftp://host/a.glb", /is no address of a file/],
+    ["no preset at an address", "?preset=presets/none.toml", /none.toml cannot be fetched/],
+  ]) {
+    await page(name, address, async ({ says }) => [(await says(words)).className !== "wrong" && "it looks right"]);
+  }
+  const asked = JSON.parse(await text("/asked.json")).filter((path) => /models|out/.test(path));
+  const buffers = asked.filter((path) => path === "/models/parts/three%20corners.bin").length;
+  await report("a model's files are fetched once, and none outside of its folder", [(buffers !== 2 || asked.includes("/out.bin")) && `it asked for ${asked}`]);
+}
+
 export async function brought() {
   const wash = await text("/tests/wash.wgsl");
   const own = `schema = 2\n[scene]\nbuiltin = "teapot?tess=4"\n[effects.wash]\n[effect_files]\nwash = '''\n${wash}'''\n[output]\nsize = [64, 48]\n`;

@@ -13,15 +13,18 @@ names a fault, or if none comes for five minutes.
 import argparse
 import functools
 import http.server
+import io
 import json
 import pathlib
 import queue
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
 import threading
 import urllib.parse
+import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PATIENCE_S = 300
@@ -30,11 +33,40 @@ FLAGS = """--headless --no-sandbox --enable-unsafe-webgpu --enable-features=Vulk
 --enable-unsafe-swiftshader --ignore-gpu-blocklist --enable-gpu --disable-quic --disable-background-networking --disable-component-update
 --disable-sync --no-first-run""".split()
 BESIDE_DIST = {"/test.html": ROOT / "tests/web/test.html", "/strict_hashes.txt": ROOT / "tests/strict_hashes.txt"}
+THREE = struct.pack("<9f", -1, -1, 0, 1, -1, 0, 0, 1, 0)
+
+
+def model(buffer):
+    """The text of a model of one triangle, whose corners lie in `buffer` beside it."""
+    views = {"bufferViews": [{"buffer": 0, "byteLength": len(THREE)}], "buffers": [{"uri": buffer, "byteLength": len(THREE)}]}
+    corners = {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]}
+    mesh = {"meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "accessors": [corners], **views}
+    return json.dumps({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}], **mesh}).encode()
+
+
+
+
+def archive(names):
+    """A ZIP archive of these models, in a folder."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as zip:
+        for name in names:
+            zip.writestr(f"folder/{name}", MODELS[name])
+    return packed.getvalue()
+
+
+# Below /models/ for pages of this server, below /open/ for all; /models/huge.glb only says that it is large.
+MODELS = {"three.gltf": model("parts/three%20corners.bin"), "parts/three corners.bin": THREE, "out.gltf": model("../out.bin"), "cut.gltf": b"{"}
+MODELS["three.zip"] = archive(["three.gltf", "parts/three corners.bin"])
+HUGE_BYTES = 300_000_000
 PRESETS_WITH_GOLDENS = sorted(file.stem for file in (ROOT / "presets").glob("*.toml") if (ROOT / f"tests/snapshots/{file.stem}.png").exists())
 
 
 class Pages(http.server.SimpleHTTPRequestHandler):
-    """The files of dist/, the test's page, and a place for its reports."""
+    """The files of dist/, the test's page, models, and a place for its reports."""
+
+    # Paths of all requests so far.
+    asked = []
 
     def __init__(self, *arguments, reports, kernels, **names):
         self.reports, self.kernels = reports, kernels
@@ -48,15 +80,24 @@ class Pages(http.server.SimpleHTTPRequestHandler):
             return str(self.kernels / name)
         return str(BESIDE_DIST.get(path.partition("?")[0]) or super().translate_path(path))
 
-    def do_GET(self):
-        lists = {"/presets.json": PRESETS_WITH_GOLDENS, "/kernels.json": self.kernels and sorted(file.name for file in self.kernels.glob("*.wgsl"))}
-        if self.path not in lists:
-            return super().do_GET()
-        body = json.dumps(lists[self.path]).encode()
+    def send(self, body, headers={}):
         self.send_response(200)
-        self.send_header("Content-Length", str(len(body)))
+        for name, value in {"Content-Length": str(len(body)), **headers}.items():
+            self.send_header(name, value)
         self.end_headers()
         self.wfile.write(body)
+
+    def do_GET(self):
+        self.asked.append(self.path)
+        _, folder, name = (urllib.parse.unquote(self.path).split("/", 2) + ["", ""])[:3]
+        if folder in ("models", "open") and name in MODELS:
+            return self.send(MODELS[name], {"Access-Control-Allow-Origin": "*"} if folder == "open" else {})
+        if self.path == "/models/huge.glb":
+            return self.send(b"", {"Content-Length": str(HUGE_BYTES)})
+        lists = {"/presets.json": PRESETS_WITH_GOLDENS, "/kernels.json": self.kernels and sorted(file.name for file in self.kernels.glob("*.wgsl")), "/asked.json": self.asked}
+        if self.path not in lists:
+            return super().do_GET()
+        self.send(json.dumps(lists[self.path]).encode())
 
     def do_POST(self):
         length = int(self.headers["Content-Length"])

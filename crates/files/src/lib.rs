@@ -2,6 +2,7 @@
 //! machine; [`preset_file`] reads and writes presets as TOML, [`effect_files`] are effects that
 //! anyone can write, and [`film`] writes the frames of an animated preset.
 
+pub mod archive;
 pub mod effect_files;
 pub mod film;
 pub mod host;

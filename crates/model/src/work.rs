@@ -44,6 +44,8 @@ pub struct Work {
     is_canceled: AtomicBool,
     stage: Mutex<&'static str>,
     stages_begun: AtomicU32,
+    /// Is told each stage that begins.
+    tell: Option<fn(&'static str)>,
     /// Bytes that are to be done, as far as they are known.
     expected: AtomicU64,
     /// Bytes that are done.
@@ -92,6 +94,14 @@ impl fmt::Display for Progress {
 }
 
 impl Work {
+    /// Work that calls `tell` with each stage that begins, on the thread that begins it.
+    pub fn telling(tell: fn(&'static str)) -> Self {
+        Self {
+            tell: Some(tell),
+            ..Self::default()
+        }
+    }
+
     /// Ends the work at its next checkpoint.
     pub fn cancel(&self) {
         self.is_canceled.store(true, Ordering::Relaxed);
@@ -113,6 +123,7 @@ impl Work {
     pub fn begin(&self, stage: &'static str) {
         *self.stage.lock().unwrap_or_else(PoisonError::into_inner) = stage;
         self.stages_begun.fetch_add(1, Ordering::Relaxed);
+        self.tell.iter().for_each(|tell| tell(stage));
     }
 
     /// How far work on bytes has come; none before any are expected.

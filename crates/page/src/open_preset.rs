@@ -1,14 +1,17 @@
 //! An open preset: its text, its scene, and the camera and time that a visitor gives it.
 
-use std::sync::Arc;
+use std::{path::Path, sync::Arc};
 
-use rasterlab_files::preset_file::{self, PresetFile};
+use rasterlab_files::{
+    host::disk,
+    preset_file::{self, ModelFormat, PresetFile},
+};
 use rasterlab_model::{
     accuracy::AccuracyRequest,
     effects::Stack,
     math::fnv1a,
     measure::compare,
-    preset::Preset,
+    preset::{Preset, SceneSource},
     scene::{
         Scene, builtin,
         camera_moves::{orbit, zoom},
@@ -38,6 +41,34 @@ impl OpenPreset {
         } else {
             preset_file::parse(text, id)?
         };
+        let scene = preset_file::load_scene(&file.preset, None)?;
+        Ok(Self { file, scene })
+    }
+
+    /// A model that [`give_file`] has put at `path`, as the window shows it first.
+    ///
+    /// # Errors
+    /// One sentence on what is wrong with the model.
+    pub fn of_model(path: &str) -> Result<OpenPreset, JsError> {
+        let file = model_file(path)?;
+        let scene = preset_file::load_scene(&file.preset, None)?;
+        Ok(Self { file, scene })
+    }
+
+    /// This look on a model that [`give_file`] has put at `path`, its lengths fitted to the model.
+    ///
+    /// # Errors
+    /// One sentence on what is wrong with the model.
+    pub fn on_model(&self, path: &str) -> Result<OpenPreset, JsError> {
+        let (look, own) = (&self.file, model_file(path)?);
+        let scene = preset_file::load_scene(&own.preset, None)?;
+        let boxes = [
+            &preset_file::scene_bounds(&look.preset.scene, None)?,
+            &scene.content_bounds(),
+        ];
+        let fit = look.fit_to(&own, boxes, Some(&scene));
+        let mut file = look.landed_on(&own, fit.as_ref());
+        file.map_missing_parts(&scene);
         let scene = preset_file::load_scene(&file.preset, None)?;
         Ok(Self { file, scene })
     }
@@ -177,6 +208,26 @@ impl OpenPreset {
             preset.stack_on(&self.scene, size),
         )
     }
+}
+
+/// Puts a file where models are looked for.
+#[wasm_bindgen]
+pub fn give_file(path: &str, bytes: &[u8]) {
+    disk::put(Path::new(path), bytes);
+}
+
+/// A preset of the model at `path`.
+fn model_file(path: &str) -> Result<PresetFile, JsError> {
+    let path = Path::new(path);
+    if ModelFormat::of(path).is_none() {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let formats = ModelFormat::names(" and ");
+        let refused = format!("{name:?} is no model by its name: models are {formats} files");
+        return Err(JsError::new(&refused));
+    }
+    let id = path.file_stem().unwrap_or_default().to_string_lossy();
+    let source = SceneSource::File(path.to_owned());
+    Ok(PresetFile::of_scene(&id, source))
 }
 
 /// How many workers can share the oracle's picture: any number, or 1.

@@ -3,7 +3,9 @@
 //   { ask: "verdict", text, id }           the preset drawn on a device and judged: { faults }
 //   { ask: "rows", text, id, begin, end }  those rows of the oracle's picture: { colors }, RGBA
 //   { ask: "bits", text, id }              the hashes of the oracle's triangle ids and depth keys: { bits }
-import init, { OpenPreset, Page, oracle_bits, oracle_rows } from "./rasterlab_page.js";
+//
+// The first question brings the files of a model, if there are any: { files }, [path, bytes] each.
+import init, { OpenPreset, Page, give_file, oracle_bits, oracle_rows } from "./rasterlab_page.js";
 
 const answers = {
   verdict: async (preset) => {
@@ -20,6 +22,7 @@ let presetText;
 onmessage = async ({ data }) => {
   try {
     await init();
+    data.files?.forEach(([path, bytes]) => give_file(path, bytes));
     if (data.text !== presetText) [preset, presetText] = [new OpenPreset(data.text, data.id), data.text];
     postMessage(await answers[data.ask](preset, data));
   } catch (error) {

@@ -1,9 +1,9 @@
 // The page: a picture with the oracle's verdict, the picture alone (?embed), or the scoreboard (?scoreboard).
-import init, { OpenPreset, Page } from "./rasterlab_page.js";
-import { wanted } from "./address.js";
+import init, { Page } from "./rasterlab_page.js";
+import { open, wanted } from "./address.js";
 import { alive } from "./live.js";
 import { scoreboard } from "./scoreboard.js";
-import { BROWSERS, gallery, saver, words } from "./trouble.js";
+import { BROWSERS, adapterName, gallery, saver, words } from "./trouble.js";
 import { asked, oraclePicture } from "./workers.js";
 
 const main = document.querySelector("main");
@@ -73,7 +73,7 @@ function allowed(code) {
 async function prove(page, preset, text, id, bits) {
   const proof = add("The bits of its triangles and depths are compared …");
   proof.id = "proof";
-  const adapter = page.adapter() || "this device";
+  const adapter = page.adapter() || (await adapterName()) || "this device";
   try {
     const mine = (await page.draw(preset.in_portable_bits())).hashes();
     const { bits: oracles } = await asked({ ask: "bits", text, id });
@@ -111,12 +111,14 @@ function offerOracle(preset) {
 }
 
 async function picture() {
-  const { text, id, bits } = await wanted();
-  opened = text;
-  showGolden(id);
+  const address = await wanted();
+  const { id, bits } = address;
+  opened = address.text;
+  if (!address.model) showGolden(id);
   await init();
-  const preset = new OpenPreset(text, id);
-  opened = preset.text();
+  const preset = await open(address, say);
+  const text = preset.text();
+  opened = text;
   document.title = `${preset.name()} · rasterlab`;
   const code = preset.brought_code();
   if (code) await allowed(code);
@@ -135,12 +137,13 @@ async function picture() {
 
 async function embed() {
   document.documentElement.classList.add("embed");
-  const { text, id } = await wanted();
-  opened = text;
+  const address = await wanted();
+  const { id, model } = address;
+  opened = address.text;
   // The still of the gallery, until the first frame covers it.
-  if (id !== "link") canvas.style.background = `url("goldens/${id}.png") center / contain no-repeat`;
+  if (id !== "link" && !model) canvas.style.background = `url("goldens/${id}.png") center / contain no-repeat`;
   await init();
-  const preset = new OpenPreset(text, id);
+  const preset = await open(address, say);
   opened = preset.text();
   document.title = preset.name();
   const code = preset.brought_code();

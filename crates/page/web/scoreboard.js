@@ -1,5 +1,6 @@
 // The scoreboard: ways to rasterize, side by side on the visitor's device, each with its wrong pixels as the oracle counts them.
 import { Live, OpenPreset } from "./rasterlab_page.js";
+import { adapterName } from "./trouble.js";
 import { oraclePicture } from "./workers.js";
 
 const SIZE = [400, 300];
@@ -107,7 +108,7 @@ function text(ways, adapter, angle) {
 
 /** Shows the scoreboard for good, and returns when its first moment is measured. */
 export async function scoreboard(main, page) {
-  const adapter = page.adapter() || "this device";
+  const adapter = page.adapter() || (await adapterName()) || "this device";
   const [head, grid, status] = [element("header", ""), element("div", "ways"), element("p", "status", "The oracle draws …")];
   const copy = element("button", "", "Copy the result");
   const again = element("button", "", "Count here");

@@ -11,6 +11,12 @@ export function words(error) {
   return said;
 }
 
+/** The name of the graphics device, as far as the browser tells it; empty if it does not. */
+export async function adapterName() {
+  const { vendor, architecture, device, description } = (await navigator.gpu.requestAdapter().catch(() => null))?.info ?? {};
+  return description || [vendor, architecture, device].filter(Boolean).join(" ");
+}
+
 /** A link that saves the text of the preset as a file. */
 export function saver(text) {
   const link = document.createElement("a");

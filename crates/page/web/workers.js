@@ -5,9 +5,18 @@ const MOST = 8;
 /** Parts of the picture for each worker, so that its progress can be told. */
 const PARTS = 2;
 
+/** Files that every worker is given, [path, bytes] each. */
+let given;
+
+/** From now on workers have these files. */
+export function give(files) {
+  given = files;
+}
+
 /** A worker whose questions are answered one after another. */
 function judge(signal) {
   const worker = new Worker(new URL("judge.js", import.meta.url), { type: "module" });
+  let files = given;
   const ask = (question) =>
     new Promise((resolve, reject) => {
       const stop = () => {
@@ -18,7 +27,8 @@ function judge(signal) {
       signal?.addEventListener("abort", stop, { once: true });
       worker.onmessage = ({ data }) => (data.error ? reject(new Error(data.error)) : resolve(data));
       worker.onerror = (event) => reject(new Error(event.message ?? "a worker did not start"));
-      worker.postMessage(question);
+      worker.postMessage({ ...question, files });
+      files = undefined;
     });
   return { ask, end: () => worker.terminate() };
 }

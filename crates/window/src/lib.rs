@@ -2,26 +2,75 @@
 
 #![cfg(target_arch = "wasm32")]
 
+use std::path::{Path, PathBuf};
+
+use js_sys::Array;
 use rasterlab::{
     app::{self, Options},
+    host::disk,
     preset_file,
 };
-use wasm_bindgen::prelude::{JsValue, wasm_bindgen};
+use wasm_bindgen::prelude::{JsError, JsValue, wasm_bindgen};
 use web_sys::HtmlCanvasElement;
 
-/// Panics name their words and place on the console.
+/// The words and place of a panic go to the console, and to `rasterlabPanic` of the page, which shows
+/// them with a way to save what is open.
 #[wasm_bindgen(start)]
 pub fn start() {
-    console_error_panic_hook::set_once();
+    std::panic::set_hook(Box::new(|panic| {
+        console_error_panic_hook::hook(panic);
+        let (place, name) = (js_sys::global(), "rasterlabPanic");
+        let _ = js_sys::Reflect::set(&place, &name.into(), &panic.to_string().into());
+    }));
+}
+
+/// Does a task of the window in a worker, which has an instance of the module for itself: see
+/// `rasterlab::app::answer`.
+///
+/// # Errors
+/// It cannot be done: why, in one sentence.
+#[wasm_bindgen]
+pub async fn answer(
+    task: u32,
+    text: String,
+    width: u32,
+    height: u32,
+    files: Option<Array>,
+) -> Result<JsValue, JsError> {
+    let answered = app::answer(task, &text, [width, height], files).await;
+    answered.map_err(|error| JsError::new(&error))
+}
+
+/// Puts a file where the window looks for files that it was given.
+#[wasm_bindgen]
+pub fn give_file(path: &str, bytes: &[u8]) {
+    disk::put(Path::new(path), bytes);
+}
+
+/// Has the open window open one of the files at these paths, which [`give_file`] has put there.
+#[wasm_bindgen]
+pub fn open_given(paths: Vec<String>) {
+    app::open_given(paths.into_iter().map(PathBuf::from).collect());
+}
+
+/// Has the open window show why something that was given to it is not opened.
+#[wasm_bindgen]
+pub fn refuse(why: String) {
+    app::refuse(why);
 }
 
 /// Opens the window on a canvas. `open` is what it begins with: the id of a preset of the gallery,
-/// or the line that the window copies.
+/// the path of a file that [`give_file`] has put there, or the line that the window copies. Then it
+/// opens the file `model`.
 ///
 /// # Errors
 /// If the browser has no WebGPU, or the line cannot be read.
 #[wasm_bindgen]
-pub async fn open_window(canvas: HtmlCanvasElement, open: Option<String>) -> Result<(), JsValue> {
+pub async fn open_window(
+    canvas: HtmlCanvasElement,
+    open: Option<String>,
+    model: Option<String>,
+) -> Result<(), JsValue> {
     let is_line = |open: &String| open.starts_with("rasterlab1:");
     let options = match open.clone().filter(is_line) {
         Some(line) => Options {
@@ -33,5 +82,5 @@ pub async fn open_window(canvas: HtmlCanvasElement, open: Option<String>) -> Res
             ..Options::default()
         },
     };
-    app::start(canvas, options).await
+    app::start(canvas, options, model.map(PathBuf::from)).await
 }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::{
     app::{
         files::{command::Origin, reload::add_effect_file},
+        panels::Panels,
         shell::{log::Level, state::State},
     },
     effect_files::{duplicate, template},
@@ -43,12 +44,18 @@ fn write(path: &Path, text: &str) -> Result<(), String> {
 }
 
 /// Enables an effect that was written, in place of the one that it duplicates.
-pub fn written(state: &mut State, path: PathBuf, origin: Origin, outcome: Result<(), String>) {
+pub fn written(
+    state: &mut State,
+    panels: &mut Panels,
+    path: PathBuf,
+    origin: Origin,
+    outcome: Result<(), String>,
+) {
     state.files.live.writing = state.files.live.writing.saturating_sub(1);
     if let Err(error) = outcome {
         return state.notify(Level::Error, error);
     }
-    add_effect_file(state, &path);
+    add_effect_file(state, panels, &path);
     if let (Some(waiting), Origin::Duplicate(effect)) = (&mut state.files.live.enable, origin) {
         waiting.replaces = Some(effect);
     }

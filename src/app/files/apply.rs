@@ -51,7 +51,7 @@ pub fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command
                 .extension()
                 .is_some_and(|extension| extension.eq_ignore_ascii_case("wgsl")) =>
         {
-            reload::add_effect_file(state, Path::new(&what));
+            reload::add_effect_file(state, panels, Path::new(&what));
         }
         FileCommand::Open(what) => match preset_file::open(&what, &state.files.folders) {
             Ok(opened) => {
@@ -92,6 +92,10 @@ pub fn file(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command
             write(state, panels, &path, name);
         }
         FileCommand::Export { path, size } => export(state, panels, path, size),
+        #[cfg(target_arch = "wasm32")]
+        FileCommand::ExportAll => super::take_along::export(state),
+        #[cfg(not(target_arch = "wasm32"))]
+        FileCommand::ExportAll => {}
         FileCommand::AskNewEffect(duplicated) => panels
             .dialogs
             .ask_new_effect(duplicated, &state.session.preset_file.effects),

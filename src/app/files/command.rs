@@ -86,6 +86,8 @@ pub enum FileCommand {
         path: PathBuf,
         size: [u32; 2],
     },
+    /// Downloads every file that the page has as one archive.
+    ExportAll,
     /// Asks for the name of a new effect, and for its hook unless it duplicates another effect.
     AskNewEffect(Option<Arc<Effect>>),
     /// Writes a new effect for the user to change, and enables it.

@@ -17,4 +17,6 @@ pub mod scene_loader;
 pub mod state;
 pub mod system_dialog;
 pub mod system_watch;
+#[cfg(target_arch = "wasm32")]
+pub mod take_along;
 pub mod watch;

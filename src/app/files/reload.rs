@@ -375,8 +375,40 @@ fn enable_waiting(state: &mut State) {
     }
 }
 
+/// Reads an effect file that was given to the page, and enables the effect.
+#[cfg(target_arch = "wasm32")]
+pub fn add_effect_file(state: &mut State, panels: &mut Panels, path: &Path) {
+    let with_file = |catalog: &Catalog| {
+        let mut read = catalog.clone();
+        read.add_file(path);
+        read
+    };
+    let (shared, open) = (
+        with_file(&state.files.folders.effects),
+        with_file(&state.session.preset_file.effects),
+    );
+    let faults = open
+        .custom()
+        .filter(|(_, effect)| effect.path.as_deref() == Some(path))
+        .filter_map(|(name, effect)| Some((name.to_owned(), effect.read.clone().err()?)));
+    let effects = Effects {
+        faults: faults.collect(),
+        shared: shared.or_last_good(&state.files.folders.effects),
+        open: open.or_last_good(&state.session.preset_file.effects),
+    };
+    for (_, error) in &effects.faults {
+        state.notify(Level::Error, error.to_string());
+    }
+    state.files.live.enable = effects.faults.is_empty().then(|| Waiting {
+        path: path.to_owned(),
+        replaces: None,
+    });
+    effects_changed(state, panels, effects);
+}
+
 /// Adds the folder of an effect file to those that are watched, and enables the effect.
-pub fn add_effect_file(state: &mut State, path: &Path) {
+#[cfg(not(target_arch = "wasm32"))]
+pub fn add_effect_file(state: &mut State, _: &mut Panels, path: &Path) {
     let Ok(path) = std::path::absolute(path) else {
         return;
     };

@@ -21,8 +21,8 @@ pub fn extensions(purpose: Purpose) -> Vec<&'static str> {
         Purpose::Open => ["toml"]
             .into_iter()
             .chain(MODEL_FORMATS.iter().map(|format| format.extension))
-            .chain(["png"])
-            .chain(cfg!(not(target_arch = "wasm32")).then_some("wgsl"))
+            .chain(["png", "wgsl"])
+            .chain(cfg!(target_arch = "wasm32").then_some("zip"))
             .collect(),
         Purpose::SaveAs => vec!["toml"],
         Purpose::Export => vec!["png"],

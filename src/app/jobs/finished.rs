@@ -18,6 +18,8 @@ use crate::app::{
     },
     shell::{command::Commands, log::Level, state::State},
 };
+#[cfg(target_arch = "wasm32")]
+use crate::app::{files::take_along, shell::input};
 
 /// Takes in the result of a job.
 pub fn finish(
@@ -112,7 +114,7 @@ pub fn finish(
         }
         Done::EffectWritten(path, origin, outcome) => {
             let is_written = outcome.is_ok();
-            new_effect::written(state, path.clone(), origin, outcome);
+            new_effect::written(state, panels, path.clone(), origin, outcome);
             if is_written {
                 state.jobs.read_code(path);
             }
@@ -135,8 +137,17 @@ pub fn finish(
             );
             state.notify(Level::Warning, text);
         }
+        Done::Link(link, why) => {
+            ctx.copy_text(link);
+            let why = why.map_or_else(String::new, |why| {
+                format!("; its picture is judged there, but not bit by bit: {why}")
+            });
+            state.notify(Level::Info, format!("Copied the link to a page{why}"));
+        }
         #[cfg(target_arch = "wasm32")]
-        Done::Given(Ok(paths)) => crate::app::shell::input::open_given(paths, commands),
+        Done::Given(Ok(given)) if given.is_export => take_along::import(ctx, state, commands),
+        #[cfg(target_arch = "wasm32")]
+        Done::Given(Ok(given)) => input::open_given(given.paths, commands),
         #[cfg(target_arch = "wasm32")]
         Done::Given(Err(error)) => state.notify(Level::Error, error),
         Done::Path(purpose, answer) => {

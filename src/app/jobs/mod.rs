@@ -5,25 +5,25 @@ pub mod background;
 pub mod computing;
 pub mod film;
 pub mod finished;
+#[cfg(target_arch = "wasm32")]
+mod in_page;
 pub mod memory;
+#[cfg(not(target_arch = "wasm32"))]
+mod on_threads;
 pub mod threads;
+#[cfg(target_arch = "wasm32")]
+pub mod worker;
 
 use std::{
     collections::HashSet,
     path::{Path, PathBuf},
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering},
-        mpsc,
-    },
+    sync::{Arc, mpsc},
     thread::JoinHandle,
 };
 
 use eframe::egui;
 
 use self::computing::{Computing, Count};
-#[cfg(target_arch = "wasm32")]
-use crate::app::shell::page;
 use crate::{
     app::{
         files::{
@@ -36,10 +36,9 @@ use crate::{
         picture::{
             cells::{self, CellOf, CellResult, Cells},
             command::Probed,
-            effect_picture::EffectPicture,
             findings::Findings,
-            golden_check::{self, GoldenCheck},
-            precision::{self, Measured},
+            golden_check::GoldenCheck,
+            precision::Measured,
             screen::Inputs,
             tier_times::{self, TierDrawing, Timed},
         },
@@ -90,7 +89,7 @@ pub enum Done {
     Film(Arc<film::Progress>, Result<film::Finished, film::Failure>),
     /// Files that a page was given, which lie in its memory now.
     #[cfg(target_arch = "wasm32")]
-    Given(Result<Vec<PathBuf>, String>),
+    Given(Result<crate::app::shell::page::Given, String>),
     /// How the system's file dialog ended.
     Path(Purpose, system_dialog::Answer),
     /// What is in a folder.
@@ -118,6 +117,8 @@ pub enum Done {
     CodeSaved(PathBuf, String, Result<(), String>),
     /// A file that could not be opened in the user's editor.
     NoEditor(PathBuf, String),
+    /// A link to a page, and why it does not carry the bits of its picture, if it does not.
+    Link(String, Option<String>),
 }
 
 /// Starts threads and receives their results.
@@ -148,11 +149,6 @@ impl Jobs {
     /// of a picture at rest.
     pub fn is_computing(&self) -> bool {
         self.computing.is_any()
-    }
-
-    /// Draws pictures with the oracle.
-    fn spawn_oracle(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
-        self.spawn(name, || background::compute(work));
     }
 
     /// Starts work that keeps the processor busy.
@@ -244,21 +240,10 @@ impl Jobs {
         });
     }
 
-    /// Measures the f32 errors of the user's effects with the oracle.
-    pub fn measure_precision(&self, inputs: Inputs, cancelled: Arc<AtomicBool>) {
-        self.spawn("precision", move || {
-            let measure = || precision::measure(&inputs, &cancelled);
-            let measured = caught("measuring the f32 error", || {
-                giving_back(|| background::compute(measure)).map(|measured| measured.map(Box::new))
-            });
-            Done::Precision(Box::new(inputs), measured)
-        });
-    }
-
     /// Looks into a pixel of a picture with this geometry.
     pub fn probe(&self, of: Inputs, geometry: Arc<Geometry>, pixel: [u32; 2]) {
-        self.spawn_oracle("probe", move || {
-            let told = caught("looking into a pixel", || {
+        self.spawn("probe", move || {
+            let look = || {
                 let Inputs {
                     scene, view, stack, ..
                 } = &of;
@@ -268,7 +253,8 @@ impl Jobs {
                     .iter()
                     .map(|sample| sample.text(geometry.subpixel_bits));
                 Ok(texts.collect::<String>())
-            });
+            };
+            let told = caught("looking into a pixel", || background::compute(look));
             Done::Probed(told.map(|text| Box::new(Probed { of, pixel, text })))
         });
     }
@@ -294,16 +280,6 @@ impl Jobs {
                 drawing,
             }))
         })
-    }
-
-    /// Draws the golden of a preset again and compares.
-    pub fn check_golden(&self, number: u64, preset_file: PresetFile) {
-        self.spawn_oracle("golden", move || {
-            let checked = caught("drawing the golden", || {
-                Ok(golden_check::check(&preset_file))
-            });
-            Done::Golden(number, checked.ok().flatten())
-        });
     }
 
     /// Writes the file of a new effect.
@@ -422,29 +398,6 @@ impl Jobs {
         });
     }
 
-    /// Fetches the golden of a preset of the gallery: a page has no thread for the oracle, which
-    /// draws the others.
-    #[cfg(target_arch = "wasm32")]
-    pub fn thumbnail(&self, preset_file: PresetFile, size: [u32; 2]) {
-        self.spawn_idle("thumbnail", async move || {
-            let golden = page::golden(&preset_file.id).await;
-            let image = golden.ok().or_else(|| thumbnail(&preset_file, size));
-            Done::Thumbnail(preset_file.id, image)
-        });
-    }
-
-    /// Draws the picture of a preset with the oracle, which needs no device. Width and height are
-    /// in pixels.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn thumbnail(&self, preset_file: PresetFile, size: [u32; 2]) {
-        self.spawn_oracle("thumbnail", move || {
-            let image = caught("drawing a thumbnail", || {
-                thumbnail(&preset_file, size).ok_or_else(String::new)
-            });
-            Done::Thumbnail(preset_file.id, image.ok())
-        });
-    }
-
     /// Draws small pictures on the device of the picture and hands over one after another.
     pub fn draw_cells(&self, gpu: Arc<Gpu>, cells: Cells) {
         let (sender, ctx, computing) = (self.sender.clone(), self.ctx.clone(), self.busy());
@@ -467,43 +420,6 @@ impl Jobs {
         if let Err(error) = threads::start("cells", work) {
             eprintln!("rasterlab: no thread could be started for small pictures: {error}");
         }
-    }
-
-    /// Draws the picture of a preset on the scene of `own` with the oracle.
-    pub fn thumbnail_on(
-        &self,
-        look: PresetFile,
-        own: PresetFile,
-        scene: Arc<Scene>,
-        size: [u32; 2],
-    ) {
-        self.spawn_oracle("thumbnail", move || {
-            let image = caught("drawing a thumbnail", || {
-                thumbnail_on(&look, &own, &scene, size).ok_or_else(String::new)
-            });
-            Done::ThumbnailOn(SceneKey::of(&own), look.id, image.ok())
-        });
-    }
-
-    /// Draws the picture of an effect on the open model with the oracle.
-    pub fn effect_picture(
-        &self,
-        EffectPicture {
-            effect,
-            preset,
-            scene,
-            size,
-            cancelled,
-        }: EffectPicture,
-    ) {
-        self.spawn_oracle("effect picture", move || {
-            let draw = || match cancelled.load(Ordering::Relaxed) {
-                true => Err(String::new()),
-                false => thumbnail_of(&preset, &scene, size).ok_or_else(String::new),
-            };
-            let image = caught("drawing a picture of an effect", draw).ok();
-            Done::EffectPicture(effect, image)
-        });
     }
 
     /// Draws `inputs` and writes a PNG that contains the preset.
@@ -553,23 +469,6 @@ impl Jobs {
         let show = system_dialog::prepare(purpose, start);
         self.spawn_idle("file dialog", move || async move {
             Done::Path(purpose, show().await)
-        });
-    }
-
-    /// Asks for files to be opened.
-    #[cfg(target_arch = "wasm32")]
-    pub fn ask_files(&self) {
-        let extensions = system_dialog::extensions(Purpose::Open);
-        self.spawn_idle("files", async move || {
-            Done::Given(page::ask_files(&extensions).await)
-        });
-    }
-
-    /// Reads files that were dropped.
-    #[cfg(target_arch = "wasm32")]
-    pub fn take_dropped(&self, files: Vec<egui::DroppedFileHandle>) {
-        self.spawn_idle("files", async move || {
-            Done::Given(page::take_dropped(files).await)
         });
     }
 
@@ -701,17 +600,9 @@ fn reference_ids(
 /// A scene with more triangles gets no thumbnail: it would take too long.
 const THUMBNAIL_TRIANGLES: u64 = 400_000;
 
-fn thumbnail(preset_file: &PresetFile, size: [u32; 2]) -> Option<egui::ColorImage> {
-    let scene = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref()).ok()?;
-    thumbnail_of(&preset_file.preset, &scene, size)
-}
-
-fn thumbnail_on(
-    look: &PresetFile,
-    own: &PresetFile,
-    scene: &Scene,
-    size: [u32; 2],
-) -> Option<egui::ColorImage> {
+/// A look on the scene of `own`, before a camera that shows all of it. None if the scene of the
+/// look cannot be measured.
+fn landed(look: &PresetFile, own: &PresetFile, scene: &Scene) -> Option<PresetFile> {
     let fit = match look.needs_fit() {
         true => look.fit_to(
             own,
@@ -723,39 +614,21 @@ fn thumbnail_on(
         ),
         false => None,
     };
+    let mut landed = look.landed_on(own, fit.as_ref());
     // The whole model is shown, so that the picture stays right when the camera moves.
-    let mut preset = Preset {
-        camera: None,
-        ..look.landed_on(own, fit.as_ref()).preset
-    };
-    preset.map_missing_parts(scene);
-    if preset.ground == own.preset.ground && preset.room == own.preset.room {
-        return thumbnail_of(&preset, scene, size);
-    }
-    thumbnail_of(
-        &preset,
-        &*preset_file::load_scene(&preset, None).ok()?,
-        size,
-    )
+    landed.preset.camera = None;
+    landed.map_missing_parts(scene);
+    Some(landed)
 }
 
-/// The picture of a preset on `scene`; none if the scene is too large or the preset cannot be
-/// drawn.
-fn thumbnail_of(preset: &Preset, scene: &Scene, size: [u32; 2]) -> Option<egui::ColorImage> {
+/// The same as RGBA, row by row from the top.
+fn small_picture(preset: &Preset, scene: &Scene, size: [u32; 2]) -> Option<Vec<[u8; 4]>> {
     if scene.triangle_count() > THUMBNAIL_TRIANGLES {
         return None;
     }
-    let frame = oracle::render_scaled(
-        scene,
-        &preset.moments(scene, size),
-        preset.accuracy.scale().factor(),
-    )
-    .ok()?;
-    let bytes: Vec<u8> = frame.color.concat();
-    Some(egui::ColorImage::from_rgba_unmultiplied(
-        [frame.width as usize, frame.height as usize],
-        &bytes,
-    ))
+    let factor = preset.accuracy.scale().factor();
+    let frame = oracle::render_scaled(scene, &preset.moments(scene, size), factor).ok()?;
+    Some(frame.color)
 }
 
 async fn export(

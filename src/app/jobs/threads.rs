@@ -4,7 +4,7 @@
 #[cfg(not(target_arch = "wasm32"))]
 pub use native::{pause, start};
 #[cfg(target_arch = "wasm32")]
-pub use page::{pause, start};
+pub use page::{pause, start, wait};
 
 #[cfg(not(target_arch = "wasm32"))]
 mod native {
@@ -55,6 +55,11 @@ mod page {
     }
 
     pub async fn pause(wait: Duration) {
+        let _ = JsFuture::from(self::wait(wait)).await;
+    }
+
+    /// Ends after so long.
+    pub fn wait(wait: Duration) -> Promise {
         let ms = i32::try_from(wait.as_millis()).unwrap_or(i32::MAX);
         let mut begin = |resolve: Function, _: Function| {
             if let Some(window) = web_sys::window() {
@@ -62,7 +67,7 @@ mod page {
                 let _ = window.set_timeout_with_callback_and_timeout_and_arguments_0(&resolve, ms);
             }
         };
-        let _ = JsFuture::from(Promise::new(&mut begin)).await;
+        Promise::new(&mut begin)
     }
 }
 

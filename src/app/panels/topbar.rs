@@ -31,6 +31,9 @@ pub struct TopBar;
 /// Below this width of the window the adapter is a dot, points.
 const NARROW: f32 = 1080.0;
 
+/// Below this width there is no room for time and error beside the menus, points.
+const PHONE: f32 = 600.0;
+
 /// Room for milliseconds and for a count of wrong pixels, points: a number that comes or changes
 /// moves nothing beside it.
 const TIME_WIDTH: f32 = 104.0;
@@ -51,6 +54,8 @@ const MENUS: [(&str, &[Option<Action>]); 4] = [
             None,
             Some(Action::CopyPreset),
             Some(Action::PastePreset),
+            Some(Action::CopyLink),
+            Some(Action::ExportAll),
             None,
             Some(Action::Quit),
         ],
@@ -120,7 +125,9 @@ impl Panel for TopBar {
                 adapter_ui(ui, state, ui.ctx().content_rect().width() < NARROW);
                 ui.separator();
                 anti_aliasing_ui(ui, state, commands);
-                cost_ui(ui, state, commands);
+                if ui.ctx().content_rect().width() >= PHONE {
+                    cost_ui(ui, state, commands);
+                }
                 // What is left belongs to the name, which is cut if it is too long.
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     name_ui(ui, state)

@@ -27,10 +27,9 @@ pub fn view(state: &mut State, panels: &mut Panels, command: ViewCommand) {
 /// Looks into a pixel of the judged picture.
 fn probe(state: &State, pixel: [u32; 2]) {
     if let (Some(findings), Some(of)) = (state.picture.findings(), state.picture.screen.requested())
+        && let Some(geometry) = findings.geometry.clone()
     {
-        state
-            .jobs
-            .probe(of.clone(), findings.geometry.clone(), pixel);
+        state.jobs.probe(of.clone(), geometry, pixel);
     }
 }
 
@@ -107,6 +106,10 @@ fn judge(state: &mut State, inputs: Inputs) {
         .picture
         .verification
         .start(inputs.view.pixels() as f64);
+    #[cfg(target_arch = "wasm32")]
+    if let Some(preset_file) = inputs.preset(&state.session) {
+        return state.jobs.verify_in_worker(preset_file, inputs, work);
+    }
     state
         .jobs
         .verify(state.picture.screen.gpu.clone(), inputs, work);

@@ -23,17 +23,18 @@ pub struct Findings {
     pub faults: ErrorMap,
     pub triangle_ids: Vec<u32>,
     pub color: Vec<[u8; 4]>,
-    /// What decided the picture: what a probe looks into.
-    pub geometry: Arc<Geometry>,
+    /// What decided the picture: what a probe looks into. None where the picture was drawn in
+    /// another process.
+    pub geometry: Option<Arc<Geometry>>,
     /// Triangle ids in the exact picture on the finest grid; none if the effects are not
     /// reproducible.
-    reference: Option<Vec<u32>>,
+    pub(super) reference: Option<Vec<u32>>,
     /// Pixels at which an effect makes no color of a color, by row.
-    crossings: Vec<Crossing>,
+    pub(super) crossings: Vec<Crossing>,
     /// Triangles that cover each pixel.
     pub layers: Vec<u32>,
     /// Pixels that each overlay paints, in the order of [`Overlay::ALL`].
-    counts: [u64; Overlay::ALL.len()],
+    pub(super) counts: [u64; Overlay::ALL.len()],
 }
 
 impl Findings {
@@ -50,7 +51,7 @@ impl Findings {
             faults: verdict.error_map,
             triangle_ids: capture.frame.triangle_id,
             color: capture.frame.color,
-            geometry: Arc::new(capture.geometry),
+            geometry: Some(Arc::new(capture.geometry)),
             reference: reference.filter(|reference| reference.len() == pixels),
             crossings,
             layers: capture.layers.unwrap_or_default(),

@@ -1,14 +1,12 @@
 //! The golden of the open preset: whether the oracle still draws it after a file of the preset was
 //! reloaded.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use crate::{
-    app::editing::session::FileId,
-    measure::compare::pictures,
-    oracle,
-    preset_file::{self, PresetFile, golden_folder, golden_paths},
-};
+#[cfg(not(target_arch = "wasm32"))]
+pub use native::check;
+
+use crate::{app::editing::session::FileId, measure::compare::pictures};
 
 /// How the oracle's picture differs from the golden.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,42 +58,68 @@ impl GoldenCheck {
     }
 }
 
-/// Draws the golden of a preset again and compares it with the stored one; none if the preset has
-/// no golden.
-pub fn check(preset_file: &PresetFile) -> Option<GoldenCheck> {
-    preset_file.preset.test.as_ref()?;
-    let [golden, _] = golden_paths(&golden_folder(preset_file), &preset_file.id);
-    if !golden.is_file() {
-        return None;
+/// Do golden and preset have as many pixels?
+///
+/// # Errors
+/// They have not: in words.
+pub fn check_size(golden: [u32; 2], preset: [u32; 2]) -> Result<(), String> {
+    if golden == preset {
+        return Ok(());
     }
-    let outcome = compared(preset_file, &golden).unwrap_or_else(Outcome::Failed);
-    Some(GoldenCheck {
-        file: FileId::of(preset_file),
-        golden,
-        outcome,
-    })
+    let [[a, b], [c, d]] = [golden, preset];
+    Err(format!(
+        "the golden has {a}x{b} pixels and the preset {c}x{d}"
+    ))
 }
 
-fn compared(preset_file: &PresetFile, golden: &Path) -> Result<Outcome, String> {
-    let (expected, size) = preset_file::png_pixels(golden).map_err(|error| error.to_string())?;
-    let preset = &preset_file.preset;
-    if size != preset.output.size {
-        let [[a, b], [c, d]] = [size, preset.output.size];
-        return Err(format!(
-            "the golden has {a}x{b} pixels and the preset {c}x{d}"
-        ));
-    }
-    let scene = preset_file::load_scene(preset, preset_file.path.as_deref())
-        .map_err(|error| error.to_string())?;
-    let moments = preset.moments(&scene, size);
-    let frame = oracle::render_scaled(&scene, &moments, preset.accuracy.scale().factor())
-        .map_err(|error| error.to_string())?;
-    let delta = pictures(&expected, &frame.color, 0);
-    Ok(match delta.pixels_over_tolerance {
+/// How the oracle's picture differs from the golden.
+pub fn difference(golden: &[[u8; 4]], drawn: &[[u8; 4]]) -> Outcome {
+    let delta = pictures(golden, drawn, 0);
+    match delta.pixels_over_tolerance {
         0 => Outcome::Same,
         pixels => Outcome::Differs {
             pixels,
             largest: delta.max_delta,
         },
-    })
+    }
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+mod native {
+    use std::path::Path;
+
+    use super::{FileId, GoldenCheck, Outcome, check_size, difference};
+    use crate::{
+        oracle,
+        preset_file::{self, PresetFile, golden_folder, golden_paths},
+    };
+
+    /// Draws the golden of a preset again and compares it with the stored one; none if the preset has
+    /// no golden.
+    pub fn check(preset_file: &PresetFile) -> Option<GoldenCheck> {
+        preset_file.preset.test.as_ref()?;
+        let [golden, _] = golden_paths(&golden_folder(preset_file), &preset_file.id);
+        if !golden.is_file() {
+            return None;
+        }
+        let outcome = compared(preset_file, &golden).unwrap_or_else(Outcome::Failed);
+        Some(GoldenCheck {
+            file: FileId::of(preset_file),
+            golden,
+            outcome,
+        })
+    }
+
+    fn compared(preset_file: &PresetFile, golden: &Path) -> Result<Outcome, String> {
+        let (expected, size) =
+            preset_file::png_pixels(golden).map_err(|error| error.to_string())?;
+        let preset = &preset_file.preset;
+        check_size(size, preset.output.size)?;
+        let scene = preset_file::load_scene(preset, preset_file.path.as_deref())
+            .map_err(|error| error.to_string())?;
+        let moments = preset.moments(&scene, size);
+        let frame = oracle::render_scaled(&scene, &moments, preset.accuracy.scale().factor())
+            .map_err(|error| error.to_string())?;
+        Ok(difference(&expected, &frame.color))
+    }
 }

@@ -2,6 +2,11 @@
 
 use std::sync::Arc;
 
+#[cfg(target_arch = "wasm32")]
+use crate::{
+    app::editing::session::Session,
+    preset_file::{self, PresetFile},
+};
 use crate::{
     effects::Stack,
     preset::AccuracyRequest,
@@ -33,6 +38,41 @@ impl PartialEq for Inputs {
 }
 
 impl Inputs {
+    /// What a picture of `preset_file` depends on, of `size` pixels and at the preset's own time.
+    #[cfg(target_arch = "wasm32")]
+    pub fn of(preset_file: PresetFile, scene: Arc<Scene>, size: [u32; 2]) -> Self {
+        let session = Session::new(preset_file);
+        let preset = session.preset();
+        let length_scale = session.length_scale(preset, size);
+        Self {
+            view: session.view_at(&scene, size),
+            stack: preset
+                .in_meters(&scene)
+                .stack_at(preset.clock.time_s)
+                .drawn(length_scale),
+            accuracy: preset.accuracy,
+            scene,
+        }
+    }
+
+    /// The preset that says all of this, as its text does; none where no text does: particles that
+    /// the pointer has led, a preset that was kept for a comparison.
+    #[cfg(target_arch = "wasm32")]
+    pub fn preset(&self, session: &Session) -> Option<PresetFile> {
+        let mut said = session.preset_file.clone();
+        said.preset.scene = said.scene_source();
+        said.preset.clock.time_s = session.next_time_s();
+        session
+            .muted
+            .iter()
+            .for_each(|effect| said.preset.disable(effect));
+        said.preset.accuracy = self.accuracy;
+        let text = preset_file::to_shared_toml(&said);
+        let said = preset_file::parse(&text, &said.id).ok()?;
+        let size = [self.view.width, self.view.height];
+        (Self::of(said.clone(), self.scene.clone(), size) == *self).then_some(said)
+    }
+
     /// The same frustum on fewer pixels, with lengths in pixels as much smaller, so that nothing
     /// jumps when a motion ends.
     pub fn reduced(&self, divisor: u32) -> Self {

@@ -15,6 +15,8 @@ pub mod overlay;
 pub mod picture_thread;
 pub mod precision;
 pub mod screen;
+#[cfg(target_arch = "wasm32")]
+mod sent;
 pub mod state;
 pub mod tier_times;
 pub mod timings;

@@ -23,7 +23,7 @@ const MAX_PIXELS: f64 = 320.0 * 240.0;
 pub const REST_S: f64 = 0.5;
 
 /// The largest error of one quantity of an effect.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Error {
     pub quantity: Quantity,
     pub error: f64,

@@ -65,6 +65,12 @@ impl LastSession {
         }
     }
 
+    /// The preset with its edits, as TOML.
+    #[cfg(target_arch = "wasm32")]
+    pub fn text(&self) -> &str {
+        self.edited.as_ref().unwrap_or(&self.filed)
+    }
+
     /// The same, closed in order.
     #[must_use]
     pub fn closed(mut self) -> Self {

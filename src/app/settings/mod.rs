@@ -13,9 +13,12 @@ use eframe::egui;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use self::{browsing::Browsing, film::FilmSettings, keymap::Keymap, recents::Recents};
-use crate::app::{
-    files::plain_file::{checked, number_in, write_rounded},
-    widgets::theme::ThemeChoice,
+use crate::{
+    app::{
+        files::plain_file::{checked, number_in, write_rounded},
+        widgets::theme::ThemeChoice,
+    },
+    link,
 };
 
 /// Sizes of texts and controls that can be chosen, as a factor of the system's.
@@ -49,6 +52,9 @@ pub struct Settings {
     /// How the last film was exported.
     pub film: FilmSettings,
     pub keys: Keymap,
+    /// Address of the page of *Copy link*.
+    #[serde(deserialize_with = "page")]
+    pub page: String,
 }
 
 impl Default for Settings {
@@ -63,6 +69,7 @@ impl Default for Settings {
             browsing: Browsing::default(),
             film: FilmSettings::default(),
             keys: Keymap::default(),
+            page: link::PAGE.into(),
         }
     }
 }
@@ -210,6 +217,14 @@ fn window_size<'de, D: Deserializer<'de>>(from: D) -> Result<[f32; 2], D::Error>
     )
 }
 
+fn page<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
+    checked(
+        from,
+        |page: &String| page.starts_with("http://") || page.starts_with("https://"),
+        "it takes an address that begins with http:// or https://",
+    )
+}
+
 fn scale<'de, D: Deserializer<'de>>(from: D) -> Result<f32, D::Error> {
     number_in(from, SCALES)
 }
@@ -271,6 +286,7 @@ mod tests {
                 range_of: Some("walk".into()),
             },
             keys,
+            page: "https://example.org/lab/".into(),
         }
     }
 
@@ -325,7 +341,7 @@ mod tests {
 
     #[test]
     fn each_bad_field_is_named_and_keeps_its_default() {
-        let text = "theme = \"blue\"\nscale = 9\nrecent = [1]\nfuture = 7\nwindow = 3\n[panels]\nleft = \"yes\"\nlog = true\n[widths]\nleft = -1\n\
+        let text = "theme = \"blue\"\nscale = 9\npage = \"ftp://x\"\nrecent = [1]\nfuture = 7\nwindow = 3\n[panels]\nleft = \"yes\"\nlog = true\n[widths]\nleft = -1\n\
             [browsing]\norder = \"size\"\n[film]\nformat = \"avi\"\nsize = [0, 5]\nfps = 1000\nrange_s = [2, 1]\nanti_aliasing = \"8x8\"\n\
             [keys]\nrandomize = [\"Ctrl+S\"]\nverify = [\"Nokey\"]\nfly = [\"F\"]\n";
         let (settings, remarks, _) = rewritten(text, |read| read);
@@ -341,6 +357,7 @@ mod tests {
         );
         let named = [
             ("theme = \"blue\"", "`system`, `light`, `dark`"),
+            ("page = \"ftp://x\"", "http:// or https://"),
             ("scale = 9", "it takes a number from 0.5 to 3"),
             ("recent = [1]", "string"),
             ("future = 7", "unknown field"),

@@ -14,6 +14,8 @@ pub enum Action {
     Film,
     CopyPreset,
     PastePreset,
+    CopyLink,
+    ExportAll,
     Quit,
     OpenWithScene,
     ForgetRecents,
@@ -108,6 +110,8 @@ pub const ACTIONS: &[Entry] = &[
     ),
     (Action::CopyPreset, "Copy preset", &[]),
     (Action::PastePreset, "Paste preset", &[]),
+    (Action::CopyLink, "Copy link to a page", &[]),
+    (Action::ExportAll, "Export everything", &[]),
     (Action::Quit, "Quit", &[command(Key::Q)]),
     (Action::OpenWithScene, "Open with its scene", &[]),
     (Action::ForgetRecents, "Forget recent files", &[]),
@@ -257,8 +261,12 @@ pub const POINTER: &[(&str, &str)] = &[
 
 impl Action {
     /// Does the window have it here? A page has no second device, no programs beside it, and no
-    /// thread for what takes minutes; its tab is closed by the browser.
+    /// thread for what takes minutes; its tab is closed by the browser. A page alone has files that
+    /// go with it.
     pub const fn is_here(self) -> bool {
+        if matches!(self, Self::ExportAll) {
+            return cfg!(target_arch = "wasm32");
+        }
         let is_native = matches!(
             self,
             Self::Film | Self::Quit | Self::NewEffect | Self::Extremes | Self::Trade

@@ -17,12 +17,13 @@ use crate::{
             apply::{export_film, file, request_open},
             command::Manner,
             library, open,
+            scene_loader::SceneKey,
         },
         panels::Panels,
         picture::apply::{verify, view},
         widgets::reveal,
     },
-    preset_file,
+    link, preset_file,
 };
 
 /// Carries out the commands that were sent, in order.
@@ -131,6 +132,7 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
             ctx.copy_text(preset_file::to_line(&state.session.preset_file));
             state.notify(Level::Info, "Copied the preset as one line of text");
         }
+        Command::CopyLink => copy_link(state),
         Command::Paste => ctx.send_viewport_cmd(ViewportCommand::RequestPaste),
         Command::PasteText(text) => paste(state, panels, &text),
         Command::SetText(path, text) => set_text(state, &path, &text),
@@ -142,6 +144,20 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
         Command::ClearLog => state.log.clear(),
         Command::Log(level, text) => state.log.add(level, text),
         Command::Notify(level, text) => state.notify(level, text),
+    }
+}
+
+/// Has the link made that goes to the clipboard.
+fn copy_link(state: &mut State) {
+    let open = &state.session.preset_file;
+    let scene = state.session.scenes.shown_for(&SceneKey::of(open));
+    match (link::line(open), scene) {
+        (Ok(line), Some(scene)) => {
+            let page = state.settings.page.clone();
+            state.jobs.link(page, line, open.clone(), scene.clone());
+        }
+        (Err(why), _) => state.notify(Level::Error, why),
+        (_, None) => state.notify(Level::Info, "The scene of the preset is not loaded yet"),
     }
 }
 

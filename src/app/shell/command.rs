@@ -77,6 +77,8 @@ pub enum Command {
     },
     /// Puts the preset on the clipboard.
     CopyPreset,
+    /// Puts a link to a page that shows the preset on the clipboard.
+    CopyLink,
     /// Requests the clipboard's text.
     Paste,
     /// The clipboard's text: a preset, or a value for the row that a menu or the pointer chose.
@@ -151,6 +153,8 @@ impl From<Action> for Command {
             Action::Export => Self::File(FileCommand::Ask(Purpose::Export)),
             Action::CopyPreset => Self::CopyPreset,
             Action::PastePreset => Self::Paste,
+            Action::CopyLink => Self::CopyLink,
+            Action::ExportAll => Self::File(FileCommand::ExportAll),
             Action::Quit => Self::Quit,
             Action::Undo => Self::Undo,
             Action::Redo => Self::Redo,

@@ -62,9 +62,25 @@ pub fn adopt(
         .wgpu_render_state
         .clone()
         .context("the window has no wgpu device")?;
-    let adopted = || Gpu::adopt(&window.adapter, window.device.clone(), window.queue.clone());
+    let adopted = || {
+        let gpu = Gpu::adopt(&window.adapter, window.device.clone(), window.queue.clone());
+        #[cfg(target_arch = "wasm32")]
+        let gpu = named(gpu);
+        gpu
+    };
     let devices = devices.unwrap_or_else(|| Devices::of(adopted()));
     Ok((window, devices))
+}
+
+/// The device with the name that the page knows, where wgpu knows none.
+#[cfg(target_arch = "wasm32")]
+fn named(mut gpu: Arc<Gpu>) -> Arc<Gpu> {
+    if let Some(new) = Arc::get_mut(&mut gpu)
+        && new.summary.name.is_empty()
+    {
+        new.summary.name = super::page::adapter_name().unwrap_or_else(|| "WebGPU".into());
+    }
+    gpu
 }
 
 /// The device that shows pictures, and the one that draws them.

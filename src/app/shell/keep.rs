@@ -21,7 +21,7 @@ impl App {
         settings.open = OpenPanels {
             cheat_sheet: false,
             settings: false,
-            ..*open
+            ..self.fold.kept(*open)
         };
         settings.browsing = self.panels.browser.browsing();
         if settings.film != *self.panels.film.last() {
@@ -40,10 +40,13 @@ impl App {
         }
         let (error, wait_s) = self.keeper.follow(settings, session, *now_s);
         if let Some(error) = error {
-            self.state.log.add(
-                Level::Warning,
-                format!("settings or session could not be kept: {error}"),
-            );
+            let text = format!("settings or session could not be kept: {error}");
+            // The storage of a browser is full for everything that follows: it is said once.
+            let is_known = self.state.log.entries().any(|entry| entry.text == text);
+            match cfg!(target_arch = "wasm32") && !is_known {
+                true => self.state.notify(Level::Warning, text),
+                false => self.state.log.add(Level::Warning, text),
+            }
         }
         if let Some(wait_s) = wait_s {
             ctx.request_repaint_after_secs(wait_s as f32 + 0.01);

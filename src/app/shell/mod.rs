@@ -6,6 +6,7 @@ pub mod command;
 pub mod device;
 pub mod ending;
 pub mod escape;
+pub mod fold;
 pub mod frame_notes;
 pub mod input;
 pub mod keep;

@@ -2,34 +2,48 @@
 //! the browser keeps for it.
 
 use std::{
+    cell::RefCell,
     io,
     path::{Path, PathBuf},
 };
 
 use eframe::{egui, egui_wgpu, web_sys::HtmlCanvasElement};
-use js_sys::{Array, Function, Promise, Uint8Array};
+use js_sys::{Array, Function, Promise, Reflect, Uint8Array};
 use wasm_bindgen::{JsCast as _, JsValue, prelude::Closure};
 use wasm_bindgen_futures::JsFuture;
 use web_sys::{Blob, File, HtmlAnchorElement, HtmlInputElement, Response, Storage, Url};
 
 use super::{
+    command::{Command, Commands},
     device::wgpu_setup,
+    input,
+    log::Level,
     loss::LossFlag,
     window::{App, Options},
 };
-use crate::{host::disk, preset_file};
+use crate::{
+    app::{files::take_along, settings::last_session::LastSession},
+    archive,
+    host::disk,
+    link, preset_file,
+};
 
 /// The folder whose files the browser keeps: settings and session.
-const KEPT: &str = "/rasterlab";
+pub const KEPT: &str = "/rasterlab";
 
 /// The folder of files that a person has given.
-const GIVEN: &str = "/given";
+pub const GIVEN: &str = "/given";
 
-/// Shows the window on a canvas. The browser keeps its settings and its session.
+/// Shows the window on a canvas, and opens the model `then` in it. The browser keeps its settings
+/// and its session.
 ///
 /// # Errors
 /// If the browser has no WebGPU.
-pub async fn start(canvas: HtmlCanvasElement, options: Options) -> Result<(), JsValue> {
+pub async fn start(
+    canvas: HtmlCanvasElement,
+    options: Options,
+    then: Option<PathBuf>,
+) -> Result<(), JsValue> {
     disk::keep_with(keep);
     read_kept();
     let options = Options {
@@ -50,12 +64,46 @@ pub async fn start(canvas: HtmlCanvasElement, options: Options) -> Result<(), Js
         Box<dyn eframe::App>,
         Box<dyn std::error::Error + Send + Sync>,
     > {
+        WINDOW.set(Some(cc.egui_ctx.clone()));
+        open_given(then.into_iter().collect());
         let app = App::with_loss_flag(cc, options, LossFlag::default())?;
         Ok(Box::new(app))
     };
     eframe::WebRunner::new()
         .start(canvas, web, Box::new(create))
         .await
+}
+
+thread_local! {
+    /// The window of the page.
+    static WINDOW: RefCell<Option<egui::Context>> = const { RefCell::new(None) };
+    /// What it is to do: paths of files in memory that it opens, or why there are none.
+    static WAITING: RefCell<Vec<Result<Vec<PathBuf>, String>>> = const { RefCell::new(Vec::new()) };
+}
+
+fn wait(next: Result<Vec<PathBuf>, String>) {
+    WAITING.with_borrow_mut(|waiting| waiting.push(next));
+    WINDOW.with_borrow(|window| window.iter().for_each(egui::Context::request_repaint));
+}
+
+/// Has the window open one of these files, which are in memory.
+pub fn open_given(paths: Vec<PathBuf>) {
+    wait(Ok(paths));
+}
+
+/// Has the window show why something that was given to it is not opened.
+pub fn refuse(why: String) {
+    wait(Err(why));
+}
+
+/// Sends what waits to the window.
+pub fn send_waiting(commands: &Commands) {
+    for waiting in WAITING.take() {
+        match waiting {
+            Ok(paths) => input::open_given(paths, commands),
+            Err(why) => commands.send(Command::Notify(Level::Error, why)),
+        }
+    }
 }
 
 fn storage() -> Option<Storage> {
@@ -76,18 +124,44 @@ fn read_kept() {
 /// The browser keeps files of [`KEPT`], and all others are downloads.
 fn keep(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if !path.starts_with(KEPT) {
-        return download(path, bytes)
-            .map_err(|_| io::Error::other("the browser refuses a download"));
+        return download(path, bytes).map_err(io::Error::other);
     }
     let storage =
         storage().ok_or_else(|| io::Error::other("the browser keeps nothing for this page"))?;
     let text = String::from_utf8_lossy(bytes);
+    note_open(path, &text);
     storage
         .set_item(&path.to_string_lossy(), &text)
-        .map_err(|_| io::Error::other("the browser's storage for this page is full"))
+        .map_err(|_| {
+            io::Error::other(
+                "the browser's storage for this page is full; File > Export everything saves what is open as a file",
+            )
+        })
 }
 
-fn download(path: &Path, bytes: &[u8]) -> Result<(), JsValue> {
+/// The page has the text of what is open, to be saved after a panic.
+fn note_open(path: &Path, text: &str) {
+    let session = LastSession::parse(text, "");
+    if let Ok(session) = session
+        && path.ends_with("session.toml")
+    {
+        let _ = Reflect::set(
+            &js_sys::global(),
+            &"rasterlabOpened".into(),
+            &session.text().into(),
+        );
+    }
+}
+
+/// Has the browser put a file among its downloads.
+///
+/// # Errors
+/// It refuses: in words.
+pub fn download(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    try_download(path, bytes).map_err(|_| "the browser refuses a download".into())
+}
+
+fn try_download(path: &Path, bytes: &[u8]) -> Result<(), JsValue> {
     let document = web_sys::window().and_then(|window| window.document());
     let document = document.ok_or(JsValue::NULL)?;
     let blob = Blob::new_with_u8_array_sequence(&Array::of1(&Uint8Array::from(bytes)))?;
@@ -99,12 +173,58 @@ fn download(path: &Path, bytes: &[u8]) -> Result<(), JsValue> {
     Url::revoke_object_url(&address)
 }
 
-/// Shows the browser's dialog for files with these extensions and reads what is chosen into memory.
-/// Returns their paths; none if it was canceled.
+/// Files that a person has given, which lie in memory now.
+#[derive(Default)]
+pub struct Given {
+    pub paths: Vec<PathBuf>,
+    /// They are those of an export of everything.
+    pub is_export: bool,
+}
+
+impl Given {
+    /// Puts a file into memory, and the files of an archive in its place.
+    ///
+    /// # Errors
+    /// An archive cannot be read, or the browser does not keep what it has: why, in one sentence.
+    fn take(&mut self, name: &Path, bytes: &[u8]) -> Result<(), String> {
+        let path = Path::new(GIVEN).join(name.file_name().unwrap_or_default());
+        let is_archive = path
+            .extension()
+            .is_some_and(|extension| extension.eq_ignore_ascii_case("zip"));
+        if !is_archive {
+            disk::put(&path, bytes);
+            self.paths.push(path);
+            return Ok(());
+        }
+        let failed = |why: String| format!("{}: {why}", name.display());
+        let files = archive::read(bytes).map_err(failed)?;
+        if take_along::is_export(&files) {
+            self.is_export = true;
+            for (inside, bytes) in files {
+                let path = Path::new("/").join(inside);
+                disk::put(&path, &bytes);
+                if path.starts_with(KEPT) {
+                    keep(&path, &bytes).map_err(|error| failed(error.to_string()))?;
+                }
+            }
+            return Ok(());
+        }
+        let folder = path.with_extension("");
+        for (inside, bytes) in files {
+            let path = folder.join(inside);
+            disk::put(&path, &bytes);
+            self.paths.push(path);
+        }
+        Ok(())
+    }
+}
+
+/// Shows the browser's dialog for files with these extensions and reads what is chosen into memory;
+/// nothing if it was canceled.
 ///
 /// # Errors
 /// The browser shows none, or a file cannot be read: why, in one sentence.
-pub async fn ask_files(extensions: &[&str]) -> Result<Vec<PathBuf>, String> {
+pub async fn ask_files(extensions: &[&str]) -> Result<Given, String> {
     let failed = |_| "the browser shows no dialog for files".to_owned();
     let document = web_sys::window().and_then(|window| window.document());
     let document = document.ok_or_else(|| failed(JsValue::NULL))?;
@@ -131,16 +251,16 @@ pub async fn ask_files(extensions: &[&str]) -> Result<Vec<PathBuf>, String> {
         input.click();
     });
     JsFuture::from(ended).await.map_err(failed)?;
-    let mut paths = Vec::new();
+    let mut given = Given::default();
     let chosen = input.files();
     let count = chosen.as_ref().map_or(0, |files| files.length());
     for file in (0..count).filter_map(|at| chosen.as_ref()?.get(at)) {
         let bytes = bytes_of(&file)
             .await
             .map_err(|_| format!("{}: the browser cannot read it", file.name()))?;
-        paths.push(given(Path::new(&file.name()), &bytes));
+        given.take(Path::new(&file.name()), &bytes)?;
     }
-    Ok(paths)
+    Ok(given)
 }
 
 async fn bytes_of(file: &File) -> Result<Vec<u8>, JsValue> {
@@ -148,42 +268,66 @@ async fn bytes_of(file: &File) -> Result<Vec<u8>, JsValue> {
     Ok(Uint8Array::new(&buffer).to_vec())
 }
 
-/// Reads dropped files into memory. Returns their paths.
+/// Reads dropped files into memory.
 ///
 /// # Errors
 /// One cannot be read: why, in one sentence.
-pub async fn take_dropped(files: Vec<egui::DroppedFileHandle>) -> Result<Vec<PathBuf>, String> {
-    let mut paths = Vec::new();
+pub async fn take_dropped(files: Vec<egui::DroppedFileHandle>) -> Result<Given, String> {
+    let mut given = Given::default();
     for file in files {
         let bytes = file.bytes_async().await?;
-        paths.push(given(file.path(), &bytes));
+        given.take(file.path(), &bytes)?;
     }
-    Ok(paths)
+    Ok(given)
 }
 
-/// The golden of a preset of the gallery, which lies beside the page.
+/// The address of the page beside the window.
+pub fn beside() -> String {
+    let address = web_sys::window().and_then(|window| window.location().href().ok());
+    let address = address.unwrap_or_else(|| link::PAGE.into());
+    let folder = address
+        .split(['?', '#'])
+        .next()
+        .and_then(|of| of.rsplit_once('/'));
+    folder.map_or_else(|| link::PAGE.into(), |(folder, _)| format!("{folder}/"))
+}
+
+/// What the page knows under a name, if that is text.
+fn known(name: &str) -> Option<String> {
+    let found = Reflect::get(&js_sys::global(), &name.into()).ok()?;
+    found.as_string().filter(|text| !text.is_empty())
+}
+
+/// The name of the graphics device, as far as the browser tells it.
+pub fn adapter_name() -> Option<String> {
+    known("rasterlabAdapter")
+}
+
+/// Tells the page that the window cannot go on: it shows why, with a way to save what is open.
+pub fn stop(why: &str) {
+    let report = Reflect::get(&js_sys::global(), &"reportError".into());
+    if let Ok(report) = report.and_then(|report| report.dyn_into::<Function>()) {
+        let _ = report.call1(&JsValue::NULL, &js_sys::Error::new(why));
+    }
+}
+
+/// Where the golden of a preset of the gallery lies beside the page.
+pub fn golden_name(id: &str) -> String {
+    format!("goldens/{id}.png")
+}
+
+/// The golden of a preset of the gallery, with its width and height.
 ///
 /// # Errors
 /// There is none.
-pub async fn golden(id: &str) -> Result<egui::ColorImage, JsValue> {
+pub async fn golden(id: &str) -> Result<(Vec<[u8; 4]>, [u32; 2]), JsValue> {
     let window = web_sys::window().ok_or(JsValue::NULL)?;
-    let name = format!("goldens/{id}.png");
+    let name = golden_name(id);
     let answer: Response = JsFuture::from(window.fetch_with_str(&name))
         .await?
         .unchecked_into();
     let buffer = JsFuture::from(answer.array_buffer()?).await?;
     let bytes = Uint8Array::new(&buffer).to_vec();
-    let (colors, size) =
-        preset_file::pixels_of_png(&bytes, &name).map_err(|error| error.to_string())?;
-    Ok(egui::ColorImage::from_rgba_unmultiplied(
-        size.map(|side| side as usize),
-        colors.as_flattened(),
-    ))
-}
-
-/// Puts a file that a person has given into memory, and returns its path there.
-fn given(name: &Path, bytes: &[u8]) -> PathBuf {
-    let path = Path::new(GIVEN).join(name.file_name().unwrap_or_default());
-    disk::put(&path, bytes);
-    path
+    let golden = preset_file::pixels_of_png(&bytes, &name);
+    Ok(golden.map_err(|error| error.to_string())?)
 }

@@ -14,6 +14,7 @@ use super::{
     command::Commands,
     device::{self, Devices},
     escape::escape,
+    fold::Fold,
     frame_notes::FrameNotes,
     input,
     log::{Level, Log},
@@ -88,6 +89,7 @@ pub struct App {
     /// When the time was last advanced, while the preset plays.
     played_at_s: Option<f64>,
     notes: FrameNotes,
+    pub(super) fold: Fold,
     title: String,
 }
 
@@ -211,6 +213,7 @@ impl App {
             loss,
             played_at_s: None,
             notes: FrameNotes::default(),
+            fold: Fold::default(),
             title: String::new(),
         })
     }
@@ -239,6 +242,8 @@ impl App {
         let saved = recovery::write_recovery(&self.state.session.preset_file);
         eprintln!("rasterlab: the graphics device was lost; {saved}");
         self.loss.set();
+        #[cfg(target_arch = "wasm32")]
+        super::page::stop("the device was lost");
         self.state.closing.may_quit = true;
         ctx.send_viewport_cmd(ViewportCommand::Close);
     }
@@ -379,7 +384,11 @@ impl App {
             return ctx.request_repaint_after_secs((REST_S - rest_s) as f32 + 0.01);
         }
         let cancelled = precision.start(requested.clone());
-        jobs.measure_precision(requested.clone(), cancelled);
+        let requested = requested.clone();
+        #[cfg(target_arch = "wasm32")]
+        return jobs.measure_precision(requested.preset(session), requested, cancelled);
+        #[cfg(not(target_arch = "wasm32"))]
+        jobs.measure_precision(requested, cancelled);
     }
 
     fn panels_ui(&mut self, ui: &mut Ui) {
@@ -511,6 +520,8 @@ impl eframe::App for App {
             finish(ctx, &mut self.state, &mut self.panels, &self.commands, done);
             self.apply(ctx);
         }
+        #[cfg(target_arch = "wasm32")]
+        super::page::send_waiting(&self.commands);
         reload::take_changes(&mut self.state, &mut self.panels);
         if self.state.picture.screen.is_lost() {
             self.rescue(ctx);
@@ -563,6 +574,10 @@ impl eframe::App for App {
         self.play(&ctx);
         self.request_scene();
         self.state.session.follow_particles();
+        if cfg!(target_arch = "wasm32") {
+            let width = ctx.content_rect().width();
+            self.fold.follow(width, &mut self.state.open);
+        }
         self.panels_ui(ui);
         self.panel_ui(ui, |panels| &mut panels.dialogs);
         self.panel_ui(ui, |panels| &mut panels.cheat_sheet);

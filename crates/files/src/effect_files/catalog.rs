@@ -12,6 +12,7 @@ use super::{
 };
 use crate::{
     effects::{EFFECTS, Effect},
+    host::disk,
     params::did_you_mean,
 };
 
@@ -142,13 +143,12 @@ impl Catalog {
             file: &file,
             text: "",
         };
-        let written = match std::fs::metadata(path) {
-            Ok(about) if !about.is_file() => Err(text.whole("it is not a regular file")),
-            Ok(about) if about.len() > MAX_BYTES as u64 => Err(text.whole(format!(
-                "the file has {} bytes; an effect has at most {MAX_BYTES}",
-                about.len()
+        let written = match disk::size_of(path) {
+            Ok(None) => Err(text.whole("it is not a regular file")),
+            Ok(Some(size)) if size > MAX_BYTES as u64 => Err(text.whole(format!(
+                "the file has {size} bytes; an effect has at most {MAX_BYTES}",
             ))),
-            Ok(_) => std::fs::read(path)
+            Ok(Some(_)) => disk::read(path)
                 .map_err(|error| text.whole(error.to_string()))
                 .and_then(|bytes| decoded(&text, bytes)),
             Err(error) => Err(text.whole(error.to_string())),

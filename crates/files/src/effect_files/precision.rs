@@ -20,7 +20,9 @@ use crate::{
 };
 
 /// What the f32 side of an effect gets wrong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
 pub enum Quantity {
     /// Largest difference of a channel of the picture, of 255.
     Color,

@@ -26,7 +26,7 @@ use crate::{
 const MAX_EXPLAINED: u32 = 4096;
 
 /// In what way a color is none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Unsound {
     NotANumber,
     Infinite,

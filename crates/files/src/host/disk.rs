@@ -55,10 +55,14 @@ mod page {
         collections::BTreeMap,
         io::{self, Cursor, ErrorKind, Read, Seek, SeekFrom},
         path::{Path, PathBuf},
-        sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError},
+        sync::{
+            Arc, Mutex, MutexGuard, OnceLock, PoisonError,
+            atomic::{AtomicU64, Ordering},
+        },
     };
 
     static FILES: Mutex<BTreeMap<PathBuf, Arc<[u8]>>> = Mutex::new(BTreeMap::new());
+    static GIVEN: AtomicU64 = AtomicU64::new(0);
     static KEEPER: OnceLock<Keeper> = OnceLock::new();
 
     /// What becomes of a file that is written: the page downloads it, or keeps it in the browser.
@@ -75,7 +79,22 @@ mod page {
 
     /// Puts a file into memory.
     pub fn put(path: &Path, bytes: &[u8]) {
+        GIVEN.fetch_add(1, Ordering::Relaxed);
         files().insert(path.to_owned(), bytes.into());
+    }
+
+    /// How often a file was put into memory.
+    pub fn puts() -> u64 {
+        GIVEN.load(Ordering::Relaxed)
+    }
+
+    /// The files in a folder and below, by path.
+    pub fn below(folder: &Path) -> Vec<(PathBuf, Arc<[u8]>)> {
+        let files = files();
+        let inside = files.iter().filter(|(path, _)| path.starts_with(folder));
+        inside
+            .map(|(path, bytes)| (path.clone(), bytes.clone()))
+            .collect()
     }
 
     /// Writes a file: to memory, and to the keeper.
@@ -84,7 +103,7 @@ mod page {
     /// The keeper's; then memory is unchanged.
     pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
         KEEPER.get().map_or(Ok(()), |keeper| keeper(path, bytes))?;
-        put(path, bytes);
+        files().insert(path.to_owned(), bytes.into());
         Ok(())
     }
 

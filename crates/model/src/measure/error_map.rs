@@ -64,6 +64,19 @@ impl ErrorMap {
         }
     }
 
+    /// The map of these bits, as [`ErrorMap::bits`] gives them, and these differences of colors.
+    pub fn of_bits(errors: Vec<u8>, color_delta: Vec<u8>) -> Self {
+        Self {
+            errors,
+            color_delta,
+        }
+    }
+
+    /// A bit for each [`PixelError`] at each pixel.
+    pub fn bits(&self) -> &[u8] {
+        &self.errors
+    }
+
     /// Where the triangle id is wrong, compares colors with `expected`, those of the right
     /// triangle.
     pub fn compare_again(&mut self, picture: &[[u8; 4]], expected: &[[u8; 4]]) {

@@ -6,7 +6,8 @@ pub mod error_map;
 pub mod timing;
 
 /// How far a picture is from the oracle. Counts are pixels unless stated otherwise.
-#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
 pub struct ErrorReport {
     /// Pixels of the picture.
     pub pixels: u64,

@@ -174,7 +174,7 @@ fn picture_ui(ui: &Ui, shown: &Shown<'_>, rect: Rect) {
                 .corner_radius(4.0)
                 .paint_at(ui, rect);
         }
-        None => drop(ui.painter().rect_filled(rect, 4.0, theme::well())),
+        None => drop(ui.painter().rect_filled(rect, 4.0, theme::raised())),
     }
     if shown.entry.preset_file.is_err() && shown.picture.is_none() {
         ui.painter().text(

@@ -44,7 +44,13 @@ pub fn navigate(ui: &Ui, response: &Response, session: &Session, widening: f64) 
     let (right, down) = (f64::from(drag.x), f64::from(drag.y));
     let height = f64::from(response.rect.height().max(1.0)) / widening;
     let shift = ui.input(|i| i.modifiers.shift);
-    if drag != Vec2::ZERO {
+    // Two fingers pan here and zoom below; the first of them is a pointer that drags, too.
+    let fingers = ui.input(|i| i.multi_touch());
+    if let Some(fingers) = fingers.filter(|_| response.is_pointer_button_down_on()) {
+        let [right, down] = fingers.translation_delta.into();
+        moving
+            .change(|c| camera_moves::pan(c, f64::from(right) / height, f64::from(down) / height));
+    } else if drag != Vec2::ZERO {
         let pans = response.dragged_by(PointerButton::Middle)
             || (response.dragged_by(PointerButton::Primary) && shift);
         if pans {

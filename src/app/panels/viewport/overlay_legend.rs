@@ -162,9 +162,11 @@ fn hovered_line(ui: &Ui, state: &State, at: Rect) -> Option<Line> {
             crossing_text(crossing, &state.session.visible_stack())
         )
     });
+    // A click on the pixel is taken by the probe.
+    let why = found.geometry.as_ref().map_or("", |_| "; click: why");
     Some(Line::sentence(
         theme::text_weak(),
-        format!("{x}, {y}: {}{crossing}; click: why", found.pixel_text(i)),
+        format!("{x}, {y}: {}{crossing}{why}", found.pixel_text(i)),
     ))
 }
 

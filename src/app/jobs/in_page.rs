@@ -1,0 +1,193 @@
+//! The jobs of a page. Workers do what takes long, from the text of a preset.
+
+use std::sync::{
+    Arc,
+    atomic::{AtomicBool, Ordering},
+};
+
+use eframe::egui;
+use js_sys::Uint8Array;
+
+use super::{Done, Jobs, THUMBNAIL_TRIANGLES, landed, worker, worker::Task};
+use crate::{
+    app::{
+        editing::session::FileId,
+        files::{command::Purpose, scene_loader::SceneKey, system_dialog},
+        picture::{
+            effect_picture::EffectPicture,
+            findings::Findings,
+            golden_check::{self, GoldenCheck, Outcome},
+            precision::{self, Measured},
+            screen::Inputs,
+        },
+        shell::page,
+    },
+    link,
+    preset_file::PresetFile,
+    scene::Scene,
+    work::Work,
+};
+
+impl Jobs {
+    /// Draws `inputs`, which the preset says, and judges the picture with the oracle.
+    pub fn verify_in_worker(&self, preset_file: PresetFile, inputs: Inputs, work: Arc<Work>) {
+        self.spawn_waiting("verify", async move || {
+            let size = [inputs.view.width, inputs.view.height];
+            let is_canceled = || work.is_canceled();
+            let asked =
+                worker::ask(Task::Judge, &preset_file, size, work.clone(), is_canceled).await;
+            let received = |sent| Findings::received(sent, &inputs.stack).map(Box::new);
+            let judged = asked.and_then(|sent| sent.map(received).transpose());
+            Done::Verdict(Box::new(inputs), work, judged)
+        });
+    }
+
+    /// Fetches the golden of a preset of the gallery, or has its picture drawn.
+    pub fn thumbnail(&self, preset_file: PresetFile, size: [u32; 2]) {
+        self.spawn_idle("thumbnail", async move || {
+            let image = match page::golden(&preset_file.id).await {
+                Ok((colors, size)) => Some(image(colors.as_flattened(), size)),
+                Err(_) => picture(&preset_file, size).await,
+            };
+            Done::Thumbnail(preset_file.id, image)
+        });
+    }
+
+    /// Draws the picture of a preset on the scene of `own`.
+    pub fn thumbnail_on(
+        &self,
+        look: PresetFile,
+        own: PresetFile,
+        scene: Arc<Scene>,
+        size: [u32; 2],
+    ) {
+        self.spawn_idle("thumbnail", async move || {
+            let image = match landed(&look, &own, &scene) {
+                Some(landed) => picture(&landed, size).await,
+                None => None,
+            };
+            Done::ThumbnailOn(SceneKey::of(&own), look.id, image)
+        });
+    }
+
+    /// Draws the picture of an effect on the open model.
+    pub fn effect_picture(&self, asked: EffectPicture) {
+        self.spawn_idle("effect picture", async move || {
+            let preset_file = PresetFile::new("effect", asked.preset);
+            let is_unwanted = asked.cancelled.load(Ordering::Relaxed)
+                || asked.scene.triangle_count() > THUMBNAIL_TRIANGLES;
+            let image = match is_unwanted {
+                true => None,
+                false => picture(&preset_file, asked.size).await,
+            };
+            Done::EffectPicture(asked.effect, image)
+        });
+    }
+
+    /// Measures the f32 errors of the effects of files in `inputs`, which the preset says; on the
+    /// thread of the page where no preset does.
+    pub fn measure_precision(
+        &self,
+        preset_file: Option<PresetFile>,
+        inputs: Inputs,
+        cancelled: Arc<AtomicBool>,
+    ) {
+        self.spawn_waiting("precision", async move || {
+            let measured = match preset_file {
+                None => precision::measure(&inputs, &cancelled),
+                Some(preset_file) => {
+                    let size = [inputs.view.width, inputs.view.height];
+                    let is_canceled = || cancelled.load(Ordering::Relaxed);
+                    let task = Task::Precision;
+                    let asked =
+                        worker::ask(task, &preset_file, size, Arc::default(), is_canceled).await;
+                    let received = |sent| Measured::received(sent, &inputs);
+                    asked.and_then(|sent| sent.map(received).transpose())
+                }
+            };
+            Done::Precision(
+                Box::new(inputs),
+                measured.map(|measured| measured.map(Box::new)),
+            )
+        });
+    }
+
+    /// Makes the link to the page beside the window with the line of a preset, and the bits of its
+    /// picture.
+    pub fn link(&self, _: String, line: String, preset_file: PresetFile, _: Arc<Scene>) {
+        self.spawn_idle("link", async move || {
+            let size = preset_file.preset.output.size;
+            let asked = worker::ask(Task::Bits, &preset_file, size, Arc::default(), || false).await;
+            let bits = asked.map(|bits| bits.and_then(|bits| bits.as_string()));
+            let known = bits.as_ref().ok().and_then(Option::as_deref);
+            let address = link::address(&page::beside(), &line, known);
+            Done::Link(address, bits.err())
+        });
+    }
+
+    /// Draws the golden of a preset of the gallery again and compares.
+    pub fn check_golden(&self, number: u64, preset_file: PresetFile) {
+        self.spawn_idle("golden", async move || {
+            let check = match page::golden(&preset_file.id).await {
+                Ok((golden, size)) => Some(GoldenCheck {
+                    file: FileId::of(&preset_file),
+                    golden: page::golden_name(&preset_file.id).into(),
+                    outcome: compared(&preset_file, &golden, size)
+                        .await
+                        .unwrap_or_else(Outcome::Failed),
+                }),
+                Err(_) => None,
+            };
+            Done::Golden(number, check)
+        });
+    }
+
+    /// Asks for files to be opened.
+    pub fn ask_files(&self) {
+        let extensions = system_dialog::extensions(Purpose::Open);
+        self.spawn_idle("files", async move || {
+            Done::Given(page::ask_files(&extensions).await)
+        });
+    }
+
+    /// Reads files that were dropped.
+    pub fn take_dropped(&self, files: Vec<egui::DroppedFileHandle>) {
+        self.spawn_idle("files", async move || {
+            Done::Given(page::take_dropped(files).await)
+        });
+    }
+}
+
+/// The oracle's picture of a preset, RGBA, drawn by a worker.
+///
+/// # Errors
+/// The worker cannot: why, in one sentence.
+async fn drawn(preset_file: &PresetFile, size: [u32; 2]) -> Result<Vec<u8>, String> {
+    let asked = worker::ask(Task::Picture, preset_file, size, Arc::default(), || false).await?;
+    let colors = Uint8Array::new(&asked.unwrap_or_default()).to_vec();
+    let [width, height] = size.map(|side| side as usize);
+    match colors.len() == 4 * width * height {
+        true => Ok(colors),
+        false => Err("a worker of the page has drawn another size".into()),
+    }
+}
+
+async fn picture(preset_file: &PresetFile, size: [u32; 2]) -> Option<egui::ColorImage> {
+    let colors = drawn(preset_file, size).await.ok()?;
+    Some(image(&colors, size))
+}
+
+fn image(colors: &[u8], size: [u32; 2]) -> egui::ColorImage {
+    egui::ColorImage::from_rgba_unmultiplied(size.map(|side| side as usize), colors)
+}
+
+/// Compares the oracle's picture of a preset with its golden of this size.
+async fn compared(
+    preset_file: &PresetFile,
+    golden: &[[u8; 4]],
+    size: [u32; 2],
+) -> Result<Outcome, String> {
+    golden_check::check_size(size, preset_file.preset.output.size)?;
+    let colors = drawn(preset_file, size).await?;
+    Ok(golden_check::difference(golden, colors.as_chunks().0))
+}

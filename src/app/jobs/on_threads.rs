@@ -1,0 +1,139 @@
+//! The jobs of threads that a page has in another way: what the oracle draws beside the window.
+
+use std::sync::{
+    Arc,
+    atomic::{AtomicBool, Ordering},
+};
+
+use eframe::egui;
+
+use super::{Done, Jobs, background, caught, giving_back, landed, small_picture};
+use crate::{
+    app::{
+        files::scene_loader::SceneKey,
+        picture::{effect_picture::EffectPicture, golden_check, precision, screen::Inputs},
+    },
+    link,
+    preset::Preset,
+    preset_file::{self, PresetFile},
+    scene::Scene,
+};
+
+impl Jobs {
+    /// Measures the f32 errors of the user's effects with the oracle.
+    pub fn measure_precision(&self, inputs: Inputs, cancelled: Arc<AtomicBool>) {
+        self.spawn("precision", move || {
+            let measure = || precision::measure(&inputs, &cancelled);
+            let measured = caught("measuring the f32 error", || {
+                giving_back(|| background::compute(measure)).map(|measured| measured.map(Box::new))
+            });
+            Done::Precision(Box::new(inputs), measured)
+        });
+    }
+
+    /// Draws the golden of a preset again and compares.
+    pub fn check_golden(&self, number: u64, preset_file: PresetFile) {
+        self.spawn_oracle("golden", move || {
+            let checked = caught("drawing the golden", || {
+                Ok(golden_check::check(&preset_file))
+            });
+            Done::Golden(number, checked.ok().flatten())
+        });
+    }
+
+    /// Makes the link to `page` with the line of a preset on its scene, and the bits of its picture.
+    pub fn link(&self, page: String, line: String, preset_file: PresetFile, scene: Arc<Scene>) {
+        self.spawn_oracle("link", move || {
+            let bits = caught("drawing the picture of the link", || {
+                link::bits(&preset_file.preset, &scene)
+            });
+            let address = link::address(&page, &line, bits.as_deref().ok());
+            Done::Link(address, bits.err())
+        });
+    }
+
+    /// Draws the picture of a preset with the oracle, which needs no device. Width and height are
+    /// in pixels.
+    pub fn thumbnail(&self, preset_file: PresetFile, size: [u32; 2]) {
+        self.spawn_oracle("thumbnail", move || {
+            let image = caught("drawing a thumbnail", || {
+                thumbnail(&preset_file, size).ok_or_else(String::new)
+            });
+            Done::Thumbnail(preset_file.id, image.ok())
+        });
+    }
+
+    /// Draws the picture of a preset on the scene of `own` with the oracle.
+    pub fn thumbnail_on(
+        &self,
+        look: PresetFile,
+        own: PresetFile,
+        scene: Arc<Scene>,
+        size: [u32; 2],
+    ) {
+        self.spawn_oracle("thumbnail", move || {
+            let image = caught("drawing a thumbnail", || {
+                thumbnail_on(&look, &own, &scene, size).ok_or_else(String::new)
+            });
+            Done::ThumbnailOn(SceneKey::of(&own), look.id, image.ok())
+        });
+    }
+
+    /// Draws the picture of an effect on the open model with the oracle.
+    pub fn effect_picture(
+        &self,
+        EffectPicture {
+            effect,
+            preset,
+            scene,
+            size,
+            cancelled,
+        }: EffectPicture,
+    ) {
+        self.spawn_oracle("effect picture", move || {
+            let draw = || match cancelled.load(Ordering::Relaxed) {
+                true => Err(String::new()),
+                false => thumbnail_of(&preset, &scene, size).ok_or_else(String::new),
+            };
+            let image = caught("drawing a picture of an effect", draw).ok();
+            Done::EffectPicture(effect, image)
+        });
+    }
+
+    /// Draws pictures with the oracle.
+    fn spawn_oracle(&self, name: &str, work: impl FnOnce() -> Done + Send + 'static) {
+        self.spawn(name, || background::compute(work));
+    }
+}
+
+fn thumbnail(preset_file: &PresetFile, size: [u32; 2]) -> Option<egui::ColorImage> {
+    let scene = preset_file::load_scene(&preset_file.preset, preset_file.path.as_deref()).ok()?;
+    thumbnail_of(&preset_file.preset, &scene, size)
+}
+
+fn thumbnail_on(
+    look: &PresetFile,
+    own: &PresetFile,
+    scene: &Scene,
+    size: [u32; 2],
+) -> Option<egui::ColorImage> {
+    let preset = landed(look, own, scene)?.preset;
+    if preset.ground == own.preset.ground && preset.room == own.preset.room {
+        return thumbnail_of(&preset, scene, size);
+    }
+    thumbnail_of(
+        &preset,
+        &*preset_file::load_scene(&preset, None).ok()?,
+        size,
+    )
+}
+
+/// The picture of a preset on `scene`; none if the scene is too large or the preset cannot be
+/// drawn.
+fn thumbnail_of(preset: &Preset, scene: &Scene, size: [u32; 2]) -> Option<egui::ColorImage> {
+    let colors = small_picture(preset, scene, size)?;
+    Some(egui::ColorImage::from_rgba_unmultiplied(
+        size.map(|side| side as usize),
+        colors.as_flattened(),
+    ))
+}
