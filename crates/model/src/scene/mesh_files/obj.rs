@@ -338,7 +338,7 @@ impl Faces<'_> {
             lists.normals.len(),
         ];
         corners.clear();
-        let mut wrong = None;
+        let mut wrong: Option<(&str, usize)> = None;
         let tokens = rest.split_ascii_whitespace();
         for token in tokens.take_while(|token| !token.starts_with('#')) {
             let mut corner = [NONE; 3];
