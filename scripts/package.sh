@@ -1,6 +1,6 @@
 #!/bin/sh
 # Makes target/package/rasterlab_VERSION_ARCHITECTURE.deb: the program, its manual pages and completions, an entry in the menu of the desktop
-# with an icon that the program draws, and the file types .glb, .gltf and .rasterlab.toml.
+# with an icon that the program draws, and the file types .glb, .gltf, .vrm, .obj, .stl, .ply and .rasterlab.toml.
 #
 #   sh scripts/package.sh                  builds the program with the profile dist and packs it
 #   sh scripts/package.sh --binary FILE    packs a program that is built already, without its debug information
@@ -90,9 +90,10 @@ Depends: $libraries, libvulkan1, libx11-6, libx11-xcb1, libxcursor1, libxi6, lib
 Recommends: mesa-vulkan-drivers | vulkan-icd, hicolor-icon-theme, shared-mime-info
 Suggests: ffmpeg, parallel, slurm-client
 Description: effects lab around a triangle rasterizer
- Open a glTF model, stack stylized effects on a rasterizer written as compute
- shaders, and save what you make as a preset that is also a test. Beside every
- picture stands what it cost and how wrong it is, against an exact CPU oracle.
+ Open a model (glTF, OBJ, STL, PLY), stack stylized effects on a rasterizer
+ written as compute shaders, and save what you make as a preset that is also a
+ test. Beside every picture stands what it cost and how wrong it is, against an
+ exact CPU oracle.
 CONTROL
 (cd "$root" && find usr -type f -exec md5sum {} +) > "$root/DEBIAN/md5sums"
 find "$root" -type d -exec chmod 755 {} +

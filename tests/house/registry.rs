@@ -331,14 +331,21 @@ fn no_effect_file_can_take_the_name_of_a_setting_or_a_section() {
 }
 
 #[test]
-fn help_texts_name_every_format_of_models() {
+fn help_texts_the_guide_and_the_package_name_every_format_of_models() {
     let key = settings()
         .find(|setting| setting.path() == "scene.path")
         .expect("a key");
     let help =
         fs::read_to_string(root().join("src/cli/args.rs")).expect("the help of the command line");
+    let [guide, types] = ["docs/guide.md", "scripts/package/rasterlab.xml"]
+        .map(|file| fs::read_to_string(root().join(file)).expect(file));
     for format in MODEL_FORMATS {
         let name = format!(".{}", format.extension);
+        assert!(guide.contains(&name), "{name} in docs/guide.md");
+        assert!(
+            types.contains(&format!("\"*{name}\"")),
+            "{name} of the package"
+        );
         assert!(key.doc.contains(&name), "scene.path: {}", key.doc);
         assert_eq!(
             help.matches(&name).count(),

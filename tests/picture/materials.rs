@@ -17,6 +17,8 @@ use rasterlab::{
     scene::{
         Accessor, Scene,
         camera::{Camera, Projection},
+        memory::MemoryBudget,
+        mesh_files::{LoadModel, load_obj, load_ply, load_stl},
         texture::{Filter, Image, MipFilter, Texture, Wrap},
         view::View,
     },
@@ -94,6 +96,56 @@ fn images_look_as_in_the_oracle_from_every_side() {
         cut += capture.frame.counters.clipped;
     }
     assert!(cut > 0, "no triangle was cut");
+}
+
+#[test]
+fn models_of_every_format_of_meshes_look_as_in_the_oracle() {
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
+    let mut png = std::io::Cursor::new(Vec::new());
+    image::RgbaImage::from_fn(5, 3, |x, y| {
+        image::Rgba([50 * x as u8, 80 * y as u8, 99, 255])
+    })
+    .write_to(&mut png, image::ImageFormat::Png)
+    .expect("it is encoded");
+    let mtl = b"newmtl a\nKd 1 0.8 0.5\nmap_Kd a.png\nKe 0 0 0.1\n".to_vec();
+    let obj = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.4 0.3\nv 0 0 1\nv 0 1 1\nvt 0 0\nvt 2 0\nvt 1 1\nusemtl a\ns 1\nf 1/1 2/2 3/3 5/1 4/2\nf 1/1 4/2 7/3 6/1\nusemtl none\nf 1 6 2\n";
+    let stl = "solid x\nfacet\nvertex 0 0 0 vertex 1 0 0 vertex 0 1 0\nendfacet\nfacet\nvertex 1 1 -1\nvertex 0 0 0\nvertex 1 0 0\nendfacet\n";
+    let ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 255 0 0\n1 0 0 0 255 0\n0.9 1 0.3 9 9 9\n0.2 0.2 0.1 0 0 255\n4 0 1 2 3\n";
+    for (what, load, text) in [
+        ("OBJ", load_obj as LoadModel, obj),
+        ("STL", load_stl, stl),
+        ("PLY", load_ply, ply),
+    ] {
+        let scene = load(&text.as_bytes(), MemoryBudget::LEAST, &mut |path, _| {
+            let is_image = path.extension().is_some_and(|extension| extension == "png");
+            Ok(if is_image {
+                png.get_ref().clone()
+            } else {
+                mtl.clone()
+            })
+        });
+        let scene = Arc::new(scene.expect("a model"));
+        let view = from_eye(&scene, [1.4, 1.2, 2.5], [0.5, 0.5, 0.0], [120, 90]);
+        let option = quick_option(&renderer);
+        let (capture, _) = exact(
+            &mut renderer,
+            &scene,
+            &view,
+            &stack(&["lambert"]),
+            &pinned(option),
+            what,
+        );
+        let background = capture.frame.color[0];
+        let is_drawn = capture
+            .frame
+            .color
+            .iter()
+            .filter(|texel| **texel != background)
+            .count();
+        assert!(is_drawn > 500, "{what}: {is_drawn} pixels");
+    }
 }
 
 /// A square of `side` pixels, its image's coordinates running from `from` to `to` along both axes.

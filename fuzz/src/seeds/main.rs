@@ -1,6 +1,7 @@
 //! Writes the corpus anew: `cargo run --release -p rasterlab-fuzz --bin rasterlab-fuzz-seeds`.
 //! Files that libFuzzer or a person has added under other names stay.
 
+mod mesh_files;
 mod meshes;
 mod models;
 mod pictures;
@@ -22,6 +23,7 @@ fn main() -> io::Result<()> {
     for target in &TARGETS {
         let seeds = match target.name {
             "model" => models::seeds(),
+            "mesh" => mesh_files::seeds(),
             "image" => pictures::images(),
             "compressed" => meshes::seeds(),
             "preset" => texts::presets(),

@@ -4,6 +4,7 @@ mod command_line;
 mod compressed;
 mod effect;
 mod image;
+mod mesh;
 mod model;
 mod picture;
 mod preset;
@@ -31,8 +32,9 @@ pub struct Target {
 /// What became of input: it was accepted, or refused with this text.
 pub type Outcome = Result<(), String>;
 
-pub const TARGETS: [Target; 8] = [
+pub const TARGETS: [Target; 9] = [
     model::TARGET,
+    mesh::TARGET,
     image::TARGET,
     compressed::TARGET,
     preset::TARGET,

@@ -95,7 +95,7 @@ impl<'a, 'b> Beside<'a, 'b> {
 }
 
 /// The path of a file that is named in `folder`.
-fn path(folder: &Path, name: &str) -> Result<PathBuf, &'static str> {
+pub fn path(folder: &Path, name: &str) -> Result<PathBuf, &'static str> {
     let joined = folder.join(name.replace('\\', "/"));
     let inside = joined.to_str().ok_or("is not UTF-8").and_then(uri::inside);
     inside.or_else(|_| {

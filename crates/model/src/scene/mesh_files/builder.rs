@@ -85,15 +85,6 @@ impl Vertex {
     }
 }
 
-/// How light falls on a part.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Shading {
-    /// On the planes of its faces.
-    Flat,
-    /// By the normals of its vertices.
-    Given,
-}
-
 /// What the faces of a part have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Kind {
@@ -101,7 +92,8 @@ pub struct Kind {
     pub node: Option<usize>,
     /// Of `Scene::materials`.
     pub material: usize,
-    pub shading: Shading,
+    /// Light falls by the normals of the vertices, else on the planes of the faces.
+    pub has_normals: bool,
     pub has_colors: bool,
     pub has_texcoords: bool,
 }
@@ -293,7 +285,7 @@ impl Builder {
         self.room.take(size_of::<Vertex>() + TABLE_BYTES)?;
         let index = part.positions.len() as u32;
         part.positions.push(vertex.position);
-        if part.kind.shading == Shading::Given {
+        if part.kind.has_normals {
             part.normals.push(vertex.normal);
         }
         if part.kind.has_colors {
@@ -388,7 +380,7 @@ fn add(
     )?;
     let mesh = kind.node.map(|node| scene.named_nodes[node].name.clone());
     let positions = Accessor::packed_f32(positions_at, 3, vertices);
-    let is_faceted = kind.shading == Shading::Flat;
+    let is_faceted = !kind.has_normals;
     let mut primitive = Primitive {
         name: called("mesh", 0, mesh.as_deref()),
         mesh: part_name("mesh", 0, mesh.as_deref()),

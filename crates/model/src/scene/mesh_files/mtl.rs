@@ -6,7 +6,7 @@ use std::{
 };
 
 use super::{
-    beside::Beside,
+    beside::{self, Beside},
     colors,
     findings::Findings,
     stream::{Stream, number, numbers, split},
@@ -78,7 +78,7 @@ pub struct Library {
 /// Loading ends.
 pub fn read(
     lines: &[String],
-    used: &HashSet<String>,
+    mut used: HashSet<String>,
     beside: &mut Beside,
     notes: &Notes,
 ) -> Result<Library, LoadError> {
@@ -94,12 +94,10 @@ pub fn read(
                     continue;
                 }
             };
-            for about in descriptions(&name, &bytes, &mut findings, &mut left_out)? {
-                if used.contains(&about.name) && !library.by_name.contains_key(&about.name) {
-                    let material = about.material(beside, &mut findings)?;
-                    library.by_name.insert(about.name, library.materials.len());
-                    library.materials.push(material);
-                }
+            for about in descriptions(&name, &bytes, &mut used, &mut findings, &mut left_out)? {
+                let material = about.material(beside, &mut findings)?;
+                library.by_name.insert(about.name, library.materials.len());
+                library.materials.push(material);
             }
         }
     }
@@ -130,10 +128,11 @@ fn files(line: &str, beside: &mut Beside) -> Result<Files, LoadError> {
     names.iter().take(MOST_FILES).map(each).collect()
 }
 
-/// The materials of a file, in order.
+/// The first of each of the `wanted` materials of a file, in order; they are no longer wanted.
 fn descriptions(
     file: &str,
     bytes: &[u8],
+    wanted: &mut HashSet<String>,
     findings: &mut Findings,
     left_out: &mut BTreeSet<String>,
 ) -> Result<Vec<Description>, LoadError> {
@@ -144,21 +143,24 @@ fn descriptions(
         });
         return Ok(found);
     }
-    let folder = file.replace('\\', "/");
-    let folder = Path::new(&folder).parent().unwrap_or(Path::new(""));
-    let (mut stream, mut line) = (Stream::new(&bytes), Vec::new());
+    let path = beside::path(Path::new(""), file).unwrap_or_default();
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let (mut stream, mut line, mut is_wanted) = (Stream::new(&bytes), Vec::new(), false);
     while stream.line(&mut line)? {
         let text = String::from_utf8_lossy(&line);
         let (keyword, rest) = split(&text);
         if keyword == "newmtl" {
-            found.push(Description {
-                name: rest.to_owned(),
-                folder: folder.to_owned(),
-                ..Description::default()
-            });
+            is_wanted = wanted.remove(rest);
+            if is_wanted {
+                found.push(Description {
+                    name: rest.to_owned(),
+                    folder: folder.to_owned(),
+                    ..Description::default()
+                });
+            }
             continue;
         }
-        let Some(about) = found.last_mut() else {
+        let Some(about) = found.last_mut().filter(|_| is_wanted) else {
             continue;
         };
         let keyword = keyword.to_ascii_lowercase();

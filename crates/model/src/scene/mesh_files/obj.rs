@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::{
     beside::Beside,
-    builder::{Builder, Kind, Room, Shading, Vertex, plain_material},
+    builder::{Builder, Kind, Room, Vertex, plain_material},
     colors,
     findings::Findings,
     mtl::{self, Library},
@@ -77,9 +77,10 @@ pub fn load(
     super::head(model, budget, "an OBJ file", |_| false)?;
     let (notes, mut findings) = (Notes::default(), Findings::default());
     let mut room = Room::of(budget, model.size());
-    let lists = Lists::read(model, &mut room, &mut findings)?;
+    let mut lists = Lists::read(model, &mut room, &mut findings)?;
+    let used = std::mem::take(&mut lists.used);
     let mut beside = Beside::of(model.size(), Limits::of_files(budget), read, &notes);
-    let mut library = mtl::read(&lists.libraries, &lists.used, &mut beside, &notes)?;
+    let mut library = mtl::read(&lists.libraries, used, &mut beside, &notes)?;
     let scene = Scene {
         materials: std::mem::take(&mut library.materials),
         images: beside.images,
@@ -126,7 +127,7 @@ fn next_line(stream: &mut Stream, line: &mut Vec<u8>) -> Result<bool, LoadError>
     let is_there = stream.line(line)?;
     let mut more = Vec::new();
     // Comments end with the folders of other machines.
-    while line.ends_with(b"\\") && !line.starts_with(b"#") {
+    while line.ends_with(b"\\") && !line.trim_ascii_start().starts_with(b"#") {
         line.pop();
         line.push(b' ');
         stream.line(&mut more)?;
@@ -337,23 +338,22 @@ impl Faces<'_> {
             lists.normals.len(),
         ];
         corners.clear();
-        let mut wrong = None;
+        let mut wrong: Option<(&str, usize)> = None;
         let tokens = rest.split_ascii_whitespace();
         for token in tokens.take_while(|token| !token.starts_with('#')) {
             let mut corner = [NONE; 3];
             for (i, part) in token.split('/').take(3).enumerate() {
                 corner[i] = index(part, self.passed[i], counts[i]).unwrap_or(NONE);
-                if corner[i] == NONE && !part.is_empty() {
-                    wrong = wrong.max(Some((i == 0, part, i)));
+                let is_worst = wrong.is_none_or(|(_, first)| first > 0 && i == 0);
+                if corner[i] == NONE && (i == 0 || !part.is_empty()) && is_worst {
+                    wrong = Some((part, i));
                 }
-            }
-            if corner[0] == NONE && wrong.is_none() {
-                wrong = Some((true, token, 0));
             }
             self.builder.widen(corners.len() + 1)?;
             corners.push(corner);
         }
-        if let Some((is_lost, part, i)) = wrong {
+        if let Some((part, i)) = wrong {
+            let is_lost = i == 0;
             let what = ["vertex", "texture coordinates", "normal"][i];
             let (part, count) = (quoted(part), counts[i]);
             let remedy = match is_lost {
@@ -405,10 +405,7 @@ impl Faces<'_> {
         let kind = Kind {
             node,
             material,
-            shading: match has_normals || is_smooth {
-                true => Shading::Given,
-                false => Shading::Flat,
-            },
+            has_normals: has_normals || is_smooth,
             has_colors: !lists.colors.is_empty(),
             has_texcoords: is_textured && has_texcoords,
         };

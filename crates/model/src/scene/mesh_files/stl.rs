@@ -2,7 +2,7 @@
 //! so that they are computed.
 
 use super::{
-    builder::{Builder, Kind, Room, Shading, Vertex},
+    builder::{Builder, Kind, Room, Vertex},
     colors,
     findings::Findings,
     stream::{Stream, numbers, split},
@@ -88,7 +88,7 @@ impl Reader {
         Kind {
             node: self.node,
             material: 0,
-            shading: Shading::Flat,
+            has_normals: false,
             has_colors,
             has_texcoords: false,
         }

@@ -85,6 +85,9 @@ impl<'a> Stream<'a> {
         if self.left() == 0 {
             return Ok(false);
         }
+        if self.line == 0 && self.bytes(3)?.is_some_and(|bytes| bytes != b"\xef\xbb\xbf") {
+            self.next -= 3;
+        }
         self.line += 1;
         loop {
             let rest = &self.buffer[self.next..];
@@ -125,7 +128,7 @@ pub fn numbers<'a, const N: usize>(mut tokens: impl Iterator<Item = &'a str>) ->
 
 /// The first word of a line, and the rest of it without white space around.
 pub fn split(line: &str) -> (&str, &str) {
-    let line = line.trim_start_matches('\u{feff}').trim();
+    let line = line.trim();
     match line.split_once(|c: char| c.is_ascii_whitespace()) {
         Some((keyword, rest)) => (keyword, rest.trim_start()),
         None => (line, ""),

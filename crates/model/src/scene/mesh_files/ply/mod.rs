@@ -7,14 +7,19 @@ use std::path::Path;
 
 use super::{
     beside::Beside,
-    builder::{Builder, Kind, Room, Shading, Vertex, plain_material},
+    builder::{Builder, Kind, Room, Vertex, plain_material},
     colors,
     findings::Findings,
     stream::Stream,
 };
 use crate::{
     scene::{
-        gltf::{LoadError, ReadFile, Source, error::part_name, limits::Limits, notes::Notes},
+        gltf::{
+            LoadError, ReadFile, Source,
+            error::{part_name, quoted},
+            limits::Limits,
+            notes::Notes,
+        },
         material::Material,
         memory::MemoryBudget,
         model::Scene,
@@ -181,17 +186,17 @@ impl Reader {
         rows: &mut Rows,
         mut each: impl FnMut(&mut Self, &Rows, u64) -> Result<(), LoadError>,
     ) -> Result<(), LoadError> {
-        let name = &element.name;
+        let name = quoted(&element.name);
         for row in 0..element.count {
             match rows.read(element, &mut self.builder.room)? {
                 Read::Whole => {}
                 Read::Broken => self.findings.fault("it is incomplete", || {
-                    format!("line {}: values of a {name} are missing", rows.stream.line)
+                    format!("line {}: values of {name} are missing", rows.stream.line)
                 }),
                 Read::Ended => {
                     let count = element.count;
                     self.findings.fault("what is there is drawn", || {
-                        format!("the file ends after {row} of {count} rows of the element {name}")
+                        format!("the file ends after {row} of {count} rows of {name}")
                     });
                     break;
                 }
@@ -261,10 +266,7 @@ impl Reader {
         let kind = Kind {
             node: None,
             material,
-            shading: match vertices.normals.is_empty() {
-                true => Shading::Flat,
-                false => Shading::Given,
-            },
+            has_normals: !vertices.normals.is_empty(),
             has_colors: paint.is_some() || !vertices.colors.is_empty(),
             has_texcoords: is_textured && has_texcoords,
         };
@@ -281,7 +283,7 @@ impl Reader {
             let at = index as usize;
             let mut vertex = Vertex::at([at as u32, NONE, NONE, 0], vertices.positions[at]);
             is_placed &= vertex.position.iter().all(|value| value.is_finite());
-            if kind.shading == Shading::Given {
+            if kind.has_normals {
                 vertex.normal = vertices.normals[at];
             }
             if let Some((number, color)) = paint {

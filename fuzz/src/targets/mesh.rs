@@ -1,0 +1,88 @@
+//! OBJ with MTL, STL and PLY models: every input is read as each of them, and is its own material
+//! file.
+
+use rasterlab::scene::{
+    gltf::LoadError,
+    memory::MemoryBudget,
+    mesh_files::{load_obj, load_ply, load_stl},
+};
+
+use super::{Outcome, Target, assert_told, model::use_scene};
+use crate::guard::Limit;
+
+pub const TARGET: Target = Target {
+    name: "mesh",
+    about: "OBJ, MTL, STL and PLY models",
+    views: &[],
+    words: WORDS,
+    limit: Limit::new(20, 2048),
+    check,
+};
+
+const WORDS: &[&str] = &[
+    "v ",
+    "vt ",
+    "vn ",
+    "f ",
+    "o ",
+    "g ",
+    "s 1",
+    "s off",
+    "l 1 2",
+    "usemtl ",
+    "mtllib a.mtl",
+    "newmtl ",
+    "Kd ",
+    "Ke ",
+    "Tr ",
+    "map_Kd -s 1 1 1 ",
+    "map_d ",
+    "//",
+    "-1",
+    "\\\n",
+    "nan",
+    "1e39",
+    "solid ",
+    "facet ",
+    "vertex ",
+    "endfacet",
+    "endsolid",
+    "COLOR=",
+    "ply\n",
+    "format ascii 1.0\n",
+    "format binary_little_endian 1.0\n",
+    "format binary_big_endian 1.0\n",
+    "comment TextureFile ",
+    "element vertex ",
+    "element face ",
+    "element tristrips ",
+    "property float ",
+    "property uchar ",
+    "property list uchar int vertex_indices\n",
+    "property list uint double ",
+    "texcoord",
+    "end_header\n",
+    "4294967295",
+    "18446744073709551615",
+];
+
+fn check(bytes: &[u8]) -> Outcome {
+    let mut outcome = Err("it is no mesh".into());
+    for load in [load_obj, load_stl, load_ply] {
+        let read = load(&bytes, MemoryBudget::LEAST, &mut |path, _| match path
+            .extension()
+            .is_some_and(|extension| extension == "mtl")
+        {
+            true => Ok(bytes.to_vec()),
+            false => Err(LoadError::new("no images here")),
+        });
+        match read {
+            Ok(scene) => {
+                use_scene(&scene);
+                outcome = Ok(());
+            }
+            Err(error) => assert_told(&error.to_string()),
+        }
+    }
+    outcome
+}
