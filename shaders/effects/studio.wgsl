@@ -189,13 +189,17 @@ fn studio_radiance(sky: StudioSky, d: vec3f, alpha: f32) -> vec3f {
     let upper = t * t * (3.0 - 2.0 * t);
     let above = 2.0 * width * t * t * t * (1.0 - 0.5 * t) + max(y - width, 0.0);
     var sum = sky.ground * (1.0 - upper) + sky.horizon * (upper - above) + sky.zenith * above;
-    sum += studio_lamp_radiance(sky.lamps[0], d, mean);
-    sum += studio_lamp_radiance(sky.lamps[1], d, mean);
-    sum += studio_lamp_radiance(sky.lamps[2], d, mean);
+    sum += studio_lamp_radiance(sky.lamps[0], d, alpha);
+    sum += studio_lamp_radiance(sky.lamps[1], d, alpha);
+    sum += studio_lamp_radiance(sky.lamps[2], d, alpha);
     return sum;
 }
 
-fn studio_lamp_radiance(lamp: StudioLamp, d: vec3f, mean: f32) -> vec3f {
-    let sharp = studio_concentration(lamp.mean * mean);
-    return lamp.light * (0.5 * sharp / (1.0 - exp(-2.0 * sharp)) * exp(sharp * (dot(d, lamp.toward) - 1.0)));
+fn studio_lamp_radiance(lamp: StudioLamp, d: vec3f, alpha: f32) -> vec3f {
+    let squared = alpha * alpha;
+    let spread = 2.0 * squared / (1.0 + alpha * (0.6749 + 2.3251 * alpha));
+    let narrow = studio_concentration(lamp.mean);
+    let sharp = narrow / (1.0 + narrow * spread);
+    let lobe = lamp.light * (0.5 * sharp / (1.0 - exp(-2.0 * sharp)) * exp(sharp * (dot(d, lamp.toward) - 1.0)));
+    return lobe + (max(studio_lamp_irradiance(lamp, d), vec3f(0.0)) - lobe) * squared;
 }
