@@ -27,14 +27,16 @@ const ORDER: &[(&str, &[&str])] = &[
             "render",
             "bounds",
             "judge",
+            "probe",
+            "probe_text",
         ],
     ),
     (
         "crates/files",
-        &["host", "effect_files", "preset_file", "film"],
+        &["host", "archive", "effect_files", "preset_file", "film"],
     ),
     ("crates/bench", &["baselines", "trade", "stress"]),
-    (".", &["app", "cli"]),
+    (".", &["link", "app", "cli"]),
 ];
 
 /// The core: crates that can live in a page.

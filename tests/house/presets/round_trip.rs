@@ -15,7 +15,7 @@ use rasterlab::{
     scene::{
         Ground, GroundShape,
         camera::{Camera, MIN_NEAR_M, Projection},
-        parts::Scope,
+        parts::{Scope, ShownParts},
     },
 };
 
@@ -191,8 +191,10 @@ prop_compose! {
         if reversed {
             stack.0.reverse();
         }
+        let scope = |from: usize| Scope::new(patterns.iter().skip(from).map(|pattern| pattern.parse().expect("a pattern")));
+        let parts = ShownParts { only: scope(2), hidden: scope(1) };
         Preset {
-            name, about, tags, scene, room, ground, spin_deg_per_s, playback, camera,
+            name, about, tags, scene, parts, room, ground, spin_deg_per_s, playback, camera,
             polyline: if reversed { [[background[0], -background[1], 1.0], [1e9, background[2], 1e-9], [0.0; 3]].into() } else { [].into() },
             unit: if size[0] % 2 == 0 { LengthUnit::Meter } else { LengthUnit::Scene },
             scene_camera: if reversed { "from above".into() } else { String::new() },
