@@ -197,6 +197,7 @@ mod tests {
     fn key(query: &str) -> SceneKey {
         SceneKey {
             source: SceneSource::Builtin(query.into()),
+            parts: ShownParts::default(),
             room: 0.0,
             ground: None,
         }
