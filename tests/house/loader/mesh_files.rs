@@ -558,7 +558,7 @@ fn what_leaves_nothing_to_draw_or_is_another_file_is_refused_in_a_sentence() {
         (
             load_obj,
             b"hello",
-            "there is nothing to draw: line 1: \"hello\" is no keyword of OBJ; it is ignored",
+            "there is nothing to draw: it has 0 vertices and no faces; export it with faces",
         ),
         (
             load_obj,
