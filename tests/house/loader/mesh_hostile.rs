@@ -357,6 +357,15 @@ const REFUSED: &[(&str, &str)] = &[
     ),
     ("invalid/empty.obj", "it is empty"),
     ("invalid/empty.ply", "it is empty"),
+    // Without the line of its faces.
+    (
+        "PLY/issue623.ply",
+        "it has 24 points and no faces; export it with faces",
+    ),
+    (
+        "PLY/pond.0.ply",
+        "it has 70051 points and no faces; export it with faces",
+    ),
 ];
 
 #[test]

@@ -298,14 +298,15 @@ impl Builder {
         Ok(index)
     }
 
-    /// The scene. `nothing` says what the file has where nothing is wrong with it and there is
-    /// nothing to draw.
+    /// The scene. `nothing` says what a file has that has no faces, or none that are drawn although
+    /// nothing is wrong with it.
     ///
     /// # Errors
     /// There is nothing to draw, or a limit is exceeded.
     pub fn finish(
         self,
         notes: Notes,
+        has_faces: bool,
         nothing: impl FnOnce() -> String,
     ) -> Result<Scene, LoadError> {
         let Self {
@@ -328,7 +329,10 @@ impl Builder {
         if scene.instances.is_empty() {
             return Err(LoadError::new(format_args!(
                 "there is nothing to draw: {}",
-                notes.first_fault().unwrap_or_else(nothing)
+                notes
+                    .first_fault()
+                    .filter(|_| has_faces)
+                    .unwrap_or_else(nothing)
             )));
         }
         check_size(&scene)?;

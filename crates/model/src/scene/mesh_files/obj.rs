@@ -92,6 +92,7 @@ pub fn load(
         builder: Builder::new(scene, room),
         findings,
         passed: [0; 3],
+        has_faces: false,
         names: [None, None],
         node: None,
         nodes: HashMap::new(),
@@ -103,6 +104,7 @@ pub fn load(
     faces.read(model)?;
     let Faces {
         mut builder,
+        has_faces,
         findings,
         sums,
         smooth,
@@ -117,7 +119,7 @@ pub fn load(
     let vertices = lists.positions.len();
     drop((lists, sums));
     findings.tell(&notes);
-    builder.finish(notes, || {
+    builder.finish(notes, has_faces, || {
         format!("it has {vertices} vertices and no faces; export it with faces")
     })
 }
@@ -244,6 +246,8 @@ struct Faces<'a> {
     findings: Findings,
     /// How many positions, texture coordinates and normals came before.
     passed: [usize; 3],
+    /// There is a face, whatever is wrong with it.
+    has_faces: bool,
     /// Of the object and of the group.
     names: [Option<String>; 2],
     /// The node of those names, once a face needs it.
@@ -274,6 +278,7 @@ impl Faces<'_> {
                 "vt" => self.passed[1] += 1,
                 "vn" => self.passed[2] += 1,
                 "f" | "fo" => {
+                    self.has_faces = true;
                     if self.corners(rest, at, &mut corners)? {
                         self.face(&corners, at, &mut face)?;
                     }

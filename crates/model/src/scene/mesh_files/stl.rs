@@ -50,9 +50,9 @@ pub fn load(
     }
     let notes = Notes::default();
     reader.findings.tell(&notes);
-    reader
-        .builder
-        .finish(notes, || "it has no triangles; export it again".into())
+    reader.builder.finish(notes, true, || {
+        "it has no triangles; export it again".into()
+    })
 }
 
 /// The number of triangles that a binary file states.

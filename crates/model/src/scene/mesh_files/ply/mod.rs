@@ -52,7 +52,7 @@ pub fn load(
     }
     let mut stream = Stream::new(model);
     let header = Header::read(&mut stream)?;
-    let body = model.size() - stream.left();
+    let (body, lines) = (model.size() - stream.left(), stream.line);
     let notes = Notes::default();
     let mut beside = Beside::of(model.size(), Limits::of_files(budget), read, &notes);
     let mut materials = Vec::new();
@@ -91,6 +91,7 @@ pub fn load(
         }
         let mut stream = Stream::new(model);
         stream.skip(body)?;
+        stream.line = lines;
         let mut rows = Rows::new(stream, header.encoding);
         for element in &header.elements {
             match wanted.contains(&element.name.as_str()) {
@@ -108,7 +109,11 @@ pub fn load(
     let points = vertices.positions.len();
     drop(vertices);
     findings.tell(&notes);
-    builder.finish(notes, || {
+    let has_faces = header
+        .elements
+        .iter()
+        .any(|element| element.count > 0 && ["face", "tristrips"].contains(&element.name.as_str()));
+    builder.finish(notes, has_faces, || {
         format!("it has {points} points and no faces; export it with faces")
     })
 }
