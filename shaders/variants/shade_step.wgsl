@@ -109,7 +109,6 @@ fn texture_at(lookup: Lookup, at: vec3u, weights: vec3f, slopes: Slopes) -> vec3
 //@ use lib/triangle
 //@ use lib/surface
 //@ use lib/shade
-//@ use lib/finish
 //@ use lib/finish_atlas
 //@ use lib/material_atlas
 
