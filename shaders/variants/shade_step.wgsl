@@ -177,7 +177,6 @@ fn alpha_filtered(lookup: Lookup, uv: vec2f, detail: f32) -> f32 {
 //@ use lib/triangle
 //@ use lib/surface
 //@ use lib/shade
-//@ use lib/finish
 //@ use lib/finish_atlas
 //@ use lib/material_atlas
 

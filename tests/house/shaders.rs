@@ -454,6 +454,7 @@ fn plain_key() -> KernelKey {
     let mut key = key(Fetch::Indexed, Visibility::Split32, true, vec![]);
     key.work.listed_tiles = false;
     (key.generated.has_particles, key.surface.has_material_atlas) = (false, false);
+    key.surface.has_finish = false;
     key
 }
 

@@ -274,6 +274,39 @@ fn materials_shine_and_stay_unlit_as_the_file_says() {
 }
 
 #[test]
+fn materials_reflect_as_the_file_says() {
+    let of = |extensions: Value| {
+        let model = Model::textured()
+            .with("/materials/0/extensions", extensions)
+            .with(
+                "/materials/0/pbrMetallicRoughness",
+                json!({ "metallicFactor": 0.25, "roughnessFactor": 0.75 }),
+            );
+        let material = model.material();
+        (material.metallic, material.roughness, material.specular)
+    };
+    assert_eq!(of(json!({})), (0.25, 0.75, [0.04, 0.04, 0.04, 1.0]));
+    let glass = json!({ "KHR_materials_ior": { "ior": 3 } });
+    assert_eq!(of(glass).2, [0.25, 0.25, 0.25, 1.0]);
+    let tinted = json!({
+        "KHR_materials_ior": { "ior": 3 },
+        "KHR_materials_specular": { "specularFactor": 0.5, "specularColorFactor": [1, 2, 8] },
+    });
+    assert_eq!(of(tinted).2, [0.125, 0.25, 0.5, 0.5]);
+    let older = json!({
+        "KHR_materials_pbrSpecularGlossiness": { "specularFactor": [0.5, 0.25, 1], "glossinessFactor": 0.25 },
+    });
+    assert_eq!(of(older), (0.0, 0.75, [0.5, 0.25, 1.0, 1.0]));
+    let silent = Model::textured().without("/materials/0/pbrMetallicRoughness");
+    let silent = silent.material();
+    assert_eq!(
+        (silent.metallic, silent.roughness),
+        (1.0, 1.0),
+        "the standard's defaults"
+    );
+}
+
+#[test]
 fn alpha_modes_say_what_is_cut_out() {
     let with_mode = |mode: &str| Model::textured().with("/materials/0/alphaMode", json!(mode));
     assert_eq!(

@@ -236,7 +236,10 @@ impl Reader<'_, '_> {
                 0.04
             }
             // Fresnel: ((n - 1) / (n + 1))².
-            index => (1.0 - 2.0 / (index + 1.0)).powi(2),
+            index => {
+                let root = (f64::from(index) - 1.0) / (f64::from(index) + 1.0);
+                (root * root) as f32
+            }
         };
         let specular = extension("KHR_materials_specular");
         let factor = specular.map_or(1.0, |given| self.fraction(given, "specularFactor"));
