@@ -108,20 +108,20 @@ fn hardware_painted_vertex(
 }
 
 // What the images say of a fragment, linear RGB.
-struct Paint {
+struct SurfacePaint {
     base: vec3f,
     emission: vec3f,
 }
 
 // Must be called before a fragment is discarded, whose neighbors it gives the size of a pixel in the image.
-fn hardware_paint(v: PaintedVaryings) -> Paint {
-    var paint = Paint(vec3f(1.0), hardware_material.emission.rgb);
+fn hardware_paint(v: PaintedVaryings) -> SurfacePaint {
+    var paint = SurfacePaint(vec3f(1.0), hardware_material.emission.rgb);
     if HAS_BASE_IMAGE { paint.base = textureSample(base_image, base_sampler, v.base_uv).rgb; }
     if HAS_EMISSION_IMAGE { paint.emission *= textureSample(emission_image, emission_sampler, v.emission_uv).rgb; }
     return paint;
 }
 
-fn hardware_shaded(v: PaintedVaryings, is_front: bool, paint: Paint) -> vec4f {
+fn hardware_shaded(v: PaintedVaryings, is_front: bool, paint: SurfacePaint) -> vec4f {
     var s = hardware_surface(Varyings(v.at, v.position, v.normal, v.depth_m, v.draw), is_front);
     s.color = v.color * vec4f(paint.base, 1.0);
     if IS_UNLIT {

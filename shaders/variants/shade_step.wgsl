@@ -131,7 +131,7 @@ fn shade_step_alpha(surface: Surface, t: Triangle, at: vec3u, position: SamplePo
     let size = vec2f(vec2u(lookup.size & 0xffffu, lookup.size >> 16u));
     let right = (ab * slopes.right.y + ac * slopes.right.z) * size;
     let down = (ab * slopes.down.y + ac * slopes.down.z) * size;
-    let squared = max(dot(right, right), dot(down, down));
+    let squared = max(dot(down, down), dot(right, right));
     let uv = (a - whole) + ab * position.weights.y + ac * position.weights.z;
     s.color.a *= alpha_filtered(lookup, uv, 0.5 * log2(max(squared, 1e-30)));
     return s;
@@ -140,14 +140,14 @@ fn shade_step_alpha(surface: Surface, t: Triangle, at: vec3u, position: SamplePo
 fn alpha_texel(lookup: Lookup, first: u32, size: vec2i, at: vec2i) -> f32 {
     let x = atlas_wrapped(at.x, size.x, lookup.sampling & 3u);
     let y = atlas_wrapped(at.y, size.y, (lookup.sampling >> 2u) & 3u);
-    return f32(atlas_word(first + u32(y * size.x + x)) >> 24u) / 255.0;
+    return f32(atlas_word(first + u32(x + y * size.x)) >> 24u) / 255.0;
 }
 
 // Alpha at texture coordinates, from one level: as `atlas_level`.
 fn alpha_level(lookup: Lookup, level: u32, uv: vec2f, is_linear: bool) -> f32 {
     let first = atlas_word(lookup.levels + level);
     let size = vec2i(max(vec2u(lookup.size & 0xffffu, lookup.size >> 16u) >> vec2u(level), vec2u(1u)));
-    let at = clamp(uv * vec2f(size), vec2f(-1073741824.0), vec2f(1073741824.0));
+    let at = clamp(vec2f(size) * uv, vec2f(-1073741824.0), vec2f(1073741824.0));
     if !is_linear { return alpha_texel(lookup, first, size, vec2i(floor(at))); }
     let low = floor(at - 0.5);
     let fraction = at - 0.5 - low;
@@ -160,16 +160,16 @@ fn alpha_level(lookup: Lookup, level: u32, uv: vec2f, is_linear: bool) -> f32 {
 
 // Alpha at texture coordinates, where a pixel spans 2^detail texels: as `atlas_filtered`.
 fn alpha_filtered(lookup: Lookup, uv: vec2f, detail: f32) -> f32 {
-    if !(detail > 0.0) { return alpha_level(lookup, 0u, uv, ((lookup.sampling >> 4u) & 1u) != 0u); }
+    if !(detail > 0.0) { return alpha_level(lookup, 0u, uv, (lookup.sampling & 16u) != 0u); }
     let is_linear = ((lookup.sampling >> 5u) & 1u) != 0u;
     let mip_filter = (lookup.sampling >> 6u) & 3u;
     let last = f32((lookup.sampling >> 8u) - 1u);
     if mip_filter == MIP_NEAREST { return alpha_level(lookup, u32(min(floor(detail + 0.5), last)), uv, is_linear); }
     let low = min(floor(detail), last);
-    if mip_filter != MIP_LINEAR { return alpha_level(lookup, 0u, uv, is_linear); }
+    if MIP_LINEAR != mip_filter { return alpha_level(lookup, 0u, uv, is_linear); }
     let nearer = alpha_level(lookup, u32(low), uv, is_linear);
     if low >= last { return nearer; }
-    return mix(nearer, alpha_level(lookup, u32(low) + 1u, uv, is_linear), detail - low);
+    return mix(nearer, alpha_level(lookup, 1u + u32(low), uv, is_linear), detail - low);
 }
 
 //@ step finish

@@ -184,7 +184,7 @@ pub enum Command {
     /// Show the passes and buffers of a preset, and the reason for each
     Explain(Explain),
     /// Tell why a pixel shows what it shows: every triangle at it, and its color after each effect
-    Probe(Probe),
+    Probe(super::probe::Probe),
     /// List the materials, nodes and meshes of a scene as patterns for the key `on` of effects
     Parts(Parts),
     /// Redraw goldens with the oracle
@@ -472,22 +472,6 @@ pub struct Explain {
 }
 
 #[derive(Args, Debug)]
-pub struct Probe {
-    #[arg(value_name = "PRESET")]
-    pub input: String,
-    /// Column and row of the pixel, 0,0 at the top left
-    #[arg(long, value_name = "X,Y", value_parser = pixel)]
-    pub pixel: [u32; 2],
-    /// Also draw the picture with every option of every accuracy axis, and tell what each decides
-    /// at the pixel
-    #[arg(long)]
-    pub options: bool,
-    /// Size in pixels instead of the preset's own
-    #[arg(long, value_name = "WxH", value_parser = size)]
-    pub size: Option<[u32; 2]>,
-}
-
-#[derive(Args, Debug)]
 pub struct Parts {
     /// A preset, a model, or builtin:QUERY
     #[arg(value_name = "SCENE")]
@@ -632,16 +616,7 @@ fn turntable(text: &str) -> Result<Turntable, String> {
 }
 
 /// `1920x1080`.
-fn pixel(text: &str) -> Result<[u32; 2], String> {
-    let place = |text: &str| text.trim().parse().ok();
-    text.split_once(',')
-        .and_then(|(x, y)| Some([place(x)?, place(y)?]))
-        .ok_or_else(|| {
-            format!("{text:?} is no pixel; write its column and row, for instance 320,200")
-        })
-}
-
-fn size(text: &str) -> Result<[u32; 2], String> {
+pub fn size(text: &str) -> Result<[u32; 2], String> {
     let wrong = || {
         format!("{text:?} is no size; write WIDTHxHEIGHT, each 1 to 16384, for instance 1920x1080")
     };

@@ -4,10 +4,11 @@
 
 use std::sync::Arc;
 
+use clap::Args;
 use serde_json::{Value, json};
 
 use super::{
-    args::{Common, Probe},
+    args::{Common, size},
     backend::{Backend, scene_of},
     error::{CliError, Exit},
     open::{named, open},
@@ -22,6 +23,31 @@ use crate::{
     preset::Preset,
     scene::Scene,
 };
+
+#[derive(Args, Debug)]
+pub struct Probe {
+    #[arg(value_name = "PRESET")]
+    pub input: String,
+    /// Column and row of the pixel, 0,0 at the top left
+    #[arg(long, value_name = "X,Y", value_parser = pixel)]
+    pub pixel: [u32; 2],
+    /// Also draw the picture with every option of every accuracy axis, and tell what each decides
+    /// at the pixel
+    #[arg(long)]
+    pub options: bool,
+    /// Size in pixels instead of the preset's own
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+}
+
+fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let place = |text: &str| text.trim().parse().ok();
+    text.split_once(',')
+        .and_then(|(x, y)| Some([place(x)?, place(y)?]))
+        .ok_or_else(|| {
+            format!("{text:?} is no pixel; write its column and row, for instance 320,200")
+        })
+}
 
 pub fn run(common: &Common, args: &Probe, streams: &mut Streams) -> Result<Exit, CliError> {
     let mut preset_file = open(common, &args.input)?;

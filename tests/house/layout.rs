@@ -58,6 +58,7 @@ fn keys() -> Vec<KernelKey> {
         buffered,
         one(&rasterlab::effects::overdraw::EFFECT),
         one(&rasterlab::effects::xray::EFFECT),
+        one(&rasterlab::effects::bloom::EFFECT),
         whole(Visibility::Packed32, &[]),
     ]
 }

@@ -344,7 +344,11 @@ fn mistakes_in_looking_up_texels_are_caught() {
             "clamp(uv * vec2f(size),",
             "clamp(uv * vec2f(size) + 0.01,",
         ),
-        ("a copy too small", "0.5 * log2(", "0.125 + 0.5 * log2("),
+        (
+            "a copy too small",
+            "atlas_filtered(lookup, uv, 0.5 * log2(",
+            "atlas_filtered(lookup, uv, 0.125 + 0.5 * log2(",
+        ),
     ];
     let mut missed = Vec::new();
     for (what, from, to) in mistakes {

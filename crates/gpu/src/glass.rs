@@ -1,6 +1,7 @@
 //! Layers of glass: what a frame counts of them, and how much room they get.
 
-use crate::plan::Caps;
+use super::renderer::Renderer;
+use crate::{plan::Caps, shader::KernelKey};
 
 /// Bytes of a layer: depth key, triangle id, the next layer, and what it does to a color.
 pub const LAYER_BYTES: u64 = 24;
@@ -53,4 +54,30 @@ pub fn more_bands(bands: u32, demand: u32, most: u32) -> Option<u32> {
         .max(1)
         .checked_mul(parts.max(2))
         .filter(|bands| *bands <= MOST_BANDS)
+}
+
+impl Renderer {
+    /// Makes room for the layers of glass of a band, which are `demand`, or has the next pictures
+    /// drawn in more bands; false where they are as many as can be.
+    pub(super) fn make_room_for_glass(&mut self, key: &KernelKey, demand: u32) -> bool {
+        let Ok(frame) = self.picture.frame() else {
+            return false;
+        };
+        let pixels = frame.view.pixels() as u64;
+        let most = most_layers(
+            pixels,
+            &self.device.gpu.caps,
+            self.device.tuning.glass_layers,
+        );
+        let capacity = &mut self.picture.capacities.glass;
+        *capacity = demand.checked_next_power_of_two().unwrap_or(most).min(most);
+        if demand <= most {
+            return true;
+        }
+        let bands = more_bands(key.framebuffer.glass_bands, demand, most);
+        bands
+            .iter()
+            .for_each(|bands| self.history.divide_glass(*bands));
+        bands.is_some()
+    }
 }

@@ -11,7 +11,6 @@ use super::{
     explain::{Explained, Explanation},
     frame_layout::{Region, Target},
     frame_stats::{Pending, Staged, StatSources},
-    glass::{more_bands, most_layers},
     hardware_ids,
     history::{History, fill_background},
     particles::{ParticleSimulation, Wait},
@@ -559,30 +558,6 @@ impl Renderer {
             lost_layers,
             simulation_pending: self.particles.is_pending,
         })
-    }
-
-    /// Makes room for the layers of glass of a band, which are `demand`, or has the next pictures
-    /// drawn in more bands; false where they are as many as can be.
-    fn make_room_for_glass(&mut self, key: &KernelKey, demand: u32) -> bool {
-        let Ok(frame) = self.picture.frame() else {
-            return false;
-        };
-        let pixels = frame.view.pixels() as u64;
-        let most = most_layers(
-            pixels,
-            &self.device.gpu.caps,
-            self.device.tuning.glass_layers,
-        );
-        let capacity = &mut self.picture.capacities.glass;
-        *capacity = demand.checked_next_power_of_two().unwrap_or(most).min(most);
-        if demand <= most {
-            return true;
-        }
-        let bands = more_bands(key.framebuffer.glass_bands, demand, most);
-        bands
-            .iter()
-            .for_each(|bands| self.history.divide_glass(*bands));
-        bands.is_some()
     }
 
     /// Forgets what the next picture would start from: background comes before it.

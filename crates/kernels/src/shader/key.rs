@@ -262,7 +262,8 @@ impl EffectList {
 impl KernelKey {
     /// A key that omits nothing, for a stack on a portable adapter.
     pub fn complete(fetch: Fetch, visibility: Visibility, effects: Vec<Arc<Effect>>) -> Self {
-        let layers = Stack(effects.iter().map(EnabledEffect::new).collect()).layers(u64::MAX);
+        let stack = Stack(effects.iter().map(EnabledEffect::new).collect());
+        let layers = stack.layers(u64::MAX);
         Self {
             options: AccuracyOptions {
                 visibility,
@@ -325,7 +326,7 @@ impl KernelKey {
             surface: SurfaceInputs {
                 has_material_atlas: true,
                 has_alpha: layers == Some(Layers::Glass),
-                has_finish: true,
+                has_finish: stack.reads_finish(),
                 has_planes: true,
             },
             view: ViewKind {

@@ -61,14 +61,17 @@ macro_rules! modules {
 
 for_each_effect!(modules);
 
+mod conflict;
 mod effect;
 pub mod hooks;
 mod list;
+mod one_sun;
 mod stack;
 
 pub use self::{
+    conflict::Conflict,
     effect::{BuiltIn, Effect, EffectSource, HookFunctions, constant_name, read},
     hooks::{Surface, SurfaceEffect, SurfaceInput},
     list::EFFECTS,
-    stack::{Conflict, EnabledEffect, MAX_IMAGE_PASSES, Stack},
+    stack::{EnabledEffect, MAX_IMAGE_PASSES, Stack},
 };

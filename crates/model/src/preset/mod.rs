@@ -1,8 +1,7 @@
 //! The state of a preset: plain data that is always finite, and the view that it describes.
 //!
-//! `Clone + PartialEq`, so undo is a list of presets. Playback, window layout and overlays are no
-//! part of it. [`Preset::evaluated_stack`] is drawn, not the stack itself: keyframes change its
-//! values with the time.
+//! Playback, window layout and overlays are no part of it. [`Preset::evaluated_stack`] is drawn, not
+//! the stack itself: keyframes change its values with the time.
 
 pub mod animation;
 mod fit;
@@ -258,8 +257,7 @@ pub struct Preset {
     pub about: String,
     pub tags: Vec<String>,
     pub scene: SceneSource,
-    /// Distance of the walls of a room around the scene, as a multiple of the scene's width; 0: no
-    /// room.
+    /// Distance of the walls of a room, as a multiple of the scene's width; 0: no room.
     pub room: f64,
     /// The parts of the scene that are shown.
     pub parts: ShownParts,
