@@ -196,11 +196,6 @@ fn mistakes_in_order_count_band_and_blend_are_caught() {
             "let key_a = glass_key(a) & 0xffff0000u;",
         ),
         (
-            "layers behind the opaque triangle count",
-            "while link != 0u && glass_front_is_behind(pixel, glass_key(link), glass_id(link)) {",
-            "while link != 0u {",
-        ),
-        (
             "the nearest layer is left out",
             "let first = glass_sorted(head);",
             "let first = max(glass_next(glass_sorted(head)), head);",

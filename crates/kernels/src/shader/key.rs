@@ -326,7 +326,7 @@ impl KernelKey {
             surface: SurfaceInputs {
                 has_material_atlas: true,
                 has_alpha: layers == Some(Layers::Glass),
-                has_finish: stack.reads_finish(),
+                has_finish: true,
                 has_planes: true,
             },
             view: ViewKind {
