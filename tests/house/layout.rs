@@ -71,7 +71,10 @@ fn modules() -> Vec<(String, Reflected, Vec<reflect::Binding>)> {
         passes.extend([Pass::Skin, Pass::Particles, Pass::Scale]);
         passes.extend(key.effects.dots.map(|_| Pass::DotsProbe));
         let mut seen = BTreeSet::new();
-        for pass in passes.into_iter().filter(|pass| seen.insert(pass.label())) {
+        for pass in passes
+            .into_iter()
+            .filter(|pass| seen.insert(format!("{pass:?}")))
+        {
             let module = reflected(&key, pass);
             let bindings = module.bindings(pass.stem());
             assert!(!bindings.is_empty(), "{key} {}: no bindings", pass.label());

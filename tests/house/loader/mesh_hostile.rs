@@ -364,7 +364,7 @@ const REFUSED: &[(&str, &str)] = &[
     ),
     (
         "PLY/pond.0.ply",
-        "it has 70051 points and no faces; export it with faces",
+        "it has 70048 points and no faces; export it with faces",
     ),
 ];
 
