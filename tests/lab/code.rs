@@ -38,14 +38,14 @@ fn what_is_typed_is_seen_and_saved_on_demand() {
     wait_for(&mut lab, "the text is shown", |lab| says(lab, "ink.wgsl"));
 
     type_text(&mut lab, "fn late() -> f32 { return q; }\n");
-    wait_for(&mut lab, "the fault is told", |lab| says(lab, "line 15: "));
+    wait_for(&mut lab, "the fault is told", |lab| says(lab, "line 14: "));
     assert_eq!(std::fs::read_to_string(&file).expect("the file"), INK);
 
     for _ in 0.."q; }\n".len() {
         press(&mut lab, Modifiers::NONE, Key::Backspace);
     }
     type_text(&mut lab, "1.0; }\n");
-    wait_for(&mut lab, "the text is sound", |lab| !says(lab, "line 15: "));
+    wait_for(&mut lab, "the text is sound", |lab| !says(lab, "line 14: "));
     wait_for(&mut lab, "it is compiled", |lab| {
         lab.state().log_text().contains("ink was reloaded")
     });
@@ -60,11 +60,6 @@ fn what_is_typed_is_seen_and_saved_on_demand() {
         std::fs::read_to_string(&file).is_ok_and(|text| text == typed)
     });
 
-    // Another editor writes the file: the text follows.
-    write(&file, INK);
-    wait_for(&mut lab, "the text follows its file", |lab| {
-        lab.get_by_label("Text of ink").value().as_deref() == Some(INK)
-    });
     click(&mut lab, Role::Button, "Close the text");
     assert!(!says(&lab, "Close the text"));
 }

@@ -111,8 +111,8 @@ impl SurfaceEffect for Studio {
         let [x, y, z, shadowed] = p.sun_direction.map(f64::from);
         let toward = DVec3::new(x, y, z).try_normalize().unwrap_or(DVec3::Y);
         let arrives = 1.0 - shadowed * (1.0 - s.lit);
-        let from_sun =
-            rgb(p.sun) * arrives * reflector.from_sun(&seen, s.normal, s.view, toward);
+        let sunlight =
+            rgb(p.sun) * arrives * reflector.sunlight(&seen, s.normal, s.view, toward);
 
         let mirrored = s.normal * (2.0 * s.normal.dot(s.view)) - s.view;
         // The rougher a surface, the nearer to its normal is what it mirrors (Lagarde 2014).
@@ -125,7 +125,7 @@ impl SurfaceEffect for Studio {
         let from_sky = (reflector.diffuse * (1.0 - seen.all) + seen.repeated) * diffuse
             + seen.once * reflected;
 
-        let light = from_sun + from_sky * (f64::from(p.strength) * finish.occlusion) + s.glow;
+        let light = sunlight + from_sky * (f64::from(p.strength) * finish.occlusion) + s.glow;
         s.color = light.extend(s.color.w);
         s
     }
@@ -214,7 +214,7 @@ impl Reflector {
 
     /// Light that leaves towards the eye, of light from one direction that gives a white matt
     /// surface its own strength: π times the BRDF, times the cosine.
-    fn from_sun(&self, seen: &Albedo, normal: DVec3, view: DVec3, toward: DVec3) -> DVec3 {
+    fn sunlight(&self, seen: &Albedo, normal: DVec3, view: DVec3, toward: DVec3) -> DVec3 {
         let facing = normal.dot(toward);
         if facing <= 0.0 {
             return DVec3::ZERO;
@@ -468,7 +468,7 @@ mod tests {
             let reflector = reflector(alpha);
             let brdf = |view: DVec3, toward: DVec3| {
                 let seen = reflector.albedo(view.z);
-                reflector.from_sun(&seen, DVec3::Z, view, toward) / toward.z
+                reflector.sunlight(&seen, DVec3::Z, view, toward) / toward.z
             };
             for at in square(12) {
                 let (a, b) = (around(0.02 + 0.97 * at.x, at.y), around(at.y, 3.0 * at.x));
