@@ -67,6 +67,12 @@ fn a_duplicate_takes_the_place_of_its_original_and_undo_brings_that_back() {
     assert_eq!(names(&lab), expected);
     assert_eq!(value(&lab, "cel", "steps"), [5.0]);
     assert_eq!(key_times(&lab, "cel", "rim_width"), [0.0, 1.0]);
+    // Its text stands beside the picture, which is smaller meanwhile.
+    wait_for(&mut lab, "its text is shown", |lab| {
+        lab.query_by_label("Close the text").is_some()
+    });
+    click(&mut lab, Role::Button, "Close the text");
+    settle(&mut lab);
     let after = middle(&mut lab);
     let largest = before
         .pixels()
