@@ -2,10 +2,12 @@
 //! the layers of every picture, and the edge near which an inexact option went wrong.
 
 use rasterlab::{
-    accuracy::Coverage,
+    accuracy::{Coverage, PinnedOptions},
+    effects::Stack,
     frame::NO_TRIANGLE,
     math::hash,
     oracle::{self, Outcome, ProbedTriangle},
+    plan::AccuracyRequest,
     preset_file::{self, Folders},
 };
 
@@ -16,7 +18,7 @@ fn pixels(seed: u32, size: [u32; 2], count: u32) -> Vec<[u32; 2]> {
     (0..count)
         .map(|i| {
             [
-                hash(seed ^ 2 * i) % size[0],
+                hash(seed ^ (2 * i)) % size[0],
                 hash(seed ^ (2 * i + 1)) % size[1],
             ]
         })
@@ -77,13 +79,15 @@ fn every_pixel_that_float_edges_get_wrong_lies_at_an_edge_of_what_was_drawn() {
     let Some(mut renderer) = renderer() else {
         return;
     };
-    let file = preset_file::open("cube-wall", &Folders::default()).expect("a preset");
-    let mut preset = file.preset;
-    let scene = preset_file::load_scene(&preset, None).expect("its scene");
-    preset.accuracy.pins = preset.accuracy.pins.with(Coverage::Float);
-    let size = preset.output.size;
-    let (view, stack) = (preset.view(&scene, size), preset.stack_on(&scene, size));
-    let capture = captured(&mut renderer, &scene, &view, &stack, &preset.accuracy);
+    // Corners on 1/2 px: every other sample lies on an edge.
+    let scene = scene("grid?cell=4&lattice=2&width=256&height=256");
+    let size = [256, 256];
+    let (view, stack) = (view(&scene, size), Stack::default());
+    let accuracy = AccuracyRequest {
+        pins: PinnedOptions::of(Coverage::Float),
+        ..AccuracyRequest::default()
+    };
+    let capture = captured(&mut renderer, &scene, &view, &stack, &accuracy);
     let wrong = {
         let expected = verdict(&scene, &view, &stack, &capture).expected;
         let drawn = &capture.frame.triangle_id;

@@ -1,4 +1,4 @@
-//! The row "Parts" of the scene: which of them are shown.
+//! The button "Parts" of the scene: which of them are shown.
 
 use eframe::egui::{self, Popup, PopupCloseBehavior, ScrollArea, TextEdit, Ui};
 
@@ -14,21 +14,17 @@ use crate::{
     scene::parts::{PartPattern, Scope, ShownParts},
 };
 
-/// The row with the list of parts.
+/// The button with the list of parts, in a row with others.
 pub fn parts_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     let shown = &state.session.preset().parts;
-    ui.horizontal(|ui| {
-        ui.set_min_height(theme::ROW);
-        ui.add_space(theme::GAP);
-        ui.label(theme::weak("Parts"));
-        let button = ui
-            .button(format!("{}…", summary(shown)))
-            .on_hover_text("Hide parts of the scene, or show one of them alone")
-            .accessible_name("Parts of the scene");
-        Popup::menu(&button)
-            .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
-            .show(|ui| list_ui(ui, state, commands, shown));
-    });
+    ui.label(theme::weak("Parts"));
+    let button = ui
+        .button(format!("{}…", summary(shown)))
+        .on_hover_text("Hide parts of the scene, or show one of them alone")
+        .accessible_name("Parts of the scene");
+    Popup::menu(&button)
+        .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+        .show(|ui| list_ui(ui, state, commands, shown));
 }
 
 /// What the button shows.

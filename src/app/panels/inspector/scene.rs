@@ -25,13 +25,12 @@ use crate::{
 pub fn scene_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     folder(ui, "Scene", true, |ui| {
         let preset = state.session.preset();
-        parts_ui(ui, state, commands);
         setting_ui(ui, state, commands, "scene.room");
         setting_ui(ui, state, commands, "scene.spin_deg_per_s");
         setting_ui(ui, state, commands, "output.background");
         gradient_ui(ui, preset, commands);
         setting_ui(ui, state, commands, BOTTOM);
-        ground_ui(ui, preset, commands);
+        ground_ui(ui, state, commands);
         GROUND
             .settings
             .iter()
@@ -95,8 +94,9 @@ fn gradient_ui(ui: &mut Ui, preset: &Preset, commands: &Commands) {
     });
 }
 
-/// The tick of the ground, which adds it or removes it.
-fn ground_ui(ui: &mut Ui, preset: &Preset, commands: &Commands) {
+/// The tick of the ground, which adds it or removes it, and the parts of the scene.
+fn ground_ui(ui: &mut Ui, state: &State, commands: &Commands) {
+    let preset = state.session.preset();
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         ui.add_space(theme::GAP);
@@ -111,6 +111,8 @@ fn ground_ui(ui: &mut Ui, preset: &Preset, commands: &Commands) {
         } else if tick.changed() {
             commands.send(Command::Row(RowCommand::ResetGroup(GROUND.name.into())));
         }
+        ui.add_space(theme::GAP);
+        parts_ui(ui, state, commands);
     });
 }
 
