@@ -53,7 +53,7 @@ pub fn read(
         let is_blended = about.alpha_mode == AlphaMode::Blend;
         let plain = Material {
             name: part_name("material", index, about.name.as_deref()),
-            // What does not blend is opaque.
+            // A material that does not blend is opaque: the alpha of its color is ignored.
             base_color: [r, g, b, if is_blended { alpha } else { 1.0 }],
             is_blended,
             metallic: about.metallic,
