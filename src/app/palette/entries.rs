@@ -284,7 +284,7 @@ fn written(param: &Param, value: &Value) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::shell::action::ACTIONS;
+    use crate::app::shell::action::actions;
     use crate::{
         effects::EFFECTS,
         preset_file::{Folders, gallery},
@@ -303,10 +303,7 @@ mod tests {
     fn every_action_effect_parameter_preset_and_option_is_there_once() {
         let all = all();
         let has = |text: &str| all.iter().filter(|entry| entry.text == text).count() == 1;
-        for (action, label, _) in ACTIONS
-            .iter()
-            .filter(|(action, ..)| *action != Action::Palette)
-        {
+        for (action, label, _) in actions().filter(|(action, ..)| *action != Action::Palette) {
             assert!(has(label), "{action:?}");
         }
         for effect in EFFECTS.iter() {
