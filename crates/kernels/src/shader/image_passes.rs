@@ -167,7 +167,7 @@ mod tests {
             let [step, next] = [pair[0], pair[1]];
             let target = step.target.expect("only the last one writes the picture");
             assert!(target != step.source && target != step.last, "{step:?}");
-            assert_eq!(step.last_scale == 1 || step.pass > 0, true, "{step:?}");
+            assert!(step.last_scale == 1 || step.pass > 0, "{step:?}");
             assert_eq!(next.last, target, "{next:?}");
             let source = if next.effect == step.effect {
                 step.source
