@@ -1,5 +1,6 @@
 // Depth of field: what is not at the distance in focus spreads to discs of light.
 //@ use lib/angle
+//@ use lib/hash
 //@ use lib/image
 //@ use lib/image_pass
 
@@ -14,18 +15,25 @@ struct DepthOfField {
 }
 
 const DEPTH_OF_FIELD_TAPS = 96;
+// Steps to a unit of the spiral: none of its 192 coordinates lies near half a step, so that they are the same everywhere.
+const DEPTH_OF_FIELD_UNIT = 1536;
+// Steps to a pixel where the unit is in 256ths of one.
+const DEPTH_OF_FIELD_PIXEL = 393216;
 
 fn depth_of_field(at: ImageAt, p: DepthOfField) -> vec4f {
     let focus_m = depth_of_field_focus(p);
     let here_m = image_depth_m(at.x, at.y);
     let here_px = depth_of_field_radius(here_m, focus_m, p);
+    let most = i32(round(p.most_px * 256.0));
     var sum = image_color(at.x, at.y);
     var weights = 1.0;
     for (var i = 0; i < DEPTH_OF_FIELD_TAPS; i += 1) {
         // A spiral that fills a disc evenly.
-        let turns = f32(i) * 0.6180339887498949;
-        let away = p.most_px * sqrt((f32(i) + 0.5) / f32(DEPTH_OF_FIELD_TAPS));
-        let step = vec2i(round(away * vec2f(cosine_turns(turns), sine_turns(turns))));
+        let turns = f32((u32(i) * HASH_GOLDEN) >> 8u) / 16777216.0;
+        let away = f32(DEPTH_OF_FIELD_UNIT) * sqrt((f32(i) + 0.5) / f32(DEPTH_OF_FIELD_TAPS));
+        let unit = vec2i(round(away * vec2f(cosine_turns(turns), sine_turns(turns))));
+        // To the nearest pixel, in integers; 128 pixels keep what is divided above zero.
+        let step = (most * unit + 128 * DEPTH_OF_FIELD_PIXEL + DEPTH_OF_FIELD_PIXEL / 2) / DEPTH_OF_FIELD_PIXEL - 128;
         let there_m = image_depth_m(at.x + step.x, at.y + step.y);
         var there_px = depth_of_field_radius(there_m, focus_m, p);
         // Light from behind does not spread over what is sharp before it.

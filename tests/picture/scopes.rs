@@ -395,8 +395,8 @@ fn the_scope_of_another_draw_is_found() {
     let (scene, view) = wall();
     let mistakes = [
         (
-            "shade_surface(pixel), shaded.draw)",
-            "shade_surface(pixel), 0u)",
+            "shade_surface(pixel), shaded.draw).color",
+            "shade_surface(pixel), 0u).color",
             only("toon", &OTHERS, &[]),
         ),
         (

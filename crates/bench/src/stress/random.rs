@@ -473,18 +473,20 @@ mod tests {
     fn every_pair_of_effects_has_its_turn() {
         let pairs = EFFECTS.len() * (EFFECTS.len() - 1) / 2;
         let first_seed = 7_000;
-        let presets: Vec<Preset> = (0..pairs as u32).map(|n| preset(first_seed + n)).collect();
+        let stacks: Vec<Stack> = (first_seed..first_seed + pairs as u32)
+            .map(|seed| stack(&mut Rng(seed), seed, Values::OfSlider))
+            .collect();
         for (i, a) in EFFECTS.iter().enumerate() {
             for b in &EFFECTS[..i] {
                 let mut stack = Stack::default();
                 stack.enable(a);
-                let has_both = |preset: &Preset| {
+                let has_both = |stack: &Stack| {
                     [a, b]
                         .iter()
-                        .all(|effect| preset.stack.get(&effect.name).is_some())
+                        .all(|effect| stack.get(&effect.name).is_some())
                 };
                 assert!(
-                    stack.rival_of(b).is_some() || presets.iter().any(has_both),
+                    stack.rival_of(b).is_some() || stacks.iter().any(has_both),
                     "{} with {}",
                     a.name,
                     b.name

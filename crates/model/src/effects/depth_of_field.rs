@@ -6,7 +6,7 @@ use super::{
     BuiltIn, Effect,
     hooks::{ImageAt, PassEffect, tone::turned},
 };
-use crate::{choice, params};
+use crate::{choice, math::HASH_GOLDEN, params};
 
 choice! {
     /// What is in focus.
@@ -38,7 +38,10 @@ params! {
 }
 
 /// Reads around a pixel.
-const TAPS: i32 = 96;
+const TAPS: u32 = 96;
+/// Steps to a unit of the spiral: none of its coordinates lies near half a step, so that they are
+/// the same everywhere.
+const UNIT: i64 = 1536;
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
     Effect::new::<DepthOfField>(
@@ -57,14 +60,14 @@ impl PassEffect for DepthOfField {
         let here_m = at.depth_m(at.x, at.y);
         let focus_m = p.focus_m(at);
         let here_px = p.radius(here_m, focus_m);
+        let most = (f64::from(p.most_px) * 256.0).round_ties_even() as i64;
         let (mut sum, mut weights) = (at.color(at.x, at.y), 1.0);
         for i in 0..TAPS {
-            // A spiral that fills a disc evenly.
-            let turns = f64::from(i) * 0.618_033_988_749_894_9;
-            let fraction = (f64::from(i) + 0.5) / f64::from(TAPS);
-            let away = f64::from(p.most_px) * fraction.sqrt();
-            let step = away * turned(360.0 * turns);
-            let step = [step.x, step.y].map(|by| by.round_ties_even() as i64);
+            // To the nearest pixel, in integers.
+            let step = [spiral(i).x, spiral(i).y].map(|unit| {
+                let step = most * unit.round_ties_even() as i64;
+                (step + 128 * UNIT).div_euclid(256 * UNIT)
+            });
             let there_m = at.depth_m(at.x + step[0], at.y + step[1]);
             let mut there_px = p.radius(there_m, focus_m);
             // Light from behind does not spread over what is sharp before it.
@@ -83,6 +86,13 @@ impl PassEffect for DepthOfField {
     }
 }
 
+/// A point of a spiral that fills a disc of the radius `UNIT` evenly.
+fn spiral(i: u32) -> DVec2 {
+    let turns = f64::from(i.wrapping_mul(HASH_GOLDEN) >> 8) / f64::from(1 << 24);
+    let fraction = (f64::from(i) + 0.5) / f64::from(TAPS);
+    UNIT as f64 * fraction.sqrt() * turned(360.0 * turns)
+}
+
 impl DepthOfField {
     /// The distance in focus. A little is added, so that a number that is about whole falls on its
     /// pixel everywhere.
@@ -99,5 +109,17 @@ impl DepthOfField {
     fn radius(&self, depth_m: f64, focus_m: f64) -> f64 {
         let spread = f64::from(self.aperture_px) * (1.0 - focus_m / depth_m).abs();
         spread.min(f64::from(self.most_px))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn f32_rounds_every_point_of_the_spiral_as_f64_does() {
+        for at in (0..TAPS).flat_map(|i| spiral(i).to_array()) {
+            assert!((at.rem_euclid(1.0) - 0.5).abs() > 0.01, "{at}");
+        }
     }
 }
