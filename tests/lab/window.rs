@@ -364,10 +364,10 @@ fn a_window_closes_when_its_frame_is_closed() {
 }
 
 /// An effect that paints everything in this color.
-fn paint(color: &str) -> String {
+fn coat(color: &str) -> String {
     format!(
-        "// Paint: paints the surface.\n//@ use lib/surface\n\nstruct Paint {{\n    /// How much.\n    @range(0.0, 1.0, 1.0) amount: f32,\n}}\n\n\
-         fn paint(surface: Surface, p: Paint) -> Surface {{\n    var s = surface;\n    s.color = vec4f({color}, 1.0);\n    return s;\n}}\n"
+        "// Coat: paints the surface.\n//@ use lib/surface\n\nstruct Coat {{\n    /// How much.\n    @range(0.0, 1.0, 1.0) amount: f32,\n}}\n\n\
+         fn coat(surface: Surface, p: Coat) -> Surface {{\n    var s = surface;\n    s.color = vec4f({color}, 1.0);\n    return s;\n}}\n"
     )
 }
 
@@ -377,11 +377,11 @@ fn an_effect_file_is_edited_under_a_running_window() {
         return;
     }
     let home = tempfile::tempdir().expect("a temporary folder");
-    let file = home.path().join("effects/paint.wgsl");
+    let file = home.path().join("effects/coat.wgsl");
     std::fs::create_dir_all(home.path().join("effects")).expect("a folder");
-    std::fs::write(&file, paint("1.0, 0.0, 0.0")).expect("a file");
+    std::fs::write(&file, coat("1.0, 0.0, 0.0")).expect("a file");
     let display = Display::open();
-    let mut lab = start(&display, home.path(), &["teapot", "--set", "paint"]);
+    let mut lab = start(&display, home.path(), &["teapot", "--set", "coat"]);
     let painted = |color: [u8; 3]| {
         display
             .view()
@@ -391,7 +391,7 @@ fn an_effect_file_is_edited_under_a_running_window() {
             > 5_000
     };
     wait_for("the picture appeared", &mut lab, || painted([255, 0, 0]));
-    std::fs::write(&file, paint("0.0, 1.0, 0.0")).expect("a file");
+    std::fs::write(&file, coat("0.0, 1.0, 0.0")).expect("a file");
     wait_for("the edit was seen", &mut lab, || painted([0, 255, 0]));
 
     // The color of the badge's title, theme::RED, is on the screen where nothing else is red.
@@ -404,10 +404,10 @@ fn an_effect_file_is_edited_under_a_running_window() {
             > 40
     };
     assert!(!badge());
-    std::fs::write(&file, paint("0.0, 0.0, oops")).expect("a file");
+    std::fs::write(&file, coat("0.0, 0.0, oops")).expect("a file");
     wait_for("the badge appeared", &mut lab, badge);
     assert!(painted([0, 255, 0]), "the last good picture went away");
-    std::fs::write(&file, paint("0.0, 0.0, 1.0")).expect("a file");
+    std::fs::write(&file, coat("0.0, 0.0, 1.0")).expect("a file");
     wait_for("the effect was healed", &mut lab, || {
         painted([0, 0, 255]) && !badge()
     });
