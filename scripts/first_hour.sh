@@ -22,8 +22,9 @@ if [ "${FIRST_HOUR:-}" != inside ]; then
         command -v "$tool" > /dev/null || { echo "first_hour: $tool is missing; sudo apt install xvfb xauth xdotool imagemagick" >&2; exit 2; }
     done
     here="$(cd "$(dirname "$0")/.." && pwd)"
+    # -r: no key repeats, which a busy machine would take for keys that are held.
     FIRST_HOUR=inside RASTERLAB="${RASTERLAB:-$here/target/release/rasterlab}" WAYLAND_DISPLAY='' \
-        exec xvfb-run -a -s "-screen 0 ${SIZE:-1280x800}x24 -noreset" sh "$0" "$@"
+        exec xvfb-run -a -s "-screen 0 ${SIZE:-1280x800}x24 -noreset -r" sh "$0" "$@"
 fi
 
 model="${2:-/usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb}"

@@ -19,6 +19,8 @@ const DEPTH_OF_FIELD_TAPS = 96;
 const DEPTH_OF_FIELD_UNIT = 1536;
 // Steps to a pixel where the unit is in 256ths of one.
 const DEPTH_OF_FIELD_PIXEL = 393216;
+// Rings about the place in focus on which a surface is looked for, up to the picture's height.
+const DEPTH_OF_FIELD_RINGS = 16;
 
 fn depth_of_field(at: ImageAt, p: DepthOfField) -> vec4f {
     let focus_m = depth_of_field_focus(p);
@@ -55,7 +57,19 @@ fn depth_of_field_radius(depth_m: f32, focus_m: f32, p: DepthOfField) -> f32 {
 // The distance in focus, meters. A little is added, so that a number that is about whole falls on its pixel everywhere.
 fn depth_of_field_focus(p: DepthOfField) -> f32 {
     if p.focus == DEPTH_OF_FIELD_FOCUS_DISTANCE { return p.focus_m; }
-    let size = vec2f(image_size());
-    let place = vec2i(floor(vec2f(p.focus_x, p.focus_y) * size + 0.00390625));
-    return image_depth_m(place.x, place.y);
+    let size = vec2i(image_size());
+    let place = vec2i(floor(vec2f(p.focus_x, p.focus_y) * vec2f(size) + 0.00390625));
+    var found = place;
+    for (var i = 0; i < 8 * DEPTH_OF_FIELD_RINGS && image_at(found.x, found.y).y == 0u; i += 1) {
+        found = place + size.y * (i / 8 + 1) / DEPTH_OF_FIELD_RINGS * depth_of_field_compass(i % 8);
+    }
+    if image_at(found.x, found.y).y == 0u { found = place; }
+    return image_depth_m(found.x, found.y);
+}
+
+// The places of a ring, to the right and down: first those on the axes.
+fn depth_of_field_compass(i: i32) -> vec2i {
+    let first = select(vec2i(1, 0), vec2i(1, 1), i > 3);
+    let opposite = select(first, -first, i % 4 > 1);
+    return select(opposite, vec2i(-opposite.y, opposite.x), i % 2 == 1);
 }

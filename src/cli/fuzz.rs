@@ -3,7 +3,7 @@
 
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
-    time::Instant,
+    time::{Duration, Instant},
 };
 
 use indicatif::ProgressBar;
@@ -28,6 +28,8 @@ use crate::{
 const MAX_SHRINK_CALLS: usize = 150;
 /// A preset that takes longer is named, seconds.
 const SLOW_S: f64 = 20.0;
+/// How often a line says how far it is where no bar can be shown.
+const TELL_EVERY: Duration = Duration::from_secs(10);
 
 /// What verifying a preset leads to.
 enum Outcome {
@@ -72,6 +74,8 @@ pub fn run(common: &Common, args: &Fuzz, streams: &mut Streams) -> Result<Exit, 
     }
     let bar = streams.progress(args.count.into());
     let (mut results, mut counts) = (Vec::new(), [0u32; 4]);
+    let begun = Instant::now();
+    let mut told = begun;
     for seed in (0..args.count).map(|n| args.seed.wrapping_add(n)) {
         bar.set_message(format!("seed {seed}"));
         let begin = Instant::now();
@@ -122,6 +126,16 @@ pub fn run(common: &Common, args: &Fuzz, streams: &mut Streams) -> Result<Exit, 
             _ => None,
         };
         results.push(result(seed, &outcome, seconds, smallest));
+        if bar.is_hidden() && told.elapsed() >= TELL_EVERY {
+            told = Instant::now();
+            streams.note(&format!(
+                "{} of {} presets, {} failed; {:.0} s",
+                results.len(),
+                args.count,
+                counts[3],
+                begun.elapsed().as_secs_f64()
+            ));
+        }
     }
     bar.finish_and_clear();
     let [clean, by_design, refused, failed] = counts;

@@ -3,6 +3,7 @@
 
 use eframe::egui::{Key, Modifiers, Role};
 use egui_kittest::kittest::Queryable as _;
+use rasterlab::preset_file::Folders;
 
 use crate::{
     harness::*,
@@ -62,4 +63,37 @@ fn what_is_typed_is_seen_and_saved_on_demand() {
 
     click(&mut lab, Role::Button, "Close the text");
     assert!(!says(&lab, "Close the text"));
+}
+
+#[test]
+fn in_a_small_window_the_text_takes_the_place_of_the_presets() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    write(&folder.path().join("effects/ink.wgsl"), INK);
+    let path = folder.path().join("mine.toml");
+    write(&path, PRESET);
+    let size = [900.0, 600.0];
+    let Some(mut lab) = created(
+        Some(&path.to_string_lossy()),
+        Folders::default(),
+        None,
+        size,
+    ) else {
+        return;
+    };
+    settle(&mut lab);
+    click(&mut lab, Role::Button, "More of ink");
+    click(&mut lab, Role::Button, "Edit the text");
+    wait_for(&mut lab, "the text is shown", |lab| says(lab, "ink.wgsl"));
+    let picture = lab.get_by_label("Picture").rect();
+    let menu = lab
+        .get_by_role_and_label(Role::Button, "More of ink")
+        .rect();
+    assert!(
+        picture.width() > 180.0 && picture.right() < menu.left() && menu.right() < size[0],
+        "{picture} {menu}"
+    );
+    assert!(!says(&lab, "Preset "));
+    click(&mut lab, Role::Button, "Close the text");
+    lab.run_steps(4);
+    assert!(says(&lab, "Preset "));
 }

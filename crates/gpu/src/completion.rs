@@ -19,18 +19,25 @@ mod native {
 
     use crate::{device::Gpu, error::RenderError};
 
-    /// A device that does not answer for so long counts as lost: software adapters have no
-    /// watchdog.
+    /// A card that does not answer for so long counts as lost.
     const PATIENCE: Duration = Duration::from_secs(60);
+    /// The same of a software adapter, which has no watchdog, and which may share a busy processor
+    /// while it draws a large picture.
+    const SOFTWARE_PATIENCE: Duration = Duration::from_secs(600);
 
     /// Returns when the queue is idle.
     ///
     /// # Errors
     /// When the device is lost.
     pub async fn idle(gpu: &Gpu) -> Result<(), RenderError> {
+        let patience = if gpu.summary.software {
+            SOFTWARE_PATIENCE
+        } else {
+            PATIENCE
+        };
         match gpu.device.poll(wgpu::PollType::Wait {
             submission_index: None,
-            timeout: Some(PATIENCE),
+            timeout: Some(patience),
         }) {
             Ok(_) if !gpu.is_lost() => Ok(()),
             _ => Err(RenderError::Lost),

@@ -74,11 +74,11 @@ pub fn fields_ui(ui: &mut Ui, dialog: &mut NewEffect) -> bool {
     let (title, about) = match origin {
         Origin::Template(_) => (
             "New effect".to_owned(),
-            "Writes a commented WGSL file and opens it in your editor. The picture changes whenever you save the file.".to_owned(),
+            "Writes a commented WGSL file and shows its text beside the picture, which follows what you type.".to_owned(),
         ),
         Origin::Duplicate(effect) => (
             format!("Duplicate {} as my own", effect.name),
-            "Writes its text as a WGSL file of yours and opens it in your editor. The stack then uses your effect, with the same values."
+            "Writes its text as a WGSL file of yours and shows it beside the picture. The stack then uses your effect, with the same values."
                 .to_owned(),
         ),
     };

@@ -72,6 +72,10 @@ pub struct Options {
 
 /// Most seconds between two frames of the window while a preset plays.
 const PLAY_STEP_S: f32 = 1.0 / 30.0;
+/// Width of the text of an effect, points, and the least of it and of the picture beside it.
+const CODE_WIDTH: f32 = 440.0;
+const LEAST_CODE: f32 = 260.0;
+const LEAST_PICTURE: f32 = 200.0;
 
 /// The whole window.
 pub struct App {
@@ -440,29 +444,34 @@ impl App {
         self.state.open.log = is_open;
         let window = ui.ctx().content_rect().width();
         let [left_width, right_width] = self.state.settings.panel_widths(window);
-        let left = egui::Panel::left("left")
-            .frame(theme::panel_frame())
-            .default_size(left_width)
-            .size_range(200.0..=420.0);
-        let mut is_open = self.state.open.left;
-        let shown = left.show_collapsible(ui, &mut is_open, |ui| {
-            self.panel_ui(ui, |panels| &mut panels.browser)
-        });
-        self.state.settings.keep_width(
-            0,
-            self.state.open.left && is_open,
-            shown.map(|shown| shown.response.rect),
-            window,
-        );
-        self.state.open.left = is_open;
-        if !is_open {
-            self.panels.browser.close();
+        let beside_code = window - right_width - LEAST_PICTURE;
+        // Where there is no room for both, the text stands in place of the presets.
+        if !self.panels.code.is_open() || left_width + CODE_WIDTH <= beside_code {
+            let left = egui::Panel::left("left")
+                .frame(theme::panel_frame())
+                .default_size(left_width)
+                .size_range(200.0..=420.0);
+            let mut is_open = self.state.open.left;
+            let shown = left.show_collapsible(ui, &mut is_open, |ui| {
+                self.panel_ui(ui, |panels| &mut panels.browser)
+            });
+            self.state.settings.keep_width(
+                0,
+                self.state.open.left && is_open,
+                shown.map(|shown| shown.response.rect),
+                window,
+            );
+            self.state.open.left = is_open;
+            if !is_open {
+                self.panels.browser.close();
+            }
         }
         if self.panels.code.is_open() {
+            let widest = ui.available_width() - right_width - LEAST_PICTURE;
             egui::Panel::left("code")
                 .frame(theme::panel_frame())
-                .default_size(440.0)
-                .size_range(260.0..=(0.6 * window).max(260.0))
+                .default_size(CODE_WIDTH)
+                .size_range(LEAST_CODE..=widest.max(LEAST_CODE))
                 .show(ui, |ui| self.panel_ui(ui, |panels| &mut panels.code));
         }
         let right = egui::Panel::right("right")

@@ -8,6 +8,7 @@ use rasterlab::{
         settings::{SECTIONS, Setting},
     },
     preset_file::{self, Folders},
+    scene::parts::scope_masks,
 };
 
 use super::{round_trip::any_preset, *};
@@ -141,4 +142,36 @@ fn a_clip_that_stays_behind_is_named_once() {
     playing.preset.playback.clip = "Run".into();
     let landed = look.landed_on(&playing, None);
     assert!(landed.warnings.is_empty() && landed.preset.playback.clip == "Run");
+}
+
+#[test]
+fn an_effect_without_its_parts_acts_on_the_model_and_not_on_its_ground() {
+    let look = parse(
+        "schema = 2\n[scene]\nbuiltin = \"knot\"\n[ground]\nsize = 3.0\n\
+         [effects.explode]\non = [\"node:nowhere\"]\n\
+         [effects.lambert]\non = [\"node:ground\", \"node:nowhere\"]\n",
+    );
+    for query in ["still-life?tess=1", "teapot?tess=2", "walker?tess=1"] {
+        let own =
+            preset_file::open(&format!("builtin:{query}"), &Folders::default()).expect("a scene");
+        let bare = rasterlab::scene::builtin::build(query).expect("a scene");
+        let mut landed = look.landed_on(&own, None);
+        landed.map_missing_parts(&bare);
+        assert_eq!(landed.warnings.len(), 2, "{:?}", landed.warnings);
+        let scene = preset_file::load_scene(&landed.preset, None).expect("a scene");
+        assert_eq!(scene.grounds, 1, "{query}");
+        let model = scene.instances.len() - 1;
+        for enabled in &landed.preset.stack.0 {
+            let masks = scope_masks(&scene, std::slice::from_ref(&enabled.on));
+            for (index, mask) in masks.iter().enumerate() {
+                let is_on_model = enabled.effect.name == "explode";
+                assert_eq!(
+                    *mask != 0,
+                    is_on_model == (index < model),
+                    "{query}: {} on instance {index}",
+                    enabled.effect.name
+                );
+            }
+        }
+    }
 }

@@ -11,7 +11,7 @@ use crate::{choice, math::HASH_GOLDEN, params};
 choice! {
     /// What is in focus.
     pub enum Focus {
-        /// What is seen at a place of the picture.
+        /// What is seen at a place of the picture, or nearest to it where nothing is.
         Place = "place",
         /// A distance.
         Distance = "distance",
@@ -42,6 +42,21 @@ const TAPS: u32 = 96;
 /// Steps to a unit of the spiral: none of its coordinates lies near half a step, so that they are
 /// the same everywhere.
 const UNIT: i64 = 1536;
+
+/// Rings about the place in focus on which a surface is looked for, up to the picture's height.
+const RINGS: i64 = 16;
+
+/// The places of a ring, to the right and down.
+const COMPASS: [[i64; 2]; 8] = [
+    [1, 0],
+    [0, 1],
+    [-1, 0],
+    [0, -1],
+    [1, 1],
+    [-1, 1],
+    [-1, -1],
+    [1, -1],
+];
 
 pub static EFFECT: BuiltIn = BuiltIn::new(|| {
     Effect::new::<DepthOfField>(
@@ -100,9 +115,19 @@ impl DepthOfField {
         if Focus::of(self.focus) == Focus::Distance {
             return self.focus_m.into();
         }
+        let size = at.picture_size();
         let place = DVec2::new(self.focus_x.into(), self.focus_y.into());
-        let place = (place * at.picture_size() + 0.003_906_25).floor();
-        at.depth_m(place.x as i64, place.y as i64)
+        let place = (place * size + 0.003_906_25).floor();
+        let [x, y] = [place.x as i64, place.y as i64];
+        let is_drawn = |[x, y]: &[i64; 2]| at.input.picture.at(*x, *y).1 != 0;
+        let [x, y] = std::iter::once([x, y])
+            .chain((1..=RINGS).flat_map(|ring| {
+                let away = size.y as i64 * ring / RINGS;
+                COMPASS.map(|[right, down]| [x + away * right, y + away * down])
+            }))
+            .find(is_drawn)
+            .unwrap_or([x, y]);
+        at.depth_m(x, y)
     }
 
     /// Radius of the disc to which a point so far away spreads, pixels.

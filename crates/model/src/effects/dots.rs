@@ -37,7 +37,7 @@ params! {
         /// Distance from dot to dot along the line.
         spacing_m: f32 = 0.05, hard 0.00001..=1000.0, soft 0.001..=10.0, log true, unit "m";
         /// Diameter of the dots.
-        size_px: f32 = 2.5, hard 1.0..=64.0, soft 1.0..=16.0, unit "px";
+        size_px: f32 = 2.5, hard 1.0..=128.0, soft 1.0..=16.0, unit "px";
         /// The gap on the screen below which every second dot begins to fade.
         min_gap_px: f32 = 6.0, hard 0.25..=1024.0, soft 1.0..=64.0, log true, unit "px";
         /// How often the dots may be halved; 0: all are drawn, however dense.

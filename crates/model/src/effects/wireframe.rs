@@ -27,7 +27,7 @@ params! {
         /// Color of the faces; alpha is its weight against the surface's color.
         paper: Color = [0.01, 0.012, 0.02, 1.0], when ("hidden", &["removed"]);
         /// Width of the lines.
-        width_px: f32 = 1.5, hard 0.0..=64.0, soft 0.5..=8.0, unit "px";
+        width_px: f32 = 1.5, hard 0.0..=256.0, soft 0.5..=8.0, unit "px";
         /// What becomes of lines behind faces.
         hidden: Hidden = Hidden::Removed as u32;
     }

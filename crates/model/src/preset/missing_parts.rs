@@ -6,9 +6,13 @@ use crate::{
     scene::{
         Scene,
         particle_discs::PARTICLES,
-        parts::{PartPattern, Scope, parts},
+        parts::{MAX_PATTERNS, Part, PartKind, PartPattern, Scope, parts, scope_masks},
     },
 };
+
+/// Names of the ground and of the room, as a node and as a material.
+const GROUND: &str = "ground";
+const ROOM: &str = "room";
 
 /// Most names in a warning.
 const MAX_NAMES: usize = 12;
@@ -17,10 +21,7 @@ impl Preset {
     /// A sentence for every pattern in the scope of an effect that matches no part of `scene`, with
     /// names that it could match.
     pub fn missing_parts(&self, scene: &Scene) -> Vec<String> {
-        // The discs of particles join the scene when it is drawn.
-        let is_disc = |pattern: &PartPattern| {
-            self.stack.particle_settings().is_some() && pattern.matches(PARTICLES)
-        };
+        let joining = self.joining_parts();
         let unmatched = self.stack.0.iter().flat_map(|enabled| {
             enabled
                 .on
@@ -28,7 +29,8 @@ impl Preset {
                 .into_iter()
                 .map(move |pattern| (enabled, pattern))
         });
-        let missing = unmatched.filter(|(_, pattern)| !is_disc(pattern));
+        let missing =
+            unmatched.filter(|(_, pattern)| !joining.iter().any(|name| pattern.matches(name)));
         missing
             .map(|(enabled, pattern)| {
                 format!(
@@ -39,40 +41,89 @@ impl Preset {
             })
             .collect()
     }
-}
 
-impl Preset {
-    /// Lets effects whose scope matches no part of `scene`, on which the preset has landed, act on
-    /// the whole scene. A sentence for each says so.
+    /// Leaves out of each scope what matches no part of `scene`, on which the preset has landed.
+    /// Effects to which nothing is left act on all of it, but not on the ground and the room that
+    /// the preset brings. A sentence for each effect says so.
     pub fn map_missing_parts(&mut self, scene: &Scene) -> Vec<String> {
-        // Ground, room and particles join the scene.
-        let joined: Vec<&str> = [
-            (self.ground.is_some(), "ground"),
-            (self.room > 0.0, "room"),
+        let joining = self.joining_parts();
+        let own_parts = own_parts(scene, &joining);
+        let mut notes = Vec::new();
+        for enabled in &mut self.stack.0 {
+            let is_missing =
+                |pattern: &&PartPattern| !joining.iter().any(|name| pattern.matches(name));
+            let all = enabled.on.patterns();
+            let missing: Vec<&PartPattern> = enabled
+                .on
+                .unmatched(scene)
+                .into_iter()
+                .filter(is_missing)
+                .collect();
+            if missing.is_empty() {
+                continue;
+            }
+            let name = &enabled.effect.name;
+            let (note, on) = if missing.len() == all.len() {
+                (
+                    format!(
+                        "effects.{name}.on: the scene has none of its parts, so the effect acts on the whole scene"
+                    ),
+                    own_parts.clone(),
+                )
+            } else {
+                let there = all.iter().filter(|pattern| !missing.contains(pattern));
+                (
+                    format!(
+                        "effects.{name}.on: {} of its {} parts are not in the scene and were left out",
+                        missing.len(),
+                        all.len()
+                    ),
+                    Scope::new(there.cloned()),
+                )
+            };
+            notes.push(note);
+            enabled.on = on;
+        }
+        notes
+    }
+
+    /// Names of the parts that join the scene when it is drawn: ground, room and particles.
+    fn joining_parts(&self) -> Vec<&'static str> {
+        [
+            (self.ground.is_some(), GROUND),
+            (self.room > 0.0, ROOM),
             (self.stack.particle_settings().is_some(), PARTICLES),
         ]
         .into_iter()
         .filter_map(|(is_there, name)| is_there.then_some(name))
-        .collect();
-        let mut notes = Vec::new();
-        for enabled in &mut self.stack.0 {
-            let patterns = enabled.on.patterns();
-            let missing = enabled.on.unmatched(scene);
-            let is_joined = |pattern: &PartPattern| joined.iter().any(|name| pattern.matches(name));
-            if patterns.is_empty()
-                || missing.len() < patterns.len()
-                || patterns.iter().any(is_joined)
-            {
-                continue;
-            }
-            notes.push(format!(
-                "effects.{}.on: the scene has none of its parts, so the effect acts on the whole scene",
-                enabled.effect.name
-            ));
-            enabled.on = Scope::default();
-        }
-        notes
+        .collect()
     }
+}
+
+/// A scope of all of `scene` without its ground and its room, which are named in `joining`. The
+/// whole scene where neither joins it, or where no few names tell them apart.
+fn own_parts(scene: &Scene, joining: &[&str]) -> Scope {
+    if !joining.iter().any(|name| [GROUND, ROOM].contains(name)) {
+        return Scope::default();
+    }
+    let parts = parts(scene);
+    let own = scene.instances.len() - scene.walls - scene.grounds;
+    [PartKind::Node, PartKind::Mesh, PartKind::Material]
+        .into_iter()
+        .filter_map(|kind| {
+            let named: Vec<PartPattern> = parts
+                .iter()
+                .filter(|part| part.kind == kind && part.depth == 0)
+                .map(Part::pattern)
+                .filter(|pattern| !joining.iter().any(|name| pattern.matches(name)))
+                .collect();
+            (named.len() <= MAX_PATTERNS).then(|| Scope::new(named))
+        })
+        .find(|scope| {
+            let masks = scope_masks(scene, std::slice::from_ref(scope));
+            !scope.is_whole_scene() && masks[..own].iter().all(|mask| *mask != 0)
+        })
+        .unwrap_or_default()
 }
 
 fn sentence(pattern: &PartPattern, scene: &Scene) -> String {

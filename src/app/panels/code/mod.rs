@@ -24,7 +24,6 @@ use crate::{
     },
     effect_files::EffectError,
     effects::EnabledEffect,
-    params::format_number,
 };
 
 /// Seconds without a key after which the text is compiled.
@@ -305,7 +304,7 @@ fn value_on(line: &str, enabled: &EnabledEffect) -> Option<String> {
     let values: Vec<String> = field
         .get(&enabled.words)
         .into_iter()
-        .map(|value| format_number(f64::from(value as f32)))
+        .map(|value| (value as f32).to_string())
         .collect();
     Some(format!("= {}", values.join(", ")))
 }

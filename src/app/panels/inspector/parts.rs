@@ -22,9 +22,17 @@ pub fn parts_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         .button(format!("{}…", summary(shown)))
         .on_hover_text("Hide parts of the scene, or show one of them alone")
         .accessible_name("Parts of the scene");
+    if button.clicked() {
+        ui.memory_mut(|memory| memory.request_focus(search_id()));
+    }
     Popup::menu(&button)
         .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
         .show(|ui| list_ui(ui, state, commands, shown));
+}
+
+/// The field of the list, which has the keyboard when the list opens.
+fn search_id() -> egui::Id {
+    egui::Id::unique("search of the scene's parts")
 }
 
 /// What the button shows.
@@ -45,9 +53,10 @@ fn summary(shown: &ShownParts) -> String {
 /// is shown has them no more.
 fn list_ui(ui: &mut Ui, state: &State, commands: &Commands, shown: &ShownParts) {
     ui.set_width(LIST_WIDTH);
-    let id = egui::Id::unique("search of the scene's parts");
+    let id = search_id();
     let mut search: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     let field = TextEdit::singleline(&mut search)
+        .id(id)
         .hint_text("Search parts")
         .desired_width(f32::INFINITY);
     ui.add(field).accessible_name("Search parts of the scene");
@@ -124,24 +133,25 @@ fn entry_ui(
             });
         }
         let is_alone = shown.only.patterns() == [pattern.clone()];
-        let alone = ui
-            .selectable_label(is_alone, "only")
-            .on_hover_text("Show this part alone")
-            .accessible_name(format!("Only {pattern}"));
-        if alone.clicked() {
-            return Some(ShownParts {
-                only: if is_alone {
-                    Scope::default()
-                } else {
-                    Scope::new([pattern.clone()])
-                },
-                hidden: Scope::default(),
-            });
-        }
-        if shows_kind {
-            ui.label(theme::weak(pattern.kind.plural()));
-        }
-        None
+        let at_the_end = egui::Layout::right_to_left(egui::Align::Center);
+        let alone = ui.with_layout(at_the_end, |ui| {
+            let alone = ui
+                .selectable_label(is_alone, "only")
+                .on_hover_text("Show this part alone")
+                .accessible_name(format!("Only {pattern}"));
+            if shows_kind {
+                ui.label(theme::weak(pattern.kind.plural()));
+            }
+            alone.clicked()
+        });
+        alone.inner.then(|| ShownParts {
+            only: if is_alone {
+                Scope::default()
+            } else {
+                Scope::new([pattern.clone()])
+            },
+            hidden: Scope::default(),
+        })
     })
     .inner
 }

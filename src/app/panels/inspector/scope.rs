@@ -74,6 +74,9 @@ pub fn scope_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Ef
         let button = button
             .on_hover_text(format!("{}.on: {on}", effect.name))
             .accessible_name(format!("Parts of {}", effect.name));
+        if button.clicked() {
+            ui.memory_mut(|memory| memory.request_focus(search_id(effect)));
+        }
         let popup = Popup::menu(&button).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
         popup.show(|ui| picker_ui(ui, state, commands, effect, &on));
     });
@@ -87,6 +90,11 @@ pub fn scope_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Ef
             );
         }
     }
+}
+
+/// The field of the list, which has the keyboard when the list opens.
+fn search_id(effect: &Effect) -> egui::Id {
+    egui::Id::unique(("search of parts", &effect.name))
 }
 
 /// What the button shows of a scope.
@@ -104,9 +112,10 @@ fn summary(on: &Scope) -> String {
 /// The list with its search, and the buttons below it.
 fn picker_ui(ui: &mut Ui, state: &State, commands: &Commands, effect: &Arc<Effect>, on: &Scope) {
     ui.set_width(LIST_WIDTH);
-    let id = egui::Id::unique(("search of parts", &effect.name));
+    let id = search_id(effect);
     let mut search: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     let field = TextEdit::singleline(&mut search)
+        .id(id)
         .hint_text("Search parts, or write a pattern: mesh:Lens*")
         .desired_width(f32::INFINITY);
     ui.add(field)

@@ -40,8 +40,9 @@ pub fn probed_ui(ui: &Ui, state: &State, at: Rect, commands: &Commands) {
         .id(egui::Id::unique("probe"))
         .open(&mut is_open)
         .default_pos(at.min + egui::vec2(12.0, 52.0))
-        .default_width((at.width() - 24.0).clamp(240.0, 760.0))
-        .constrain_to(at)
+        // A table that a narrow picture would cut may lie over the panels beside it.
+        .default_width((at.width() - 24.0).clamp(480.0, 760.0))
+        .constrain_to(ui.ctx().content_rect())
         .show(ui.ctx(), |ui| {
             ScrollArea::both()
                 .max_height(0.5 * at.height())
