@@ -17,10 +17,8 @@ case "${1:-}" in
 esac
 
 target="${CARGO_TARGET_DIR:-target}"
-# One after the other: together, the page would be built with the features that only the window needs.
-for module in page window; do
-    cargo build --profile web -p "rasterlab-$module" --target wasm32-unknown-unknown
-done
+# Together, so that the crates that both have are compiled once.
+cargo build --profile web -p rasterlab-page -p rasterlab-window --target wasm32-unknown-unknown
 
 # The command must have the version of the crate; setup.sh installs it into the target folder.
 wasm_bindgen="$target/web/bin/wasm-bindgen"
