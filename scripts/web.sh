@@ -1,7 +1,7 @@
 #!/bin/sh
-# Builds the web page into dist/, a folder of static files: plain cargo for wasm32-unknown-unknown, then wasm-bindgen, then wasm-opt where it
-# is installed. The module of the page and that of the window are apart, so that a page with a picture alone stays small. What it needs:
-# sh scripts/setup.sh --web
+# Builds the web page into dist/, a folder of static files: plain cargo for wasm32-unknown-unknown, then wasm-bindgen. No wasm-opt, which makes
+# what is sent larger (docs/decisions/026-size-of-the-page.md). The module of the page and that of the window are apart, so that a page with a
+# picture alone stays small. What it needs: sh scripts/setup.sh --web
 #
 #   sh scripts/web.sh           builds dist/
 #   sh scripts/web.sh --serve   builds it and serves it on http://localhost:8000
@@ -17,10 +17,8 @@ case "${1:-}" in
 esac
 
 target="${CARGO_TARGET_DIR:-target}"
-# One after the other: together, the page would be built with the features that only the window needs.
-for module in page window; do
-    cargo build --profile web -p "rasterlab-$module" --target wasm32-unknown-unknown
-done
+# Together, so that the crates that both have are compiled once.
+cargo build --profile web -p rasterlab-page -p rasterlab-window --target wasm32-unknown-unknown
 
 # The command must have the version of the crate; setup.sh installs it into the target folder.
 wasm_bindgen="$target/web/bin/wasm-bindgen"
@@ -30,10 +28,6 @@ mkdir -p dist/presets dist/goldens
 for module in page window; do
     "$wasm_bindgen" --target web --no-typescript --remove-name-section --remove-producers-section --out-dir dist "$target/wasm32-unknown-unknown/web/rasterlab_$module.wasm"
     wasm="dist/rasterlab_${module}_bg.wasm"
-    # --fast-math would change what the oracle computes.
-    if command -v wasm-opt > /dev/null; then
-        wasm-opt -Oz --all-features "$wasm" -o dist/optimized.wasm && mv dist/optimized.wasm "$wasm"
-    fi
     printf '%s: %s bytes, %s as gzip\n' "$wasm" "$(wc -c < "$wasm")" "$(gzip -9 -c "$wasm" | wc -c)"
 done
 cp crates/page/web/* dist/

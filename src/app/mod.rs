@@ -27,5 +27,5 @@ pub use shell::{
 #[cfg(target_arch = "wasm32")]
 pub use {
     jobs::worker::answer,
-    shell::page::{open_given, refuse, start},
+    shell::page::{open_given, refuse, reopen, start},
 };

@@ -2,13 +2,13 @@
 import { OpenPreset, oracle_bits } from "/rasterlab_page.js";
 import { report, text, until } from "/tests/report.js";
 
-
-/** A page in a frame; with `before`, a script runs there first. */
+/** A page in a frame: its path, or what follows that of the page itself; with `before`, a script runs there first. */
 async function opened(address, before) {
   const frame = document.createElement("iframe");
   [frame.width, frame.height] = [480, 360];
-  if (before) frame.srcdoc = (await text("/index.html")).replace("<script", `<script>${before}</script><script`);
-  else frame.src = `/index.html${address}`;
+  const whole = address.startsWith("/") ? address : `/index.html${address}`;
+  if (before) frame.srcdoc = (await text(whole)).replace("<script", `<script>${before}</script><script`);
+  else frame.src = whole;
   document.body.append(frame);
   const loaded = new Promise((resolve) => (frame.onload = resolve));
   const heard = new Promise((resolve) => addEventListener("message", ({ source, data }) => source === frame.contentWindow && resolve(data)));
@@ -105,9 +105,20 @@ function seen(canvas) {
   return copy.getImageData(0, 0, canvas.width, canvas.height).data.reduce((sum, byte) => sum + byte, 0);
 }
 
+/** From now on returns the device that has encoded last in a window. */
+function seenDevice({ GPUDevice }) {
+  const encode = GPUDevice.prototype.createCommandEncoder;
+  let device;
+  GPUDevice.prototype.createCommandEncoder = function (...all) {
+    device = this;
+    return encode.apply(this, all);
+  };
+  return () => device;
+}
+
 export async function embed() {
   await page("embed", "?embed&preset=hero-walk", async ({ find, heard, frame }) => {
-    const said = await Promise.race([heard, new Promise((resolve) => setTimeout(resolve, 120_000, "nothing"))]);
+    const said = await Promise.race([heard, new Promise((resolve) => setTimeout(resolve, 240_000, "nothing"))]);
     const [canvas, window] = [find("#picture"), frame.contentWindow];
     let shown = [];
     canvas.addEventListener("shown", () => shown.push(seen(canvas)));
@@ -130,12 +141,33 @@ export async function embed() {
     await until(() => new Set(shown).size > 2, "it shows one frame after another");
     const names = play.getAttribute("aria-label");
     play.click();
+    const device = seenDevice(window);
+    await shows(() => canvas.dispatchEvent(new window.WheelEvent("wheel", { deltaY: 100, bubbles: true, cancelable: true })), "it draws the next frame");
+    await shows(() => device().destroy(), "it comes back from a lost device");
     return [said !== "rasterlab shows a picture" && `it says ${said}`, names !== "Pause" && `the button says ${names}`, play.getAttribute("aria-label") !== "Play" && "it goes on"];
   });
   await page("embed of a still preset", "?embed&preset=facet", async ({ find, heard }) => {
     await heard;
     return [find("#play") && "it has a button to play"];
   });
+}
+
+/** What `rasterlab page facet` has written: run.py --program. */
+export async function written() {
+  if (!(await fetch("/written.html")).ok) return;
+  await page("written page", "/written.html", async ({ find, frame }) => {
+    const still = find("#picture");
+    await until(() => still.complete, "the still");
+    const early = !still.naturalWidth && "it has no still";
+    await until(() => !find("#picture"), "the still gives way");
+    const { left, width } = find("iframe").getBoundingClientRect();
+    return [early, !(left >= 0 && width > 100 && left + width <= frame.width) && `the picture lies at ${left}, ${width} wide`];
+  });
+  const still = "Object.defineProperty(navigator, 'gpu', { value: undefined })";
+  await page("written page without WebGPU", "/written.html", async ({ find }) => {
+    await until(() => find("#picture")?.complete, "the still");
+    return [!find("#picture").naturalWidth && "it has no still", find("iframe") && "it has more than a still"];
+  }, still);
 }
 
 export async function troubles() {
@@ -145,11 +177,15 @@ export async function troubles() {
     await until(() => pictures.every(({ complete }) => complete), "the gallery");
     return [pictures.length < 6 && "few pictures", ...pictures.filter(({ naturalWidth }) => !naturalWidth).map(({ alt }) => `no picture ${alt}`)];
   }, "Object.defineProperty(navigator, 'gpu', { value: undefined })");
-  const lose = "const open = GPUAdapter.prototype.requestDevice; GPUAdapter.prototype.requestDevice = async function (...all) { const device = await open.apply(this, all); setTimeout(() => device.destroy(), 1); return device; };";
-  await page("lost device", "", async ({ says, find }) => {
-    await says(/device was lost/);
+  const lose = (most) => `let losses = 0; const open = GPUAdapter.prototype.requestDevice; GPUAdapter.prototype.requestDevice = async function (...all) { const device = await open.apply(this, all); if (losses++ < ${most}) setTimeout(() => device.destroy(), 1); return device; };`;
+  await page("lost device", "", async ({ says }) => {
+    await says(/device was lost; another one is opened/);
+    await says(/every pixel is the oracle's/);
+  }, lose(1));
+  await page("device that is lost again and again", "", async ({ says, find }) => {
+    await says(/lost again and again/);
     return [!(await (await fetch(find(".save").href)).text()).includes("schema") && "it saves no preset"];
-  }, lose);
+  }, lose(Infinity));
   const fail = "GPUDevice.prototype.createBuffer = () => { throw new TypeError('a mistake for the test') };";
   await page("panic", "", async ({ says, find }) => {
     await says(/made a mistake and has stopped: .*panicked at/);

@@ -8,7 +8,8 @@ names a fault, or if none comes for five minutes.
   tests/web/run.py                    everything
   tests/web/run.py --only NAME        one function of tests/web/*.js; may be given several times
   tests/web/run.py --kernels FOLDER   also has the browser's compiler read the kernels there:
-                                      RASTERLAB_LINKED=FOLDER cargo test --release --test house shaders::"""
+                                      RASTERLAB_LINKED=FOLDER cargo test --release --test house shaders::
+  tests/web/run.py --program FILE     also opens a page that this rasterlab writes"""
 
 import argparse
 import functools
@@ -42,8 +43,6 @@ def model(buffer):
     corners = {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]}
     mesh = {"meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "accessors": [corners], **views}
     return json.dumps({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}], **mesh}).encode()
-
-
 
 
 def archive(names):
@@ -113,6 +112,7 @@ def main(page_name="test.html", arguments=None):
     parser = argparse.ArgumentParser()
     parser.add_argument("--only", action="append", default=[])
     parser.add_argument("--kernels", type=pathlib.Path)
+    parser.add_argument("--program", type=pathlib.Path)
     asked = parser.parse_args(arguments)
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")
     if chromium is None:
@@ -121,8 +121,12 @@ def main(page_name="test.html", arguments=None):
     reports = queue.Queue()
     server = http.server.ThreadingHTTPServer(("localhost", 0), functools.partial(Pages, reports=reports, kernels=asked.kernels))
     threading.Thread(target=server.serve_forever, daemon=True).start()
-    page = f"http://localhost:{server.server_port}/{page_name}?" + urllib.parse.urlencode({"only": asked.only}, doseq=True)
+    site = f"http://localhost:{server.server_port}/"
+    page = f"{site}{page_name}?" + urllib.parse.urlencode({"only": asked.only}, doseq=True)
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        if asked.program:
+            BESIDE_DIST["/written.html"] = pathlib.Path(profile) / "written.html"
+            subprocess.run([asked.program, "page", "facet", "-q", "-o", BESIDE_DIST["/written.html"], "--page", site], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
         browser = subprocess.Popen(
             [chromium, *FLAGS, f"--user-data-dir={profile}", page], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )

@@ -1,5 +1,6 @@
 // A picture that lives: it turns with the pointer, comes closer with the wheel or two fingers, and plays.
 import { Live } from "./rasterlab_page.js";
+import { again, device } from "./device.js";
 
 const DEG_PER_PX = 0.4;
 /** A frame that takes longer is drawn with fewer pixels. */
@@ -7,8 +8,8 @@ const SLOW_MS = 60;
 const MOST_PIXELS = 1600;
 
 /** Shows `preset` on `canvas` for good, and returns when its first frame is there. `trouble` is told what fails later. */
-export async function alive(page, preset, canvas, trouble) {
-  const live = new Live(page, canvas);
+export async function alive(preset, canvas, trouble) {
+  let [page, live] = [];
   const [width, height] = preset.size();
   let [scale, plays, isWanted, before] = [1, false, false, 0];
   // What the visitor does is done between frames: the module must not be called while it draws.
@@ -22,10 +23,16 @@ export async function alive(page, preset, canvas, trouble) {
     preset.resize(...fitted);
   }
 
+  async function draw() {
+    const now = await device();
+    if (page !== now) [page, live] = [now, new Live(now, canvas)];
+    await live.show(preset);
+  }
+
   async function frame() {
     isWanted = false;
     const began = performance.now();
-    await live.show(preset);
+    await again(draw);
     // Until the browser takes the frame, the canvas can be read.
     canvas.dispatchEvent(new Event("shown"));
     const ms = performance.now() - began;
@@ -41,7 +48,7 @@ export async function alive(page, preset, canvas, trouble) {
   function next(now) {
     const passed = Math.min(0.25, (now - last) / 1000);
     last = now;
-    isWanted ||= waiting.length > 0;
+    isWanted ||= waiting.length > 0 || page.is_lost();
     waiting.splice(0).forEach((change) => change());
     if (plays) {
       plays = preset.play(passed);

@@ -1,6 +1,7 @@
 // The page: a picture with the oracle's verdict, the picture alone (?embed), or the scoreboard (?scoreboard).
-import init, { Page } from "./rasterlab_page.js";
+import init from "./rasterlab_page.js";
 import { open, wanted } from "./address.js";
+import { again, device } from "./device.js";
 import { alive } from "./live.js";
 import { scoreboard } from "./scoreboard.js";
 import { BROWSERS, adapterName, gallery, saver, words } from "./trouble.js";
@@ -39,8 +40,13 @@ function button(text, act) {
   return made;
 }
 
-function show(colors, [width, height]) {
+function shape(width, height) {
   [canvas.width, canvas.height] = [width, height];
+  main.style.setProperty("--aspect", width / height);
+}
+
+function show(colors, [width, height]) {
+  shape(width, height);
   canvas.getContext("2d").putImageData(new ImageData(new Uint8ClampedArray(colors), width, height), 0, 0);
 }
 
@@ -49,7 +55,7 @@ async function showGolden(id) {
   const answer = await fetch(`goldens/${id}.png`);
   if (!answer.ok) return;
   const still = await createImageBitmap(await answer.blob());
-  [canvas.width, canvas.height] = [still.width, still.height];
+  shape(still.width, still.height);
   canvas.getContext("2d").drawImage(still, 0, 0);
 }
 
@@ -69,13 +75,15 @@ function allowed(code) {
   });
 }
 
+const saysLoss = () => say("The device was lost; another one is opened …");
+
 /** Draws the preset in portable bits, and says whether they are the oracle's and the link's. */
-async function prove(page, preset, text, id, bits) {
+async function prove(preset, text, id, bits) {
   const proof = add("The bits of its triangles and depths are compared …");
   proof.id = "proof";
-  const adapter = page.adapter() || (await adapterName()) || "this device";
+  const adapter = (await device()).adapter() || (await adapterName()) || "this device";
   try {
-    const mine = (await page.draw(preset.in_portable_bits())).hashes();
+    const mine = (await again(async () => (await device()).draw(preset.in_portable_bits()))).hashes();
     const { bits: oracles } = await asked({ ask: "bits", text, id });
     const differ = (a, b) => ["triangle ids", "depths"].filter((_, i) => a[i] !== b[i]).join(" and ");
     const [own, linked] = [differ(mine, oracles), differ(oracles, bits)];
@@ -123,15 +131,15 @@ async function picture() {
   const code = preset.brought_code();
   if (code) await allowed(code);
   say(`${preset.name()}: the kernels are compiled …`);
-  const page = await Page.open();
+  await device();
   const began = performance.now();
-  const drawn = await page.draw(preset);
+  const drawn = await again(async () => (await device()).draw(preset), saysLoss);
   show(drawn.colors(), drawn.size());
   say(`${preset.name()}: drawn in ${(performance.now() - began).toFixed(0)} ms with its kernels; the oracle judges it …`);
-  const { faults } = await asked({ ask: "verdict", text, id });
+  const { faults } = await again(() => asked({ ask: "verdict", text, id }), saysLoss);
   if (faults.length === 0) say(`${preset.name()}: every pixel is the oracle's`, "right");
   else say(`${preset.name()}: ${faults.join("; ")}`, "wrong");
-  if (bits) await prove(page, preset, text, id, bits);
+  if (bits) await prove(preset, text, id, bits);
   offerOracle(preset);
 }
 
@@ -148,7 +156,7 @@ async function embed() {
   document.title = preset.name();
   const code = preset.brought_code();
   if (code) await allowed(code);
-  await alive(await Page.open(), preset, canvas, trouble);
+  await alive(preset, canvas, trouble);
   parent.postMessage("rasterlab shows a picture", "*");
 }
 
@@ -164,7 +172,7 @@ async function begin() {
   if (query.has("scoreboard")) {
     document.documentElement.classList.add("scoreboard");
     await init();
-    await scoreboard(main, await Page.open());
+    await scoreboard(main);
   } else if (query.has("embed")) await embed();
   else await picture();
 }

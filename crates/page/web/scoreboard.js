@@ -1,6 +1,7 @@
 // The scoreboard: ways to rasterize, side by side on the visitor's device, each with its wrong pixels as the oracle counts them.
 import { Live, OpenPreset } from "./rasterlab_page.js";
-import { adapterName } from "./trouble.js";
+import { again, device } from "./device.js";
+import { adapterName, isLoss } from "./trouble.js";
 import { oraclePicture } from "./workers.js";
 
 const SIZE = [400, 300];
@@ -54,7 +55,7 @@ function compared(colors, oracles) {
 }
 
 /** A way with its card in the table and its preset. */
-function card(way, page, grid) {
+function card(way, grid) {
   const own = element("article", "way");
   const frame = element("div", "frame");
   const [canvas, faults] = [element("canvas", "picture"), element("canvas", "faults")];
@@ -67,8 +68,8 @@ function card(way, page, grid) {
   grid.append(own);
   const preset = new OpenPreset(SCENE, "scoreboard");
   for (const [axis, option] of Object.entries(way.pins ?? {})) preset.set(`accuracy.${axis}`, option);
-  const live = way.hardware ? Live.hardware(page, canvas) : new Live(page, canvas);
-  return { ...way, own, faults, number, unit, times, preset, live };
+  const open = (page) => (way.hardware ? Live.hardware(page, canvas) : new Live(page, canvas));
+  return { ...way, own, faults, number, unit, times, preset, open };
 }
 
 /** Red over every wrong pixel. */
@@ -91,6 +92,7 @@ async function measure(way, oracles) {
     way.times.textContent = `${holes.length ? `${grouped(holes.length)} ${holes.length === 1 ? "hole" : "holes"} · ` : ""}${ms.toFixed(ms < 10 ? 2 : 0)} ms`;
     way.own.dataset.state = wrong.length ? "wrong" : "right";
   } catch (error) {
+    if (isLoss(error)) throw error;
     way.result = { error: error.message ?? String(error) };
     way.number.textContent = "–";
     way.times.textContent = way.result.error;
@@ -107,8 +109,8 @@ function text(ways, adapter, angle) {
 }
 
 /** Shows the scoreboard for good, and returns when its first moment is measured. */
-export async function scoreboard(main, page) {
-  const adapter = page.adapter() || (await adapterName()) || "this device";
+export async function scoreboard(main) {
+  const adapter = (await device()).adapter() || (await adapterName()) || "this device";
   const [head, grid, status] = [element("header", ""), element("div", "ways"), element("p", "status", "The oracle draws …")];
   const copy = element("button", "", "Copy the result");
   const again = element("button", "", "Count here");
@@ -117,7 +119,7 @@ export async function scoreboard(main, page) {
   const foot = element("footer", "");
   foot.append(status, again, copy);
   main.replaceChildren(head, grid, foot);
-  const ways = WAYS.map((way) => card(way, page, grid));
+  const ways = WAYS.map((way) => card(way, grid));
   let [angle, isWanted] = [0, true];
   again.onclick = () => (isWanted = true);
   copy.onclick = async () => {
@@ -130,16 +132,28 @@ export async function scoreboard(main, page) {
     setTimeout(() => (copy.textContent = "Copy the result"), 2000);
   };
 
+  let page;
+  /** Does `act` with all ways on the device as it is now. */
+  const onDevice = (act) =>
+    again(async () => {
+      const now = await device();
+      if (page !== now) ways.forEach((way) => (way.live = way.open(now)));
+      page = now;
+      await act();
+    });
+
   let [measuredAt, heldUntil] = [0, 0];
   async function count() {
     isWanted = false;
     again.disabled = true;
     status.textContent = "The oracle draws …";
     const oracles = await oraclePicture(ways[0].preset, { progress: (part) => (status.textContent = `The oracle draws: ${Math.round(100 * part)} %`) });
-    for (const way of ways) {
-      status.textContent = `Counting: ${way.name} …`;
-      await measure(way, oracles);
-    }
+    await onDevice(async () => {
+      for (const way of ways) {
+        status.textContent = `Counting: ${way.name} …`;
+        await measure(way, oracles);
+      }
+    });
     measuredAt = ((angle % 360) + 360) % 360;
     heldUntil = performance.now() + 1000 * HELD_S;
     copy.disabled = again.disabled = false;
@@ -156,10 +170,10 @@ export async function scoreboard(main, page) {
       else {
         main.classList.remove("counted");
         angle += step;
-        for (const way of ways) {
-          way.preset.orbit(step, 0, 1);
-          if (!way.result.error) await way.live.show(way.preset);
-        }
+        ways.forEach(({ preset }) => preset.orbit(step, 0, 1));
+        await onDevice(async () => {
+          for (const way of ways) if (!way.result.error) await way.live.show(way.preset);
+        });
       }
     }
     last = now;

@@ -4,9 +4,9 @@
 //   ?preset=URL  begins with the file of a preset
 //   ?model=URL   shows a model, with the look of ?preset if there is one
 //   #rasterlab1: begins with the line that the window copies
-import init, { give_file, open_given, open_window, refuse } from "./rasterlab_window.js";
+import init, { give_file, open_given, open_window, refuse, reopen_window } from "./rasterlab_window.js";
 import { isAddress, modelAt, presetAt } from "./fetched.js";
-import { BROWSERS, adapterName, saver, words } from "./trouble.js";
+import { BROWSERS, adapterName, goesOn, saver, words } from "./trouble.js";
 
 /** Most of a dropped folder. */
 const [MOST_MB, MOST_FILES] = [512, 4096];
@@ -18,6 +18,16 @@ function fail(error) {
   caption.textContent = words(error);
   if (globalThis.rasterlabOpened) caption.append(" · ", saver(rasterlabOpened));
   caption.hidden = false;
+}
+
+/** Opens the window again, on another canvas and device: its module has kept what was open. */
+async function comeBack() {
+  [caption.textContent, caption.hidden] = ["The device was lost; the window opens again …", false];
+  const lost = document.getElementById("window");
+  const canvas = lost.cloneNode();
+  lost.replaceWith(canvas);
+  await reopen_window(canvas);
+  caption.hidden = true;
 }
 
 async function main() {
@@ -77,5 +87,10 @@ addEventListener("drop", (event) => {
   openFolder(folder).catch((error) => refuse(error.message ?? String(error)));
 }, true);
 // Browsers report some of what they do late themselves as an event without an error.
-addEventListener("error", ({ error }) => error && fail(error));
+addEventListener("error", ({ error }) => {
+  if (!error) return;
+  // It is said in the middle of a frame of the lost window, which ends first.
+  if (goesOn(error)) setTimeout(() => comeBack().catch(fail));
+  else fail(error);
+});
 main().catch(fail);

@@ -84,3 +84,13 @@ pub async fn open_window(
     };
     app::start(canvas, options, model.map(PathBuf::from)).await
 }
+
+/// Opens the window again on another canvas, after its device was lost: with the files that it had
+/// and what was open.
+///
+/// # Errors
+/// If the browser gives no device any more.
+#[wasm_bindgen]
+pub async fn reopen_window(canvas: HtmlCanvasElement) -> Result<(), JsValue> {
+    app::reopen(canvas).await
+}

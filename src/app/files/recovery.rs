@@ -1,9 +1,7 @@
 //! The preset that the window opens with, and saving it when the device is lost. Settings and
 //! sessions: see `settings`.
 
-use std::path::{Path, PathBuf};
-
-use anyhow::Context as _;
+use std::path::PathBuf;
 
 use crate::{
     app::{
@@ -136,8 +134,14 @@ pub fn config_folder() -> Option<PathBuf> {
     Some(preset_file::user_folder()?.parent()?.to_owned())
 }
 
-/// Saves the preset for the next start. Returns in words whether that worked.
+/// Saves the preset for the next start. Returns in words whether that worked. A page has its session
+/// for that.
+#[cfg(not(target_arch = "wasm32"))]
 pub fn write_recovery(preset_file: &PresetFile) -> String {
+    use std::path::Path;
+
+    use anyhow::Context as _;
+
     let written = || -> anyhow::Result<PathBuf> {
         let path = recovery_path().context("there is no folder for it")?;
         std::fs::create_dir_all(path.parent().unwrap_or(Path::new(".")))?;

@@ -46,6 +46,35 @@ pub async fn start(
 ) -> Result<(), JsValue> {
     disk::keep_with(keep);
     read_kept();
+    show(canvas, options, move |_| {
+        open_given(then.into_iter().collect());
+    })
+    .await
+}
+
+/// Shows the window whose device was lost on another canvas and a new device, with the session that
+/// it kept.
+///
+/// # Errors
+/// If the browser gives no device any more.
+pub async fn reopen(canvas: HtmlCanvasElement) -> Result<(), JsValue> {
+    if let Some(lost) = RUNNER.take() {
+        lost.destroy();
+    }
+    show(canvas, Options::default(), |app| {
+        app.notify(
+            Level::Warning,
+            "The graphics device was lost. The window was opened again with your preset.",
+        );
+    })
+    .await
+}
+
+async fn show(
+    canvas: HtmlCanvasElement,
+    options: Options,
+    then: impl FnOnce(&mut App) + 'static,
+) -> Result<(), JsValue> {
     let options = Options {
         config: Some(KEPT.into()),
         ..options
@@ -65,18 +94,30 @@ pub async fn start(
         Box<dyn std::error::Error + Send + Sync>,
     > {
         WINDOW.set(Some(cc.egui_ctx.clone()));
-        open_given(then.into_iter().collect());
-        let app = App::with_loss_flag(cc, options, LossFlag::default())?;
+        let mut app = App::with_loss_flag(cc, options, LossFlag::default())?;
+        wake_on_loss(cc);
+        then(&mut app);
         Ok(Box::new(app))
     };
-    eframe::WebRunner::new()
-        .start(canvas, web, Box::new(create))
-        .await
+    let runner = eframe::WebRunner::new();
+    RUNNER.set(Some(runner.clone()));
+    runner.start(canvas, web, Box::new(create)).await
+}
+
+/// A lost device is noticed in the next frame, which nothing else may ask for.
+fn wake_on_loss(cc: &eframe::CreationContext<'_>) {
+    if let Some(window) = &cc.wgpu_render_state {
+        let ctx = cc.egui_ctx.clone();
+        let wake = move |_, _| ctx.request_repaint();
+        window.device.set_device_lost_callback(wake);
+    }
 }
 
 thread_local! {
     /// The window of the page.
     static WINDOW: RefCell<Option<egui::Context>> = const { RefCell::new(None) };
+    /// What runs it.
+    static RUNNER: RefCell<Option<eframe::WebRunner>> = const { RefCell::new(None) };
     /// What it is to do: paths of files in memory that it opens, or why there are none.
     static WAITING: RefCell<Vec<Result<Vec<PathBuf>, String>>> = const { RefCell::new(Vec::new()) };
 }

@@ -243,11 +243,18 @@ impl App {
         if self.loss.is_set() {
             return;
         }
-        let saved = recovery::write_recovery(&self.state.session.preset_file);
-        eprintln!("rasterlab: the graphics device was lost; {saved}");
         self.loss.set();
+        #[cfg(not(target_arch = "wasm32"))]
+        {
+            let saved = recovery::write_recovery(&self.state.session.preset_file);
+            eprintln!("rasterlab: the graphics device was lost; {saved}");
+        }
         #[cfg(target_arch = "wasm32")]
-        super::page::stop("the device was lost");
+        {
+            self.keeper
+                .close(&self.state.settings, &self.state.session, true);
+            super::page::stop("the device was lost");
+        }
         self.state.closing.may_quit = true;
         ctx.send_viewport_cmd(ViewportCommand::Close);
     }
