@@ -14,7 +14,7 @@ use super::{
 use crate::effects::{HookFunctions, hooks::ImagePass};
 
 /// Files of `shaders/lib` that an effect file may use: pure functions and the types of hooks.
-pub const LIBRARY: [&str; 10] = [
+pub const LIBRARY: [&str; 11] = [
     "angle",
     "color",
     "front",
@@ -22,6 +22,7 @@ pub const LIBRARY: [&str; 10] = [
     "image",
     "image_pass",
     "lattice",
+    "noise",
     "sample",
     "surface",
     "vertex",
