@@ -15,7 +15,7 @@ use super::common;
 /// Most lines of an effect.
 const MOST_LINES: usize = 60;
 /// Effects that are there.
-const COUNT: usize = 14;
+const COUNT: usize = 15;
 
 /// The effects of the folder.
 fn files() -> Vec<PathBuf> {

@@ -210,6 +210,9 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
         if !uses.iter().any(|used| used == "lib/image") {
             uses.push("lib/image".into());
         }
+        if tokens.iter().any(|token| token.text == "image_normal") {
+            uses.push("lib/image_normal".into());
+        }
     }
     // The library's file for pixels reads buffers, which passes with the other hooks do not have.
     let has_others = hooks.vertex.is_some()

@@ -22,8 +22,8 @@ use crate::{
 
 /// Instructions of one call. The loops of an effect end long before.
 const MAX_STEPS: u64 = 100_000_000;
-/// Functions of `lib/image` and `lib/image_pass` that read the picture.
-const EXTERNALS: [&str; 12] = [
+/// Functions of `lib/image`, `lib/image_pass` and `lib/image_normal` that read the picture.
+const EXTERNALS: [&str; 13] = [
     "image_has",
     "image_at",
     "image_background",
@@ -36,6 +36,7 @@ const EXTERNALS: [&str; 12] = [
     "image_depth_m",
     "image_meters",
     "image_pixel_size_m",
+    "image_normal",
 ];
 /// How much the inputs of a color may be off on the f32 side, relative to the largest component of
 /// each.
@@ -333,6 +334,11 @@ impl Host for PassHost<'_> {
             }
             11 => {
                 result[0] = Word::from_f64(at.input.lens.pixel_size_m(arguments[0].to_f64()));
+                return;
+            }
+            12 => {
+                let normal = at.normal(pixel()[0], pixel()[1]);
+                result.copy_from_slice(&normal.to_array().map(Word::from_f64));
                 return;
             }
             _ => return PictureHost(at.input.picture, 0).external(index, arguments, result),
