@@ -8,7 +8,7 @@ use std::{
 
 use super::{
     error::{EffectError, Text},
-    read::{MAX_BYTES, check_name, decoded, read},
+    read::{MAX_BYTES, check_name, decoded, read, stem},
 };
 use crate::{
     effects::{EFFECTS, Effect},
@@ -339,12 +339,4 @@ fn files_of(folder: &Path) -> Vec<PathBuf> {
     });
     paths.sort();
     paths
-}
-
-/// Name of the effect that a file holds.
-fn stem(path: &Path) -> String {
-    path.file_stem()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned()
 }

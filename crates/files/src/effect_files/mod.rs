@@ -26,7 +26,7 @@ pub use self::{
     error::{EffectError, Place},
     evaluated::{EvaluatedError, evaluated},
     precision::{ErrorsOfEffect, LargestError, Place as ErrorPlace, Quantity, precision},
-    read::{MAX_BYTES, RESERVED_NAMES, check_name, read},
+    read::{MAX_BYTES, RESERVED_NAMES, check_name, read, stem},
     rewrite::MAX_TURNS,
     soundness::{Crossing, Unsound, crossings},
     template::{Hook, template},

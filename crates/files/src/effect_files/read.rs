@@ -2,6 +2,7 @@
 
 use std::{
     collections::BTreeMap,
+    path::Path,
     sync::{Arc, Mutex, PoisonError},
 };
 
@@ -81,6 +82,14 @@ pub fn check_name(name: &str) -> Result<(), String> {
         return Err("has another meaning in presets or effect files; choose another name".into());
     }
     Ok(())
+}
+
+/// The name of the effect that the file at `path` holds.
+pub fn stem(path: &Path) -> String {
+    path.file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned()
 }
 
 /// Reads the effect `stem` from the text of its file, which messages call `file`. Equal texts of
