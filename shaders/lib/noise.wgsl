@@ -81,7 +81,7 @@ fn noise_bump(cell: vec3i, away: vec3f, seed: u32) -> f32 {
     return weight * weight * weight * weight * noise_slope(noise_hash(cell, seed).x >> 8u, away);
 }
 
-// Simplex noise: as gradient noise, of the four corners of a tetrahedron, without its axes. -1 to 1, mostly within 0.6.
+// Simplex noise: as gradient noise, of the four corners of a tetrahedron, without its axes. -1 to 1, mostly within 0.7.
 fn noise_simplex(at: vec3f, seed: u32) -> f32 {
     let cell = noise_cell(at + (at.x + at.y + at.z) / 3.0);
     // Places from corners: a step along all three axes of the cells leads along (1/2, 1/2, 1/2).

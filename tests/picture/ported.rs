@@ -1,11 +1,11 @@
-//! Promise: effects that people port from elsewhere, with noise of their own, are read as they
-//! are written, and drawn by the adapter as by the oracle; faulty ones are refused with a
+//! Promise: effects that people port from elsewhere, with noise and pictures of their own, are read
+//! as they are written, and drawn by the adapter as by the oracle; faulty ones are refused with a
 //! sentence that says what to do.
 
 use std::path::{Path, PathBuf};
 
 use rasterlab::{
-    effect_files::read,
+    effect_files::{read_beside, stem},
     effects::{Effect, Stack},
     measure::Budget,
 };
@@ -14,8 +14,8 @@ use super::common;
 
 /// Most lines of an effect.
 const MOST_LINES: usize = 60;
-/// Effects that are there.
-const COUNT: usize = 15;
+/// Effects that are there: ten of images, five with noise, five with a picture.
+const COUNT: usize = 20;
 
 /// The effects of the folder.
 fn files() -> Vec<PathBuf> {
@@ -55,10 +55,9 @@ fn every_ported_effect_is_drawn_as_the_oracle_draws_it() {
     let mut faults = Vec::new();
     for path in files {
         let text = std::fs::read_to_string(&path).expect("it is text");
-        let name = path.file_stem().expect("a file has a name");
-        let name = name.to_string_lossy();
+        let name = stem(&path);
         assert!(text.lines().count() <= MOST_LINES, "{name} is long");
-        let read = read(&format!("{name}.wgsl"), &name, &text);
+        let read = read_beside(&format!("{name}.wgsl"), &name, &text, path.parent());
         let effect = read.unwrap_or_else(|error| panic!("{error}"));
         let mut stack = plain.clone();
         stack.enable(&effect);
@@ -76,11 +75,21 @@ fn every_ported_effect_is_drawn_as_the_oracle_draws_it() {
 }
 
 /// Faulty effects, each with how its refusal ends.
-const FAULTY: [(&str, &str); 3] = [
+const FAULTY: [(&str, &str); 5] = [
     (
         "struct Ink { @range(0, 1, 0.5) amount: f32 }
 fn ink(at: ImageAt, p: Ink) -> vec4f { return textureSample(picture, smooth_sampler, vec2f(0.5)); }",
         "textureSample: an effect has no textures; it is a pure function of its arguments",
+    ),
+    (
+        "struct Ink { @image(\"../grain.png\") sheet: u32 }
+fn ink(at: ImageAt, p: Ink) -> vec4f { return image_file_texel(p.sheet, at.x, at.y); }",
+        "the picture sheet lies outside of the folder of the effect; put the PNG beside the file and write its name alone",
+    ),
+    (
+        "struct Ink { @image(\"grain.png\") sheet: u32, @range(0, 1, 0.1) @unit(m) height: f32 }
+fn ink(v: Vertex, p: Ink) -> Vertex { return v; }",
+        "sheet is a picture, which vertices and samples cannot read; put their hooks into a file of their own",
     ),
     (
         "struct Ink { @range(0, 1, 0.5) amount: f32 }
@@ -101,8 +110,9 @@ fn ink(at: ImageAt, p: Ink) -> vec4f { return image_color(at.x, at.y); }",
 
 #[test]
 fn faulty_effects_are_refused_with_what_to_do() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/picture/ported");
     for (text, sentence) in FAULTY {
-        let error = read("ink.wgsl", "ink", text).expect_err(sentence);
+        let error = read_beside("ink.wgsl", "ink", text, Some(&folder)).expect_err(sentence);
         assert!(error.message.ends_with(sentence), "{error}\n{sentence}");
         assert!(error.place.is_some(), "{error}");
     }

@@ -315,7 +315,8 @@ impl Jobs {
     pub fn try_code(&self, path: PathBuf, text: String) {
         self.spawn("effect typed", move || {
             let file = path.file_name().unwrap_or_default().to_string_lossy();
-            let read = effect_files::read(&file, &effect_files::stem(&path), &text);
+            let stem = effect_files::stem(&path);
+            let read = effect_files::read_beside(&file, &stem, &text, path.parent());
             Done::CodeTried(path, text, read)
         });
     }
