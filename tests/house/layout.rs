@@ -204,9 +204,9 @@ fn every_binding_has_a_resource_and_every_bound_struct_is_shared() {
             );
         }
     }
-    // Kernels bind neither what is only copied nor what only a draw of the hardware reads.
-    let copied = ["background", "previous"];
-    let all = ResourceId::all().filter(|id| !copied.contains(&id.name()));
+    // Kernels bind neither what is only copied nor, without an effect of a file, its pictures.
+    let idle = ["background", "previous", "image_files"];
+    let all = ResourceId::all().filter(|id| !idle.contains(&id.name()));
     let idle: Vec<_> = all
         .filter(|id| !bound.contains(id))
         .map(ResourceId::name)

@@ -13,6 +13,7 @@ mod glass;
 mod looks;
 mod materials;
 mod particles;
+mod ported;
 mod scopes;
 mod shadows;
 mod skins;

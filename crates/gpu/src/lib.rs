@@ -35,6 +35,7 @@ mod queues;
 
 mod frame_layout;
 pub mod frame_stats;
+mod image_files;
 mod material_atlas;
 pub mod pipelines;
 

@@ -1,8 +1,7 @@
 //! Texels: what the resolve knows of materials that are more than a base color, in one texture that
 //! costs no storage buffer.
 //!
-//! The texture is used as a row of words, folded to [`WIDTH`] words a line and as many lines a
-//! layer: sRGB decoded, a word per byte; a record per primitive; how primitives reflect, where an
+//! The texture is used as a row of words (`WordTexture::of_words`): sRGB decoded, a word per byte; a record per primitive; how primitives reflect, where an
 //! effect reads it; where the vertices of masked ones lie in their images; then where the levels of
 //! each image begin, and the levels of all images, a texel a word. Mirrors of `shaders/lib/material_atlas.wgsl`.
 
@@ -14,7 +13,7 @@ use super::{
     error::RenderError,
     records::{FinishRecord, LookupRecord, MaterialRecord},
     resource_id::TextureId,
-    textures::{self, WordTexture},
+    textures::WordTexture,
 };
 use crate::{
     effects::hooks::Finish,
@@ -24,9 +23,6 @@ use crate::{
         texture::{Texture, texcoord},
     },
 };
-
-/// Words in a line, and lines in a layer.
-pub const WIDTH: u32 = 4096;
 
 /// Words of a primitive's record: its paint, and how base color and emission are looked up.
 pub const RECORD_WORDS: usize = (size_of::<MaterialRecord>() + 2 * size_of::<LookupRecord>()) / 4;
@@ -62,54 +58,7 @@ pub async fn upload(
             limit: 4 * MAX_FINISH_WORD as u64,
         });
     }
-    let mut words = words(scene, has_finish);
-    let line = WIDTH as usize;
-    words.resize(words.len().next_multiple_of(line), 0);
-    let lines = (words.len() / line) as u32;
-    let size = wgpu::Extent3d {
-        width: WIDTH,
-        height: lines.min(WIDTH),
-        depth_or_array_layers: lines.div_ceil(WIDTH),
-    };
-    let most = gpu.device.limits().max_texture_array_layers;
-    if size.depth_or_array_layers > most {
-        let limit = textures::bytes_of(wgpu::Extent3d {
-            width: WIDTH,
-            height: WIDTH,
-            depth_or_array_layers: most,
-        });
-        return Err(RenderError::TooLarge {
-            buffer: id.name(),
-            bytes: textures::bytes_of(size),
-            limit,
-        });
-    }
-    let atlas = WordTexture::new(gpu, id, size, wgpu::TextureViewDimension::D2Array).await?;
-    for (layer, words) in words.chunks(line * WIDTH as usize).enumerate() {
-        let rows = (words.len() / line) as u32;
-        let origin = wgpu::Origin3d {
-            x: 0,
-            y: 0,
-            z: layer as u32,
-        };
-        let target = wgpu::TexelCopyTextureInfo {
-            origin,
-            ..atlas.texture.as_image_copy()
-        };
-        let layout = wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(4 * WIDTH),
-            rows_per_image: None,
-        };
-        let size = wgpu::Extent3d {
-            width: WIDTH,
-            height: rows,
-            depth_or_array_layers: 1,
-        };
-        gpu.queue
-            .write_texture(target, bytemuck::cast_slice(words), layout, size);
-    }
-    Ok(atlas)
+    WordTexture::of_words(gpu, id, words(scene, has_finish)).await
 }
 
 /// Everything, word after word.

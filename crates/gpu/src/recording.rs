@@ -72,9 +72,11 @@ impl<'a> Resources<'a> {
             .material_atlas
             .iter()
             .map(|atlas| (TextureId::MaterialAtlas, atlas));
+        let files = scene.image_files.iter();
+        let files = files.map(|files| (TextureId::ImageFiles, &files.texture));
         Self {
             buffers: vec![&scene.buffers],
-            textures: atlas.collect(),
+            textures: atlas.chain(files).collect(),
             light: None,
             stand_ins: Vec::new(),
         }

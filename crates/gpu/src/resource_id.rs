@@ -119,16 +119,19 @@ pub enum TextureId {
     MaterialAtlas,
     /// Nearest depth key to the light per texel.
     ShadowMap,
+    /// Pictures that effects take as inputs, as words.
+    ImageFiles,
 }
 
 impl TextureId {
-    pub const ALL: &'static [Self] = &[Self::MaterialAtlas, Self::ShadowMap];
+    pub const ALL: &'static [Self] = &[Self::MaterialAtlas, Self::ShadowMap, Self::ImageFiles];
 
     /// Name of the variable in WGSL, label on the device, name in `explain`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::MaterialAtlas => "material_atlas",
             Self::ShadowMap => "shadow_map",
+            Self::ImageFiles => "image_files",
         }
     }
 
@@ -139,6 +142,7 @@ impl TextureId {
                 "a texture of words: materials of primitives, and the levels of their images"
             }
             Self::ShadowMap => "nearest depth key to the light per texel, 4 bytes",
+            Self::ImageFiles => "pictures that effects take as inputs, 4 bytes per texel",
         }
     }
 }

@@ -8,6 +8,7 @@ use super::{
     buffers::Buffers,
     device::Gpu,
     error::RenderError,
+    image_files::ImageFiles,
     material_atlas,
     meshlets::MeshletBuffers,
     packing::{PackedBox, Packing},
@@ -37,6 +38,8 @@ pub struct SceneResources {
     pub material_atlas: Option<WordTexture>,
     /// It says how materials reflect.
     atlas_has_finish: bool,
+    /// Pictures that the effects of the stack take as inputs.
+    pub image_files: Option<ImageFiles>,
     /// Meshlets of all primitives, once a view culls.
     meshlets: Option<Arc<MeshletBuffers>>,
 }
@@ -56,6 +59,7 @@ impl SceneResources {
             packed_boxes: Vec::new(),
             material_atlas: None,
             atlas_has_finish: false,
+            image_files: None,
             meshlets: None,
         };
         resources.upload(gpu).await?;
@@ -192,6 +196,16 @@ impl SceneResources {
             let atlas = material_atlas::upload(gpu, &self.scene, inputs.has_finish).await?;
             (self.material_atlas, self.atlas_has_finish) = (Some(atlas), inputs.has_finish);
         }
+        Ok(())
+    }
+
+    /// Keeps the pictures that the effects of a stack take as inputs, and no others.
+    ///
+    /// # Errors
+    /// When they do not fit.
+    pub async fn keep_image_files(&mut self, gpu: &Gpu, stack: &Stack) -> Result<(), RenderError> {
+        let known = self.image_files.take();
+        self.image_files = ImageFiles::of(gpu, stack, known).await?;
         Ok(())
     }
 

@@ -6,6 +6,9 @@ use super::{
     preparations::Preparation, resource_id::TextureId,
 };
 
+/// Words in a line, and lines in a layer, of a row of words.
+const WIDTH: u32 = 4096;
+
 /// A texture on the device.
 pub struct WordTexture {
     pub texture: wgpu::Texture,
@@ -60,6 +63,64 @@ impl WordTexture {
             revision: next_revision(),
             _memory: memory,
         })
+    }
+
+    /// A texture of a row of words, folded to `WIDTH` words a line and as many lines a layer.
+    ///
+    /// # Errors
+    /// When they take more layers than the adapter's textures have, or more memory than there is.
+    pub async fn of_words(
+        gpu: &Gpu,
+        id: TextureId,
+        mut words: Vec<u32>,
+    ) -> Result<Self, RenderError> {
+        let line = WIDTH as usize;
+        words.resize(words.len().next_multiple_of(line), 0);
+        let lines = (words.len() / line) as u32;
+        let size = wgpu::Extent3d {
+            width: WIDTH,
+            height: lines.min(WIDTH),
+            depth_or_array_layers: lines.div_ceil(WIDTH),
+        };
+        let most = gpu.device.limits().max_texture_array_layers;
+        if size.depth_or_array_layers > most {
+            let limit = bytes_of(wgpu::Extent3d {
+                width: WIDTH,
+                height: WIDTH,
+                depth_or_array_layers: most,
+            });
+            return Err(RenderError::TooLarge {
+                buffer: id.name(),
+                bytes: bytes_of(size),
+                limit,
+            });
+        }
+        let texture = Self::new(gpu, id, size, wgpu::TextureViewDimension::D2Array).await?;
+        for (layer, words) in words.chunks(line * WIDTH as usize).enumerate() {
+            let rows = (words.len() / line) as u32;
+            let origin = wgpu::Origin3d {
+                x: 0,
+                y: 0,
+                z: layer as u32,
+            };
+            let target = wgpu::TexelCopyTextureInfo {
+                origin,
+                ..texture.texture.as_image_copy()
+            };
+            let layout = wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(4 * WIDTH),
+                rows_per_image: None,
+            };
+            let size = wgpu::Extent3d {
+                width: WIDTH,
+                height: rows,
+                depth_or_array_layers: 1,
+            };
+            gpu.queue
+                .write_texture(target, bytemuck::cast_slice(words), layout, size);
+        }
+        Ok(texture)
     }
 
     /// Bytes that it takes.

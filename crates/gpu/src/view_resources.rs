@@ -189,6 +189,7 @@ impl ViewResources {
             }
             scene.pack_positions(gpu, packed_bits).await?;
             scene.keep_materials(gpu, &key.surface).await?;
+            scene.keep_image_files(gpu, request.stack).await?;
         }
         let is_changed = self.update_draw_data(scene, key, &view, &draws, request.stack);
         if self.target == Target::Picture {

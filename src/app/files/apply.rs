@@ -350,7 +350,7 @@ fn keep_effects(state: &State, saved: &PresetFile, path: &Path) -> Result<(), St
             continue;
         }
         make_folder_of(&copy)?;
-        preset_file::write_atomically(&copy, source.written.as_bytes(), Existing::Keep)
+        preset_file::write_atomically(&copy, source.shared().as_bytes(), Existing::Keep)
             .map_err(|error| error.to_string())?;
     }
     Ok(())

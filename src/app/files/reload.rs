@@ -18,7 +18,7 @@ use crate::{
         picture::screen::Inputs,
         shell::{command::Edit, log::Level, state::State},
     },
-    effect_files::{Catalog, EffectError},
+    effect_files::{self, Catalog, EffectError},
     effects::Effect,
     host,
     preset::{
@@ -123,10 +123,7 @@ pub fn code_tried(
     path: &Path,
     read: Result<Arc<Effect>, EffectError>,
 ) {
-    let name = path
-        .file_stem()
-        .map(|stem| stem.to_string_lossy().into_owned())
-        .unwrap_or_default();
+    let name = effect_files::stem(path);
     match read {
         Err(error) => fault(state, Subject::Effect(name), error.to_string()),
         Ok(effect) => {

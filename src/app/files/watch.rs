@@ -27,7 +27,7 @@ fn is_watched(extension: &str) -> bool {
     let models = MODEL_FORMATS
         .iter()
         .flat_map(|format| format.beside.iter().chain([&format.extension]));
-    ["wgsl", "toml"]
+    ["wgsl", "toml", "png"]
         .iter()
         .chain(models)
         .any(|known| extension.eq_ignore_ascii_case(known))

@@ -314,11 +314,9 @@ impl Jobs {
     /// Reads an effect from a text that was typed.
     pub fn try_code(&self, path: PathBuf, text: String) {
         self.spawn("effect typed", move || {
-            let name = |part: Option<&std::ffi::OsStr>| {
-                part.map(|part| part.to_string_lossy().into_owned())
-                    .unwrap_or_default()
-            };
-            let read = effect_files::read(&name(path.file_name()), &name(path.file_stem()), &text);
+            let file = path.file_name().unwrap_or_default().to_string_lossy();
+            let stem = effect_files::stem(&path);
+            let read = effect_files::read_beside(&file, &stem, &text, path.parent());
             Done::CodeTried(path, text, read)
         });
     }

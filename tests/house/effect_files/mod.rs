@@ -5,6 +5,7 @@
 mod accepted;
 mod mutated;
 mod numerics;
+mod pictures;
 mod refused;
 mod saved;
 

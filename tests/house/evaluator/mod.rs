@@ -7,6 +7,7 @@ mod builtins_of_vectors;
 mod common;
 mod lattice;
 mod limits;
+mod noise;
 mod pointers;
 mod precision;
 mod random_expressions;

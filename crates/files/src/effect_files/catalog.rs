@@ -8,7 +8,8 @@ use std::{
 
 use super::{
     error::{EffectError, Text},
-    read::{MAX_BYTES, check_name, decoded, read},
+    images::are_current,
+    read::{MAX_SHARED_BYTES, check_name, decoded, read, read_beside, stem},
 };
 use crate::{
     effects::{EFFECTS, Effect},
@@ -145,8 +146,8 @@ impl Catalog {
         };
         let written = match disk::size_of(path) {
             Ok(None) => Err(text.whole("it is not a regular file")),
-            Ok(Some(size)) if size > MAX_BYTES as u64 => Err(text.whole(format!(
-                "the file has {size} bytes; an effect has at most {MAX_BYTES}",
+            Ok(Some(size)) if size > MAX_SHARED_BYTES as u64 => Err(text.whole(format!(
+                "the file has {size} bytes; an effect has at most {MAX_SHARED_BYTES}",
             ))),
             Ok(Some(_)) => disk::read(path)
                 .map_err(|error| text.whole(error.to_string()))
@@ -155,14 +156,13 @@ impl Catalog {
         };
         let read = written.and_then(|written| match self.find_custom(&name) {
             Some(Ok(known))
-                if known
-                    .source
-                    .as_ref()
-                    .is_some_and(|source| source.written == written) =>
+                if known.source.as_ref().is_some_and(|source| {
+                    source.written == written && are_current(source, path.parent())
+                }) =>
             {
                 Ok(known.clone())
             }
-            _ => read(&file, &name, &written),
+            _ => read_beside(&file, &name, &written, path.parent()),
         });
         CustomEffect {
             path: Some(path.to_owned()),
@@ -339,12 +339,4 @@ fn files_of(folder: &Path) -> Vec<PathBuf> {
     });
     paths.sort();
     paths
-}
-
-/// Name of the effect that a file holds.
-fn stem(path: &Path) -> String {
-    path.file_stem()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned()
 }

@@ -14,14 +14,16 @@ use super::{
 use crate::effects::{HookFunctions, hooks::ImagePass};
 
 /// Files of `shaders/lib` that an effect file may use: pure functions and the types of hooks.
-pub const LIBRARY: [&str; 10] = [
+pub const LIBRARY: [&str; 12] = [
     "angle",
     "color",
     "front",
     "hash",
     "image",
+    "image_file",
     "image_pass",
     "lattice",
+    "noise",
     "sample",
     "surface",
     "vertex",
@@ -191,6 +193,21 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
     let mut parameters = parameters::read(text, &tokens, *open)?;
     parameters.attributes.extend(attributes);
     let mut uses = uses;
+    if let Some(image) = parameters.images.first() {
+        if hooks.vertex.is_some() || hooks.sample.is_some() {
+            let message = format!(
+                "{} is a picture, which vertices and samples cannot read; put their hooks into a file of their own",
+                image.member
+            );
+            return Err(text.error(image.named.start, image.named.len(), message));
+        }
+        if !uses.iter().any(|used| used == "lib/image_file") {
+            uses.push("lib/image_file".into());
+        }
+    } else if uses.iter().any(|used| used == "lib/image_file") {
+        let message = "lib/image_file reads pictures, and no parameter is one; declare one, for instance @image(\"paper.png\") paper: u32";
+        return Err(text.whole(message));
+    }
     for (kind, _, file) in HOOKS {
         let path = format!("lib/{file}");
         if tokens.iter().any(|token| token.text == kind) && !uses.contains(&path) {
@@ -208,6 +225,9 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
         }
         if !uses.iter().any(|used| used == "lib/image") {
             uses.push("lib/image".into());
+        }
+        if tokens.iter().any(|token| token.text == "image_normal") {
+            uses.push("lib/image_normal".into());
         }
     }
     // The library's file for pixels reads buffers, which passes with the other hooks do not have.

@@ -21,7 +21,7 @@ use crate::{
 /// file cannot.
 pub fn duplicate(effect: &Effect, name: &str) -> Result<String, String> {
     if let Some(source) = &effect.source {
-        return Ok(with_constants(&source.stem, name, &source.written));
+        return Ok(with_constants(&source.stem, name, &source.shared()));
     }
     let hooks = &effect.hooks;
     if hooks.slot.is_some() || hooks.has_lines || hooks.particle_settings.is_some() {

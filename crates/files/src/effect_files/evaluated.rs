@@ -57,13 +57,7 @@ pub fn evaluated_in(
     let validated = Validator::new(ValidationFlags::all(), capabilities()).validate(&module);
     validated.map_err(|error| EvaluatedError::Refused(error.emit_to_string(text)))?;
     let function = |chain: Chain, precision| {
-        Function::new(
-            &module,
-            text,
-            &chain.function(effect),
-            &effect.fields,
-            precision,
-        )
+        Function::new(&module, text, &chain.function(effect), effect, precision)
     };
     let mut hooks = effect.hooks.clone();
     if let Some(hook) = hooks.vertex.take() {
@@ -98,7 +92,7 @@ pub fn evaluated_in(
         let functions = (0..hook.passes.len())
             .map(|pass| {
                 let name = pass_function(effect, pass);
-                Function::new(&module, text, &name, &effect.fields, precision)
+                Function::new(&module, text, &name, effect, precision)
             })
             .collect::<Result<Vec<_>, _>>()?;
         hooks.passes = Some(twin::passes(hook.passes, functions.clone(), functions));

@@ -9,6 +9,7 @@ mod declaration;
 mod duplicate;
 mod error;
 mod evaluated;
+mod images;
 mod parameters;
 mod precision;
 mod read;
@@ -26,7 +27,7 @@ pub use self::{
     error::{EffectError, Place},
     evaluated::{EvaluatedError, evaluated},
     precision::{ErrorsOfEffect, LargestError, Place as ErrorPlace, Quantity, precision},
-    read::{MAX_BYTES, RESERVED_NAMES, check_name, read},
+    read::{MAX_BYTES, RESERVED_NAMES, check_name, read, read_beside, stem},
     rewrite::MAX_TURNS,
     soundness::{Crossing, Unsound, crossings},
     template::{Hook, template},

@@ -10,7 +10,7 @@ use super::{
     words,
 };
 use crate::{
-    effects::constant_name,
+    effects::{EMBEDDED_IMAGE, constant_name},
     params::{Field, Param, ValueType, WgslType},
 };
 
@@ -18,6 +18,8 @@ use crate::{
 const MAX_NAME_CHARS: usize = 40;
 /// Most members of the struct.
 const MAX_MEMBERS: usize = 64;
+/// Most members that are pictures.
+const MAX_IMAGES: usize = 4;
 /// Names that preset files use beside those of parameters.
 const RESERVED: [&str; 2] = ["effect", "on"];
 
@@ -25,10 +27,23 @@ const RESERVED: [&str; 2] = ["effect", "on"];
 #[derive(Debug)]
 pub struct Parameters {
     pub fields: Vec<Arc<Field>>,
+    /// Members that are pictures, in order.
+    pub images: Vec<NamedImage>,
     /// Parameter words with every default.
     pub defaults: Vec<u32>,
     /// Byte ranges of attributes, which WGSL does not know.
     pub attributes: Vec<Range<usize>>,
+}
+
+/// A member of the struct that is a picture.
+#[derive(Debug)]
+pub struct NamedImage {
+    /// Name of the member.
+    pub member: String,
+    /// Byte offset of the member in the struct.
+    pub offset: usize,
+    /// Bytes of the text that are the name of the picture, in quotation marks.
+    pub named: Range<usize>,
 }
 
 /// Reads the members between the braces of a struct; `open` is the index of the opening one.
@@ -39,6 +54,7 @@ pub struct Parameters {
 pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parameters, EffectError> {
     let close = closing(tokens, open);
     let (mut fields, mut defaults, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
+    let mut images: Vec<NamedImage> = Vec::new();
     let mut at = open + 1;
     while at < close {
         let first = tokens[at];
@@ -94,6 +110,7 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
         if fields
             .iter()
             .any(|field: &Arc<Field>| field.name == name.text)
+            || images.iter().any(|image| image.member == name.text)
         {
             return Err(text.error(
                 name.offset,
@@ -114,6 +131,17 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
             kind,
             attributes: &attributes,
         };
+        if let Some(image) = member.attribute("image") {
+            let named = member.image(image, images.len())?;
+            images.push(NamedImage {
+                member: name.text.into(),
+                offset: 4 * defaults.len(),
+                named,
+            });
+            defaults.push(images.len() as u32 - 1);
+            at = end + 1;
+            continue;
+        }
         let (param, wgsl, numbers) =
             member.param(&fields, &documentation(text.text, first.offset))?;
         let offset = (4 * defaults.len()).next_multiple_of(4 * wgsl.words());
@@ -125,7 +153,7 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
         fields.push(Arc::new(field));
         at = end + 1;
     }
-    if fields.is_empty() {
+    if fields.is_empty() && images.is_empty() {
         return Err(text.error(
             tokens[open].offset,
             1,
@@ -140,6 +168,7 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
     defaults.resize(defaults.len().next_multiple_of(align), 0);
     Ok(Parameters {
         fields,
+        images,
         defaults,
         attributes: ranges,
     })
@@ -266,6 +295,41 @@ impl<'a> Member<'a> {
             ));
         }
         Ok(first)
+    }
+
+    /// Where the text names the picture that this member is, after `known` others.
+    fn image(&self, image: &Attribute<'a>, known: usize) -> Result<Range<usize>, EffectError> {
+        let is_other = |other: &&Attribute<'_>| other.name != "image";
+        if let Some(other) = self.attributes.iter().find(is_other) {
+            let message = format!("@{} and @image exclude each other", other.name);
+            return Err(other.error(self.text, message));
+        }
+        if self.kind != "u32" {
+            return Err(image.error(
+                self.text,
+                format!(
+                    "@image does not fit {}; a picture is a u32, its number for the functions of lib/image_file",
+                    self.kind
+                ),
+            ));
+        }
+        if known == MAX_IMAGES {
+            let message = format!("an effect takes at most {MAX_IMAGES} pictures");
+            return Err(image.error(self.text, message));
+        }
+        let whole = &self.text.text[image.begin..image.end];
+        let place = whole.find('"').zip(whole.rfind('"'));
+        let is_alone = image.arguments.len() == 1 || whole.contains(EMBEDDED_IMAGE);
+        place
+            .filter(|(first, last)| is_alone && first + 1 < *last)
+            .filter(|(first, last)| !whole[first + 1..*last].contains('"'))
+            .map(|(first, last)| image.begin + first..image.begin + last + 1)
+            .ok_or_else(|| {
+                image.error(
+                    self.text,
+                    "@image takes the name of a PNG in quotation marks, for instance @image(\"paper.png\")",
+                )
+            })
     }
 
     /// The registry's entry, the WGSL type, and the components of the default. `known` are the

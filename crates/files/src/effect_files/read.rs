@@ -2,6 +2,7 @@
 
 use std::{
     collections::BTreeMap,
+    path::Path,
     sync::{Arc, Mutex, PoisonError},
 };
 
@@ -9,18 +10,20 @@ use super::{
     check::{self, Parts},
     declaration,
     error::{EffectError, Text},
-    rewrite,
+    images, rewrite,
     twin::{self, Function},
     words,
 };
 use crate::{
-    effects::{Effect, EffectSource, SurfaceInput, hooks::Hooks},
+    effects::{EMBEDDED_IMAGE, Effect, EffectSource, SurfaceInput, hooks::Hooks},
     evaluator::Precision,
     shader::library::Library,
 };
 
-/// Largest effect file, bytes.
+/// Most bytes of an effect file, apart from pictures inside its text.
 pub const MAX_BYTES: usize = 64 << 10;
+/// Most bytes of an effect file with pictures inside its text.
+pub const MAX_SHARED_BYTES: usize = MAX_BYTES + images::MAX_IMAGE_BYTES / 3 * 4 + 1024;
 /// Most instructions of a hook that has loops, with all that it calls. Loops take
 /// [`rewrite::MAX_TURNS`] turns together, so that the product bounds what a pixel can cost.
 pub const MAX_LOOPED_INSTRUCTIONS: usize = 8192;
@@ -83,22 +86,46 @@ pub fn check_name(name: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Reads the effect `stem` from the text of its file, which messages call `file`. Equal texts of
-/// one name give the same effect, which is checked once: every preset of a folder asks for the
-/// effects beside it. Few effects that nobody uses any more are kept.
+/// The name of the effect that the file at `path` holds.
+pub fn stem(path: &Path) -> String {
+    path.file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned()
+}
+
+/// [`read_beside`] of a text without a folder: pictures that it takes as inputs are inside it.
+///
+/// # Errors
+/// As [`read_beside`].
+pub fn read(file: &str, stem: &str, written: &str) -> Result<Arc<Effect>, EffectError> {
+    read_beside(file, stem, written, None)
+}
+
+/// Reads the effect `stem` from the text of its file, which messages call `file`, and the pictures
+/// that it names from `folder`. Equal texts of one name give the same effect, which is checked
+/// once: every preset of a folder asks for the effects beside it. Few effects that nobody uses any
+/// more are kept.
 ///
 /// # Errors
 /// The first fault, at its line.
-pub fn read(file: &str, stem: &str, written: &str) -> Result<Arc<Effect>, EffectError> {
+pub fn read_beside(
+    file: &str,
+    stem: &str,
+    written: &str,
+    folder: Option<&Path>,
+) -> Result<Arc<Effect>, EffectError> {
     static READ: Mutex<BTreeMap<(String, String), Arc<Effect>>> = Mutex::new(BTreeMap::new());
     let known = || READ.lock().unwrap_or_else(PoisonError::into_inner);
     // Files that use a folder of shaders are checked against that folder as it is now.
     let is_kept = matches!(Library::of_process(), Library::Embedded);
     let key = (stem.to_owned(), written.to_owned());
-    if let Some(effect) = known().get(&key).filter(|_| is_kept) {
-        return Ok(effect.clone());
+    let found = known().get(&key).filter(|_| is_kept).cloned();
+    let is_current = |source: &Arc<EffectSource>| images::are_current(source, folder);
+    if let Some(effect) = found.filter(|effect| effect.source.as_ref().is_some_and(is_current)) {
+        return Ok(effect);
     }
-    let effect = Arc::new(read_anew(file, stem, written)?);
+    let effect = Arc::new(read_anew(file, stem, written, folder)?);
     if !is_kept {
         return Ok(effect);
     }
@@ -106,22 +133,47 @@ pub fn read(file: &str, stem: &str, written: &str) -> Result<Arc<Effect>, Effect
     if known.len() >= MAX_UNUSED {
         known.retain(|_, effect| Arc::strong_count(effect) > 1);
     }
-    Ok(known.entry(key).or_insert(effect).clone())
+    // Another thread may have read it meanwhile.
+    match known.get(&key).filter(|known| **known == effect) {
+        Some(known) => Ok(known.clone()),
+        None => {
+            known.insert(key, effect.clone());
+            Ok(effect)
+        }
+    }
 }
 
-fn read_anew(file: &str, stem: &str, written: &str) -> Result<Effect, EffectError> {
+fn read_anew(
+    file: &str,
+    stem: &str,
+    written: &str,
+    folder: Option<&Path>,
+) -> Result<Effect, EffectError> {
     let text = Text {
         file,
         text: written,
     };
     check_name(stem).map_err(|reason| text.whole(format!("{stem:?} {reason}")))?;
-    if written.len() > MAX_BYTES {
-        return Err(text.whole(format!(
-            "the file has {} bytes; an effect has at most {MAX_BYTES}",
-            written.len()
-        )));
-    }
+    let check_length = |bytes: usize, most: usize| match bytes > most {
+        true => Err(text.whole(format!(
+            "the file has {bytes} bytes; an effect has at most {most}"
+        ))),
+        false => Ok(()),
+    };
+    // Only a text that has a picture inside is longer.
+    check_length(
+        written.len(),
+        match written.contains(EMBEDDED_IMAGE) {
+            true => MAX_SHARED_BYTES,
+            false => MAX_BYTES,
+        },
+    )?;
     let declaration = declaration::read(&text, stem)?;
+    let named = &declaration.parameters.images;
+    check_length(
+        written.len() - images::embedded_bytes(written, named),
+        MAX_BYTES,
+    )?;
     let fields = &declaration.parameters.fields;
     if let Some(vertex) = &declaration.hooks.vertex
         && rewrite::lengths(fields).next().is_none()
@@ -139,6 +191,7 @@ fn read_anew(file: &str, stem: &str, written: &str) -> Result<Effect, EffectErro
         written: written.into(),
         linked: rewritten.text.clone(),
         functions: rewritten.functions.clone(),
+        images: images::read(&text, named, folder)?,
     });
     let mut effect = Effect {
         name: stem.into(),
@@ -157,13 +210,14 @@ fn read_anew(file: &str, stem: &str, written: &str) -> Result<Effect, EffectErro
         declaration: &declaration,
         rewritten: &rewritten,
     };
-    let checked = check::check(parts, &Arc::new(effect.clone()))?;
+    let whole = Arc::new(effect.clone());
+    let checked = check::check(parts, &whole)?;
     let function = |name: &str, precision: Precision| {
         let read = Function::new(
             &checked.module,
             &checked.linked.text,
             name,
-            fields,
+            &whole,
             precision,
         );
         let function = read.map_err(|error| {

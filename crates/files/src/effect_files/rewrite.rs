@@ -141,6 +141,11 @@ pub fn rewritten(stem: &str, file: &str, declaration: &Declaration<'_>) -> Rewri
                 .attributes
                 .iter()
                 .any(|range| range.contains(&token.offset));
+        // A picture inside the text would be a long line of spaces.
+        if is_attribute && token.text.starts_with('"') {
+            result.copy(&plain, copied, token.offset);
+            copied = token.end();
+        }
         let is_member_name = in_struct == Some(true) && next == ":";
         if token.is_name()
             && declaration.declared.contains(token.text)

@@ -1,6 +1,6 @@
 //! Tokens of a WGSL text, with their places. Comments are left out.
 
-/// A word, a number or one mark.
+/// A word, a number, a text in quotation marks, or one mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Token<'a> {
     pub text: &'a str,
@@ -53,6 +53,13 @@ fn comment(text: &str) -> Option<(usize, bool)> {
     Some((text.len(), false))
 }
 
+/// Bytes of a text in quotation marks at the start of `text`, none without one that ends in its line.
+fn quoted(text: &str) -> Option<usize> {
+    let rest = text.strip_prefix('"')?;
+    let end = rest.find(['"', '\n'])?;
+    rest[end..].starts_with('"').then_some(end + 2)
+}
+
 /// Where a block comment begins that has no end.
 pub fn open_comment(text: &str) -> Option<usize> {
     let mut at = 0;
@@ -61,7 +68,7 @@ pub fn open_comment(text: &str) -> Option<usize> {
         match comment(rest) {
             Some((_, false)) => return Some(at),
             Some((length, true)) => at += length,
-            None => at += rest.chars().next().map_or(1, char::len_utf8),
+            None => at += quoted(rest).unwrap_or(rest.chars().next().map_or(1, char::len_utf8)),
         }
     }
     None
@@ -82,7 +89,7 @@ pub fn tokens(text: &str) -> Vec<Token<'_>> {
             rest.find(|c: char| !(is_word(c) || (is_number && c == '.')))
                 .unwrap_or(rest.len())
         } else {
-            first.len_utf8()
+            quoted(rest).unwrap_or(first.len_utf8())
         };
         let is_mark_of_order = at == 0 && first == '\u{feff}';
         if !first.is_whitespace() && !is_mark_of_order {

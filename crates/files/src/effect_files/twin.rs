@@ -11,9 +11,13 @@ use glam::{DVec2, DVec3, DVec4};
 
 use super::rewrite::lengths;
 use crate::{
-    effects::hooks::{
-        ErrorBound, ImageAt, ImageHook, ImagePass, PassHook, Picture, Pixel, ROUNDING, Sample,
-        SampleHook, SetupFunction, Surface, SurfaceFunction, TriangleSetup, Vertex, VertexHook,
+    effects::{
+        Effect,
+        hooks::{
+            ErrorBound, ImageAt, ImageHook, ImagePass, PassHook, Picture, Pixel, ROUNDING, Sample,
+            SampleHook, SetupFunction, Surface, SurfaceFunction, TriangleSetup, Vertex, VertexHook,
+        },
+        image_file::ImageFile,
     },
     evaluator::{Host, LowerError, NoHost, Options, Precision, Program, Word},
     math::hash,
@@ -22,8 +26,9 @@ use crate::{
 
 /// Instructions of one call. The loops of an effect end long before.
 const MAX_STEPS: u64 = 100_000_000;
-/// Functions of `lib/image` and `lib/image_pass` that read the picture.
-const EXTERNALS: [&str; 12] = [
+/// Functions of the library that read more than their arguments: of `lib/image` and
+/// `lib/image_pass`, then of `lib/image_file`.
+const EXTERNALS: [&str; 15] = [
     "image_has",
     "image_at",
     "image_background",
@@ -36,7 +41,12 @@ const EXTERNALS: [&str; 12] = [
     "image_depth_m",
     "image_meters",
     "image_pixel_size_m",
+    "image_normal",
+    "image_file_size",
+    "image_file_texel",
 ];
+/// Index of the first function of `lib/image_file`.
+const IMAGE_FILES: usize = 13;
 /// How much the inputs of a color may be off on the f32 side, relative to the largest component of
 /// each.
 const INPUT_ERROR: f64 = 1.0 / (1 << 17) as f64;
@@ -50,12 +60,13 @@ type Kept = (Weak<Program>, Vec<Word>);
 #[derive(Clone, Debug)]
 pub struct Function {
     program: Arc<Program>,
-    /// In the order of the struct.
-    fields: Vec<Arc<Field>>,
+    /// Members of the struct of parameters, in its order.
+    members: Vec<Arc<Field>>,
+    images: Vec<Arc<ImageFile>>,
 }
 
 impl Function {
-    /// Lowers `name` of `module`, which was read from `text`.
+    /// Lowers `name` of `module`, a function of `effect` that was read from `text`.
     ///
     /// # Errors
     /// The function uses what cannot be evaluated, or is too long with all that it calls.
@@ -63,7 +74,7 @@ impl Function {
         module: &naga::Module,
         text: &str,
         name: &str,
-        fields: &[Arc<Field>],
+        effect: &Effect,
         precision: Precision,
     ) -> Result<Self, LowerError> {
         let mut options = Options {
@@ -74,9 +85,12 @@ impl Function {
         };
         options.limits.steps = MAX_STEPS;
         let program = Arc::new(Program::new(module, name, &options)?);
-        let mut fields = fields.to_vec();
-        fields.sort_by_key(|field| field.offset);
-        Ok(Self { program, fields })
+        let images = effect.images().iter().map(|image| image.file.clone());
+        Ok(Self {
+            program,
+            members: effect.members(),
+            images: images.collect(),
+        })
     }
 
     /// Length of the function with all that it calls.
@@ -96,7 +110,7 @@ impl Function {
             /// By the address of the program, which no other has as long as it is weakly held.
             static REGISTERS: RefCell<HashMap<usize, Kept>> = RefCell::new(HashMap::new());
         }
-        for field in &self.fields {
+        for field in &self.members {
             let words = &words[field.offset / 4..][..field.wgsl.words()];
             arguments.extend(words.iter().map(|&word| match field.wgsl {
                 WgslType::F32 | WgslType::Vec4F32 => Word::from_f64(f32::from_bits(word).into()),
@@ -114,7 +128,9 @@ impl Function {
             let (_, registers) = kept
                 .entry(address)
                 .or_insert_with(|| (Arc::downgrade(&self.program), self.program.registers()));
-            let result = self.program.call(registers, &arguments, host).ok()?;
+            let images = &self.images;
+            let mut host = ImageFileHost { images, host };
+            let result = self.program.call(registers, &arguments, &mut host).ok()?;
             Some(read(&mut Reader(result)))
         })
     }
@@ -239,6 +255,32 @@ pub fn surface(exact: Function, rounded: Function) -> Arc<SurfaceFunction> {
     })
 }
 
+/// Answers what an effect asks of the pictures that it takes as inputs, and lets `host` answer the
+/// rest.
+struct ImageFileHost<'a> {
+    images: &'a [Arc<ImageFile>],
+    host: &'a mut dyn Host,
+}
+
+impl Host for ImageFileHost<'_> {
+    fn external(&mut self, index: usize, arguments: &[Word], result: &mut [Word]) {
+        let last = self.images.len().saturating_sub(1);
+        let image = || self.images.get((arguments[0].to_u32() as usize).min(last));
+        match index.checked_sub(IMAGE_FILES) {
+            None => self.host.external(index, arguments, result),
+            Some(0) => {
+                let size = image().map_or([1, 1], |image| image.size);
+                result.copy_from_slice(&size.map(Word::from_u32));
+            }
+            Some(_) => {
+                let [x, y] = [1, 2].map(|axis| i64::from(arguments[axis].to_i32()));
+                let texel = image().map_or(DVec4::ZERO, |image| image.texel(x, y));
+                result.copy_from_slice(&texel.to_array().map(Word::from_f64));
+            }
+        }
+    }
+}
+
 /// Answers what an image effect asks of the picture.
 struct PictureHost<'a>(&'a Picture<'a>, usize);
 
@@ -333,6 +375,11 @@ impl Host for PassHost<'_> {
             }
             11 => {
                 result[0] = Word::from_f64(at.input.lens.pixel_size_m(arguments[0].to_f64()));
+                return;
+            }
+            12 => {
+                let normal = at.normal(pixel()[0], pixel()[1]);
+                result.copy_from_slice(&normal.to_array().map(Word::from_f64));
                 return;
             }
             _ => return PictureHost(at.input.picture, 0).external(index, arguments, result),
@@ -467,7 +514,7 @@ pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> Verte
             },
         )
     };
-    let (moving, fields) = (double.clone(), double.fields.clone());
+    let (moving, fields) = (double.clone(), double.members.clone());
     let moved = move |v: Vertex, words: &[u32]| evaluate(&moving, &v, words);
     let limit = move |_: f64, words: &[u32]| {
         lengths(&fields)

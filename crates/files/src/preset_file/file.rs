@@ -16,7 +16,7 @@ use super::{
 use crate::{
     effect_files::Catalog,
     effects::Effect,
-    host::disk,
+    host::{disk, stays_inside},
     preset::{Preset, SceneSource},
 };
 
@@ -282,7 +282,7 @@ pub fn to_shared_toml(preset_file: &PresetFile) -> String {
     };
     let mut table = Table::new();
     for source in sources {
-        table.insert(&source.stem, toml_edit::value(source.written.as_str()));
+        table.insert(&source.stem, toml_edit::value(source.shared().into_owned()));
     }
     match table.is_empty() {
         true => drop(document.remove(EFFECT_FILES)),
@@ -341,15 +341,6 @@ pub(super) fn model_path(model: &Path, preset_path: Option<&Path>) -> PathBuf {
         .and_then(Path::parent)
         .unwrap_or(Path::new(""))
         .join(model)
-}
-
-/// Is this a path inside the folder that it starts at, on every system?
-pub(super) fn stays_inside(model: &Path) -> bool {
-    let text = model.to_string_lossy();
-    model
-        .components()
-        .all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
-        && !text.contains(['\\', ':'])
 }
 
 /// The path from the root, without `.` and `..`; none where the current folder is unknown. Links

@@ -8,11 +8,11 @@ use std::{
 
 use super::{
     error::PresetError,
-    file::{PresetFile, stays_inside, stem, to_shared_toml},
+    file::{PresetFile, stem, to_shared_toml},
     frame_status::{ADAPTER, FINGERPRINT, is_damaged},
     load::{MAX_BYTES, parse_file, read_capped},
 };
-use crate::{frame::Frame, params::legible_line, preset::SceneSource};
+use crate::{frame::Frame, host::stays_inside, params::legible_line, preset::SceneSource};
 
 const PRESET: &str = "rasterlab preset";
 

@@ -170,7 +170,7 @@ fn read_effect_files(
             known
                 .source
                 .as_ref()
-                .is_some_and(|source| source.written == text)
+                .is_some_and(|source| source.shared() == text)
         }) {
             continue;
         }

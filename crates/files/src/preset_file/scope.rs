@@ -4,7 +4,7 @@ use toml_edit::Value as Toml;
 
 use crate::{
     effects::Effect,
-    scene::parts::{MAX_PATTERNS, PartPattern, Scope},
+    scene::parts::{MAX_PATTERNS, Scope},
 };
 
 /// In an effect's table: patterns of the parts that it changes.
@@ -21,11 +21,11 @@ pub fn read(toml: &Toml, effect: &Effect) -> Result<Scope, String> {
         r#"must be a list of patterns such as ["material:Lens*", "node:Body", "mesh:Helmet"]"#
             .to_owned()
     };
-    let texts: Vec<&str> = match toml {
-        Toml::String(text) => vec![text.value()],
+    let texts: Vec<String> = match toml {
+        Toml::String(text) => vec![text.value().clone()],
         Toml::Array(list) => list
             .iter()
-            .map(Toml::as_str)
+            .map(|text| text.as_str().map(str::to_owned))
             .collect::<Option<_>>()
             .ok_or_else(malformed)?,
         _ => return Err(malformed()),
@@ -36,15 +36,11 @@ pub fn read(toml: &Toml, effect: &Effect) -> Result<Scope, String> {
             texts.len()
         ));
     }
-    let patterns: Vec<PartPattern> = texts
-        .into_iter()
-        .map(str::parse)
-        .collect::<Result<_, _>>()
-        .map_err(|error: crate::scene::parts::PatternError| error.to_string())?;
-    if !patterns.is_empty() {
+    let scope = Scope::of_texts(&texts)?;
+    if !scope.is_whole_scene() {
         check(effect)?;
     }
-    Ok(Scope::new(patterns))
+    Ok(scope)
 }
 
 /// Can the effect be limited to parts?
@@ -64,11 +60,5 @@ pub fn check(effect: &Effect) -> Result<(), String> {
 
 /// The value that [`read`] takes back to the same scope; none for the whole scene.
 pub fn write(scope: &Scope) -> Option<Toml> {
-    (!scope.is_whole_scene()).then(|| {
-        scope
-            .patterns()
-            .iter()
-            .map(PartPattern::to_string)
-            .collect()
-    })
+    (!scope.is_whole_scene()).then(|| scope.texts().into_iter().collect())
 }

@@ -1,7 +1,7 @@
 //! Stack traits: what planning reads of a stack. A parameter that is not among them changes uniform
 //! bytes alone.
 
-use std::sync::Arc;
+use std::{borrow::Cow, sync::Arc};
 
 use crate::{
     accuracy::Parameters,
@@ -13,6 +13,7 @@ use crate::{
         overdraw, read,
         xray::{self, Reach, Xray},
     },
+    shader::image_files::kernel_words,
 };
 
 use super::{AccuracyRequest, error::PlanError};
@@ -52,12 +53,10 @@ impl StackTraits {
     pub fn of(stack: &Stack, request: &AccuracyRequest) -> Result<Self, PlanError> {
         stack.check()?;
         let is_baked = request.pins.option() == Some(Parameters::Baked);
-        let baked = stack
-            .0
-            .iter()
-            .filter(|_| is_baked)
-            .map(|enabled| enabled.words.clone())
-            .collect();
+        let baked = match is_baked {
+            true => kernel_words(&stack.0).map(Cow::into_owned).collect(),
+            false => Vec::new(),
+        };
         let xray = stack
             .get(&xray::EFFECT.name)
             .map(|enabled| read::<Xray>(&enabled.words));

@@ -3,6 +3,7 @@
 
 use std::{borrow::Cow, fmt::Write, sync::Arc};
 
+use super::image_files::kernel_words;
 use crate::{
     effects::{Effect, EffectSource, EnabledEffect, constant_name},
     params::{Field, ValueType, WgslType},
@@ -90,9 +91,8 @@ fn constructor(effect: &Effect, words: &[u32]) -> String {
             format!("vec4f({})", components.join(", "))
         }
     };
-    let mut fields: Vec<&Arc<Field>> = effect.fields.iter().collect();
-    fields.sort_by_key(|field| field.offset);
-    let members = fields
+    let members = effect.members();
+    let members = members
         .chunk_by(|a, b| a.group.is_some() && a.group == b.group)
         .map(|fields| {
             let members = fields
@@ -367,10 +367,10 @@ pub fn with_finish(surface: &str) -> Cow<'_, str> {
     }
 }
 
-/// The struct of an effect's parameters, from its fields.
+/// The struct of an effect's parameters, from its members.
 pub fn struct_of(effect: &Effect) -> String {
     let members: Vec<String> = effect
-        .fields
+        .members()
         .iter()
         .map(|field| format!("    {}: {},\n", field.name, field.wgsl.name()))
         .collect();
@@ -391,8 +391,8 @@ pub fn struct_text<'a>(text: &'a str, name: &str) -> &'a str {
 /// Bytes of the `Effects` uniform for this stack; empty when there is none.
 pub fn uniform_bytes(stack: &[EnabledEffect]) -> Vec<u8> {
     let mut bytes = Vec::new();
-    for enabled in stack {
-        bytes.extend_from_slice(bytemuck::cast_slice(&enabled.words));
+    for words in kernel_words(stack) {
+        bytes.extend_from_slice(bytemuck::cast_slice(&words));
         bytes.resize(bytes.len().next_multiple_of(MEMBER_ALIGN), 0);
     }
     bytes

@@ -6,6 +6,7 @@ mod depth_keys;
 mod features;
 mod frames;
 pub mod glue;
+pub mod image_files;
 pub mod image_passes;
 pub mod key;
 pub mod library;

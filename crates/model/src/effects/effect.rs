@@ -1,13 +1,21 @@
 //! One effect: its names, parameters and hooks, built from its functions.
 
-use std::sync::{Arc, LazyLock};
+use std::{
+    borrow::Cow,
+    sync::{Arc, LazyLock},
+};
 
-use super::hooks::{
-    Hooks, ImageAt, ImageEffect, ImageHook, ImagePass, PassEffect, PassHook, Picture, SampleEffect,
-    SampleHook, Slot, SurfaceEffect, SurfaceInput, VertexEffect, VertexHook,
+use base64::{Engine as _, engine::general_purpose::STANDARD};
+
+use super::{
+    hooks::{
+        Hooks, ImageAt, ImageEffect, ImageHook, ImagePass, PassEffect, PassHook, Picture,
+        SampleEffect, SampleHook, Slot, SurfaceEffect, SurfaceInput, VertexEffect, VertexHook,
+    },
+    image_file::ImageInput,
 };
 use crate::{
-    params::{Field, Params},
+    params::{Field, Param, Params, ValueType, WgslType},
     scene::particle_discs::ParticleSettings,
 };
 
@@ -220,6 +228,25 @@ impl Effect {
         }
     }
 
+    /// The pictures that it takes as inputs.
+    pub fn images(&self) -> &[ImageInput] {
+        self.source
+            .as_ref()
+            .map_or(&[], |source| source.images.as_slice())
+    }
+
+    /// Every member of its struct of parameters, in order: its fields, and its pictures by number.
+    pub fn members(&self) -> Vec<Arc<Field>> {
+        let number = |image: &ImageInput| {
+            let param = Param::new(&image.name, "", ValueType::U32);
+            Arc::new(Field::new(param, WgslType::U32, image.offset))
+        };
+        let mut members = self.fields.clone();
+        members.extend(self.images().iter().map(number));
+        members.sort_by_key(|member| member.offset);
+        members
+    }
+
     /// The field called `name`.
     pub fn field(&self, name: &str) -> Option<&Arc<Field>> {
         self.fields.iter().find(|field| field.name == name)
@@ -263,6 +290,8 @@ pub struct EffectSource {
     pub linked: String,
     /// The function on each hook.
     pub functions: HookFunctions,
+    /// The pictures that it takes as inputs, in the order of the struct.
+    pub images: Vec<ImageInput>,
 }
 
 /// The WGSL constant of one word of a choice: `HATCH_SPACE_SURFACE`.
@@ -272,7 +301,26 @@ pub fn constant_name(stem: &str, field: &str, word: &str) -> String {
         .replace('-', "_")
 }
 
+/// What an image begins with that stands in the text of an effect file, as base64.
+pub const EMBEDDED_IMAGE: &str = "data:image/png;base64,";
+
 impl EffectSource {
+    /// The file with its pictures inside its text, so that it can be read anywhere.
+    pub fn shared(&self) -> Cow<'_, str> {
+        if self.images.is_empty() {
+            return Cow::Borrowed(&self.written);
+        }
+        let (mut text, mut copied) = (String::new(), 0);
+        for image in &self.images {
+            // The marks of quotation stay.
+            text.push_str(&self.written[copied..=image.named.start]);
+            text.push_str(EMBEDDED_IMAGE);
+            STANDARD.encode_string(&image.file.png, &mut text);
+            copied = image.named.end - 1;
+        }
+        Cow::Owned(text + &self.written[copied..])
+    }
+
     /// The name that `declared` of the file `stem` has in a linked module. A stem has no `__`, so
     /// that no two files share a name.
     pub fn unique(stem: &str, declared: &str) -> String {

@@ -64,13 +64,14 @@ for_each_effect!(modules);
 mod conflict;
 mod effect;
 pub mod hooks;
+pub mod image_file;
 mod list;
 mod one_sun;
 mod stack;
 
 pub use self::{
     conflict::Conflict,
-    effect::{BuiltIn, Effect, EffectSource, HookFunctions, constant_name, read},
+    effect::{BuiltIn, EMBEDDED_IMAGE, Effect, EffectSource, HookFunctions, constant_name, read},
     hooks::{Surface, SurfaceEffect, SurfaceInput},
     list::EFFECTS,
     stack::{EnabledEffect, MAX_IMAGE_PASSES, Stack},

@@ -22,7 +22,7 @@ use crate::{
             theme,
         },
     },
-    effect_files::EffectError,
+    effect_files::{self, EffectError},
     effects::EnabledEffect,
 };
 
@@ -78,10 +78,7 @@ impl CodePanel {
         if self.unsaved().is_some() {
             return self.ask();
         }
-        let name = path
-            .file_stem()
-            .map(|stem| stem.to_string_lossy().into_owned())
-            .unwrap_or_default();
+        let name = effect_files::stem(&path);
         self.open = Some(Open {
             path,
             name,

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec4};
+use glam::{DVec2, DVec3, DVec4};
 
 use super::Picture;
 use crate::{params::Params, scene::view::View};
@@ -58,6 +58,9 @@ pub struct Lens {
     depth: DepthScale,
     /// Side of a pixel, per meter of depth in a perspective view.
     pixel_m: f64,
+    /// The vectors whose dot products with what is seen are its NDC x and y, per meter of depth in a
+    /// perspective view, and the viewing direction.
+    axes: [DVec3; 3],
 }
 
 /// What a reversed depth is along the viewing direction.
@@ -78,7 +81,12 @@ impl Lens {
             },
         };
         let pixel_m = view.ndc_axes[1].length() * 2.0 / f64::from(view.height.max(1));
-        Self { depth, pixel_m }
+        let [across, up] = view.ndc_axes.map(|axis| axis / axis.length_squared());
+        Self {
+            depth,
+            pixel_m,
+            axes: [across, up, view.forward],
+        }
     }
 
     /// Meters, given a reversed depth; [`EMPTY_DEPTH_M`] of 0 and less.
@@ -87,6 +95,21 @@ impl Lens {
             _ if depth <= 0.0 => EMPTY_DEPTH_M,
             DepthScale::Perspective { near_m } => (near_m / depth.max(1e-30)).min(EMPTY_DEPTH_M),
             DepthScale::Linear([near_m, far_m]) => far_m + depth * (near_m - far_m),
+        }
+    }
+
+    /// The unit normal, towards the viewer's side, of a plane whose reversed depth is `depth` at
+    /// `place` in NDC, and rises by `slope` per unit of NDC.
+    fn normal(self, depth: f64, place: DVec2, slope: DVec2) -> DVec3 {
+        let [across, up, forward] = self.axes;
+        let along = slope.x * across + slope.y * up;
+        match self.depth {
+            DepthScale::Linear([near_m, far_m]) => {
+                ((near_m - far_m) * along - forward).normalize_or_zero()
+            }
+            DepthScale::Perspective { .. } => {
+                -(along + (depth - place.dot(slope)) * forward).normalize_or_zero()
+            }
         }
     }
 
@@ -178,6 +201,31 @@ impl ImageAt<'_> {
             * (1.0 + DEPTH_ERROR * self.input.signs.at(x, y))
     }
 
+    /// The normal of what a pixel of the picture shows, from its depth and those of its neighbors:
+    /// world space, unit length, towards the viewer's side; zero where nothing is drawn.
+    pub fn normal(&self, x: i64, y: i64) -> DVec3 {
+        let size = self.picture_size();
+        let (x, y) = (x.clamp(0, size.x as i64 - 1), y.clamp(0, size.y as i64 - 1));
+        let depth_at = |x: i64, y: i64| f64::from(f32::from_bits(self.input.picture.at(x, y).1));
+        let depth = depth_at(x, y);
+        if depth <= 0.0 {
+            return DVec3::ZERO;
+        }
+        let slope = |right: i64, down: i64| {
+            let ahead = depth_at(x + right, y + down) - depth;
+            let behind = depth - depth_at(x - right, y - down);
+            if ahead.abs() < behind.abs() {
+                ahead
+            } else {
+                behind
+            }
+        };
+        let half = size * 0.5;
+        let place = (DVec2::new(x as f64, y as f64) + 0.5 - half) / half * DVec2::new(1.0, -1.0);
+        let slope = DVec2::new(slope(1, 0), -slope(0, 1)) * half;
+        self.input.lens.normal(depth, place, slope)
+    }
+
     /// The middle of the pixel, in pixels of the picture from its top left corner.
     pub fn middle(&self) -> DVec2 {
         (DVec2::new(self.x as f64, self.y as f64) + 0.5) * f64::from(self.scale)
@@ -250,6 +298,7 @@ mod tests {
         let lens = |depth| Lens {
             depth,
             pixel_m: 0.01,
+            axes: [DVec3::X, DVec3::Y, DVec3::NEG_Z],
         };
         let perspective = lens(DepthScale::Perspective { near_m: 0.5 });
         assert_eq!(perspective.meters(0.25), 2.0);
@@ -258,5 +307,42 @@ mod tests {
         let linear = lens(DepthScale::Linear([1.0, 9.0]));
         assert_eq!([1.0, 0.5].map(|depth| linear.meters(depth)), [1.0, 5.0]);
         assert_eq!(linear.pixel_size_m(2.0), 0.01);
+    }
+
+    #[test]
+    fn a_plane_has_one_normal_at_every_place() {
+        let normal = DVec3::new(0.6, -0.3, 0.8).normalize();
+        for depth in [
+            DepthScale::Perspective { near_m: 0.5 },
+            DepthScale::Linear([1.0, 9.0]),
+        ] {
+            let axes = [DVec3::X / 0.7, DVec3::Y / 0.5, DVec3::NEG_Z];
+            let lens = Lens {
+                depth,
+                pixel_m: 0.01,
+                axes,
+            };
+            // Reversed depth of the plane through (0, 0, -4), seen from the origin.
+            let depth_at = |x: f64, y: f64| {
+                let [right, up] = [0.7 * x, 0.5 * y];
+                let distance = -4.0 * normal.z;
+                match depth {
+                    DepthScale::Perspective { near_m } => {
+                        let ray = DVec3::new(right, up, -1.0);
+                        near_m * normal.dot(ray) / distance
+                    }
+                    DepthScale::Linear([near_m, far_m]) => {
+                        let meters = -(distance - normal.x * right - normal.y * up) / normal.z;
+                        (meters - far_m) / (near_m - far_m)
+                    }
+                }
+            };
+            for [x, y] in [[0.0, 0.0], [0.3, -0.6], [-0.9, 0.2]] {
+                let here = depth_at(x, y);
+                let slope = DVec2::new(depth_at(x + 1.0, y) - here, depth_at(x, y + 1.0) - here);
+                let found = lens.normal(here, DVec2::new(x, y), slope);
+                assert!((found - normal).length() < 1e-9, "{found} for {normal}");
+            }
+        }
     }
 }
