@@ -8,7 +8,7 @@ use super::{
     buffers::Buffers,
     device::Gpu,
     error::RenderError,
-    material_atlas,
+    material_atlas::{self, AtlasContents},
     meshlets::MeshletBuffers,
     packing::{PackedBox, Packing},
     records::VertexRecord,
@@ -35,8 +35,8 @@ pub struct SceneResources {
     /// has them.
     packed_boxes: Vec<PackedBox>,
     pub material_atlas: Option<WordTexture>,
-    /// It says how materials reflect.
-    atlas_has_finish: bool,
+    /// What it tells beside colors.
+    atlas_contents: AtlasContents,
     /// Meshlets of all primitives, once a view culls.
     meshlets: Option<Arc<MeshletBuffers>>,
 }
@@ -55,7 +55,7 @@ impl SceneResources {
             attributes: AttributeLayout::default(),
             packed_boxes: Vec::new(),
             material_atlas: None,
-            atlas_has_finish: false,
+            atlas_contents: AtlasContents::default(),
             meshlets: None,
         };
         resources.upload(gpu).await?;
@@ -185,12 +185,14 @@ impl SceneResources {
         gpu: &Gpu,
         inputs: &SurfaceInputs,
     ) -> Result<(), RenderError> {
-        if !inputs.has_material_atlas && !inputs.has_finish {
+        let Some(contents) = AtlasContents::of(inputs) else {
             self.material_atlas = None;
-        } else if self.material_atlas.is_none() || inputs.has_finish && !self.atlas_has_finish {
+            return Ok(());
+        };
+        if self.material_atlas.is_none() || !self.atlas_contents.includes(contents) {
             self.material_atlas = None;
-            let atlas = material_atlas::upload(gpu, &self.scene, inputs.has_finish).await?;
-            (self.material_atlas, self.atlas_has_finish) = (Some(atlas), inputs.has_finish);
+            let atlas = material_atlas::upload(gpu, &self.scene, contents).await?;
+            (self.material_atlas, self.atlas_contents) = (Some(atlas), contents);
         }
         Ok(())
     }
