@@ -80,42 +80,45 @@ fn atlas_wrapped(at: i32, side: i32, wrap: u32) -> i32 {
     return select(within, period - 1 - within, within >= side);
 }
 
-// Linear RGB of a texel of a level that begins at word `first`.
-fn atlas_texel(lookup: Lookup, first: u32, size: vec2i, at: vec2i) -> vec3f {
+// Linear RGBA of a texel of a level that begins at word `first`, of a color or of data.
+fn atlas_texel(lookup: Lookup, first: u32, size: vec2i, at: vec2i, is_color: bool) -> vec4f {
     let x = atlas_wrapped(at.x, size.x, lookup.sampling & 3u);
     let y = atlas_wrapped(at.y, size.y, (lookup.sampling >> 2u) & 3u);
     let texel = atlas_word(first + u32(y * size.x + x));
-    return vec3f(atlas_float(texel & 255u), atlas_float((texel >> 8u) & 255u), atlas_float((texel >> 16u) & 255u));
+    let data = vec4f((vec4u(texel) >> vec4u(0u, 8u, 16u, 24u)) & vec4u(255u)) / 255.0;
+    if !is_color { return data; }
+    return vec4f(atlas_float(texel & 255u), atlas_float((texel >> 8u) & 255u), atlas_float((texel >> 16u) & 255u), data.a);
 }
 
-// Linear RGB at texture coordinates, from one level.
-fn atlas_level(lookup: Lookup, level: u32, uv: vec2f, is_linear: bool) -> vec3f {
+// Linear RGBA at texture coordinates, from one level.
+fn atlas_level(lookup: Lookup, level: u32, uv: vec2f, is_linear: bool, is_color: bool) -> vec4f {
     let first = atlas_word(lookup.levels + level);
     let size = max(vec2u(lookup.size & 0xffffu, lookup.size >> 16u) >> vec2u(level), vec2u(1u));
     // Clamped so that pixels which are computed but not shown cannot overflow.
     let at = clamp(uv * vec2f(size), vec2f(-1073741824.0), vec2f(1073741824.0));
-    if !is_linear { return atlas_texel(lookup, first, vec2i(size), vec2i(floor(at))); }
+    if !is_linear { return atlas_texel(lookup, first, vec2i(size), vec2i(floor(at)), is_color); }
     let low = floor(at - 0.5);
     let fraction = at - 0.5 - low;
     let corner = vec2i(low);
     let above = mix(
-        atlas_texel(lookup, first, vec2i(size), corner), atlas_texel(lookup, first, vec2i(size), corner + vec2i(1, 0)), fraction.x);
+        atlas_texel(lookup, first, vec2i(size), corner, is_color),
+        atlas_texel(lookup, first, vec2i(size), corner + vec2i(1, 0), is_color), fraction.x);
     let below = mix(
-        atlas_texel(lookup, first, vec2i(size), corner + vec2i(0, 1)),
-        atlas_texel(lookup, first, vec2i(size), corner + vec2i(1, 1)), fraction.x);
+        atlas_texel(lookup, first, vec2i(size), corner + vec2i(0, 1), is_color),
+        atlas_texel(lookup, first, vec2i(size), corner + vec2i(1, 1), is_color), fraction.x);
     return mix(above, below, fraction.y);
 }
 
-// Linear RGB at texture coordinates, where a pixel spans 2^detail texels of the largest level.
-fn atlas_filtered(lookup: Lookup, uv: vec2f, detail: f32) -> vec3f {
-    if !(detail > 0.0) { return atlas_level(lookup, 0u, uv, ((lookup.sampling >> 4u) & 1u) != 0u); }
+// Linear RGBA at texture coordinates, where a pixel spans 2^detail texels of the largest level.
+fn atlas_filtered(lookup: Lookup, uv: vec2f, detail: f32, is_color: bool) -> vec4f {
+    if !(detail > 0.0) { return atlas_level(lookup, 0u, uv, ((lookup.sampling >> 4u) & 1u) != 0u, is_color); }
     let is_linear = ((lookup.sampling >> 5u) & 1u) != 0u;
     let mip_filter = (lookup.sampling >> 6u) & 3u;
     let last = f32((lookup.sampling >> 8u) - 1u);
-    if mip_filter == MIP_NEAREST { return atlas_level(lookup, u32(min(floor(detail + 0.5), last)), uv, is_linear); }
+    if mip_filter == MIP_NEAREST { return atlas_level(lookup, u32(min(floor(detail + 0.5), last)), uv, is_linear, is_color); }
     let low = min(floor(detail), last);
-    if mip_filter != MIP_LINEAR { return atlas_level(lookup, 0u, uv, is_linear); }
-    let nearer = atlas_level(lookup, u32(low), uv, is_linear);
+    if mip_filter != MIP_LINEAR { return atlas_level(lookup, 0u, uv, is_linear, is_color); }
+    let nearer = atlas_level(lookup, u32(low), uv, is_linear, is_color);
     if low >= last { return nearer; }
-    return mix(nearer, atlas_level(lookup, u32(low) + 1u, uv, is_linear), detail - low);
+    return mix(nearer, atlas_level(lookup, u32(low) + 1u, uv, is_linear, is_color), detail - low);
 }

@@ -1,11 +1,11 @@
 // Shade steps: what is added to the surface at a sample before surface effects. `at`: vertices of the triangle within its draw.
 // Chosen by the scene and the stack: textures where materials are more than a base color, alpha where some of them blend, finish where an effect reads
-// how they reflect, shadow_map where an effect reads how much light arrives.
+// how they reflect, with finish_maps where textures tell it, normal_map where they turn normals that an effect reads, shadow_map where an effect reads how
+// much light arrives.
 //@ steps fn shade_step(surface: Surface, t: Triangle, at: vec3u, position: SamplePosition) -> Surface
-// Of the step textures, for the one behind it.
+// Of the step textures, for those behind it.
 //@ may declare fn slopes_of(t: Triangle, at: vec3u, position: SamplePosition, screen: vec2f) -> Slopes
-//@ may declare fn texture_coordinates(lookup: Lookup, vertex: u32) -> vec2f
-//@ may declare fn texture_repeats(at: f32, wrap: u32) -> f32
+//@ may declare fn texture_at(lookup: Lookup, at: vec3u, weights: vec3f, slopes: Slopes, is_color: bool) -> vec4f
 
 //@ step textures
 // The base color texture multiplies the color, and emitted light is added. The number of texels that a
@@ -27,7 +27,7 @@ fn shade_step_textures(surface: Surface, t: Triangle, at: vec3u, position: Sampl
     var slopes: Slopes;
     if (material.flags & (MATERIAL_BASE_TEXTURE | MATERIAL_EMISSION_TEXTURE)) != 0u { slopes = slopes_of(t, at, position, s.screen); }
     if (material.flags & MATERIAL_BASE_TEXTURE) != 0u {
-        s.color = vec4f(s.color.rgb * texture_at(atlas_lookup(record + ATLAS_MATERIAL), at, position.weights, slopes), s.color.a);
+        s.color = vec4f(s.color.rgb * texture_at(atlas_lookup(record + ATLAS_MATERIAL), at, position.weights, slopes, true).rgb, s.color.a);
     }
     if (material.flags & MATERIAL_UNLIT) != 0u {
         s.glow = s.color.rgb;
@@ -35,7 +35,7 @@ fn shade_step_textures(surface: Surface, t: Triangle, at: vec3u, position: Sampl
     }
     var glow = vec3f(material.red, material.green, material.blue);
     if (material.flags & MATERIAL_EMISSION_TEXTURE) != 0u {
-        glow *= texture_at(atlas_lookup(record + ATLAS_MATERIAL + ATLAS_LOOKUP), at, position.weights, slopes);
+        glow *= texture_at(atlas_lookup(record + ATLAS_MATERIAL + ATLAS_LOOKUP), at, position.weights, slopes, true).rgb;
     }
     s.glow = glow;
     s.color = vec4f(s.color.rgb + glow, s.color.a);
@@ -93,9 +93,9 @@ fn texture_repeats(at: f32, wrap: u32) -> f32 {
     return select(floor(at), 2.0 * floor(0.5 * at), wrap == WRAP_MIRRORED);
 }
 
-// Linear RGB of a texture at a sample. Coordinates are measured from the first corner, which is moved near 0, so that errors
+// Linear RGBA of a texture at a sample. Coordinates are measured from the first corner, which is moved near 0, so that errors
 // grow with the size of the triangle and not with its distance from the image's edge.
-fn texture_at(lookup: Lookup, at: vec3u, weights: vec3f, slopes: Slopes) -> vec3f {
+fn texture_at(lookup: Lookup, at: vec3u, weights: vec3f, slopes: Slopes, is_color: bool) -> vec4f {
     let a = texture_coordinates(lookup, at.x);
     let ab = texture_coordinates(lookup, at.y) - a;
     let ac = texture_coordinates(lookup, at.z) - a;
@@ -105,7 +105,7 @@ fn texture_at(lookup: Lookup, at: vec3u, weights: vec3f, slopes: Slopes) -> vec3
     let right = (ab * slopes.right.y + ac * slopes.right.z) * size;
     let down = (ab * slopes.down.y + ac * slopes.down.z) * size;
     let squared = max(dot(right, right), dot(down, down));
-    return atlas_filtered(lookup, uv, 0.5 * log2(max(squared, 1e-30)));
+    return atlas_filtered(lookup, uv, 0.5 * log2(max(squared, 1e-30)), is_color);
 }
 
 //@ step alpha
@@ -121,55 +121,9 @@ fn shade_step_alpha(surface: Surface, t: Triangle, at: vec3u, position: SamplePo
     var s = surface;
     let record = atlas_record(t.draw);
     if (draws[t.draw].flags & DRAW_GLASS) == 0u || (atlas_material(record).flags & MATERIAL_BASE_TEXTURE) == 0u { return s; }
-    let lookup = atlas_lookup(record + ATLAS_MATERIAL);
     let slopes = slopes_of(t, at, position, s.screen);
-    // The place is that of texture_at.
-    let a = texture_coordinates(lookup, at.x);
-    let ab = texture_coordinates(lookup, at.y) - a;
-    let ac = texture_coordinates(lookup, at.z) - a;
-    let whole = vec2f(texture_repeats(a.x, lookup.sampling & 3u), texture_repeats(a.y, (lookup.sampling >> 2u) & 3u));
-    let size = vec2f(vec2u(lookup.size & 0xffffu, lookup.size >> 16u));
-    let right = (ab * slopes.right.y + ac * slopes.right.z) * size;
-    let down = (ab * slopes.down.y + ac * slopes.down.z) * size;
-    let squared = max(dot(down, down), dot(right, right));
-    let uv = (a - whole) + ab * position.weights.y + ac * position.weights.z;
-    s.color.a *= alpha_filtered(lookup, uv, 0.5 * log2(max(squared, 1e-30)));
+    s.color.a *= texture_at(atlas_lookup(record + ATLAS_MATERIAL), at, position.weights, slopes, true).a;
     return s;
-}
-
-fn alpha_texel(lookup: Lookup, first: u32, size: vec2i, at: vec2i) -> f32 {
-    let x = atlas_wrapped(at.x, size.x, lookup.sampling & 3u);
-    let y = atlas_wrapped(at.y, size.y, (lookup.sampling >> 2u) & 3u);
-    return f32(atlas_word(first + u32(x + y * size.x)) >> 24u) / 255.0;
-}
-
-// Alpha at texture coordinates, from one level: as `atlas_level`.
-fn alpha_level(lookup: Lookup, level: u32, uv: vec2f, is_linear: bool) -> f32 {
-    let first = atlas_word(lookup.levels + level);
-    let size = vec2i(max(vec2u(lookup.size & 0xffffu, lookup.size >> 16u) >> vec2u(level), vec2u(1u)));
-    let at = clamp(vec2f(size) * uv, vec2f(-1073741824.0), vec2f(1073741824.0));
-    if !is_linear { return alpha_texel(lookup, first, size, vec2i(floor(at))); }
-    let low = floor(at - 0.5);
-    let fraction = at - 0.5 - low;
-    let corner = vec2i(low);
-    let above = mix(alpha_texel(lookup, first, size, corner), alpha_texel(lookup, first, size, corner + vec2i(1, 0)), fraction.x);
-    let below = mix(
-        alpha_texel(lookup, first, size, corner + vec2i(0, 1)), alpha_texel(lookup, first, size, corner + vec2i(1, 1)), fraction.x);
-    return mix(above, below, fraction.y);
-}
-
-// Alpha at texture coordinates, where a pixel spans 2^detail texels: as `atlas_filtered`.
-fn alpha_filtered(lookup: Lookup, uv: vec2f, detail: f32) -> f32 {
-    if !(detail > 0.0) { return alpha_level(lookup, 0u, uv, (lookup.sampling & 16u) != 0u); }
-    let is_linear = ((lookup.sampling >> 5u) & 1u) != 0u;
-    let mip_filter = (lookup.sampling >> 6u) & 3u;
-    let last = f32((lookup.sampling >> 8u) - 1u);
-    if mip_filter == MIP_NEAREST { return alpha_level(lookup, u32(min(floor(detail + 0.5), last)), uv, is_linear); }
-    let low = min(floor(detail), last);
-    if MIP_LINEAR != mip_filter { return alpha_level(lookup, 0u, uv, is_linear); }
-    let nearer = alpha_level(lookup, u32(low), uv, is_linear);
-    if low >= last { return nearer; }
-    return mix(nearer, alpha_level(lookup, 1u + u32(low), uv, is_linear), detail - low);
 }
 
 //@ step finish
@@ -184,6 +138,86 @@ fn shade_step_finish(surface: Surface, t: Triangle, at: vec3u, position: SampleP
     var s = surface;
     s.finish = finish_of(finish_record(atlas_record(t.draw)));
     return s;
+}
+
+//@ step finish_maps
+// Textures of how the material reflects: metallic and roughness, and the occlusion. Comes after textures and finish.
+//@ use lib/triangle
+//@ use lib/surface
+//@ use lib/shade
+//@ use lib/material_atlas
+//@ use lib/map_atlas
+//@ use variants/shade_step
+
+fn shade_step_finish_maps(surface: Surface, t: Triangle, at: vec3u, position: SamplePosition) -> Surface {
+    var s = surface;
+    let first = maps_record(atlas_record(t.draw));
+    let maps = maps_at(first);
+    if !maps_have(maps, MAPS_FINISH) && !maps_have(maps, MAPS_OCCLUSION) { return s; }
+    let slopes = slopes_of(t, at, position, s.screen);
+    // A loop, because compilers inline the lookup wherever it is called.
+    for (var map = MAPS_FINISH; map <= MAPS_OCCLUSION; map += 1u) {
+        if !maps_have(maps, map) { continue; }
+        let texel = texture_at(maps_lookup(first, map), at, position.weights, slopes, false);
+        if map == MAPS_FINISH {
+            s.finish.roughness *= texel.g;
+            s.finish.metallic *= texel.b;
+        } else {
+            s.finish.occlusion = 1.0 + maps.occlusion_strength * (texel.r - 1.0);
+        }
+    }
+    return s;
+}
+
+//@ step normal_map
+// A texture turns the normal: its components count along the tangent of the surface, across it and outward. Comes after textures.
+//@ use lib/triangle
+//@ use lib/attributes
+//@ use lib/surface
+//@ use lib/shade
+//@ use lib/material_atlas
+//@ use lib/map_atlas
+//@ use variants/shade_step
+
+// Shortest part of a tangent, of the whole, that makes a direction on the surface. Shorter ones fade.
+const SHORTEST_TANGENT = 0.0009765625;
+// Squared length of a texture's normal below which the surface keeps its own.
+const SHORTEST_NORMAL = 1e-6;
+
+fn shade_step_normal_map(surface: Surface, t: Triangle, at: vec3u, position: SamplePosition) -> Surface {
+    var s = surface;
+    let first = maps_record(atlas_record(t.draw));
+    let maps = maps_at(first);
+    if !maps_have(maps, MAPS_NORMAL) { return s; }
+    let slopes = slopes_of(t, at, position, s.screen);
+    let texel = texture_at(maps_lookup(first, MAPS_NORMAL), at, position.weights, slopes, false).rgb;
+    let bump = (texel * 2.0 - 1.0) * vec3f(maps.normal_scale, maps.normal_scale, 1.0);
+
+    let is_mirrored = (draws[t.draw].flags & DRAW_MIRRORED) != 0u;
+    let outward = select(s.normal, -s.normal, position.is_clockwise != is_mirrored);
+    let tangent = tangent_at(t, at, position.weights, maps.tangents);
+    let aside = tangent.xyz - outward * dot(outward, tangent.xyz);
+    let along = aside / max(max(length(aside), SHORTEST_TANGENT * length(tangent.xyz)), 1e-30);
+    let across = cross(outward, along) * select(tangent.w, -tangent.w, is_mirrored);
+    let turned = along * bump.x + across * bump.y + outward * bump.z;
+    let squared = dot(turned, turned);
+    if squared > SHORTEST_NORMAL {
+        let normal = turned / sqrt(squared);
+        s.normal = select(normal, -normal, position.is_clockwise != is_mirrored);
+    }
+    return s;
+}
+
+// The tangent of a triangle in world space, of any length, and the side to which its image rises. The tangents of its draw begin
+// at byte `tangents`.
+fn tangent_at(t: Triangle, at: vec3u, weights: vec3f, tangents: u32) -> vec4f {
+    let first = tangents + 36u * (t.id - draws[t.draw].first_triangle);
+    let factors = pull_vec3(PULL_F32, first) * weights.x + pull_vec3(PULL_F32, first + 12u) * weights.y + pull_vec3(PULL_F32, first + 24u) * weights.z;
+    let a = floats_of_class(position_bits(t.draw, at.x), 0u);
+    let ab = floats_of_class(position_bits(t.draw, at.y), 0u) - a;
+    let ac = floats_of_class(position_bits(t.draw, at.z), 0u) - a;
+    let tangent = draws[t.draw].world_from_object * vec4f(ab * factors.x + ac * factors.y, 0.0);
+    return vec4f(tangent.xyz, select(1.0, -1.0, factors.z < 0.0));
 }
 
 //@ step shadow_map

@@ -455,6 +455,7 @@ fn plain_key() -> KernelKey {
     key.work.listed_tiles = false;
     (key.generated.has_particles, key.surface.has_material_atlas) = (false, false);
     key.surface.has_finish = false;
+    (key.surface.has_finish_maps, key.surface.has_normal_maps) = (false, false);
     key
 }
 

@@ -11,6 +11,7 @@ mod effects_paint;
 mod effects_samples;
 mod glass;
 mod looks;
+mod maps;
 mod materials;
 mod particles;
 mod ported;

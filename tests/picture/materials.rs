@@ -628,6 +628,7 @@ fn a_scene_of_plain_colors_has_no_texture_and_no_word_of_one() {
         // A shadow map is a texture, too, and how materials reflect stands in the atlas.
         let mut plain = KernelKey::complete(Fetch::Indexed, Visibility::Split32, effects.clone());
         (plain.surface.has_material_atlas, plain.surface.has_finish) = (false, false);
+        (plain.surface.has_finish_maps, plain.surface.has_normal_maps) = (false, false);
         assert!(!plain.to_string().contains("material_atlas"));
         for pass in plain.frame() {
             let root = pass.path();

@@ -297,6 +297,9 @@ fn obstacle(gpu: &Gpu, scene: &Scene, stack: &Stack) -> Option<String> {
         () if stack.reads_finish() => {
             "an effect asks how materials reflect, which it does not know"
         }
+        () if stack.reads_normals() && scene.has_normal_maps() => {
+            "textures turn normals, which it does not know"
+        }
         () if scene.primitives.is_empty() => "the scene is empty",
         () => {
             let image = scene

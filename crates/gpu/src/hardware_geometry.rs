@@ -55,7 +55,7 @@ impl HardwareGeometry {
             first_index_copy,
         };
         for primitive in &scene.primitives {
-            let [base, emission] = primitive.texcoords;
+            let [base, emission, ..] = primitive.texcoords;
             let accessors = [
                 Some(primitive.positions),
                 Some(primitive.normals),

@@ -24,19 +24,17 @@ impl HardwareMaterials {
     pub async fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, RenderError> {
         let layout = layout(gpu);
         let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        let views: Vec<wgpu::TextureView> = scene
-            .images
-            .iter()
-            .map(|image| upload(gpu, &image.levels))
-            .collect();
-        // Bound where a material has no image; nothing reads it.
-        let none = upload(
-            gpu,
-            &[Level {
-                size: [1, 1],
-                texels: vec![[255; 4]],
-            }],
-        );
+        // Bound where a material has no image, and in place of images of data; nothing reads it.
+        let white = Level {
+            size: [1, 1],
+            texels: vec![[255; 4]],
+        };
+        let none = upload(gpu, &[white]);
+        let view = |image: &Image| match image.is_data {
+            true => none.clone(),
+            false => upload(gpu, &image.levels),
+        };
+        let views: Vec<wgpu::TextureView> = scene.images.iter().map(view).collect();
         let groups = scene
             .materials
             .iter()
@@ -192,7 +190,7 @@ fn group(
         usage: wgpu::BufferUsages::UNIFORM,
     };
     let uniform = gpu.device.create_buffer_init(&uniform);
-    let [base, emission] = material.textures();
+    let [base, emission, ..] = material.textures();
     let view = |texture: Option<&Texture>| {
         wgpu::BindingResource::TextureView(texture.map_or(none, |texture| &views[texture.image]))
     };

@@ -2,8 +2,9 @@
 //! costs no storage buffer.
 //!
 //! The texture is used as a row of words (`WordTexture::of_words`): sRGB decoded, a word per byte; a record per primitive; how primitives reflect, where an
-//! effect reads it; where the vertices of masked ones lie in their images; then where the levels of
-//! each image begin, and the levels of all images, a texel a word. Mirrors of `shaders/lib/material_atlas.wgsl`.
+//! effect reads it, with the maps that effects read; where the vertices of masked ones lie in their
+//! images; then where the levels of each image that is looked up begin, and the levels of all these
+//! images, a texel a word. Mirrors of `shaders/lib/material_atlas.wgsl`.
 
 use std::mem::size_of;
 
@@ -11,17 +12,15 @@ use super::{
     attributes::format_word,
     device::Gpu,
     error::RenderError,
-    records::{FinishRecord, LookupRecord, MaterialRecord},
+    records::{FinishRecord, LookupRecord, MapsRecord, MaterialRecord},
     resource_id::TextureId,
     textures::WordTexture,
 };
 use crate::{
     effects::hooks::Finish,
     math::linear_light,
-    scene::{
-        Accessor, Primitive, Scene,
-        texture::{Texture, texcoord},
-    },
+    scene::{Primitive, Scene, material::TextureSlot, texture::texcoord},
+    shader::key::SurfaceInputs,
 };
 
 /// Words of a primitive's record: its paint, and how base color and emission are looked up.
@@ -40,46 +39,108 @@ const MAX_FINISH_WORD: usize = 1 << (32 - FINISH_SHIFT);
 /// Words of a primitive's finish.
 const FINISH_WORDS: usize = size_of::<FinishRecord>() / 4;
 
-/// Uploads what the materials of `scene` need, and how they reflect if `has_finish`.
+/// The textures behind a finish, where an effect reads any: in order.
+const MAP_SLOTS: [TextureSlot; 3] = [
+    TextureSlot::Finish,
+    TextureSlot::Occlusion,
+    TextureSlot::Normal,
+];
+
+/// Words of the maps of a primitive, behind its finish.
+const MAPS_WORDS: usize =
+    (size_of::<MapsRecord>() + MAP_SLOTS.len() * size_of::<LookupRecord>()) / 4;
+
+/// What an atlas tells beside colors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AtlasContents {
+    /// How materials reflect.
+    pub has_finish: bool,
+    /// By their textures, too.
+    pub has_finish_maps: bool,
+    /// How textures turn normals.
+    pub has_normal_maps: bool,
+}
+
+impl AtlasContents {
+    /// What these inputs look up; none if they need no atlas.
+    pub fn of(inputs: &SurfaceInputs) -> Option<Self> {
+        (inputs.has_material_atlas || inputs.has_finish).then_some(Self {
+            has_finish: inputs.has_finish,
+            has_finish_maps: inputs.has_finish_maps,
+            has_normal_maps: inputs.has_normal_maps,
+        })
+    }
+
+    /// Is all that `other` tells here, too?
+    pub fn includes(self, other: Self) -> bool {
+        (self.has_finish || !other.has_finish)
+            && (self.has_finish_maps || !other.has_finish_maps)
+            && (self.has_normal_maps || !other.has_normal_maps)
+    }
+
+    /// Is the texture in a slot looked up?
+    fn has(self, slot: TextureSlot) -> bool {
+        match slot {
+            TextureSlot::Base | TextureSlot::Emission => true,
+            TextureSlot::Finish | TextureSlot::Occlusion => self.has_finish_maps,
+            TextureSlot::Normal => self.has_normal_maps,
+        }
+    }
+
+    /// Words of a primitive behind its record.
+    fn words(self) -> usize {
+        match (
+            self.has_finish,
+            self.has_finish_maps || self.has_normal_maps,
+        ) {
+            (false, false) => 0,
+            (true, false) => FINISH_WORDS,
+            (_, true) => FINISH_WORDS + MAPS_WORDS,
+        }
+    }
+}
+
+/// Uploads what the materials of `scene` need, with these contents.
 ///
 /// # Errors
 /// When they take more layers than the adapter's textures have, or more memory than there is.
 pub async fn upload(
     gpu: &Gpu,
     scene: &Scene,
-    has_finish: bool,
+    contents: AtlasContents,
 ) -> Result<WordTexture, RenderError> {
     let id = TextureId::MaterialAtlas;
-    let before_images = 256 + (RECORD_WORDS + FINISH_WORDS) * scene.primitives.len();
-    if has_finish && before_images >= MAX_FINISH_WORD {
+    let before_images = 256 + (RECORD_WORDS + contents.words()) * scene.primitives.len();
+    if contents.words() > 0 && before_images >= MAX_FINISH_WORD {
         return Err(RenderError::TooLarge {
             buffer: id.name(),
             bytes: 4 * before_images as u64,
             limit: 4 * MAX_FINISH_WORD as u64,
         });
     }
-    WordTexture::of_words(gpu, id, words(scene, has_finish)).await
+    WordTexture::of_words(gpu, id, words(scene, contents)).await
 }
 
 /// Everything, word after word.
-fn words(scene: &Scene, has_finish: bool) -> Vec<u32> {
+fn words(scene: &Scene, contents: AtlasContents) -> Vec<u32> {
     let mut words: Vec<u32> = (0..256)
         .map(|byte| (linear_light(f64::from(byte) / 255.0) as f32).to_bits())
         .collect();
     // A record at least, even where nothing is to be drawn.
     let records = scene.primitives.len().max(1);
     let first_finish = words.len() + RECORD_WORDS * records;
-    let finish_words = if has_finish { FINISH_WORDS } else { 0 };
+    let finish_words = contents.words();
     let mut first = first_finish + finish_words * records;
-    let finish_at = |index: usize| match has_finish {
-        true => ((first_finish + FINISH_WORDS * index) as u32) << FINISH_SHIFT,
-        false => 0,
+    let finish_at = |index: usize| match finish_words {
+        0 => 0,
+        words => ((first_finish + words * index) as u32) << FINISH_SHIFT,
     };
     let corners = corners(scene, &mut first);
-    let lists = Lists::of(scene, first as u32);
-    let lookup =
-        |texture: Option<&Texture>, texcoords: Option<&Accessor>| match (texture, texcoords) {
-            (Some(texture), Some(texcoords)) => {
+    let lists = Lists::of(scene, contents, first as u32);
+    let lookup = |primitive: &Primitive, slot: TextureSlot| {
+        let texture = scene.materials[primitive.material].texture(slot);
+        match (texture, primitive.texcoords[slot as usize]) {
+            (Some(texture), Some(texcoords)) if contents.has(slot) => {
                 let image = &scene.images[texture.image];
                 let [width, height] = image.size();
                 let [across, down] = texture.wrap.map(|wrap| wrap as u32);
@@ -92,7 +153,7 @@ fn words(scene: &Scene, has_finish: bool) -> Vec<u32> {
                     levels: lists.places[texture.image],
                     size: width | height << 16,
                     sampling: across | down << 2 | filters | mip_filter,
-                    format: format_word(texcoords),
+                    format: format_word(&texcoords),
                     offset: texcoords.offset,
                     stride: texcoords.stride,
                     u_per_u,
@@ -104,10 +165,11 @@ fn words(scene: &Scene, has_finish: bool) -> Vec<u32> {
                 }
             }
             _ => LookupRecord::default(),
-        };
+        }
+    };
     for (index, (primitive, corners)) in scene.primitives.iter().zip(&corners).enumerate() {
         let material = &scene.materials[primitive.material];
-        let [base, glow] = material.textures();
+        let [base, glow, ..] = material.textures();
         let flag = |is_there: bool, bit: u32| if is_there { bit } else { 0 };
         let textures = flag(base.is_some(), BASE_TEXTURE) | flag(glow.is_some(), EMISSION_TEXTURE);
         let flags = textures
@@ -125,22 +187,31 @@ fn words(scene: &Scene, has_finish: bool) -> Vec<u32> {
             alpha_threshold,
             first_corner,
         }]));
-        let lookups = [
-            lookup(base, primitive.texcoords[0].as_ref()),
-            lookup(glow, primitive.texcoords[1].as_ref()),
-        ];
+        let slots = [TextureSlot::Base, TextureSlot::Emission];
+        let lookups = slots.map(|slot| lookup(primitive, slot));
         words.extend_from_slice(bytemuck::cast_slice(&lookups));
     }
     words.resize(first_finish, 0);
-    if has_finish {
+    if finish_words > 0 {
         for primitive in &scene.primitives {
             words.extend_from_slice(bytemuck::cast_slice(&[finish(primitive, scene)]));
+            if finish_words > FINISH_WORDS {
+                words.extend_from_slice(bytemuck::cast_slice(&[maps(primitive, scene, contents)]));
+                let lookups = MAP_SLOTS.map(|slot| lookup(primitive, slot));
+                words.extend_from_slice(bytemuck::cast_slice(&lookups));
+            }
         }
-        words.resize(first_finish + FINISH_WORDS * records, 0);
+        words.resize(first_finish + finish_words * records, 0);
     }
     words.extend(corners.iter().flat_map(|corners| &corners.words));
     words.extend(&lists.words);
-    for level in scene.images.iter().flat_map(|image| &image.levels) {
+    let used = used_images(scene, contents);
+    let images = scene
+        .images
+        .iter()
+        .zip(used)
+        .filter(|(_, is_used)| *is_used);
+    for level in images.flat_map(|(image, _)| &image.levels) {
         words.extend(level.texels.iter().map(|&texel| u32::from_le_bytes(texel)));
     }
     words
@@ -160,7 +231,40 @@ fn finish(primitive: &Primitive, scene: &Scene) -> FinishRecord {
     }
 }
 
-/// Where the levels of all images begin, an image after another.
+/// Which maps of a primitive are looked up, bit k for the slot k of [`MAP_SLOTS`], and by which
+/// factors.
+fn maps(primitive: &Primitive, scene: &Scene, contents: AtlasContents) -> MapsRecord {
+    let material = &scene.materials[primitive.material];
+    let bit = |(slot, bit): (TextureSlot, u32)| {
+        let is_seen = slot == TextureSlot::Normal || material.has_finish_maps();
+        let is_there = material.texture(slot).is_some() && is_seen && contents.has(slot);
+        u32::from(is_there) << bit
+    };
+    MapsRecord {
+        flags: MAP_SLOTS.into_iter().zip(0..).map(bit).sum(),
+        occlusion_strength: material.occlusion_strength,
+        normal_scale: material.normal_scale,
+        tangents: primitive.tangents.map_or(0, |tangents| tangents.offset),
+    }
+}
+
+/// For each image of the scene, whether a texture that is looked up shows it.
+fn used_images(scene: &Scene, contents: AtlasContents) -> Vec<bool> {
+    let mut used = vec![false; scene.images.len()];
+    let slots = || {
+        TextureSlot::ALL
+            .into_iter()
+            .filter(move |slot| contents.has(*slot))
+    };
+    let textures = scene
+        .materials
+        .iter()
+        .flat_map(|material| slots().filter_map(move |slot| material.texture(slot)));
+    textures.for_each(|texture| used[texture.image] = true);
+    used
+}
+
+/// Where the levels of the images that are looked up begin, an image after another.
 struct Lists {
     /// Word of each image's list.
     places: Vec<u32>,
@@ -169,17 +273,18 @@ struct Lists {
 
 impl Lists {
     /// From word `first` on, with the levels right behind.
-    fn of(scene: &Scene, first: u32) -> Self {
+    fn of(scene: &Scene, contents: AtlasContents, first: u32) -> Self {
+        let used = used_images(scene, contents);
+        let images = || scene.images.iter().zip(&used);
         let mut level_word = first
-            + scene
-                .images
-                .iter()
-                .map(|image| image.levels.len() as u32)
+            + images()
+                .filter(|(_, is_used)| **is_used)
+                .map(|(image, _)| image.levels.len() as u32)
                 .sum::<u32>();
         let (mut places, mut words) = (Vec::new(), Vec::new());
-        for image in &scene.images {
+        for (image, is_used) in images() {
             places.push(first + words.len() as u32);
-            for level in &image.levels {
+            for level in image.levels.iter().filter(|_| *is_used) {
                 words.push(level_word);
                 level_word += level.texels.len() as u32;
             }

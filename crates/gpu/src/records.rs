@@ -336,6 +336,17 @@ gpu_record! {
 }
 
 gpu_record! {
+    /// The textures of one primitive that are no colors. Each member is explained in
+    /// `shaders/lib/map_atlas.wgsl`.
+    pub struct MapsRecord = "Maps" {
+        pub flags: u32,
+        pub occlusion_strength: f32,
+        pub normal_scale: f32,
+        pub tangents: u32,
+    }
+}
+
+gpu_record! {
     /// Workgroups of an indirect dispatch.
     pub struct DispatchSize = "Dispatch" {
         pub x: u32,
@@ -411,6 +422,7 @@ pub const RECORDS: &[RecordLayout] = &[
     LookupRecord::LAYOUT,
     MaterialRecord::LAYOUT,
     FinishRecord::LAYOUT,
+    MapsRecord::LAYOUT,
     HardwareMaterial::LAYOUT,
     DispatchSize::LAYOUT,
     DispatchArgs::LAYOUT,

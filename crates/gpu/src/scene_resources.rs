@@ -9,7 +9,7 @@ use super::{
     device::Gpu,
     error::RenderError,
     image_files::ImageFiles,
-    material_atlas,
+    material_atlas::{self, AtlasContents},
     meshlets::MeshletBuffers,
     packing::{PackedBox, Packing},
     records::VertexRecord,
@@ -36,10 +36,10 @@ pub struct SceneResources {
     /// has them.
     packed_boxes: Vec<PackedBox>,
     pub material_atlas: Option<WordTexture>,
-    /// It says how materials reflect.
-    atlas_has_finish: bool,
     /// Pictures that the effects of the stack take as inputs.
     pub image_files: Option<ImageFiles>,
+    /// What it tells beside colors.
+    atlas_contents: AtlasContents,
     /// Meshlets of all primitives, once a view culls.
     meshlets: Option<Arc<MeshletBuffers>>,
 }
@@ -58,8 +58,8 @@ impl SceneResources {
             attributes: AttributeLayout::default(),
             packed_boxes: Vec::new(),
             material_atlas: None,
-            atlas_has_finish: false,
             image_files: None,
+            atlas_contents: AtlasContents::default(),
             meshlets: None,
         };
         resources.upload(gpu).await?;
@@ -189,12 +189,14 @@ impl SceneResources {
         gpu: &Gpu,
         inputs: &SurfaceInputs,
     ) -> Result<(), RenderError> {
-        if !inputs.has_material_atlas && !inputs.has_finish {
+        let Some(contents) = AtlasContents::of(inputs) else {
             self.material_atlas = None;
-        } else if self.material_atlas.is_none() || inputs.has_finish && !self.atlas_has_finish {
+            return Ok(());
+        };
+        if self.material_atlas.is_none() || !self.atlas_contents.includes(contents) {
             self.material_atlas = None;
-            let atlas = material_atlas::upload(gpu, &self.scene, inputs.has_finish).await?;
-            (self.material_atlas, self.atlas_has_finish) = (Some(atlas), inputs.has_finish);
+            let atlas = material_atlas::upload(gpu, &self.scene, contents).await?;
+            (self.material_atlas, self.atlas_contents) = (Some(atlas), contents);
         }
         Ok(())
     }

@@ -398,7 +398,7 @@ fn ply_shows_its_image_by_coordinates_of_vertices_or_of_corners() {
             &[],
             &["texture 0: \"my flag.png\": cannot read the file; it is left out"],
         );
-        assert_eq!(scene.primitives[0].texcoords, [None; 2]);
+        assert_eq!(scene.primitives[0].texcoords, [None; 5]);
     }
 }
 

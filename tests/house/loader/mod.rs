@@ -8,6 +8,7 @@ mod corpus;
 mod files;
 mod hostile;
 mod kinds;
+mod maps;
 mod materials;
 mod mesh_files;
 mod mesh_hostile;

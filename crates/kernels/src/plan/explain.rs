@@ -38,6 +38,7 @@ impl Plan {
             self.scopes_reason(),
             self.material_reason(),
             self.finish_reason(),
+            self.maps_reason(),
             self.mask_reason(),
             self.image_reason(),
             self.passes_reason(),
@@ -202,10 +203,7 @@ impl Plan {
                 "{textured} of {count} materials have textures, read texel by texel and filtered in linear light"
             ),
         };
-        self.key
-            .surface
-            .has_material_atlas
-            .then(|| note("material atlas", why))
+        (count > 0).then(|| note("material atlas", why))
     }
 
     fn finish_reason(&self) -> Option<Note> {
@@ -219,6 +217,22 @@ impl Plan {
             .collect();
         let why = "metallic, roughness and reflectance of every primitive stand in the atlas";
         (!readers.is_empty()).then(|| note("finish", format!("{}: {why}", readers.join(", "))))
+    }
+
+    fn maps_reason(&self) -> Option<Note> {
+        let (finish, normals) = (self.needs.finish_maps, self.needs.normal_maps);
+        let why = match (
+            self.key.surface.has_finish_maps,
+            self.key.surface.has_normal_maps,
+        ) {
+            (false, false) => return None,
+            (true, false) => format!("textures tell how {finish} materials reflect"),
+            (false, true) => format!("textures turn the normals of {normals} materials"),
+            (true, true) => format!(
+                "textures tell how {finish} materials reflect, and turn the normals of {normals}"
+            ),
+        };
+        Some(note("maps", why))
     }
 
     fn mask_reason(&self) -> Option<Note> {

@@ -131,6 +131,13 @@ impl StackTraits {
             .any(|effect| effect.hooks.reads_finish())
     }
 
+    /// Does an effect ask where normals point?
+    pub fn reads_normals(&self) -> bool {
+        self.effects
+            .iter()
+            .any(|effect| effect.hooks.reads_normals())
+    }
+
     /// Does an effect ask how much of a light arrives?
     pub fn reads_light(&self) -> bool {
         self.effects.iter().any(|effect| effect.hooks.casts_shadows)

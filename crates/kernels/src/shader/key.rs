@@ -188,6 +188,10 @@ pub struct SurfaceInputs {
     pub has_alpha: bool,
     /// How materials reflect: an effect reads it.
     pub has_finish: bool,
+    /// Textures tell how some material reflects, and an effect reads it.
+    pub has_finish_maps: bool,
+    /// Textures turn the normals of some material, and an effect reads normals.
+    pub has_normal_maps: bool,
     /// Plane normals and triangle centers: an effect reads them, or a normal may need a
     /// substitute.
     pub has_planes: bool,
@@ -327,6 +331,8 @@ impl KernelKey {
                 has_material_atlas: true,
                 has_alpha: layers == Some(Layers::Glass),
                 has_finish: true,
+                has_finish_maps: true,
+                has_normal_maps: true,
                 has_planes: true,
             },
             view: ViewKind {

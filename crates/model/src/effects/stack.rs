@@ -326,6 +326,13 @@ impl Stack {
         self.0.iter().any(reads)
     }
 
+    /// Does an effect read where normals point?
+    pub fn reads_normals(&self) -> bool {
+        self.0
+            .iter()
+            .any(|enabled| enabled.effect.hooks.reads_normals())
+    }
+
     /// The view of that light, for its shadow map of `scene` in `view`.
     pub fn light_view(&self, scene: &Scene, view: &View) -> Option<View> {
         Some(light_view(

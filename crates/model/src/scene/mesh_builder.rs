@@ -5,7 +5,9 @@ use glam::DVec3;
 use crate::scene::{
     accessor::{Accessor, ComponentType},
     bounds::Bounds,
+    material::TEXTURE_SLOTS,
     model::{Primitive, Scene, Topology},
+    tangents,
 };
 
 /// A mesh under construction. Triangles are counter-clockwise seen from the outside, as in glTF.
@@ -15,7 +17,7 @@ pub struct MeshBuilder {
     normals: Vec<[f32; 3]>,
     /// Linear RGBA; empty, or one per vertex.
     colors: Vec<[u8; 4]>,
-    /// Texture coordinates, for base color and emission; empty, or one per vertex.
+    /// Texture coordinates, for every texture; empty, or one per vertex.
     texcoords: Vec<[f32; 2]>,
     indices: Vec<u32>,
 }
@@ -175,7 +177,8 @@ impl MeshBuilder {
                 coords_at,
                 2,
                 texcoords.len(),
-            )); 2],
+            )); TEXTURE_SLOTS],
+            tangents: None,
             material,
             bounds,
             longest_edge,
@@ -188,6 +191,10 @@ impl MeshBuilder {
         scene.primitives[index].normals_agree = scene.primitives[index]
             .normals_agree(scene)
             .unwrap_or_default();
+        let normal_map = scene.materials.get(material).and_then(|m| m.normal_texture);
+        if let Some(texture) = normal_map {
+            tangents::add(scene, index, &texture);
+        }
         index
     }
 }

@@ -35,6 +35,7 @@ pub mod rig;
 mod room;
 pub mod shadow_resolution;
 pub mod sizes;
+pub mod tangents;
 pub mod texture;
 pub mod view;
 

@@ -8,7 +8,7 @@ use super::{
     camera::Camera,
     deformation::Deformation,
     framing::FramingPoints,
-    material::Material,
+    material::{Material, TEXTURE_SLOTS},
     rig::Rig,
     texture::Image,
 };
@@ -64,9 +64,13 @@ pub struct Primitive {
     pub is_faceted: bool,
     /// Linear RGB or RGBA, three or four components.
     pub colors: Option<Accessor>,
-    /// Texture coordinates of the base color and of the emission, two components each. Present
-    /// wherever the material has that texture.
-    pub texcoords: [Option<Accessor>; 2],
+    /// Texture coordinates for each [`TextureSlot`](super::material::TextureSlot), two components
+    /// each. Present wherever the material has that texture.
+    pub texcoords: [Option<Accessor>; TEXTURE_SLOTS],
+    /// Directions along the texture of its normals, three components for each corner of its
+    /// triangles in order ([`tangents`](super::tangents)). Present wherever the material has that
+    /// texture.
+    pub tangents: Option<Accessor>,
     /// Index into `Scene::materials`.
     pub material: usize,
     /// Box of all finite vertex positions, in object space.
@@ -315,6 +319,15 @@ impl Scene {
         materials
             .into_iter()
             .any(|material| material.alpha_threshold().is_some())
+    }
+
+    /// Returns true if a texture turns the normals of any instance.
+    pub fn has_normal_maps(&self) -> bool {
+        let material =
+            |instance: &Instance| &self.materials[self.primitives[instance.primitive].material];
+        self.instances
+            .iter()
+            .any(|instance| material(instance).has_normal_map())
     }
 
     /// The number of vertices of all instances whose primitives have joint influences or morph

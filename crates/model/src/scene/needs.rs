@@ -3,11 +3,14 @@
 //! Bounds are conservative: they may require a path that no triangle takes, and never omit one that
 //! a triangle takes.
 
+use std::collections::BTreeSet;
+
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
 use super::{
     accessor::ComponentType,
     draw::Draw,
+    material::Material,
     model::{Primitive, Scene, Topology},
     shadow_resolution::ShadowResolution,
     sizes::TriangleSizes,
@@ -38,6 +41,10 @@ pub struct Needs {
     pub material_count: usize,
     /// Of those, materials with a texture.
     pub textured: usize,
+    /// Materials with textures that say how they reflect.
+    pub finish_maps: usize,
+    /// Materials with a texture that turns their normals.
+    pub normal_maps: usize,
     /// The alpha of a texture discards samples of some material.
     pub masked: bool,
     /// Draws through which others are seen.
@@ -94,12 +101,11 @@ impl Needs {
                 .filter(|draw| draw.deform.is_none())
                 .map(|draw| &scene.primitives[draw.primitive])
         };
-        let mut painted: Vec<usize> = drawn()
-            .map(|p| p.material)
-            .filter(|&material| !scene.materials[material].is_plain())
-            .collect();
-        painted.sort_unstable();
-        painted.dedup();
+        let materials: BTreeSet<usize> = drawn().map(|p| p.material).collect();
+        let count = |is_counted: fn(&Material) -> bool| {
+            let has = |&&material: &&usize| is_counted(&scene.materials[material]);
+            materials.iter().filter(has).count()
+        };
         let all_f32 =
             |pick: fn(&Primitive) -> ComponentType| unbent().all(|p| pick(p) == ComponentType::F32);
         let largest_px = draws
@@ -122,11 +128,10 @@ impl Needs {
             shadow: view.precision.shadow,
             is_light: view.is_light(),
             colors: drawn().any(|p| p.colors.is_some()),
-            material_count: painted.len(),
-            textured: painted
-                .iter()
-                .filter(|material| scene.materials[**material].textures() != [None, None])
-                .count(),
+            material_count: count(|material| !material.is_plain()),
+            textured: count(Material::has_color_texture),
+            finish_maps: count(Material::has_finish_maps),
+            normal_maps: count(Material::has_normal_map),
             masked: drawn().any(|p| scene.materials[p.material].alpha_threshold().is_some()),
             glass_draws: draws.iter().filter(|draw| draw.is_glass).count(),
             has_blended_textures: drawn().any(|p| {

@@ -131,7 +131,8 @@ impl Scene {
             positions: accessor(0, ComponentType::F32, false),
             normals: accessor(18, ComponentType::I16, true),
             colors: Some(accessor(12, ComponentType::U16, true)),
-            texcoords: [None, None],
+            texcoords: Default::default(),
+            tangents: None,
             material: scene.materials.len(),
             bounds: particle_settings.disc_bounds(),
             longest_edge: 2.0 * 3f64.sqrt() * particle_settings.radius_m * (1.0 + 1e-5)

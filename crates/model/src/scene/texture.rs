@@ -1,7 +1,7 @@
 //! Textures as plain data: images with their mip levels, and how a material samples them.
 //!
-//! Texels stay the sRGB-encoded bytes of the file. Filtering happens in linear light, so each
-//! reader decodes before it blends. The mip levels are computed here once, so that every renderer
+//! Texels stay the bytes of the file: colors sRGB-encoded, data as it is. Filtering happens in linear
+//! light, so each reader decodes colors before it blends. The mip levels are computed here once, so that every renderer
 //! and the oracle start from the same bytes.
 
 use glam::DVec2;
@@ -17,9 +17,12 @@ pub struct Image {
     /// The picture, followed by its mip levels down to one texel; only the picture where no
     /// sampler uses mip levels.
     pub levels: Vec<Level>,
+    /// Its texels are numbers from 0 to 1 in steps of 1/255, not colors.
+    pub is_data: bool,
 }
 
-/// Texels row by row from the top, sRGB-encoded RGBA with linear alpha.
+/// Texels row by row from the top, RGBA: sRGB-encoded with linear alpha, or all linear in an image
+/// of data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level {
     /// Width and height, each at least 1.
@@ -41,13 +44,23 @@ impl Image {
         Self {
             name: name.into(),
             levels: vec![Level { size, texels }],
+            is_data: false,
+        }
+    }
+
+    /// The same bytes as numbers, not colors. Comes before [`Self::with_mipmaps`].
+    pub fn of_data(self) -> Self {
+        Self {
+            is_data: true,
+            ..self
         }
     }
 
     /// The same image with all mip levels.
     pub fn with_mipmaps(mut self) -> Self {
         self.levels.truncate(1);
-        while let Some(smaller) = self.levels.last().and_then(Level::halved) {
+        let is_data = self.is_data;
+        while let Some(smaller) = self.levels.last().and_then(|level| level.halved(is_data)) {
             self.levels.push(smaller);
         }
         self
@@ -69,15 +82,16 @@ impl Image {
 
 impl Level {
     /// The next mip level: half as wide and high, rounded down. Each texel is the area-weighted
-    /// mean of what it covers, in linear light. `None` for a single texel.
-    fn halved(&self) -> Option<Self> {
+    /// mean of what it covers, of colors in linear light. `None` for a single texel.
+    fn halved(&self, is_data: bool) -> Option<Self> {
         if self.size == [1, 1] {
             return None;
         }
-        let light: [f64; 256] = std::array::from_fn(|byte| linear_light(byte as f64 / 255.0));
+        let linear = |value: f64| if is_data { value } else { linear_light(value) };
+        let light: [f64; 256] = std::array::from_fn(|byte| linear(byte as f64 / 255.0));
         // The smallest linear value that rounds to each byte.
         let least: [f64; 256] =
-            std::array::from_fn(|byte| linear_light((byte as f64 - 0.5).max(0.0) / 255.0));
+            std::array::from_fn(|byte| linear((byte as f64 - 0.5).max(0.0) / 255.0));
         let size = self.size.map(|side| (side / 2).max(1));
         let covered_texels = [0, 1].map(|axis| {
             (0..size[axis])

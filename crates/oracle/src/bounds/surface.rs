@@ -123,6 +123,7 @@ impl CornerErrors {
             normals,
             colors,
             displaced,
+            tangents,
         } = triangle.interpolation(x, y);
         let errors = triangle.weight_errors(x, y, &self.clip);
         let mixed = |differences: [f64; 3]| {
@@ -142,10 +143,23 @@ impl CornerErrors {
             )
         });
         let plane = displaced.map_or(0.0, |corners| self.plane(corners));
+        // A texture's normal errs as the normal and the tangent do of which it is made, and as the
+        // side does, which is made of both.
+        let mapped = tangents.map_or([1.0, 0.0], |(tangents, [length, reach])| {
+            let middle = (0..3)
+                .map(|k| tangents.corners[k] * weights[k])
+                .sum::<DVec3>();
+            let own = tangents.lengths.map(|length| 16.0 * ROUNDING * length);
+            let of_corners = (0..3).map(|k| (weights[k].abs() + errors[k]) * own[k]);
+            let error = mixed(tangents.corners.map(|corner| (corner - middle).length()))
+                + of_corners.sum::<f64>().min(largest(own));
+            [2.0 + 3.0 * length / reach, 2.0 * error / reach]
+        });
+        let through_map = |error: f64| (mapped[0] * error + mapped[1]).min(ANY_DIRECTION);
         let color = (0..3).map(|k| colors[k] * weights[k]).sum::<DVec4>();
         SampleErrors {
-            normal,
-            plane,
+            normal: through_map(normal),
+            plane: through_map(plane),
             depth: mixed(depths.map(|depth| (depth - 1.0).abs())),
             color: [0, 1, 2, 3]
                 .map(|channel| mixed(colors.map(|corner| (corner[channel] - color[channel]).abs())))

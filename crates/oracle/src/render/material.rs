@@ -4,10 +4,12 @@ use glam::{DVec2, DVec3, DVec4};
 
 use super::super::perturbation::TexturePerturbation;
 use crate::{
+    effects::hooks::Finish,
     math::linear_light,
     scene::{
-        Primitive, Scene,
-        texture::{Filter, Level, MipFilter, Texture, Wrap, texcoord},
+        Material, Primitive, Scene,
+        material::{TEXTURE_SLOTS, TextureSlot},
+        texture::{Filter, Image, Level, MipFilter, Texture, Wrap, texcoord},
     },
 };
 
@@ -17,10 +19,9 @@ const MAX_OFFSETS: f64 = 12.0;
 /// A material as one triangle shows it.
 pub struct TriangleMaterial<'a> {
     scene: &'a Scene,
-    base: Option<TextureLookup<'a>>,
-    emission: DVec3,
-    emissive: Option<TextureLookup<'a>>,
-    is_unlit: bool,
+    material: &'a Material,
+    /// Those of every slot.
+    lookups: [Option<TextureLookup<'a>>; TEXTURE_SLOTS],
 }
 
 /// A texture with the coordinates of a triangle's corners.
@@ -42,15 +43,15 @@ pub struct SampleWeights {
 }
 
 impl<'a> TriangleMaterial<'a> {
-    /// None for a material that is only a base color.
+    /// None for a material that is only a base color, without maps.
     pub fn of(scene: &'a Scene, primitive: &'a Primitive, corners: [u32; 3]) -> Option<Self> {
         let material = &scene.materials[primitive.material];
-        if material.is_plain() {
+        if material.is_plain() && material.textures() == [None; TEXTURE_SLOTS] {
             return None;
         }
-        let lookup = |slot: usize| {
-            let (texture, texcoords) =
-                material.textures()[slot].zip(primitive.texcoords[slot].as_ref())?;
+        let lookup = |slot: TextureSlot| {
+            let texcoords = primitive.texcoords[slot as usize].as_ref();
+            let (texture, texcoords) = material.texture(slot).zip(texcoords)?;
             let at = corners.map(|corner| texcoord(texcoords, &scene.vertex_bytes, corner));
             let magnitudes = texture
                 .image_from_texcoord
@@ -66,13 +67,10 @@ impl<'a> TriangleMaterial<'a> {
                 terms: terms[0].max(terms[1]).max(terms[2]),
             })
         };
-        let emission = DVec3::from(material.emission.map(f64::from));
         Some(Self {
             scene,
-            base: lookup(0),
-            emission,
-            emissive: lookup(1),
-            is_unlit: material.unlit,
+            material,
+            lookups: TextureSlot::ALL.map(lookup),
         })
     }
 
@@ -80,17 +78,60 @@ impl<'a> TriangleMaterial<'a> {
     /// both ends, and every middle and edge of a texel that the bounds reach, or some of very many.
     pub fn offsets(&self, at: &SampleWeights) -> [Vec<f64>; 2] {
         [0, 1].map(|axis| {
-            let lookups = [&self.base, &self.emissive].into_iter().flatten();
+            let lookups = self.lookups.iter().flatten();
             let inner = lookups.flat_map(|lookup| lookup.offsets(self.scene, at, axis));
-            [-1.0, 0.0, 1.0].into_iter().chain(inner).collect()
+            let mut offsets: Vec<f64> = [-1.0, 0.0, 1.0].into_iter().chain(inner).collect();
+            // Maps of one size meet their texels together.
+            offsets.sort_by(f64::total_cmp);
+            offsets.dedup();
+            offsets
         })
+    }
+
+    /// RGBA of the texture in a slot; none without one.
+    fn texel(
+        &self,
+        slot: TextureSlot,
+        at: &SampleWeights,
+        perturbation: TexturePerturbation,
+    ) -> Option<DVec4> {
+        let lookup = self.lookups[slot as usize].as_ref()?;
+        Some(lookup.texel(self.scene, at, perturbation))
     }
 
     /// Alpha of the base color texture; 1 without one.
     pub fn alpha(&self, at: &SampleWeights, perturbation: TexturePerturbation) -> f64 {
-        self.base
-            .as_ref()
-            .map_or(1.0, |lookup| lookup.texel(self.scene, at, perturbation).w)
+        self.texel(TextureSlot::Base, at, perturbation)
+            .map_or(1.0, |texel| texel.w)
+    }
+
+    /// How it reflects, where its factors alone make `finish`.
+    pub fn finish(
+        &self,
+        mut finish: Finish,
+        at: &SampleWeights,
+        perturbation: TexturePerturbation,
+    ) -> Finish {
+        if !self.material.has_finish_maps() {
+            return finish;
+        }
+        if let Some(texel) = self.texel(TextureSlot::Finish, at, perturbation) {
+            finish.roughness *= texel.y;
+            finish.metallic *= texel.z;
+        }
+        if let Some(texel) = self.texel(TextureSlot::Occlusion, at, perturbation) {
+            let strength = f64::from(self.material.occlusion_strength);
+            finish.occlusion = 1.0 + strength * (texel.x - 1.0);
+        }
+        finish
+    }
+
+    /// Where its texture turns the normal: along the tangent, across it and outward, of any length.
+    /// None without such a texture.
+    pub fn bump(&self, at: &SampleWeights, perturbation: TexturePerturbation) -> Option<DVec3> {
+        let texel = self.texel(TextureSlot::Normal, at, perturbation)?;
+        let scale = f64::from(self.material.normal_scale);
+        Some((texel.truncate() * 2.0 - 1.0) * DVec3::new(scale, scale, 1.0))
     }
 
     /// Color of a surface with the base color `base`, and the part of it that no light changes.
@@ -100,16 +141,16 @@ impl<'a> TriangleMaterial<'a> {
         at: &SampleWeights,
         perturbation: TexturePerturbation,
     ) -> (DVec3, DVec3) {
-        let looked_up = |lookup: &Option<TextureLookup>| {
-            lookup.as_ref().map_or(DVec3::ONE, |lookup| {
-                lookup.texel(self.scene, at, perturbation).truncate()
-            })
+        let looked_up = |slot: TextureSlot| {
+            self.texel(slot, at, perturbation)
+                .map_or(DVec3::ONE, DVec4::truncate)
         };
-        let color = base * looked_up(&self.base);
-        if self.is_unlit {
+        let color = base * looked_up(TextureSlot::Base);
+        if self.material.unlit {
             return (color, color);
         }
-        let glow = self.emission * looked_up(&self.emissive);
+        let emission = DVec3::from(self.material.emission.map(f64::from));
+        let glow = emission * looked_up(TextureSlot::Emission);
         (color + glow, glow)
     }
 }
@@ -149,7 +190,7 @@ impl TextureLookup<'_> {
         let place = self.place(scene, at);
         let [across, down, level] = perturbation;
         self.filtered(
-            &scene.images[self.texture.image].levels,
+            &scene.images[self.texture.image],
             place.uv + place.uv_error * DVec2::new(across, down),
             place.detail + level * place.detail_error,
         )
@@ -180,8 +221,13 @@ impl TextureLookup<'_> {
     }
 
     /// The filtered color at texture coordinates `uv`, where a pixel spans 2^detail texels.
-    fn filtered(&self, levels: &[Level], uv: DVec2, detail: f64) -> DVec4 {
-        let at = |level: f64, filter: Filter| self.level(&levels[level as usize], uv, filter);
+    fn filtered(&self, image: &Image, uv: DVec2, detail: f64) -> DVec4 {
+        let Image {
+            levels, is_data, ..
+        } = image;
+        let at = |level: f64, filter: Filter| {
+            self.level((&levels[level as usize], *is_data), uv, filter)
+        };
         let last = levels.len() as f64 - 1.0;
         if detail <= 0.0 {
             return at(0.0, self.texture.mag_filter);
@@ -198,8 +244,9 @@ impl TextureLookup<'_> {
         }
     }
 
-    fn level(&self, level: &Level, uv: DVec2, filter: Filter) -> DVec4 {
-        let at = uv * DVec2::from(level.size.map(f64::from));
+    /// Of one level, and whether it has data.
+    fn level(&self, level: (&Level, bool), uv: DVec2, filter: Filter) -> DVec4 {
+        let at = uv * DVec2::from(level.0.size.map(f64::from));
         match filter {
             Filter::Nearest => self.stored(level, at.x.floor(), at.y.floor()),
             Filter::Linear => {
@@ -215,16 +262,21 @@ impl TextureLookup<'_> {
         }
     }
 
-    fn stored(&self, level: &Level, x: f64, y: f64) -> DVec4 {
+    fn stored(&self, (level, is_data): (&Level, bool), x: f64, y: f64) -> DVec4 {
         let [width, height] = level.size;
         let [across, down] = self.texture.wrap;
         let (x, y) = (
             wrapped(x as i64, width.into(), across),
             wrapped(y as i64, height.into(), down),
         );
-        let [red, green, blue, alpha] = level.texels[(y * i64::from(width) + x) as usize];
-        DVec3::from([red, green, blue].map(|byte| linear_light(f64::from(byte) / 255.0)))
-            .extend(f64::from(alpha) / 255.0)
+        let texel = level.texels[(y * i64::from(width) + x) as usize];
+        let [red, green, blue, alpha] = texel.map(|byte| f64::from(byte) / 255.0);
+        let color = DVec3::new(red, green, blue);
+        let color = match is_data {
+            true => color,
+            false => color.map(linear_light),
+        };
+        color.extend(alpha)
     }
 }
 

@@ -29,6 +29,7 @@ pub mod rays;
 pub mod resolve;
 pub mod shadow;
 pub mod surface;
+pub mod tangents;
 pub mod weights;
 
 pub mod picture;

@@ -21,6 +21,7 @@ use super::{
     material::{SampleWeights, TriangleMaterial},
     screen::ScreenTriangle,
     shadow::{Light, LitPoint},
+    tangents::Tangents,
     triangles::OrientedTriangle,
     vertex::{Corner, VertexEvaluator},
     weights::{SamplePoint, Weights},
@@ -187,6 +188,8 @@ pub struct SurfaceTriangle<'a> {
     points: Option<([SnappedVertex; 3], i64)>,
     /// The plane is that of displaced corners.
     is_deformed: bool,
+    /// None where no texture turns its normals.
+    tangents: Option<Tangents>,
 }
 
 /// What the corners of a triangle mix at a sample.
@@ -200,6 +203,8 @@ pub struct Interpolation {
     pub colors: [DVec4; 3],
     /// The corners, if the plane is that of displaced ones, meters.
     pub displaced: Option<[DVec3; 3]>,
+    /// Those of the corners where a texture turns the normal, with their [`Tangents::reach`].
+    pub tangents: Option<(Tangents, [f64; 2])>,
 }
 
 impl<'a> SurfaceTriangle<'a> {
@@ -272,6 +277,7 @@ impl<'a> SurfaceTriangle<'a> {
             points: (stack.shape() == Shape::Points)
                 .then_some((records, stack.point_radius().into())),
             is_deformed: false,
+            tangents: Tangents::of(shot, draw, triangle, object, side),
         };
         if draw.is_uneven {
             // Each normal as long in the world as in object space.
@@ -363,26 +369,40 @@ impl<'a> SurfaceTriangle<'a> {
         let flat_normal = self
             .flat_normal
             .map(|normal| turned(normal, moved.plane) * side);
-        let normal = smooth
-            .map(|normal| turned(normal, moved.normal) * side)
-            .or(flat_normal)
-            .unwrap_or(toward_eye);
-        let base = self.base_color(weights, moved.color);
-        let textured = self.material.as_ref().map(|material| {
-            material.color(
-                base.truncate(),
-                &self.sample_weights(weights, &point),
-                perturbation.texture,
-            )
-        });
-        let alpha = self
+        let looked_up = self
             .material
             .as_ref()
+            .map(|material| (material, self.sample_weights(weights, &point)));
+        let bump = self.tangents.zip(
+            looked_up
+                .as_ref()
+                .and_then(|(material, at)| material.bump(at, perturbation.texture)),
+        );
+        // The bound of a turned normal holds all that the surface's own normal may do to it.
+        let mapped = |normal: DVec3| match bump {
+            None => normal,
+            Some((tangents, bump)) => tangents.turned(weights, normal, bump),
+        };
+        let normal = smooth
+            .map(|normal| turned(mapped(normal), moved.normal) * side)
+            .or(self
+                .flat_normal
+                .map(|normal| turned(mapped(normal), moved.plane) * side))
+            .unwrap_or(toward_eye);
+        let base = self.base_color(weights, moved.color);
+        let textured = looked_up
+            .as_ref()
+            .map(|(material, at)| material.color(base.truncate(), at, perturbation.texture));
+        let alpha = looked_up
+            .as_ref()
             .filter(|_| self.is_glass)
-            .map_or(1.0, |material| {
-                material.alpha(&self.sample_weights(weights, &point), perturbation.texture)
+            .map_or(1.0, |(material, at)| {
+                material.alpha(at, perturbation.texture)
             });
         let (color, glow) = textured.unwrap_or((base.truncate(), DVec3::ZERO));
+        let finish = looked_up.as_ref().map_or(self.finish, |(material, at)| {
+            material.finish(self.finish, at, perturbation.texture)
+        });
         let across_m = view.ndc_axes[1].length() * 2.0 / f64::from(view.height);
         Surface {
             color: color.extend(base.w * alpha),
@@ -409,7 +429,7 @@ impl<'a> SurfaceTriangle<'a> {
             triangle_id: self.id,
             rank: 0.0,
             lit: 0.0,
-            finish: self.finish,
+            finish,
             step_offset: 0.0,
         }
     }
@@ -427,6 +447,11 @@ impl<'a> SurfaceTriangle<'a> {
                 .map(|normals| normals.map(|normal| self.world_from_normal * normal)),
             colors: self.colors,
             displaced: self.is_deformed.then_some(self.positions),
+            tangents: self.tangents.map(|tangents| {
+                let smooth = self.normals.and_then(|n| self.smooth_normal(weights, n));
+                let normal = smooth.or(self.flat_normal).unwrap_or(self.view.forward);
+                (tangents, tangents.reach(weights, normal))
+            }),
         }
     }
 

@@ -15,6 +15,8 @@ pub(super) const FEATURES: &[Feature] = &[
     ATTRIBUTES,
     MATERIAL_ATLAS,
     FINISH,
+    FINISH_MAPS,
+    NORMAL_MAPS,
     MASK,
     LIGHT,
     DOTS,
@@ -131,6 +133,38 @@ const FINISH: Feature = Feature {
     }),
     variants: &[("shade_step", |key, _| {
         step_if(key.surface.has_finish, "finish")
+    })],
+    ..Feature::NONE
+};
+
+const FINISH_MAPS: Feature = Feature {
+    label: |key| word_if(key.surface.has_finish_maps, "finish_maps"),
+    part: Some(Part {
+        name: "finish maps",
+        is_used: |key| key.surface.has_finish_maps,
+        why_omitted: |needs| match needs.finish_maps {
+            0 => "no texture tells how a material reflects".into(),
+            _ => "no effect reads how materials reflect".into(),
+        },
+    }),
+    variants: &[("shade_step", |key, _| {
+        step_if(key.surface.has_finish_maps, "finish_maps")
+    })],
+    ..Feature::NONE
+};
+
+const NORMAL_MAPS: Feature = Feature {
+    label: |key| word_if(key.surface.has_normal_maps, "normal_maps"),
+    part: Some(Part {
+        name: "normal maps",
+        is_used: |key| key.surface.has_normal_maps,
+        why_omitted: |needs| match needs.normal_maps {
+            0 => "no texture turns normals".into(),
+            _ => "no effect reads normals".into(),
+        },
+    }),
+    variants: &[("shade_step", |key, _| {
+        step_if(key.surface.has_normal_maps, "normal_map")
     })],
     ..Feature::NONE
 };

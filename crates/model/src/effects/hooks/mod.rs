@@ -63,6 +63,11 @@ impl Hooks {
         self.surface_inputs.contains(&SurfaceInput::Finish)
     }
 
+    /// Does it read where normals point?
+    pub fn reads_normals(&self) -> bool {
+        self.surface_inputs.contains(&SurfaceInput::Normal)
+    }
+
     /// Names for listings: `sample + surface`.
     pub fn names(&self) -> String {
         let hooks = [

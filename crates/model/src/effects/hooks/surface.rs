@@ -17,7 +17,8 @@ pub struct Surface {
     /// World space, meters: on the ray of its pixel at `depth_m`, however the corners were
     /// snapped.
     pub position: DVec3,
-    /// Unit, towards the viewer's side: interpolated, then as earlier effects have changed it.
+    /// Unit, towards the viewer's side: interpolated, turned by the material's map, then as earlier
+    /// effects have changed it.
     pub normal: DVec3,
     /// Unit normal of the triangle's plane, towards the same side.
     pub flat_normal: DVec3,

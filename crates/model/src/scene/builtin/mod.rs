@@ -1,12 +1,13 @@
 //! Built-in scenes: meshes from formulas, selected by a query such as `sphere?triangles=160000`.
 //!
-//! Teapot, sphere, knot, cube-wall, tentacle, walker, town, still-life, finishes and chamber are
+//! Teapot, sphere, knot, cube-wall, tentacle, walker, town, still-life, finishes, golf and chamber are
 //! meant to look good. The others stress one property of the rasterizer each and bring a camera for it. All
 //! are indexed, finite and identical on every machine.
 
 mod extremes;
 mod field;
 mod finishes;
+mod golf;
 mod leaves;
 mod painted;
 mod panes;
@@ -182,6 +183,17 @@ pub const BUILTINS: &[Builtin] = &[
             whole("rows", "number of rows", 3.0, 1.0..=16.0),
         ],
         build: finishes::build,
+    },
+    Builtin {
+        name: "golf",
+        about: "golf balls: white lacquer, brass under worn lacquer, and rubber; textures make their dimples, and say where they are worn",
+        params: &[whole(
+            "tess",
+            "tessellation; a ball has 16 * tess^2 - 8 * tess triangles",
+            12.0,
+            2.0..=64.0,
+        )],
+        build: golf::build,
     },
     Builtin {
         name: "chamber",

@@ -20,7 +20,28 @@ use crate::{
 
 /// A globe with a grid of colors: the hue changes with longitude, and every second cell is pale.
 pub fn globe(values: &Values) -> Result<Scene, BuiltinError> {
-    let tess = values.whole("tess");
+    let map = Material {
+        name: "map".into(),
+        base_texture: Some(around()),
+        ..Material::default()
+    };
+    let mesh = globe_mesh(values.whole("tess"));
+    let mut scene = single_mesh_scene(mesh, "globe", map);
+    scene.images.push(color_grid(256, 128, 16).with_mipmaps());
+    Ok(scene)
+}
+
+/// The first image, around a globe.
+pub fn around() -> Texture {
+    Texture {
+        wrap: [Wrap::Repeat, Wrap::Clamp],
+        ..Texture::plain(0)
+    }
+}
+
+/// A ball of radius 1 about the origin, whose image goes once around it, from +z towards +x, and from
+/// the upper pole to the lower one.
+pub fn globe_mesh(tess: u32) -> MeshBuilder {
     let (columns, rows) = (4 * tess, 2 * tess);
     let mut mesh = MeshBuilder::with_capacity(
         ((columns + 1) * (rows + 1)) as usize,
@@ -59,18 +80,7 @@ pub fn globe(values: &Values) -> Result<Scene, BuiltinError> {
             }
         }
     }
-    let texture = Texture {
-        wrap: [Wrap::Repeat, Wrap::Clamp],
-        ..Texture::plain(0)
-    };
-    let map = Material {
-        name: "map".into(),
-        base_texture: Some(texture),
-        ..Material::default()
-    };
-    let mut scene = single_mesh_scene(mesh, "globe", map);
-    scene.images.push(color_grid(256, 128, 16).with_mipmaps());
-    Ok(scene)
+    mesh
 }
 
 /// Cells of all hues, alternately light and dark, with thin lines between them.

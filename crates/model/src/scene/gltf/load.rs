@@ -142,6 +142,6 @@ fn omissions(document: &Document) -> impl Iterator<Item = String> {
         .materials
         .iter()
         .any(|material| material.has_more)
-        .then(|| "normal, occlusion and metallic-roughness textures are not drawn".into());
+        .then(|| "textures of specular reflection and of glossiness are not drawn".into());
     notes.chain(textures)
 }

@@ -5,7 +5,7 @@ use super::document;
 use crate::{
     scene::{
         accessor::Accessor,
-        material::Material,
+        material::{Material, TEXTURE_SLOTS},
         model::{Primitive, Scene},
         texture::{Filter, Image, MipFilter, Texture, Wrap},
     },
@@ -15,9 +15,8 @@ use crate::{
 /// How a primitive's material differs from that of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Variant {
-    /// It keeps its texture of the base color, of the emission.
-    pub base: bool,
-    pub emission: bool,
+    /// The [`TextureSlot`](crate::scene::material::TextureSlot)s whose textures it keeps.
+    pub textures: [bool; TEXTURE_SLOTS],
     /// The texture of the base color is the ramp.
     pub is_ramp: bool,
     /// Bits of the alpha cutoff.
@@ -28,8 +27,7 @@ impl Variant {
     /// That of a material as the file has it.
     pub fn of_material(plain: &Material) -> Self {
         Self {
-            base: plain.base_texture.is_some(),
-            emission: plain.emission_texture.is_some(),
+            textures: plain.textures().map(|texture| texture.is_some()),
             is_ramp: false,
             cutoff: plain.alpha_cutoff.map(f32::to_bits),
         }
@@ -37,15 +35,12 @@ impl Variant {
 
     /// The material that `plain` becomes. The ramp is added to `images` where it is not there.
     pub fn made_of(self, plain: Material, images: &mut Vec<Image>) -> Material {
-        Material {
-            base_texture: match self.is_ramp {
-                true => Some(ramp_texture(images)),
-                false => plain.base_texture.filter(|_| self.base),
-            },
-            emission_texture: plain.emission_texture.filter(|_| self.emission),
-            alpha_cutoff: self.cutoff.map(f32::from_bits),
-            ..plain
+        let mut made = plain.with_textures(self.textures);
+        if self.is_ramp {
+            made.base_texture = Some(ramp_texture(images));
         }
+        made.alpha_cutoff = self.cutoff.map(f32::from_bits);
+        made
     }
 }
 

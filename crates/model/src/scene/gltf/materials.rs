@@ -13,7 +13,7 @@ use super::{
     uri,
 };
 use crate::scene::{
-    material::Material,
+    material::{Material, TextureSlot},
     texture::{Image, MipFilter, Texture},
 };
 
@@ -91,8 +91,9 @@ struct Reader<'a, 'b, 'c> {
     notes: &'b Notes,
     read: &'a mut ReadFile<'c>,
     images: Vec<Image>,
-    /// Index of each decoded image, by its index in the file; none of one that cannot be read.
-    known: HashMap<usize, Option<usize>>,
+    /// Index of each decoded image, by its index in the file and whether its texels are data; none
+    /// of one that cannot be read.
+    known: HashMap<(usize, bool), Option<usize>>,
     /// Decoded size of all images so far.
     bytes: u64,
 }
@@ -105,16 +106,31 @@ impl Reader<'_, '_, '_> {
         about: &document::Material,
         name: &str,
     ) -> Result<Material, LoadError> {
-        let mut texture = |about: &Option<TextureUse>, key: &str| match about {
-            Some(about) => self.texture(about, format_args!("{name}: {key}")),
+        let mut texture = |about: &Option<TextureUse>, key: &str, slot: TextureSlot| match about {
+            Some(about) => self.texture(about, slot.is_data(), format_args!("{name}: {key}")),
             None => Ok(None),
         };
-        let base_texture = texture(&about.base_texture, "baseColorTexture")?;
-        let emission_texture = texture(&about.emission_texture, "emissiveTexture")?;
+        let base_texture = texture(&about.base_texture, "baseColorTexture", TextureSlot::Base)?;
+        let emission_texture = texture(
+            &about.emission_texture,
+            "emissiveTexture",
+            TextureSlot::Emission,
+        )?;
+        let finish = "metallicRoughnessTexture";
+        let finish_texture = texture(&about.finish_texture, finish, TextureSlot::Finish)?;
+        let occlusion = "occlusionTexture";
+        let occlusion_texture =
+            texture(&about.occlusion_texture, occlusion, TextureSlot::Occlusion)?;
+        let normal_texture = texture(&about.normal_texture, "normalTexture", TextureSlot::Normal)?;
         let alpha_cutoff = alpha_cutoff(about, base_texture.is_some());
         Ok(Material {
             base_texture,
             emission_texture,
+            finish_texture,
+            occlusion_texture,
+            occlusion_strength: about.occlusion_strength,
+            normal_texture,
+            normal_scale: about.normal_scale,
             alpha_cutoff,
             ..plain
         })
@@ -124,6 +140,7 @@ impl Reader<'_, '_, '_> {
     fn texture(
         &mut self,
         about: &TextureUse,
+        is_data: bool,
         place: std::fmt::Arguments,
     ) -> Result<Option<Texture>, LoadError> {
         let texture = match &self.buffers.document.textures[about.texture] {
@@ -142,7 +159,7 @@ impl Reader<'_, '_, '_> {
             });
             return Ok(None);
         };
-        let Some(image) = self.image(source, place)? else {
+        let Some(image) = self.image(source, is_data, place)? else {
             return Ok(None);
         };
         let sampler = texture.sampler;
@@ -168,9 +185,10 @@ impl Reader<'_, '_, '_> {
     fn image(
         &mut self,
         index: usize,
+        is_data: bool,
         place: std::fmt::Arguments,
     ) -> Result<Option<usize>, LoadError> {
-        if let Some(&in_scene) = self.known.get(&index) {
+        if let Some(&in_scene) = self.known.get(&(index, is_data)) {
             return Ok(in_scene);
         }
         let (name, image) = match &self.buffers.document.images[index] {
@@ -183,7 +201,8 @@ impl Reader<'_, '_, '_> {
         };
         let in_scene = match image {
             Ok(image) => {
-                self.images.push(image);
+                self.images
+                    .push(if is_data { image.of_data() } else { image });
                 Some(self.images.len() - 1)
             }
             Err(error) => {
@@ -192,7 +211,7 @@ impl Reader<'_, '_, '_> {
                 None
             }
         };
-        self.known.insert(index, in_scene);
+        self.known.insert((index, is_data), in_scene);
         Ok(in_scene)
     }
 

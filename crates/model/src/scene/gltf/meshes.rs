@@ -23,9 +23,10 @@ use crate::{
         accessor::Accessor,
         bounds::Bounds,
         deformation::Deformation,
-        material::Material,
+        material::{Material, TEXTURE_SLOTS, TextureSlot},
         model::{Instance, Primitive, Scene, Topology},
         rig::Rig,
+        tangents,
     },
     work::checkpoint,
 };
@@ -262,6 +263,7 @@ impl<'a> Loader<'a> {
             is_faceted: normals.is_none(),
             colors,
             texcoords,
+            tangents: None,
             material: 0,
             bounds: Bounds::EMPTY,
             longest_edge: 0.0,
@@ -289,6 +291,17 @@ impl<'a> Loader<'a> {
             !primitive.is_faceted && primitive.normals_agree(&self.writer.scene)?;
         if !self.give_material(name, about.material, &mut primitive)? {
             return Ok(());
+        }
+        let normal_map = self.writer.scene.materials[primitive.material].normal_texture;
+        if let Some(texture) = normal_map {
+            let given = (&[4][..], normal_formats);
+            let given = self.optional(name, about, "TANGENT", count, given)?;
+            let tangents = tangents::of(&self.writer.scene, &primitive, &texture, given.as_ref());
+            primitive.tangents = Some(
+                self.writer
+                    .append_vectors(tangents.len(), tangents.into_iter())
+                    .map_err(at("TANGENT"))?,
+            );
         }
         self.writer.scene.primitives.push(primitive);
         self.sources.push(about);
@@ -335,14 +348,14 @@ impl<'a> Loader<'a> {
         about: &document::Primitive,
         count: u32,
         formats: &[Format],
-    ) -> Result<[Option<Accessor>; 2], LoadError> {
+    ) -> Result<[Option<Accessor>; TEXTURE_SLOTS], LoadError> {
         let Some(material) = about.material else {
-            return Ok([None; 2]);
+            return Ok([None; TEXTURE_SLOTS]);
         };
         let textures = self.writer.scene.materials[material]
             .textures()
             .map(|texture| texture.copied());
-        let mut texcoords = [None; 2];
+        let mut texcoords = [None; TEXTURE_SLOTS];
         for (texcoords, texture) in texcoords.iter_mut().zip(textures) {
             let Some(texture) = texture else { continue };
             let attribute = format!("TEXCOORD_{}", texture.set);
@@ -382,10 +395,10 @@ impl<'a> Loader<'a> {
             let plain = &self.writer.scene.materials[material];
             mask::Variant::of_material(plain)
         });
-        let [base, emission] = [0, 1].map(|k| primitive.texcoords[k].is_some());
+        let textures = primitive.texcoords.map(|texcoords| texcoords.is_some());
+        let base = textures[TextureSlot::Base as usize];
         let mut variant = mask::Variant {
-            base,
-            emission,
+            textures,
             cutoff: as_read.and_then(|as_read| as_read.cutoff).filter(|_| base),
             is_ramp: false,
         };

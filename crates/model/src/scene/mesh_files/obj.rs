@@ -400,7 +400,7 @@ impl Faces<'_> {
         let node = self.node()?;
         let [has_texcoords, has_normals] =
             [1, 2].map(|list| corners.iter().all(|corner| corner[list] != NONE));
-        let is_textured = self.builder.scene.materials[material].textures() != [None, None];
+        let is_textured = self.builder.scene.materials[material].has_color_texture();
         if is_textured && !has_texcoords {
             self.findings.fault("it is drawn without its texture", || {
                 format!("line {line}: the face has no texture coordinates")

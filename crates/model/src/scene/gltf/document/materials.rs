@@ -138,6 +138,11 @@ pub fn material(lists: &Lists, index: usize, value: &Value) -> Material {
         specular: [0.04, 0.04, 0.04, 1.0],
         emission: [0.0; 3],
         emission_texture: None,
+        finish_texture: None,
+        occlusion_texture: None,
+        occlusion_strength: 1.0,
+        normal_texture: None,
+        normal_scale: 1.0,
         alpha_mode: AlphaMode::Opaque,
         alpha_cutoff: 0.5,
         double_sided: false,
@@ -150,6 +155,10 @@ pub fn material(lists: &Lists, index: usize, value: &Value) -> Material {
     let lenient = lists.lenient("material", index, part);
     let reader = Reader { lists, lenient };
     material.name = part.text("name").ok().flatten().map(str::to_owned);
+    material.unlit = reader
+        .lenient
+        .field(part.extension("KHR_materials_unlit"))
+        .is_some();
     reader.base(part, &mut material);
     reader.reflection(part, &mut material);
     let mode = part.word("alphaMode", &ALPHA_MODES);
@@ -167,15 +176,9 @@ pub fn material(lists: &Lists, index: usize, value: &Value) -> Material {
         .lenient
         .field(part.flag("doubleSided"))
         .unwrap_or(false);
-    material.unlit = reader
-        .lenient
-        .field(part.extension("KHR_materials_unlit"))
-        .is_some();
-    material.has_more |= ["normalTexture", "occlusionTexture"]
-        .iter()
-        .any(|key| part.value(key).is_some());
     if !material.unlit {
         reader.emission(part, &mut material);
+        reader.relief(part, &mut material);
     }
     material
 }
@@ -201,9 +204,7 @@ impl Reader<'_, '_> {
             material.base_color = color.map(|channel| channel.clamp(0.0, 1.0));
         }
         material.base_texture = self.texture_use(source, texture);
-        material.has_more = ["metallicRoughnessTexture", "specularGlossinessTexture"]
-            .iter()
-            .any(|key| source.value(key).is_some());
+        material.has_more = source.value("specularGlossinessTexture").is_some();
     }
 
     /// How the material reflects: the metallic-roughness model with KHR_materials_ior and
@@ -224,6 +225,9 @@ impl Reader<'_, '_> {
         if let Some(usual) = self.lenient.field(part.object("pbrMetallicRoughness")) {
             material.metallic = self.fraction(usual, "metallicFactor");
             material.roughness = self.fraction(usual, "roughnessFactor");
+            if !material.unlit {
+                material.finish_texture = self.texture_use(usual, "metallicRoughnessTexture");
+            }
         }
         let given = extension("KHR_materials_ior");
         let given = given.and_then(|given| self.lenient.field(given.number("ior")));
@@ -291,6 +295,20 @@ impl Reader<'_, '_> {
         if material.emission != [0.0; 3] {
             material.emission_texture = self.texture_use(part, "emissiveTexture");
         }
+    }
+
+    /// Where it is shut off from light, and where its normals point.
+    fn relief(&self, part: Object, material: &mut Material) {
+        let factor = |key: &str, factor: &str| {
+            let info = self.lenient.field(part.object(key))?;
+            self.lenient.field(info.number(factor))
+        };
+        material.occlusion_texture = self.texture_use(part, "occlusionTexture");
+        material.occlusion_strength = factor("occlusionTexture", "strength")
+            .unwrap_or(1.0)
+            .clamp(0.0, 1.0);
+        material.normal_texture = self.texture_use(part, "normalTexture");
+        material.normal_scale = factor("normalTexture", "scale").unwrap_or(1.0);
     }
 
     /// The use of a texture, under a key of an object.

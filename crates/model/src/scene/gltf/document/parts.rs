@@ -180,6 +180,13 @@ pub struct Material {
     /// Linear RGB, from 0 up.
     pub emission: [f32; 3],
     pub emission_texture: Option<TextureUse>,
+    pub finish_texture: Option<TextureUse>,
+    pub occlusion_texture: Option<TextureUse>,
+    /// 0 to 1.
+    pub occlusion_strength: f32,
+    pub normal_texture: Option<TextureUse>,
+    /// Any finite number.
+    pub normal_scale: f32,
     pub alpha_mode: AlphaMode,
     pub alpha_cutoff: f32,
     pub double_sided: bool,
