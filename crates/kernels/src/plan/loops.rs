@@ -17,9 +17,9 @@ pub const MAX_ITERATIONS: u32 = 64_000;
 /// sorted runs, and twice more.
 pub const DEEPEST_GLASS: u32 = 2048;
 
-/// Most samples and rows under the discs of a triangle: three of 128 px, the largest that
-/// `points` draws.
-const DISC_SAMPLES: u32 = 3 * (130 * 130 + 130);
+/// Most samples and rows under the discs of a triangle: three of 64 px, the largest that `points`
+/// draws.
+const DISC_SAMPLES: u32 = 3 * (66 * 66 + 66);
 
 /// Most iterations that the effects of a sample and of a surface make: `stipple` four, `hatch`
 /// four.
@@ -49,8 +49,8 @@ pub fn samples(caps: &Caps, loops: u32) -> u32 {
     }
 }
 
-/// Among at most so many invocations a card divides the discs of a triangle.
-const MOST_PARTS: u64 = 64;
+/// Rows of the largest disc.
+const DISC_ROWS: u64 = 66;
 
 /// Invocations over which a card divides the discs of few triangles. More of them spare it little
 /// of its waiting, and those that find no row in a small disc cost a few microseconds
@@ -65,7 +65,7 @@ pub fn invocations_per_triangle(caps: &Caps, shape: Shape, triangles: u64, loops
         (Shape::Points, true) => (DISC_SAMPLES * loops).div_ceil(MAX_ITERATIONS),
         (Shape::Points, false) => {
             1 << (DISC_INVOCATIONS / triangles.max(1))
-                .clamp(1, MOST_PARTS)
+                .clamp(1, DISC_ROWS)
                 .ilog2()
         }
         _ => 1,
@@ -103,7 +103,7 @@ mod tests {
             "{loops} loops a sample"
         );
         assert!(
-            DISC_SAMPLES * loops < MAX_ITERATIONS * 130,
+            DISC_SAMPLES * loops < MAX_ITERATIONS * 66,
             "a row of a disc is the least that one invocation walks"
         );
     }

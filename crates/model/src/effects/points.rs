@@ -9,7 +9,7 @@ use crate::params;
 params! {
     pub struct Points {
         /// Diameter of the discs.
-        size_px: f32 = 3.0, hard 0.0..=128.0, soft 0.5..=16.0, unit "px";
+        size_px: f32 = 3.0, hard 0.0..=64.0, soft 0.5..=16.0, unit "px";
     }
 }
 
