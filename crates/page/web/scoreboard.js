@@ -60,7 +60,7 @@ function card(way, grid) {
   const frame = element("div", "frame");
   const [canvas, faults] = [element("canvas", "picture"), element("canvas", "faults")];
   for (const layer of [canvas, faults]) [layer.width, layer.height] = SIZE;
-  const [number, unit, times] = [element("strong", "number", "…"), element("span", "unit", "wrong pixels"), element("p", "times")];
+  const [number, unit, times] = [element("strong", "number", "–"), element("span", "unit", "wrong pixels"), element("p", "times")];
   const figure = element("p", "figure");
   figure.append(number, unit);
   frame.append(canvas, faults);
