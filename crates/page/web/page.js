@@ -29,6 +29,8 @@ function add(text, kind = "") {
 
 function trouble(error) {
   say(words(error), "wrong");
+  // The scoreboard has taken its place.
+  if (!caption.isConnected) main.append(caption);
   document.documentElement.classList.add("trouble");
   if (opened) caption.append(" · ", saver(opened));
 }

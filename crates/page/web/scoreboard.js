@@ -60,7 +60,7 @@ function card(way, grid) {
   const frame = element("div", "frame");
   const [canvas, faults] = [element("canvas", "picture"), element("canvas", "faults")];
   for (const layer of [canvas, faults]) [layer.width, layer.height] = SIZE;
-  const [number, unit, times] = [element("strong", "number", "…"), element("span", "unit", "wrong pixels"), element("p", "times")];
+  const [number, unit, times] = [element("strong", "number", "–"), element("span", "unit", "wrong pixels"), element("p", "times")];
   const figure = element("p", "figure");
   figure.append(number, unit);
   frame.append(canvas, faults);
@@ -113,15 +113,15 @@ export async function scoreboard(main) {
   const adapter = (await device()).adapter() || (await adapterName()) || "this device";
   const [head, grid, status] = [element("header", ""), element("div", "ways"), element("p", "status", "The oracle draws …")];
   const copy = element("button", "", "Copy the result");
-  const again = element("button", "", "Count here");
-  copy.disabled = again.disabled = true;
+  const here = element("button", "", "Count here");
+  copy.disabled = here.disabled = true;
   head.append(element("h1", "", "Who draws the right pixel?"), element("p", "lead", `One scene on ${adapter}, five ways to find the triangle of each pixel. An exact oracle on your processor draws it too, and every pixel that differs is red.`));
   const foot = element("footer", "");
-  foot.append(status, again, copy);
+  foot.append(status, here, copy);
   main.replaceChildren(head, grid, foot);
   const ways = WAYS.map((way) => card(way, grid));
   let [angle, isWanted] = [0, true];
-  again.onclick = () => (isWanted = true);
+  here.onclick = () => (isWanted = true);
   copy.onclick = async () => {
     try {
       await navigator.clipboard.writeText(text(ways, adapter, measuredAt));
@@ -145,7 +145,7 @@ export async function scoreboard(main) {
   let [measuredAt, heldUntil] = [0, 0];
   async function count() {
     isWanted = false;
-    again.disabled = true;
+    here.disabled = true;
     status.textContent = "The oracle draws …";
     const oracles = await oraclePicture(ways[0].preset, { progress: (part) => (status.textContent = `The oracle draws: ${Math.round(100 * part)} %`) });
     await onDevice(async () => {
@@ -156,7 +156,7 @@ export async function scoreboard(main) {
     });
     measuredAt = ((angle % 360) + 360) % 360;
     heldUntil = performance.now() + 1000 * HELD_S;
-    copy.disabled = again.disabled = false;
+    copy.disabled = here.disabled = false;
     main.classList.add("counted");
     status.textContent = `Counted at ${Math.round(measuredAt)}°. Wrong: a channel differs from the oracle's by more than ${TOLERANCE} of 255. Milliseconds: repeated frames, by the browser's clock.`;
   }
