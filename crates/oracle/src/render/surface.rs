@@ -369,6 +369,9 @@ impl<'a> SurfaceTriangle<'a> {
         let flat_normal = self
             .flat_normal
             .map(|normal| turned(normal, moved.plane) * side);
+        let unmapped = flat_normal
+            .or(smooth.map(|normal| turned(normal, moved.normal) * side))
+            .unwrap_or(toward_eye);
         let looked_up = self
             .material
             .as_ref()
@@ -409,7 +412,7 @@ impl<'a> SurfaceTriangle<'a> {
             glow,
             position,
             normal,
-            flat_normal: flat_normal.unwrap_or(normal),
+            flat_normal: unmapped,
             view: toward_eye,
             center: self.center,
             center_screen: self.center_screen.unwrap_or(point.screen),
