@@ -166,14 +166,18 @@ fn steps(
             let i = place.next().expect("it has no end");
             !colors(enabled) || last.is_some_and(|last| i <= last)
         });
-        let at = pixel[1] as usize * preset.output.size[0] as usize + pixel[0] as usize;
+        let oracle = Backend::Oracle.pixel(&shown, scene, pixel)?;
+        let adapter = match backend {
+            Backend::Oracle => oracle,
+            Backend::Gpu(..) => backend.pixel(&shown, scene, pixel)?,
+        };
         steps.push(Step {
             effect: last.map_or_else(
                 || "the material".to_owned(),
                 |i| effects[i].effect.name.clone(),
             ),
-            oracle: Backend::Oracle.frame(&shown, scene)?.color[at],
-            adapter: backend.frame(&shown, scene)?.color[at],
+            oracle,
+            adapter,
         });
     }
     Ok(steps)
