@@ -8,11 +8,12 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::{
-    args::{Common, size},
+    args::Common,
     backend::{Backend, scene_of},
     error::{CliError, Exit},
     open::{named, open},
     streams::{Streams, table},
+    values::size,
 };
 use crate::{
     accuracy::{AXES, AccuracyOptions},
@@ -36,7 +37,7 @@ pub struct Probe {
     #[arg(long)]
     pub options: bool,
     /// Size in pixels instead of the preset's own
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    #[arg(long, value_name = "WxH|NAME", value_parser = size)]
     pub size: Option<[u32; 2]>,
 }
 
