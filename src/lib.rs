@@ -23,6 +23,8 @@ pub mod app;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod cli;
 
+#[cfg(not(target_arch = "wasm32"))]
+pub mod golden;
 pub mod link;
 
 pub use rasterlab_bench::{baselines, stress, trade};

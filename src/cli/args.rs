@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::values::{fraction, frames, size, turntable};
 use crate::{
     effect_files::Hook,
     film::Turntable,
@@ -199,6 +200,8 @@ pub enum Command {
     Gallery(Gallery),
     /// Validate presets; with --render also compare them with their goldens
     Check(Check),
+    /// List the presets whose picture differs from its golden, with numbers and pictures
+    Review(super::review::Review),
     /// Write a commented effect file to begin with
     NewEffect(NewEffect),
     /// Print the link under which a page draws a preset, with the bits that its picture must have
@@ -248,6 +251,7 @@ impl Command {
             Self::Fuzz(_) => "fuzz",
             Self::Gallery(_) => "gallery",
             Self::Check(_) => "check",
+            Self::Review(_) => "review",
             Self::NewEffect(_) => "new-effect",
             Self::Link(_) => "link",
             Self::Page(_) => "page",
@@ -289,8 +293,8 @@ pub struct Page {
     /// Address of the page that shows the picture alive (docs/web.md)
     #[arg(long, value_name = "URL", default_value = PAGE)]
     pub page: String,
-    /// Size in pixels, e.g. 1920x1080
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    /// Size in pixels, e.g. 1920x1080, or 1080p, 4k, square or story
+    #[arg(long, value_name = "WxH|NAME", value_parser = size)]
     pub size: Option<[u32; 2]>,
 }
 
@@ -335,9 +339,16 @@ pub struct Render {
     /// File to write, - for stdout; may contain {preset} {effect} {n} {n:3} {adapter} {tier}
     #[arg(short, long, value_name = "FILE", default_value = "{preset}.png")]
     pub output: String,
-    /// Size in pixels, e.g. 1920x1080
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    /// Size in pixels, e.g. 1920x1080, or 1080p, 4k, square or story
+    #[arg(long, value_name = "WxH|NAME", value_parser = size)]
     pub size: Option<[u32; 2]>,
+    /// Draw each preset on the way to this one, which shows the same scene: numbers, colors and
+    /// cameras in between; effects, choices and whole numbers switch half way
+    #[arg(long, value_name = "PRESET")]
+    pub toward: Option<String>,
+    /// How far on the way, 0 to 1
+    #[arg(long, value_name = "F", requires = "toward", default_value = "0.5", value_parser = fraction)]
+    pub by: f64,
     /// Time of the picture in seconds
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub time: Option<f64>,
@@ -390,8 +401,8 @@ pub struct Sequence {
     /// Frames A..B, B excluded; use it to split a job
     #[arg(long, value_name = "A..B", value_parser = frames)]
     pub frames: Option<[Option<u32>; 2]>,
-    /// Size in pixels, e.g. 1920x1080
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    /// Size in pixels, e.g. 1920x1080, or 1080p, 4k, square or story
+    #[arg(long, value_name = "WxH|NAME", value_parser = size)]
     pub size: Option<[u32; 2]>,
     /// Named tolerance: draft, fast, precise, reference or strict
     #[arg(long, value_name = "T")]
@@ -410,7 +421,7 @@ pub struct Sweep {
     #[arg(short, long, value_name = "FILE", default_value = "{preset}-sweep.png")]
     pub output: String,
     /// Size of each picture in pixels, e.g. 320x240
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    #[arg(long, value_name = "WxH|NAME", value_parser = size)]
     pub size: Option<[u32; 2]>,
     /// Time of the pictures in seconds
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
@@ -429,7 +440,7 @@ pub struct Verify {
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub frames: u32,
     /// Size in pixels instead of the preset's own
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    #[arg(long, value_name = "WxH|NAME", value_parser = size)]
     pub size: Option<[u32; 2]>,
     /// Folder for pictures of expected, actual and difference side by side
     #[arg(short, long, value_name = "DIR")]
@@ -455,7 +466,7 @@ pub struct Compare {
     #[arg(long, alias = "max-wrong-owner", default_value_t = 0)]
     pub max_wrong_triangles: u64,
     /// Size in pixels instead of the presets' own
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    #[arg(long, value_name = "WxH|NAME", value_parser = size)]
     pub size: Option<[u32; 2]>,
 }
 
@@ -467,7 +478,7 @@ pub struct Explain {
     #[arg(long)]
     pub measure: bool,
     /// Size in pixels instead of the preset's own
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    #[arg(long, value_name = "WxH|NAME", value_parser = size)]
     pub size: Option<[u32; 2]>,
 }
 
@@ -520,7 +531,7 @@ pub struct Bench {
     #[arg(long, requires = "axes")]
     pub each: bool,
     /// Size of the pictures in pixels
-    #[arg(long, value_name = "WxH", value_parser = size, default_value = "1920x1080")]
+    #[arg(long, value_name = "WxH|NAME", value_parser = size, default_value = "1920x1080")]
     pub size: [u32; 2],
     /// Number of timed frames per row
     #[arg(long, default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=100_000))]
@@ -581,51 +592,4 @@ pub struct Check {
     /// tests/snapshots]
     #[arg(long, value_name = "DIR")]
     pub snapshots: Option<PathBuf>,
-}
-
-/// `30..60`, `..60`, `30..`.
-fn frames(text: &str) -> Result<[Option<u32>; 2], String> {
-    let wrong = || {
-        format!(
-            "{text:?} is no range of frames; write A..B, A.. or ..B with whole numbers, B excluded, for instance 0..60"
-        )
-    };
-    let (from, to) = text.split_once("..").ok_or_else(wrong)?;
-    let end = |end: &str| {
-        if end.is_empty() {
-            Ok(None)
-        } else {
-            end.parse().map(Some).map_err(|_| wrong())
-        }
-    };
-    match [end(from)?, end(to)?] {
-        [Some(from), Some(to)] if from >= to => {
-            Err(format!("{text} has no frame: {from} is not before {to}"))
-        }
-        ends => Ok(ends),
-    }
-}
-
-/// `camera` or `scene`.
-fn turntable(text: &str) -> Result<Turntable, String> {
-    match text {
-        "camera" => Ok(Turntable::Camera),
-        "scene" => Ok(Turntable::Scene),
-        _ => Err(format!("{text:?} cannot turn; write camera or scene")),
-    }
-}
-
-/// `1920x1080`.
-pub fn size(text: &str) -> Result<[u32; 2], String> {
-    let wrong = || {
-        format!("{text:?} is no size; write WIDTHxHEIGHT, each 1 to 16384, for instance 1920x1080")
-    };
-    let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
-    let side = |side: &str| {
-        side.parse()
-            .ok()
-            .filter(|side| (1..=16_384).contains(side))
-            .ok_or_else(wrong)
-    };
-    Ok([side(width)?, side(height)?])
 }

@@ -142,6 +142,25 @@ impl Backend {
         }
     }
 
+    /// The color of a pixel (column, row) inside the picture of `preset`. The oracle shades its row
+    /// alone where it can.
+    pub fn pixel(
+        &mut self,
+        preset: &Preset,
+        scene: &Arc<Scene>,
+        [x, y]: [u32; 2],
+    ) -> Result<[u8; 4], CliError> {
+        let scale = preset.accuracy.scale().factor();
+        let moments = self.moments(preset, scene, scale.min(1.0))?;
+        if matches!(self, Self::Oracle)
+            && (scale <= 1.0 || oracle::can_draw_sequence(scene, &moments, scale).is_ok())
+        {
+            return Ok(oracle::render_scaled_row(scene, &moments, scale, y)?[x as usize]);
+        }
+        let frame = self.frame(preset, scene)?;
+        Ok(frame.color[(y * frame.width + x) as usize])
+    }
+
     /// What is drawn for a picture, in order, with `factor` times as many pixels to a side.
     ///
     /// # Errors
@@ -204,10 +223,11 @@ impl Backend {
                 } else {
                     Some(oracle::render_sequence(scene, before)?.resolved().to_vec())
                 };
-                let frame = oracle::render_next(scene, view, stack, previous.as_deref())?;
+                let (frame, geometry) =
+                    oracle::render_with_geometry(scene, view, stack, previous.as_deref())?;
                 Ok(Capture {
                     frame,
-                    geometry: oracle::geometry(scene, view, stack)?,
+                    geometry,
                     layers: None,
                     previous,
                     shown: None,

@@ -9,16 +9,14 @@ use super::{
     args::{Bless, Common},
     backend::scene_of,
     error::{CliError, Exit},
-    files,
-    golden::{self, Golden},
     open::open,
     streams::Streams,
 };
 use crate::{
     effects::Effect,
-    measure::compare::pictures,
+    golden::{self, Change, Golden},
     preset::{GoldenTest, Output, Preset},
-    preset_file::{self, Existing, PresetError, PresetFile, golden_folder, golden_paths},
+    preset_file::{self, PresetError, PresetFile, golden_folder},
 };
 
 pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit, CliError> {
@@ -37,7 +35,8 @@ pub fn run(common: &Common, args: &Bless, streams: &mut Streams) -> Result<Exit,
     let (mut results, mut changed) = (Vec::new(), false);
     for (preset_file, writes) in preset_files {
         bar.set_message(preset_file.id.clone());
-        let golden = golden::draw(&preset_file, &*scene_of(common, &preset_file, streams)?)?;
+        let golden = golden::draw(&preset_file, &*scene_of(common, &preset_file, streams)?)
+            .map_err(CliError::usage)?;
         let snapshots = args
             .snapshots
             .clone()
@@ -184,36 +183,21 @@ fn store(
         preset_file::save(&mut preset_file, &path)?;
     }
     if changes {
-        std::fs::create_dir_all(snapshots)?;
-        let [png, sidecar] = golden_paths(snapshots, &preset_file.id);
-        files::write(&png, &golden.png, Existing::Replace)?;
-        files::write(&sidecar, golden.sidecar.as_bytes(), Existing::Replace)?;
+        golden::store(golden, snapshots, &preset_file.id).map_err(CliError::usage)?;
     }
     Ok(())
 }
 
 /// What blessing would change, with old and new counts.
 fn change(golden: &Golden, snapshots: &Path, id: &str) -> Value {
-    let [png, sidecar] = golden_paths(snapshots, id);
-    let old_sidecar = std::fs::read_to_string(&sidecar).unwrap_or_default();
-    let old: Value = serde_json::from_str(&old_sidecar).unwrap_or_default();
-    let size = [golden.frame.width, golden.frame.height];
-    // A golden that cannot be read counts as missing.
-    let old_picture = preset_file::png_pixels(&png).ok();
-    let delta = old_picture
-        .as_ref()
-        .filter(|(_, old_size)| *old_size == size)
-        .map(|(color, _)| pictures(color, &golden.frame.color, 0));
-    let same = delta
-        .as_ref()
-        .is_some_and(|delta| delta.pixels_over_tolerance == 0)
-        && old_sidecar == golden.sidecar;
+    let change = Change::of(golden, snapshots, id);
+    let delta = change.delta.as_ref();
     json!({
-        "preset": id, "changes": !same, "is_new": old_picture.is_none(),
+        "preset": id, "changes": !change.is_none(), "is_new": change.stored.is_none(),
         "pixels": golden.frame.color.len(),
-        "pixels_changed": delta.as_ref().map(|delta| delta.pixels_over_tolerance),
-        "max_color_delta": delta.as_ref().map(|delta| delta.max_delta),
-        "covered_old": old["covered"], "covered_new": golden.frame.covered(),
+        "pixels_changed": delta.map(|delta| delta.pixels_over_tolerance),
+        "max_color_delta": delta.map(|delta| delta.max_delta),
+        "covered_old": change.sidecar["covered"], "covered_new": golden.frame.covered(),
         "bytes": golden.png.len(),
     })
 }

@@ -42,7 +42,12 @@ pub fn run(common: &Common, args: &Check, streams: &mut Streams) -> Result<Exit,
     let mut findings = Vec::new();
     for file in &files {
         bar.set_message(file.clone());
-        findings.push(check(common, args, file, backend.as_mut()));
+        findings.push(check(
+            common,
+            args.snapshots.as_deref(),
+            file,
+            backend.as_mut(),
+        ));
         bar.inc(1);
     }
     bar.finish_and_clear();
@@ -78,7 +83,14 @@ pub fn run(common: &Common, args: &Check, streams: &mut Streams) -> Result<Exit,
         .fold(Exit::Done, |exit, finding| exit.and(finding.exit)))
 }
 
-fn check(common: &Common, args: &Check, file: &str, backend: Option<&mut Backend>) -> Finding {
+/// Validates one preset, and compares what `backend` draws of it with its golden in `snapshots`, or
+/// in the folder of its goldens.
+pub fn check(
+    common: &Common,
+    snapshots: Option<&Path>,
+    file: &str,
+    backend: Option<&mut Backend>,
+) -> Finding {
     let id = Path::new(file).file_stem().map_or_else(
         || file.to_owned(),
         |stem| stem.to_string_lossy().into_owned(),
@@ -97,7 +109,7 @@ fn check(common: &Common, args: &Check, file: &str, backend: Option<&mut Backend
         finding.warnings.extend(missing);
         planned(&preset_file.preset, &scene)?;
         backend
-            .map(|backend| drawn(args, &preset_file, &scene, backend))
+            .map(|backend| drawn(snapshots, &preset_file, &scene, backend))
             .transpose()
     });
     match outcome {
@@ -137,7 +149,7 @@ fn planned(preset: &Preset, scene: &Scene) -> Result<(), CliError> {
 type Comparison = (Option<Drawn>, Vec<String>);
 
 fn drawn(
-    args: &Check,
+    snapshots: Option<&Path>,
     preset_file: &PresetFile,
     scene: &Arc<Scene>,
     backend: &mut Backend,
@@ -147,10 +159,7 @@ fn drawn(
     };
     let frame = backend.frame(&preset_file.preset, scene)?;
     let size = [frame.width, frame.height];
-    let folder = args
-        .snapshots
-        .clone()
-        .unwrap_or_else(|| golden_folder(preset_file));
+    let folder = snapshots.map_or_else(|| golden_folder(preset_file), Path::to_owned);
     let [png, _] = golden_paths(&folder, &preset_file.id);
     if !png.exists() {
         return Ok((

@@ -18,7 +18,6 @@ mod files;
 mod finding;
 mod fuzz;
 pub mod gallery;
-pub mod golden;
 mod link;
 mod list;
 mod loading;
@@ -31,11 +30,13 @@ mod parts;
 mod probe;
 mod render;
 mod report;
+mod review;
 mod sequence;
 mod streams;
 mod stress;
 mod sweep;
 pub mod trade;
+mod values;
 mod verify;
 
 use std::io::{self, Write as _};
@@ -133,6 +134,7 @@ fn dispatch(common: &Common, command: &Command, streams: &mut Streams) -> Result
         Command::Fuzz(args) => fuzz::run(common, args, streams),
         Command::Gallery(args) => gallery::run(args, streams),
         Command::Check(args) => check::run(common, args, streams),
+        Command::Review(args) => review::run(common, args, streams),
         Command::NewEffect(args) => new_effect::run(common, args, streams),
         Command::Link(args) => link::run(common, args, streams),
         Command::Page(args) => page::run(common, args, streams),

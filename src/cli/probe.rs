@@ -8,11 +8,12 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::{
-    args::{Common, size},
+    args::Common,
     backend::{Backend, scene_of},
     error::{CliError, Exit},
     open::{named, open},
     streams::{Streams, table},
+    values::size,
 };
 use crate::{
     accuracy::{AXES, AccuracyOptions},
@@ -36,7 +37,7 @@ pub struct Probe {
     #[arg(long)]
     pub options: bool,
     /// Size in pixels instead of the preset's own
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    #[arg(long, value_name = "WxH|NAME", value_parser = size)]
     pub size: Option<[u32; 2]>,
 }
 
@@ -166,14 +167,18 @@ fn steps(
             let i = place.next().expect("it has no end");
             !colors(enabled) || last.is_some_and(|last| i <= last)
         });
-        let at = pixel[1] as usize * preset.output.size[0] as usize + pixel[0] as usize;
+        let oracle = Backend::Oracle.pixel(&shown, scene, pixel)?;
+        let adapter = match backend {
+            Backend::Oracle => oracle,
+            Backend::Gpu(..) => backend.pixel(&shown, scene, pixel)?,
+        };
         steps.push(Step {
             effect: last.map_or_else(
                 || "the material".to_owned(),
                 |i| effects[i].effect.name.clone(),
             ),
-            oracle: Backend::Oracle.frame(&shown, scene)?.color[at],
-            adapter: backend.frame(&shown, scene)?.color[at],
+            oracle,
+            adapter,
         });
     }
     Ok(steps)

@@ -5,7 +5,7 @@ use serde_json::json;
 use super::{
     args::{Common, Render},
     arrays,
-    backend::{Backend, scene_of},
+    backend::{Backend, scene_of, scene_with_warnings},
     error::{CliError, Exit},
     files::{self, Names},
     open::{named, open},
@@ -152,9 +152,15 @@ fn check_arrays(args: &Render) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Opens a preset with `--size`, `--time` and `--tier`, which are short for `--set`.
+/// Opens a preset, on the way to that of `--toward`, with `--size`, `--time` and `--tier`, which are short for `--set`.
 fn open_with_flags(common: &Common, args: &Render, what: &str) -> Result<PresetFile, CliError> {
     let mut preset_file = open(common, what)?;
+    if let Some(other) = &args.toward {
+        let (scene, _) = scene_with_warnings(common, &preset_file)?;
+        preset_file = preset_file
+            .toward(&open(common, other)?, args.by, &scene)
+            .map_err(CliError::usage)?;
+    }
     if let Some(size) = args.size {
         preset_file.preset.output.resize(size);
     }

@@ -36,8 +36,8 @@ fn the_probe_decides_as_the_picture_does() {
             file.preset.view(&scene, size),
             file.preset.stack_on(&scene, size),
         );
-        let frame = oracle::render(&scene, &view, &stack).expect("it draws");
-        let geometry = oracle::geometry(&scene, &view, &stack).expect("it draws");
+        let (frame, geometry) =
+            oracle::render_with_geometry(&scene, &view, &stack, None).expect("it draws");
         let pixels = pixels(hash(probed), size, 200);
         let samples = oracle::probe(&scene, &view, &stack, &geometry, &pixels).expect("it draws");
         for sample in samples {
@@ -63,6 +63,31 @@ fn the_probe_decides_as_the_picture_does() {
         }
     }
     assert!(probed >= 10_000, "{probed} pixels");
+}
+
+#[test]
+fn a_row_alone_is_that_of_the_whole_picture() {
+    // Plain, after pictures before it, behind glass, and under passes that read other rows.
+    for id in ["facet", "smear", "glass", "bloom"] {
+        let file = preset_file::open(id, &Folders::default()).expect("a preset");
+        let scene = preset_file::load_scene(&file.preset, None).expect("its scene");
+        let size = [36, 24];
+        let moments = file.preset.moments(&scene, size);
+        for factor in [0.5, 1.0, 2.0] {
+            let whole = oracle::render_scaled(&scene, &moments, factor).expect("it draws");
+            for row in [0, 11, 23] {
+                let alone = oracle::render_scaled_row(&scene, &moments, factor, row);
+                let at = (row * size[0]) as usize;
+                assert_eq!(
+                    alone.expect("it draws"),
+                    whole.color[at..at + size[0] as usize],
+                    "{id}, {factor}, row {row}"
+                );
+            }
+            let below = oracle::render_scaled_row(&scene, &moments, factor, size[1]);
+            assert!(below.expect("it draws").is_empty());
+        }
+    }
 }
 
 /// The distance of the sample from the nearest line through an edge of the triangle, pixels.

@@ -36,7 +36,7 @@ const ORDER: &[(&str, &[&str])] = &[
         &["host", "archive", "effect_files", "preset_file", "film"],
     ),
     ("crates/bench", &["baselines", "trade", "stress"]),
-    (".", &["link", "app", "cli"]),
+    (".", &["link", "golden", "app", "cli"]),
 ];
 
 /// The core: crates that can live in a page.

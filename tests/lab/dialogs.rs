@@ -138,12 +138,12 @@ fn an_export_that_fails_keeps_its_size() {
         std::thread::sleep(Duration::from_millis(10));
     }
     let width = |lab: &Lab| {
-        lab.get_by_label("Width")
+        lab.get_by_label("Width of the picture")
             .accesskit_node()
             .value()
             .unwrap_or_default()
     };
-    lab.get_by_label("Width").click();
+    lab.get_by_label("Width of the picture").click();
     lab.run_steps(3);
     press(&mut lab, Modifiers::COMMAND, Key::A);
     type_text(&mut lab, "123");

@@ -12,8 +12,8 @@ use std::{
 };
 
 use rasterlab::{
-    cli::golden::{self, Golden},
     frame::{Frame, NO_TRIANGLE},
+    golden::{self, Golden},
     measure::{
         Budget,
         compare::{difference_picture, pictures},

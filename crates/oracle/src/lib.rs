@@ -48,10 +48,13 @@ pub use render::{
     dots::{dot_records, dot_strengths},
     draw_order::limited,
     particles,
-    picture::{geometry, render, render_next, render_rows, render_sequence, strict_frame},
+    picture::{
+        render, render_next, render_rows, render_sequence, render_with_geometry, strict_frame,
+    },
     project::project,
     references::{
         finest_bits, project_finest, references, render_finest, render_reference, render_scaled,
+        render_scaled_row,
     },
     resample::resampled,
     resolve::{ResolveInput, shade},

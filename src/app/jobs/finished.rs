@@ -13,8 +13,8 @@ use crate::app::{
     },
     panels::Panels,
     picture::{
-        cells::CellOf, findings::Findings, measured::error_text, screen::Inputs, tier_times,
-        verification::Verdict,
+        apply::draw_for_review, cells::CellOf, findings::Findings, measured::error_text,
+        screen::Inputs, tier_times, verification::Verdict,
     },
     shell::{command::Commands, log::Level, state::State},
 };
@@ -111,6 +111,18 @@ pub fn finish(
                 state.files.live.checking_golden = None;
                 state.files.live.golden = check;
             }
+        }
+        Done::Reviewed(name, drawn) => {
+            state.picture.review.drawn(&name, drawn);
+            draw_for_review(state);
+        }
+        Done::Blessed(name, outcome) => {
+            state.picture.review.blessed(&name, outcome.is_ok());
+            match outcome {
+                Ok(()) => state.notify(Level::Info, format!("Accepted the golden of {name}")),
+                Err(error) => state.notify(Level::Error, error),
+            }
+            draw_for_review(state);
         }
         Done::EffectWritten(path, origin, outcome) => {
             let is_written = outcome.is_ok();

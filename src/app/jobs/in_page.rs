@@ -18,17 +18,33 @@ use crate::{
             findings::Findings,
             golden_check::{self, GoldenCheck, Outcome},
             precision::{self, Measured},
+            review,
             screen::Inputs,
         },
         shell::page,
     },
     link,
-    preset_file::PresetFile,
+    preset_file::{Folders, PresetFile},
     scene::Scene,
     work::Work,
 };
 
+/// What a review says here.
+const NO_GOLDENS: &str = "a page reviews no goldens";
+
 impl Jobs {
+    /// Refuses to draw a preset for the review of goldens.
+    pub fn draw_golden(&self, name: String, _: Folders) {
+        self.spawn("review", move || {
+            Done::Reviewed(name, Err(NO_GOLDENS.into()))
+        });
+    }
+
+    /// Refuses to make a picture a golden.
+    pub fn bless(&self, name: String, _: Folders, _: Arc<review::Drawn>) {
+        self.spawn("bless", move || Done::Blessed(name, Err(NO_GOLDENS.into())));
+    }
+
     /// Draws `inputs`, which the preset says, and judges the picture with the oracle.
     pub fn verify_in_worker(&self, preset_file: PresetFile, inputs: Inputs, work: Arc<Work>) {
         self.spawn_waiting("verify", async move || {

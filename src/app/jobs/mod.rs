@@ -39,6 +39,7 @@ use crate::{
             findings::Findings,
             golden_check::GoldenCheck,
             precision::Measured,
+            review,
             screen::Inputs,
             tier_times::{self, TierDrawing, Timed},
         },
@@ -107,6 +108,10 @@ pub enum Done {
     /// The golden of a preset, compared again, by the number of its request; none if the preset has
     /// no golden.
     Golden(u64, Option<GoldenCheck>),
+    /// A preset of the review beside its golden; none if they are the same.
+    Reviewed(String, Result<Option<Arc<review::Drawn>>, String>),
+    /// The golden of a preset was accepted.
+    Blessed(String, Result<(), String>),
     /// The file of a new effect.
     EffectWritten(PathBuf, Origin, Result<(), String>),
     /// The text of an effect file that is to be edited.

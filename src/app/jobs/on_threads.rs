@@ -11,11 +11,11 @@ use super::{Done, Jobs, background, caught, giving_back, landed, small_picture};
 use crate::{
     app::{
         files::scene_loader::SceneKey,
-        picture::{effect_picture::EffectPicture, golden_check, precision, screen::Inputs},
+        picture::{effect_picture::EffectPicture, golden_check, precision, review, screen::Inputs},
     },
     link,
     preset::Preset,
-    preset_file::{self, PresetFile},
+    preset_file::{self, Folders, PresetFile},
     scene::Scene,
 };
 
@@ -38,6 +38,24 @@ impl Jobs {
                 Ok(golden_check::check(&preset_file))
             });
             Done::Golden(number, checked.ok().flatten())
+        });
+    }
+
+    /// Draws a preset for the review of goldens.
+    pub fn draw_golden(&self, name: String, folders: Folders) {
+        self.spawn_oracle("review", move || {
+            let drawn = caught("drawing a golden", || review::draw(&name, &folders));
+            Done::Reviewed(name, drawn)
+        });
+    }
+
+    /// Makes the picture that the review has shown the golden of a preset.
+    pub fn bless(&self, name: String, folders: Folders, shown: Arc<review::Drawn>) {
+        self.spawn_oracle("bless", move || {
+            let blessed = caught("drawing a golden", || {
+                review::bless(&name, &folders, &shown)
+            });
+            Done::Blessed(name, blessed)
         });
     }
 

@@ -15,7 +15,7 @@ use crate::{
             log::Level,
             state::State,
         },
-        widgets::{panel::Panel, text::cut_middle, theme},
+        widgets::{panel::Panel, size::size_ui, text::cut_middle, theme},
     },
     film::{Turntable, find_ffmpeg},
     preset::Clock,
@@ -380,15 +380,7 @@ fn form_ui(ui: &mut Ui, form: &mut Form, clock: &Clock, takes_focus: bool) -> bo
             ui.label("Size");
             ui.horizontal(|ui| {
                 let step = if form.format.needs_ffmpeg() { 2 } else { 1 };
-                for (side, name) in form
-                    .size
-                    .iter_mut()
-                    .zip(["Width of the film", "Height of the film"])
-                {
-                    ui.add(DragValue::new(side).range(step..=MAX_SIDE).suffix(" px"))
-                        .accessible_name(name);
-                    *side -= *side % step;
-                }
+                size_ui(ui, "the film", &mut form.size, step, MAX_SIDE);
             });
             ui.end_row();
             ui.label("Frames per second");

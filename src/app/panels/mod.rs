@@ -15,6 +15,7 @@ pub mod new_effect;
 pub mod palette;
 pub mod preset_browser;
 pub mod randomize;
+pub mod review;
 pub mod settings;
 pub mod sweep;
 pub mod timeline;
@@ -26,9 +27,9 @@ pub mod viewport;
 use self::{
     cheat_sheet::CheatSheet, code::CodePanel, dialogs::Dialogs, extremes::Extremes,
     film::FilmPanel, inspector::Inspector, log::LogPanel, naming::NameDialog, palette::Palette,
-    preset_browser::PresetBrowser, randomize::RandomizePanel, settings::SettingsWindow,
-    sweep::SweepPanel, timeline::Timeline, timing::TimingPanel, topbar::TopBar, trade::TradePanel,
-    viewport::Viewport,
+    preset_browser::PresetBrowser, randomize::RandomizePanel, review::ReviewPanel,
+    settings::SettingsWindow, sweep::SweepPanel, timeline::Timeline, timing::TimingPanel,
+    topbar::TopBar, trade::TradePanel, viewport::Viewport,
 };
 use crate::preset_file::Folders;
 
@@ -46,6 +47,7 @@ pub struct Panels {
     pub cheat_sheet: CheatSheet,
     pub settings: SettingsWindow,
     pub extremes: Extremes,
+    pub review: ReviewPanel,
     pub randomize: RandomizePanel,
     pub sweep: SweepPanel,
     pub film: FilmPanel,
@@ -86,6 +88,7 @@ impl Panels {
             cheat_sheet: CheatSheet::default(),
             settings: SettingsWindow::default(),
             extremes: Extremes::default(),
+            review: ReviewPanel::default(),
             randomize: RandomizePanel::default(),
             sweep: SweepPanel::default(),
             film: FilmPanel::default(),

@@ -2,8 +2,14 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::{overlay::Overlay, screen::Inputs};
-use crate::{app::editing::preset_edit::Parameter, effects::Effect, scene::parts::PartKind};
+use crate::{
+    app::{editing::preset_edit::Parameter, files::scene_loader::SceneKey},
+    effects::Effect,
+    scene::parts::PartKind,
+};
 
 /// What a click on the model sets.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,11 +49,21 @@ pub struct Probed {
     pub text: String,
 }
 
+/// Points of a scene between which a distance is measured.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// The scene; in another one they are not shown.
+    pub of: SceneKey,
+    /// One or two, meters before the scene's spin.
+    pub points: Vec<DVec3>,
+}
+
 pub enum ViewCommand {
     ToggleOverlays,
     ShowOverlay(Overlay, bool),
-    /// Marks the next pixel that the overlays paint.
+    /// Marks the next pixel that the overlays paint, or the previous one, and looks into it.
     NextPixel,
+    PreviousPixel,
     OverlayGain(u8),
     CycleCompare,
     FlipCompare,
@@ -57,6 +73,9 @@ pub enum ViewCommand {
     Probe([u32; 2]),
     /// Hides what a probe has told.
     EndProbe,
+    /// A point of the scene, meters before its spin, that a distance is measured from or to; none
+    /// ends measuring.
+    Measure(Option<DVec3>),
     /// Marks a place in the picture; none removes the mark.
     Mark(Option<Box<Marker>>),
 }

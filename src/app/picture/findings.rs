@@ -134,7 +134,7 @@ impl Findings {
             .is_some_and(|reference| reference[i] != self.triangle_ids[i])
     }
 
-    /// Does an overlay of errors paint pixel `i`?
+    /// Does an overlay of errors or ties paint pixel `i`?
     pub fn is_painted(&self, overlay: Overlay, i: usize) -> bool {
         match overlay.fault() {
             _ if overlay == Overlay::Unsound => self.is_unsound(i),
@@ -144,7 +144,7 @@ impl Findings {
         }
     }
 
-    /// The pixels that these overlays of errors paint, in reading order. Those of colors count only
+    /// The pixels that these overlays of errors and ties paint, in reading order. Those of colors count only
     /// where nothing else is painted, since a last bit may differ everywhere.
     pub fn painted(&self, overlays: &[Overlay]) -> Vec<usize> {
         let of = |overlays: &[Overlay]| -> Vec<usize> {
@@ -154,7 +154,7 @@ impl Findings {
         };
         let (colors, errors): (Vec<Overlay>, Vec<Overlay>) = overlays
             .iter()
-            .filter(|overlay| overlay.is_error())
+            .filter(|overlay| overlay.is_doubt())
             .partition(|overlay| **overlay == Overlay::Color);
         let found = of(&errors);
         if found.is_empty() { of(&colors) } else { found }

@@ -14,6 +14,7 @@ pub mod measured;
 pub mod overlay;
 pub mod picture_thread;
 pub mod precision;
+pub mod review;
 pub mod screen;
 #[cfg(target_arch = "wasm32")]
 mod sent;

@@ -167,6 +167,13 @@ impl Overlay {
     }
 }
 
+impl Overlay {
+    /// True if it shows pixels that are wrong, or of which two triangles are right.
+    pub const fn is_doubt(self) -> bool {
+        self.is_error() || matches!(self, Self::Ties)
+    }
+}
+
 /// Which overlays are shown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OverlaySelection {

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use super::{
-    findings::Findings, overlay::OverlaySelection, precision::PrecisionState, screen::Screen,
-    tier_times::TierTimes, verification::Verification,
+    findings::Findings, overlay::OverlaySelection, precision::PrecisionState, review::Review,
+    screen::Screen, tier_times::TierTimes, verification::Verification,
 };
 use crate::{
-    app::picture::command::{Marker, Picking, Probed},
+    app::picture::command::{Marker, Measured, Picking, Probed},
     measure::ErrorReport,
 };
 
@@ -20,10 +20,14 @@ pub struct PictureState {
     pub overlays: OverlaySelection,
     /// The f32 errors of the user's effects.
     pub precision: PrecisionState,
+    /// Presets whose picture differs from its golden.
+    pub review: Review,
     /// The place in the picture that is marked.
     pub marker: Option<Marker>,
     /// What was told of a pixel.
     pub probed: Option<Probed>,
+    /// What a distance is measured between.
+    pub measured: Option<Measured>,
     /// What the next click on the model sets.
     pub picking: Option<Picking>,
 }
@@ -36,8 +40,10 @@ impl PictureState {
             verification: Verification::default(),
             overlays: OverlaySelection::default(),
             precision: PrecisionState::default(),
+            review: Review::default(),
             marker: None,
             probed: None,
+            measured: None,
             picking: None,
         }
     }

@@ -15,6 +15,7 @@ use crate::{
     app::{
         editing::session::{FileId, Session},
         files::plain_file,
+        picture::review::KeptReview,
     },
     host::disk,
     preset::Preset,
@@ -35,7 +36,7 @@ pub struct Keeper {
     replaces_session: bool,
     /// What is written or about to be, and since when it waits.
     settings: Resting<Settings>,
-    open: Resting<Option<(FileId, Preset)>>,
+    open: Resting<Option<(FileId, Preset, KeptReview)>>,
     /// A thread that writes files, and ends with the errors.
     writing: Option<JoinHandle<Vec<String>>>,
 }
@@ -129,6 +130,15 @@ impl Keeper {
         }
     }
 
+    /// The review of goldens that the last session left.
+    pub fn kept_review(&self) -> KeptReview {
+        let folder = self.folder.as_ref().filter(|_| self.lock.is_some());
+        let text = folder.and_then(|folder| disk::read_to_string(&folder.join(SESSION)).ok());
+        text.and_then(|text| LastSession::parse(&text, SESSION).ok())
+            .map(|session| session.review)
+            .unwrap_or_default()
+    }
+
     /// Does the session of this window come back at the next start?
     pub fn keeps_session(&self) -> bool {
         self.folder.is_some() && self.lock.is_some()
@@ -144,7 +154,7 @@ impl Keeper {
     pub fn follow(
         &mut self,
         settings: &Settings,
-        session: &Session,
+        (session, review): (&Session, KeptReview),
         now_s: f64,
     ) -> (Option<String>, Option<f64>) {
         if self.folder.is_none() {
@@ -166,11 +176,11 @@ impl Keeper {
             let open = Some((
                 FileId::of(&session.preset_file),
                 session.preset_file.preset.clone(),
+                review.clone(),
             ));
             if self.open.follow(&open, now_s) {
-                writes.extend(
-                    self.write_session(LastSession::of(&session.preset_file, session.as_filed())),
-                );
+                let last = LastSession::of(&session.preset_file, session.as_filed());
+                writes.extend(self.write_session(last.with_review(review)));
             }
         }
         let mut wait_s = [self.settings.wait_s(now_s), self.open.wait_s(now_s)]
@@ -197,14 +207,21 @@ impl Keeper {
     }
 
     /// The window closes in order, with its unsaved edits or without.
-    pub fn close(&mut self, settings: &Settings, session: &Session, keeps_edits: bool) {
+    pub fn close(
+        &mut self,
+        settings: &Settings,
+        (session, review): (&Session, KeptReview),
+        keeps_edits: bool,
+    ) {
         let mut errors = self.finish_writing();
         let mut writes: Vec<Write> = Vec::new();
         if self.settings.changed_at_s.is_some() || self.settings.latest != *settings {
             writes.extend(self.write_settings(settings));
         }
         if self.keeps_session() && self.replaces_session {
-            let last = LastSession::of(&session.preset_file, session.as_filed()).closed();
+            let last = LastSession::of(&session.preset_file, session.as_filed())
+                .with_review(review)
+                .closed();
             writes.extend(self.write_session(if keeps_edits {
                 last
             } else {
@@ -322,6 +339,10 @@ mod tests {
         session.preset_file.preset.spin_deg_per_s = 12.5;
     }
 
+    fn without_review(session: &Session) -> (&Session, KeptReview) {
+        (session, KeptReview::default())
+    }
+
     fn keeper(folder: &Path) -> (Keeper, Settings, Vec<String>) {
         Keeper::new(Some(folder.to_owned()))
     }
@@ -332,10 +353,10 @@ mod tests {
         let session = session_of("teapot");
         let (mut first, mut settings, _) = keeper(folder.path());
         settings.scale = 1.5;
-        let (_, wait_s) = first.follow(&settings, &session, 10.0);
+        let (_, wait_s) = first.follow(&settings, without_review(&session), 10.0);
         assert_eq!(wait_s, Some(REST_S));
-        first.follow(&settings, &session, 10.5);
-        first.follow(&settings, &session, 11.1);
+        first.follow(&settings, without_review(&session), 10.5);
+        first.follow(&settings, without_review(&session), 11.1);
         drop(first);
         assert_eq!(keeper(folder.path()).1, settings);
     }
@@ -352,8 +373,8 @@ mod tests {
             PreviousSession::None
         ));
         first.begin_session();
-        first.follow(&settings, &session, 0.0);
-        first.follow(&settings, &session, REST_S);
+        first.follow(&settings, without_review(&session), 0.0);
+        first.follow(&settings, without_review(&session), REST_S);
         drop(first); // As if killed: the file says that the window runs.
         let (mut second, ..) = keeper(folder.path());
         let PreviousSession::Crashed(restored) = second.previous_session(&folders) else {
@@ -361,7 +382,7 @@ mod tests {
         };
         assert_eq!(restored.preset_file.preset, session.preset_file.preset);
         second.begin_session();
-        second.close(&settings, &session, true);
+        second.close(&settings, without_review(&session), true);
         drop(second);
         let (mut third, ..) = keeper(folder.path());
         let PreviousSession::Closed(restored) = third.previous_session(&folders) else {
@@ -369,7 +390,7 @@ mod tests {
         };
         assert!(restored.has_edits());
         third.begin_session();
-        third.close(&settings, &session, false);
+        third.close(&settings, without_review(&session), false);
         drop(third);
         let PreviousSession::Closed(restored) = keeper(folder.path()).0.previous_session(&folders)
         else {
@@ -395,9 +416,9 @@ mod tests {
             PreviousSession::None
         ));
         second.begin_session();
-        second.close(&settings, &session_of("lambert"), true);
+        second.close(&settings, without_review(&session_of("lambert")), true);
         drop(second);
-        first.close(&settings, &session_of("facet-sweep"), true);
+        first.close(&settings, without_review(&session_of("facet-sweep")), true);
         drop(first);
         let PreviousSession::Closed(restored) = keeper(folder.path())
             .0
@@ -432,8 +453,11 @@ mod tests {
         settings.scale = 2.0;
         let session = Session::new(PresetFile::new("x", Preset::default()));
         keeper.begin_session();
-        assert_eq!(keeper.follow(&settings, &session, 5.0), (None, None));
-        keeper.close(&settings, &session, true);
+        assert_eq!(
+            keeper.follow(&settings, without_review(&session), 5.0),
+            (None, None)
+        );
+        keeper.close(&settings, without_review(&session), true);
         assert!(matches!(
             keeper.previous_session(&Folders::default()),
             PreviousSession::None

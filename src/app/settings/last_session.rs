@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use toml_edit::DocumentMut;
 
 use crate::{
+    app::picture::review::KeptReview,
     host::disk,
     preset::SceneSource,
     preset_file::{self, Folders, PresetFile},
@@ -29,6 +30,9 @@ pub struct LastSession {
     filed: String,
     /// The preset with the edits; none without any.
     edited: Option<String>,
+    /// The review of goldens.
+    #[serde(default, skip_serializing_if = "KeptReview::is_empty")]
+    pub review: KeptReview,
 }
 
 /// A preset that was open, to be opened again.
@@ -62,7 +66,15 @@ impl LastSession {
             is_read_only: open.read_only,
             filed: preset_file::to_shared_toml(&absolute(filed)),
             edited,
+            review: KeptReview::default(),
         }
+    }
+
+    /// The same with a review of goldens.
+    #[must_use]
+    pub fn with_review(mut self, review: KeptReview) -> Self {
+        self.review = review;
+        self
     }
 
     /// The preset with its edits, as TOML.

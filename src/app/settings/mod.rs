@@ -146,6 +146,10 @@ pub struct OpenPanels {
     pub log: bool,
     /// The rings in the picture, and the ball of the light.
     pub handles: bool,
+    /// The box of the scene, its axes and a grid under it, over the picture.
+    pub bounding_box: bool,
+    pub axes: bool,
+    pub grid: bool,
     #[serde(skip)]
     pub cheat_sheet: bool,
     #[serde(skip)]
@@ -162,6 +166,9 @@ impl Default for OpenPanels {
             timing: false,
             log: false,
             handles: true,
+            bounding_box: false,
+            axes: false,
+            grid: false,
             cheat_sheet: false,
             settings: false,
         }

@@ -40,9 +40,17 @@ pub enum Action {
     RemoveKey,
     Verify,
     Extremes,
+    Review,
+    AcceptGolden,
+    RejectGolden,
+    NextGolden,
     Overlays,
     NextPixel,
+    PreviousPixel,
     Handles,
+    BoundingBox,
+    Axes,
+    Grid,
     Compare,
     FlipAb,
     Trade,
@@ -162,6 +170,18 @@ pub const ACTIONS: &[Entry] = &[
         &[plain(Key::V)],
     ),
     (Action::Extremes, "Run extreme cases…", &[]),
+    (Action::Review, "Review of goldens…", &[shift(Key::G)]),
+    (
+        Action::AcceptGolden,
+        "Review: accept the new picture",
+        &[plain(Key::Y)],
+    ),
+    (
+        Action::RejectGolden,
+        "Review: keep the golden",
+        &[plain(Key::X)],
+    ),
+    (Action::NextGolden, "Review: next preset", &[plain(Key::K)]),
     (Action::Overlays, "Show or hide overlays", &[plain(Key::O)]),
     (
         Action::NextPixel,
@@ -169,10 +189,22 @@ pub const ACTIONS: &[Entry] = &[
         &[plain(Key::N)],
     ),
     (
+        Action::PreviousPixel,
+        "Previous pixel of the overlays",
+        &[shift(Key::N)],
+    ),
+    (
         Action::Handles,
         "Show or hide handles of points and light",
         &[plain(Key::H)],
     ),
+    (
+        Action::BoundingBox,
+        "Show or hide the box of the scene",
+        &[plain(Key::B)],
+    ),
+    (Action::Axes, "Show or hide the axes", &[]),
+    (Action::Grid, "Show or hide the grid", &[]),
     (
         Action::Compare,
         "Compare: wipe, side by side, difference",
@@ -235,6 +267,10 @@ pub const POINTER: &[(&str, &str)] = &[
         "Attract particles",
         "Ctrl + left drag, if the preset has particles",
     ),
+    (
+        "Measure a distance",
+        "Shift + click on two points of the model",
+    ),
     ("Turn the light", "drag the ball in the corner"),
     (
         "Move a point of an effect",
@@ -269,7 +305,15 @@ impl Action {
         }
         let is_native = matches!(
             self,
-            Self::Film | Self::Quit | Self::NewEffect | Self::Extremes | Self::Trade
+            Self::Film
+                | Self::Quit
+                | Self::NewEffect
+                | Self::Extremes
+                | Self::Review
+                | Self::AcceptGolden
+                | Self::RejectGolden
+                | Self::NextGolden
+                | Self::Trade
         );
         !is_native || cfg!(not(target_arch = "wasm32"))
     }

@@ -20,7 +20,7 @@ use crate::{
             scene_loader::SceneKey,
         },
         panels::Panels,
-        picture::apply::{verify, view},
+        picture::apply::{draw_for_review, review, verify, view},
         widgets::reveal,
     },
     link, preset_file,
@@ -103,6 +103,7 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
         Command::Row(command) => row(ctx, state, command),
         Command::File(command) => file(ctx, state, panels, command),
         Command::View(command) => view(state, panels, command),
+        Command::Review(command) => review(state, panels, command),
         Command::MeasureTrade(request, progress) => {
             if let Some(scene) = state.session.scene() {
                 state.jobs.measure(
@@ -201,12 +202,21 @@ fn toggle(state: &mut State, panels: &mut Panels, which: Toggle) {
         Toggle::Timing => open.timing = !open.timing,
         Toggle::Log => open.log = !open.log,
         Toggle::Handles => open.handles = !open.handles,
+        Toggle::BoundingBox => open.bounding_box = !open.bounding_box,
+        Toggle::Axes => open.axes = !open.axes,
+        Toggle::Grid => open.grid = !open.grid,
         Toggle::CheatSheet => open.cheat_sheet = !open.cheat_sheet,
         Toggle::Settings => open.settings = !open.settings,
         Toggle::Palette => panels
             .palette
             .toggle(&state.session, panels.browser.entries()),
         Toggle::Extremes => panels.extremes.toggle(),
+        Toggle::Review => {
+            panels.review.toggle();
+            if panels.review.is_open() {
+                draw_for_review(state);
+            }
+        }
         Toggle::Randomize => panels.randomize.toggle(),
         Toggle::Sweep => panels.sweep.toggle(),
         Toggle::Film => panels.film.toggle(state),

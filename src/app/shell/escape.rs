@@ -15,10 +15,12 @@ enum Closing {
     Loading,
     Picking,
     Marker,
+    Measuring,
     Film,
     Sweep,
     Randomize,
     Extremes,
+    Review,
     Settings,
     CheatSheet,
     Compare,
@@ -53,6 +55,7 @@ pub fn escape(
             | Closing::Sweep
             | Closing::Randomize
             | Closing::Extremes
+            | Closing::Review
             | Closing::Settings
             | Closing::CheatSheet
     );
@@ -64,10 +67,12 @@ pub fn escape(
         Closing::Loading => commands.send(Command::CancelLoading),
         Closing::Picking => commands.send(Command::View(ViewCommand::Pick(None))),
         Closing::Marker => commands.send(Command::View(ViewCommand::Mark(None))),
+        Closing::Measuring => commands.send(Command::View(ViewCommand::Measure(None))),
         Closing::Film => commands.send(Command::Toggle(Toggle::Film)),
         Closing::Sweep => commands.send(Command::Toggle(Toggle::Sweep)),
         Closing::Randomize => commands.send(Command::Toggle(Toggle::Randomize)),
         Closing::Extremes => commands.send(Command::Toggle(Toggle::Extremes)),
+        Closing::Review => commands.send(Command::Toggle(Toggle::Review)),
         Closing::Settings => commands.send(Command::Toggle(Toggle::Settings)),
         Closing::CheatSheet => commands.send(Command::Toggle(Toggle::CheatSheet)),
         Closing::Compare => panels.viewport.compare.close(),
@@ -85,9 +90,11 @@ fn innermost(state: &State, panels: &Panels) -> Option<Closing> {
         (panels.sweep.is_open(), Closing::Sweep),
         (panels.randomize.is_open(), Closing::Randomize),
         (panels.extremes.is_open(), Closing::Extremes),
+        (panels.review.is_open(), Closing::Review),
         (state.open.settings, Closing::Settings),
         (state.open.cheat_sheet, Closing::CheatSheet),
         (state.picture.marker.is_some(), Closing::Marker),
+        (!state.measured_points().is_empty(), Closing::Measuring),
         (panels.viewport.compare.is_open(), Closing::Compare),
         (state.open.trade, Closing::Trade),
         (state.open.timing, Closing::Timing),

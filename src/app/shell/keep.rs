@@ -15,6 +15,7 @@ impl App {
             open,
             session,
             jobs,
+            picture,
             now_s,
             ..
         } = &mut self.state;
@@ -38,7 +39,9 @@ impl App {
         if !self.panels.dialogs.asks_restore() {
             self.keeper.begin_session();
         }
-        let (error, wait_s) = self.keeper.follow(settings, session, *now_s);
+        let (error, wait_s) =
+            self.keeper
+                .follow(settings, (session, picture.review.kept()), *now_s);
         if let Some(error) = error {
             let text = format!("settings or session could not be kept: {error}");
             // The storage of a browser is full for everything that follows: it is said once.
@@ -62,11 +65,15 @@ impl Drop for App {
             let State {
                 settings,
                 session,
+                picture,
                 closing,
                 ..
             } = &self.state;
-            self.keeper
-                .close(settings, session, closing.keeps_edits || !closing.may_quit);
+            self.keeper.close(
+                settings,
+                (session, picture.review.kept()),
+                closing.keeps_edits || !closing.may_quit,
+            );
         }
     }
 }

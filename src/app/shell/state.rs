@@ -1,12 +1,14 @@
 //! The state of the window besides its panels. Panels read it; only `App` changes it.
 
+use glam::DVec3;
+
 use super::log::{Level, Log};
 use crate::app::{
     editing::{
         history::History,
         session::{Session, UndoState},
     },
-    files::state::FileState,
+    files::{scene_loader::SceneKey, state::FileState},
     jobs::Jobs,
     picture::state::PictureState,
     settings::{OpenPanels, Settings},
@@ -53,6 +55,14 @@ impl State {
     /// Logs a message and shows it as a toast.
     pub fn notify(&mut self, level: Level, text: impl Into<String>) {
         self.log.notify(level, text, self.now_s);
+    }
+
+    /// The points of the scene that is shown between which a distance is measured.
+    pub fn measured_points(&self) -> &[DVec3] {
+        let measured = self.picture.measured.as_ref();
+        measured
+            .filter(|measured| measured.of == SceneKey::of(&self.session.preset_file))
+            .map_or(&[][..], |measured| &measured.points[..])
     }
 
     /// Records the preset for undo; `is_held` while a pointer button is down.

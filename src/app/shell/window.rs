@@ -197,7 +197,10 @@ impl App {
                 history: History::new(session.undo_state()),
                 session,
                 jobs: Jobs::new(cc.egui_ctx.clone()),
-                picture: PictureState::new(Screen::new(&window, devices, cc.egui_ctx.clone())),
+                picture: PictureState {
+                    review: keeper.kept_review().into(),
+                    ..PictureState::new(Screen::new(&window, devices, cc.egui_ctx.clone()))
+                },
                 clipboard: Clipboard::default(),
                 log,
                 open: settings.open,
@@ -602,6 +605,7 @@ impl eframe::App for App {
         self.panel_ui(ui, |panels| &mut panels.browser.effects);
         self.panel_ui(ui, |panels| &mut panels.settings);
         self.panel_ui(ui, |panels| &mut panels.extremes);
+        self.panel_ui(ui, |panels| &mut panels.review);
         self.panel_ui(ui, |panels| &mut panels.randomize);
         self.panel_ui(ui, |panels| &mut panels.sweep);
         self.panel_ui(ui, |panels| &mut panels.film);

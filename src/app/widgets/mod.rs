@@ -6,5 +6,6 @@ pub mod icons;
 pub mod numbers;
 pub mod panel;
 pub mod reveal;
+pub mod size;
 pub mod text;
 pub mod theme;

@@ -11,8 +11,10 @@ mod links;
 mod looks;
 mod manual;
 mod parts;
+mod review;
 mod sequences;
 mod sweeps;
+mod toward;
 
 use std::{
     fs,

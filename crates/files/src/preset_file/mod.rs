@@ -34,6 +34,7 @@ mod scope;
 mod share;
 pub mod sweep;
 pub mod toml_value;
+mod toward;
 mod write;
 
 pub use apng::{AnimatedPng, AnimationOptions};

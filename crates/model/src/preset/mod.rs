@@ -9,6 +9,7 @@ mod fitted;
 mod golden_test;
 mod landing;
 mod missing_parts;
+mod output;
 mod particle_timeline;
 pub mod polyline;
 pub mod rebind;
@@ -16,6 +17,7 @@ mod rules;
 mod setting;
 pub mod settings;
 mod studio;
+mod toward;
 
 use std::{path::PathBuf, sync::Arc};
 
@@ -39,6 +41,7 @@ use crate::{
 pub use animation::{Animation, Track};
 pub use fit::{Fit, LengthUnit};
 pub use golden_test::GoldenTest;
+pub use output::{NAMED_SIZES, Output, named_size};
 
 pub use crate::accuracy::{AccuracyRequest, PinnedOptions, Tier, Visibility};
 
@@ -177,20 +180,6 @@ impl Clock {
     }
 }
 
-/// Size and background of the picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Output {
-    /// Width and height in pixels, each 0 to 16,384.
-    pub size: [u32; 2],
-    /// Linear RGBA; of a gradient that of the top edge.
-    pub background: [f32; 4],
-    /// Linear RGBA of the bottom edge; none: the background is one color.
-    pub background_bottom: Option<[f32; 4]>,
-    /// The height of a picture in which lengths in pixels are what they say, 1 to 16,384; in others
-    /// they grow and shrink with the height. None: that of `size`.
-    pub reference_height_px: Option<u32>,
-}
-
 impl Preset {
     /// What pixels without a triangle show: the background of the output, through the tone mapping
     /// that asks for it.
@@ -208,44 +197,6 @@ impl Preset {
             }
         }
         backdrop
-    }
-}
-
-impl Output {
-    /// What pixels without a triangle show.
-    pub fn backdrop(&self) -> Background {
-        Background {
-            top: self.background,
-            bottom: self.background_bottom.unwrap_or(self.background),
-        }
-    }
-
-    /// Another size, in which lengths in pixels fill the same part of the picture.
-    pub fn resize(&mut self, size: [u32; 2]) {
-        let reference = self.reference_height_px.unwrap_or(self.size[1]);
-        self.size = size;
-        self.reference_height_px = (reference != size[1] && reference > 0).then_some(reference);
-    }
-
-    /// Factor of lengths in pixels in a picture of this height.
-    pub fn length_scale(&self, height: f64) -> f64 {
-        let reference = f64::from(self.reference_height_px.unwrap_or(self.size[1]));
-        if reference > 0.0 && height > 0.0 {
-            height / reference
-        } else {
-            1.0
-        }
-    }
-}
-
-impl Default for Output {
-    fn default() -> Self {
-        Self {
-            size: [320, 240],
-            background: [0.012, 0.014, 0.02, 1.0],
-            background_bottom: None,
-            reference_height_px: None,
-        }
     }
 }
 

@@ -63,14 +63,40 @@ pub fn render_rows(
     previous: Option<&[[u8; 4]]>,
     rows: Range<u32>,
 ) -> Result<Frame, DrawError> {
+    drawn(scene, view, stack, previous, rows).map(|(frame, _)| frame)
+}
+
+/// The picture of [`render_next`] and what it was drawn from: vertices, what clipping made, setups
+/// of sample effects, dots and the shadow map; both empty if `view` has no pixels.
+///
+/// # Errors
+/// As [`render`].
+pub fn render_with_geometry(
+    scene: &Scene,
+    view: &View,
+    stack: &Stack,
+    previous: Option<&[[u8; 4]]>,
+) -> Result<(Frame, Geometry), DrawError> {
+    drawn(scene, view, stack, previous, 0..view.height)
+}
+
+/// The picture with the colors of `rows` alone, and what it was drawn from.
+fn drawn(
+    scene: &Scene,
+    view: &View,
+    stack: &Stack,
+    previous: Option<&[[u8; 4]]>,
+    rows: Range<u32>,
+) -> Result<(Frame, Geometry), DrawError> {
     let rows = rows.start.min(view.height)..rows.end.min(view.height);
     if view.pixels() == 0 {
         stack.draws(scene, view)?;
-        return Ok(Frame {
+        let frame = Frame {
             width: view.width,
             height: view.height,
             ..Frame::default()
-        });
+        };
+        return Ok((frame, Geometry::default()));
     }
     check_particles(view, stack)?;
     let scene = &*scene_with_particles(scene, view, stack, None)?;
@@ -124,7 +150,7 @@ pub fn render_rows(
     } else {
         (color, None)
     };
-    Ok(Frame {
+    let frame = Frame {
         width: view.width,
         height: view.height,
         triangle_id,
@@ -135,24 +161,8 @@ pub fn render_rows(
         dots,
         counters,
         ..Frame::default()
-    })
-}
-
-/// What the exact picture of `scene` is drawn from: vertices, what clipping made, setups of sample
-/// effects, dots and the shadow map.
-///
-/// # Errors
-/// As [`render`].
-pub fn geometry(scene: &Scene, view: &View, stack: &Stack) -> Result<Geometry, DrawError> {
-    check_particles(view, stack)?;
-    let scene = &*scene_with_particles(scene, view, stack, None)?;
-    let draws = stack.draws(scene, view)?;
-    let shot = Shot::new(scene, &draws, view, stack);
-    let mut geometry = project(&shot)?;
-    geometry.sample_setups = sample_setups(&shot, &geometry);
-    geometry.dots = dot_records(&shot)?;
-    geometry.shadow_map = shadow_map(scene, view, stack)?;
-    Ok(geometry)
+    };
+    Ok((frame, geometry))
 }
 
 /// The exact picture of the last of `sequence`, drawn after those before it, all of the same size.

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::{
     super::shot::Shot,
-    picture::{render, render_sequence},
+    picture::{render, render_rows, render_sequence},
     project::project,
     resample::resampled,
     shadow::leaves_samples_out,
@@ -45,6 +45,44 @@ pub fn render_scaled(
         size,
         resampled(&frame.color, [frame.width, frame.height], size),
     ))
+}
+
+/// Row `row` of the picture of [`render_scaled`], without shading the others where a row depends on
+/// none of them; empty if there is no such row.
+///
+/// # Errors
+/// As [`render`].
+///
+/// # Panics
+/// If `sequence` is empty.
+pub fn render_scaled_row(
+    scene: &Scene,
+    sequence: &[(View, Stack)],
+    factor: f64,
+    row: u32,
+) -> Result<Vec<[u8; 4]>, DrawError> {
+    let ((view, stack), before) = sequence.split_last().expect("a sequence has a picture");
+    let side = factor as u32;
+    if f64::from(side) != factor || row >= view.height {
+        // Between two rows of a smaller picture lie the colors of both.
+        let color = render_scaled(scene, sequence, factor)?.color;
+        let mut rows = color.chunks(view.width.max(1) as usize);
+        return Ok(rows.nth(row as usize).unwrap_or_default().to_vec());
+    }
+    let scaled = |(view, stack): &(View, Stack)| (view.scaled(factor), stack.scaled(factor));
+    let before: Vec<_> = before.iter().map(scaled).collect();
+    let previous = match &before[..] {
+        [] => None,
+        before => Some(render_sequence(scene, before)?),
+    };
+    let (drawn, stack) = scaled(&(view.clone(), stack.clone()));
+    let rows = row * side..(row + 1) * side;
+    let previous = previous.as_ref().map(Frame::resolved);
+    let color = render_rows(scene, &drawn, &stack, previous, rows)?.color;
+    Ok(match side {
+        1 => color,
+        _ => resampled(&color, [drawn.width, side], [view.width, 1]),
+    })
 }
 
 /// The largest number of sub-pixel bits, at most 12, with which every pixel of `view` lies inside

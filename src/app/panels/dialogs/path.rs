@@ -23,7 +23,7 @@ use crate::{
         },
         settings::recents::Recents,
         shell::command::{Command, Commands},
-        widgets::{text::cut_middle, theme},
+        widgets::{size::size_ui, text::cut_middle, theme},
     },
     preset_file::{MAX_NAME, ModelFormat},
 };
@@ -344,14 +344,7 @@ pub fn path_ui(
     if dialog.purpose == Purpose::Export {
         ui.horizontal(|ui| {
             ui.label("Size");
-            for (side, name) in dialog.size.iter_mut().zip(["Width", "Height"]) {
-                ui.add(
-                    egui::DragValue::new(side)
-                        .range(1..=MAX_EXPORT_SIDE)
-                        .suffix(" px"),
-                )
-                .accessible_name(name);
-            }
+            size_ui(ui, "the picture", &mut dialog.size, 1, MAX_EXPORT_SIDE);
         });
     }
     if let Some(error) = &dialog.error {

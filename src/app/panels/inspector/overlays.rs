@@ -5,6 +5,7 @@ use eframe::egui::{self, RichText, Ui};
 use crate::app::{
     picture::{command::ViewCommand, overlay::Overlay},
     shell::{
+        action::Action,
         command::{Command, Commands},
         state::State,
     },
@@ -49,6 +50,21 @@ pub fn overlays_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             }
         });
     }
+    ui.add_space(theme::HALF);
+    let open = &state.open;
+    ui.horizontal(|ui| {
+        for (mut on, name, action) in [
+            (open.bounding_box, "Box", Action::BoundingBox),
+            (open.axes, "Axes", Action::Axes),
+            (open.grid, "Grid", Action::Grid),
+        ] {
+            let toggle = ui.checkbox(&mut on, name).on_hover_text(action.hint());
+            let label = format!("Guide {}", name.to_lowercase());
+            if toggle.accessible_name(label).clicked() {
+                commands.perform(action);
+            }
+        }
+    });
     if findings.is_none() {
         ui.label(theme::weak(
             "To count pixels, show an overlay or press Verify.",

@@ -90,6 +90,22 @@ impl PresetBrowser {
         &self.entries
     }
 
+    /// Files of the presets that have a golden, or ids of built-in ones.
+    pub fn with_goldens(&self) -> Vec<String> {
+        #[cfg(target_arch = "wasm32")]
+        let has_golden = |_: &PresetFile| false; // A page has no goldens.
+        #[cfg(not(target_arch = "wasm32"))]
+        use crate::golden::has_golden;
+        let reviewed = self.entries.iter().filter_map(|entry| {
+            let preset_file = entry.preset_file.as_ref().ok()?;
+            has_golden(preset_file).then(|| match &entry.path {
+                Some(path) => path.to_string_lossy().into_owned(),
+                None => entry.id.clone(),
+            })
+        });
+        reviewed.collect()
+    }
+
     /// What the panel shows, and how it lists presets, for the next start.
     pub fn browsing(&self) -> Browsing {
         Browsing {

@@ -45,6 +45,8 @@ pub struct Compare {
     pub split: f32,
     /// The preset that A shows; none for the reference.
     pub kept: Option<Box<Preset>>,
+    /// How far A is on the way from the kept preset to B, 0 to 1.
+    pub toward: f64,
     pub screen: Option<Screen>,
     pub verdict: Option<Verdict>,
     /// The scene of B, and the same on the ground of A.
@@ -61,6 +63,7 @@ impl Default for Compare {
             mode: None,
             split: 0.5,
             kept: None,
+            toward: 0.0,
             screen: None,
             verdict: None,
             grounded: None,
@@ -124,16 +127,21 @@ impl Compare {
             split: self.split,
             gain: self.gain,
             kept: self.kept.take(),
+            toward: self.toward,
             ..Self::default()
         };
     }
 
     /// What A shows, as `A` is labeled.
-    pub fn name(&self) -> &str {
-        match &self.kept {
-            None => "reference",
+    pub fn name(&self) -> String {
+        let name: &str = match &self.kept {
+            None => return "reference".into(),
             Some(kept) if kept.name.is_empty() => "kept preset",
             Some(kept) => &kept.name,
+        };
+        match self.toward > 0.0 {
+            true => format!("{name}, {:.0} % toward B", 100.0 * self.toward),
+            false => name.into(),
         }
     }
 
@@ -230,14 +238,17 @@ impl Compare {
                 ..live.clone()
             };
         };
+        let own = session.next_preset();
         let Preset {
             stack,
             animation,
             accuracy,
             mut output,
             ..
-        } = kept.in_meters(&live.scene).into_owned();
-        let own = session.next_preset();
+        } = match self.toward > 0.0 {
+            true => kept.toward(&own, self.toward, &live.scene),
+            false => kept.in_meters(&live.scene).into_owned(),
+        };
         output.resize(own.output.size);
         let preset = Preset {
             stack,

@@ -92,6 +92,15 @@ pub fn bar_ui(ui: &mut Ui, compare: &mut Compare, state: &State, rect: Rect) {
                         .accessible_name("Difference gain")
                         .on_hover_text("Factor of the difference");
                 }
+                if compare.kept.is_some() {
+                    ui.spacing_mut().slider_width = 72.0;
+                    let toward = egui::Slider::new(&mut compare.toward, 0.0..=1.0)
+                        .show_value(false)
+                        .text("A \u{2192} B");
+                    ui.add(toward)
+                        .accessible_name("A toward B")
+                        .on_hover_text("How far A is on the way to B: numbers and colors in between, effects and choices switch half way");
+                }
                 ui.separator();
                 let label = egui::Label::new(RichText::new(&text).size(12.0).color(theme::text()))
                     .truncate();

@@ -91,7 +91,7 @@ fn plate_a_ui(ui: &mut Ui, compare: &mut Compare, state: &State) {
                         ..session.visible_preset()
                     },
                 };
-                compare.kept = Some(Box::new(kept));
+                (compare.kept, compare.toward) = (Some(Box::new(kept)), 0.0);
             }
             if is_kept
                 && ui
@@ -99,7 +99,7 @@ fn plate_a_ui(ui: &mut Ui, compare: &mut Compare, state: &State) {
                     .on_hover_text("Show the most exact options as A again")
                     .clicked()
             {
-                compare.kept = None;
+                (compare.kept, compare.toward) = (None, 0.0);
             }
         },
     );

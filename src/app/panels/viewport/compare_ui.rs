@@ -60,7 +60,7 @@ pub fn compare_ui(
         overlays.paint(ui, state, at, side_b);
     }
     match mode {
-        Mode::Wipe => divider_ui(ui, &mut compare.split, at),
+        Mode::Wipe => divider_ui(ui, "wipe", &mut compare.split, at),
         Mode::SideBySide => drop(ui.painter().vline(
             half_a.right(),
             rect.y_range(),
@@ -70,7 +70,7 @@ pub fn compare_ui(
     }
     labels_ui(
         ui,
-        compare.name(),
+        &compare.name(),
         [side_a, side_b],
         mode == Mode::Difference,
     );
@@ -78,12 +78,12 @@ pub fn compare_ui(
     plates_ui(ui, compare, state, rect, mode)
 }
 
-/// The divider. It can be dragged, or moved with the arrow keys while it has the focus.
-fn divider_ui(ui: &Ui, split: &mut f32, at: Rect) {
+/// The divider of a wipe. It can be dragged, or moved with the arrow keys while it has the focus.
+pub fn divider_ui(ui: &Ui, id: &str, split: &mut f32, at: Rect) {
     let x = (at.left() + at.width() * *split).round();
     let grip = Rect::from_min_max(pos2(x - 7.0, at.top()), pos2(x + 7.0, at.bottom()));
     let response = ui
-        .interact(grip, egui::Id::unique("wipe"), Sense::click_and_drag())
+        .interact(grip, egui::Id::unique(id), Sense::click_and_drag())
         .on_hover_cursor(CursorIcon::ResizeHorizontal);
     response.widget_info(|| egui::WidgetInfo::slider(true, f64::from(*split), "Wipe divider"));
     if response.dragged()

@@ -6,12 +6,14 @@ mod chips;
 mod compare;
 mod compare_bar;
 mod compare_plates;
-mod compare_ui;
+pub mod compare_ui;
 mod compiling;
+mod guides;
 mod handles;
 mod heat_legend;
 mod layout;
 mod light;
+mod loupe;
 mod marker;
 mod overlay_image;
 mod overlay_legend;
@@ -28,6 +30,7 @@ use eframe::egui::{self, Align2, FontId, Rect, Response, Sense, Ui, vec2};
 use self::{
     compare::Compare,
     layout::{fitted, whole_size},
+    loupe::Loupe,
     overlays::OverlayPainter,
 };
 use crate::{
@@ -64,6 +67,7 @@ pub struct Viewport {
     last_motion_s: f64,
     pub compare: Compare,
     overlays: OverlayPainter,
+    loupe: Loupe,
     anti_aliasing: AutomaticAntiAliasing,
     /// What the numbers in the header are of.
     measured: Measurable<(FileId, SceneKey)>,
@@ -108,7 +112,12 @@ impl Viewport {
         }
         if !self.compare.hides_b() {
             let at = fitted(self.compare.side_b(rect), whole_size(rect));
-            probe::take_click(&response, state, at, commands);
+            match ui.input(|i| i.modifiers.shift) {
+                true => {
+                    guides::take_click(ui, &response, self.compare.side_b(rect), state, commands)
+                }
+                false => probe::take_click(&response, state, at, commands),
+            }
         }
         Interaction {
             response,
@@ -276,8 +285,9 @@ impl Viewport {
             compare_ui::compare_ui(ui, &mut self.compare, state, (rect, at), &mut self.overlays);
         chips::chips_ui(ui, state, commands, rect, self.compare.is_open());
         if !self.compare.hides_b() {
+            guides::guides_ui(ui, state, rect, at);
             marker::marker_ui(ui, state, at);
-            probe::probed_ui(ui, state, at, commands);
+            probe::probed_ui(ui, &mut self.loupe, state, at, commands);
             if state.open.handles {
                 handles::handles_ui(ui, state, commands, rect, at);
             }
@@ -289,7 +299,7 @@ impl Viewport {
         let free = if self.compare.hides_b() {
             free
         } else {
-            overlay_legend::legend_ui(ui, state, free, at)
+            overlay_legend::legend_ui(ui, state, (free, at), commands)
         };
         if let Some(params) = state.session.visible_stack().params("overdraw") {
             heat_legend::heat_ui(ui, free, &params);

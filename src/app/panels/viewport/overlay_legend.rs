@@ -9,7 +9,7 @@ use crate::{
             findings::Findings,
             overlay::{Overlay, OverlaySelection},
         },
-        shell::{action::Action, state::State},
+        shell::{action::Action, command::Commands, state::State},
         widgets::{icons::swatch, text::grouped, theme},
     },
     effect_files::Crossing,
@@ -172,7 +172,12 @@ fn hovered_line(ui: &Ui, state: &State, at: Rect) -> Option<Line> {
 
 /// Shows the legend at the lower left of `free`; the picture is at `at`. Returns what of `free` it
 /// does not cover.
-pub fn legend_ui(ui: &mut Ui, state: &State, free: Rect, at: Rect) -> Rect {
+pub fn legend_ui(
+    ui: &mut Ui,
+    state: &State,
+    (free, at): (Rect, Rect),
+    commands: &Commands,
+) -> Rect {
     if !state.picture.overlays.is_any() || state.picture.screen.picture().is_none() {
         return free;
     }
@@ -197,18 +202,12 @@ pub fn legend_ui(ui: &mut Ui, state: &State, free: Rect, at: Rect) -> Rect {
     };
     let painted = state.picture.findings().map_or(0, |found| {
         let shown = state.picture.overlays.shown().iter();
-        let errors = shown.filter(|overlay| overlay.is_error() && **overlay != Overlay::Color);
-        errors.map(|overlay| found.count(*overlay)).sum()
+        let doubts = shown.filter(|overlay| overlay.is_doubt() && **overlay != Overlay::Color);
+        doubts.map(|overlay| found.count(*overlay)).sum::<u64>()
     });
-    if painted > 0 {
-        let key = Action::NextPixel.shortcut_text();
-        lines.push(Line::sentence(
-            theme::text_weak(),
-            format!("{key}: go to the next of these pixels"),
-        ));
-    }
     lines.extend(hovered_line(ui, state, at));
-    let height = lines.len() as f32 * LINE + 2.0 * MARGIN;
+    let buttons = if painted > 0 { LINE } else { 0.0 };
+    let height = lines.len() as f32 * LINE + buttons + 2.0 * MARGIN;
     let plate = Rect::from_min_size(
         pos2(free.left() + 12.0, free.bottom() - 12.0 - height),
         vec2(400.0, height),
@@ -238,6 +237,19 @@ pub fn legend_ui(ui: &mut Ui, state: &State, free: Rect, at: Rect) -> Rect {
                     swatch(ui, *color);
                 }
                 ui.label(RichText::new(text).size(12.0).color(*ink));
+            });
+        }
+        if painted > 0 {
+            ui.horizontal(|ui| {
+                for (action, text) in [
+                    (Action::PreviousPixel, "Previous pixel"),
+                    (Action::NextPixel, "Next pixel"),
+                ] {
+                    let button = ui.add(egui::Button::new(text).small());
+                    if button.on_hover_text(action.hint()).clicked() {
+                        commands.perform(action);
+                    }
+                }
             });
         }
     });

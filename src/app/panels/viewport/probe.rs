@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Rect, Response, RichText, ScrollArea, Ui};
 
-use super::overlay_legend::judged_pixel;
+use super::{loupe::Loupe, overlay_legend::judged_pixel};
 use crate::app::{
     picture::command::ViewCommand,
     shell::{
@@ -25,7 +25,7 @@ pub fn take_click(response: &Response, state: &State, at: Rect, commands: &Comma
 }
 
 /// Shows what was told of a pixel, as long as its picture is shown.
-pub fn probed_ui(ui: &Ui, state: &State, at: Rect, commands: &Commands) {
+pub fn probed_ui(ui: &Ui, loupe: &mut Loupe, state: &State, at: Rect, commands: &Commands) {
     let Some(probed) = state
         .picture
         .probed
@@ -44,8 +44,11 @@ pub fn probed_ui(ui: &Ui, state: &State, at: Rect, commands: &Commands) {
         .default_width((at.width() - 24.0).clamp(480.0, 760.0))
         .constrain_to(ui.ctx().content_rect())
         .show(ui.ctx(), |ui| {
+            if let Some(found) = state.picture.findings() {
+                loupe.ui(ui, found, &state.picture.overlays, probed.pixel, commands);
+            }
             ScrollArea::both()
-                .max_height(0.5 * at.height())
+                .max_height(0.4 * at.height())
                 .show(ui, |ui| {
                     ui.add(
                         egui::Label::new(

@@ -1,0 +1,208 @@
+//! One preset on the way to another: numbers, colors and cameras in between, and everything else of
+//! the nearer one.
+
+use glam::DVec3;
+
+use super::{Preset, animation::steps};
+use crate::{
+    effects::{EnabledEffect, Stack},
+    scene::{
+        Scene,
+        camera::{Camera, Projection},
+    },
+};
+
+/// The number `by` of the way from `a` to `b`; exactly these at 0 and 1.
+fn mixed(a: f64, b: f64, by: f64) -> f64 {
+    if by >= 1.0 { b } else { a + (b - a) * by }
+}
+
+fn mixed_color(a: [f32; 4], b: [f32; 4], by: f64) -> [f32; 4] {
+    std::array::from_fn(|k| mixed(f64::from(a[k]), f64::from(b[k]), by) as f32)
+}
+
+/// The direction in between; none between opposite ones.
+fn mixed_direction(a: DVec3, b: DVec3, by: f64) -> Option<DVec3> {
+    let [a, b] = [a, b].map(|v| v.try_normalize().unwrap_or(DVec3::Y));
+    a.lerp(b, by).try_normalize()
+}
+
+impl Camera {
+    /// The camera `by` of the way to another, 0 to 1: it goes round what both look at, and its
+    /// distance changes by equal factors. A perspective and a parallel projection switch half way.
+    pub fn toward(&self, other: &Self, by: f64) -> Self {
+        let nearer = if by < 0.5 { self } else { other };
+        if by <= 0.0 || by >= 1.0 || self == other {
+            return *nearer;
+        }
+        let [from, to] = [self, other].map(|camera| camera.eye - camera.target);
+        let apart = mixed_direction(from, to, by);
+        let distance = libm::exp(mixed(libm::log(from.length()), libm::log(to.length()), by));
+        let target = self.target.lerp(other.target, by);
+        let camera = Self {
+            eye: target + apart.unwrap_or(nearer.target - nearer.eye) * distance,
+            target,
+            up: mixed_direction(self.up, other.up, by).unwrap_or(nearer.up),
+            projection: match (self.projection, other.projection) {
+                (
+                    Projection::Perspective { fov_y_deg: a },
+                    Projection::Perspective { fov_y_deg: b },
+                ) => Projection::Perspective {
+                    fov_y_deg: mixed(a, b, by),
+                },
+                (
+                    Projection::Orthographic { height_m: a },
+                    Projection::Orthographic { height_m: b },
+                ) => Projection::Orthographic {
+                    height_m: mixed(a, b, by),
+                },
+                _ => nearer.projection,
+            },
+            near_m: mixed(self.near_m, other.near_m, by),
+        };
+        // Nothing lies between cameras on opposite sides, or where a distance is 0.
+        match apart.is_some() && camera.eye.is_finite() && camera.eye != camera.target {
+            true => camera,
+            false => *nearer,
+        }
+    }
+}
+
+/// The effects of `nearer`, with the values in between of those that both stacks have.
+fn mixed_stack(a: &Stack, b: &Stack, nearer: &Stack, by: f64) -> Stack {
+    let both = |name: &str| {
+        let (a, b) = (a.get(name)?, b.get(name)?);
+        (a.effect == b.effect).then_some((a, b))
+    };
+    let mut stack = nearer.clone();
+    for EnabledEffect { effect, words, .. } in &mut stack.0 {
+        let Some((a, b)) = both(&effect.name) else {
+            continue;
+        };
+        for field in effect.fields.iter().filter(|field| !steps(field)) {
+            let [low, high] = field.hard;
+            let (a, b) = (field.get(&a.words), field.get(&b.words));
+            let values: Vec<f64> = a
+                .iter()
+                .zip(&b)
+                .map(|(a, b)| mixed(*a, *b, by).clamp(low, high))
+                .collect();
+            let written = field.set(words, &values);
+            debug_assert!(written.is_ok(), "{}: {written:?}", field.name);
+        }
+    }
+    stack
+}
+
+impl Preset {
+    /// The preset `by` of the way from this one to `other`, 0 to 1, both on `scene`. Numbers, colors
+    /// and cameras are in between, also those of effects that both have; everything else is that of
+    /// the nearer: effects, choices, whole numbers, keyframes, the ground. Size and accuracy of the
+    /// picture stay; it has no golden.
+    #[must_use]
+    pub fn toward(&self, other: &Self, by: f64, scene: &Scene) -> Self {
+        let by = by.clamp(0.0, 1.0);
+        let (a, b) = (self.in_meters(scene), other.in_meters(scene));
+        let (a, b) = (&*a, &*b);
+        let nearer = if by < 0.5 { a } else { b };
+        let is_automatic = a.camera.is_none() && b.camera.is_none();
+        let camera = if is_automatic && a.scene_camera == b.scene_camera {
+            None
+        } else {
+            let [width, height] = self.output.size.map(|side| f64::from(side.max(1)));
+            let seen = |preset: &Self| preset.camera_for(scene, width / height);
+            Some(seen(a).toward(&seen(b), by))
+        };
+        let mut mixture = nearer.clone();
+        mixture.camera = camera;
+        mixture.stack = mixed_stack(&a.stack, &b.stack, &nearer.stack, by);
+        mixture.spin_deg_per_s = mixed(a.spin_deg_per_s, b.spin_deg_per_s, by);
+        mixture.clock.time_s = mixed(a.clock.time_s, b.clock.time_s, by);
+        mixture.playback.speed = mixed(a.playback.speed, b.playback.speed, by);
+        mixture.playback.blend = mixed(a.playback.blend, b.playback.blend, by);
+        mixture.playback.clip_time_s = match (a.playback.clip_time_s, b.playback.clip_time_s) {
+            (Some(a), Some(b)) => Some(mixed(a, b, by)),
+            _ => nearer.playback.clip_time_s,
+        };
+        let bottom = |preset: &Self| preset.output.backdrop().bottom;
+        let is_even = [a, b].map(|preset| preset.output.background_bottom.is_none()) == [true; 2];
+        mixture.output = a.output;
+        mixture.output.background = mixed_color(a.output.background, b.output.background, by);
+        mixture.output.background_bottom =
+            (!is_even).then(|| mixed_color(bottom(a), bottom(b), by));
+        mixture.accuracy = a.accuracy;
+        mixture.test = None;
+        mixture
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::{facet, lambert, posterize};
+
+    fn camera(eye: [f64; 3], fov_y_deg: f64) -> Camera {
+        Camera {
+            eye: eye.into(),
+            projection: Projection::Perspective { fov_y_deg },
+            ..Camera::default()
+        }
+    }
+
+    fn scene() -> Scene {
+        crate::scene::builtin::build("cube-wall").expect("a built-in scene")
+    }
+
+    #[test]
+    fn a_camera_goes_round_its_target_and_ends_at_both_cameras() {
+        let (a, b) = (camera([4.0, 0.0, 0.0], 30.0), camera([0.0, 0.0, 1.0], 60.0));
+        assert_eq!((a.toward(&b, 0.0), a.toward(&b, 1.0)), (a, b));
+        let middle = a.toward(&b, 0.5);
+        assert!((middle.eye.length() - 2.0).abs() < 1e-12, "{middle:?}");
+        assert!((middle.eye.x - middle.eye.z).abs() < 1e-12, "{middle:?}");
+        assert_eq!(
+            middle.projection,
+            Projection::Perspective { fov_y_deg: 45.0 }
+        );
+        let opposite = camera([-4.0, 0.0, 0.0], 30.0);
+        for k in 0..=8 {
+            let by = f64::from(k) / 8.0;
+            let between = a.toward(&opposite, by);
+            assert!(between.eye.is_finite() && between.eye != between.target);
+        }
+    }
+
+    #[test]
+    fn numbers_are_in_between_and_choices_switch_half_way() {
+        let scene = scene();
+        let mut a = Preset {
+            camera: Some(camera([4.0, 1.0, 0.0], 30.0)),
+            ..Preset::default()
+        };
+        let mut b = a.clone();
+        a.output.background = [0.0, 0.0, 0.0, 1.0];
+        b.output.background = [1.0, 0.5, 0.0, 1.0];
+        b.output.size = [64, 64];
+        a.stack.enable(&facet::EFFECT);
+        a.stack.enable(&lambert::EFFECT);
+        b.stack.enable(&facet::EFFECT);
+        b.stack.enable(&posterize::EFFECT);
+        let amount = facet::EFFECT.field("amount").expect("a parameter");
+        for (preset, value) in [(&mut a, 0.25), (&mut b, 0.75)] {
+            let enabled = preset.stack.get_mut("facet").expect("it is enabled");
+            amount.set(&mut enabled.words, &[value]).expect("in range");
+        }
+        for k in 0..=8 {
+            let by = f64::from(k) / 8.0;
+            let mixture = a.toward(&b, by, &scene);
+            let words = &mixture.stack.get("facet").expect("both have it").words;
+            assert!((amount.get(words)[0] - (0.25 + 0.5 * by)).abs() < 1e-6);
+            let background = mixture.output.background;
+            assert!((f64::from(background[1]) - 0.5 * by).abs() < 1e-6);
+            assert_eq!(mixture.output.size, a.output.size);
+            let has = |name| mixture.stack.get(name).is_some();
+            assert_eq!((has("lambert"), has("posterize")), (k < 4, k >= 4));
+        }
+        assert_eq!(a.toward(&b, 0.0, &scene), a);
+    }
+}

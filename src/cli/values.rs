@@ -1,0 +1,68 @@
+//! Values of flags that are read from text. What cannot be read is said with what can be written.
+
+use crate::{
+    film::Turntable,
+    preset::{NAMED_SIZES, named_size},
+};
+
+/// `30..60`, `..60`, `30..`.
+pub fn frames(text: &str) -> Result<[Option<u32>; 2], String> {
+    let wrong = || {
+        format!(
+            "{text:?} is no range of frames; write A..B, A.. or ..B with whole numbers, B excluded, for instance 0..60"
+        )
+    };
+    let (from, to) = text.split_once("..").ok_or_else(wrong)?;
+    let end = |end: &str| {
+        if end.is_empty() {
+            Ok(None)
+        } else {
+            end.parse().map(Some).map_err(|_| wrong())
+        }
+    };
+    match [end(from)?, end(to)?] {
+        [Some(from), Some(to)] if from >= to => {
+            Err(format!("{text} has no frame: {from} is not before {to}"))
+        }
+        ends => Ok(ends),
+    }
+}
+
+/// `camera` or `scene`.
+pub fn turntable(text: &str) -> Result<Turntable, String> {
+    match text {
+        "camera" => Ok(Turntable::Camera),
+        "scene" => Ok(Turntable::Scene),
+        _ => Err(format!("{text:?} cannot turn; write camera or scene")),
+    }
+}
+
+/// A number from 0 to 1.
+pub fn fraction(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|fraction| (0.0..=1.0).contains(fraction))
+        .ok_or_else(|| format!("{text:?} is no number from 0 to 1"))
+}
+
+/// `1920x1080`, or the name of a size.
+pub fn size(text: &str) -> Result<[u32; 2], String> {
+    if let Some(size) = named_size(text) {
+        return Ok(size);
+    }
+    let wrong = || {
+        let names: Vec<&str> = NAMED_SIZES.iter().map(|(name, _)| *name).collect();
+        format!(
+            "{text:?} is no size; write WIDTHxHEIGHT, each 1 to 16384, for instance 1920x1080, or one of {}",
+            names.join(", ")
+        )
+    };
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
+    let side = |side: &str| {
+        side.parse()
+            .ok()
+            .filter(|side| (1..=16_384).contains(side))
+            .ok_or_else(wrong)
+    };
+    Ok([side(width)?, side(height)?])
+}
