@@ -30,7 +30,7 @@ pub struct Review {
     /// Presets; without any, all of the gallery that have a golden. The oracle draws them, and every difference counts;
     /// with --adapter the adapter does, and those within the budget of [test] are left out
     #[arg(value_name = "PRESET")]
-    pub presets: Vec<String>,
+    pub files: Vec<String>,
     /// Write three pictures of each into this folder, PRESET.golden.png, PRESET.now.png and
     /// PRESET.difference.png (16 times the difference), and the listing as review.txt
     #[arg(long, short, value_name = "DIR")]
@@ -88,7 +88,7 @@ impl Reviewed {
 }
 
 pub fn run(common: &Common, args: &Review, streams: &mut Streams) -> Result<Exit, CliError> {
-    let names = match &args.presets[..] {
+    let names = match &args.files[..] {
         [] => preset_file::gallery(&common.folders())
             .iter()
             .filter(|entry| entry.preset_file.as_ref().is_ok_and(has_golden))

@@ -238,7 +238,7 @@ fn what_a_look_leaves_out_is_one_warning_each_and_strict_makes_it_an_error() {
     assert_eq!(
         (
             said("clip \"Walk\" was left out"),
-            said("no node that matches \"walker 1\"")
+            said("effects.hatch.on: 1 of its 2 parts")
         ),
         (1, 1),
         "{}",
