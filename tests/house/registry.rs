@@ -51,14 +51,22 @@ fn effects() -> BTreeSet<String> {
 fn every_effect_has_both_its_sources_and_no_source_lacks_its_effect() {
     let mut rust = stems("crates/model/src/effects", "rs");
     // The catalogue itself.
-    ["mod", "conflict", "effect", "image_file", "list", "one_sun", "stack"]
-        .iter()
-        .for_each(|stem| {
-            assert!(
-                rust.remove(*stem),
-                "crates/model/src/effects/{stem}.rs is gone"
-            )
-        });
+    [
+        "mod",
+        "conflict",
+        "effect",
+        "image_file",
+        "list",
+        "one_sun",
+        "stack",
+    ]
+    .iter()
+    .for_each(|stem| {
+        assert!(
+            rust.remove(*stem),
+            "crates/model/src/effects/{stem}.rs is gone"
+        )
+    });
     assert_eq!(
         rust,
         effects(),

@@ -232,9 +232,15 @@ fn begin_ui(ui: &mut Ui, review: &Review, commands: &Commands) {
             if ui.add(button).on_hover_text(hint).clicked() {
                 send(ReviewCommand::Begin);
             }
-            if review.entries().is_empty() && review.is_complete() {
-                let text = "Every preset has the picture of its golden";
-                ui.label(RichText::new(text).color(theme::green()));
+            match (review.entries().is_empty(), review.is_complete()) {
+                (true, true) => {
+                    let text = "Every preset has the picture of its golden";
+                    ui.label(RichText::new(text).color(theme::green()));
+                }
+                (true, false) => {
+                    ui.label(theme::weak(hint));
+                }
+                (false, _) => {}
             }
         }
     });
