@@ -34,11 +34,11 @@ impl Image {
     }
 
     /// The color at a place, pixels from the top left corner, between the middles of four pixels.
-    /// Weights are whole multiples of 1/256; `step_offset` moves where they change.
+    /// Weights are whole multiples of 1/256; `step_offset`, a fraction of the place, moves it.
     pub fn between(&self, at: DVec2, step_offset: f64) -> DVec4 {
         let grid = |place: f64| {
             let place = place.clamp(-FARTHEST_PX, FARTHEST_PX);
-            let moved = place * 256.0 + 0.5 + step_offset * (place.abs() + 1.0);
+            let moved = (place + step_offset * (place.abs() + 1.0)) * 256.0 + 0.5;
             moved.floor() as i64 - 128
         };
         let [x, y] = [grid(at.x), grid(at.y)];
