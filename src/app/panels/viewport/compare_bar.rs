@@ -96,7 +96,7 @@ pub fn bar_ui(ui: &mut Ui, compare: &mut Compare, state: &State, rect: Rect) {
                     ui.spacing_mut().slider_width = 72.0;
                     let toward = egui::Slider::new(&mut compare.toward, 0.0..=1.0)
                         .show_value(false)
-                        .text("A \u{2192} B");
+                        .text("A to B");
                     ui.add(toward)
                         .accessible_name("A toward B")
                         .on_hover_text("How far A is on the way to B: numbers and colors in between, effects and choices switch half way");
