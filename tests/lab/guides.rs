@@ -48,7 +48,24 @@ fn guides_have_the_sizes_of_the_scene_and_distances_are_measured_on_the_model() 
     assert!(label(&lab, "grid ").is_some());
 
     let picture = lab.get_by_role_and_label(Role::Image, "Picture").rect();
-    let places = [pos2(0.46, 0.5), pos2(0.54, 0.56)];
+    let size = [picture.width().round(), picture.height().round()].map(|side| side as u32);
+    let view = lab.state().view(size).expect("a view");
+    let picked = |x: u32, y: u32| {
+        let uv = DVec2::new(x.into(), y.into()) / 64.0;
+        pick::pick(&scene, &view, uv)
+    };
+    // Places where the model is, and on all sides of them.
+    let inside: Vec<[u32; 2]> = (1..64 * 64)
+        .map(|i| [i % 64, i / 64])
+        .filter(|&[x, y]| x > 0 && y > 0)
+        .filter(|&[x, y]| {
+            [[x, y], [x - 1, y], [x + 1, y], [x, y - 1], [x, y + 1]]
+                .iter()
+                .all(|&[x, y]| picked(x, y).is_some())
+        })
+        .collect();
+    let ends = [inside[0], inside[inside.len() - 1]];
+    let places = ends.map(|end| pos2(end[0] as f32 / 64.0, end[1] as f32 / 64.0));
     for place in places {
         let at = Pos2::ZERO + picture.min.to_vec2() + place.to_vec2() * picture.size();
         lab.hover_at(at);
@@ -68,12 +85,7 @@ fn guides_have_the_sizes_of_the_scene_and_distances_are_measured_on_the_model() 
         lab.step();
         settle(&mut lab);
     }
-    let size = [picture.width().round(), picture.height().round()].map(|side| side as u32);
-    let view = lab.state().view(size).expect("a view");
-    let [a, b] = places.map(|place| {
-        let uv = DVec2::new(place.x.into(), place.y.into());
-        pick::pick(&scene, &view, uv).expect("a point of the model")
-    });
+    let [a, b] = ends.map(|[x, y]| picked(x, y).expect("a point of the model"));
     let (text, _) = label(&lab, "distance ").expect("a distance");
     let told: f64 = text
         .split_whitespace()
