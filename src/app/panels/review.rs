@@ -130,7 +130,7 @@ impl ReviewPanel {
             (Some([golden, _]), Mode::Blink) => {
                 let turn = ui.input(|i| i.time) / BLINK_S;
                 shown = "now";
-                if turn as u64 % 2 == 0 {
+                if (turn as u64).is_multiple_of(2) {
                     put(golden, rect);
                     shown = "golden";
                 }

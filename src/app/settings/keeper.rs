@@ -133,7 +133,7 @@ impl Keeper {
     /// The review of goldens that the last session left.
     pub fn kept_review(&self) -> KeptReview {
         let folder = self.folder.as_ref().filter(|_| self.lock.is_some());
-        let text = folder.and_then(|folder| disk::read_to_string(&folder.join(SESSION)).ok());
+        let text = folder.and_then(|folder| disk::read_to_string(folder.join(SESSION)).ok());
         text.and_then(|text| LastSession::parse(&text, SESSION).ok())
             .map(|session| session.review)
             .unwrap_or_default()
