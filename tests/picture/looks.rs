@@ -32,7 +32,22 @@ const EXCEPTIONS: &[(&str, f64, &str)] = &[
         3.0,
         "discs smaller than a pixel miss most samples",
     ),
+    (
+        "bloom",
+        3.0,
+        "what is bright is chosen by pixel, and small pixels mix less",
+    ),
+    ("grain", 3.0, "every pixel has a grain of its own"),
+    ("crt", 3.5, CELL),
+    ("halftone", 3.5, CELL),
+    ("pixelate", 4.0, CELL),
+    (
+        "glow_edges",
+        24.0,
+        "a tube is one pixel wide at every size, so it lights less of a larger picture",
+    ),
 ];
+const CELL: &str = "cells and lines are whole pixels, or have a rim of one";
 const DOTS: &str = "a dot has a soft rim of one pixel, and where dots overlap the brightest shows";
 const THIN: &str = "a line of one pixel cannot become thinner";
 
