@@ -90,6 +90,9 @@ pub const GALLERY_SCENES: &[&str] = &[
 /// Scenes of glass, which the hardware baseline draws as if it were opaque.
 pub const GLASS_SCENES: &[&str] = &["panes"];
 
+/// Scenes with normal maps, which the hardware baseline does not read.
+const MAPPED_SCENES: &[&str] = &["golf?tess=3"];
+
 /// Scenes with deformed meshes, which the strict vertex stage refuses.
 pub const DEFORMED_SCENES: &[&str] = &["tentacle?tess=3", "walker?tess=1"];
 
@@ -110,7 +113,14 @@ const SCENES_OF_PAIRS: &[&str] = &[
 
 /// A scene of every builtin.
 fn all_scenes() -> Vec<&'static str> {
-    [SCENES, GALLERY_SCENES, GLASS_SCENES, DEFORMED_SCENES].concat()
+    [
+        SCENES,
+        GALLERY_SCENES,
+        GLASS_SCENES,
+        MAPPED_SCENES,
+        DEFORMED_SCENES,
+    ]
+    .concat()
 }
 
 /// Most particles of a picture.
