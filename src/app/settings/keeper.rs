@@ -133,7 +133,8 @@ impl Keeper {
     /// The review of goldens that the last session left.
     pub fn kept_review(&self) -> KeptReview {
         let folder = self.folder.as_ref().filter(|_| self.lock.is_some());
-        let text = folder.and_then(|folder| disk::read_to_string(folder.join(SESSION)).ok());
+        let path = folder.map(|folder| folder.join(SESSION));
+        let text = path.and_then(|path| disk::read_to_string(path.as_path()).ok());
         text.and_then(|text| LastSession::parse(&text, SESSION).ok())
             .map(|session| session.review)
             .unwrap_or_default()

@@ -254,8 +254,14 @@ impl App {
         }
         #[cfg(target_arch = "wasm32")]
         {
+            let State {
+                settings,
+                session,
+                picture,
+                ..
+            } = &self.state;
             self.keeper
-                .close(&self.state.settings, &self.state.session, true);
+                .close(settings, (session, picture.review.kept()), true);
             super::page::stop("the device was lost");
         }
         self.state.closing.may_quit = true;
