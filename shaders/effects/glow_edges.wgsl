@@ -49,7 +49,8 @@ fn glow_edges_shine(at: ImageAt, p: GlowEdges) -> vec4f {
     let color = image_color(at.x, at.y);
     let tube = glow_edges_tube(at, p);
     let middle = 0.5 * image_middle(at);
-    let halo = p.intensity * image_last_at(middle.x, middle.y).rgb;
+    // A tube is a pixel wide, so a mean over a larger radius has less of it: the halo is as bright at any size of the picture.
+    let halo = p.intensity * (p.radius_px / 16.0) * image_last_at(middle.x, middle.y).rgb;
     // A tube is white in its middle.
     let core = tube.rgb + tube.a * (0.6 - 0.6 * tube.rgb);
     let dim = p.picture * color.rgb;

@@ -103,9 +103,9 @@ pub fn read(file: &str, stem: &str, written: &str) -> Result<Arc<Effect>, Effect
 }
 
 /// Reads the effect `stem` from the text of its file, which messages call `file`, and the pictures
-/// that it names from `folder`. Equal texts of one name give the same effect, which is checked
-/// once: every preset of a folder asks for the effects beside it. Few effects that nobody uses any
-/// more are kept.
+/// that it names from `folder`. Equal texts of one name give the same effect. Each text is checked
+/// once, since every preset of a folder asks for the effects beside it; a few effects that no preset
+/// uses any more stay in memory.
 ///
 /// # Errors
 /// The first fault, at its line.

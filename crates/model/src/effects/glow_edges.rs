@@ -67,7 +67,10 @@ impl PassEffect for GlowEdges {
 impl GlowEdges {
     fn shine(&self, at: &ImageAt) -> DVec4 {
         let (color, tube) = (at.color(at.x, at.y), self.tube(at));
-        let halo = f64::from(self.intensity) * at.last_at(0.5 * at.middle()).truncate();
+        // A tube is a pixel wide, so a mean over a larger radius has less of it: the halo is as
+        // bright at any size of the picture.
+        let strength = f64::from(self.intensity) * (f64::from(self.radius_px) / 16.0);
+        let halo = strength * at.last_at(0.5 * at.middle()).truncate();
         // A tube is white in its middle.
         let core = tube.truncate() + tube.w * (0.6 - 0.6 * tube.truncate());
         let dim = f64::from(self.picture) * color.truncate();
