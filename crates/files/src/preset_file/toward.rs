@@ -3,7 +3,7 @@
 use super::file::{PresetFile, normalized};
 use crate::{preset::SceneSource, scene::Scene};
 
-/// The scene in one form, whatever folder it is named from.
+/// The scene with the path of its model made absolute, so that names from two folders can be compared.
 fn scene_of(preset_file: &PresetFile) -> SceneSource {
     match preset_file.scene_source() {
         SceneSource::File(model) => SceneSource::File(normalized(&model).unwrap_or(model)),
