@@ -10,6 +10,7 @@ mod checks;
 mod clipping;
 mod context;
 mod coverage;
+mod covering;
 pub mod culling;
 mod depth;
 mod drawing;
