@@ -131,6 +131,14 @@ const TIME_S: f64 = 0.4;
 
 // -------- factors
 
+/// Image effects whose many passes take long to compile. They read a finished picture, as those among the
+/// [`factors`] do, so each chain meets the options that are in the text of its passes and no others.
+const IMAGE_CHAINS: &[&[&str]] = &[
+    &["ambient", "depth_of_field", "bloom"],
+    &["blur", "glow_edges", "paint"],
+    &["aberration", "halftone", "glitch", "crt"],
+];
+
 /// What a level of a factor gives a picture.
 #[derive(Clone, Copy)]
 enum Level {
@@ -185,13 +193,7 @@ fn factors(caps: &Caps) -> Vec<Vec<Level>> {
             &["draw_order", "xray"],
         ]),
         effects(&[&[], &["posterize"], &["outline"], &["dither"], &["tonemap"]]),
-        effects(&[
-            &[],
-            &["ambient", "depth_of_field", "bloom"],
-            &["sharpen", "blur", "glow_edges", "vignette"],
-            &["paint", "aberration", "grain"],
-            &["halftone", "pixelate", "glitch", "crt"],
-        ]),
+        effects(&[&[], &["sharpen", "vignette"], &["pixelate", "grain"]]),
         effects(&[&[], &["shadow"], &["dots"], &["particles"]]),
         pins(&options(caps)),
         pins(&[Culling::None, Culling::Frustum, Culling::TwoPass]),
@@ -266,10 +268,36 @@ fn with_random_values(mut stack: Stack, rng: &mut Rng) -> Stack {
     stack
 }
 
+/// What the pictures of a row share.
+#[derive(Default)]
+struct Row {
+    effects: Vec<&'static str>,
+    pins: PinnedOptions,
+    tuning: Option<Tuning>,
+    is_random: bool,
+    is_gradient: bool,
+}
+
+impl Row {
+    fn of_levels(levels: impl Iterator<Item = Level>) -> Self {
+        let mut row = Self::default();
+        for level in levels {
+            match level {
+                Level::Effects(effects) => row.effects.extend(effects),
+                Level::Pin(axis, option) => row.pins.set(axis, Some(option)),
+                Level::Tuning(tuning) => row.tuning = Some(tuning),
+                Level::RandomValues(is_random) => row.is_random = is_random,
+                Level::Gradient(is_gradient) => row.is_gradient = is_gradient,
+            }
+        }
+        row
+    }
+}
+
 fn every_pair(context: &mut CaseContext) -> Result<(), EarlyEnd> {
-    const SIZE: [u32; 2] = [96, 72];
     let mut rng = context.rng(36);
-    let factors = factors(&context.renderer.gpu().caps);
+    let caps = context.renderer.gpu().caps;
+    let factors = factors(&caps);
     let rows = covering_rows(&factors.iter().map(Vec::len).collect::<Vec<_>>(), &mut rng);
     let queries = SCENES_OF_PAIRS;
     let scenes = queries
@@ -277,61 +305,88 @@ fn every_pair(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         .map(|query| context.scene(query))
         .collect::<Result<Vec<_>, _>>()?;
     let of_rows = scenes_of_rows(&rows, scenes.len());
-    for (row, of_row) in rows.iter().zip(&of_rows) {
-        let (mut names, mut pins, mut tuning, mut is_random, mut is_gradient) =
-            (Vec::new(), PinnedOptions::default(), None, false, false);
-        for (levels, &level) in factors.iter().zip(row) {
-            match levels[level] {
-                Level::Effects(effects) => names.extend(effects),
-                Level::Pin(axis, option) => pins.set(axis, Some(option)),
-                Level::Tuning(of_row) => tuning = Some(of_row),
-                Level::RandomValues(of_row) => is_random = of_row,
-                Level::Gradient(of_row) => is_gradient = of_row,
-            }
-        }
-        tuning
-            .into_iter()
-            .for_each(|tuning| context.renderer.set_tuning(tuning));
+    for (levels, of_row) in rows.iter().zip(&of_rows) {
+        let levels = factors.iter().zip(levels).map(|(factor, &at)| factor[at]);
+        let row = Row::of_levels(levels);
         for &at in of_row {
-            let (query, scene) = (queries[at], &scenes[at]);
-            let stack = if is_random {
-                with_random_values(stack(&names), &mut rng)
-            } else {
-                stack(&names)
-            };
-            let mut preset = preset(query, scene, stack);
-            if is_gradient {
-                preset.output.background_bottom = Some([0.9, 0.3, 0.1, 1.0]);
-            }
-            let (view, stack) = (preset.view(scene, SIZE), preset.evaluated_stack());
-            let what = format!(
-                "{query} with {names:?}{}, {}, {tuning:?}",
-                if is_random { " of random values" } else { "" },
-                pins.words()
-            );
-            let accuracy = AccuracyRequest {
-                pins,
-                ..AccuracyRequest::default()
-            };
-            let (_, verdict) = context.judged(scene, &view, &stack, &accuracy, &what)?;
-            // How many pixels lie in the depth band depends on scene and effects alone, and the scenes
-            // reach its limit in pictures as small as these. Random values, boxes and discs may put
-            // many pixels on a step of color.
-            let has_steps =
-                is_random || ["boxes", "points"].iter().any(|name| names.contains(name));
-            let mut budget = Budget::default();
-            if has_steps {
-                budget.max_step_band_fraction = 1.0;
-            }
-            let judgement = verdict.report.within(&budget);
-            judgement.map_err(|fault| EarlyEnd::Failed(format!("{what}: {fault}")))?;
-            let (ill, vertices) = (verdict.report.ill_conditioned, verdict.report.vertices);
-            check!(
-                is_random || ill * 100 <= vertices,
-                "{what}: {ill} of {vertices} corners are not judged"
-            );
+            judge(context, &mut rng, queries[at], &scenes[at], &row)?;
         }
     }
+    let tunings = tunings();
+    for (turn, chain) in IMAGE_CHAINS.iter().enumerate() {
+        for parameters in pins(&[Parameters::Uniform, Parameters::Baked]) {
+            for is_random in [false, true] {
+                let levels = [
+                    Level::Effects(&["lambert"]),
+                    Level::Effects(chain),
+                    parameters,
+                    Level::Tuning(tunings[turn % tunings.len()]),
+                    Level::RandomValues(is_random),
+                ];
+                let row = Row::of_levels(levels.into_iter());
+                let at = turn % scenes.len();
+                judge(context, &mut rng, queries[at], &scenes[at], &row)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Draws the scene `query` as `row` says and judges the picture.
+fn judge(
+    context: &mut CaseContext,
+    rng: &mut Rng,
+    query: &str,
+    scene: &Arc<Scene>,
+    row: &Row,
+) -> Result<(), EarlyEnd> {
+    const SIZE: [u32; 2] = [96, 72];
+    if let Some(tuning) = row.tuning {
+        context.renderer.set_tuning(tuning);
+    }
+    let mut stack = stack(&row.effects);
+    if row.is_random {
+        stack = with_random_values(stack, rng);
+    }
+    let mut preset = preset(query, scene, stack);
+    if row.is_gradient {
+        preset.output.background_bottom = Some([0.9, 0.3, 0.1, 1.0]);
+    }
+    let (view, stack) = (preset.view(scene, SIZE), preset.evaluated_stack());
+    let what = format!(
+        "{query} with {:?}{}, {}, {:?}",
+        row.effects,
+        if row.is_random {
+            " of random values"
+        } else {
+            ""
+        },
+        row.pins.words(),
+        row.tuning
+    );
+    let accuracy = AccuracyRequest {
+        pins: row.pins,
+        ..AccuracyRequest::default()
+    };
+    let (_, verdict) = context.judged(scene, &view, &stack, &accuracy, &what)?;
+    // How many pixels lie in the depth band depends on scene and effects alone, and the scenes
+    // reach its limit in pictures as small as these. Random values, boxes and discs may put
+    // many pixels on a step of color.
+    let has_steps = row.is_random
+        || ["boxes", "points"]
+            .iter()
+            .any(|name| row.effects.contains(name));
+    let mut budget = Budget::default();
+    if has_steps {
+        budget.max_step_band_fraction = 1.0;
+    }
+    let judgement = verdict.report.within(&budget);
+    judgement.map_err(|fault| EarlyEnd::Failed(format!("{what}: {fault}")))?;
+    let (ill, vertices) = (verdict.report.ill_conditioned, verdict.report.vertices);
+    check!(
+        row.is_random || ill * 100 <= vertices,
+        "{what}: {ill} of {vertices} corners are not judged"
+    );
     Ok(())
 }
 
@@ -526,7 +581,11 @@ mod tests {
                 None
             }
         });
-        let effects: BTreeSet<&str> = levels.flatten().copied().collect();
+        let effects: BTreeSet<&str> = levels
+            .chain(IMAGE_CHAINS.iter().copied())
+            .flatten()
+            .copied()
+            .collect();
         // A trail needs the pictures before.
         assert_eq!(
             effects,
