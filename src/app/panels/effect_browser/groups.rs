@@ -238,7 +238,7 @@ mod tests {
         assert_eq!(
             of(Group::Surface),
             [
-                "facet", "lambert", "studio", "shadow", "toon", "hatch", "fog", "tonemap"
+                "facet", "matcap", "lambert", "studio", "shadow", "toon", "hatch", "fog", "tonemap"
             ]
         );
         assert_eq!(
@@ -257,6 +257,7 @@ mod tests {
                 "glow_edges",
                 "halftone",
                 "pixelate",
+                "palette",
                 "aberration",
                 "grain",
                 "vignette",
