@@ -37,7 +37,7 @@ fn matcap_ball(ball: u32, facing: vec3f) -> vec3f {
             return matcap_painted(facing, MatcapPaint(vec3f(0.3, 0.085, 0.025), vec3f(0.92, 0.74, 0.46), vec3f(0.4, 0.13, 0.03), 0.3, 0.25));
         }
         case MATCAP_BALL_JADE: {
-            return matcap_painted(facing, MatcapPaint(vec3f(0.004, 0.04, 0.026), vec3f(0.09, 0.42, 0.22), vec3f(0.16, 0.34, 0.22), 0.75, 0.9));
+            return matcap_painted(facing, MatcapPaint(vec3f(0.004, 0.04, 0.026), vec3f(0.05, 0.29, 0.16), vec3f(0.16, 0.34, 0.22), 0.75, 0.9));
         }
         default: {
             return matcap_painted(facing, MatcapPaint(vec3f(0.075, 0.03, 0.028), vec3f(0.78, 0.4, 0.26), vec3f(0.07, 0.08, 0.12), 0.05, 0.0));

@@ -77,7 +77,7 @@ const WAX: Paint = Paint {
 };
 const JADE: Paint = Paint {
     dark: DVec3::new(0.004, 0.04, 0.026),
-    bright: DVec3::new(0.09, 0.42, 0.22),
+    bright: DVec3::new(0.05, 0.29, 0.16),
     rim: DVec3::new(0.16, 0.34, 0.22),
     gloss: 0.75,
     sharp: 0.9,

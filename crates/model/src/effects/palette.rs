@@ -35,7 +35,7 @@ params! {
         /// The inks.
         inks: Inks = Inks::Arcade as u32;
         /// How far a 4 by 4 matrix moves colors apart before each takes its ink, of black to white.
-        dither: f32 = 0.2, hard 0.0..=1.0;
+        dither: f32 = 0.12, hard 0.0..=1.0;
         /// Side of a cell of the matrix.
         cell_px: u32 = 1, hard 1.0..=1024.0, soft 1.0..=8.0, unit "px";
     }
