@@ -26,7 +26,7 @@ fn bookmarks_are_saved_in_their_order_and_keep_their_comments() {
     file.preset.rename_bookmark("front", "ahead").expect("free");
     file.preset.add_bookmark(aside).expect("room");
     file.preset.bookmarks[1].camera.eye.x = 0.25;
-    save(&file, &path).expect("it is saved");
+    save(&mut file, &path).expect("it is saved");
     let text = std::fs::read_to_string(&path).expect("it is there");
     let again = parse(&text).preset;
     assert_eq!(names(&again), ["ahead", "from above", "view 1"], "{text}");
