@@ -174,7 +174,7 @@ fn factors(caps: &Caps) -> Vec<Vec<Level>> {
             &["boxes"],
             &["points"],
         ]),
-        effects(&[&[], &["explode"], &["inflate"], &["wobble"]]),
+        effects(&[&[], &["explode"], &["inflate", "psx"], &["wobble"]]),
         effects(&[
             &[],
             &["xray"],

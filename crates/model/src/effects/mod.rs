@@ -14,6 +14,7 @@ macro_rules! for_each_effect {
             explode,
             inflate,
             wobble,
+            psx,
             dissolve,
             stipple,
             facet,

@@ -230,7 +230,7 @@ mod tests {
         assert_eq!(of(Group::Layers), ["glass", "xray", "overdraw", "race"]);
         assert_eq!(of(Group::Lines), ["dots"]);
         assert_eq!(of(Group::Scene), ["particles"]);
-        assert_eq!(of(Group::Vertex), ["explode", "inflate", "wobble"]);
+        assert_eq!(of(Group::Vertex), ["explode", "inflate", "wobble", "psx"]);
         assert_eq!(
             of(Group::Sample),
             ["boxes", "points", "dissolve", "stipple", "wireframe"]
