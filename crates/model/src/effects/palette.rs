@@ -101,7 +101,7 @@ fn nearest(wanted: DVec3, inks: &[DVec3], step_offset: f64) -> usize {
     let mut near = distances.enumerate().filter(|(_, distance)| {
         *distance <= least + BAND * step_offset.abs()
     });
-    let found = if step_offset < 0.0 { near.last() } else { near.next() };
+    let found = if step_offset < 0.0 { near.next_back() } else { near.next() };
     found.map_or(0, |(index, _)| index)
 }
 
