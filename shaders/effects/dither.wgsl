@@ -1,4 +1,5 @@
 // Dither: ordered dithering (Bayer 1973), so that few levels look like many.
+//@ use lib/bayer
 //@ use lib/image
 //@ use lib/color
 
@@ -14,7 +15,7 @@ struct Dither {
 fn dither(pixel: Pixel, p: Dither) -> Pixel {
     var q = pixel;
     let bits = 3u - p.matrix;
-    let threshold = (f32(dither_rank(q.x / p.cell_px, q.y / p.cell_px, bits)) + 0.5) / f32(1u << (2u * bits));
+    let threshold = (f32(bayer_rank(q.x / p.cell_px, q.y / p.cell_px, bits)) + 0.5) / f32(1u << (2u * bits));
     let last = f32(p.levels - 1u);
     let base = q.color.rgb;
     var value = base;
@@ -27,13 +28,4 @@ fn dither(pixel: Pixel, p: Dither) -> Pixel {
     }
     q.color = vec4f(color, q.color.a);
     return q;
-}
-
-// Rank of a cell in the order in which a matrix with a side of 2^bits fills up: for every bit, the checkerboard first.
-fn dither_rank(x: u32, y: u32, bits: u32) -> u32 {
-    var rank = 0u;
-    for (var bit = 0u; bit < bits; bit += 1u) {
-        rank = (rank << 2u) | ((((x ^ y) >> bit) & 1u) << 1u) | ((y >> bit) & 1u);
-    }
-    return rank;
 }

@@ -8,6 +8,7 @@ struct Outline {
     side: u32,
     silhouette: u32,
     objects: u32,
+    intersections: u32,
     depth: u32,
     depth_threshold: f32,
 }
@@ -43,17 +44,23 @@ fn outline_is_edge(p: Outline, at: vec2i, here: vec3u, step: vec2i) -> bool {
     if here.z != there.z {
         // At equal depths, the later object counts as behind.
         let is_behind = here.y < there.y || (here.y == there.y && here.z > there.z);
-        return p.objects != 0u && (p.side == OUTLINE_SIDE_BOTH || is_behind == (p.side == OUTLINE_SIDE_OUTSIDE));
+        let is_line = p.objects != 0u || (p.intersections != 0u && abs(i32(there.y) - i32(here.y)) <= outline_jump(p));
+        return is_line && (p.side == OUTLINE_SIDE_BOTH || is_behind == (p.side == OUTLINE_SIDE_OUTSIDE));
     }
     if p.depth == 0u || !image_has(at.x - step.x, at.y - step.y) { return false; }
     let beyond = image_at(at.x - step.x, at.y - step.y);
     if beyond.z != here.z || beyond.x == IMAGE_NO_TRIANGLE { return false; }
     // Deviation from a straight slope; a slope alone is no jump. Depths end at the bits of 1.0, so the sum fits.
     let curvature = i32(there.y) + i32(beyond.y) - 2 * i32(here.y);
-    let jump = i32(p.depth_threshold * 8388608.0);
+    let jump = outline_jump(p);
     switch p.side {
         case OUTLINE_SIDE_OUTSIDE: { return curvature > jump; }
         case OUTLINE_SIDE_INSIDE: { return curvature < -jump; }
         default: { return abs(curvature) > jump; }
     }
+}
+
+// The least difference of depth bits that counts as a jump.
+fn outline_jump(p: Outline) -> i32 {
+    return i32(p.depth_threshold * 8388608.0);
 }

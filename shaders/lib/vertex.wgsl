@@ -9,6 +9,7 @@ struct Vertex {
     arm: vec3f,
     center_screen: vec2f,
     triangle: u32,
+    cell_px: u32,
 }
 
 const WORLD_LIMIT_M = 1099511627776.0; // 2^40: products of larger values might overflow

@@ -57,16 +57,28 @@ fn vertex_effects_stored_normal(draw: u32, vertex: u32) -> vec3f {
 fn vertex_effects_corner(draw: u32, vertex: u32, id: u32, p: vec3f) -> Vertex {
     let position = clamp_world((draws[draw].world_from_object * vec4f(p, 1.0)).xyz);
     let normal = normal_direction(vertex_effects_stored_normal(draw, vertex));
-    let v = Vertex(position, vec3f(0.0), normal, vec3f(0.0), position, vec3f(0.0), vec2f(0.0), 0u);
+    let v = Vertex(position, vec3f(0.0), normal, vec3f(0.0), position, vec3f(0.0), vec2f(0.0), 0u, 0u);
     return glue_vertex(corner_step(v, draw, id, p), draw);
 }
 
 fn vertex_effects_clip(draw: u32, vertex: u32, id: u32, p: vec3f) -> vec4f {
-    let offset = clamp_world(vertex_effects_corner(draw, vertex, id, p).offset);
+    let corner = vertex_effects_corner(draw, vertex, id, p);
+    let offset = clamp_world(corner.offset);
     let m = frame.clip_from_world;
     let clip = transform_clip(draw, p) + (m[0] * offset.x + m[1] * offset.y + m[2] * offset.z);
     // An orthographic depth beyond the far plane is clamped to it: there are no depths below 0.
-    return vec4f(clip.xy, max(clip.z, 0.0), clip.w);
+    return vertex_effects_on_grid(vec4f(clip.xy, max(clip.z, 0.0), clip.w), corner.cell_px);
+}
+
+// A corner at the nearest corner of a grid of the picture that begins at its center. The place is snapped and rounded to a cell in
+// integers, so that adapters decide alike; what lies before the near plane has no place.
+fn vertex_effects_on_grid(clip: vec4f, cell_px: u32) -> vec4f {
+    if cell_px == 0u || IS_SHADOW_MAP || clip.z > clip.w || clip.w <= 0.0 { return clip; }
+    let cell = i32(cell_px * (u32(2.0 * frame.center.y) / max(frame.size.y, 1u)));
+    let limit = vec2f(16777216.0);
+    let snapped = vec2i(clamp(round(clip.xy * (1.0 / clip.w) * frame.center), -limit, limit)) + cell / 2;
+    let whole = snapped / cell - select(vec2i(0), vec2i(1), snapped % vec2i(cell) < vec2i(0));
+    return vec4f(vec2f(whole * cell) / frame.center * clip.w, clip.zw);
 }
 
 // A loop, because compilers inline the vertex effects wherever they are called. It fills no array: NVIDIA's driver 580.159 loses

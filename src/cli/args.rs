@@ -349,6 +349,9 @@ pub struct Render {
     /// How far on the way, 0 to 1
     #[arg(long, value_name = "F", requires = "toward", default_value = "0.5", value_parser = fraction)]
     pub by: f64,
+    /// Draw each preset from this bookmark of its own instead of from its camera
+    #[arg(long, value_name = "NAME")]
+    pub bookmark: Option<String>,
     /// Time of the picture in seconds
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub time: Option<f64>,
@@ -386,6 +389,11 @@ pub struct Sequence {
     /// before it
     #[arg(long, value_name = "WHAT", num_args = 0..=1, require_equals = true, default_missing_value = "camera", value_parser = turntable)]
     pub turntable: Option<Turntable>,
+    /// Go to the look of this preset, which shows the same scene, evenly from the first frame to
+    /// the last: numbers, colors and cameras in between; effects, choices and whole numbers switch
+    /// half way
+    #[arg(long, value_name = "PRESET")]
+    pub toward: Option<String>,
     /// Print the number of frames and draw nothing
     #[arg(long)]
     pub count: bool,

@@ -152,7 +152,7 @@ fn check_arrays(args: &Render) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Opens a preset, on the way to that of `--toward`, with `--size`, `--time` and `--tier`, which are short for `--set`.
+/// Opens a preset, on the way to that of `--toward`, from its `--bookmark`, with `--size`, `--time` and `--tier`, which are short for `--set`.
 fn open_with_flags(common: &Common, args: &Render, what: &str) -> Result<PresetFile, CliError> {
     let mut preset_file = open(common, what)?;
     if let Some(other) = &args.toward {
@@ -160,6 +160,12 @@ fn open_with_flags(common: &Common, args: &Render, what: &str) -> Result<PresetF
         preset_file = preset_file
             .toward(&open(common, other)?, args.by, &scene)
             .map_err(CliError::usage)?;
+    }
+    if let Some(name) = &args.bookmark {
+        let camera = preset_file.preset.bookmark(name).map_err(|reason| {
+            CliError::usage(format!("--bookmark: {}: {reason}", preset_file.id))
+        })?;
+        preset_file.preset.camera = Some(camera);
     }
     if let Some(size) = args.size {
         preset_file.preset.output.resize(size);

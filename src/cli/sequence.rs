@@ -94,7 +94,10 @@ pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Ex
         .transpose()?;
     let scene = scene_of(common, &preset_file, streams)?;
     scene.notes.iter().for_each(|note| streams.note(note));
-    let film = Film::new(preset_file, scene, schedule, args.turntable)?;
+    let mut film = Film::new(preset_file, scene, schedule, args.turntable)?;
+    if let Some(other) = &args.toward {
+        film = film.toward(open(common, other)?)?;
+    }
     let mut backend = Backend::open(common, streams)?;
     let outputs = Outputs {
         frames: frame_paths(args, &film, &backend)?,

@@ -264,6 +264,7 @@ fn vertex_functions_agree() {
                     arm,
                     center_screen: vector(&mut rng, 0.0, 1.0).truncate(),
                     triangle: whole(&mut rng, 1 << 20),
+                    cell_px: whole(&mut rng, 3),
                 };
                 let of = |hooks: &Hooks| {
                     (hooks.vertex.as_ref().expect("it is on the hook").moved)(v, &words)
@@ -283,6 +284,7 @@ fn vertex_functions_agree() {
                     &expected.normal.to_array(),
                     &(&words, v),
                 );
+                assert_eq!(given.cell_px, expected.cell_px, "{}", effect.name);
             }
         },
     );

@@ -6,6 +6,7 @@ mod common;
 
 mod accuracy;
 mod anti_aliasing;
+mod bookmarks;
 mod brought_code;
 mod code;
 mod compare;

@@ -11,8 +11,10 @@ use rasterlab::{
         Effect, Stack,
         hooks::{ErrorBound, Vertex},
     },
+    frame::Geometry,
     gpu::Renderer,
     math::hash_unit,
+    measure::Budget,
     oracle,
     plan::Tuning,
     scene::{
@@ -272,6 +274,7 @@ fn vertex(rng: &mut Rng) -> Vertex {
         arm,
         center_screen: DVec2::new(0.4, 0.6),
         triangle: rng.next_u32() >> 8,
+        cell_px: 0,
     }
 }
 
@@ -360,6 +363,7 @@ fn exploding_and_turning_keeps_every_triangle_and_its_area() {
                 arm: position - center,
                 center_screen: DVec2::splat(0.5),
                 triangle: t,
+                cell_px: 0,
             };
             position + stack.moved(corner, 0).offset
         });
@@ -374,6 +378,61 @@ fn exploding_and_turning_keeps_every_triangle_and_its_area() {
             (flight.length() - expected).abs() < 1e-6 && flight.dot(normal) > 0.0,
             "triangle {t} flew {flight}"
         );
+    }
+}
+
+#[test]
+fn corners_snap_to_cells_and_the_adapter_agrees_on_each() {
+    const CELL_PX: i32 = 6;
+    let size = [200, 150];
+    let mut stack = lit(stack(&["wobble", "psx"]));
+    set(&mut stack, "psx", "cell_px", &[f64::from(CELL_PX)]);
+    let on_grid = |geometry: &Geometry| {
+        let seen = geometry.vertices.iter().filter(|corner| corner.flags == 0);
+        let [x, y] = size.map(|side| 128 * side as i32);
+        let is_on = |at: i32| at.rem_euclid(256 * CELL_PX) == 0;
+        let count = seen.clone().count();
+        assert!(count > 50, "{count} corners are seen");
+        seen.filter(|corner| is_on(corner.x - x) && is_on(corner.y - y))
+            .count()
+            == count
+    };
+    let inside = Camera {
+        eye: DVec3::new(0.2, -0.1, 0.3),
+        target: DVec3::X,
+        near_m: 0.05,
+        ..Camera::default()
+    };
+    let flat = Camera {
+        projection: Projection::Orthographic { height_m: 3.0 },
+        ..Camera::default()
+    };
+    let mut renderer = renderer();
+    for (what, query, camera) in [
+        ("in front", "knot?tess=6", Camera::default()),
+        ("inside the mesh", "sphere?triangles=3000", inside),
+        ("orthographic", "teapot?tess=5", flat),
+    ] {
+        let scene = scene(query);
+        let view = camera_view(&scene, &camera, size);
+        let draws = draws(&scene, &view).expect("a builtin fits");
+        let own = oracle::project(&oracle::Shot::new(&scene, &draws, &view, &stack));
+        assert!(on_grid(&own.expect("nobody cancels it")), "{what}");
+        let Some(renderer) = &mut renderer else {
+            continue;
+        };
+        for option in options(renderer) {
+            let (what, pins) = (format!("{what}, {}", option.name()), pinned(option));
+            let (capture, verdict) = judged(renderer, &scene, &view, &stack, &pins);
+            let judgement = verdict.report.within(&Budget::default());
+            assert_eq!(judgement, Ok(()), "{what}: {:?}", verdict.report);
+            assert!(on_grid(&capture.geometry), "{what}");
+            let ill = verdict.report.ill_conditioned;
+            assert!(
+                ill * 50 <= verdict.report.vertices,
+                "{what}: {ill} corners are not judged"
+            );
+        }
     }
 }
 

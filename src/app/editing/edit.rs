@@ -103,6 +103,17 @@ impl Session {
             Edit::Play(play) => preset.playback = play,
             Edit::Clock(clock) => preset.clock = clock,
             Edit::Camera(camera) => preset.camera = camera,
+            Edit::AddBookmark => {
+                if let Some(camera) = self.camera() {
+                    return self.preset_mut().add_bookmark(camera);
+                }
+            }
+            Edit::RenameBookmark(from, to) => return preset.rename_bookmark(&from, &to),
+            Edit::RemoveBookmark(name) => preset.bookmarks.retain(|mark| mark.name != name),
+            Edit::NextBookmark => {
+                let next = preset.next_bookmark();
+                preset.camera = next.or(preset.camera);
+            }
             Edit::FrameScene => {
                 if let Some(camera) = self.camera().map(|camera| self.framed(&camera)) {
                     self.preset_mut().camera = Some(camera);

@@ -47,6 +47,13 @@ pub enum Edit {
     Clock(Clock),
     /// The camera of the preset; none for the automatic one.
     Camera(Option<Camera>),
+    /// Keeps the camera that is used as a bookmark.
+    AddBookmark,
+    /// Gives the first bookmark the second name.
+    RenameBookmark(String, String),
+    RemoveBookmark(String),
+    /// Goes to the bookmark after the one where the camera stands.
+    NextBookmark,
     FrameScene,
     LookAlong(DVec3),
     ToggleOrthographic,

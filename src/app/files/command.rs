@@ -149,6 +149,8 @@ pub enum Naming {
     Preset { path: PathBuf, title: String },
     /// A name for the present values of this effect.
     Values(Arc<Effect>),
+    /// Another name for the bookmark of this name.
+    Bookmark(String),
 }
 
 /// Favorites, files of presets, and values of effects.

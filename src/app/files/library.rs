@@ -15,7 +15,7 @@ use crate::{
             session::{FileId, UndoState},
         },
         panels::Panels,
-        shell::{log::Level, state::State},
+        shell::{command::Edit, log::Level, state::State},
     },
     effects::Effect,
     host::disk,
@@ -87,6 +87,14 @@ fn named(
     match naming {
         Naming::Preset { path, .. } => rename(state, panels, path, name),
         Naming::Values(effect) => save_values(state, effect, name),
+        Naming::Bookmark(from) => {
+            let to = name.trim();
+            let edit = Edit::RenameBookmark(from.clone(), to.to_owned());
+            state
+                .session
+                .edit(edit)
+                .map(|()| format!("Renamed to {to}"))
+        }
     }
 }
 

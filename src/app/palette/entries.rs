@@ -16,7 +16,7 @@ use crate::{
     effects::Effect,
     params::{Field, Param, Value},
     preset::{
-        Tier,
+        Bookmark, Tier,
         settings::{Setting, settings},
     },
     preset_file::{GalleryEntry, toml_value},
@@ -42,6 +42,7 @@ pub fn entries(session: &Session, presets: &[GalleryEntry]) -> Vec<Entry> {
     for effect in &effects {
         entries.extend(of_effect(session, effect));
     }
+    entries.extend(session.preset().bookmarks.iter().map(bookmark));
     entries.extend(ThemeChoice::ALL.map(theme));
     for effect in &effects {
         entries.extend(parameters(session, effect));
@@ -74,6 +75,17 @@ fn action(action: Action) -> Entry {
         about: String::new(),
         keys: action.shortcut_text(),
         choice: Choice::Perform(action),
+    }
+}
+
+fn bookmark(bookmark: &Bookmark) -> Entry {
+    Entry {
+        kind: Kind::Action,
+        text: format!("Camera: {}", bookmark.name),
+        detail: String::new(),
+        about: "bookmark of the preset".into(),
+        keys: String::new(),
+        choice: Choice::GoTo(bookmark.camera),
     }
 }
 

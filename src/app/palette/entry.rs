@@ -14,6 +14,7 @@ use crate::{
         widgets::theme::ThemeChoice,
     },
     effects::Effect,
+    scene::camera::Camera,
 };
 
 /// What kind of thing an entry is, for its first column.
@@ -54,6 +55,8 @@ pub enum Choice {
     Reveal(String),
     /// Shows this effect, which is not in the stack, among those that can be added.
     Offer(Arc<Effect>),
+    /// Looks from this camera.
+    GoTo(Camera),
     Theme(ThemeChoice),
     /// Gives the value at this path.
     Set(String, String),
@@ -80,7 +83,9 @@ pub struct Entry {
 }
 
 /// What the texts of entries begin with, before the name of what they are about.
-const VERBS: [&str; 6] = ["Enable ", "Disable ", "Show ", "Open ", "Scene ", "Theme: "];
+const VERBS: [&str; 7] = [
+    "Enable ", "Disable ", "Show ", "Open ", "Scene ", "Camera: ", "Theme: ",
+];
 
 impl Entry {
     /// Is `query` the whole text, or the name of the effect, preset, action, scene or theme?
@@ -124,6 +129,7 @@ pub fn commands(choice: Choice) -> Vec<Command> {
         ],
         Choice::Reveal(path) => vec![Command::Reveal(path)],
         Choice::Offer(effect) => vec![Command::AddEffect(effect.name.clone())],
+        Choice::GoTo(camera) => vec![Command::Edit(Edit::Camera(Some(camera)))],
         Choice::Theme(theme) => vec![Command::Settings(SettingsCommand::Theme(theme))],
         Choice::Set(path, value) => vec![Command::SetText(path, value)],
         Choice::Open(id) => vec![Command::File(FileCommand::Open(id))],

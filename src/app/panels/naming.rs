@@ -1,4 +1,4 @@
-//! The dialog that asks for a name: of a preset, or of saved values of an effect.
+//! The dialog that asks for a name: of a preset, of saved values of an effect, or of a bookmark.
 
 use eframe::egui::{self, Button, Key, RichText, TextEdit, Ui};
 
@@ -38,6 +38,7 @@ impl NameDialog {
         let name = match &naming {
             Naming::Preset { title, .. } => title.clone(),
             Naming::Values(_) => String::new(),
+            Naming::Bookmark(name) => name.clone(),
         };
         self.0 = Some(Open {
             naming,
@@ -101,6 +102,11 @@ fn dialog_ui(ui: &mut Ui, open: &mut Open) -> Option<Choice> {
             format!("Save the values of {}", effect.name),
             "They are kept for every preset, in the menu of the effect.".to_owned(),
             "Save",
+        ),
+        Naming::Bookmark(name) => (
+            format!("Rename {name}"),
+            "The preset keeps the camera under this name.".to_owned(),
+            "Rename",
         ),
     };
     ui.label(

@@ -92,6 +92,8 @@ const MENUS: [(&str, &[Option<Action>]); 4] = [
             Some(Action::Side),
             Some(Action::Top),
             Some(Action::Orthographic),
+            Some(Action::AddBookmark),
+            Some(Action::NextBookmark),
             None,
             Some(Action::Verify),
             Some(Action::Overlays),

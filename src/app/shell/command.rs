@@ -175,6 +175,8 @@ impl From<Action> for Command {
             Action::Side => Self::Edit(Edit::LookAlong(SIDE)),
             Action::Top => Self::Edit(Edit::LookAlong(TOP)),
             Action::Orthographic => Self::Edit(Edit::ToggleOrthographic),
+            Action::AddBookmark => Self::Edit(Edit::AddBookmark),
+            Action::NextBookmark => Self::Edit(Edit::NextBookmark),
             Action::Play => Self::Time(TimeCommand::PlayOrPause),
             Action::StepBack => Self::Time(TimeCommand::Step(-1.0)),
             Action::StepForward => Self::Time(TimeCommand::Step(1.0)),

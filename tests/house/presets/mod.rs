@@ -1,5 +1,6 @@
 //! Promise: presets survive a round trip to the bit, keep unknown keys, and refuse harmful values.
 
+mod bookmarks;
 mod custom_effects;
 mod fitting;
 mod landing;

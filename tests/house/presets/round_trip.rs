@@ -7,7 +7,7 @@ use rasterlab::{
     effects::{EFFECTS, Effect},
     params::ValueType,
     preset::{
-        AccuracyRequest, Animation, ClipPlayback, Clock, GoldenTest, LengthUnit, Output,
+        AccuracyRequest, Animation, Bookmark, ClipPlayback, Clock, GoldenTest, LengthUnit, Output,
         PinnedOptions, Preset, SceneSource, Tier, Visibility,
         animation::{Easing, Keyframe, Track, steps},
     },
@@ -197,6 +197,7 @@ prop_compose! {
             name, about, tags, scene, parts, room, ground, spin_deg_per_s, playback, camera,
             polyline: if reversed { [[background[0], -background[1], 1.0], [1e9, background[2], 1e-9], [0.0; 3]].into() } else { [].into() },
             unit: if size[0] % 2 == 0 { LengthUnit::Meter } else { LengthUnit::Scene },
+            bookmarks: camera.iter().map(|&camera| Bookmark { name: "from \"above\"".into(), camera }).collect(),
             scene_camera: if reversed { "from above".into() } else { String::new() },
             clock,
             animation: animated(&stack, tracks),

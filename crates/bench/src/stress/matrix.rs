@@ -135,8 +135,8 @@ const TIME_S: f64 = 0.4;
 /// [`factors`] do, so each chain meets the options that are in the text of its passes and no others.
 const IMAGE_CHAINS: &[&[&str]] = &[
     &["ambient", "depth_of_field", "bloom"],
-    &["blur", "glow_edges", "paint"],
-    &["aberration", "halftone", "glitch", "crt"],
+    &["sky", "blur", "glow_edges", "paint"],
+    &["aberration", "halftone", "palette", "glitch", "crt"],
 ];
 
 /// What a level of a factor gives a picture.
@@ -170,7 +170,7 @@ fn factors(caps: &Caps) -> Vec<Vec<Level>> {
             &[],
             &["facet", "lambert"],
             &["triangle_id", "fog"],
-            &["normals", "toon"],
+            &["normals", "matcap", "toon"],
             &["studio", "hatch"],
             &["depth"],
         ]),
@@ -182,7 +182,7 @@ fn factors(caps: &Caps) -> Vec<Vec<Level>> {
             &["boxes"],
             &["points"],
         ]),
-        effects(&[&[], &["explode"], &["inflate"], &["wobble"]]),
+        effects(&[&[], &["explode"], &["inflate", "psx"], &["wobble"]]),
         effects(&[
             &[],
             &["xray"],

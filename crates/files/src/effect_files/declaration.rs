@@ -14,8 +14,9 @@ use super::{
 use crate::effects::{HookFunctions, hooks::ImagePass};
 
 /// Files of `shaders/lib` that an effect file may use: pure functions and the types of hooks.
-pub const LIBRARY: [&str; 12] = [
+pub const LIBRARY: [&str; 13] = [
     "angle",
+    "bayer",
     "color",
     "front",
     "hash",

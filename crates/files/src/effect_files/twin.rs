@@ -479,6 +479,7 @@ fn moved_within(v: &Vertex, bound: &ErrorBound, turn: u32) -> Vertex {
         arm: away(v.arm, 5, bound.arm_m),
         center_screen: screen.truncate(),
         triangle: v.triangle,
+        cell_px: v.cell_px,
     }
 }
 
@@ -494,22 +495,25 @@ pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> Verte
             .floats(v.center.to_array())
             .floats(v.arm.to_array())
             .floats(v.center_screen.to_array())
-            .whole(v.triangle);
+            .whole(v.triangle)
+            .whole(v.cell_px);
         let read = function.call(arguments.0, words, &mut NoHost, |result| {
             let _position: [f64; 3] = result.floats();
-            (
-                DVec3::from_array(result.floats()),
-                DVec3::from_array(result.floats()),
-            )
+            let [offset, normal] = [(); 2].map(|()| DVec3::from_array(result.floats()));
+            // What lies between is only read.
+            let _: [f64; 11] = result.floats();
+            let _triangle = result.word();
+            (offset, normal, result.word().to_u32())
         });
         read.map_or(
             Vertex {
                 offset: DVec3::NAN,
                 ..*v
             },
-            |(offset, normal)| Vertex {
+            |(offset, normal, cell_px)| Vertex {
                 offset,
                 normal,
+                cell_px,
                 ..*v
             },
         )
@@ -534,6 +538,7 @@ pub fn vertex(double: Function, single: Function, needs_triangle: bool) -> Verte
             arm: v.arm.as_vec3().as_dvec3(),
             center_screen: v.center_screen.as_vec2().as_dvec2(),
             triangle: v.triangle,
+            cell_px: v.cell_px,
         };
         let others = (0..6)
             .map(|turn| evaluate(&double, &moved_within(v, &bound, turn), words))

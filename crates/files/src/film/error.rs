@@ -9,6 +9,9 @@ pub enum FilmError {
     /// Times or frames that no film has.
     #[error("{0}")]
     Times(String),
+    /// It cannot go toward another preset.
+    #[error("{0}")]
+    Toward(String),
     #[error("{file} exists")]
     Exists { file: String },
     /// Files under the names of frames that are no frames of this film.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::{
+    error::FilmError,
     schedule::Schedule,
     turntable::{Turntable, all_around},
 };
@@ -18,6 +19,8 @@ pub struct Film {
     pub scene: Arc<Scene>,
     pub schedule: Schedule,
     turntable: Option<Turntable>,
+    /// The preset that the last frame shows; without one, the film stays with its own.
+    toward: Option<PresetFile>,
     /// The camera of a turntable where the preset has an automatic one.
     around: Option<Camera>,
     scene_hash: Fnv,
@@ -41,10 +44,25 @@ impl Film {
             scene,
             schedule,
             turntable,
+            toward: None,
             around,
         };
         film.at(film.schedule.frames.end - 1).check_savable()?;
         Ok(film)
+    }
+
+    /// The same film on the way to `other`: its own preset in the first frame, `other` in the last,
+    /// evenly in between; see [`PresetFile::toward`].
+    ///
+    /// # Errors
+    /// They show different scenes, or `other` cannot be saved in a picture.
+    pub fn toward(mut self, other: PresetFile) -> Result<Self, FilmError> {
+        self.preset_file
+            .toward(&other, 1.0, &self.scene)
+            .map_err(FilmError::Toward)?
+            .check_savable()?;
+        self.toward = Some(other);
+        Ok(self)
     }
 
     /// Width and height, pixels.
@@ -68,11 +86,30 @@ impl Film {
         (self.preset_file.preset.clock.time_s != first_s).then_some(&self.preset_file)
     }
 
-    /// The preset at the time of a frame, with the turn of a turntable.
+    /// A preset at the time of a frame; on the way to another with its values at that time, since
+    /// keyframes have nothing in between.
+    fn moment(&self, preset_file: &PresetFile, frame: u32) -> PresetFile {
+        let mut preset_file = preset_file.clone();
+        preset_file.preset.clock.time_s = self.schedule.time_s(frame);
+        if self.toward.is_some() {
+            preset_file.preset = preset_file.preset.evaluated();
+        }
+        preset_file
+    }
+
+    /// The preset at the time of a frame, as far on the way as the film is, with the turn of a
+    /// turntable.
     pub fn at(&self, frame: u32) -> PresetFile {
-        let mut preset_file = self.preset_file.clone();
+        let mut preset_file = self.moment(&self.preset_file, frame);
+        if let Some(other) = &self.toward {
+            let by = f64::from(frame) / f64::from((self.schedule.total - 1).max(1));
+            let other = self.moment(other, frame);
+            // That both show one scene was checked when the film got its end.
+            if let Ok(between) = preset_file.toward(&other, by, &self.scene) {
+                preset_file = between;
+            }
+        }
         let preset = &mut preset_file.preset;
-        preset.clock.time_s = self.schedule.time_s(frame);
         if let Some(turntable) = self.turntable {
             let fraction = f64::from(frame) / f64::from(self.schedule.total);
             turntable.turn(

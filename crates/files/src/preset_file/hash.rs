@@ -17,6 +17,7 @@ pub fn preset_hash(preset: &Preset) -> Fnv {
         name: String::new(),
         about: String::new(),
         tags: Vec::new(),
+        bookmarks: Vec::new(),
         test: None,
         clock,
         ..preset.evaluated()

@@ -3,7 +3,10 @@
 use crate::{
     effects::EnabledEffect,
     params::{Param, Value},
-    preset::{Preset, settings::settings},
+    preset::{
+        Preset,
+        settings::{BOOKMARKS, settings},
+    },
 };
 
 use super::toml_value;
@@ -26,6 +29,7 @@ pub fn merge(base: &Preset, mine: &Preset, theirs: &Preset) -> Merged {
         conflicts: Vec::new(),
     };
     merged.settings(base, mine, theirs);
+    merged.bookmarks(base, mine, theirs);
     merged.effects(base, mine, theirs);
     merged.order(base, mine);
     merged.animation(base, mine, theirs);
@@ -63,6 +67,17 @@ impl Merged {
         if mine.test.is_none() && base.test.is_some() {
             self.preset.test = None;
         }
+    }
+
+    fn bookmarks(&mut self, base: &Preset, mine: &Preset, theirs: &Preset) {
+        let [before, now, other] = [base, mine, theirs].map(|preset| &preset.bookmarks);
+        if before == now || other == now {
+            return;
+        }
+        if other != before {
+            self.conflicts.push(BOOKMARKS.to_owned());
+        }
+        self.preset.bookmarks.clone_from(now);
     }
 
     fn effects(&mut self, base: &Preset, mine: &Preset, theirs: &Preset) {

@@ -7,6 +7,7 @@
 
 mod apng;
 mod atomic;
+mod bookmarks;
 mod edit;
 mod effect_values;
 mod error;

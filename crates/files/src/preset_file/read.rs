@@ -4,6 +4,7 @@
 use toml_edit::{Document, TableLike};
 
 use super::{
+    bookmarks,
     error::PresetError,
     file::EFFECT_FILES,
     keyframes, order,
@@ -15,12 +16,19 @@ use crate::{
     effects::{Conflict, EnabledEffect, Stack},
     preset::{
         Preset,
-        settings::{OUTPUT, SECTIONS, Section},
+        settings::{BOOKMARKS, OUTPUT, SECTIONS, Section},
     },
 };
 
 /// Keys at the top of a file that are no settings, with the tables that are no sections.
-pub const OTHER_KEYS: [&str; 5] = ["schema", "stack", "effects", EFFECT_FILES, "animation"];
+pub const OTHER_KEYS: [&str; 6] = [
+    "schema",
+    "stack",
+    BOOKMARKS,
+    "effects",
+    EFFECT_FILES,
+    "animation",
+];
 /// Most effects that a preset may bring.
 const MAX_BROUGHT: usize = 16;
 
@@ -51,11 +59,18 @@ pub fn read(
         };
         if let Some(table) = table {
             section.add(&mut preset);
-            read_section(&mut reader, table, section, &mut preset)?;
+            let prefix = match section.name {
+                "" => String::new(),
+                name => format!("{name}."),
+            };
+            read_section(&mut reader, table, section, &prefix, &mut preset)?;
             if std::ptr::eq(*section, &OUTPUT) && table.get("reference_height_px").is_none() {
                 preset.output.reference_height_px = None;
             }
         }
+    }
+    if let Some(table) = reader.table(root, "", BOOKMARKS)? {
+        bookmarks::read(&mut reader, table, &mut preset)?;
     }
     let brought_effects = match reader.table(root, "", EFFECT_FILES)? {
         Some(table) => read_effect_files(&mut reader, table)?,
@@ -88,21 +103,16 @@ pub fn read(
     })
 }
 
-/// Reads every setting of one section; at the top of the file, tables are left out.
-fn read_section(
+/// Reads every setting of one section, whose paths begin with `prefix`; at the top of the file,
+/// tables are left out.
+pub fn read_section(
     reader: &mut Reader<'_>,
     table: &dyn TableLike,
     section: &'static Section,
+    prefix: &str,
     preset: &mut Preset,
 ) -> Result<(), PresetError> {
-    let (is_top, prefix) = (
-        section.name.is_empty(),
-        if section.name.is_empty() {
-            String::new()
-        } else {
-            format!("{}.", section.name)
-        },
-    );
+    let is_top = section.name.is_empty();
     for (name, item) in table.iter() {
         let Some(setting) = section.setting(name) else {
             let tables = || {
@@ -115,7 +125,7 @@ fn read_section(
             if !tables().any(|known| known == name) {
                 reader.unknown(
                     table,
-                    &prefix,
+                    prefix,
                     name,
                     section
                         .settings
@@ -132,15 +142,15 @@ fn read_section(
         {
             return Err(reader.error(
                 table,
-                &prefix,
+                prefix,
                 name,
                 format!("and {prefix}{alternative} exclude each other"),
             ));
         }
-        let value = reader.value(table, &prefix, setting, item)?;
+        let value = reader.value(table, prefix, setting, item)?;
         setting
             .set(preset, &value)
-            .map_err(|error| reader.error(table, &prefix, name, error))?;
+            .map_err(|error| reader.error(table, prefix, name, error))?;
     }
     Ok(())
 }

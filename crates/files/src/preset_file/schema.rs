@@ -9,9 +9,9 @@ use crate::{
     effects::{EFFECTS, Effect},
     params::{Param, Value, ValueType},
     preset::{
-        Preset,
+        MAX_BOOKMARK_CHARS, MAX_BOOKMARKS, Preset,
         animation::MAX_KEYFRAMES,
-        settings::{SECTIONS, Section, Setting, TOP},
+        settings::{BOOKMARKS, CAMERA, SECTIONS, Section, Setting, TOP},
     },
     scene::parts::{MAX_NAME_CHARS, MAX_PATTERNS},
 };
@@ -36,6 +36,15 @@ pub fn schema() -> Json {
         properties
             .insert(section.name.into(), json!({ "type": "object", "description": section.doc, "properties": section_schema(section) }));
     }
+    let doc = "Cameras under names, which the picture may be seen from";
+    properties.insert(
+        BOOKMARKS.into(),
+        json!({
+            "type": "object", "description": doc, "maxProperties": MAX_BOOKMARKS,
+            "propertyNames": { "minLength": 1, "maxLength": MAX_BOOKMARK_CHARS },
+            "additionalProperties": { "type": "object", "properties": section_schema(&CAMERA) },
+        }),
+    );
     let effects: Map<String, Json> = EFFECTS
         .iter()
         .map(|effect| (effect.name.to_owned(), effect_schema(effect)))

@@ -4,7 +4,7 @@
 use toml_edit::{DocumentMut, Item, Table, TableLike, Value as Toml};
 
 use super::{
-    keyframes, migrate,
+    bookmarks, keyframes, migrate,
     reader::INSTANCE_KEY,
     scope::{self, SCOPE_KEY},
     toml_value,
@@ -22,18 +22,20 @@ use crate::{
 /// A part of a preset file.
 enum Part {
     Section(&'static Section),
+    Bookmarks,
     Stack,
     Effects,
     Animation,
 }
 
 /// The order in which a new file has its parts.
-static PARTS: [Part; 11] = [
+static PARTS: [Part; 12] = [
     Part::Section(&TOP),
     Part::Stack,
     Part::Section(&SCENE),
     Part::Section(&GROUND),
     Part::Section(&CAMERA),
+    Part::Bookmarks,
     Part::Section(&CLOCK),
     Part::Effects,
     Part::Animation,
@@ -55,6 +57,7 @@ pub fn patch(document: &mut DocumentMut, catalog: &Catalog, saved: &Preset, now:
                 patch_settings(root, section, saved, now)
             }
             Part::Section(section) => patch_section(root, section, saved, now),
+            Part::Bookmarks => bookmarks::patch(root, &saved.bookmarks, &now.bookmarks),
             Part::Stack => patch_order(root, catalog, &saved.stack, &now.stack),
             Part::Effects => patch_effects(root, catalog, &saved.stack, &now.stack),
             Part::Animation => keyframes::patch(root, catalog, &saved.animation, &now.animation),
@@ -86,7 +89,8 @@ fn patch_section(root: &mut Table, section: &Section, saved: &Preset, now: &Pres
     }
 }
 
-fn patch_settings(table: &mut dyn TableLike, section: &Section, saved: &Preset, now: &Preset) {
+/// Writes the settings of one section that differ between the presets.
+pub fn patch_settings(table: &mut dyn TableLike, section: &Section, saved: &Preset, now: &Preset) {
     let baseline = baseline(now);
     for setting in section.settings.iter() {
         patch_value(

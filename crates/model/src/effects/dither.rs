@@ -5,7 +5,10 @@
 
 use super::{
     BuiltIn, Effect,
-    hooks::{ImageEffect, Picture, Pixel, tone},
+    hooks::{
+        ImageEffect, Picture, Pixel,
+        tone::{self, bayer_rank},
+    },
 };
 use crate::{choice, params, params::Color};
 
@@ -66,7 +69,7 @@ impl ImageEffect for Dither {
             Matrix::Bayer4 => 2,
             Matrix::Bayer2 => 1,
         };
-        let threshold = (f64::from(rank(pixel.x / p.cell_px, pixel.y / p.cell_px, bits)) + 0.5)
+        let threshold = (f64::from(bayer_rank(pixel.x / p.cell_px, pixel.y / p.cell_px, bits)) + 0.5)
             / f64::from(1 << (2 * bits));
         let last = f64::from(p.levels - 1);
         let level = |value: f64| {
@@ -86,12 +89,4 @@ impl ImageEffect for Dither {
         pixel.color = color.extend(pixel.color.w);
         pixel
     }
-}
-
-/// Rank of a cell in the order in which a matrix of 2^bits per side is filled: for every bit, the
-/// checkerboard first.
-fn rank(x: u32, y: u32, bits: u32) -> u32 {
-    (0..bits).fold(0, |rank, bit| {
-        rank << 2 | ((x ^ y) >> bit & 1) << 1 | y >> bit & 1
-    })
 }

@@ -38,6 +38,8 @@ params! {
         silhouette: Flag = 1;
         /// Lines between objects.
         objects: Flag = 1;
+        /// Lines between objects only where they meet: where their depths differ by less than a jump.
+        intersections: Flag = 0;
         /// Lines where the depth jumps within an object.
         depth: Flag = 1;
         /// The least jump that counts, as a fraction of the distance.
@@ -91,6 +93,11 @@ impl Outline {
         self.width_px.div_ceil(8).max(1)
     }
 
+    /// The least difference of depth keys that counts as a jump.
+    fn jump(&self) -> i64 {
+        (f64::from(self.depth_threshold) * f64::from(1 << 23)) as i64
+    }
+
     /// Is there a line at a pixel because of its neighbor `there`? `beyond` is the neighbor on the
     /// opposite side.
     fn is_edge(&self, here: Seen, there: Seen, beyond: impl Fn() -> Option<Seen>) -> bool {
@@ -102,7 +109,8 @@ impl Outline {
         if here.2 != there.2 {
             // Equal keys: the later object counts as behind.
             let is_behind = (here.1, there.2) < (there.1, here.2);
-            return self.objects != 0
+            let meets = || i64::from(there.1).abs_diff(here.1.into()) <= self.jump().unsigned_abs();
+            return (self.objects != 0 || self.intersections != 0 && meets())
                 && (side == Side::Both || is_behind == (side == Side::Outside));
         }
         let Some(beyond) =
@@ -112,11 +120,64 @@ impl Outline {
         };
         // The second difference: a constant slope is no jump.
         let curvature = i64::from(there.1) + i64::from(beyond.1) - 2 * i64::from(here.1);
-        let jump = (f64::from(self.depth_threshold) * f64::from(1 << 23)) as i64;
+        let jump = self.jump();
         match side {
             Side::Outside => curvature > jump,
             Side::Inside => curvature < -jump,
             Side::Both => curvature.abs() > jump,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec4;
+
+    use super::*;
+
+    /// Is a line drawn at any pixel of a row that shows two objects of four pixels each?
+    fn has_line(keys: [u32; 8], p: &Outline) -> bool {
+        let picture = Picture {
+            width: 8,
+            height: 1,
+            triangle_ids: &[0, 0, 0, 0, 1, 1, 1, 1],
+            keys: &keys,
+            draws: &[0, 1],
+            previous: None,
+            background: &[[0; 4]],
+        };
+        (0..8).any(|x| {
+            let pixel = Pixel {
+                color: DVec4::ONE,
+                x,
+                y: 0,
+                step_offset: 0.0,
+            };
+            Outline::finish(pixel, &picture, p) != pixel
+        })
+    }
+
+    #[test]
+    fn objects_meet_where_their_depths_agree() {
+        let near = 0.5f32.to_bits();
+        let step = 1 << 16; // A fraction of 2^-7 of the distance.
+        let meeting = std::array::from_fn(|x| near + step * (x as u32).abs_diff(4));
+        let apart = std::array::from_fn(|x| near - if x < 4 { 0 } else { 1 << 20 });
+        let lines = |objects: u32, intersections: u32, depth_threshold: f32| {
+            let p = Outline {
+                objects,
+                intersections,
+                depth: 0,
+                depth_threshold,
+                width_px: 1,
+                ..Outline::default()
+            };
+            [meeting, apart].map(|keys| has_line(keys, &p))
+        };
+        assert_eq!(lines(0, 0, 0.05), [false, false]);
+        assert_eq!(lines(0, 1, 0.05), [true, false]);
+        assert_eq!(lines(1, 0, 0.05), [true, true]);
+        assert_eq!(lines(0, 1, 0.001), [false, false]);
+        assert_eq!(lines(0, 1, 0.5), [true, true]);
     }
 }

@@ -22,6 +22,7 @@ impl Preset {
             playback,
             camera,
             scene_camera,
+            bookmarks,
             output: Output { size, .. },
             ..
         } = own.clone();
@@ -55,6 +56,7 @@ impl Preset {
             polyline,
             camera,
             scene_camera,
+            bookmarks,
             clock,
             stack,
             animation,

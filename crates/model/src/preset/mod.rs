@@ -4,6 +4,7 @@
 //! the stack itself: keyframes change its values with the time.
 
 pub mod animation;
+mod bookmark;
 mod fit;
 mod fitted;
 mod golden_test;
@@ -39,6 +40,7 @@ use crate::{
     },
 };
 pub use animation::{Animation, Track};
+pub use bookmark::{Bookmark, MAX_BOOKMARK_CHARS, MAX_BOOKMARKS, check_bookmark_name};
 pub use fit::{Fit, LengthUnit};
 pub use golden_test::GoldenTest;
 pub use output::{NAMED_SIZES, Output, named_size};
@@ -226,6 +228,8 @@ pub struct Preset {
     pub camera: Option<Camera>,
     /// Name of the scene's camera to use without a `camera`; empty: the first.
     pub scene_camera: String,
+    /// Cameras under names; the picture shows none of them until `camera` is one.
+    pub bookmarks: Vec<Bookmark>,
     pub clock: Clock,
     /// The effects with their values; keyframes change some of them with the time.
     pub stack: Stack,
@@ -252,6 +256,7 @@ impl Default for Preset {
             polyline: Arc::default(),
             camera: None,
             scene_camera: String::new(),
+            bookmarks: Vec::new(),
             clock: Clock::default(),
             stack: Stack::default(),
             animation: Animation::default(),

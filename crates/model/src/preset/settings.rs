@@ -302,6 +302,9 @@ pub static GROUND: Section = Section {
     }),
 };
 
+/// Name of the table of bookmarks; each is a table with the settings of [`CAMERA`].
+pub const BOOKMARKS: &str = "bookmarks";
+
 pub static CAMERA: Section = Section {
     name: "camera",
     doc: "Where the scene is seen from; without this table the whole scene is framed",

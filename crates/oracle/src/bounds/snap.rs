@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use super::super::render::snap::{ClipPosition, half_size};
+use super::super::render::snap::{ClipPosition, cell_units, from_center, half_size, nearest_cell};
 use crate::{effects::hooks::ROUNDING, frame::SnappedVertex, scene::view::View};
 
 /// Bounds of the errors of a clip-space position.
@@ -45,6 +45,50 @@ pub fn whole_units(bound: f64) -> f64 {
     } else {
         (1.0 + bound).floor()
     }
+}
+
+/// Bounds of a position after it was rounded to cells of `cell_px` pixels, given those before. It
+/// errs with w, which it is proportional to, and by a cell where the snapped position may lie on
+/// either side of a cell's edge, or the corner on either side of the near plane, before which it is
+/// not rounded.
+pub fn on_grid(
+    position: &ClipPosition,
+    cell_px: u32,
+    mut bounds: ClipErrors,
+    view: &View,
+) -> ClipErrors {
+    let [_, _, ez, ew] = bounds.errors;
+    let may_cross_near = (position.w - position.z).abs() <= ez + ew;
+    let is_behind_near = position.z <= position.w && position.w > 0.0;
+    // A place that is in doubt altogether is not judged.
+    let (Some(reach), true) = (
+        snap_bound(position, bounds.errors, view),
+        is_behind_near || may_cross_near,
+    ) else {
+        return bounds;
+    };
+    let (cell, w) = (cell_units(cell_px, view), position.w.abs());
+    for (axis, c) in [position.x, position.y].into_iter().enumerate() {
+        let half = half_size(view)[axis].max(1);
+        let place = from_center(c / position.w, half);
+        let reach = whole_units(reach[axis]).min(f64::from(cell)) as i32;
+        let [low, here, high] =
+            [place - reach, place, place + reach].map(|place| nearest_cell(place, cell));
+        let apart = if low == high && !may_cross_near {
+            0
+        } else {
+            cell
+        };
+        let off_grid = if may_cross_near {
+            bounds.errors[axis]
+        } else {
+            0.0
+        };
+        bounds.errors[axis] = off_grid
+            + f64::from(here).abs() / f64::from(half) * (ew + 8.0 * ROUNDING * w)
+            + f64::from(apart) / f64::from(half) * (w + ew);
+    }
+    bounds
 }
 
 /// Returns true if the depth and 1/w of a record lie within their bounds.

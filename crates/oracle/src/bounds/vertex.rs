@@ -15,7 +15,7 @@ use super::{
         shot::Shot,
     },
     deform::{self, Bounded},
-    snap::{ClipErrors, snap_bound},
+    snap::{ClipErrors, on_grid, snap_bound},
 };
 use crate::{
     effects::hooks::{ErrorBound, ROUNDING},
@@ -93,6 +93,17 @@ impl<'a> VertexBounds<'a> {
 
     /// Bounds of the clip position of a corner whose displacement errs by so many meters.
     fn clip_displaced(&self, corner: Corner, displacement: f64) -> ClipErrors {
+        let bounds = self.clip_off_grid(corner, displacement);
+        match self.evaluator.clip_off_grid(corner) {
+            Ok((position, cell_px)) if cell_px > 0 => {
+                on_grid(&position, cell_px, bounds, self.evaluator.view)
+            }
+            _ => bounds,
+        }
+    }
+
+    /// The same before the place is rounded to the cells of an effect.
+    fn clip_off_grid(&self, corner: Corner, displacement: f64) -> ClipErrors {
         let (evaluator, draw) = (self.evaluator, self.evaluator.draw);
         let position = self.position(corner.vertex);
         let mut magnitudes = evaluator.clip_rows(position.value - draw.origin(), Terms::Magnitudes);

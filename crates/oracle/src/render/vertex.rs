@@ -5,7 +5,7 @@ use glam::{DMat3, DMat4, DVec2, DVec3};
 use super::{
     super::arithmetic::vector::{direction, normal_matrix, plane_normal},
     deform,
-    snap::ClipPosition,
+    snap::{ClipPosition, on_grid},
 };
 use crate::{
     effects::{Stack, hooks::Vertex},
@@ -33,6 +33,7 @@ pub type RoundedMatrix = [[f64; 4]; 4];
 pub struct VertexEvaluator<'a> {
     pub scene: &'a Scene,
     pub draw: &'a Draw,
+    pub view: &'a View,
     pub stack: &'a Stack,
     /// The stack has vertex effects.
     pub moves: bool,
@@ -50,6 +51,7 @@ impl<'a> VertexEvaluator<'a> {
         Self {
             scene,
             draw,
+            view,
             stack,
             moves: stack.moves(),
             has_unshared_vertices: stack.unshares_vertices(),
@@ -118,12 +120,24 @@ impl<'a> VertexEvaluator<'a> {
     /// # Errors
     /// The flags of a position that is refused.
     pub fn clip(&self, corner: Corner) -> Result<ClipPosition, u32> {
+        let (position, cell_px) = self.clip_off_grid(corner)?;
+        Ok(on_grid(position, cell_px, self.view))
+    }
+
+    /// The same before the place is rounded to the cells of an effect, and the side of these, pixels;
+    /// 0 where there are none.
+    ///
+    /// # Errors
+    /// The flags of a position that is refused.
+    pub fn clip_off_grid(&self, corner: Corner) -> Result<(ClipPosition, u32), u32> {
         let position = deform::position(self.scene, self.draw, corner.vertex)?;
         let [x, y, z, w] = self.clip_rows(position - self.draw.origin(), Terms::Signed);
         if !self.moves {
-            return Ok(ClipPosition { x, y, z, w });
+            return Ok((ClipPosition { x, y, z, w }, 0));
         }
-        let o = self.moved(corner).offset;
+        let Vertex {
+            offset: o, cell_px, ..
+        } = self.moved(corner);
         let row = |r: usize| {
             [0, 1, 2]
                 .map(|axis| self.clip_from_world[axis][r] * o[axis])
@@ -132,12 +146,15 @@ impl<'a> VertexEvaluator<'a> {
         };
         // A corner moved behind the far plane of parallel rays stays on it: there are no negative
         // depths.
-        Ok(ClipPosition {
+        let position = ClipPosition {
             x: x + row(0),
             y: y + row(1),
             z: (z + row(2)).max(0.0),
             w: w + row(3),
-        })
+        };
+        // A shadow map has no grid.
+        let is_picture = self.picture_from_world.is_none();
+        Ok((position, if is_picture { cell_px } else { 0 }))
     }
 
     /// The draw's clip matrix times a point relative to the draw's origin.
@@ -168,6 +185,7 @@ impl<'a> VertexEvaluator<'a> {
             arm: DVec3::ZERO,
             center_screen: DVec2::ZERO,
             triangle: 0,
+            cell_px: 0,
         };
         if self.has_unshared_vertices {
             self.with_triangle(vertex, corner, object)

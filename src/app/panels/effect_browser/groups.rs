@@ -230,7 +230,7 @@ mod tests {
         assert_eq!(of(Group::Layers), ["glass", "xray", "overdraw", "race"]);
         assert_eq!(of(Group::Lines), ["dots"]);
         assert_eq!(of(Group::Scene), ["particles"]);
-        assert_eq!(of(Group::Vertex), ["explode", "inflate", "wobble"]);
+        assert_eq!(of(Group::Vertex), ["explode", "inflate", "wobble", "psx"]);
         assert_eq!(
             of(Group::Sample),
             ["boxes", "points", "dissolve", "stipple", "wireframe"]
@@ -238,7 +238,7 @@ mod tests {
         assert_eq!(
             of(Group::Surface),
             [
-                "facet", "lambert", "studio", "shadow", "toon", "hatch", "fog", "tonemap"
+                "facet", "matcap", "lambert", "studio", "shadow", "toon", "hatch", "fog", "tonemap"
             ]
         );
         assert_eq!(
@@ -257,6 +257,7 @@ mod tests {
                 "glow_edges",
                 "halftone",
                 "pixelate",
+                "palette",
                 "aberration",
                 "grain",
                 "vignette",

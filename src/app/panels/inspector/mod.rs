@@ -2,6 +2,7 @@
 //! command line use too.
 
 mod accuracy;
+mod bookmarks;
 mod clips;
 pub mod effect_menu;
 mod effects;
@@ -87,6 +88,7 @@ fn leads_ui(ui: &mut Ui) {
 
 fn camera_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     folder(ui, "Camera", false, |ui| {
+        bookmarks::bookmarks_ui(ui, state, commands);
         if state.session.preset().camera.is_none() {
             ui.label(theme::weak("The whole scene is framed automatically. Move the camera in the picture, or set it to type numbers."));
             if ui.button("Set the camera").clicked()

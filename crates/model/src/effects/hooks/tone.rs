@@ -26,6 +26,14 @@ pub fn luminance(linear: DVec3) -> f64 {
     linear.dot(DVec3::new(0.2126, 0.7152, 0.0722))
 }
 
+/// Rank of a cell in the order in which a matrix of ordered dithering (Bayer 1973) with a side of
+/// 2^bits fills up: for every bit, the checkerboard first. 0 to 4^bits - 1.
+pub fn bayer_rank(x: u32, y: u32, bits: u32) -> u32 {
+    (0..bits).fold(0, |rank, bit| {
+        rank << 2 | ((x ^ y) >> bit & 1) << 1 | y >> bit & 1
+    })
+}
+
 /// Cosine and sine of an angle in degrees. Its mirror in `shaders/lib/angle.wgsl` is a polynomial,
 /// since the functions built into WGSL may err by 2^-11, which is a sixth of a pixel across a small
 /// picture.

@@ -30,6 +30,9 @@ pub struct Vertex {
     pub center_screen: DVec2,
     /// Global triangle id; 0 where no effect needs triangles.
     pub triangle: u32,
+    /// Side of the cells, pixels, to whose corners its place in the picture is rounded; 0: it keeps
+    /// its place.
+    pub cell_px: u32,
 }
 
 /// How far the members of the f32 side's [`Vertex`] may be from the f64 ones, along any axis.
@@ -80,7 +83,7 @@ pub trait VertexEffect: Params {
     /// It reads `flat_normal`, `center`, `arm`, `center_screen` or `triangle`.
     const NEEDS_TRIANGLE: bool;
 
-    /// Changes `offset` and `normal` alone.
+    /// Changes `offset`, `normal` and `cell_px` alone.
     fn moved(vertex: Vertex, params: &Self) -> Vertex;
 
     /// Error bound of what the f32 side makes of `vertex` under any rounding, order and fusion that

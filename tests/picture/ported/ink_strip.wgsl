@@ -1,7 +1,7 @@
-// Palette: the brightness of a pixel chooses its color from a strip of inks.
+// Ink strip: the brightness of a pixel chooses its color from a strip of inks.
 //@ use lib/color
 
-struct Palette {
+struct InkStrip {
     /// A strip from dark to bright.
     @image("palette.png") strip: u32,
     /// How much of the strip is seen.
@@ -10,7 +10,7 @@ struct Palette {
     @range(0.05, 0.95, 0.5) middle: f32,
 }
 
-fn palette(at: ImageAt, p: Palette) -> vec4f {
+fn ink_strip(at: ImageAt, p: InkStrip) -> vec4f {
     let color = image_color(at.x, at.y);
     let light = sqrt(clamp(color_luminance(color.rgb), 0.0001, 1.0));
     // A curve through (0, 0), (middle, 1/2) and (1, 1).

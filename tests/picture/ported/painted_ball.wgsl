@@ -1,14 +1,14 @@
-// Matcap: a surface shows what a painted ball shows where it faces the same way.
+// Painted ball: a surface shows what a painted ball shows where it faces the same way.
 //@ use lib/surface
 
-struct Matcap {
+struct PaintedBall {
     /// The ball.
     @image("ball.png") ball: u32,
     /// How much of the ball is seen.
     @range(0.0, 1.0, 1.0) amount: f32,
 }
 
-fn matcap(surface: Surface, p: Matcap) -> Surface {
+fn painted_ball(surface: Surface, p: PaintedBall) -> Surface {
     var s = surface;
     // Two directions across the view; the second points up.
     let across = normalize(cross(vec3f(0.0, 1.0, 0.0), s.view) + vec3f(1e-6, 0.0, 0.0));
