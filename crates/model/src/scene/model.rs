@@ -171,6 +171,8 @@ pub struct Instance {
     pub skin: Option<usize>,
     /// The node of `Scene::named_nodes` that shows it.
     pub named_node: Option<usize>,
+    /// Index into `Rig::placements`: its transform relative to `node`. `None`: the identity.
+    pub placement: Option<usize>,
 }
 
 impl Instance {
@@ -182,6 +184,7 @@ impl Instance {
             node: None,
             skin: None,
             named_node: None,
+            placement: None,
         }
     }
 }

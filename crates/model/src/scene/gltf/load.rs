@@ -106,7 +106,10 @@ fn read_model(
         loader.add_instances(node, &rig)?;
     }
     let Loader {
-        writer, first_lost, ..
+        writer,
+        first_lost,
+        placements,
+        ..
     } = loader;
     let mut scene = writer.scene;
     if scene.instances.is_empty() {
@@ -117,6 +120,7 @@ fn read_model(
         notes.add(|| "nothing to draw: the scene shows no triangles");
     }
     scene.rig = rig;
+    scene.rig.placements = placements;
     scene.named_nodes = tree.named_nodes(document);
     if !scene.rig.is_empty() {
         scene.rig.motion_bounds = pose::motion_bounds(&scene);

@@ -247,6 +247,16 @@ pub struct Node {
     pub skin: Option<usize>,
     pub camera: Option<usize>,
     pub weights: Vec<f32>,
+    /// EXT_mesh_gpu_instancing. Boxed: of millions of nodes few have it.
+    pub instancing: Option<Box<Instancing>>,
+}
+
+/// The accessors of what places the instances of a node, at least one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Instancing {
+    pub translation: Option<usize>,
+    pub rotation: Option<usize>,
+    pub scale: Option<usize>,
 }
 
 #[derive(Debug)]

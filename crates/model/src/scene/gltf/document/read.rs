@@ -7,6 +7,7 @@ use super::{
         compression::{DRACO, MESHOPT},
         container,
         error::{LoadError, called, quoted},
+        instancing::INSTANCING,
         limits,
         materials::EXTENSIONS,
         notes::Notes,
@@ -24,7 +25,7 @@ pub const WEBP: &str = "EXT_texture_webp";
 pub const QUANTIZATION: &str = "KHR_mesh_quantization";
 
 /// Extensions that are read, besides those of materials.
-pub const READ: [&str; 4] = [QUANTIZATION, WEBP, MESHOPT, DRACO];
+pub const READ: [&str; 5] = [QUANTIZATION, WEBP, MESHOPT, DRACO, INSTANCING];
 
 /// Extensions that may be required and whose lack is said as of any other: they add no shape.
 const HARMLESS: [&str; 1] = ["KHR_lights_punctual"];
