@@ -74,7 +74,9 @@ impl DrawData {
         records.resize(draws.len().max(1), DrawRecord::default());
         // Nothing outside the picture is drawn, so it need not be deformed, unless its shadow may
         // fall into the picture.
-        let is_deformed = |draw: &&Draw| inputs.deforms_offscreen || !is_outside(draw, scene);
+        let is_deformed = |draw: &&Draw| {
+            draw.deform.is_some() && (inputs.deforms_offscreen || !is_outside(draw, scene))
+        };
         let deforms = Deforms::of(scene, attributes, draws.iter().filter(is_deformed));
         let deformed = deformed_ranges(scene, draws);
         let instances = meshlets.map_or_else(Vec::new, |meshlets| {

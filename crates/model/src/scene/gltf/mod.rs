@@ -38,5 +38,5 @@ mod source;
 pub(super) mod uri;
 
 pub use error::{LoadError, ReadFile};
-pub use load::{load, load_within};
+pub use load::{load, load_variant, load_within};
 pub use source::{PART_BYTES, Source, reserve};

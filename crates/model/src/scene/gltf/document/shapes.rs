@@ -13,6 +13,7 @@ use super::{
     Accessor, Buffer, Camera, Instancing, Mesh, Node, Part, Primitive, Scene, Sparse, View,
     fields::{Lenient, Object, needed, whole},
     read::{Lists, is_unknown_compression},
+    variants,
 };
 use crate::scene::{accessor::ComponentType, camera::Projection, model::Topology};
 
@@ -192,6 +193,7 @@ fn primitive(lists: &Lists, lenient: &Lenient, part: Object) -> Part<Primitive> 
         indices: part.index("indices", "accessors", lists.accessors.len())?,
         topology: part.choice("mode", &MODES)?.unwrap_or(Some(Topology::List)),
         material: lenient.field(part.index("material", "materials", lists.materials.len())),
+        variants: variants::materials(lists, lenient, part),
         targets: targets
             .iter()
             .map(|target| match Object::of(target) {
