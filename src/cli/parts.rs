@@ -59,7 +59,9 @@ fn text(parts: &[Part], variants: &[String]) -> String {
     };
     let mut tables: Vec<String> = PartKind::ALL.into_iter().filter_map(of_kind).collect();
     if !variants.is_empty() {
-        let rows = variants.iter().map(|name| format!("scene.variant={name}\n"));
+        let rows = variants
+            .iter()
+            .map(|name| format!("scene.variant={name}\n"));
         tables.push(format!("VARIANT\n{}", rows.collect::<String>()));
     }
     if tables.is_empty() {
