@@ -249,6 +249,19 @@ fn instances_without_bytes_are_limited_before_they_take_memory() {
 }
 
 #[test]
+fn many_nodes_with_one_faulty_list_are_not_read_for_hours() {
+    let mut model = instanced(|model| {
+        let mut places = vec![0.0; 3 * 5_000];
+        places[3 * 4_999] = f32::NAN;
+        json!({ "TRANSLATION": model.floats("VEC3", &places) })
+    });
+    let node = model.json["nodes"][0].clone();
+    model.json["nodes"] = vec![node; 2_000].into();
+    model.json["scenes"] = json!([{ "nodes": (0..2_000).collect::<Vec<_>>() }]);
+    model.refused("primitives or more; allowed: at most 262144, because its files have only");
+}
+
+#[test]
 fn a_clip_moves_the_node_of_all_its_instances() {
     let mut model = four();
     let times = model.floats("SCALAR", &[0.0, 2.0]);

@@ -32,11 +32,11 @@ impl Loader<'_> {
             shown.push((primitive, skin));
         }
         let placements = self.placements(node, shown.len())?;
-        self.check_room(node, shown.len())?;
         let rig_node = (!rig.is_empty()).then(|| self.tree.rig_index[node]);
         let named_node = Some(self.tree.rig_index[node]);
         let world_from_node = self.tree.world_from_node[node];
         let Some(placements) = placements else {
+            self.claim(node, shown.len())?;
             let instance = |(primitive, skin): (usize, Option<usize>)| Instance {
                 primitive,
                 world_from_object: skin.map_or(world_from_node, |_| DMat4::IDENTITY),
@@ -51,6 +51,10 @@ impl Loader<'_> {
                 .extend(shown.into_iter().map(instance));
             return Ok(());
         };
+        let instances = &mut self.writer.scene.instances;
+        instances
+            .try_reserve(placements.len() * shown.len())
+            .map_err(|_| LoadError::end("the system has no memory for its instances"))?;
         for node_from_instance in placements {
             let placement = rig_node.map(|_| {
                 self.placements.push(node_from_instance);
@@ -64,17 +68,18 @@ impl Loader<'_> {
                 named_node,
                 placement,
             };
-            self.writer
-                .scene
-                .instances
-                .extend(shown.iter().map(instance));
+            instances.extend(shown.iter().map(instance));
         }
         Ok(())
     }
 
-    /// Checks that there may be so many more instances.
-    fn check_room(&self, node: usize, more: usize) -> Result<(), LoadError> {
-        let instances = self.writer.scene.instances.len().saturating_add(more);
+    /// Counts more instances, before they are made.
+    ///
+    /// # Errors
+    /// There are too many.
+    fn claim(&mut self, node: usize, more: usize) -> Result<(), LoadError> {
+        self.claimed = self.claimed.saturating_add(more);
+        let instances = self.claimed;
         self.limits.check_instances(instances, || {
             format!(
                 "{}: the nodes show {instances} primitives or more",
@@ -85,19 +90,24 @@ impl Loader<'_> {
 
     /// What places the instances of a node with so many primitives, relative to the node. None
     /// where it shows its mesh once, as it does where this cannot be read.
-    fn placements(&self, node: usize, primitives: usize) -> Result<Option<Vec<DMat4>>, LoadError> {
-        let Some(about) = &self.document.nodes[node].instancing else {
+    fn placements(
+        &mut self,
+        node: usize,
+        primitives: usize,
+    ) -> Result<Option<Vec<DMat4>>, LoadError> {
+        let (document, notes) = (self.document, self.buffers.notes);
+        let Some(about) = &document.nodes[node].instancing else {
             return Ok(None);
         };
-        let name = || format!("{} {INSTANCING}", node_name(self.document, node));
-        if self.document.nodes[node].skin.is_some() {
-            let notes = self.buffers.notes;
+        let name = || format!("{} {INSTANCING}", node_name(document, node));
+        if document.nodes[node].skin.is_some() {
             notes.add(|| format!("{}: joints place its mesh; it is drawn once", name()));
             return Ok(None);
         }
         let count = instancing::count(self.buffers, about);
         let read = count.and_then(|count| {
-            self.check_room(node, (count as usize).saturating_mul(primitives))?;
+            // Those that turn out to be faulty count, too: reading them takes time.
+            self.claim(node, (count as usize).saturating_mul(primitives.max(1)))?;
             instancing::placements(self.buffers, about, &self.tree.world_from_node[node])
         });
         match read {
@@ -105,7 +115,7 @@ impl Loader<'_> {
             Err(error) => {
                 let reason = error.of_part()?;
                 let fault = || format!("{}: {reason}; its mesh is drawn once", name());
-                self.buffers.notes.fault(fault);
+                notes.fault(fault);
                 Ok(None)
             }
         }

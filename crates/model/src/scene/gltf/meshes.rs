@@ -45,6 +45,8 @@ pub struct Loader<'a> {
     pub(super) sources: Vec<&'a document::Primitive>,
     /// [`Rig::placements`](crate::scene::rig::Rig::placements).
     pub placements: Vec<DMat4>,
+    /// Instances that nodes asked for.
+    pub(super) claimed: usize,
     /// Primitives of each mesh that was read.
     meshes: HashMap<usize, Range<usize>>,
     /// Materials that the file does not have as they are drawn: each with what it is made from.
@@ -65,6 +67,7 @@ impl<'a> Loader<'a> {
             first_lost: None,
             sources: Vec::new(),
             placements: Vec::new(),
+            claimed: 0,
             meshes: HashMap::new(),
             variants: HashMap::new(),
             vertices: 0,
