@@ -186,7 +186,8 @@ pub enum Command {
     Explain(Explain),
     /// Tell why a pixel shows what it shows: every triangle at it, and its color after each effect
     Probe(super::probe::Probe),
-    /// List the materials, nodes and meshes of a scene as patterns for the key `on` of effects
+    /// List the materials, nodes and meshes of a scene as patterns for the key `on` of effects, and
+    /// the variants of its materials
     Parts(Parts),
     /// Redraw goldens with the oracle
     Bless(Bless),

@@ -1,5 +1,5 @@
 //! `parts`: the materials, nodes and meshes of a scene, each as the pattern that limits an effect
-//! to it.
+//! to it, and the variants of its materials.
 
 use serde_json::{Value, json};
 
@@ -17,9 +17,12 @@ pub fn run(common: &Common, args: &Parts, streams: &mut Streams) -> Result<Exit,
     let scene = scene_of(common, &preset_file, streams)?;
     let parts = parts(&scene);
     if streams.json {
-        streams.object("parts", Value::Null, parts.iter().map(part_json).collect())?;
+        let variant = |name: &String| json!({ "kind": "variant", "name": name });
+        let variants = scene.variants.iter().map(variant);
+        let results = parts.iter().map(part_json).chain(variants).collect();
+        streams.object("parts", Value::Null, results)?;
     } else {
-        streams.text(&text(&parts))?;
+        streams.text(&text(&parts, &scene.variants))?;
     }
     Ok(Exit::Done)
 }
@@ -31,8 +34,9 @@ fn part_json(part: &Part) -> Value {
     })
 }
 
-/// A table per kind; nodes are indented below their parents.
-fn text(parts: &[Part]) -> String {
+/// A table per kind; nodes are indented below their parents. Variants come last, each as what
+/// `--set` takes.
+fn text(parts: &[Part], variants: &[String]) -> String {
     let of_kind = |kind: PartKind| {
         let mut rows = vec![
             [kind.name().to_uppercase().as_str(), "DRAWS", "TRIANGLES"]
@@ -53,7 +57,13 @@ fn text(parts: &[Part]) -> String {
             None
         }
     };
-    let tables: Vec<String> = PartKind::ALL.into_iter().filter_map(of_kind).collect();
+    let mut tables: Vec<String> = PartKind::ALL.into_iter().filter_map(of_kind).collect();
+    if !variants.is_empty() {
+        let rows = variants
+            .iter()
+            .map(|name| format!("scene.variant={name}\n"));
+        tables.push(format!("VARIANT\n{}", rows.collect::<String>()));
+    }
     if tables.is_empty() {
         "the scene draws nothing\n".into()
     } else {

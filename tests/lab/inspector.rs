@@ -294,6 +294,41 @@ fn the_scene_shows_its_images_and_lets_one_look_through_its_cameras() {
     );
 }
 
+/// A triangle whose material has two variants.
+const VARIANTS: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+    "extensions":{"KHR_materials_variants":{"variants":[{"name":"leaf"},{"name":"sea"}]}},
+    "materials":[{"name":"red"},{"name":"green"},{"name":"blue"}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0,"extensions":{"KHR_materials_variants":{"mappings":[
+        {"material":1,"variants":[0]},{"material":2,"variants":[1]}]}}}]}],
+    "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3,"min":[0,0,0],"max":[1,1,0]}],
+    "bufferViews":[{"buffer":0,"byteLength":36}],
+    "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
+
+#[test]
+fn a_menu_shows_the_scene_in_another_variant_of_its_materials() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let model = folder.path().join("flag.gltf");
+    std::fs::write(&model, VARIANTS).expect("a file");
+    let Some(mut lab) = lab(&model.display().to_string()) else {
+        return;
+    };
+    let shown = |lab: &Lab| lab.state().preset_file().preset.parts.variant.clone();
+    for (entry, variant) in [("sea", "sea"), ("leaf", "leaf"), ("no variant", "")] {
+        let before = lab.state().draws();
+        click(&mut lab, Role::ComboBox, "scene.variant");
+        lab.get_by_role_and_label(Role::Button, entry).click();
+        lab.run_steps(4);
+        settle(&mut lab);
+        assert_eq!(shown(&lab), variant);
+        assert!(lab.state().draws() > before, "{entry}: it is drawn again");
+    }
+    undo(&mut lab);
+    settle(&mut lab);
+    assert_eq!(shown(&lab), "leaf");
+    // The menu is that of the scene, which has the variants whichever it shows.
+    assert!(lab.query_by_label("scene.variant").is_some());
+}
+
 #[test]
 fn the_title_of_an_effect_folds_it_and_only_its_box_removes_it() {
     let Some(mut lab) = lab("facet-knot") else {

@@ -4,6 +4,7 @@
 use std::{ops::Range, sync::Arc};
 
 use glam::DMat3;
+use rayon::prelude::*;
 
 use super::{
     attributes::{AttributeLayout, DEFORMED_BYTES, format_word},
@@ -18,7 +19,7 @@ use crate::{
     math::rounded_columns,
     scene::{
         Accessor, Scene,
-        draw::{Draw, totals},
+        draw::{Draw, MANY_DRAWS, totals},
         parts::Scope,
         view::View,
     },
@@ -69,12 +70,18 @@ impl DrawData {
                 record.packed(packed, attributes.first_packed() as u32)
             })
         };
-        let mut records: Vec<DrawRecord> = draws.iter().map(record).collect();
+        let mut records: Vec<DrawRecord> = draws
+            .par_iter()
+            .with_min_len(MANY_DRAWS)
+            .map(record)
+            .collect();
         // A binding holds an element at least, even where nothing is to be drawn.
         records.resize(draws.len().max(1), DrawRecord::default());
         // Nothing outside the picture is drawn, so it need not be deformed, unless its shadow may
         // fall into the picture.
-        let is_deformed = |draw: &&Draw| inputs.deforms_offscreen || !is_outside(draw, scene);
+        let is_deformed = |draw: &&Draw| {
+            draw.deform.is_some() && (inputs.deforms_offscreen || !is_outside(draw, scene))
+        };
         let deforms = Deforms::of(scene, attributes, draws.iter().filter(is_deformed));
         let deformed = deformed_ranges(scene, draws);
         let instances = meshlets.map_or_else(Vec::new, |meshlets| {

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::scene::{
     Scene,
-    draw::Draw,
+    draw::{Draw, MANY_DRAWS},
     meshlets::{Meshlet, Meshlets, center_and_half, rounded_up},
     view::View,
 };
@@ -84,20 +84,17 @@ impl MeshletBuffers {
 
     /// A record of every draw as `view` sees it; one at least.
     pub fn instances(&self, scene: &Scene, draws: &[Draw], view: &View) -> Vec<InstanceRecord> {
-        let mut first = 0;
         let mut records: Vec<InstanceRecord> = draws
-            .iter()
-            .map(|draw| {
-                let (first_meshlet, count) = self.spans[draw.primitive];
-                let instance = InstanceRecord {
-                    first,
-                    first_meshlet,
-                    ..instance(scene, draw, view)
-                };
-                first += count;
-                instance
-            })
+            .par_iter()
+            .with_min_len(MANY_DRAWS)
+            .map(|draw| instance(scene, draw, view))
             .collect();
+        let mut first = 0;
+        for (record, draw) in records.iter_mut().zip(draws) {
+            let (first_meshlet, count) = self.spans[draw.primitive];
+            (record.first, record.first_meshlet) = (first, first_meshlet);
+            first += count;
+        }
         records.resize(draws.len().max(1), InstanceRecord::default());
         records
     }

@@ -41,6 +41,67 @@ fn parts_are_listed_as_the_patterns_that_name_them() {
     assert_eq!((unknown.code, unknown.out.as_str()), (2, ""));
 }
 
+/// A triangle that is red as the file has it, green as "leaf" and blue as "sea".
+const VARIANTS: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+    "extensions":{"KHR_materials_variants":{"variants":[{"name":"leaf"},{"name":"sea"}]}},"extensionsUsed":["KHR_materials_variants"],
+    "materials":[{"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1]}},{"pbrMetallicRoughness":{"baseColorFactor":[0,1,0,1]}},
+        {"pbrMetallicRoughness":{"baseColorFactor":[0,0,1,1]}}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0,"extensions":{"KHR_materials_variants":{"mappings":[
+        {"material":1,"variants":[0]},{"material":2,"variants":[1]}]}}}]}],
+    "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3,"min":[0,0,0],"max":[1,1,0]}],
+    "bufferViews":[{"buffer":0,"byteLength":36}],
+    "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
+
+#[test]
+fn variants_are_listed_as_what_set_takes_and_drawn_in_their_colors() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("flag.gltf"), VARIANTS).unwrap();
+    let in_folder = |args: &[&str]| run_in(folder.path(), args);
+    let listed = in_folder(&["parts", "flag.gltf"]);
+    let wanted = "VARIANT\nscene.variant=leaf\nscene.variant=sea\n";
+    assert!(
+        listed.code == 0 && listed.out.ends_with(wanted),
+        "{}",
+        listed.out
+    );
+    let object = json(&in_folder(&["parts", "flag.gltf", "--json"]));
+    let last = object["results"].as_array().expect("a list").last();
+    assert_eq!(
+        last,
+        Some(&serde_json::json!({ "kind": "variant", "name": "sea" }))
+    );
+    for (name, channel) in [("", 0), ("leaf", 1), ("sea", 2)] {
+        let set = format!("scene.variant={name}");
+        let args = "render flag.gltf --adapter cpu --size 16x16 --force -o a.png --set";
+        let mut args: Vec<&str> = args.split(' ').collect();
+        args.push(&set);
+        let drawn = in_folder(&args);
+        assert_eq!(drawn.code, 0, "{}", drawn.err);
+        let picture = image::open(folder.path().join("a.png"))
+            .expect("a picture")
+            .into_rgb8();
+        let is_own = |pixel: &image::Rgb<u8>| {
+            let own = i32::from(pixel.0[channel]);
+            (0..3).all(|other| other == channel || own > i32::from(pixel.0[other]) + 40)
+        };
+        assert!(picture.pixels().any(is_own), "{name}");
+    }
+    let unknown = in_folder(&[
+        "render",
+        "flag.gltf",
+        "--adapter",
+        "cpu",
+        "--set",
+        "scene.variant=sky",
+    ]);
+    let wanted = "scene.variant: the scene has no variant \"sky\"; it has \"leaf\", \"sea\"";
+    assert!(
+        unknown.code == 2 && unknown.err.contains(wanted),
+        "{}",
+        unknown.err
+    );
+}
+
 #[test]
 fn a_part_that_is_not_there_is_a_warning_and_with_strict_an_error() {
     let folder = tempfile::tempdir().unwrap();

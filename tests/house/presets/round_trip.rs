@@ -192,7 +192,8 @@ prop_compose! {
             stack.0.reverse();
         }
         let scope = |from: usize| Scope::new(patterns.iter().skip(from).map(|pattern| pattern.parse().expect("a pattern")));
-        let parts = ShownParts { only: scope(2), hidden: scope(1) };
+        let variant = if size[1] % 2 == 0 { "night and day".into() } else { String::new() };
+        let parts = ShownParts { only: scope(2), hidden: scope(1), variant };
         Preset {
             name, about, tags, scene, parts, room, ground, spin_deg_per_s, playback, camera,
             polyline: if reversed { [[background[0], -background[1], 1.0], [1e9, background[2], 1e-9], [0.0; 3]].into() } else { [].into() },

@@ -16,9 +16,8 @@ use crate::{
     params::legible_line,
     scene::{
         Scene,
-        gltf::{self, LoadError, PART_BYTES, Source, limits::Limits, reserve},
+        gltf::{self, LoadError, PART_BYTES, ReadFile, Source, limits::Limits, reserve},
         memory::MemoryBudget,
-        mesh_files::LoadModel,
     },
     work::checkpoint,
 };
@@ -49,7 +48,7 @@ pub fn load_within(path: &Path, budget: MemoryBudget) -> Result<Scene, LoadError
 pub fn load_as(
     path: &Path,
     budget: MemoryBudget,
-    load_model: LoadModel,
+    load_model: impl FnOnce(&dyn Source, MemoryBudget, &mut ReadFile) -> Result<Scene, LoadError>,
 ) -> Result<Scene, LoadError> {
     let file = path
         .file_name()

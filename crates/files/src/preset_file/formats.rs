@@ -18,7 +18,14 @@ pub struct ModelFormat {
     pub extension: &'static str,
     /// Extensions of the files beside a model that it may refer to.
     pub beside: &'static [&'static str],
-    read: LoadModel,
+    reader: Reader,
+}
+
+/// What reads a format.
+enum Reader {
+    /// Its materials may have variants.
+    Gltf,
+    Mesh(LoadModel),
 }
 
 /// Every format that is read. `tests/house/registry.rs` compares the texts that name them.
@@ -26,33 +33,33 @@ pub const MODEL_FORMATS: &[ModelFormat] = &[
     ModelFormat {
         extension: "glb",
         beside: &[],
-        read: gltf::load_within,
+        reader: Reader::Gltf,
     },
     ModelFormat {
         extension: "gltf",
         beside: &["bin", "png", "jpg", "jpeg", "ktx2"],
-        read: gltf::load_within,
+        reader: Reader::Gltf,
     },
     // A GLB with a person in it.
     ModelFormat {
         extension: "vrm",
         beside: &[],
-        read: gltf::load_within,
+        reader: Reader::Gltf,
     },
     ModelFormat {
         extension: "obj",
         beside: &["mtl", "png", "jpg", "jpeg", "webp"],
-        read: mesh_files::load_obj,
+        reader: Reader::Mesh(mesh_files::load_obj),
     },
     ModelFormat {
         extension: "stl",
         beside: &[],
-        read: mesh_files::load_stl,
+        reader: Reader::Mesh(mesh_files::load_stl),
     },
     ModelFormat {
         extension: "ply",
         beside: &["png", "jpg", "jpeg", "webp"],
-        read: mesh_files::load_ply,
+        reader: Reader::Mesh(mesh_files::load_ply),
     },
 ];
 
@@ -65,12 +72,26 @@ impl ModelFormat {
         })
     }
 
-    /// Loads a file of this format within the memory budget of the process.
+    /// Loads a file of this format within the memory budget of the process, with its own materials.
     ///
     /// # Errors
     /// As [`model::load_as`].
     pub fn load(&self, path: &Path) -> Result<Scene, LoadError> {
-        model::load_as(path, MemoryBudget::of_process(), self.read)
+        self.load_variant(path, "")
+    }
+
+    /// [`Self::load`], with the materials of a variant where the file has one of this name.
+    ///
+    /// # Errors
+    /// As [`model::load_as`].
+    pub fn load_variant(&self, path: &Path, variant: &str) -> Result<Scene, LoadError> {
+        let budget = MemoryBudget::of_process();
+        match self.reader {
+            Reader::Gltf => model::load_as(path, budget, |model, budget, read| {
+                gltf::load_variant(model, budget, variant, read)
+            }),
+            Reader::Mesh(load) => model::load_as(path, budget, load),
+        }
     }
 
     /// Every extension with its dot, with commas between them, and `last` before the last.

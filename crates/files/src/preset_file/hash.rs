@@ -140,9 +140,14 @@ fn rig_hash(mut hash: Fnv, scene: &Scene) -> Fnv {
             hash.words(&[c.node as u32, c.property as u32, c.sampler as u32])
         });
     }
-    scene.instances.iter().fold(hash, |hash, instance| {
-        hash.words(&[place(instance.node), place(instance.skin)])
-    })
+    hash = scene.instances.iter().fold(hash, |hash, instance| {
+        let hash = hash.words(&[place(instance.node), place(instance.skin)]);
+        match instance.placement {
+            Some(placement) => hash.words(&[placement as u32]),
+            None => hash,
+        }
+    });
+    scene.rig.placements.iter().fold(hash, matrix)
 }
 
 /// As 16 hexadecimal digits.

@@ -33,10 +33,10 @@ pub enum SceneError {
 /// starts at the folder of `preset_path`.
 ///
 /// # Errors
-/// No such built-in scene or model, a model that cannot be read, no part that is shown, or a clip or
-/// camera that the scene does not have.
+/// No such built-in scene or model, a model that cannot be read, no part that is shown, or a
+/// variant, clip or camera that the scene does not have.
 pub fn load_scene(preset: &Preset, preset_path: Option<&Path>) -> Result<Arc<Scene>, SceneError> {
-    let scene = load_source(&preset.scene, preset_path)?;
+    let scene = load_source(&preset.scene, &preset.parts.variant, preset_path)?;
     preset.check(&scene)?;
     let has_parts = !scene.instances.is_empty();
     let scene = scene.showing(&preset.parts);
@@ -59,10 +59,14 @@ pub fn scene_bounds(
     source: &SceneSource,
     preset_path: Option<&Path>,
 ) -> Result<Bounds, SceneError> {
-    Ok(load_source(source, preset_path)?.bounds())
+    Ok(load_source(source, "", preset_path)?.bounds())
 }
 
-fn load_source(source: &SceneSource, preset_path: Option<&Path>) -> Result<Scene, SceneError> {
+fn load_source(
+    source: &SceneSource,
+    variant: &str,
+    preset_path: Option<&Path>,
+) -> Result<Scene, SceneError> {
     match source {
         SceneSource::Builtin(query) => Ok(builtin::build(query)?),
         SceneSource::File(model) => {
@@ -74,7 +78,7 @@ fn load_source(source: &SceneSource, preset_path: Option<&Path>) -> Result<Scene
             }
             // What has another extension is loaded too, if it is one by its content.
             let format = ModelFormat::of(&path).unwrap_or(&MODEL_FORMATS[0]);
-            Ok(format.load(&path)?)
+            Ok(format.load_variant(&path, variant)?)
         }
     }
 }

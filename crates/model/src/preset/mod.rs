@@ -86,7 +86,7 @@ impl Default for ClipPlayback {
     }
 }
 
-/// A clip or camera that a scene does not have.
+/// A variant, clip or camera that a scene does not have.
 #[derive(Debug, PartialEq, thiserror::Error)]
 #[error("{key}: the scene has no {what} {name:?}{known}")]
 pub struct MissingInScene {
@@ -369,11 +369,20 @@ impl Preset {
         (!scene.rig.is_empty()).then(|| Arc::new(Pose::at(scene, &self.motion(scene))))
     }
 
-    /// Does `scene` have the clips and the camera that the preset names?
+    /// Does `scene` have the variant, the clips and the camera that the preset names?
     ///
     /// # Errors
     /// The first that is missing.
     pub fn check(&self, scene: &Scene) -> Result<(), MissingInScene> {
+        let variant = &self.parts.variant;
+        if !variant.is_empty() && scene.variant(variant).is_none() {
+            return Err(MissingInScene {
+                key: "scene.variant",
+                what: "variant",
+                name: variant.clone(),
+                known: known(scene.variants.iter(), "it has no variants"),
+            });
+        }
         if !self.scene_camera.is_empty() && scene.camera(&self.scene_camera).is_none() {
             let known = known(
                 scene.cameras.iter().map(|camera| &camera.name),

@@ -209,6 +209,12 @@ pub static SCENE: Section = Section {
                 )
                 .rule(are_patterns),
                 Setting::new(
+                    "variant",
+                    LINE,
+                    "The variant of its materials in which a glTF model is shown (KHR_materials_variants), by its name or as #0, #1 …; empty: none",
+                    field!(parts.variant),
+                ),
+                Setting::new(
                     "room",
                     ValueType::F64,
                     "Walls around the scene, seen from inside: their distance as a multiple of the scene's width; 0: none",

@@ -2,6 +2,7 @@
 //! triangles.
 
 use glam::{DMat4, DVec3, DVec4};
+use rayon::prelude::*;
 
 pub use super::bounds::MAX_MAGNITUDE;
 use super::{
@@ -170,6 +171,9 @@ pub fn totals(scene: &Scene, draws: &[Draw]) -> [u64; 2] {
 /// The most triangles in a picture: an id shares its word with two flags, and one value means none.
 pub const MAX_TRIANGLES: u64 = (1 << 30) - 2;
 
+/// Draws that one thread handles: waking others costs more than fewer take.
+pub const MANY_DRAWS: usize = 1024;
+
 /// The draws of `scene` as `view` sees it, in instance order, for a stack without scopes.
 ///
 /// # Errors
@@ -214,7 +218,6 @@ pub fn scoped_draws(scene: &Scene, view: &View, scopes: &[Scope]) -> Result<Vec<
     } else {
         scope_masks(scene, scopes)
     };
-    let (mut first_vertex, mut first_triangle, mut first_deformable) = (0, 0, 0);
     let make_draw = |(index, instance): (usize, &Instance)| {
         let primitive = &scene.primitives[instance.primitive];
         let deform = pose.and_then(|pose| pose.deform(index)).cloned();
@@ -261,10 +264,10 @@ pub fn scoped_draws(scene: &Scene, view: &View, scopes: &[Scope]) -> Result<Vec<
                 value,
             });
         }
-        let draw = Draw {
+        Ok(Draw {
             primitive: instance.primitive,
-            first_vertex,
-            first_triangle,
+            first_vertex: 0,
+            first_triangle: 0,
             origin,
             clip_from_object,
             world_from_object,
@@ -275,9 +278,25 @@ pub fn scoped_draws(scene: &Scene, view: &View, scopes: &[Scope]) -> Result<Vec<
             is_faceted: primitive.is_faceted,
             is_glass: scene.materials[primitive.material].is_blended,
             deform,
-            first_deformable,
+            first_deformable: 0,
             scopes: masks.get(index).copied().unwrap_or_default(),
+        })
+    };
+    let made: Vec<Result<Draw, DrawError>> = drawn
+        .par_iter()
+        .enumerate()
+        .with_min_len(MANY_DRAWS)
+        .map(make_draw)
+        .collect();
+    let (mut first_vertex, mut first_triangle, mut first_deformable) = (0, 0, 0);
+    let place = |draw: Result<Draw, DrawError>| {
+        let draw = Draw {
+            first_vertex,
+            first_triangle,
+            first_deformable,
+            ..draw?
         };
+        let primitive = &scene.primitives[draw.primitive];
         first_deformable += if primitive.deformation.is_none() {
             0
         } else {
@@ -287,5 +306,5 @@ pub fn scoped_draws(scene: &Scene, view: &View, scopes: &[Scope]) -> Result<Vec<
         first_triangle += primitive.triangle_count();
         Ok(draw)
     };
-    drawn.iter().enumerate().map(make_draw).collect()
+    made.into_iter().map(place).collect()
 }

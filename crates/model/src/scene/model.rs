@@ -171,6 +171,8 @@ pub struct Instance {
     pub skin: Option<usize>,
     /// The node of `Scene::named_nodes` that shows it.
     pub named_node: Option<usize>,
+    /// Index into `Rig::placements`: its transform relative to `node`. `None`: the identity.
+    pub placement: Option<usize>,
 }
 
 impl Instance {
@@ -182,6 +184,7 @@ impl Instance {
             node: None,
             skin: None,
             named_node: None,
+            placement: None,
         }
     }
 }
@@ -242,6 +245,9 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// The images that textures refer to.
     pub images: Vec<Image>,
+    /// Names of the variants of materials that its file has. Primitives have the materials of the
+    /// one with which it was loaded.
+    pub variants: Vec<String>,
     /// What is drawn, in order.
     pub instances: Vec<Instance>,
     /// The number of instances at the end of the list that are walls around the others. Walls cast
@@ -268,7 +274,25 @@ pub struct Scene {
     pub framing: FramingPoints,
 }
 
+/// The index of what is called `name`. `#2` is what is at index 2, under any name.
+pub fn named(names: &[String], name: &str) -> Option<usize> {
+    let by_index = || {
+        let index = name.strip_prefix('#')?.parse().ok();
+        index.filter(|&index: &usize| index < names.len())
+    };
+    names
+        .iter()
+        .position(|known| known == name)
+        .or_else(by_index)
+}
+
 impl Scene {
+    /// The index of the variant of materials called `name`. `#2` is the variant at index 2, under
+    /// any name.
+    pub fn variant(&self, name: &str) -> Option<usize> {
+        named(&self.variants, name)
+    }
+
     /// The index of the camera called `name`. `#2` is the camera at index 2, under any name.
     pub fn camera(&self, name: &str) -> Option<usize> {
         let by_index = || {

@@ -6,10 +6,11 @@
 use std::collections::BTreeSet;
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
+use rayon::prelude::*;
 
 use super::{
     accessor::ComponentType,
-    draw::Draw,
+    draw::{Draw, MANY_DRAWS},
     material::Material,
     model::{Primitive, Scene, Topology},
     shadow_resolution::ShadowResolution,
@@ -108,10 +109,14 @@ impl Needs {
         };
         let all_f32 =
             |pick: fn(&Primitive) -> ComponentType| unbent().all(|p| pick(p) == ComponentType::F32);
-        let largest_px = draws
-            .iter()
-            .map(|draw| largest_px(&scene.primitives[draw.primitive], draw, view))
-            .fold(0.0, f64::max);
+        let largest = |of: fn(&Primitive, &Draw, &View) -> f64| {
+            draws
+                .par_iter()
+                .with_min_len(MANY_DRAWS)
+                .map(|draw| of(&scene.primitives[draw.primitive], draw, view))
+                .reduce(|| 0.0, f64::max)
+        };
+        let largest_px = largest(largest_px);
         Self {
             size: [view.width, view.height],
             triangles: scene.triangle_count(),
@@ -162,10 +167,7 @@ impl Needs {
             clipping: largest_px.is_infinite(),
             largest_px,
             sizes: TriangleSizes::of(scene, draws, view),
-            box_px: draws
-                .iter()
-                .map(|draw| box_px(&scene.primitives[draw.primitive], draw, view))
-                .fold(0.0, f64::max),
+            box_px: largest(box_px),
             rounding_px: rounding_px(scene, draws, view),
             depth_m: view.depth_range_m,
             near_m: view.clip_from_world.w_axis.z.abs(),

@@ -226,9 +226,11 @@ impl fmt::Display for Scope {
     }
 }
 
-/// Which parts of a scene are shown; by default all.
+/// Which parts of a scene are shown, by default all, and in which of their materials.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ShownParts {
+    /// Name of the variant of materials with which the scene is loaded; empty: those of the file.
+    pub variant: String,
     /// Nothing else is shown.
     pub only: Scope,
     /// Parts that are not shown; none where it is the whole scene.

@@ -97,7 +97,11 @@ impl Pose {
             // The joints alone place a skinned mesh; its node is ignored (glTF 2.0, section
             // 3.7.3.2).
             (Some(_), _) => DMat4::IDENTITY,
-            (None, Some(node)) => scene_from_node[node],
+            (None, Some(node)) => instance
+                .placement
+                .map_or(scene_from_node[node], |placement| {
+                    scene_from_node[node] * rig.placements[placement]
+                }),
             (None, None) => instance.world_from_object,
         };
         Self {

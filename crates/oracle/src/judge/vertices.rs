@@ -1,20 +1,21 @@
 //! Judges vertex records, each from the matrix bits.
 
-use rayon::prelude::*;
-
 use super::super::{
     bounds::{
         snap::{attributes_fit, snap_bound, whole_units},
         vertex::VertexBounds,
     },
-    render::vertex::{Corner, VertexEvaluator},
+    render::{
+        records::fill_records,
+        vertex::{Corner, VertexEvaluator},
+    },
     shot::Shot,
 };
 use crate::{
     frame::{Geometry, SnappedVertex, vertex_flags},
     math::GUARD_BAND,
     measure::ErrorReport,
-    work::{Canceled, map_each},
+    work::Canceled,
 };
 
 /// What was found about one record.
@@ -52,27 +53,14 @@ pub fn bounded_errors(
     adapter: &Geometry,
     own: &Geometry,
 ) -> Result<Vec<VertexError>, Canceled> {
-    let mut errors = Vec::with_capacity(own.vertices.len());
-    for draw in shot.draws {
-        let evaluator = VertexEvaluator::new(shot.scene, draw, shot.view, shot.stack);
-        let bounds = VertexBounds::new(&evaluator, adapter.packed_bits);
-        let error = |(i, corner)| {
-            let at = evaluator.first_record() + i;
-            bounded_error(
-                &evaluator,
-                &bounds,
-                shot,
-                corner,
-                &adapter.vertices[at],
-                &own.vertices[at],
-            )
-        };
-        errors.extend(map_each(
-            evaluator.corners().into_par_iter().enumerate(),
-            error,
-        )?);
-    }
-    Ok(errors)
+    fill_records(shot, |evaluator, first, errors| {
+        let bounds = VertexBounds::new(evaluator, adapter.packed_bits);
+        for (error, at) in errors.iter_mut().zip(first..) {
+            let corner = evaluator.corner(at);
+            let records = (&adapter.vertices[at], &own.vertices[at]);
+            *error = bounded_error(evaluator, &bounds, shot, corner, records.0, records.1);
+        }
+    })
 }
 
 /// Adds what was found to a report.

@@ -88,6 +88,8 @@ pub fn clipped_triangles<P: Point>(
     };
     (0..primitive.triangle_count())
         .into_par_iter()
+        // Of small meshes there may be millions.
+        .with_min_len(256)
         .flat_map_iter(fan)
         .collect()
 }

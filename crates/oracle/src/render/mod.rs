@@ -8,6 +8,7 @@ pub mod vertex;
 
 pub mod clip;
 pub mod project;
+pub mod records;
 pub mod strict;
 pub mod triangles;
 

@@ -2,11 +2,13 @@
 
 use rayon::prelude::*;
 
-use super::{super::shot::Shot, clip, deform, snap::snap, vertex::VertexEvaluator};
+use super::{
+    super::shot::Shot, clip, deform, records::fill_records, snap::snap, vertex::VertexEvaluator,
+};
 use crate::{
     frame::{Geometry, SnappedVertex},
-    scene::draw::totals,
-    work::{Canceled, map_each},
+    scene::draw::Draw,
+    work::Canceled,
 };
 
 /// Everything between the stored scene and integer coverage: one record per vertex of each draw, or
@@ -22,30 +24,20 @@ pub fn project(shot: &Shot) -> Result<Geometry, Canceled> {
         view,
         stack,
     } = *shot;
-    let evaluators: Vec<VertexEvaluator> = draws
-        .iter()
-        .map(|draw| VertexEvaluator::new(scene, draw, view, stack))
-        .collect();
-    let records = |evaluator: &VertexEvaluator| {
-        let record = |corner| match evaluator.clip(corner) {
-            Ok(position) => snap(&position, view),
-            Err(flags) => SnappedVertex {
-                flags,
-                ..Default::default()
-            },
-        };
-        map_each(evaluator.corners().into_par_iter(), record)
+    let record = |evaluator: &VertexEvaluator, record: usize| match evaluator
+        .clip(evaluator.corner(record))
+    {
+        Ok(position) => snap(&position, view),
+        Err(flags) => SnappedVertex {
+            flags,
+            ..Default::default()
+        },
     };
-    // One list of the right size: growing it would need twice the memory.
-    let [shared, triangles] = totals(scene, draws);
-    let mut vertices = Vec::with_capacity(if stack.unshares_vertices() {
-        3 * triangles
-    } else {
-        shared
-    } as usize);
-    for evaluator in &evaluators {
-        vertices.extend(records(evaluator)?);
-    }
+    let vertices = fill_records(shot, |evaluator, first, records| {
+        for (index, to) in records.iter_mut().enumerate() {
+            *to = record(evaluator, first + index);
+        }
+    })?;
     let mut geometry = Geometry {
         vertices,
         has_unshared_vertices: stack.unshares_vertices(),
@@ -57,14 +49,15 @@ pub fn project(shot: &Shot) -> Result<Geometry, Canceled> {
         subpixel_bits: view.precision.subpixel_bits,
         ..Geometry::default()
     };
-    let clipped = |evaluator: &VertexEvaluator| {
+    let clipped = |draw: &Draw| {
+        let evaluator = VertexEvaluator::new(scene, draw, view, stack);
         let position = |corner| {
             evaluator
                 .clip(corner)
                 .expect("a triangle that is clipped has no rejected corner")
         };
-        clip::clipped_triangles(shot, evaluator.draw, &geometry, position)
+        clip::clipped_triangles(shot, draw, &geometry, position)
     };
-    geometry.clipped_triangles = evaluators.iter().flat_map(clipped).collect();
+    geometry.clipped_triangles = draws.par_iter().flat_map(clipped).collect();
     Ok(geometry)
 }

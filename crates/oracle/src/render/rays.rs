@@ -56,7 +56,7 @@ impl Rays {
         let light_view = stack.light_view(scene, &view.with_shadow(ShadowResolution::default()))?;
         let draws = stack.draws(scene, &light_view).ok()?;
         let mut casters: Vec<Caster> = draws
-            .iter()
+            .par_iter()
             .filter(|draw| !draw.is_glass)
             .flat_map(|draw| casters(shot, draw))
             .collect();

@@ -55,7 +55,7 @@ pub fn project_strict(shot: &Shot) -> Geometry {
         vertices: true,
         depth_keys: false,
     };
-    let vertices = draws.iter().flat_map(records).collect();
+    let vertices = draws.par_iter().flat_map(records).collect();
     let mut geometry = Geometry {
         vertices,
         bit_exact: exact,
@@ -69,7 +69,7 @@ pub fn project_strict(shot: &Shot) -> Geometry {
         };
         clip::clipped_triangles(shot, draw, &geometry, position)
     };
-    geometry.clipped_triangles = draws.iter().flat_map(clipped).collect();
+    geometry.clipped_triangles = draws.par_iter().flat_map(clipped).collect();
     geometry
 }
 

@@ -98,6 +98,19 @@ impl<'a> VertexEvaluator<'a> {
             .collect()
     }
 
+    /// The corner of a record of this draw, by its index in the geometry.
+    pub fn corner(&self, record: usize) -> Corner {
+        let own = (record - self.first_record()) as u32;
+        if self.has_unshared_vertices {
+            self.triangle_corners(own / 3)[own as usize % 3]
+        } else {
+            Corner {
+                vertex: own,
+                triangle: 0,
+            }
+        }
+    }
+
     /// The corners of the draw's triangle with this index.
     pub fn triangle_corners(&self, triangle: u32) -> [Corner; 3] {
         let primitive = &self.scene.primitives[self.draw.primitive];

@@ -98,7 +98,10 @@ fn list_ui(ui: &mut Ui, state: &State, commands: &Commands, shown: &ShownParts) 
         ui.label(theme::weak("No part has this name."));
     }
     ui.separator();
-    let all = ShownParts::default();
+    let all = ShownParts {
+        variant: shown.variant.clone(),
+        ..ShownParts::default()
+    };
     if ui
         .add_enabled(*shown != all, egui::Button::new("Show all"))
         .clicked()
@@ -151,6 +154,7 @@ fn entry_ui(
                 Scope::new([pattern.clone()])
             },
             hidden: Scope::default(),
+            ..shown.clone()
         })
     })
     .inner

@@ -19,7 +19,7 @@ use crate::{
         Preset,
         settings::{GROUND, Setting},
     },
-    scene::{Scene, texture::Image},
+    scene::{Scene, parts::ShownParts, texture::Image},
 };
 
 pub fn scene_ui(ui: &mut Ui, state: &State, commands: &Commands) {
@@ -48,6 +48,9 @@ pub fn scene_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         };
         if !scene.cameras.is_empty() {
             cameras_ui(ui, scene, preset, commands);
+        }
+        if !scene.variants.is_empty() {
+            variants_ui(ui, scene, &preset.parts, commands);
         }
         if let Some(text) = images_text(scene) {
             ui.horizontal(|ui| {
@@ -175,6 +178,46 @@ fn cameras_ui(ui: &mut Ui, scene: &Scene, preset: &Preset, commands: &Commands) 
                 "Cameras of the scene. Moving the camera in the picture gives the preset its own.",
             )
             .accessible_name("scene.camera");
+    });
+}
+
+/// A menu of the variants of the scene's materials.
+fn variants_ui(ui: &mut Ui, scene: &Scene, shown: &ShownParts, commands: &Commands) {
+    const NONE: &str = "no variant";
+    let id = |index: usize| {
+        let name = &scene.variants[index];
+        // Of variants with the same name, all but the first go by their index.
+        if scene.variant(name) == Some(index) {
+            name.clone()
+        } else {
+            format!("#{index}")
+        }
+    };
+    ui.horizontal(|ui| {
+        ui.set_min_height(theme::ROW);
+        ui.add_space(theme::GAP);
+        let chosen = match shown.variant.as_str() {
+            "" => NONE.to_owned(),
+            name => format!("variant {name}"),
+        };
+        let menu = ComboBox::from_id_salt("scene.variant")
+            .selected_text(chosen)
+            .width(ui.available_width() - theme::GAP);
+        let menu = menu.show_ui(ui, |ui| {
+            let all = (0..scene.variants.len()).map(|index| (id(index), id(index)));
+            for (variant, label) in [(String::new(), NONE.to_owned())].into_iter().chain(all) {
+                let is_chosen = shown.variant == variant;
+                if ui.selectable_label(is_chosen, label).clicked() && !is_chosen {
+                    commands.edit(Edit::Parts(ShownParts {
+                        variant,
+                        ..shown.clone()
+                    }));
+                }
+            }
+        });
+        menu.response
+            .on_hover_text("Variants of the scene's materials")
+            .accessible_name("scene.variant");
     });
 }
 

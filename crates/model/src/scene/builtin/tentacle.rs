@@ -373,6 +373,7 @@ fn add_instance(scene: &mut Scene, instance: u32, of: u32, joints: u32, samplers
         node: Some(mesh),
         skin: Some(skin),
         named_node: None,
+        placement: None,
     });
 }
 

@@ -31,6 +31,16 @@ pub const NOTES: usize = 32;
 /// is none that is in use.
 const MOST_GROWTH: u64 = 32;
 
+/// What an instance takes once it is open: some 300 bytes in the scene, and as many for each view
+/// that draws it.
+const INSTANCE_BYTES: u64 = 1024;
+
+/// What an instance takes in a file, at least: a place, which may be compressed.
+const LEAST_INSTANCE_BYTES: u64 = 4;
+
+/// Instances that every model may have.
+const FEW_INSTANCES: usize = 262_144;
+
 /// Limits that follow from the memory budget and from the size of the files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
@@ -46,7 +56,9 @@ pub struct Limits {
     /// Triangles of all primitives, each counted once however often it is instanced.
     pub triangles: u64,
     /// Instances of primitives.
-    pub instances: usize,
+    instances: usize,
+    /// What to do where there are more instances.
+    instances_remedy: Remedy,
     /// What to do where a limit is exceeded; nothing where every model has it.
     remedy: Remedy,
 }
@@ -67,14 +79,25 @@ impl Limits {
 
     /// Limits of a model whose files have so many bytes.
     pub fn of_model(budget: MemoryBudget, files: u64) -> Self {
+        let whole = Self::of_files(budget);
         let grown = files.saturating_mul(MOST_GROWTH);
-        if grown < budget.decoded() {
-            Self {
-                file_bytes: Self::of_files(budget).file_bytes,
-                ..Self::of(grown, Remedy::Growth(files))
-            }
+        if grown >= budget.decoded() {
+            return whole;
+        }
+        let (remedy, placed) = (Remedy::Growth(files), files / LEAST_INSTANCE_BYTES);
+        let placed = usize::try_from(placed)
+            .unwrap_or(usize::MAX)
+            .max(FEW_INSTANCES);
+        let (instances, instances_remedy) = if placed < whole.instances {
+            (placed, remedy)
         } else {
-            Self::of_files(budget)
+            (whole.instances, whole.instances_remedy)
+        };
+        Self {
+            file_bytes: whole.file_bytes,
+            instances,
+            instances_remedy,
+            ..Self::of(grown, remedy)
         }
     }
 
@@ -89,12 +112,29 @@ impl Limits {
             buffer_bytes: decoded.clamp(128 * MIB, addressable),
             vertices: (decoded / 12).clamp(4_000_000, draw::MAX_TRIANGLES),
             triangles: (decoded / 6).clamp(10_000_000, draw::MAX_TRIANGLES / 3),
-            // An instance takes some 300 bytes here, and as many where it is drawn.
-            instances: usize::try_from(decoded / 1024)
+            instances: usize::try_from(decoded / INSTANCE_BYTES)
                 .unwrap_or(usize::MAX)
-                .max(262_144),
+                .max(FEW_INSTANCES),
+            instances_remedy: remedy,
             remedy,
         }
+    }
+
+    /// # Errors
+    /// There are more instances than these limits allow; `what` begins the sentence.
+    pub fn check_instances(
+        &self,
+        instances: usize,
+        what: impl FnOnce() -> String,
+    ) -> Result<(), LoadError> {
+        if instances <= self.instances {
+            return Ok(());
+        }
+        let limits = Self {
+            remedy: self.instances_remedy,
+            ..*self
+        };
+        Err(limits.exceeded(what(), self.instances as u64))
     }
 
     /// `what` exceeds `most`, a limit of these.

@@ -38,6 +38,21 @@ pub fn load_within(
     budget: MemoryBudget,
     read: &mut ReadFile,
 ) -> Result<Scene, LoadError> {
+    load_variant(model, budget, "", read)
+}
+
+/// [`load_within`], with the materials of the variant of this name (KHR_materials_variants), or
+/// `#1` for that at index 1. With those of the file where it has no such variant;
+/// [`Scene::variants`] tells.
+///
+/// # Errors
+/// As [`load_within`].
+pub fn load_variant(
+    model: &dyn Source,
+    budget: MemoryBudget,
+    variant: &str,
+    read: &mut ReadFile,
+) -> Result<Scene, LoadError> {
     let limits = Limits::of_files(budget);
     if model.size() > limits.file_bytes {
         return Err(limits.exceeded(
@@ -47,13 +62,15 @@ pub fn load_within(
     }
     let notes = Notes::default();
     let (json, binary) = container::split(model, &notes)?;
-    let document = document::parse_document(json.all()?, &notes)?;
+    let mut document = document::parse_document(json.all()?, &notes)?;
     drop(json);
+    document.show_variant(variant);
     let mut scene = read_model(&document, binary, (model.size(), budget), read, &notes)?;
     for (name, reason) in document.broken() {
         notes.fault_once(reason, || format!("{name}: {reason}; nothing uses it"));
     }
     notes.extend(omissions(&document));
+    scene.variants = document.variants;
     [scene.notes, scene.faults] = notes.into_lists();
     Ok(scene)
 }
@@ -106,7 +123,10 @@ fn read_model(
         loader.add_instances(node, &rig)?;
     }
     let Loader {
-        writer, first_lost, ..
+        writer,
+        first_lost,
+        placements,
+        ..
     } = loader;
     let mut scene = writer.scene;
     if scene.instances.is_empty() {
@@ -117,6 +137,7 @@ fn read_model(
         notes.add(|| "nothing to draw: the scene shows no triangles");
     }
     scene.rig = rig;
+    scene.rig.placements = placements;
     scene.named_nodes = tree.named_nodes(document);
     if !scene.rig.is_empty() {
         scene.rig.motion_bounds = pose::motion_bounds(&scene);

@@ -1,5 +1,4 @@
-//! Meshes: reads primitives with their attributes and creates the instances of the nodes that show
-//! them.
+//! Meshes: reads primitives with their attributes and materials.
 
 use std::{
     collections::{BTreeSet, HashMap},
@@ -16,7 +15,7 @@ use super::{
     error::{LoadError, called, part_name},
     limits::Limits,
     mask,
-    nodes::{Tree, node_name},
+    nodes::Tree,
 };
 use crate::{
     scene::{
@@ -24,8 +23,7 @@ use crate::{
         bounds::Bounds,
         deformation::Deformation,
         material::{Material, TEXTURE_SLOTS, TextureSlot},
-        model::{Instance, Primitive, Scene, Topology},
-        rig::Rig,
+        model::{Primitive, Scene, Topology},
         tangents,
     },
     work::checkpoint,
@@ -36,15 +34,19 @@ const STEPS: u64 = 4;
 
 /// Reads meshes into a scene.
 pub struct Loader<'a> {
-    document: &'a Document,
-    buffers: &'a Buffers<'a>,
-    tree: &'a Tree,
-    limits: &'a Limits,
+    pub(super) document: &'a Document,
+    pub(super) buffers: &'a Buffers<'a>,
+    pub(super) tree: &'a Tree,
+    pub(super) limits: &'a Limits,
     pub writer: SceneWriter<'a>,
     /// Why the first primitive that was left out is.
     pub first_lost: Option<String>,
     /// The JSON of each primitive of the scene.
-    sources: Vec<&'a document::Primitive>,
+    pub(super) sources: Vec<&'a document::Primitive>,
+    /// [`Rig::placements`](crate::scene::rig::Rig::placements).
+    pub placements: Vec<DMat4>,
+    /// Instances that nodes asked for.
+    pub(super) claimed: usize,
     /// Primitives of each mesh that was read.
     meshes: HashMap<usize, Range<usize>>,
     /// Materials that the file does not have as they are drawn: each with what it is made from.
@@ -64,6 +66,8 @@ impl<'a> Loader<'a> {
             writer: SceneWriter::new(buffers, scene),
             first_lost: None,
             sources: Vec::new(),
+            placements: Vec::new(),
+            claimed: 0,
             meshes: HashMap::new(),
             variants: HashMap::new(),
             vertices: 0,
@@ -102,74 +106,8 @@ impl<'a> Loader<'a> {
             / STEPS
     }
 
-    /// Adds the instances of a node. A skinned mesh ignores the transform of its node: its joints
-    /// place it.
-    ///
-    /// # Errors
-    /// Loading ends.
-    pub fn add_instances(&mut self, node: usize, rig: &Rig) -> Result<(), LoadError> {
-        let about = &self.document.nodes[node];
-        let Some(mesh) = about.mesh else {
-            return Ok(());
-        };
-        let range = self.mesh(mesh)?;
-        let instances = self.writer.scene.instances.len() + range.len();
-        if instances > self.limits.instances {
-            let what = format_args!(
-                "{}: the nodes show {instances} primitives or more",
-                node_name(self.document, node)
-            );
-            return Err(self.limits.exceeded(what, self.limits.instances as u64));
-        }
-        let rig_node = (!rig.is_empty()).then(|| self.tree.rig_index[node]);
-        for primitive in range {
-            let skin = match about.skin {
-                Some(skin) => self.followed(primitive, skin, rig)?,
-                None => None,
-            };
-            let world_from_object = if skin.is_some() {
-                DMat4::IDENTITY
-            } else {
-                self.tree.world_from_node[node]
-            };
-            let named_node = Some(self.tree.rig_index[node]);
-            self.writer.scene.instances.push(Instance {
-                primitive,
-                world_from_object,
-                node: rig_node,
-                skin,
-                named_node,
-            });
-        }
-        Ok(())
-    }
-
-    /// The skin that moves a primitive; none if it cannot.
-    fn followed(
-        &mut self,
-        primitive: usize,
-        skin: usize,
-        rig: &Rig,
-    ) -> Result<Option<usize>, LoadError> {
-        // What is wrong with a skin without joints was said already.
-        let Some(joints) = rig.skins.get(skin).filter(|skin| !skin.joints.is_empty()) else {
-            return Ok(None);
-        };
-        let notes = self.buffers.notes;
-        let about = self.sources[primitive];
-        match deformation::follow_skin(&mut self.writer, primitive, about, joints, notes) {
-            Ok(()) => Ok(Some(skin)),
-            Err(error) => {
-                let name = &self.writer.scene.primitives[primitive].name;
-                let reason = error.within(name).of_part()?;
-                notes.fault(|| format!("{reason}; it is drawn without its skin"));
-                Ok(None)
-            }
-        }
-    }
-
     /// The primitives of a mesh, which is read on its first use. What cannot be read is left out.
-    fn mesh(&mut self, mesh: usize) -> Result<Range<usize>, LoadError> {
+    pub(super) fn mesh(&mut self, mesh: usize) -> Result<Range<usize>, LoadError> {
         if let Some(range) = self.meshes.get(&mesh) {
             return Ok(range.clone());
         }

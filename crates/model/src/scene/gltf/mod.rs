@@ -7,7 +7,8 @@
 //!
 //! Supported: triangle lists, strips and fans, all index widths, interleaved, sparse, quantized and
 //! compressed (Draco, meshopt) accessors, base color and emission with their textures, vertex
-//! colors, the nodes and cameras of the default scene, skins, morph targets and clips. Left out with
+//! colors, the nodes and cameras of the default scene, many instances of a node's mesh, skins, morph
+//! targets and clips. Left out with
 //! an entry in [`Scene::notes`](crate::scene::Scene::notes): points, lines, normal maps and the
 //! rest of physically based shading.
 
@@ -21,6 +22,8 @@ mod document;
 mod draco;
 pub(super) mod error;
 pub(super) mod images;
+mod instances;
+mod instancing;
 pub mod limits;
 pub(super) mod load;
 mod mask;
@@ -35,5 +38,5 @@ mod source;
 pub(super) mod uri;
 
 pub use error::{LoadError, ReadFile};
-pub use load::{load, load_within};
+pub use load::{load, load_variant, load_within};
 pub use source::{PART_BYTES, Source, reserve};

@@ -173,13 +173,10 @@ impl Builder {
         if let Some(&part) = self.by_kind.get(&kind) {
             return Ok(part);
         }
-        let (count, most) = (self.parts.len() + 1, self.room.limits.instances);
-        if count > most {
-            return Err(self
-                .room
-                .limits
-                .exceeded(format_args!("it has {count} parts or more"), most as u64));
-        }
+        let count = self.parts.len() + 1;
+        self.room
+            .limits
+            .check_instances(count, || format!("it has {count} parts or more"))?;
         self.room.take(size_of::<Part>() + size_of::<Primitive>())?;
         self.parts.push(Part {
             kind,

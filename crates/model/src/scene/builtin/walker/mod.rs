@@ -193,6 +193,7 @@ fn add_instance(scene: &mut Scene, instance: u32, of: u32, samplers: &[usize]) {
         node: Some(first - 1),
         skin: Some(skin),
         named_node: None,
+        placement: None,
     });
 }
 

@@ -11,6 +11,7 @@ mod motion;
 mod parts;
 mod read;
 mod shapes;
+mod variants;
 
 pub use parts::*;
 pub use read::{QUANTIZATION, is_read, parse_document};

@@ -31,6 +31,8 @@ pub struct Document {
     pub clips: Vec<Clip>,
     /// The nodes that the shown scene lists; none where the file has no scene.
     pub scene: Option<Scene>,
+    /// Names of the variants of materials.
+    pub variants: Vec<String>,
     pub extensions_used: Vec<String>,
     pub extensions_required: Vec<String>,
 }
@@ -221,6 +223,8 @@ pub struct Primitive {
     /// `None`: points or lines.
     pub topology: Option<Topology>,
     pub material: Option<usize>,
+    /// Materials by variants.
+    pub variants: BTreeMap<usize, usize>,
     /// Accessors by the names of attributes.
     pub targets: Vec<BTreeMap<String, usize>>,
     /// KHR_draco_mesh_compression.
@@ -247,6 +251,16 @@ pub struct Node {
     pub skin: Option<usize>,
     pub camera: Option<usize>,
     pub weights: Vec<f32>,
+    /// EXT_mesh_gpu_instancing. Boxed: of millions of nodes few have it.
+    pub instancing: Option<Box<Instancing>>,
+}
+
+/// The accessors of what places the instances of a node, at least one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Instancing {
+    pub translation: Option<usize>,
+    pub rotation: Option<usize>,
+    pub scale: Option<usize>,
 }
 
 #[derive(Debug)]

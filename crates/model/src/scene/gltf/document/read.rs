@@ -7,6 +7,7 @@ use super::{
         compression::{DRACO, MESHOPT},
         container,
         error::{LoadError, called, quoted},
+        instancing::INSTANCING,
         limits,
         materials::EXTENSIONS,
         notes::Notes,
@@ -14,6 +15,7 @@ use super::{
     Document, Part,
     fields::{Lenient, Object},
     materials, motion, shapes,
+    variants::{self, VARIANTS},
 };
 
 /// Extension of textures whose image is a WebP.
@@ -24,7 +26,7 @@ pub const WEBP: &str = "EXT_texture_webp";
 pub const QUANTIZATION: &str = "KHR_mesh_quantization";
 
 /// Extensions that are read, besides those of materials.
-pub const READ: [&str; 4] = [QUANTIZATION, WEBP, MESHOPT, DRACO];
+pub const READ: [&str; 6] = [QUANTIZATION, WEBP, MESHOPT, DRACO, INSTANCING, VARIANTS];
 
 /// Extensions that may be required and whose lack is said as of any other: they add no shape.
 const HARMLESS: [&str; 1] = ["KHR_lights_punctual"];
@@ -48,6 +50,7 @@ pub struct Lists<'a> {
     pub nodes: &'a [Value],
     pub skins: &'a [Value],
     pub cameras: &'a [Value],
+    pub variants: &'a [Value],
 }
 
 impl<'a> Lists<'a> {
@@ -117,6 +120,7 @@ pub fn parse_document(json: &[u8], notes: &Notes) -> Result<Document, LoadError>
         nodes: list("nodes"),
         skins: list("skins"),
         cameras: list("cameras"),
+        variants: variants::listed(&lenient, root),
     };
     let document = Document {
         accessors: parts(lists.accessors, |index, part| {
@@ -147,6 +151,7 @@ pub fn parse_document(json: &[u8], notes: &Notes) -> Result<Document, LoadError>
             motion::clip(&lists, index, value)
         }),
         scene: shapes::scene(&lists, root, list("scenes")),
+        variants: variants::names(lists.variants),
         extensions_used,
         extensions_required,
     };

@@ -8,10 +8,12 @@ use super::{
     super::{
         compression::{DRACO, MESHOPT},
         error::{called, quoted},
+        instancing::INSTANCING,
     },
-    Accessor, Buffer, Camera, Mesh, Node, Part, Primitive, Scene, Sparse, View,
+    Accessor, Buffer, Camera, Instancing, Mesh, Node, Part, Primitive, Scene, Sparse, View,
     fields::{Lenient, Object, needed, whole},
     read::{Lists, is_unknown_compression},
+    variants,
 };
 use crate::scene::{accessor::ComponentType, camera::Projection, model::Topology};
 
@@ -191,6 +193,7 @@ fn primitive(lists: &Lists, lenient: &Lenient, part: Object) -> Part<Primitive> 
         indices: part.index("indices", "accessors", lists.accessors.len())?,
         topology: part.choice("mode", &MODES)?.unwrap_or(Some(Topology::List)),
         material: lenient.field(part.index("material", "materials", lists.materials.len())),
+        variants: variants::materials(lists, lenient, part),
         targets: targets
             .iter()
             .map(|target| match Object::of(target) {
@@ -260,6 +263,7 @@ pub fn node(lists: &Lists, index: usize, value: &Value) -> Node {
     let lenient = lists.lenient("node", index, part);
     let nodes = ("nodes", lists.nodes.len());
     let children = part.indices("children", nodes, |reason| lenient.fault(reason));
+    let instancing = self::instancing(lists, &lenient.name, part);
     let mut node = Node {
         name: part.text("name").ok().flatten().map(str::to_owned),
         children: lenient.list(children),
@@ -271,6 +275,7 @@ pub fn node(lists: &Lists, index: usize, value: &Value) -> Node {
         skin: lenient.field(part.index("skin", "skins", lists.skins.len())),
         camera: lenient.field(part.index("camera", "cameras", lists.cameras.len())),
         weights: lenient.field(part.numbers("weights")).unwrap_or_default(),
+        instancing,
     };
     if let Some(matrix) = &mut node.matrix {
         let last_row = [matrix[3], matrix[7], matrix[11], matrix[15]];
@@ -304,6 +309,37 @@ pub fn node(lists: &Lists, index: usize, value: &Value) -> Node {
         node.rotation = None;
     }
     node
+}
+
+/// The accessors that place the instances of a node, which messages call `node`.
+fn instancing(lists: &Lists, node: &str, part: Object) -> Option<Box<Instancing>> {
+    let lenient = Lenient {
+        notes: lists.notes,
+        name: format!("{node} {INSTANCING}"),
+    };
+    let extension = lenient.field(part.extension(INSTANCING))?;
+    let read = || {
+        let attributes = needed("attributes", extension.object("attributes"))?;
+        let accessor = |key: &str| attributes.index(key, "accessors", lists.accessors.len());
+        let instancing = Instancing {
+            translation: accessor("TRANSLATION")?,
+            rotation: accessor("ROTATION")?,
+            scale: accessor("SCALE")?,
+        };
+        if instancing == Instancing::default() {
+            return Err("it has none of the attributes TRANSLATION, ROTATION and SCALE".into());
+        }
+        if attributes
+            .entries()
+            .any(|(name, _)| name.starts_with("_COLOR"))
+        {
+            lists
+                .notes
+                .add(|| format!("{}: colors of instances are not drawn", lenient.name));
+        }
+        Ok(Some(Box::new(instancing)))
+    };
+    lenient.field(read())
 }
 
 /// The smallest length of a quaternion that is normalized; shorter ones have no meaningful

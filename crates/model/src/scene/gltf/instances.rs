@@ -1,0 +1,147 @@
+//! Instances: the nodes show the primitives of their meshes, once or many times.
+
+use glam::DMat4;
+
+use super::{
+    deformation,
+    error::LoadError,
+    instancing::{self, INSTANCING},
+    meshes::Loader,
+    nodes::node_name,
+};
+use crate::scene::{model::Instance, rig::Rig};
+
+impl Loader<'_> {
+    /// Adds the instances of a node. A skinned mesh ignores the transform of its node: its joints
+    /// place it.
+    ///
+    /// # Errors
+    /// Loading ends.
+    pub fn add_instances(&mut self, node: usize, rig: &Rig) -> Result<(), LoadError> {
+        let about = &self.document.nodes[node];
+        let Some(mesh) = about.mesh else {
+            return Ok(());
+        };
+        let range = self.mesh(mesh)?;
+        let mut shown = Vec::with_capacity(range.len());
+        for primitive in range {
+            let skin = match about.skin {
+                Some(skin) => self.followed(primitive, skin, rig)?,
+                None => None,
+            };
+            shown.push((primitive, skin));
+        }
+        let placements = self.placements(node, shown.len())?;
+        let rig_node = (!rig.is_empty()).then(|| self.tree.rig_index[node]);
+        let named_node = Some(self.tree.rig_index[node]);
+        let world_from_node = self.tree.world_from_node[node];
+        let Some(placements) = placements else {
+            self.claim(node, shown.len())?;
+            let instance = |(primitive, skin): (usize, Option<usize>)| Instance {
+                primitive,
+                world_from_object: skin.map_or(world_from_node, |_| DMat4::IDENTITY),
+                node: rig_node,
+                skin,
+                named_node,
+                placement: None,
+            };
+            self.writer
+                .scene
+                .instances
+                .extend(shown.into_iter().map(instance));
+            return Ok(());
+        };
+        let instances = &mut self.writer.scene.instances;
+        instances
+            .try_reserve(placements.len() * shown.len())
+            .map_err(|_| LoadError::end("the system has no memory for its instances"))?;
+        for node_from_instance in placements {
+            let placement = rig_node.map(|_| {
+                self.placements.push(node_from_instance);
+                self.placements.len() - 1
+            });
+            let instance = |&(primitive, _): &(usize, Option<usize>)| Instance {
+                primitive,
+                world_from_object: world_from_node * node_from_instance,
+                node: rig_node,
+                skin: None,
+                named_node,
+                placement,
+            };
+            instances.extend(shown.iter().map(instance));
+        }
+        Ok(())
+    }
+
+    /// Counts more instances, before they are made.
+    ///
+    /// # Errors
+    /// There are too many.
+    fn claim(&mut self, node: usize, more: usize) -> Result<(), LoadError> {
+        self.claimed = self.claimed.saturating_add(more);
+        let instances = self.claimed;
+        self.limits.check_instances(instances, || {
+            format!(
+                "{}: the nodes show {instances} primitives or more",
+                node_name(self.document, node)
+            )
+        })
+    }
+
+    /// What places the instances of a node with so many primitives, relative to the node. None
+    /// where it shows its mesh once, as it does where this cannot be read.
+    fn placements(
+        &mut self,
+        node: usize,
+        primitives: usize,
+    ) -> Result<Option<Vec<DMat4>>, LoadError> {
+        let (document, notes) = (self.document, self.buffers.notes);
+        let Some(about) = &document.nodes[node].instancing else {
+            return Ok(None);
+        };
+        let name = || format!("{} {INSTANCING}", node_name(document, node));
+        if document.nodes[node].skin.is_some() {
+            notes.add(|| format!("{}: joints place its mesh; it is drawn once", name()));
+            return Ok(None);
+        }
+        let count = instancing::count(self.buffers, about);
+        let read = count.and_then(|count| {
+            // Those that turn out to be faulty count, too: reading them takes time.
+            self.claim(node, (count as usize).saturating_mul(primitives.max(1)))?;
+            instancing::placements(self.buffers, about, &self.tree.world_from_node[node])
+        });
+        match read {
+            Ok(placements) => Ok(Some(placements)),
+            Err(error) => {
+                let reason = error.of_part()?;
+                let fault = || format!("{}: {reason}; its mesh is drawn once", name());
+                notes.fault(fault);
+                Ok(None)
+            }
+        }
+    }
+
+    /// The skin that moves a primitive; none if it cannot.
+    fn followed(
+        &mut self,
+        primitive: usize,
+        skin: usize,
+        rig: &Rig,
+    ) -> Result<Option<usize>, LoadError> {
+        // What is wrong with a skin without joints was said already.
+        let Some(joints) = rig.skins.get(skin).filter(|skin| !skin.joints.is_empty()) else {
+            return Ok(None);
+        };
+        let notes = self.buffers.notes;
+        let about = self.sources[primitive];
+        match deformation::follow_skin(&mut self.writer, primitive, about, joints, notes) {
+            Ok(()) => Ok(Some(skin)),
+            Err(error) => {
+                let name = &self.writer.scene.primitives[primitive].name;
+                let reason = error.within(name).of_part()?;
+                notes.fault(|| format!("{reason}; it is drawn without its skin"));
+                Ok(None)
+            }
+        }
+    }
+}
