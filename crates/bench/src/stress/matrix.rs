@@ -135,7 +135,7 @@ const TIME_S: f64 = 0.4;
 /// [`factors`] do, so each chain meets the options that are in the text of its passes and no others.
 const IMAGE_CHAINS: &[&[&str]] = &[
     &["ambient", "depth_of_field", "bloom"],
-    &["sky", "blur", "glow_edges", "paint"],
+    &["blur", "glow_edges", "paint"],
     &["aberration", "halftone", "palette", "glitch", "crt"],
 ];
 
