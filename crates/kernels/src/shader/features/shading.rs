@@ -3,7 +3,7 @@
 
 use super::feature::{Feature, NO_STEP, Part, flag, step_if, word_if};
 use crate::{
-    accuracy::{DotCulling, Perspective},
+    accuracy::{DotCulling, Perspective, Transparency},
     effects::{dots::LineSource, hooks::Layers, shadow::MAX_SHADOW_SLOPE},
     shader::{image_passes::NUMBERS, key::KernelKey, pass::Pass},
 };
@@ -33,10 +33,7 @@ const LAYERS: Feature = Feature {
         }
         Some(Layers::Xray { bits }) => format!("layers=xray/{bits}"),
         Some(Layers::Overdraw) => "layers=overdraw".into(),
-        Some(Layers::Glass) if key.framebuffer.glass_bands > 1 => {
-            format!("layers=glass/{}", key.framebuffer.glass_bands)
-        }
-        Some(Layers::Glass) => "layers=glass".into(),
+        Some(Layers::Glass) => glass_label(key),
         Some(Layers::Race) | None => String::new(),
     },
     variants: &[
@@ -45,6 +42,13 @@ const LAYERS: Feature = Feature {
             Some(Layers::Overdraw) => "overdraw",
             Some(Layers::Glass) => "glass",
             Some(Layers::Race) | None => "nearest",
+        }),
+        ("glass_composition", |key, _| {
+            if key.options.transparency == Transparency::Weighted {
+                "weighted"
+            } else {
+                "sorted"
+            }
         }),
         ("store_step", |key, _| {
             step_if(key.framebuffer.layers == Some(Layers::Race), "race")
@@ -70,9 +74,25 @@ const LAYERS: Feature = Feature {
             key.framebuffer.glass_bands.max(1).into()
         }),
         ("GLASS_DEEPEST", |key, _| key.work.deepest_glass.into()),
+        ("GLASS_COMPOSED_LAYERS", |key, _| {
+            let most = key.options.transparency.most_layers();
+            most.unwrap_or(u32::MAX).into()
+        }),
     ],
     ..Feature::NONE
 };
+
+/// How layers of glass are composed, and in how many bands, unless it is all of them in one.
+fn glass_label(key: &KernelKey) -> String {
+    let mut label = "layers=glass".to_owned();
+    if key.options.transparency != Transparency::default() {
+        label += &format!("/{}", key.options.transparency.name());
+    }
+    if key.framebuffer.glass_bands > 1 {
+        label += &format!("/{}", key.framebuffer.glass_bands);
+    }
+    label
+}
 
 const PLANES: Feature = Feature {
     label: |key| word_if(key.surface.has_planes, "planes"),
