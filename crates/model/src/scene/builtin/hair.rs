@@ -19,10 +19,10 @@ use crate::{
 
 /// Half axes of the skull, which lies about the origin and looks along z.
 const SKULL_M: DVec3 = DVec3::new(0.74, 0.95, 0.86);
-const SEGMENTS: u32 = 7;
+const SEGMENTS: u32 = 8;
 /// Length of a segment of a strip, and half its width.
 const SEGMENT_M: f64 = 0.27;
-const HALF_WIDTH_M: f64 = 0.13;
+const HALF_WIDTH_M: f64 = 0.15;
 
 /// `cards` strips of hair on a bust.
 pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
@@ -30,31 +30,17 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
     let mut scene = Scene::default();
     let skin = [0.56, 0.31, 0.2, 1.0];
     let cloth = [0.05, 0.09, 0.13, 1.0];
-    for (name, color, at, half) in [
-        ("skull", skin, DVec3::ZERO, SKULL_M),
-        (
-            "face",
-            skin,
-            DVec3::new(0.0, -0.32, 0.2),
-            DVec3::new(0.56, 0.74, 0.66),
-        ),
-        (
-            "nose",
-            skin,
-            DVec3::new(0.0, -0.2, 0.88),
-            DVec3::new(0.09, 0.2, 0.13),
-        ),
-        (
-            "neck",
-            skin,
-            DVec3::new(0.0, -1.1, -0.08),
-            DVec3::new(0.34, 0.7, 0.34),
-        ),
+    let at = DVec3::new;
+    for (name, color, place, half) in [
+        ("skull", [0.07, 0.03, 0.012, 1.0], DVec3::ZERO, SKULL_M),
+        ("face", skin, at(0.0, -0.3, 0.26), at(0.6, 0.8, 0.68)),
+        ("nose", skin, at(0.0, -0.2, 0.88), at(0.09, 0.2, 0.13)),
+        ("neck", skin, at(0.0, -1.1, -0.08), at(0.34, 0.7, 0.34)),
         (
             "shoulders",
             cloth,
-            DVec3::new(0.0, -1.75, -0.1),
-            DVec3::new(1.35, 0.45, 0.55),
+            at(0.0, -1.75, -0.1),
+            at(1.35, 0.45, 0.55),
         ),
     ] {
         let material = Material {
@@ -62,7 +48,7 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
             roughness: 0.55,
             ..Material::default()
         };
-        let place = DMat4::from_translation(at) * DMat4::from_scale(half);
+        let place = DMat4::from_translation(place) * DMat4::from_scale(half);
         add(&mut scene, name, globe_mesh(10), material, place);
     }
     scene.images.push(strands().with_mipmaps());
@@ -94,17 +80,18 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
 /// falls along the skull and beside it.
 fn add_card(mesh: &mut MeshBuilder, part: f64, card: u32, unit: impl Fn(u32) -> f64) {
     // A sunflower spiral over the cap of the skull, which leans back from the face.
-    let height = 1.0 - 0.95 * part;
+    let height = 1.0 - 1.15 * part;
     let turn = f64::from(card) * 0.381_966_011_250_105 + 0.04 * unit(0);
     let flat = (1.0 - height * height).max(0.0).sqrt();
     let cap = DVec3::new(flat * sin_turns(turn), height, flat * cos_turns(turn));
-    let root = (cap - DVec3::Z * 0.45).normalize();
+    let root = (cap + DVec3::new(0.0, 0.1, -0.5)).normalize();
     let lift = 1.03 + 0.16 * unit(1);
     let mut at = root * SKULL_M * lift;
+    let out = (root / SKULL_M).normalize();
     let mut way = DVec3::new(
-        root.x + 0.5 * (unit(2) - 0.5),
-        0.35,
-        root.z - 0.3 + 0.5 * (unit(3) - 0.5),
+        0.9 * out.x + 0.5 * (unit(2) - 0.5),
+        -0.25 + 0.3 * unit(5),
+        0.5 * out.z - 0.35 + 0.4 * (unit(3) - 0.5),
     )
     .normalize();
     // An image shows several tufts; a strip shows one of them.
@@ -128,7 +115,7 @@ fn add_card(mesh: &mut MeshBuilder, part: f64, card: u32, unit: impl Fn(u32) -> 
         if inside < lift {
             at *= lift / inside;
         }
-        way = (way + DVec3::NEG_Y * 0.55).normalize_or(DVec3::NEG_Y);
+        way = (way + DVec3::NEG_Y * 0.5).normalize_or(DVec3::NEG_Y);
     }
 }
 

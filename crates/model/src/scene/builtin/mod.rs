@@ -271,7 +271,7 @@ pub const BUILTINS: &[Builtin] = &[
         name: "hair",
         about: "a head under blended strips of hair, in stacks as deep as there are strips",
         params: &[
-            whole("cards", "number of strips", 260.0, 1.0..=20_000.0),
+            whole("cards", "number of strips", 420.0, 1.0..=20_000.0),
             SEED,
         ],
         build: hair::build,
