@@ -33,7 +33,10 @@ const LAYERS: Feature = Feature {
         }
         Some(Layers::Xray { bits }) => format!("layers=xray/{bits}"),
         Some(Layers::Overdraw) => "layers=overdraw".into(),
-        Some(Layers::Glass) => glass_label(key),
+        Some(Layers::Glass) if key.framebuffer.glass_bands > 1 => {
+            format!("layers=glass/{}", key.framebuffer.glass_bands)
+        }
+        Some(Layers::Glass) => "layers=glass".into(),
         Some(Layers::Race) | None => String::new(),
     },
     variants: &[
@@ -81,18 +84,6 @@ const LAYERS: Feature = Feature {
     ],
     ..Feature::NONE
 };
-
-/// How layers of glass are composed, and in how many bands, unless it is all of them in one.
-fn glass_label(key: &KernelKey) -> String {
-    let mut label = "layers=glass".to_owned();
-    if key.options.transparency != Transparency::default() {
-        label += &format!("/{}", key.options.transparency.name());
-    }
-    if key.framebuffer.glass_bands > 1 {
-        label += &format!("/{}", key.framebuffer.glass_bands);
-    }
-    label
-}
 
 const PLANES: Feature = Feature {
     label: |key| word_if(key.surface.has_planes, "planes"),
