@@ -7,7 +7,7 @@ use std::sync::Arc;
 use rasterlab::{
     accuracy::{
         AXES, AccuracyOptions, AxisOption, Coverage, CurlNoise, DotCulling, Perspective, Skinning,
-        VertexTransform, Visibility, XraySums,
+        Transparency, VertexTransform, Visibility, XraySums,
     },
     effects::{Effect, EnabledEffect, Stack},
     plan::{AccuracyRequest, Caps, MeasuredCosts, Plan, StackTraits, Tier, plan},
@@ -160,6 +160,7 @@ fn an_axis_has_a_reason_where_it_decides_about_something() {
         Skinning::AXIS,
         CurlNoise::AXIS,
         XraySums::AXIS,
+        Transparency::AXIS,
     ] {
         assert!(
             !has(&plain, axis),
@@ -171,6 +172,8 @@ fn an_axis_has_a_reason_where_it_decides_about_something() {
     assert!(has(&walker, Skinning::AXIS));
     let (xray, _) = planned("teapot?tess=4", "", &["xray"], Tier::Precise);
     assert!(has(&xray, XraySums::AXIS) && !has(&plain, XraySums::AXIS));
+    let (panes, _) = planned("panes", "", &[], Tier::Precise);
+    assert!(has(&panes, Transparency::AXIS));
     let (dots, _) = planned("teapot?tess=4", "", &["dots"], Tier::Precise);
     assert!(has(&dots, DotCulling::AXIS));
     let why = plain.reason(&AXES[Coverage::AXIS]).expect("a reason");

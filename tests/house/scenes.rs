@@ -594,7 +594,7 @@ fn mistyped_queries_get_a_helpful_error() {
         (
             "teapto",
             "there is no built-in scene \"teapto\"; did you mean \"teapot\"? \
-             (known: teapot, sphere, knot, cube-wall, field, tentacle, walker, town, still-life, finishes, golf, chamber, globe, panels, panes, leaves, near, grid, fan, sizes, slivers, stack)",
+             (known: teapot, sphere, knot, cube-wall, field, tentacle, walker, town, still-life, finishes, golf, chamber, globe, panels, panes, sunglasses, notch, crossing, hair, leaves, near, grid, fan, sizes, slivers, stack)",
         ),
         (
             "teapot?tes=4",

@@ -206,12 +206,14 @@ fn every_option_of_every_axis_links_and_validates() {
         vec![effect("overdraw"), effect("outline")],
         vec![effect("dissolve"), effect("draw_order")],
         vec![effect("xray")],
+        vec![effect("glass")],
     ];
     // Only these choose among the variants in which the stacks differ.
     let with_stacks = [
         "visibility",
         "sample_counter",
         "xray_sums",
+        "transparency",
         "depth",
         "culling",
     ]

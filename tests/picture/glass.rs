@@ -6,9 +6,10 @@ use std::sync::Arc;
 
 use pollster::FutureExt as _;
 use rasterlab::{
-    accuracy::{DepthFormat, VertexTransform, Visibility},
+    accuracy::{AxisOption as _, DepthFormat, Transparency, VertexTransform, Visibility},
     effects::Stack,
-    gpu::{RenderError, Renderer},
+    gpu::{Capture, RenderError, Renderer},
+    math::srgb_byte,
     oracle,
     plan::{AccuracyRequest, Tuning},
     preset_file,
@@ -17,11 +18,14 @@ use rasterlab::{
 
 use crate::common::*;
 
-/// A soup of translucent triangles before an opaque one, in this order. Depths are distinct.
-fn soup(order: &[usize]) -> Arc<Scene> {
+/// The color of the opaque triangle of a soup.
+const WALL: [f32; 4] = [0.9, 0.6, 0.2, 1.0];
+
+/// Corners and colors of translucent triangles. Depths are distinct.
+fn soup_triangles(count: usize) -> Vec<([[f32; 3]; 3], [f32; 4])> {
     const SIDE: i32 = 32;
     let mut rng = Rng(7);
-    let triangles: Vec<([[f32; 3]; 3], [f32; 4])> = (0..order.len())
+    (0..count)
         .map(|_| {
             let corner = |rng: &mut Rng| {
                 let at = [0, 1].map(|_| rng.between(-1000, 256 * SIDE + 1000) as f32 / 256.0);
@@ -31,7 +35,12 @@ fn soup(order: &[usize]) -> Arc<Scene> {
             let mut channel = || rng.real(0.05, 0.95) as f32;
             (corners, [channel(), channel(), channel(), channel()])
         })
-        .collect();
+        .collect()
+}
+
+/// A soup of translucent triangles before an opaque one, in this order.
+fn soup(order: &[usize]) -> Arc<Scene> {
+    let triangles = soup_triangles(order.len());
     let sorted = || order.iter().map(|&at| &triangles[at]);
     let glass = SimpleMesh {
         positions: sorted().flat_map(|(corners, _)| *corners).collect(),
@@ -40,7 +49,7 @@ fn soup(order: &[usize]) -> Arc<Scene> {
     };
     let wall = SimpleMesh {
         positions: vec![[-8.0, -8.0, 0.2], [60.0, -8.0, 0.5], [-8.0, 60.0, 0.8]],
-        colors: vec![[0.9, 0.6, 0.2, 1.0]; 3],
+        colors: vec![WALL; 3],
         ..SimpleMesh::default()
     };
     let mut scene = (*scene_of_meshes(&[glass, wall])).clone();
@@ -92,27 +101,217 @@ fn no_order_of_triangles_shows() {
     let Some(mut renderer) = renderer() else {
         return;
     };
-    let strict = AccuracyRequest {
-        pins: AccuracyRequest::default()
+    for &transparency in Transparency::ALL {
+        let mut strict = on(transparency);
+        strict.pins = strict
             .pins
             .with(VertexTransform::Strict)
-            .with(DepthFormat::Integer),
-        ..AccuracyRequest::default()
-    };
-    let mut order: Vec<usize> = (0..40).collect();
-    let mut pictures = Vec::new();
-    for round in 0..3 {
-        let (scene, view) = (soup(&order), soup_view());
-        let stack = Stack::default();
-        pictures.push(
-            captured(&mut renderer, &scene, &view, &stack, &strict)
-                .frame
-                .color,
+            .with(DepthFormat::Integer);
+        let mut order: Vec<usize> = (0..40).collect();
+        let mut pictures = Vec::new();
+        for round in 0..3 {
+            let (scene, view) = (soup(&order), soup_view());
+            let stack = Stack::default();
+            pictures.push(
+                captured(&mut renderer, &scene, &view, &stack, &strict)
+                    .frame
+                    .color,
+            );
+            order.reverse();
+            order.rotate_left(7 + round);
+        }
+        assert!(
+            pictures.iter().all(|picture| *picture == pictures[0]),
+            "{}",
+            transparency.name()
         );
-        order.reverse();
-        order.rotate_left(7 + round);
     }
-    assert!(pictures.iter().all(|picture| *picture == pictures[0]));
+}
+
+fn on(transparency: Transparency) -> AccuracyRequest {
+    let mut request = AccuracyRequest::default();
+    transparency.pin(&mut request.pins);
+    request
+}
+
+#[test]
+fn fewer_layers_and_no_order_err_in_color_alone_and_only_where_layers_lie_behind_one_another() {
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
+    let scene = scene("panes?sheets=9");
+    let (view, stack) = (view(&scene, [96, 72]), stack(&["lambert"]));
+    let mut drawn = |option| judged(&mut renderer, &scene, &view, &stack, &on(option));
+    let (exact, _) = drawn(Transparency::Exact);
+    let counts = exact.frame.glass.counts();
+    for (option, most_exact) in [
+        (Transparency::Opaque, 0),
+        (Transparency::Weighted, 1),
+        (Transparency::Nearest4, 4),
+    ] {
+        let (capture, verdict) = drawn(option);
+        let (frame, report) = (&capture.frame, verdict.report);
+        assert_eq!(
+            (&frame.triangle_id, &frame.depth_key),
+            (&exact.frame.triangle_id, &exact.frame.depth_key),
+            "{}",
+            option.name()
+        );
+        let faults = [report.wrong_triangles, report.layer_counts_wrong];
+        assert_eq!(faults, [0; 2], "{}: {report:?}", option.name());
+        assert!(report.max_color_delta > 8, "{}: {report:?}", option.name());
+        let differs = |pixel: &usize| frame.color[*pixel] != exact.frame.color[*pixel];
+        let is_shallow = |pixel: &usize| counts[*pixel] <= most_exact;
+        let (shallow, deep): (Vec<usize>, Vec<usize>) = (0..counts.len()).partition(is_shallow);
+        assert!(!shallow.iter().any(differs), "{}", option.name());
+        assert!(deep.iter().filter(|pixel| differs(pixel)).count() > 100);
+    }
+}
+
+#[test]
+fn what_is_drawn_as_if_opaque_is_what_does_not_blend() {
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
+    let blended = scene("panes");
+    let view = view(&blended, [96, 72]);
+    let mut opaque = (*blended).clone();
+    for material in &mut opaque.materials {
+        (material.is_blended, material.base_color[3]) = (false, 1.0);
+    }
+    let opaque = Arc::new(opaque);
+    let stack = stack(&["lambert", "shadow", "outline"]);
+    let mut drawn =
+        |scene, option| captured(&mut renderer, scene, &view, &stack, &on(option)).frame;
+    let (seen, without) = (
+        drawn(&blended, Transparency::Opaque),
+        drawn(&opaque, Transparency::Exact),
+    );
+    assert_eq!(
+        (&seen.triangle_id, &seen.depth_key, &seen.color),
+        (&without.triangle_id, &without.depth_key, &without.color)
+    );
+}
+
+/// What layers, nearest first, each a depth and a color, do to the light of the wall, in f64.
+fn composed(option: Transparency, layers: &[(f64, [f64; 4])]) -> [u8; 3] {
+    let most = option
+        .most_layers()
+        .map_or(layers.len(), |most| layers.len().min(most as usize));
+    let steps = |depth: f64| ((depth / layers[0].0).powi(3) * 256.0).max(1.0).round();
+    [0, 1, 2].map(|channel| {
+        let wall = f64::from(WALL[channel]);
+        let seen = if option == Transparency::Weighted && !layers.is_empty() {
+            let (mut light, mut covered, mut passed) = (0.0, 0.0, 1.0);
+            for (depth, color) in layers {
+                light += steps(*depth) * color[3] * color[channel];
+                covered += steps(*depth) * color[3];
+                passed *= 1.0 - color[3];
+            }
+            light / covered * (1.0 - passed) + wall * passed
+        } else {
+            let over = |behind: f64, (_, color): &(f64, [f64; 4])| {
+                behind + (color[channel] - behind) * color[3]
+            };
+            layers[..most].iter().rev().fold(wall, over)
+        };
+        srgb_byte(seen)
+    })
+}
+
+/// Pixels of the soup before the wall whose color is not what their layers, which `exact` lists,
+/// compose to, and those with another nearest triangle.
+fn wrongly_composed(renderer: &mut Renderer, option: Transparency, exact: &Capture) -> usize {
+    let count = 40;
+    let triangles = soup_triangles(count);
+    let scene = soup(&(0..count).collect::<Vec<_>>());
+    let view = soup_view();
+    let frame = captured(renderer, &scene, &view, &Stack::default(), &on(option)).frame;
+    let lists = &exact.frame.glass;
+    let is_wrong = |pixel: &usize| {
+        if lists.behind[*pixel] != count as u32 {
+            return false;
+        }
+        let layer = |hit: &rasterlab::frame::GlassHit| {
+            let color = triangles[hit.triangle_id as usize].1.map(f64::from);
+            (f64::from(f32::from_bits(hit.depth_key)), color)
+        };
+        let layers: Vec<_> = lists.at(*pixel).iter().map(layer).collect();
+        let right = composed(option, &layers);
+        (0..3).any(|channel| frame.color[*pixel][channel].abs_diff(right[channel]) > 1)
+            || frame.triangle_id[*pixel] != exact.frame.triangle_id[*pixel]
+    };
+    (0..frame.color.len()).filter(is_wrong).count()
+}
+
+#[test]
+fn every_option_composes_as_it_says_and_mistakes_in_it_are_caught() {
+    let Some(mut healthy) = renderer() else {
+        return;
+    };
+    let (scene, view) = (soup(&(0..40).collect::<Vec<_>>()), soup_view());
+    let exact = captured(
+        &mut healthy,
+        &scene,
+        &view,
+        &Stack::default(),
+        &AccuracyRequest::default(),
+    );
+    for option in [
+        Transparency::Weighted,
+        Transparency::Nearest4,
+        Transparency::Exact,
+    ] {
+        let wrong = wrongly_composed(&mut healthy, option, &exact);
+        assert_eq!(wrong, 0, "{}", option.name());
+    }
+    let (nearest4, weighted) = (Transparency::Nearest4, Transparency::Weighted);
+    let mut missed = Vec::new();
+    for (option, what, from, to) in [
+        (
+            nearest4,
+            "a layer too many",
+            "count < GLASS_COMPOSED_LAYERS",
+            "count <= GLASS_COMPOSED_LAYERS",
+        ),
+        (
+            weighted,
+            "weights fall with the square",
+            "nearness * nearness * nearness",
+            "nearness * nearness",
+        ),
+        (
+            weighted,
+            "the mean is not covered",
+            "color * (1.0 - passed)",
+            "color",
+        ),
+        (
+            weighted,
+            "only the last layer fades",
+            "min(faded + fades,",
+            "min(fades,",
+        ),
+        (
+            weighted,
+            "light is not weighed",
+            "vec3u(layer.added * GLASS_STEPS + 0.5) * weight",
+            "vec3u(layer.added * GLASS_STEPS + 0.5)",
+        ),
+        (
+            weighted,
+            "any layer is the nearest",
+            "if first == 0u || glass_is_before(link, first)",
+            "if first == 0u || !glass_is_before(link, first)",
+        ),
+    ] {
+        let library = mutated(from, to);
+        let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
+        if wrongly_composed(&mut wrong, option, &exact) == 0 {
+            missed.push(what);
+        }
+    }
+    assert!(missed.is_empty(), "not caught: {}", missed.join("; "));
 }
 
 #[test]
@@ -150,6 +349,14 @@ fn bands_of_pixels_draw_the_same_picture_in_less_memory() {
         assert!(bands > part / 2, "{bands} bands for a {part}th of the room");
         assert_eq!(capture.frame.color, whole.frame.color, "{bands} bands");
         assert_eq!(capture.frame.triangle_id, whole.frame.triangle_id);
+    }
+    for option in [Transparency::Weighted, Transparency::Nearest4] {
+        let [at_once, in_bands] = [&mut renderer, &mut banded].map(|renderer| {
+            captured(renderer, &scene, &view, &stack, &on(option))
+                .frame
+                .color
+        });
+        assert_eq!(at_once, in_bands, "{}", option.name());
     }
     // One pixel has more layers than there is room for.
     banded.set_tuning(Tuning {

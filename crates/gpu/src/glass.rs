@@ -1,7 +1,7 @@
 //! Layers of glass: what a frame counts of them, and how much room they get.
 
-use super::renderer::Renderer;
-use crate::{plan::Caps, shader::KernelKey};
+use super::{renderer::Renderer, view_resources::Request};
+use crate::{effects::glass::GlassDraws, plan::Caps, shader::KernelKey};
 
 /// Bytes of a layer: depth key, triangle id, the next layer, and what it does to a color.
 pub const LAYER_BYTES: u64 = 24;
@@ -54,6 +54,17 @@ pub fn more_bands(bands: u32, demand: u32, most: u32) -> Option<u32> {
         .max(1)
         .checked_mul(parts.max(2))
         .filter(|bands| *bands <= MOST_BANDS)
+}
+
+impl Request<'_> {
+    /// Which draws are drawn as glass.
+    pub(super) fn glass(&self) -> GlassDraws {
+        if self.accuracy.is_seen_through() {
+            self.stack.glass()
+        } else {
+            GlassDraws::Nothing
+        }
+    }
 }
 
 impl Renderer {

@@ -85,7 +85,7 @@ pub fn pass_purpose(pass: Pass) -> &'static str {
         Pass::DotsDraw => "draws dots, one invocation each: the strongest on every pixel",
         Pass::DotsProbe => "reads back where every dot lies",
         Pass::GlassBand => "begins the next band of pixels whose layers of glass are drawn",
-        Pass::GlassCompose => "sorts each pixel's layers of glass, in integers, and composes them",
+        Pass::GlassCompose => "composes each pixel's layers of glass",
         Pass::ListTiles => "gathers the tiles that hold something",
         Pass::Resolve => "shades every pixel once",
         Pass::ResolveBackground => "finishes the pixels of tiles that no triangle touches",

@@ -16,7 +16,7 @@ use super::{
     view_resources::{PreparedFrame, ViewResources},
 };
 use crate::{
-    accuracy::{DepthFormat, PositionFormat, VertexTransform, XraySums},
+    accuracy::{DepthFormat, PositionFormat, Transparency, VertexTransform, XraySums},
     effects::hooks::Layers,
     frame::{BitExact, Geometry, GlassHit, GlassLayers, ShadowMap},
     shader::{
@@ -117,14 +117,15 @@ impl Readback<'_> {
         }
     }
 
-    /// The layers of glass of every pixel; empty without glass, and where bands of pixels were drawn
-    /// one after another, of which only the last is left.
+    /// The layers of glass of every pixel; empty without glass, where bands of pixels were drawn
+    /// one after another, of which only the last is left, and where lists are not sorted.
     pub async fn glass(&self) -> Result<GlassLayers, RenderError> {
         const COMPOSED_WORDS: usize = COMPOSED_BYTES as usize / 4;
         const LAYER_WORDS: usize = LAYER_BYTES as usize / 4;
         let key = &self.frame()?.plan.key;
         let mut lists = GlassLayers::default();
-        if key.framebuffer.glass_bands != 1 {
+        let is_sorted = key.options.transparency != Transparency::Weighted;
+        if key.framebuffer.glass_bands != 1 || !is_sorted {
             return Ok(lists);
         }
         let heads: Vec<u32> = self.region(Region::GlassHeads).await?;

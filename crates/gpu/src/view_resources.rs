@@ -191,7 +191,7 @@ impl ViewResources {
             scene.keep_materials(gpu, &key.surface).await?;
             scene.keep_image_files(gpu, request.stack).await?;
         }
-        let is_changed = self.update_draw_data(scene, key, &view, &draws, request.stack);
+        let is_changed = self.update_draw_data(scene, key, &view, &draws, request);
         if self.target == Target::Picture {
             self.dots =
                 DotStore::update(self.dots.take(), scene.scene(), &view, request.stack, key)?;
@@ -253,7 +253,7 @@ impl ViewResources {
         request: &Request<'_>,
     ) -> Result<PlannedView, RenderError> {
         let mut view = request.view.clone();
-        let mut seen = self.see(&device.gpu, scene, &view, request.stack)?;
+        let mut seen = self.see(&device.gpu, scene, &view, request)?;
         let mut plan = self.plan_of(device, seen, request)?;
         // Another grid has its guard band elsewhere, and another origin its matrices, so their
         // needs are their own.
@@ -264,7 +264,7 @@ impl ViewResources {
         );
         view = view.with_grid(subpixel_bits, is_relative);
         if is_relative || subpixel_bits != SUBPIXEL_BITS {
-            seen = self.see(&device.gpu, scene, &view, request.stack)?;
+            seen = self.see(&device.gpu, scene, &view, request)?;
             plan = self.plan_of(device, seen, request)?;
         }
         if request.room.changes(&plan.key) {
@@ -273,15 +273,16 @@ impl ViewResources {
         Ok((plan, view, self.seen[seen].draws.clone()))
     }
 
-    /// Position in `seen` of a scene as a view sees it, with the scopes of a stack.
+    /// Position in `seen` of a scene as a view sees it, with the scopes of a stack. What is drawn as
+    /// if it were opaque still needs to be seen through.
     fn see(
         &mut self,
         gpu: &Gpu,
         scene: &Arc<Scene>,
         view: &View,
-        stack: &Stack,
+        request: &Request<'_>,
     ) -> Result<usize, RenderError> {
-        let (scopes, glass) = (stack.scopes(), stack.glass());
+        let (scopes, glass) = (request.stack.scopes(), request.glass());
         let is_known = |seen: &Seen| {
             Arc::ptr_eq(&seen.scene, scene)
                 && seen.view == *view
@@ -291,8 +292,9 @@ impl ViewResources {
             return Ok(known);
         }
         gpu.prepared.count(Preparation::View);
-        let draws: Arc<[Draw]> = stack.draws(scene, view)?.into();
+        let mut draws = request.stack.draws(scene, view)?;
         let needs = Needs::of(scene, &draws, view);
+        (draws.iter_mut()).for_each(|draw| draw.is_glass = glass.has(draw.is_glass, draw.scopes));
         let needs_all_paths = Arc::new(Needs {
             clipping: true,
             largest_px: f64::INFINITY,
@@ -306,7 +308,7 @@ impl ViewResources {
                 view: view.clone(),
                 scopes,
                 glass,
-                draws,
+                draws: draws.into(),
                 needs: Arc::new(needs),
                 needs_all_paths,
             },
@@ -354,15 +356,15 @@ impl ViewResources {
         key: &KernelKey,
         view: &View,
         draws: &[Draw],
-        stack: &Stack,
+        request: &Request<'_>,
     ) -> bool {
         let inputs = DrawInputs {
             view: view.clone(),
             attributes: scene.attributes(),
             culls: key.culls(),
-            deforms_offscreen: !key.culls() || stack.light().is_some(),
-            scopes: stack.scopes(),
-            glass: stack.glass(),
+            deforms_offscreen: !key.culls() || request.stack.light().is_some(),
+            scopes: request.stack.scopes(),
+            glass: request.glass(),
         };
         if self
             .draw_data

@@ -89,7 +89,13 @@ pub const GALLERY_SCENES: &[&str] = &[
 ];
 
 /// Scenes of glass, which the hardware baseline draws as if it were opaque.
-pub const GLASS_SCENES: &[&str] = &["panes"];
+pub const GLASS_SCENES: &[&str] = &[
+    "panes",
+    "sunglasses?tess=3",
+    "notch",
+    "hair?cards=60",
+    "crossing?tess=8",
+];
 
 /// Scenes with normal maps, which the hardware baseline does not read.
 const MAPPED_SCENES: &[&str] = &["golf?tess=3"];
@@ -497,6 +503,7 @@ fn scenes_by_axes(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         "sizes",
         "near",
         "stack",
+        "panes",
     ];
     let scenes = pictures(context, &queries, [160, 120])?;
     let mut exact = Vec::new();

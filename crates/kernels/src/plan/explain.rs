@@ -6,7 +6,7 @@ use super::{
     predict::predict,
 };
 use crate::{
-    accuracy::{AXES, Axis, AxisOption, Culling},
+    accuracy::{AXES, Axis, AxisOption, Culling, Transparency},
     effects::{
         Stack,
         dots::LineSource,
@@ -286,8 +286,18 @@ impl Plan {
             Layers::Glass => note(
                 "layers",
                 format!(
-                    "glass: {} of {} draws are seen through; their layers are listed pixel by pixel, sorted in integers and composed",
-                    self.needs.glass_draws, self.needs.draws
+                    "glass: {} of {} draws are seen through; their layers are listed pixel by pixel, {}",
+                    self.needs.glass_draws,
+                    self.needs.draws,
+                    match self.key.options.transparency {
+                        Transparency::Weighted => "and summed with weights, in integers",
+                        Transparency::Nearest4 => {
+                            "sorted in integers, and the nearest four composed"
+                        }
+                        Transparency::Opaque | Transparency::Exact => {
+                            "sorted in integers and composed"
+                        }
+                    }
                 ),
             ),
             Layers::Race => note(

@@ -74,7 +74,9 @@ pub fn plan(
     let f32_positions = needs.f32_positions;
     let needs = needs_of_stack(needs, stack, tuning);
     let mut layers = match stack.layers(needs.triangles) {
-        None | Some(Layers::Glass) => (needs.glass_draws > 0).then_some(Layers::Glass),
+        None | Some(Layers::Glass) => {
+            (needs.glass_draws > 0 && request.is_seen_through()).then_some(Layers::Glass)
+        }
         other => other,
     };
     let Choice {

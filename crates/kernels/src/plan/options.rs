@@ -14,8 +14,8 @@ use crate::{
     accuracy::{
         AXES, AccuracyOptions, Axis, AxisOption, Clipping, Coverage, Culling, CurlNoise,
         DepthFormat, DotCulling, Parameters, ParticleStorage, Perspective, PositionFormat,
-        SampleCounter, ShaderChecks, ShadowMapSize, ShadowTaps, Skinning, VertexTransform,
-        Visibility, XraySums,
+        SampleCounter, ShaderChecks, ShadowMapSize, ShadowTaps, Skinning, Transparency,
+        VertexTransform, Visibility, XraySums,
     },
     effects::{
         Effect,
@@ -141,6 +141,9 @@ fn base_options(inputs: &Inputs) -> AccuracyOptions {
     if stack.dots.is_none() {
         options.dot_culling = DotCulling::default();
     }
+    if needs.glass_draws == 0 {
+        options.transparency = Transparency::default();
+    }
     if !needs.particle_discs {
         (options.curl_noise, options.particle_storage) =
             (CurlNoise::default(), ParticleStorage::default());
@@ -160,6 +163,7 @@ fn is_unused(index: usize, inputs: &Inputs) -> bool {
         CurlNoise::AXIS | ParticleStorage::AXIS => !inputs.stack.has_particles,
         SampleCounter::AXIS => inputs.stack.draw_order.is_none(),
         XraySums::AXIS => inputs.stack.xray.is_none(),
+        Transparency::AXIS => inputs.needs.glass_draws == 0,
         Clipping::AXIS => !inputs.needs.clipping,
         Perspective::AXIS => !inputs.needs.perspective,
         Parameters::AXIS => inputs

@@ -5,7 +5,8 @@
 use crate::{
     accuracy::{
         AXES, AccuracyOptions, AxisOption, Clipping, Coverage, Culling, DepthFormat, Perspective,
-        PositionFormat, RenderScale, Tolerance, VertexTransform, Visibility, XraySums,
+        PositionFormat, RenderScale, Tolerance, Transparency, VertexTransform, Visibility,
+        XraySums,
     },
     scene::needs::Needs,
 };
@@ -59,6 +60,7 @@ pub fn predict(axis: usize, option: usize, needs: &Needs) -> Prediction {
             Prediction::wrong(f64::INFINITY)
         }
         XraySums::AXIS => sums(XraySums::from_index(option), needs),
+        Transparency::AXIS => transparency(Transparency::from_index(option), needs),
         Visibility::AXIS => visibility(Visibility::from_index(option), needs),
         _ => Prediction::default(),
     }
@@ -194,6 +196,26 @@ fn sums(option: XraySums, needs: &Needs) -> Prediction {
         Some(_) => Prediction {
             wrong_ppm: 0.0,
             channel: 0.5 * 12.92,
+        },
+    }
+}
+
+fn transparency(option: Transparency, needs: &Needs) -> Prediction {
+    let is_exact = match option {
+        Transparency::Exact => true,
+        // More layers than triangles there are not.
+        Transparency::Weighted => needs.triangles <= 1,
+        _ => option
+            .most_layers()
+            .is_some_and(|most| needs.triangles <= most.into()),
+    };
+    // The nearest triangle is the same; nothing bounds how far the colors of layers are apart.
+    Prediction {
+        wrong_ppm: 0.0,
+        channel: if is_exact || needs.glass_draws == 0 {
+            0.0
+        } else {
+            255.0
         },
     }
 }

@@ -249,6 +249,17 @@ axes! {
         /// Four words, channels of 8 to 16 bits: as many layers as the bits leave room for, with weights.
         Four32 = "four32",
     }
+    /// How what is seen through layers is composed.
+    transparency: Transparency, default Exact {
+        /// Nothing is seen through: what blends is drawn as if it were opaque, and casts a shadow.
+        Opaque = "opaque",
+        /// In no order: the mean of all layers, weighted by coverage and nearness, covers what is behind as they do together.
+        Weighted = "weighted",
+        /// The four nearest layers in the order of depth; the others are left out.
+        Nearest4 = "nearest4",
+        /// All layers in the order of depth.
+        Exact = "exact",
+    }
     /// How many pixels are drawn per shown pixel.
     render_scale: RenderScale, default Full {
         /// A sixteenth (a quarter per side), then interpolated in linear light.
@@ -352,6 +363,16 @@ impl Culling {
     /// Does it test meshlets against depths that were drawn?
     pub const fn occludes(self) -> bool {
         matches!(self, Self::Hiz | Self::TwoPass)
+    }
+}
+
+impl Transparency {
+    /// The most layers of a pixel that are composed; none where all are.
+    pub const fn most_layers(self) -> Option<u32> {
+        match self {
+            Self::Nearest4 => Some(4),
+            Self::Opaque | Self::Weighted | Self::Exact => None,
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{
     AXES, AccuracyOptions, AxisOption, DepthFormat, MeasuredCosts, Parameters, PinnedOptions,
-    RenderScale, SampleCounter, ShaderChecks, Skinning, VertexTransform, Visibility,
+    RenderScale, SampleCounter, ShaderChecks, Skinning, Transparency, VertexTransform, Visibility,
 };
 
 /// Named tolerances.
@@ -137,6 +137,11 @@ impl AccuracyRequest {
     /// How many pixels are drawn for one that is shown: as the preset pins it.
     pub fn scale(&self) -> RenderScale {
         self.pins.option().unwrap_or_default()
+    }
+
+    /// Is anything shown behind what blends?
+    pub fn is_seen_through(&self) -> bool {
+        self.pins.option() != Some(Transparency::Opaque)
     }
 
     /// Does it pin an option whose picture differs from run to run?

@@ -3,7 +3,7 @@
 
 use super::feature::{Feature, NO_STEP, Part, flag, step_if, word_if};
 use crate::{
-    accuracy::{DotCulling, Perspective},
+    accuracy::{DotCulling, Perspective, Transparency},
     effects::{dots::LineSource, hooks::Layers, shadow::MAX_SHADOW_SLOPE},
     shader::{image_passes::NUMBERS, key::KernelKey, pass::Pass},
 };
@@ -46,6 +46,13 @@ const LAYERS: Feature = Feature {
             Some(Layers::Glass) => "glass",
             Some(Layers::Race) | None => "nearest",
         }),
+        ("glass_composition", |key, _| {
+            if key.options.transparency == Transparency::Weighted {
+                "weighted"
+            } else {
+                "sorted"
+            }
+        }),
         ("store_step", |key, _| {
             step_if(key.framebuffer.layers == Some(Layers::Race), "race")
         }),
@@ -70,6 +77,10 @@ const LAYERS: Feature = Feature {
             key.framebuffer.glass_bands.max(1).into()
         }),
         ("GLASS_DEEPEST", |key, _| key.work.deepest_glass.into()),
+        ("GLASS_COMPOSED_LAYERS", |key, _| {
+            let most = key.options.transparency.most_layers();
+            most.unwrap_or(u32::MAX).into()
+        }),
     ],
     ..Feature::NONE
 };

@@ -1,13 +1,15 @@
 //! Built-in scenes: meshes from formulas, selected by a query such as `sphere?triangles=160000`.
 //!
-//! Teapot, sphere, knot, cube-wall, tentacle, walker, town, still-life, finishes, golf and chamber are
-//! meant to look good. The others stress one property of the rasterizer each and bring a camera for it. All
+//! Teapot, sphere, knot, cube-wall, tentacle, walker, town, still-life, finishes, golf, sunglasses,
+//! notch, hair, crossing and chamber are meant to look good. The others stress one property of the rasterizer each and bring a camera for it. All
 //! are indexed, finite and identical on every machine.
 
 mod extremes;
 mod field;
 mod finishes;
+mod glassware;
 mod golf;
+mod hair;
 mod leaves;
 mod painted;
 mod panes;
@@ -233,6 +235,46 @@ pub const BUILTINS: &[Builtin] = &[
         about: "blended sheets that cross each other round colored posts, so that no order of whole sheets is right",
         params: &[whole("sheets", "number of sheets", 5.0, 1.0..=256.0)],
         build: panes::build,
+    },
+    Builtin {
+        name: "sunglasses",
+        about: "pairs of tinted sunglasses behind one another, and colored balls between them",
+        params: &[
+            whole("pairs", "number of pairs", 2.0, 1.0..=32.0),
+            whole(
+                "tess",
+                "tessellation; a ball has 16 * tess^2 - 8 * tess triangles",
+                8.0,
+                2.0..=32.0,
+            ),
+        ],
+        build: glassware::sunglasses,
+    },
+    Builtin {
+        name: "notch",
+        about: "a concave block of glass with a notch, in which a ball lies: its back faces are seen through its front",
+        params: &[real(
+            "depth",
+            "depth of the notch, as a fraction of the height of the block",
+            0.62,
+            0.05..=0.95,
+        )],
+        build: glassware::notch,
+    },
+    Builtin {
+        name: "crossing",
+        about: "two thick tubes of glass that cross in the middle, with a rod in one of them",
+        params: &[whole("tess", "sides of a tube", 32.0, 3.0..=256.0)],
+        build: glassware::crossing,
+    },
+    Builtin {
+        name: "hair",
+        about: "a head under blended strips of hair, in stacks as deep as there are strips",
+        params: &[
+            whole("cards", "number of strips", 420.0, 1.0..=20_000.0),
+            SEED,
+        ],
+        build: hair::build,
     },
     Builtin {
         name: "leaves",
