@@ -11,16 +11,12 @@ struct Studio {
     material: u32,
     metallic: f32,
     roughness: f32,
+    lights: f32,
 }
 
 fn studio(surface: Surface, p: Studio) -> Surface {
     var s = surface;
-    let has_own = p.material == STUDIO_MATERIAL_OWN && s.finish.specular.a > 0.0;
-    let metallic = select(s.finish.metallic, p.metallic, has_own);
-    let rough = clamp(select(s.finish.roughness, p.roughness, has_own), STUDIO_SMOOTHEST, 1.0);
-    let base = s.color.rgb - s.glow;
-    let m = studio_reflector(
-        base * (1.0 - metallic), mix(s.finish.specular.rgb, base, metallic), mix(s.finish.specular.a, 1.0, metallic), rough * rough);
+    let m = studio_material(s, p);
     let seen = studio_albedo(m, max(dot(s.normal, s.view), STUDIO_GRAZING));
 
     let squared = dot(p.sun_direction.xyz, p.sun_direction.xyz);
@@ -38,6 +34,16 @@ fn studio(surface: Surface, p: Studio) -> Surface {
 
     s.color = vec4f(from_sun + from_sky * (p.strength * s.finish.occlusion) + s.glow, s.color.a);
     return s;
+}
+
+// What the material of a surface does, or that of the parameters.
+fn studio_material(s: Surface, p: Studio) -> StudioReflector {
+    let has_own = p.material == STUDIO_MATERIAL_OWN && s.finish.specular.a > 0.0;
+    let metallic = select(s.finish.metallic, p.metallic, has_own);
+    let rough = clamp(select(s.finish.roughness, p.roughness, has_own), STUDIO_SMOOTHEST, 1.0);
+    let base = s.color.rgb - s.glow;
+    return studio_reflector(
+        base * (1.0 - metallic), mix(s.finish.specular.rgb, base, metallic), mix(s.finish.specular.a, 1.0, metallic), rough * rough);
 }
 
 // Smallest perceptual roughness, and smallest cosine between a normal and the eye.
@@ -202,4 +208,23 @@ fn studio_lamp_radiance(lamp: StudioLamp, d: vec3f, alpha: f32) -> vec3f {
     let sharp = narrow / (1.0 + narrow * spread);
     let lobe = lamp.light * (0.5 * sharp / (1.0 - exp(-2.0 * sharp)) * exp(sharp * (dot(d, lamp.toward) - 1.0)));
     return lobe + (max(studio_lamp_irradiance(lamp, d), vec3f(0.0)) - lobe) * squared;
+}
+
+//@ variant lights
+// The same under the lights that come with the scene, which cast no shadows.
+//@ use effects/studio
+//@ use lib/surface
+//@ use lib/punctual
+
+fn studio_under_lights(surface: Surface, p: Studio) -> Surface {
+    let m = studio_material(surface, p);
+    let seen = studio_albedo(m, max(dot(surface.normal, surface.view), STUDIO_GRAZING));
+    var sum = vec3f(0.0);
+    for (var i = 0u; i < PUNCTUAL_LIGHTS; i += 1u) {
+        let arriving = punctual_arriving(i, surface.position);
+        sum += arriving.light * studio_from_sun(m, seen, surface.normal, surface.view, arriving.toward);
+    }
+    var s = studio(surface, p);
+    s.color = vec4f(s.color.rgb + sum * p.lights, s.color.a);
+    return s;
 }

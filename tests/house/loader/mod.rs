@@ -8,6 +8,7 @@ mod corpus;
 mod files;
 mod hostile;
 mod kinds;
+mod lights;
 mod maps;
 mod materials;
 mod mesh_files;

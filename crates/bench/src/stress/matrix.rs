@@ -85,7 +85,7 @@ pub const SCENES: &[&str] = &[
 pub const GALLERY_SCENES: &[&str] = &[
     "town?houses=3",
     "still-life?tess=1",
-    "finishes?tess=4&columns=3",
+    "finishes?tess=4&columns=3&lamps=5",
 ];
 
 /// Scenes of glass, which the hardware baseline draws as if it were opaque.

@@ -16,11 +16,15 @@ use glam::{DVec2, DVec3};
 
 use super::{
     BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
-    hooks::tone::{rgb, turned},
+    hooks::{
+        LitEffect,
+        tone::{rgb, turned},
+    },
 };
 use crate::{
     choice, params,
     params::{Color, Point},
+    scene::punctual::PlacedLight,
 };
 
 choice! {
@@ -67,6 +71,9 @@ params! {
         metallic: f32 = 0.0, hard 0.0..=1.0, when ("material", &["own"]);
         /// Perceptual roughness: 0 a mirror, 1 matt.
         roughness: f32 = 0.4, hard 0.0..=1.0, when ("material", &["own"]);
+        /// Strength of the lights that come with the scene; they cast no shadows. 1: a white matt
+        /// surface shows lux divided by π, as in three.js; 0: they are off.
+        lights: f32 = 1.0, hard 0.0..=1000.0, soft 0.0..=4.0;
     }
 }
 
@@ -76,6 +83,7 @@ pub static EFFECT: BuiltIn = BuiltIn::new(|| {
         "Studio",
         "metals, plastics and glazes under a sun and what surrounds them",
     )
+    .under_lights::<Studio>()
     .into()
 });
 
@@ -90,22 +98,7 @@ impl SurfaceEffect for Studio {
     ];
 
     fn apply(mut s: Surface, p: &Self) -> Surface {
-        let finish = s.finish;
-        let has_own =
-            MaterialSource::of(p.material) == MaterialSource::Own && finish.specular.w > 0.0;
-        let (metallic, roughness) = if has_own {
-            (p.metallic.into(), p.roughness.into())
-        } else {
-            (finish.metallic, finish.roughness)
-        };
-        let roughness = roughness.clamp(SMOOTHEST, 1.0);
-        let base = s.color.truncate() - s.glow;
-        let reflector = Reflector::new(
-            base * (1.0 - metallic),
-            finish.specular.truncate().lerp(base, metallic),
-            finish.specular.w + (1.0 - finish.specular.w) * metallic,
-            roughness * roughness,
-        );
+        let reflector = Reflector::of(&s, p);
         let seen = reflector.albedo(s.normal.dot(s.view).max(GRAZING));
 
         let [x, y, z, shadowed] = p.sun_direction.map(f64::from);
@@ -125,8 +118,24 @@ impl SurfaceEffect for Studio {
         let from_sky = (reflector.diffuse * (1.0 - seen.all) + seen.repeated) * diffuse
             + seen.once * reflected;
 
-        let light = sunlight + from_sky * (f64::from(p.strength) * finish.occlusion) + s.glow;
+        let light = sunlight + from_sky * (f64::from(p.strength) * s.finish.occlusion) + s.glow;
         s.color = light.extend(s.color.w);
+        s
+    }
+}
+
+impl LitEffect for Studio {
+    fn under_lights(surface: Surface, lights: &[PlacedLight], p: &Self) -> Surface {
+        let reflector = Reflector::of(&surface, p);
+        let (normal, view) = (surface.normal, surface.view);
+        let seen = reflector.albedo(normal.dot(view).max(GRAZING));
+        let reflected = |light: &PlacedLight| {
+            let arriving = light.arriving(surface.position);
+            arriving.light * reflector.sunlight(&seen, normal, view, arriving.toward)
+        };
+        let sum: DVec3 = lights.iter().map(reflected).sum();
+        let mut s = Self::apply(surface, p);
+        s.color += (sum * f64::from(p.lights)).extend(0.0);
         s
     }
 }
@@ -169,6 +178,25 @@ struct Albedo {
 }
 
 impl Reflector {
+    fn of(s: &Surface, p: &Studio) -> Self {
+        let finish = s.finish;
+        let has_own =
+            MaterialSource::of(p.material) == MaterialSource::Own && finish.specular.w > 0.0;
+        let (metallic, roughness) = if has_own {
+            (p.metallic.into(), p.roughness.into())
+        } else {
+            (finish.metallic, finish.roughness)
+        };
+        let roughness = roughness.clamp(SMOOTHEST, 1.0);
+        let base = s.color.truncate() - s.glow;
+        Self::new(
+            base * (1.0 - metallic),
+            finish.specular.truncate().lerp(base, metallic),
+            finish.specular.w + (1.0 - finish.specular.w) * metallic,
+            roughness * roughness,
+        )
+    }
+
     fn new(diffuse: DVec3, straight: DVec3, grazing: f64, alpha: f64) -> Self {
         let lost_mean = alpha * (0.2233 + alpha * (2.928 * alpha - 0.3193)) / (1.0 + alpha * (6.4332 * alpha - 2.5664));
         let edge = (0.0506 + 0.0513 * alpha) / (1.0 + alpha * (2.4128 + 26.4021 * alpha));

@@ -95,7 +95,11 @@ mod tests {
                     view: normal,
                     ..Surface::example(DVec3::ONE, 0)
                 };
-                light.shade(face, u32::MAX).color.truncate().max_element()
+                light
+                    .shade(face, u32::MAX, &[])
+                    .color
+                    .truncate()
+                    .max_element()
             })
             .fold(0.0, f64::max);
         assert!((0.85..0.98).contains(&brightest), "{brightest}");

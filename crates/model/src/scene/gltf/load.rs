@@ -122,7 +122,9 @@ fn read_model(
         scene.rig.motion_bounds = pose::motion_bounds(&scene);
     }
     check_size(&scene)?;
-    scene.cameras = tree.cameras(document, &scene.bounds(), !scene.rig.is_empty(), notes);
+    let moves = !scene.rig.is_empty();
+    scene.cameras = tree.cameras(document, &scene.bounds(), moves, notes);
+    scene.lights = tree.lights(document, moves, notes);
     Ok(scene)
 }
 

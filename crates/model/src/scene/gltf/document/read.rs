@@ -13,7 +13,7 @@ use super::{
     },
     Document, Part,
     fields::{Lenient, Object},
-    materials, motion, shapes,
+    lights, materials, motion, shapes,
 };
 
 /// Extension of textures whose image is a WebP.
@@ -23,11 +23,11 @@ pub const WEBP: &str = "EXT_texture_webp";
 /// type anyway.
 pub const QUANTIZATION: &str = "KHR_mesh_quantization";
 
-/// Extensions that are read, besides those of materials.
-pub const READ: [&str; 4] = [QUANTIZATION, WEBP, MESHOPT, DRACO];
+/// Extension of lights without a size.
+pub const LIGHTS: &str = "KHR_lights_punctual";
 
-/// Extensions that may be required and whose lack is said as of any other: they add no shape.
-const HARMLESS: [&str; 1] = ["KHR_lights_punctual"];
+/// Extensions that are read, besides those of materials.
+pub const READ: [&str; 5] = [QUANTIZATION, WEBP, MESHOPT, DRACO, LIGHTS];
 
 /// Is the extension read?
 pub fn is_read(extension: &str) -> bool {
@@ -48,6 +48,7 @@ pub struct Lists<'a> {
     pub nodes: &'a [Value],
     pub skins: &'a [Value],
     pub cameras: &'a [Value],
+    pub lights: &'a [Value],
 }
 
 impl<'a> Lists<'a> {
@@ -117,6 +118,10 @@ pub fn parse_document(json: &[u8], notes: &Notes) -> Result<Document, LoadError>
         nodes: list("nodes"),
         skins: list("skins"),
         cameras: list("cameras"),
+        lights: match lenient.field(root.extension(LIGHTS)) {
+            Some(extension) => lenient.list(extension.list("lights")),
+            None => &[],
+        },
     };
     let document = Document {
         accessors: parts(lists.accessors, |index, part| {
@@ -143,6 +148,7 @@ pub fn parse_document(json: &[u8], notes: &Notes) -> Result<Document, LoadError>
         }),
         skins: parts(lists.skins, |_, part| motion::skin(&lists, part)),
         cameras: parts(lists.cameras, |_, part| shapes::camera(part)),
+        lights: parts(lists.lights, |_, part| lights::light(part)),
         clips: each(list("animations"), |index, value| {
             motion::clip(&lists, index, value)
         }),
@@ -261,9 +267,7 @@ fn check_required(required: &[String], notes: &Notes) -> Result<(), LoadError> {
             quoted(name)
         )));
     }
-    let unread = required
-        .iter()
-        .filter(|name| !is_read(name) && !HARMLESS.contains(&name.as_str()));
+    let unread = required.iter().filter(|name| !is_read(name));
     notes.extend(unread.map(|name| {
         format!(
             "it requires the extension {}, which is not supported; what does not need it is drawn",

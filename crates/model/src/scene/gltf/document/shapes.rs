@@ -11,6 +11,7 @@ use super::{
     },
     Accessor, Buffer, Camera, Mesh, Node, Part, Primitive, Scene, Sparse, View,
     fields::{Lenient, Object, needed, whole},
+    lights,
     read::{Lists, is_unknown_compression},
 };
 use crate::scene::{accessor::ComponentType, camera::Projection, model::Topology};
@@ -270,6 +271,7 @@ pub fn node(lists: &Lists, index: usize, value: &Value) -> Node {
         mesh: lenient.field(part.index("mesh", "meshes", lists.meshes.len())),
         skin: lenient.field(part.index("skin", "skins", lists.skins.len())),
         camera: lenient.field(part.index("camera", "cameras", lists.cameras.len())),
+        light: lenient.field(lights::of_node(lists, part)),
         weights: lenient.field(part.numbers("weights")).unwrap_or_default(),
     };
     if let Some(matrix) = &mut node.matrix {
