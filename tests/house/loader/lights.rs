@@ -131,6 +131,20 @@ fn more_lights_than_shine_are_counted_and_unknown_types_named() {
 }
 
 #[test]
+fn lights_for_the_exposure_of_a_camera_are_told_with_a_strength_that_dims_them() {
+    // A lamp of 1000 W as Blender writes it, eight meters above the square.
+    let lamp = lit(&[json!({ "type": "point", "intensity": 54351 })])
+        .with("/nodes/1/translation", json!([0.5, 0.5, 8]))
+        .scene();
+    assert_eq!(
+        lamp.notes,
+        [
+            "its lights are some 3e2 times as strong as what a picture holds; studio.lights = 4e-3 dims them"
+        ]
+    );
+}
+
+#[test]
 fn a_light_that_breaks_the_extension_is_left_out_with_the_reason() {
     let wide = json!({ "outerConeAngle": FRAC_PI_2 + 0.1 });
     let crossed = json!({ "innerConeAngle": 0.7, "outerConeAngle": 0.3 });
