@@ -189,7 +189,7 @@ fn factors(caps: &Caps) -> Vec<Vec<Level>> {
             &[],
             &["ambient", "depth_of_field", "bloom"],
             &["sharpen", "blur", "glow_edges", "vignette"],
-            &["paint", "aberration", "grain"],
+            &["sky", "paint", "aberration", "grain"],
             &["halftone", "pixelate", "glitch", "crt"],
         ]),
         effects(&[&[], &["shadow"], &["dots"], &["particles"]]),

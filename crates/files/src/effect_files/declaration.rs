@@ -14,12 +14,14 @@ use super::{
 use crate::effects::{HookFunctions, hooks::ImagePass};
 
 /// Files of `shaders/lib` that an effect file may use: pure functions and the types of hooks.
-pub const LIBRARY: [&str; 12] = [
+pub const LIBRARY: [&str; 14] = [
     "angle",
     "color",
+    "environment",
     "front",
     "hash",
     "image",
+    "image_direction",
     "image_file",
     "image_pass",
     "lattice",

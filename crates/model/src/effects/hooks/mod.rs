@@ -1,6 +1,7 @@
 //! Hooks: where in the pipeline an effect acts. The same signatures in WGSL and here, where they
 //! are f64 or integers.
 
+pub mod environment;
 mod front;
 mod image;
 mod passes;
