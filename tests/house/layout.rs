@@ -59,6 +59,7 @@ fn keys() -> Vec<KernelKey> {
         one(&rasterlab::effects::overdraw::EFFECT),
         one(&rasterlab::effects::xray::EFFECT),
         one(&rasterlab::effects::bloom::EFFECT),
+        one(&rasterlab::effects::studio::EFFECT),
         whole(Visibility::Packed32, &[]),
     ]
 }

@@ -458,6 +458,7 @@ fn plain_key() -> KernelKey {
     (key.generated.has_particles, key.surface.has_material_atlas) = (false, false);
     key.surface.has_finish = false;
     (key.surface.has_finish_maps, key.surface.has_normal_maps) = (false, false);
+    key.surface.lights = 0;
     key
 }
 

@@ -145,7 +145,7 @@ fn surface(color: DVec3) -> Surface {
 }
 
 fn shaded(stack: &Stack, surface: Surface) -> DVec3 {
-    stack.shade(surface, 0).color.truncate()
+    stack.shade(surface, 0, &[]).color.truncate()
 }
 
 #[test]

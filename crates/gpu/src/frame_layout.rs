@@ -12,7 +12,8 @@ use super::{
     records::{
         ClippedTriangleRecord, CounterRecord, CullingUniform, DeformRecord, DispatchArgs,
         DispatchSize, DotFrame, DotPoints, DotRunRecord, DrawRecord, FrameUniform, InstanceRecord,
-        MeshletRecord, MorphTargetRecord, OrderRecord, ScalingUniform, VertexRecord,
+        MeshletRecord, MorphTargetRecord, OrderRecord, PunctualLights, ScalingUniform,
+        VertexRecord,
     },
     resource_id::{BufferId, ClearedBy},
 };
@@ -396,6 +397,9 @@ impl FrameLayout {
         self.add(BufferId::Frame, size_of::<FrameUniform>() as u64);
         if effect_bytes > 0 {
             self.add(BufferId::Effects, effect_bytes);
+        }
+        if key.surface.lights > 0 {
+            self.add(BufferId::PunctualLights, size_of::<PunctualLights>() as u64);
         }
         // The array at the end of the struct has at least one element, and the buffer whole records
         // of 16 bytes.

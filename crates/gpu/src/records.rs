@@ -7,6 +7,7 @@ use super::gpu_record::{GpuRecord, RecordLayout, WgslType, gpu_record};
 use crate::{
     effects::particles::Particles,
     frame::{ClippedTriangle, OrderStats, SnappedVertex},
+    scene::punctual::{MAX_LIGHTS, PlacedLight},
 };
 
 gpu_record! {
@@ -132,6 +133,33 @@ gpu_record! {
         pub size: [u32; 2],
         pub stride: u32,
         pub spare: u32,
+    }
+}
+
+gpu_record! {
+    /// One light that comes with the scene. Each member is explained in `shaders/lib/punctual.wgsl`.
+    pub struct PunctualLightRecord = "PunctualLight" {
+        pub light: [f32; 4],
+        pub position: [f32; 4],
+        pub toward: [f32; 4],
+        pub cone: [f32; 2],
+        pub spare: [f32; 2],
+    }
+}
+
+/// All lights of a picture.
+pub type PunctualLights = [PunctualLightRecord; MAX_LIGHTS];
+
+impl PunctualLightRecord {
+    pub fn new(light: &PlacedLight) -> Self {
+        let with = |[x, y, z]: [f32; 3], w| [x, y, z, w];
+        Self {
+            light: with(light.light, f32::from(u8::from(light.has_position))),
+            position: with(light.position, light.inverse_range),
+            toward: with(light.toward, 0.0),
+            cone: light.cone,
+            spare: [0.0; 2],
+        }
     }
 }
 
@@ -409,6 +437,7 @@ pub const RECORDS: &[RecordLayout] = &[
     OrderRecord::LAYOUT,
     ScalingUniform::LAYOUT,
     ShadowMapUniform::LAYOUT,
+    PunctualLightRecord::LAYOUT,
     DeformRecord::LAYOUT,
     MorphTargetRecord::LAYOUT,
     MeshletRecord::LAYOUT,

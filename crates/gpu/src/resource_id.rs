@@ -59,6 +59,7 @@ buffers! {
     Frame = "frame", UNIFORM, Nothing, "size, viewpoint, capacities";
     Draws = "draws", STORAGE.union(UNIFORM), Nothing, "matrices and attribute offsets, one record per instance";
     Effects = "effects", UNIFORM.union(STORAGE), Nothing, "parameters of the stack";
+    PunctualLights = "punctual_lights", UNIFORM, Nothing, "lights that come with the scene";
     VertexBytes = "vertex_bytes", STORAGE.union(BufferUsages::VERTEX), Nothing, "attributes as the file has them";
     IndexBytes = "index_bytes", STORAGE.union(BufferUsages::INDEX), Nothing, "index lists as the file has them";
     Deforms = "deforms", STORAGE, Nothing, "byte offsets of every mesh that joints or morph targets deform";

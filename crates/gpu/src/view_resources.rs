@@ -16,7 +16,7 @@ use super::{
     preparations::Preparation,
     queues::{Capacities, first_capacities, recorded_capacities},
     recording::{CommandList, Device, DispatchSizes, Resources, Timing},
-    records::{CounterRecord, ScalingUniform},
+    records::{CounterRecord, PunctualLightRecord, PunctualLights, ScalingUniform},
     resource_id::{BufferId, ClearedBy},
     scene_resources::SceneResources,
 };
@@ -482,9 +482,14 @@ impl ViewResources {
             layout.frame_uniform(view, point_radius),
             layout.culling_uniform(),
         );
-        let uniforms: [(BufferId, &[u8]); 4] = [
+        let mut lights = PunctualLights::default();
+        for (record, light) in lights.iter_mut().zip(&*view.scene_state.lights) {
+            *record = PunctualLightRecord::new(light);
+        }
+        let uniforms: [(BufferId, &[u8]); 5] = [
             (BufferId::Frame, bytemuck::bytes_of(&frame)),
             (BufferId::Effects, parameters),
+            (BufferId::PunctualLights, bytemuck::cast_slice(&lights)),
             (BufferId::Culling, bytemuck::bytes_of(&culling)),
             (BufferId::Scaling, bytemuck::bytes_of(&scaling)),
         ];

@@ -3,7 +3,7 @@
 use crate::{
     effects::Stack,
     frame::{Geometry, SnappedVertex},
-    scene::{Scene, draw::Draw, view::View},
+    scene::{Scene, draw::Draw, punctual::PlacedLight, view::View},
 };
 
 /// Everything that determines a picture: a scene, its draws for a view, and the effect stack.
@@ -29,6 +29,11 @@ impl<'a> Shot<'a> {
             view,
             stack,
         }
+    }
+
+    /// The lights that come with the scene, where they are.
+    pub fn lights(&self) -> &'a [PlacedLight] {
+        &self.view.scene_state.lights
     }
 
     /// Is something seen through glass?

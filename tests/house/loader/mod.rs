@@ -9,6 +9,7 @@ mod files;
 mod hostile;
 mod instancing;
 mod kinds;
+mod lights;
 mod maps;
 mod materials;
 mod mesh_files;

@@ -85,7 +85,7 @@ pub const SCENES: &[&str] = &[
 pub const GALLERY_SCENES: &[&str] = &[
     "town?houses=3",
     "still-life?tess=1",
-    "finishes?tess=4&columns=3",
+    "finishes?tess=4&columns=3&lamps=5",
 ];
 
 /// Scenes of glass, which the hardware baseline draws as if it were opaque.
@@ -141,7 +141,7 @@ const TIME_S: f64 = 0.4;
 /// [`factors`] do, so each chain meets the options that are in the text of its passes and no others.
 const IMAGE_CHAINS: &[&[&str]] = &[
     &["ambient", "depth_of_field", "bloom"],
-    &["blur", "glow_edges", "paint"],
+    &["sky", "blur", "glow_edges", "paint"],
     &["aberration", "halftone", "palette", "glitch", "crt"],
 ];
 

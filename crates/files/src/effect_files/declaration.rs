@@ -14,13 +14,15 @@ use super::{
 use crate::effects::{HookFunctions, hooks::ImagePass};
 
 /// Files of `shaders/lib` that an effect file may use: pure functions and the types of hooks.
-pub const LIBRARY: [&str; 13] = [
+pub const LIBRARY: [&str; 15] = [
     "angle",
     "bayer",
     "color",
+    "environment",
     "front",
     "hash",
     "image",
+    "image_direction",
     "image_file",
     "image_pass",
     "lattice",

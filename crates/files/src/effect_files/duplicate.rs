@@ -11,7 +11,10 @@ use super::{
 use crate::{
     effects::Effect,
     params::{Field, ValueType, format_number},
-    shader::{image_passes::pass_function, library::Library},
+    shader::{
+        image_passes::pass_function,
+        library::{Library, sections},
+    },
 };
 
 /// The text of an effect file `name` that does what `effect` does.
@@ -43,6 +46,8 @@ pub fn duplicate(effect: &Effect, name: &str) -> Result<String, String> {
     let Some(text) = Library::Embedded.text(&file) else {
         return Err("has no text of its own".into());
     };
+    // The lights that come with a scene do not shine on an effect file.
+    let text = &text[sections(&text)[0].1.clone()];
     let used = text
         .lines()
         .filter_map(|line| line.trim().strip_prefix("//@ use lib/"));
@@ -52,7 +57,7 @@ pub fn duplicate(effect: &Effect, name: &str) -> Result<String, String> {
     {
         return Err(format!("uses lib/{closed}, which an effect file cannot"));
     }
-    Ok(renamed(effect, name, &text))
+    Ok(renamed(effect, name, text))
 }
 
 /// The text of an effect file with the constants of its choices, which begin with its name,

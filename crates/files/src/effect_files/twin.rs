@@ -28,7 +28,7 @@ use crate::{
 const MAX_STEPS: u64 = 100_000_000;
 /// Functions of the library that read more than their arguments: of `lib/image` and
 /// `lib/image_pass`, then of `lib/image_file`.
-const EXTERNALS: [&str; 15] = [
+const EXTERNALS: [&str; 16] = [
     "image_has",
     "image_at",
     "image_background",
@@ -42,11 +42,12 @@ const EXTERNALS: [&str; 15] = [
     "image_meters",
     "image_pixel_size_m",
     "image_normal",
+    "image_direction",
     "image_file_size",
     "image_file_texel",
 ];
 /// Index of the first function of `lib/image_file`.
-const IMAGE_FILES: usize = 13;
+const IMAGE_FILES: usize = 14;
 /// How much the inputs of a color may be off on the f32 side, relative to the largest component of
 /// each.
 const INPUT_ERROR: f64 = 1.0 / (1 << 17) as f64;
@@ -380,6 +381,11 @@ impl Host for PassHost<'_> {
             12 => {
                 let normal = at.normal(pixel()[0], pixel()[1]);
                 result.copy_from_slice(&normal.to_array().map(Word::from_f64));
+                return;
+            }
+            13 => {
+                let direction = at.direction(place());
+                result.copy_from_slice(&direction.to_array().map(Word::from_f64));
                 return;
             }
             _ => return PictureHost(at.input.picture, 0).external(index, arguments, result),

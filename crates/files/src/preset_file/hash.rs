@@ -25,7 +25,7 @@ pub fn preset_hash(preset: &Preset) -> Fnv {
     Fnv::new().bytes(to_toml(&PresetFile::new("", picture)).as_bytes())
 }
 
-/// Hash of a scene's bytes, accessors, materials and placements.
+/// Hash of a scene's bytes, accessors, materials, placements and lights.
 pub fn scene_hash(scene: &Scene) -> Fnv {
     let mut hash = Fnv::new()
         .bytes(&scene.vertex_bytes)
@@ -91,6 +91,17 @@ pub fn scene_hash(scene: &Scene) -> Fnv {
             .to_cols_array()
             .iter()
             .fold(hash, |hash, v| hash.bytes(&v.to_bits().to_le_bytes()));
+    }
+    for light in &scene.lights {
+        let placed = light.placed(&light.world_from_light);
+        let numbers = [placed.light, placed.position, placed.toward].concat();
+        let rest = [placed.inverse_range, placed.cone[0], placed.cone[1]];
+        let bits = numbers.into_iter().chain(rest).map(f32::to_bits);
+        hash = hash.words(&bits.collect::<Vec<_>>());
+        hash = hash.words(&[
+            u32::from(placed.has_position),
+            light.node.map_or(u32::MAX, |node| node as u32),
+        ]);
     }
     if scene.rig.is_empty() {
         hash

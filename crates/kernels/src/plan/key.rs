@@ -101,6 +101,7 @@ pub(super) fn key_of(
             has_finish_maps,
             has_normal_maps,
             has_planes: stack.reads_planes() || !needs.normals_agree,
+            lights: if stack.is_lit() { needs.lights } else { 0 },
         },
         view: ViewKind {
             projection: if needs.perspective {

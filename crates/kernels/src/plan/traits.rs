@@ -138,6 +138,11 @@ impl StackTraits {
             .any(|effect| effect.hooks.reads_normals())
     }
 
+    /// Do the lights that come with a scene shine on an effect?
+    pub fn is_lit(&self) -> bool {
+        self.effects.iter().any(|effect| effect.hooks.lit.is_some())
+    }
+
     /// Does an effect ask how much of a light arrives?
     pub fn reads_light(&self) -> bool {
         self.effects.iter().any(|effect| effect.hooks.casts_shadows)

@@ -199,7 +199,8 @@ impl Chain {
     /// The generated function `glue_<hook>` that calls every effect in stack order. An effect with
     /// a scope is called where its draw has the scope's bit; text without scopes reads no such
     /// bits.
-    pub fn text(self, list: &EffectList) -> String {
+    pub fn text(self, key: &KernelKey) -> String {
+        let list = &key.effects;
         let effects = list.list.as_slice();
         let (head, tail) = match self {
             Self::Vertex => (
@@ -248,6 +249,9 @@ impl Chain {
             let (function, name) = (self.function(effect), &effect.name);
             let line = match self {
                 Self::Vertex => format!("    v = {function}(v, effects.{name});"),
+                Self::Surface if is_lit(effect, key) => {
+                    format!("    s = {function}_under_lights(s, effects.{name});")
+                }
                 Self::Surface => format!("    s = {function}(s, effects.{name});"),
                 Self::Glass => format!("    layer = {function}(surface, effects.{name});"),
                 Self::Image => format!("    q = {function}(q, effects.{name});"),
@@ -277,6 +281,11 @@ impl Chain {
         text.push_str(tail);
         text
     }
+}
+
+/// Do lights that come with the scene shine on the effect?
+pub fn is_lit(effect: &Effect, key: &KernelKey) -> bool {
+    key.surface.lights > 0 && effect.hooks.lit.is_some()
 }
 
 /// Buffers that [`binding`] declares.

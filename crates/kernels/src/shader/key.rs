@@ -195,6 +195,8 @@ pub struct SurfaceInputs {
     /// Plane normals and triangle centers: an effect reads them, or a normal may need a
     /// substitute.
     pub has_planes: bool,
+    /// Lights that come with the scene and shine on some effect.
+    pub lights: u32,
 }
 
 /// How a view maps depth.
@@ -334,6 +336,7 @@ impl KernelKey {
                 has_finish_maps: true,
                 has_normal_maps: true,
                 has_planes: true,
+                lights: 2,
             },
             view: ViewKind {
                 projection: ProjectionKind::Perspective,

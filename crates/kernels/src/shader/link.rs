@@ -7,7 +7,7 @@
 //! | `//@ use variants/depth` | the section of that file that the kernel key chooses, visible through the interface in its head |
 //! | `//@ use steps/sample_test` | a function that calls every chosen section of that file of `variants`, in order |
 //! | `//@ steps fn setup_step(…)` | such a function of steps that are sections of this file |
-//! | `//@ use glue/surface` | the effects of the stack on that hook, with their call chain |
+//! | `//@ use glue/surface` | the effects of the stack on that hook, with their call chain; of those that lights of the scene shine on, the section `lights` too |
 //! | `//@ use glue/draws` | a buffer that the key declares in one of several ways, with the functions that depend on it |
 //!
 //! The text of a file is its head; sections, begun by `//@ variant NAME` and `//@ step NAME`, are
@@ -467,16 +467,18 @@ impl<'a> Linker<'a> {
         }
         let chain = Chain::ALL.into_iter().find(|chain| chain.name() == name)?;
         let key = self.key;
-        if self.generate(&format!("glue of {name}"), || chain.text(&key.effects)) {
+        if self.generate(&format!("glue of {name}"), || chain.text(key)) {
             self.has_effects = true;
             self.generated
                 .insert(format!("glue_{name}"), format!("glue/{name}"));
             for effect in chain.effects(&self.key.effects.list) {
-                if let Err(error) = self.take_head(
-                    &format!("effects/{}", effect.file_stem()),
-                    &format!("glue/{name}"),
-                ) {
-                    return Some(Err(error));
+                let file = format!("effects/{}", effect.file_stem());
+                let mut taken = self.take_head(&file, &format!("glue/{name}"));
+                if chain == Chain::Surface && glue::is_lit(effect, key) {
+                    taken = taken.and_then(|()| self.take_section(&file, "lights").map(drop));
+                }
+                if taken.is_err() {
+                    return Some(taken);
                 }
             }
         }

@@ -9,8 +9,9 @@ use base64::{Engine as _, engine::general_purpose::STANDARD};
 
 use super::{
     hooks::{
-        Hooks, ImageAt, ImageEffect, ImageHook, ImagePass, PassEffect, PassHook, Picture,
-        SampleEffect, SampleHook, Slot, SurfaceEffect, SurfaceInput, VertexEffect, VertexHook,
+        Hooks, ImageAt, ImageEffect, ImageHook, ImagePass, LitEffect, PassEffect, PassHook,
+        Picture, SampleEffect, SampleHook, Slot, SurfaceEffect, SurfaceInput, VertexEffect,
+        VertexHook,
     },
     image_file::ImageInput,
 };
@@ -70,6 +71,14 @@ impl Effect {
     pub fn on_surface<P: SurfaceEffect>(mut self) -> Self {
         self.hooks.surface = Some(Arc::new(|surface, words| P::apply(surface, &read(words))));
         self.hooks.surface_inputs = P::INPUTS.to_vec();
+        self
+    }
+
+    /// The same effect, on which the lights that come with a scene shine.
+    pub fn under_lights<P: LitEffect>(mut self) -> Self {
+        self.hooks.lit = Some(Arc::new(|surface, lights, words| {
+            P::under_lights(surface, lights, &read(words))
+        }));
         self
     }
 

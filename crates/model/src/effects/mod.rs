@@ -39,6 +39,7 @@ macro_rules! for_each_effect {
             smear,
             outline,
             dither,
+            sky,
             ambient,
             sharpen,
             paint,

@@ -123,7 +123,7 @@ mod tests {
                 lit,
                 ..Surface::example(DVec3::splat(0.5), 0)
             };
-            stack.shade(surface, u32::MAX).color.truncate()
+            stack.shade(surface, u32::MAX, &[]).color.truncate()
         };
         let (bright, none) = ([0.5, 0.4, 0.3, 1.0], [0.0, 0.0, 0.0, 1.0]);
         let sky = shade(none, 1.0);

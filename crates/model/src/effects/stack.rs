@@ -18,6 +18,7 @@ use crate::{
         light::light_view,
         particle_discs::ParticleSettings,
         parts::{MAX_SCOPES, Scope},
+        punctual::PlacedLight,
         shadow_resolution::ShadowResolution,
         view::View,
     },
@@ -183,10 +184,13 @@ impl Stack {
     }
 
     /// Applies every surface effect in order, as far as they act on a draw with these `scopes`
-    /// ([`Draw::scopes`]).
-    pub fn shade(&self, surface: Surface, scopes: u32) -> Surface {
-        self.each_on(scopes, |hooks| hooks.surface.as_ref())
-            .fold(surface, |surface, (apply, words)| apply(surface, words))
+    /// ([`Draw::scopes`]), under the `lights` that come with the scene.
+    pub fn shade(&self, surface: Surface, scopes: u32, lights: &[PlacedLight]) -> Surface {
+        self.each_on(scopes, |hooks| Some((hooks.surface.as_ref()?, &hooks.lit)))
+            .fold(surface, |surface, ((apply, lit), words)| match lit {
+                Some(lit) if !lights.is_empty() => lit(surface, lights, words),
+                _ => apply(surface, words),
+            })
     }
 
     /// Moves a vertex of a draw with these `scopes` by every vertex effect in order.

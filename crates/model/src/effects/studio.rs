@@ -6,36 +6,22 @@
 //! reflections (Kulla and Conty 2017), and what is not reflected enters a matt body, so that white
 //! stays white. The fractions of light that this takes are rational functions fitted to the integral
 //! over all directions, within 0.013 of it.
-//!
-//! An environment is a sky, a ground and three lamps, which are spherical Gaussians. All that is
-//! asked of it is a formula: the light on a matt surface is the sum of its spherical harmonics up to
-//! the second band (Ramamoorthi and Hanrahan 2001), and a rough mirror shows it blurred by lobes
-//! fitted to that of GGX about the normal.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use super::{
     BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
-    hooks::tone::{rgb, turned},
+    hooks::{
+        LitEffect,
+        environment::{Environment, Surroundings, turned_by},
+        tone::{rgb, turned},
+    },
 };
 use crate::{
     choice, params,
     params::{Color, Point},
+    scene::punctual::PlacedLight,
 };
-
-choice! {
-    /// What surrounds the scene.
-    pub enum Environment {
-        /// A dim room with a large lamp at the left, one at the right and one behind.
-        Studio = "studio",
-        /// A bright gray sky.
-        Overcast = "overcast",
-        /// A low sun at the right in front, under a sky that is orange below and blue above.
-        LowSun = "low_sun",
-        /// The moon, a street lamp and a colored sign.
-        Night = "night",
-    }
-}
 
 choice! {
     /// Where metallic and roughness come from.
@@ -67,6 +53,9 @@ params! {
         metallic: f32 = 0.0, hard 0.0..=1.0, when ("material", &["own"]);
         /// Perceptual roughness: 0 a mirror, 1 matt.
         roughness: f32 = 0.4, hard 0.0..=1.0, when ("material", &["own"]);
+        /// Strength of the lights that come with the scene; they cast no shadows. 1: a white matt
+        /// surface shows lux divided by π, as in three.js; 0: they are off.
+        lights: f32 = 1.0, hard 0.0..=1000.0, soft 0.0..=4.0;
     }
 }
 
@@ -76,6 +65,7 @@ pub static EFFECT: BuiltIn = BuiltIn::new(|| {
         "Studio",
         "metals, plastics and glazes under a sun and what surrounds them",
     )
+    .under_lights::<Studio>()
     .into()
 });
 
@@ -90,22 +80,7 @@ impl SurfaceEffect for Studio {
     ];
 
     fn apply(mut s: Surface, p: &Self) -> Surface {
-        let finish = s.finish;
-        let has_own =
-            MaterialSource::of(p.material) == MaterialSource::Own && finish.specular.w > 0.0;
-        let (metallic, roughness) = if has_own {
-            (p.metallic.into(), p.roughness.into())
-        } else {
-            (finish.metallic, finish.roughness)
-        };
-        let roughness = roughness.clamp(SMOOTHEST, 1.0);
-        let base = s.color.truncate() - s.glow;
-        let reflector = Reflector::new(
-            base * (1.0 - metallic),
-            finish.specular.truncate().lerp(base, metallic),
-            finish.specular.w + (1.0 - finish.specular.w) * metallic,
-            roughness * roughness,
-        );
+        let reflector = Reflector::of(&s, p);
         let seen = reflector.albedo(s.normal.dot(s.view).max(GRAZING));
 
         let [x, y, z, shadowed] = p.sun_direction.map(f64::from);
@@ -119,14 +94,30 @@ impl SurfaceEffect for Studio {
         let spread = mirrored + (s.normal - mirrored) * (reflector.alpha * reflector.alpha);
         let spread = spread / spread.length_squared().max(1e-12).sqrt();
         let turn = turned(p.turn_deg.into());
-        let sky = Sky::of(Environment::of(p.environment));
+        let sky = Surroundings::of(Environment::of(p.environment));
         let diffuse = sky.irradiance(turned_by(s.normal, turn));
         let reflected = sky.radiance(turned_by(spread, turn), reflector.alpha);
         let from_sky = (reflector.diffuse * (1.0 - seen.all) + seen.repeated) * diffuse
             + seen.once * reflected;
 
-        let light = sunlight + from_sky * (f64::from(p.strength) * finish.occlusion) + s.glow;
+        let light = sunlight + from_sky * (f64::from(p.strength) * s.finish.occlusion) + s.glow;
         s.color = light.extend(s.color.w);
+        s
+    }
+}
+
+impl LitEffect for Studio {
+    fn under_lights(surface: Surface, lights: &[PlacedLight], p: &Self) -> Surface {
+        let reflector = Reflector::of(&surface, p);
+        let (normal, view) = (surface.normal, surface.view);
+        let seen = reflector.albedo(normal.dot(view).max(GRAZING));
+        let reflected = |light: &PlacedLight| {
+            let arriving = light.arriving(surface.position);
+            arriving.light * reflector.sunlight(&seen, normal, view, arriving.toward)
+        };
+        let sum: DVec3 = lights.iter().map(reflected).sum();
+        let mut s = Self::apply(surface, p);
+        s.color += (sum * f64::from(p.lights)).extend(0.0);
         s
     }
 }
@@ -169,6 +160,25 @@ struct Albedo {
 }
 
 impl Reflector {
+    fn of(s: &Surface, p: &Studio) -> Self {
+        let finish = s.finish;
+        let has_own =
+            MaterialSource::of(p.material) == MaterialSource::Own && finish.specular.w > 0.0;
+        let (metallic, roughness) = if has_own {
+            (p.metallic.into(), p.roughness.into())
+        } else {
+            (finish.metallic, finish.roughness)
+        };
+        let roughness = roughness.clamp(SMOOTHEST, 1.0);
+        let base = s.color.truncate() - s.glow;
+        Self::new(
+            base * (1.0 - metallic),
+            finish.specular.truncate().lerp(base, metallic),
+            finish.specular.w + (1.0 - finish.specular.w) * metallic,
+            roughness * roughness,
+        )
+    }
+
     fn new(diffuse: DVec3, straight: DVec3, grazing: f64, alpha: f64) -> Self {
         let lost_mean = alpha * (0.2233 + alpha * (2.928 * alpha - 0.3193)) / (1.0 + alpha * (6.4332 * alpha - 2.5664));
         let edge = (0.0506 + 0.0513 * alpha) / (1.0 + alpha * (2.4128 + 26.4021 * alpha));
@@ -253,144 +263,11 @@ fn fifth(x: f64) -> f64 {
     squared * squared * x
 }
 
-/// A light of an environment: a lobe about a direction.
-struct Lamp {
-    /// Unit vector.
-    toward: DVec3,
-    /// Mean cosine of the angle between its light and its direction.
-    mean: f64,
-    /// What a white matt surface that faces it shows, apart from the width of the lobe; linear RGB.
-    light: DVec3,
-}
-
-/// An environment: light from above, from the horizon and from below, and lamps. Linear RGB.
-struct Sky {
-    zenith: DVec3,
-    horizon: DVec3,
-    ground: DVec3,
-    lamps: [Lamp; 3],
-}
-
-impl Sky {
-    fn of(environment: Environment) -> Self {
-        let sky = |[zenith, horizon, ground]: [[f64; 3]; 3], lamps: [([f64; 3], f64, [f64; 3]); 3]| {
-            Self {
-                zenith: zenith.into(),
-                horizon: horizon.into(),
-                ground: ground.into(),
-                lamps: lamps.map(|(toward, mean, light)| Lamp {
-                    toward: toward.into(),
-                    mean,
-                    light: light.into(),
-                }),
-            }
-        };
-        const NONE: ([f64; 3], f64, [f64; 3]) = ([0.0, 1.0, 0.0], 0.84, [0.0; 3]);
-        match environment {
-            Environment::Studio => sky(
-                [[0.46, 0.47, 0.5], [0.2, 0.205, 0.215], [0.09, 0.085, 0.08]],
-                [
-                    ([-0.55, 0.62, 0.559553], 0.955, [0.58, 0.56, 0.52]),
-                    ([0.86, 0.28, 0.426615], 0.95, [0.16, 0.17, 0.19]),
-                    ([0.2, 0.5, -0.842615], 0.98, [0.34, 0.35, 0.38]),
-                ],
-            ),
-            Environment::Overcast => sky(
-                [[0.86, 0.9, 0.95], [0.5, 0.53, 0.57], [0.16, 0.15, 0.135]],
-                [([0.28, 0.8, 0.53066], 0.84, [0.2, 0.2, 0.195]), NONE, NONE],
-            ),
-            Environment::LowSun => sky(
-                [[0.13, 0.2, 0.36], [0.62, 0.4, 0.27], [0.1, 0.075, 0.06]],
-                [
-                    ([0.6, 0.14, 0.787655], 0.995, [0.42, 0.25, 0.1]),
-                    ([0.6, 0.14, 0.787655], 0.88, [0.42, 0.2, 0.07]),
-                    ([-0.6, 0.3, -0.74162], 0.84, [0.06, 0.075, 0.13]),
-                ],
-            ),
-            Environment::Night => sky(
-                [[0.006, 0.01, 0.024], [0.03, 0.038, 0.06], [0.012, 0.011, 0.012]],
-                [
-                    ([-0.5, 0.62, 0.604649], 0.995, [0.12, 0.15, 0.22]),
-                    ([0.84, 0.16, 0.518459], 0.98, [0.3, 0.16, 0.05]),
-                    ([-0.86, 0.1, -0.5004], 0.96, [0.02, 0.1, 0.12]),
-                ],
-            ),
-        }
-    }
-
-    /// Light that a white matt surface shows: the spherical harmonics of the environment up to the
-    /// second band, of a hemisphere of light, of light that grows with the height, and of each
-    /// lamp.
-    fn irradiance(&self, normal: DVec3) -> DVec3 {
-        let y = normal.y;
-        let above = 0.25 + y / 3.0 + (0.117_187_5 * y * y - 0.039_062_5);
-        let sky = self.ground * (0.5 - 0.5 * y)
-            + self.horizon * (0.5 + 0.5 * y - above)
-            + self.zenith * above;
-        let lamps = self.lamps.iter().map(|lamp| lamp.irradiance(normal));
-        (sky + lamps.sum::<DVec3>()).max(DVec3::ZERO)
-    }
-
-    /// What a mirror whose microfacets have this roughness shows in a direction; at 0, the
-    /// environment itself.
-    fn radiance(&self, d: DVec3, alpha: f64) -> DVec3 {
-        let mean = 1.0 - blur(alpha);
-        // The horizon is soft, so that it is seen alike in f32.
-        let width = (0.0016 + 3.0 * blur(alpha)).sqrt();
-        let y = d.y * mean;
-        let t = ((y + width) / (2.0 * width)).clamp(0.0, 1.0);
-        let upper = t * t * (3.0 - 2.0 * t);
-        // The integral of that: how high the visible sky is.
-        let above = 2.0 * width * t * t * t * (1.0 - 0.5 * t) + (y - width).max(0.0);
-        let sky = self.ground * (1.0 - upper)
-            + self.horizon * (upper - above)
-            + self.zenith * above;
-        let lamps = self.lamps.iter().map(|lamp| lamp.radiance(d, alpha));
-        sky + lamps.sum::<DVec3>()
-    }
-}
-
-impl Lamp {
-    fn irradiance(&self, normal: DVec3) -> DVec3 {
-        let c = normal.dot(self.toward);
-        let second = 1.0 - 3.0 * self.mean / concentration(self.mean);
-        self.light * (0.25 + 0.5 * self.mean * c + 0.3125 * second * (1.5 * c * c - 0.5))
-    }
-
-    /// As a mirror shows it whose microfacets have this roughness. A smooth one blurs it by a lobe
-    /// that is as bright in its middle as that of GGX; fitted within 2 %. A matt one is as any matt
-    /// surface.
-    fn radiance(&self, d: DVec3, alpha: f64) -> DVec3 {
-        let squared = alpha * alpha;
-        let spread = 2.0 * squared / (1.0 + alpha * (0.6749 + 2.3251 * alpha));
-        let narrow = concentration(self.mean);
-        let sharp = narrow / (1.0 + narrow * spread);
-        let lobe = libm::exp(sharp * (d.dot(self.toward) - 1.0));
-        let lobe = self.light * (0.5 * sharp / (1.0 - libm::exp(-2.0 * sharp)) * lobe);
-        lobe.lerp(self.irradiance(d).max(DVec3::ZERO), squared)
-    }
-}
-
-/// Concentration of a spherical Gaussian with this mean cosine (Banerjee and others 2005).
-fn concentration(mean: f64) -> f64 {
-    mean * (3.0 - mean * mean) / (1.0 - mean * mean)
-}
-
-/// How far below 1 the mean cosine lies of what GGX mirrors about the normal, weighted with its
-/// cosine; fitted within 0.004, and a third at 1.
-fn blur(alpha: f64) -> f64 {
-    alpha * alpha / (0.1272 + alpha * (0.8497 + 2.0231 * alpha))
-}
-
-/// A direction in a sky that is turned about the vertical axis, by an angle with this cosine and
-/// sine.
-fn turned_by(d: DVec3, turn: DVec2) -> DVec3 {
-    DVec3::new(turn.x * d.x - turn.y * d.z, d.y, turn.y * d.x + turn.x * d.z)
-}
-
 #[cfg(test)]
 mod tests {
     use std::f64::consts::TAU;
+
+    use glam::DVec2;
 
     use super::*;
 
@@ -496,7 +373,7 @@ mod tests {
 
     #[test]
     fn light_on_a_matt_surface_is_that_of_the_environment_up_to_the_second_band() {
-        for sky in ENVIRONMENTS.map(Sky::of) {
+        for sky in ENVIRONMENTS.map(Surroundings::of) {
             for normal in [DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::new(-0.6, 0.64, 0.48)] {
                 // Legendre polynomials, weighted as the clamped cosine does.
                 let banded = mean(|d| {
@@ -513,7 +390,7 @@ mod tests {
 
     #[test]
     fn rough_mirrors_show_about_what_the_integral_over_microfacets_does() {
-        for sky in ENVIRONMENTS.map(Sky::of) {
+        for sky in ENVIRONMENTS.map(Surroundings::of) {
             let all = mean(|d| sky.radiance(d, 0.0));
             for roughness in [0.3f64, 0.6, 1.0] {
                 let alpha = roughness * roughness;

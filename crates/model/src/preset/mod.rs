@@ -35,6 +35,7 @@ use crate::{
         camera::Camera,
         parts::{Scope, ShownParts},
         pose::{Motion, Pose, scene_from_nodes},
+        punctual::{PlacedLight, SceneLight},
         shadow_resolution::ShadowResolution,
         view::{SceneState, View},
     },
@@ -369,6 +370,21 @@ impl Preset {
         (!scene.rig.is_empty()).then(|| Arc::new(Pose::at(scene, &self.motion(scene))))
     }
 
+    /// The lights that come with `scene`, at its moment and after its spin.
+    fn lights(&self, scene: &Scene, spin: &DMat4) -> Arc<[PlacedLight]> {
+        let moves = scene.lights.iter().any(|light| light.node.is_some());
+        let scene_from_node = if moves {
+            scene_from_nodes(&scene.rig, &self.motion(scene))
+        } else {
+            Vec::new()
+        };
+        let placed = |light: &SceneLight| {
+            let node = light.node.map(|node| scene_from_node[node]);
+            light.placed(&(*spin * node.unwrap_or(light.world_from_light)))
+        };
+        scene.lights.iter().map(placed).collect()
+    }
+
     /// Does `scene` have the variant, the clips and the camera that the preset names?
     ///
     /// # Errors
@@ -524,6 +540,7 @@ impl Preset {
         let scene_state = SceneState {
             world_from_scene: spin,
             pose,
+            lights: preset.lights(scene, &spin),
             polyline: preset.polyline.clone(),
             particles: preset.particle_timeline(),
         };

@@ -1,10 +1,10 @@
-//! The studio: how a scene is shown that was opened plain. A sun with soft shadows, and a ground
-//! that fades into the background.
+//! The studio: how a scene is shown that was opened plain. Its materials under lamps and a sun with
+//! soft shadows, on a ground that fades into the background.
 
 use super::{LengthUnit, Output, Preset, SceneSource};
 use crate::{
     accuracy::{PinnedOptions, ShadowMapSize, ShadowTaps},
-    effects::{Stack, fog::Fog, lambert::Lambert, shadow::Shadow},
+    effects::{Stack, fog::Fog, shadow::Shadow, studio::Studio, tonemap::Tonemap},
     preset::AccuracyRequest,
     scene::{
         Ground,
@@ -12,8 +12,9 @@ use crate::{
     },
 };
 
-/// Linear RGBA: behind the scene at the top, where the ground ends, and at the bottom.
-const BACKDROP: [[f32; 4]; 2] = [[0.24, 0.25, 0.265, 1.0], [0.3, 0.305, 0.31, 1.0]];
+/// Linear RGBA before tone mapping: behind the scene at the top, where the ground ends, and at the
+/// bottom.
+const BACKDROP: [[f32; 4]; 2] = [[0.28, 0.29, 0.305, 1.0], [0.34, 0.345, 0.35, 1.0]];
 
 impl Preset {
     /// The preset of a scene that was chosen, under the name that is shown.
@@ -23,7 +24,7 @@ impl Preset {
             scene,
             ground: Some(Ground {
                 size: 24.0,
-                color: [0.6, 0.602, 0.61, 1.0],
+                color: [0.38, 0.382, 0.39, 1.0],
                 cells: 16,
                 ..Ground::default()
             }),
@@ -45,18 +46,20 @@ impl Preset {
 }
 
 fn stack() -> Stack {
-    use crate::effects::{fog, lambert, shadow};
+    use crate::effects::{fog, shadow, studio, tonemap};
     let mut stack = Stack::default();
-    // A white face that looks at the sun gets 0.93 of what the picture holds: nothing is clipped.
-    stack.enable(&lambert::EFFECT).put(&Lambert {
-        sun: [0.625, 0.6, 0.562, 1.0],
-        sky: [0.265, 0.277, 0.297, 1.0],
-        ground: [0.156, 0.148, 0.14, 1.0],
+    stack.enable(&studio::EFFECT).put(&Studio {
+        sun: [0.66, 0.635, 0.595, 1.0],
         sun_direction: [-0.6, 0.95, 0.75, 0.0],
-        headlight: 0.06,
+        strength: 0.72,
+        ..Studio::default()
+    });
+    stack.enable(&tonemap::EFFECT).put(&Tonemap {
+        background: 1,
+        ..Tonemap::default()
     });
     stack.enable(&shadow::EFFECT).put(&Shadow {
-        strength: 0.75,
+        strength: 0.85,
         ..Shadow::default()
     });
     let fog = stack.enable(&fog::EFFECT);
@@ -95,7 +98,11 @@ mod tests {
                     view: normal,
                     ..Surface::example(DVec3::ONE, 0)
                 };
-                light.shade(face, u32::MAX).color.truncate().max_element()
+                light
+                    .shade(face, u32::MAX, &[])
+                    .color
+                    .truncate()
+                    .max_element()
             })
             .fold(0.0, f64::max);
         assert!((0.85..0.98).contains(&brightest), "{brightest}");

@@ -30,6 +30,7 @@ pub mod particle_discs;
 pub mod parts;
 pub mod pick;
 pub mod pose;
+pub mod punctual;
 pub mod quaternion;
 pub mod rig;
 mod room;

@@ -9,6 +9,7 @@ use super::{
     deformation::Deformation,
     framing::FramingPoints,
     material::{Material, TEXTURE_SLOTS},
+    punctual::SceneLight,
     rig::Rig,
     texture::Image,
 };
@@ -260,6 +261,8 @@ pub struct Scene {
     pub content: Option<Bounds>,
     /// Cameras that come with the scene.
     pub cameras: Vec<SceneCamera>,
+    /// Lights that come with the scene, at most [`MAX_LIGHTS`](super::punctual::MAX_LIGHTS).
+    pub lights: Vec<SceneLight>,
     /// Nodes, skins and clips.
     pub rig: Rig,
     /// The names of the nodes that instances come from.

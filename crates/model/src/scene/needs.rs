@@ -52,6 +52,8 @@ pub struct Needs {
     pub glass_draws: usize,
     /// Some material that blends has a texture.
     pub has_blended_textures: bool,
+    /// Lights that come with the scene.
+    pub lights: u32,
     /// How finely shadows are drawn.
     pub shadow: ShadowResolution,
     /// The view is a light's.
@@ -130,6 +132,7 @@ impl Needs {
             has_strips_or_fans: drawn().any(|p| p.topology != Topology::List),
             f32_positions: all_f32(|p| p.positions.component_type),
             f32_normals: all_f32(|p| p.normals.component_type),
+            lights: view.scene_state.lights.len() as u32,
             shadow: view.precision.shadow,
             is_light: view.is_light(),
             colors: drawn().any(|p| p.colors.is_some()),

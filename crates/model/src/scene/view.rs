@@ -11,6 +11,7 @@ use super::{
     camera::{Camera, Projection},
     particle_discs::ParticleTimeline,
     pose::Pose,
+    punctual::PlacedLight,
     shadow_resolution::ShadowResolution,
 };
 use crate::math::{SUBPIXEL_BITS, view_from_world};
@@ -54,6 +55,8 @@ pub struct SceneState {
     pub world_from_scene: DMat4,
     /// The pose of its nodes, joints and morph targets; none: the rest pose.
     pub pose: Option<Arc<Pose>>,
+    /// The lights that come with the scene, where they are.
+    pub lights: Arc<[PlacedLight]>,
     /// The preset's own line for dots, in the scene before its spin.
     pub polyline: Arc<[[f32; 3]]>,
     /// The steps that particles have taken; none: they are where they begin.

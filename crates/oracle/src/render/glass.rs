@@ -156,7 +156,8 @@ pub fn glass_colors(input: &LayerInput, layers: &GlassLayers) -> Result<Vec<DVec
                 lit,
                 ..surface
             };
-            Some((shot.stack.shade(surface, triangle.scopes), triangle.scopes))
+            let shaded = shot.stack.shade(surface, triangle.scopes, shot.lights());
+            Some((shaded, triangle.scopes))
         };
         let pixel = |x: usize| {
             let pixel = y * width + x;

@@ -208,6 +208,7 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Result<Vec<LayerSum>, C
                     ..surface
                 },
                 known.scopes,
+                input.shot.lights(),
             );
             let weight = fixed_weight(params.weight_of(&shaded), 0.0);
             let color = fixed_color(shaded.color.truncate(), 0.0, bits);

@@ -89,6 +89,7 @@ pub fn shaded(
                     ..surface
                 },
                 triangle.scopes,
+                shot.lights(),
             )
             .color,
     )

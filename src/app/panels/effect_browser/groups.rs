@@ -248,6 +248,7 @@ mod tests {
                 "smear",
                 "outline",
                 "dither",
+                "sky",
                 "ambient",
                 "sharpen",
                 "paint",

@@ -18,6 +18,7 @@ pub(super) const FEATURES: &[Feature] = &[
     FINISH_MAPS,
     NORMAL_MAPS,
     MASK,
+    PUNCTUAL_LIGHTS,
     LIGHT,
     DOTS,
     IMAGE_EFFECTS,
@@ -187,6 +188,23 @@ const MASK: Feature = Feature {
         is_used: |key| key.samples.has_mask,
         why_omitted: |_| "no texture's alpha discards samples".into(),
     }),
+    ..Feature::NONE
+};
+
+const PUNCTUAL_LIGHTS: Feature = Feature {
+    label: |key| match key.surface.lights {
+        0 => String::new(),
+        lights => format!("lights={lights}"),
+    },
+    part: Some(Part {
+        name: "lights of the scene",
+        is_used: |key| key.surface.lights > 0,
+        why_omitted: |needs| match needs.lights {
+            0 => "the scene brings none".into(),
+            _ => "no effect is lit by them".into(),
+        },
+    }),
+    constants: &[("PUNCTUAL_LIGHTS", |key, _| key.surface.lights.into())],
     ..Feature::NONE
 };
 

@@ -1,6 +1,7 @@
 //! Hooks: where in the pipeline an effect acts. The same signatures in WGSL and here, where they
 //! are f64 or integers.
 
+pub mod environment;
 mod front;
 mod image;
 mod passes;
@@ -18,15 +19,18 @@ pub use passes::{
 };
 pub use sample::{Sample, SampleEffect, SampleHook, SetupFunction, TriangleSetup};
 pub use slot::{Layers, Shape, Slot};
-pub use surface::{Finish, Surface, SurfaceEffect, SurfaceInput};
+pub use surface::{Finish, LitEffect, Surface, SurfaceEffect, SurfaceInput};
 pub use vertex::{ErrorBound, ROUNDING, Vertex, VertexEffect, VertexHook};
 
 use std::sync::Arc;
 
-use crate::scene::particle_discs::ParticleSettings;
+use crate::scene::{particle_discs::ParticleSettings, punctual::PlacedLight};
 
 /// A surface effect's function over its parameter words.
 pub type SurfaceFunction = dyn Fn(Surface, &[u32]) -> Surface + Send + Sync;
+
+/// A surface effect's function where the scene has lights, over them and its parameter words.
+pub type LitFunction = dyn Fn(Surface, &[PlacedLight], &[u32]) -> Surface + Send + Sync;
 
 /// Every hook of one effect, each with its function over the parameter words.
 #[derive(Clone, Default)]
@@ -37,6 +41,8 @@ pub struct Hooks {
     pub sample: Option<SampleHook>,
     /// What color is it?
     pub surface: Option<Arc<SurfaceFunction>>,
+    /// The same under the lights that come with the scene, in place of `surface` where it has any.
+    pub lit: Option<Arc<LitFunction>>,
     /// Finish the pixel.
     pub image: Option<ImageHook>,
     /// Passes over the finished picture.

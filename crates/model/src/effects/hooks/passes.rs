@@ -113,6 +113,18 @@ impl Lens {
         }
     }
 
+    /// The unit vector from the eye to a place in NDC.
+    fn direction(self, place: DVec2) -> DVec3 {
+        let [across, up, forward] = self.axes;
+        match self.depth {
+            DepthScale::Linear(_) => forward,
+            DepthScale::Perspective { .. } => {
+                let [right, up] = [across, up].map(|axis| axis / axis.length_squared());
+                (forward + right * place.x + up * place.y).normalize()
+            }
+        }
+    }
+
     /// Side of a pixel at a depth, meters.
     pub fn pixel_size_m(self, depth_m: f64) -> f64 {
         match self.depth {
@@ -224,6 +236,12 @@ impl ImageAt<'_> {
         let place = (DVec2::new(x as f64, y as f64) + 0.5 - half) / half * DVec2::new(1.0, -1.0);
         let slope = DVec2::new(slope(1, 0), -slope(0, 1)) * half;
         self.input.lens.normal(depth, place, slope)
+    }
+
+    /// The unit vector from the eye, world space, to a place in pixels from the top left corner.
+    pub fn direction(&self, at: DVec2) -> DVec3 {
+        let place = at / self.picture_size() * DVec2::new(2.0, -2.0) + DVec2::new(-1.0, 1.0);
+        self.input.lens.direction(place)
     }
 
     /// The middle of the pixel, in pixels of the picture from its top left corner.

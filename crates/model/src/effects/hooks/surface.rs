@@ -2,7 +2,10 @@
 
 use glam::{DVec2, DVec3, DVec4};
 
-use crate::{params::Params, scene::material::Material};
+use crate::{
+    params::Params,
+    scene::{material::Material, punctual::PlacedLight},
+};
 
 /// What the rasterizer knows about a visible sample; a surface effect changes it and passes it on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -212,4 +215,11 @@ pub trait SurfaceEffect: Params {
     const INPUTS: &'static [SurfaceInput];
 
     fn apply(surface: Surface, params: &Self) -> Surface;
+}
+
+/// The f64 side of an effect on the surface hook that the lights of a scene shine on. In WGSL, the
+/// function `NAME_under_lights` in the section `lights` of its file.
+pub trait LitEffect: SurfaceEffect {
+    /// The same as [`SurfaceEffect::apply`] under these lights.
+    fn under_lights(surface: Surface, lights: &[PlacedLight], params: &Self) -> Surface;
 }

@@ -1,4 +1,5 @@
-//! Finishes: balls in rows, from metal behind to glaze in front, rougher from left to right.
+//! Finishes: balls in rows, from metal behind to glaze in front, rougher from left to right. Lamps
+//! may hang over them.
 
 use std::f64::consts::PI;
 
@@ -9,6 +10,7 @@ use crate::scene::{
     material::Material,
     mesh_builder::{MeshBuilder, Ring},
     model::{Instance, Scene},
+    punctual::{LightKind, SceneLight},
 };
 
 /// Radius of a ball, meters.
@@ -30,7 +32,16 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
         values.whole("columns"),
         values.whole("rows"),
     );
-    let mut scene = Scene::default();
+    let half = DVec3::new(
+        PITCH_M[0] * f64::from(columns),
+        0.0,
+        PITCH_M[1] * f64::from(rows),
+    ) * 0.5;
+    let lamps = (0..values.whole("lamps")).map(|index| lamp(index, half));
+    let mut scene = Scene {
+        lights: lamps.collect(),
+        ..Scene::default()
+    };
     for row in 0..rows {
         let metallic = fraction(rows - 1 - row, rows);
         for column in 0..columns {
@@ -57,6 +68,49 @@ pub fn build(values: &Values) -> Result<Scene, BuiltinError> {
         }
     }
     Ok(scene)
+}
+
+/// Linear colors of lamps, by turns.
+const LAMP_COLORS: [DVec3; 4] = [
+    DVec3::new(1.0, 0.42, 0.1),
+    DVec3::new(0.3, 0.62, 1.0),
+    DVec3::new(0.55, 0.6, 0.9),
+    DVec3::new(1.0, 0.2, 0.42),
+];
+
+/// Lamps spiral outwards over the rows, which reach this far: by turns a point low between the
+/// balls, a spot that shines down, and a light from far away.
+fn lamp(index: u32, half: DVec3) -> SceneLight {
+    const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
+    let (sin, cos) = libm::sincos(f64::from(index) * GOLDEN_ANGLE);
+    let aside = DVec3::new(sin, 0.0, cos) * half * (0.35 + 0.04 * f64::from(index));
+    let (kind, intensity, range_m, place) = match index % 3 {
+        0 => (LightKind::Point, 5.0, Some(5.0), aside + DVec3::Y),
+        1 => {
+            let (inner, outer) = (0.2, 0.42);
+            let kind = LightKind::Spot { inner, outer };
+            (kind, 60.0, None, aside + 3.4 * DVec3::Y)
+        }
+        _ => (LightKind::Directional, 0.5, None, DVec3::ZERO),
+    };
+    let toward = match kind {
+        LightKind::Directional => DVec3::new(sin, 1.2, cos),
+        LightKind::Point | LightKind::Spot { .. } => DVec3::Y,
+    };
+    SceneLight {
+        name: format!("lamp {index}"),
+        kind,
+        light: (LAMP_COLORS[index as usize % LAMP_COLORS.len()] * intensity).to_array(),
+        range_m,
+        // Of its axes only the third counts.
+        world_from_light: DMat4::from_cols(
+            DVec3::X.extend(0.0),
+            DVec3::Z.extend(0.0),
+            toward.extend(0.0),
+            place.extend(1.0),
+        ),
+        node: None,
+    }
 }
 
 /// The place of one among `count`, from 0 to 1.

@@ -183,6 +183,12 @@ pub const BUILTINS: &[Builtin] = &[
             ),
             whole("columns", "number of columns", 6.0, 1.0..=16.0),
             whole("rows", "number of rows", 3.0, 1.0..=16.0),
+            whole(
+                "lamps",
+                "number of lamps, which shine on the effect studio",
+                0.0,
+                0.0..=16.0,
+            ),
         ],
         build: finishes::build,
     },

@@ -7,7 +7,7 @@
 //!
 //! Supported: triangle lists, strips and fans, all index widths, interleaved, sparse, quantized and
 //! compressed (Draco, meshopt) accessors, base color and emission with their textures, vertex
-//! colors, the nodes and cameras of the default scene, many instances of a node's mesh, skins, morph
+//! colors, the nodes, cameras and lights of the default scene, many instances of a node's mesh, skins, morph
 //! targets and clips. Left out with
 //! an entry in [`Scene::notes`](crate::scene::Scene::notes): points, lines, normal maps and the
 //! rest of physically based shading.

@@ -1,4 +1,5 @@
-//! Nodes: the node tree, without recursion; world matrices in f64, morph weights and cameras.
+//! Nodes: the node tree, without recursion; world matrices in f64, morph weights, cameras and
+//! lights.
 
 use std::collections::HashSet;
 
@@ -14,6 +15,7 @@ use crate::scene::{
     bounds::Bounds,
     camera::{Camera, MIN_NEAR_M},
     model::{NamedNode, SceneCamera},
+    punctual::{LightKind, MAX_LIGHTS, SceneLight},
     quaternion::unit,
     rig::{LocalTransform, Node, Property, Trs},
 };
@@ -180,6 +182,57 @@ impl Tree {
             }
         }
         cameras
+    }
+
+    /// The first lights of the shown nodes. With `moves` they follow their nodes.
+    pub fn lights(&self, document: &Document, moves: bool, notes: &Notes) -> Vec<SceneLight> {
+        let mut lights = Vec::new();
+        let mut count = 0;
+        for &node in &self.shown {
+            let Some(index) = document.nodes[node].light else {
+                continue;
+            };
+            let light = match &document.lights[index] {
+                Ok(light) => light,
+                Err(reason) => {
+                    notes.fault(|| {
+                        format!("{} is left out: {reason}", called("light", index, None))
+                    });
+                    continue;
+                }
+            };
+            let in_messages = || called("light", index, light.name.as_deref());
+            let Some(kind) = light.kind else {
+                notes.add(|| format!("{} is left out: its type is unknown", in_messages()));
+                continue;
+            };
+            let world_from_light = self.world_from_node[node];
+            let has_direction = world_from_light.z_axis.truncate().try_normalize().is_some();
+            if kind != LightKind::Point && !has_direction {
+                notes.add(|| format!("{} is left out: its node has no direction", in_messages()));
+                continue;
+            }
+            count += 1;
+            if lights.len() < MAX_LIGHTS {
+                lights.push(SceneLight {
+                    name: menu_name("light", index, light.name.as_deref()),
+                    kind,
+                    light: light.light,
+                    range_m: light.range_m,
+                    world_from_light,
+                    node: moves.then(|| self.rig_index[node]),
+                });
+            }
+        }
+        if count > MAX_LIGHTS {
+            notes.add(|| {
+                format!(
+                    "it has {count} lights; the first {MAX_LIGHTS} shine, and {} are left out",
+                    count - MAX_LIGHTS
+                )
+            });
+        }
+        lights
     }
 }
 

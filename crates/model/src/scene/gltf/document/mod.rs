@@ -6,6 +6,7 @@
 //! by index are `Result`s, so that the others find out, and a part that nothing uses costs nothing.
 
 mod fields;
+mod lights;
 mod materials;
 mod motion;
 mod parts;

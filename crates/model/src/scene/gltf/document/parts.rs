@@ -6,6 +6,7 @@ use crate::scene::{
     accessor::ComponentType,
     camera::Projection,
     model::Topology,
+    punctual::LightKind,
     rig::{Interpolation, Property},
     texture::{Filter, MipFilter, Wrap},
 };
@@ -28,6 +29,7 @@ pub struct Document {
     pub nodes: Vec<Node>,
     pub skins: Vec<Part<Skin>>,
     pub cameras: Vec<Part<Camera>>,
+    pub lights: Vec<Part<Light>>,
     pub clips: Vec<Clip>,
     /// The nodes that the shown scene lists; none where the file has no scene.
     pub scene: Option<Scene>,
@@ -56,6 +58,7 @@ impl Document {
             .chain(of("texture", &self.textures))
             .chain(of("skin", &self.skins))
             .chain(of("camera", &self.cameras))
+            .chain(of("light", &self.lights))
     }
 }
 
@@ -250,6 +253,7 @@ pub struct Node {
     pub mesh: Option<usize>,
     pub skin: Option<usize>,
     pub camera: Option<usize>,
+    pub light: Option<usize>,
     pub weights: Vec<f32>,
     /// EXT_mesh_gpu_instancing. Boxed: of millions of nodes few have it.
     pub instancing: Option<Box<Instancing>>,
@@ -277,6 +281,18 @@ pub struct Camera {
     pub name: Option<String>,
     pub projection: Projection,
     pub near: f64,
+}
+
+/// KHR_lights_punctual.
+#[derive(Debug)]
+pub struct Light {
+    pub name: Option<String>,
+    /// `None`: of a type that the extension does not have (yet).
+    pub kind: Option<LightKind>,
+    /// Linear RGB times the intensity.
+    pub light: [f64; 3],
+    /// Meters, above 0.
+    pub range_m: Option<f64>,
 }
 
 #[derive(Debug)]

@@ -14,7 +14,7 @@ use super::{
     },
     Document, Part,
     fields::{Lenient, Object},
-    materials, motion, shapes,
+    lights, materials, motion, shapes,
     variants::{self, VARIANTS},
 };
 
@@ -25,11 +25,19 @@ pub const WEBP: &str = "EXT_texture_webp";
 /// type anyway.
 pub const QUANTIZATION: &str = "KHR_mesh_quantization";
 
-/// Extensions that are read, besides those of materials.
-pub const READ: [&str; 6] = [QUANTIZATION, WEBP, MESHOPT, DRACO, INSTANCING, VARIANTS];
+/// Extension of lights without a size.
+pub const LIGHTS: &str = "KHR_lights_punctual";
 
-/// Extensions that may be required and whose lack is said as of any other: they add no shape.
-const HARMLESS: [&str; 1] = ["KHR_lights_punctual"];
+/// Extensions that are read, besides those of materials.
+pub const READ: [&str; 7] = [
+    QUANTIZATION,
+    WEBP,
+    MESHOPT,
+    DRACO,
+    INSTANCING,
+    VARIANTS,
+    LIGHTS,
+];
 
 /// Is the extension read?
 pub fn is_read(extension: &str) -> bool {
@@ -51,6 +59,7 @@ pub struct Lists<'a> {
     pub skins: &'a [Value],
     pub cameras: &'a [Value],
     pub variants: &'a [Value],
+    pub lights: &'a [Value],
 }
 
 impl<'a> Lists<'a> {
@@ -121,6 +130,10 @@ pub fn parse_document(json: &[u8], notes: &Notes) -> Result<Document, LoadError>
         skins: list("skins"),
         cameras: list("cameras"),
         variants: variants::listed(&lenient, root),
+        lights: match lenient.field(root.extension(LIGHTS)) {
+            Some(extension) => lenient.list(extension.list("lights")),
+            None => &[],
+        },
     };
     let document = Document {
         accessors: parts(lists.accessors, |index, part| {
@@ -147,6 +160,7 @@ pub fn parse_document(json: &[u8], notes: &Notes) -> Result<Document, LoadError>
         }),
         skins: parts(lists.skins, |_, part| motion::skin(&lists, part)),
         cameras: parts(lists.cameras, |_, part| shapes::camera(part)),
+        lights: parts(lists.lights, |_, part| lights::light(part)),
         clips: each(list("animations"), |index, value| {
             motion::clip(&lists, index, value)
         }),
@@ -266,9 +280,7 @@ fn check_required(required: &[String], notes: &Notes) -> Result<(), LoadError> {
             quoted(name)
         )));
     }
-    let unread = required
-        .iter()
-        .filter(|name| !is_read(name) && !HARMLESS.contains(&name.as_str()));
+    let unread = required.iter().filter(|name| !is_read(name));
     notes.extend(unread.map(|name| {
         format!(
             "it requires the extension {}, which is not supported; what does not need it is drawn",

@@ -12,6 +12,7 @@ use super::{
     },
     Accessor, Buffer, Camera, Instancing, Mesh, Node, Part, Primitive, Scene, Sparse, View,
     fields::{Lenient, Object, needed, whole},
+    lights,
     read::{Lists, is_unknown_compression},
     variants,
 };
@@ -274,6 +275,7 @@ pub fn node(lists: &Lists, index: usize, value: &Value) -> Node {
         mesh: lenient.field(part.index("mesh", "meshes", lists.meshes.len())),
         skin: lenient.field(part.index("skin", "skins", lists.skins.len())),
         camera: lenient.field(part.index("camera", "cameras", lists.cameras.len())),
+        light: lenient.field(lights::of_node(lists, part)),
         weights: lenient.field(part.numbers("weights")).unwrap_or_default(),
         instancing,
     };
