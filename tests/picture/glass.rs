@@ -180,7 +180,7 @@ fn what_is_drawn_as_if_opaque_is_what_does_not_blend() {
         (material.is_blended, material.base_color[3]) = (false, 1.0);
     }
     let opaque = Arc::new(opaque);
-    let stack = stack(&["lambert", "shadow", "outline"]);
+    let stack = stack(&["lambert", "outline"]);
     let mut drawn =
         |scene, option| captured(&mut renderer, scene, &view, &stack, &on(option)).frame;
     let (seen, without) = (

@@ -251,7 +251,7 @@ axes! {
     }
     /// How what is seen through layers is composed.
     transparency: Transparency, default Exact {
-        /// Nothing is seen through: what blends is drawn as if it were opaque, and casts a shadow.
+        /// Nothing is seen through: what blends is drawn as if it were opaque.
         Opaque = "opaque",
         /// In no order: the mean of all layers, weighted by coverage and nearness, covers what is behind as they do together.
         Weighted = "weighted",
