@@ -150,17 +150,20 @@ gpu_record! {
 /// All lights of a picture.
 pub type PunctualLights = [PunctualLightRecord; MAX_LIGHTS];
 
-impl PunctualLightRecord {
-    pub fn new(light: &PlacedLight) -> Self {
-        let with = |[x, y, z]: [f32; 3], w| [x, y, z, w];
-        Self {
+/// The records of the first [`MAX_LIGHTS`] lights; zeros behind them.
+pub fn punctual_lights(lights: &[PlacedLight]) -> PunctualLights {
+    let with = |[x, y, z]: [f32; 3], w| [x, y, z, w];
+    let mut records = PunctualLights::default();
+    for (record, light) in records.iter_mut().zip(lights) {
+        *record = PunctualLightRecord {
             light: with(light.light, f32::from(u8::from(light.has_position))),
             position: with(light.position, light.inverse_range),
             toward: with(light.toward, 0.0),
             cone: light.cone,
             spare: [0.0; 2],
-        }
+        };
     }
+    records
 }
 
 gpu_record! {

@@ -16,7 +16,7 @@ use super::{
     preparations::Preparation,
     queues::{Capacities, first_capacities, recorded_capacities},
     recording::{CommandList, Device, DispatchSizes, Resources, Timing},
-    records::{CounterRecord, PunctualLightRecord, PunctualLights, ScalingUniform},
+    records::{CounterRecord, ScalingUniform, punctual_lights},
     resource_id::{BufferId, ClearedBy},
     scene_resources::SceneResources,
 };
@@ -482,10 +482,7 @@ impl ViewResources {
             layout.frame_uniform(view, point_radius),
             layout.culling_uniform(),
         );
-        let mut lights = PunctualLights::default();
-        for (record, light) in lights.iter_mut().zip(&*view.scene_state.lights) {
-            *record = PunctualLightRecord::new(light);
-        }
+        let lights = punctual_lights(&view.scene_state.lights);
         let uniforms: [(BufferId, &[u8]); 5] = [
             (BufferId::Frame, bytemuck::bytes_of(&frame)),
             (BufferId::Effects, parameters),
