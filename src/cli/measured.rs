@@ -8,7 +8,7 @@ use super::{
     args::{Bench, Common, Format},
     backend::{Backend, scene_of},
     error::CliError,
-    open::{land, open},
+    open::{land, open, open_bare},
     streams::{Streams, table},
 };
 use crate::{
@@ -16,7 +16,6 @@ use crate::{
     gpu::Capture,
     measure::Verdict,
     oracle,
-    preset::SceneSource,
     preset_file::{ModelFormat, PresetFile},
     scene::{Scene, view::View},
 };
@@ -34,14 +33,17 @@ pub fn subjects(
         .collect::<Result<Vec<_>, _>>()?;
     let mut preset_files = Vec::new();
     for scene in &args.scene {
-        let mut base = open(
-            common,
-            &if ModelFormat::of(Path::new(scene)).is_some() {
-                scene.clone()
-            } else {
-                format!("builtin:{scene}")
-            },
-        )?;
+        let what = match ModelFormat::of(Path::new(scene)) {
+            Some(_) => scene.clone(),
+            None => format!("builtin:{scene}"),
+        };
+        if named.is_empty() && common.preset.is_none() {
+            let mut bare = open_bare(common, &what)?;
+            bare.id.clone_from(scene);
+            preset_files.push(bare);
+            continue;
+        }
+        let mut base = open(common, &what)?;
         if named.is_empty() {
             base.id.clone_from(scene);
             preset_files.push(base);
@@ -56,10 +58,7 @@ pub fn subjects(
     }
     if args.scene.is_empty() {
         preset_files = if named.is_empty() {
-            vec![PresetFile::of_scene(
-                "teapot",
-                SceneSource::Builtin("teapot".into()),
-            )]
+            vec![open_bare(common, "builtin:teapot")?]
         } else {
             named
         };

@@ -3,7 +3,7 @@
 
 use super::{args::Common, error::CliError, files, streams::Streams};
 use crate::{
-    effects::EnabledEffect,
+    effects::{EnabledEffect, Stack, lambert},
     params::legible_line,
     preset::Preset,
     preset_file::{self, GalleryEntry, PresetError, PresetFile},
@@ -50,6 +50,20 @@ fn finish_opening(common: &Common, named: PresetFile) -> Result<PresetFile, CliE
 /// `--unset`, then `--set`.
 pub fn open_alone(common: &Common, look: &str) -> Result<PresetFile, CliError> {
     changed(common, read(common, look)?)
+}
+
+/// The scene that `what` names under the effect `lambert` and nothing else, with the changes of
+/// `--unset`, then `--set`: what is measured where no preset is named.
+pub fn open_bare(common: &Common, what: &str) -> Result<PresetFile, CliError> {
+    let mut bare = read(common, what)?;
+    let mut stack = Stack::default();
+    stack.enable(&lambert::EFFECT);
+    bare.preset = Preset {
+        scene: bare.preset.scene,
+        stack,
+        ..Preset::default()
+    };
+    changed(common, bare)
 }
 
 /// Reads what a person names, as its file has it.

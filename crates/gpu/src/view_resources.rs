@@ -445,22 +445,16 @@ impl ViewResources {
         }
         if new.contains(&BufferId::Meshlets) || new.contains(&BufferId::MeshletLists) {
             let meshlets = scene.meshlets();
-            self.buffers
-                .write_at(
-                    gpu,
-                    BufferId::Meshlets,
-                    0,
-                    bytemuck::cast_slice(&meshlets.records),
-                )
-                .await?;
-            self.buffers
-                .write_at(
-                    gpu,
+            let contents: [(BufferId, &[u8]); 2] = [
+                (BufferId::Meshlets, bytemuck::cast_slice(&meshlets.records)),
+                (
                     BufferId::MeshletLists,
-                    0,
                     bytemuck::cast_slice(&meshlets.lists),
-                )
-                .await?;
+                ),
+            ];
+            for (id, bytes) in contents {
+                self.buffers.write_at(gpu, id, 0, bytes).await?;
+            }
         }
         Ok(())
     }

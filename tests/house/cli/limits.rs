@@ -289,6 +289,10 @@ fn a_measurement_of_many_layers_reports_no_holes() {
     }
     assert_eq!(run.code, 0, "{}", run.err);
     let rows = json(&run);
+    assert_eq!(
+        rows["results"][0]["triangles"], 600,
+        "a scene alone is measured without ground"
+    );
     let promised: Vec<_> = rows["results"]
         .as_array()
         .unwrap()

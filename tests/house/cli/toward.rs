@@ -69,13 +69,16 @@ fn a_preset_goes_toward_another_and_begins_and_ends_with_both() {
 fn a_film_goes_from_one_preset_to_another() {
     let folder = tempfile::tempdir().unwrap();
     let put = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
-    let (one, two) = ("amount = 0.2\n", "amount = 0.8\n");
+    let (one, two) = (
+        "amount = 0.2\n[effects.lambert]\n",
+        "amount = 0.8\n[effects.lambert]\n",
+    );
     let clock = "[clock]\nrange_s = [0.0, 1.0]\n";
     // Keyframes count with their values at the time of a frame.
     let keys = "[animation.facet]\namount = [{ time_s = 0.0, value = 0.2 }]\n";
     put(
         "a.toml",
-        &format!("{HEAD}{clock}[effects.facet]\namount = 0.9\n{keys}"),
+        &format!("{HEAD}{clock}[effects.facet]\namount = 0.9\n[effects.lambert]\n{keys}"),
     );
     put("b.toml", &format!("{HEAD}{clock}[effects.facet]\n{two}"));
     put("flat.toml", &format!("{HEAD}[effects.facet]\n{one}"));
