@@ -35,6 +35,8 @@ pub struct InterpolatedPerturbation {
     pub depth: f64,
     /// Added to the color that the corners' mix, which stays between theirs.
     pub color: DVec4,
+    /// Added to the distances from the edges, in pixels.
+    pub edge_distance_px: DVec3,
 }
 
 /// Offset of texture lookups: across, down, and in the level of detail, each in error bounds.

@@ -247,7 +247,8 @@ pub fn interpolations(
     };
     let interpolated = each(alone, tints)
         .chain(each(few, tints))
-        .chain(each(many, even_tints));
+        .chain(each(many, even_tints))
+        .chain(errors.edge_distances().into_iter().flatten());
     let at_step = move |&color_step: &f64| {
         interpolated.clone().map(move |interpolated| Perturbation {
             color_step,

@@ -45,6 +45,8 @@ pub struct SampleErrors {
     depth: f64,
     /// Of the color that the corners' mix, linear RGBA.
     color: DVec4,
+    /// Of the distances from the edges, pixels.
+    edge_distance_px: DVec3,
 }
 
 /// How far the normal and the depth that are interpolated at a sample may err.
@@ -92,7 +94,20 @@ impl SampleErrors {
             plane: turn * self.plane,
             depth: stretch * self.depth,
             color: DVec4::from(tint) * self.color,
+            edge_distance_px: DVec3::ZERO,
         }
+    }
+
+    /// The distances from the edges smaller and larger by their bounds, where that shows in a line
+    /// that fades over one pixel.
+    pub fn edge_distances(&self) -> Option<[InterpolatedPerturbation; 2]> {
+        // Half a step of 255.
+        const VISIBLE_PX: f64 = 1.0 / 512.0;
+        let moved = |sign: f64| InterpolatedPerturbation {
+            edge_distance_px: sign * self.edge_distance_px,
+            ..InterpolatedPerturbation::default()
+        };
+        (self.edge_distance_px.max_element() > VISIBLE_PX).then(|| [moved(-1.0), moved(1.0)])
     }
 }
 
@@ -164,6 +179,7 @@ impl CornerErrors {
             color: [0, 1, 2, 3]
                 .map(|channel| mixed(colors.map(|corner| (corner[channel] - color[channel]).abs())))
                 .into(),
+            edge_distance_px: triangle.edge_distance_errors_px(x, y, &self.clip),
         }
     }
 

@@ -347,6 +347,7 @@ impl<'a> SurfaceTriangle<'a> {
         let (barycentrics, edge_distance_px) = self.weights.on_screen(&point, view);
         let [x, y, z, along] = perturbation.place.map(|roundings| roundings * ROUNDING);
         let moved = perturbation.interpolated;
+        let edge_distance_px = (edge_distance_px + moved.edge_distance_px).max(DVec3::ZERO);
         let depth_m = mixed(weights, self.depths_m) * (1.0 + along) * (1.0 + moved.depth);
         // Where nothing is turned, the normal keeps its bits.
         let turned = |normal: DVec3, turn: DVec3| match turn {
@@ -475,6 +476,20 @@ impl<'a> SurfaceTriangle<'a> {
         let point = self.sample_point(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
         self.weights
             .errors_from(clip_errors, self.weights.at(&point), &point)
+    }
+
+    /// Bounds of the errors in f32 of the distances from the edges at the center of a pixel, where the
+    /// corners err by so much in x, y and w of clip space: in any direction, and along one; pixels.
+    pub fn edge_distance_errors_px(
+        &self,
+        x: usize,
+        y: usize,
+        clip_errors: &[[DVec3; 2]; 3],
+    ) -> DVec3 {
+        let point = self.sample_point(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+        self.weights
+            .edge_distance_errors_px(clip_errors, &point, [self.view.width, self.view.height])
+            .into()
     }
 
     /// Returns true if f32 may see the other side of the triangle at the center of a pixel, where

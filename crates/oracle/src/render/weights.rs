@@ -112,6 +112,44 @@ impl Weights {
         }
     }
 
+    /// Bounds of the errors in f32 of the distances from the edges ([`on_screen`](Self::on_screen)) in a
+    /// picture of this size, where the corners' (x, y, w) err by `clip`; large where nothing is known. Of snapped corners
+    /// they are quotients of integers, whose errors do not show.
+    pub fn edge_distance_errors_px(
+        &self,
+        clip: &[[DVec3; 2]; 3],
+        point: &SamplePoint,
+        [width, height]: [u32; 2],
+    ) -> [f64; 3] {
+        const UNKNOWN: f64 = 1e30;
+        let Self::Homogeneous {
+            rows,
+            corners,
+            terms,
+        } = self
+        else {
+            return [0.0; 3];
+        };
+        let steps = DVec2::new(2.0 / f64::from(width), 2.0 / f64::from(height));
+        let product_errors = |p: DVec3| {
+            let given = given_errors(p, corners, clip);
+            [0, 1, 2].map(|k| p.abs().dot(terms[k]) / f64::from(1 << 20) + given[k])
+        };
+        let p = point.ndc();
+        let of_products = product_errors(p);
+        let of_slopes = [DVec3::X * steps.x, DVec3::Y * steps.y].map(product_errors);
+        [0, 1, 2].map(|k| {
+            let slope = (rows[k].truncate() * steps).length();
+            let slope_error = of_slopes[0][k] + of_slopes[1][k];
+            let distance = p.dot(rows[k]).abs() / slope.max(1e-30);
+            if slope > slope_error {
+                ((of_products[k] + distance * slope_error) / (slope - slope_error)).min(UNKNOWN)
+            } else {
+                UNKNOWN
+            }
+        })
+    }
+
     /// Returns true if f32 may take a triangle's back for its front at a sample, where the corners'
     /// (x, y, w) err by `clip`. Of a clipped triangle the determinant of the corners tells its side
     /// or, where that is within its roundings, the sample's place before the triangle's plane.
@@ -247,5 +285,66 @@ fn areas(corners: &[DVec3; 3], point: &SamplePoint) -> [f64; 3] {
         (Shape::Points, Some(corner)) => [0, 1, 2].map(|k| f64::from(u8::from(k == corner))),
         (Shape::Boxes, _) => areas.map(|area| (area * winding).max(0.0)),
         _ => areas.map(|area| area * winding),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+
+    /// Numbers from -1 to 1 that look random.
+    fn numbers() -> impl FnMut() -> f32 {
+        let mut state = 1u32;
+        move || {
+            state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+            (state >> 8) as f32 / (1 << 23) as f32 - 1.0
+        }
+    }
+
+    #[test]
+    fn distances_from_edges_in_f32_lie_within_their_bounds_however_far_corners_reach() {
+        const SIZE: [u32; 2] = [640, 480];
+        let mut number = numbers();
+        let (mut judged, mut visible) = (0, 0);
+        for turn in 0..20_000 {
+            let reach = 10f32.powi(turn % 6);
+            let corners = [0; 3].map(|_| reach * Vec3::new(number(), number(), number()));
+            let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+            let magnitudes = [(b, c), (c, a), (a, b)];
+            let weights = Weights::Homogeneous {
+                rows: [b.cross(c), c.cross(a), a.cross(b)],
+                terms: magnitudes.map(|(p, q)| cross_magnitudes(p.abs(), q.abs())),
+                corners: [a, b, c],
+            };
+            let pixel = DVec2::new((turn % 640) as f64 + 0.5, (turn % 480) as f64 + 0.5);
+            let screen = pixel / DVec2::new(640.0, 480.0);
+            let (shape, corner) = (Shape::Triangles, None);
+            let point = SamplePoint {
+                pixel,
+                screen,
+                shape,
+                corner,
+            };
+            let errors = weights.edge_distance_errors_px(&[[DVec3::ZERO; 2]; 3], &point, SIZE);
+            let Weights::Homogeneous { rows, .. } = &weights else {
+                unreachable!("as it was made");
+            };
+            let (p, steps) = (point.ndc(), DVec2::new(2.0 / 640.0, 2.0 / 480.0));
+            let [a, b, c] = corners;
+            let lines = [b.cross(c), c.cross(a), a.cross(b)];
+            for k in 0..3 {
+                let exact = p.dot(rows[k]).abs() / (rows[k].truncate() * steps).length();
+                let slope = (lines[k].truncate() * steps.as_vec2()).length();
+                let drawn = p.as_vec3().dot(lines[k]).abs() / slope.max(1e-30);
+                let error = (f64::from(drawn) - exact).abs();
+                assert!(error <= errors[k], "{turn}: {error} > {}", errors[k]);
+                judged += u32::from(errors[k] < 1.0);
+                visible += u32::from(error > 1.0 / 512.0);
+            }
+        }
+        assert!(judged > 40_000, "{judged} bounds say something");
+        assert!(visible > 0, "some errors show");
     }
 }
