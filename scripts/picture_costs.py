@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Prints what materials, glass and image passes cost on one adapter at 1920x1080, as Markdown: milliseconds of the fastest exact option of
-visibility, the median of three rounds in which all rows take turns.
+"""Prints what materials, glass and image passes cost on one adapter at 1920x1080, as Markdown: milliseconds of the planned options, the median of
+five rounds in which all rows take turns.
 
-usage: scripts/picture_costs.py [ARGUMENT OF `rasterlab bench`]...     e.g. --adapter llvmpipe --size 1280x720
+usage: scripts/picture_costs.py [ARGUMENT OF `rasterlab explain`]...     e.g. --adapter llvmpipe --size 1280x720
 
 RASTERLAB names the program, target/release/rasterlab without it.
 """
@@ -14,44 +14,67 @@ import subprocess
 import sys
 
 LAB = os.environ.get("RASTERLAB", "target/release/rasterlab")
-ROUNDS = 3
-# Options of visibility that are exact.
-VISIBILITY = ("packed32", "split32", "packed64")
+ROUNDS = 5
 
 # Three balls of 32,000 triangles with textures of color, normals, metal and roughness.
-GOLF = ["golf", "--set", "scene.builtin=golf?tess=45", "--unset", "studio", "--unset", "tonemap"]
-# Eight triangles, each of which covers the picture, and nothing else.
-GLASS = ["--scene", "stack?layers=8&gap=0.1", "--set", "camera.fov_y_deg=5"]
-# Lengths are what they say at the height of 1080 pixels.
-TOWN = ["bloom", "--unset", "bloom", "--set", "output.reference_height_px=1080"]
+GOLF = """
+[scene]
+builtin = "golf?tess=45"
+[camera]
+eye = [1.3, 1.9, 4.6]
+target = [0.1, 0.46, 0.0]
+fov_y_deg = 30.0
+"""
 
-# Name, arguments, beginning of the names of the passes that count, or nothing for all.
+# Eight sheets, each of which covers the picture, and nothing else.
+SHEETS = """
+[scene]
+builtin = "stack?layers=8&gap=0.1"
+[camera]
+eye = [0.0, 0.0, 4.0]
+target = [0.0, 0.0, 0.0]
+fov_y_deg = 5.0
+[effects.lambert]
+"""
+
+# Lengths are what they say at a height of 1080 pixels.
+TOWN = """
+[scene]
+builtin = "town?houses=40&lights=1"
+[camera]
+eye = [3.0, 4.6, 25.0]
+target = [0.0, 2.6, 0.0]
+fov_y_deg = 25.0
+[output]
+reference_height_px = 1080
+[effects.lambert]
+"""
+
+# Name, preset, beginning of the names of the passes that count, or nothing for the whole frame.
 ROWS = [
-    ("golf balls, lambert", [*GOLF, "--set", "lambert"], ""),
-    ("golf balls, studio", [*GOLF, "--set", "studio"], ""),
-    ("8 layers, opaque", GLASS, ""),
-    ("8 layers of glass, exact", [*GLASS, "--set", "glass"], ""),
-    ("8 layers of glass, nearest4", [*GLASS, "--set", "glass", "--set", "accuracy.transparency=nearest4"], ""),
-    ("8 layers of glass, weighted", [*GLASS, "--set", "glass", "--set", "accuracy.transparency=weighted"], ""),
-    ("blur, radius 32 px", [*TOWN, "--set", "blur.area=everywhere", "--set", "blur.radius_px=32"], "image"),
-    ("bloom, radius 96 px", [*TOWN, "--set", "bloom.radius_px=96"], "image"),
-    ("paint", [*TOWN, "--set", "paint"], "image"),
+    ("golf balls, lambert", GOLF + "[effects.lambert]", ""),
+    ("golf balls, studio", GOLF + "[effects.studio]", ""),
+    ("8 sheets, opaque", SHEETS, ""),
+    ("8 sheets of glass, exact", SHEETS + "[effects.glass]", ""),
+    ("8 sheets of glass, nearest4", SHEETS + '[effects.glass]\n[accuracy]\ntransparency = "nearest4"', ""),
+    ("8 sheets of glass, weighted", SHEETS + '[effects.glass]\n[accuracy]\ntransparency = "weighted"', ""),
+    ("town, lambert", TOWN, ""),
+    ("passes of blur, radius 32 px", TOWN + '[effects.blur]\narea = "everywhere"\nradius_px = 32.0', "image"),
+    ("passes of bloom, radius 96 px", TOWN + "[effects.bloom]\nradius_px = 96.0", "image"),
+    ("passes of paint", TOWN + "[effects.paint]", "image"),
 ]
 
 
-def milliseconds(row, arguments):
-    name, preset, passes = row
-    command = [LAB, "bench", *preset, "--json", "--quiet", *arguments]
-    result = subprocess.run(command, stdout=subprocess.PIPE, check=True)
-    options = [r for r in json.loads(result.stdout)["results"] if r["option"] in VISIBILITY and r["ms_p50"] is not None]
-    if not options:
-        sys.exit(f"picture_costs: no option drew {name}")
-    best = min(options, key=lambda r: r["ms_p50"])
-    if best["error"]["wrong_triangles"]:
-        sys.exit(f"picture_costs: {name} has {best['error']['wrong_triangles']} wrong pixels")
+def milliseconds(name, preset, passes, arguments):
+    command = [LAB, "explain", "-", "--measure", "--json", "--quiet", *arguments]
+    result = subprocess.run(command, input="schema = 2\n" + preset, stdout=subprocess.PIPE, check=True, text=True)
+    times = json.loads(result.stdout)["results"][0]["times"]
     if not passes:
-        return best["ms_p50"]
-    return sum(p["ms_p50"] for p in best["passes"] if p["name"].startswith(passes))
+        return times["whole_ms"]
+    of_passes = [ms for of_pass, ms in times["passes"] if of_pass.startswith(passes)]
+    if not of_passes:
+        sys.exit(f"picture_costs: {name} has no pass whose name begins with {passes}")
+    return sum(of_passes)
 
 
 def main():
@@ -59,7 +82,7 @@ def main():
     times = {row[0]: [] for row in ROWS}
     for _ in range(ROUNDS):
         for row in ROWS:
-            times[row[0]].append(milliseconds(row, arguments))
+            times[row[0]].append(milliseconds(*row, arguments))
     print("| picture | ms | least | most |\n|---|--:|--:|--:|")
     for name, rounds in times.items():
         print(f"| {name} | {statistics.median(rounds):.3f} | {min(rounds):.3f} | {max(rounds):.3f} |")
