@@ -23,14 +23,16 @@ fn blur_down(at: ImageAt, p: Blur) -> vec4f {
 fn blur_along(at: ImageAt, along: vec2i, p: Blur) -> vec4f {
     let radius = p.radius_px * blur_strength(image_middle(at), p);
     let reach = i32(ceil(radius));
-    var sum = vec4f(0.0);
-    var weights = 0.0;
-    for (var i = -reach; i <= reach; i += 1) {
-        let t = f32(i) / (radius + 1.0);
+    let step = 1.0 / (radius + 1.0);
+    var sum = image_last(at.x, at.y);
+    var weights = 1.0;
+    for (var i = 1; i <= reach; i += 1) {
+        let t = f32(i) * step;
         let near = max(1.0 - t * t, 0.0);
         let weight = near * near * near;
-        sum += weight * image_last(at.x + i * along.x, at.y + i * along.y);
-        weights += weight;
+        let to = i * along;
+        sum += weight * (image_last(at.x + to.x, at.y + to.y) + image_last(at.x - to.x, at.y - to.y));
+        weights += 2.0 * weight;
     }
     return sum / weights;
 }

@@ -9,7 +9,14 @@ struct Paint {
     saturation: f32,
 }
 
-const PAINT_SECTORS = 8u;
+// Sums over four sectors, one in each component.
+struct PaintSectors {
+    weight: vec4f,
+    red: vec4f,
+    green: vec4f,
+    blue: vec4f,
+    square: vec4f,
+}
 
 // How the picture changes across and down: squares and product, as the eye sees it.
 fn paint_tensor(at: ImageAt, p: Paint) -> vec4f {
@@ -48,8 +55,8 @@ fn paint_stroke(at: ImageAt, p: Paint) -> vec4f {
     let wide = p.radius_px / narrow;
     let reach = vec2i(ceil(sqrt(calm * calm * long * long + calm.yx * calm.yx * wide * wide)));
 
-    var means: array<vec4f, 8>;
-    var squares: array<vec3f, 8>;
+    var straight: PaintSectors;
+    var slanted: PaintSectors;
     let middle = paint_tone(at.x, at.y);
     for (var j = -reach.y; j <= reach.y; j += 1) {
         for (var i = -reach.x; i <= reach.x; i += 1) {
@@ -58,33 +65,41 @@ fn paint_stroke(at: ImageAt, p: Paint) -> vec4f {
             let near = 1.0 - dot(v, v);
             if near > 0.0 {
                 let tone = paint_tone(at.x + i, at.y + j) - middle;
-                let diagonal = 0.7071067811865476 * vec2f(v.x - v.y, v.x + v.y);
-                let straight = paint_sectors(v);
-                let slanted = paint_sectors(diagonal);
-                for (var k = 0u; k < PAINT_SECTORS; k += 1u) {
-                    let shape = select(straight[k / 2u], slanted[k / 2u], (k & 1u) == 1u);
-                    let weight = near * near * shape * shape;
-                    means[k] += vec4f(tone * weight, weight);
-                    squares[k] += tone * tone * weight;
-                }
+                straight = paint_added(straight, tone, near, v);
+                slanted = paint_added(slanted, tone, near, 0.7071067811865476 * vec2f(v.x - v.y, v.x + v.y));
             }
         }
     }
-    var sum = vec3f(0.0);
-    var weights = 0.0;
-    for (var k = 0u; k < PAINT_SECTORS; k += 1u) {
-        let share = max(means[k].w, 1e-9);
-        let mean = means[k].rgb / share;
-        let spread = max(squares[k] / share - mean * mean, vec3f(0.0));
-        let rough = p.hardness * (spread.r + spread.g + spread.b);
-        let weight = 1.0 / (1.0 + rough * rough);
-        sum += weight * mean;
-        weights += weight;
-    }
+    let sums = paint_calmest(straight, p.hardness) + paint_calmest(slanted, p.hardness);
+    let sum = sums.rgb;
+    let weights = sums.w;
     let tone = max(middle + sum / weights, vec3f(0.0));
     let gray = (tone.r + tone.g + tone.b) / 3.0;
     let vivid = max(gray + p.saturation * (tone - gray), vec3f(0.0));
     return vec4f(vivid * vivid, image_color(at.x, at.y).a);
+}
+
+// The sums of four sectors and of one tone more, at a place of the ellipse.
+fn paint_added(sums: PaintSectors, tone: vec3f, near: f32, place: vec2f) -> PaintSectors {
+    let shape = paint_sectors(place);
+    let weight = near * near * shape * shape;
+    return PaintSectors(
+        sums.weight + weight,
+        sums.red + tone.r * weight,
+        sums.green + tone.g * weight,
+        sums.blue + tone.b * weight,
+        sums.square + dot(tone, tone) * weight);
+}
+
+// The mean tones of four sectors, each as often as it is calm, and how often that is.
+fn paint_calmest(sums: PaintSectors, hardness: f32) -> vec4f {
+    let share = max(sums.weight, vec4f(1e-9));
+    let red = sums.red / share;
+    let green = sums.green / share;
+    let blue = sums.blue / share;
+    let rough = hardness * max(sums.square / share - (red * red + green * green + blue * blue), vec4f(0.0));
+    let weight = 1.0 / (1.0 + rough * rough);
+    return vec4f(dot(red, weight), dot(green, weight), dot(blue, weight), dot(weight, vec4f(1.0)));
 }
 
 // How far a place belongs to the sectors on the right, below, on the left and above; of all, the neighbors overlap.
