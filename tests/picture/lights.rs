@@ -85,7 +85,7 @@ fn lamps_are_in_the_kernel_only_where_they_shine() {
         judged(&mut renderer, &scene, &view, &stack(effects), &option);
         let key = renderer.key().expect("something was drawn");
         let variants = key.variants(Pass::Resolve);
-        let linked = link::link(&Library::Embedded, &Pass::Resolve.path(), &key, &variants);
+        let linked = link::link(&Library::Embedded, &Pass::Resolve.path(), key, &variants);
         let text = linked.expect("it links").text;
         (key.surface.lights, text.contains("under_lights"))
     };
