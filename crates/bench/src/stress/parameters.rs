@@ -248,6 +248,12 @@ fn all_effects_at_range_ends(context: &mut CaseContext) -> Result<(), EarlyEnd> 
                         .try_for_each(|field| set(&mut stack, effect, field, end))?;
                 }
             }
+            // Samples of glass have no place in the order of drawing.
+            if stack.get("glass").is_some() {
+                stack
+                    .0
+                    .retain(|enabled| enabled.effect.name != "draw_order");
+            }
             if let Some(dots) = stack
                 .get_mut("dots")
                 .filter(|_| context.is_software() && end == Some(0))
