@@ -45,7 +45,8 @@ async function bytesAt(url, most, progress) {
   if (!answer.ok) throw new Error(`${name} cannot be fetched: ${url.host} answers ${answer.status} ${answer.statusText}`.trim());
   const length = Number(answer.headers.get("content-length"));
   if (length > most) {
-    answer.body?.cancel();
+    // What is left may end in an error, which nobody needs to hear of.
+    answer.body?.cancel().catch(() => {});
     throw tooLarge();
   }
   const [parts, reader] = [[], answer.body.getReader()];
@@ -61,7 +62,7 @@ async function bytesAt(url, most, progress) {
     throw new Error(`${name} cannot be fetched: the connection to ${url.host} ended early; load the page again`);
   }
   if (count > most) {
-    reader.cancel();
+    reader.cancel().catch(() => {});
     throw tooLarge();
   }
   return new Uint8Array(await new Blob(parts).arrayBuffer());

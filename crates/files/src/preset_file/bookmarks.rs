@@ -53,15 +53,14 @@ pub fn patch(root: &mut Table, saved: &[Bookmark], now: &[Bookmark]) {
     if saved == now {
         return;
     }
-    if root.get(BOOKMARKS).is_none() {
+    if root.get(BOOKMARKS).is_none_or(|item| !item.is_table_like()) {
         let mut implicit = Table::new();
         implicit.set_implicit(true);
         root.insert(BOOKMARKS, Item::Table(implicit));
     }
-    let tables = root
-        .get_mut(BOOKMARKS)
-        .and_then(Item::as_table_like_mut)
-        .expect("bookmarks were read as a table");
+    let Some(tables) = root.get_mut(BOOKMARKS).and_then(Item::as_table_like_mut) else {
+        return;
+    };
     // Every table is taken out and put back, so that they stand in the order of `now`.
     let mut before: Vec<(&Bookmark, Option<Item>)> = saved
         .iter()
