@@ -97,6 +97,32 @@ fn every_exact_option_composes_crossing_layers_as_the_oracle_does() {
 }
 
 #[test]
+fn tinted_layers_cover_a_translucent_background_as_far_as_they_dim_it() {
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
+    let (scene, mut view) = (soup(&(0..40).collect::<Vec<_>>()), soup_view());
+    view.background = [0.2, 0.5, 0.8, 0.25].into();
+    let mut stack = stack(&["glass"]);
+    let glass = stack.get_mut("glass").expect("just enabled");
+    let tint = glass.effect.field("tint").expect("glass has it");
+    tint.set(&mut glass.words, &[0.9, 0.4, 0.1, 1.0])
+        .expect("a color");
+    let accuracy = AccuracyRequest::default();
+    let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &accuracy, "tinted");
+    let is_between = |color: &[u8; 4]| color[3] > 64 && color[3] < 255;
+    assert!(
+        capture
+            .frame
+            .color
+            .iter()
+            .filter(|color| is_between(color))
+            .count()
+            > 20
+    );
+}
+
+#[test]
 fn no_order_of_triangles_shows() {
     let Some(mut renderer) = renderer() else {
         return;
