@@ -1,6 +1,5 @@
 // Bands: runs of pixels, of equal length, whose layers of glass are drawn one band after another, where those of all pixels at once
 // would take too much memory.
-//@ use lib/frame
 //@ use lib/glass
 //@ use variants/glass_buffer
 
