@@ -236,17 +236,18 @@ impl Renderer {
         }
         self.attach_particles(stack).await?;
         let room = self.history.room_for_layers(view, stack);
-        self.prepare(
-            &Request {
-                view,
-                stack,
-                accuracy,
-                shown,
-                room,
-            },
-            wait,
-        )
-        .await?;
+        let request = Request {
+            view,
+            stack,
+            accuracy,
+            shown,
+            room,
+        };
+        while let Err(error) = self.prepare(&request, wait).await {
+            if !self.makes_do_with_less_glass(&error) {
+                return Err(error);
+            }
+        }
         if view.pixels() == 0 {
             self.presentation = None;
             return Ok(());

@@ -11,7 +11,7 @@ use super::{
     draws::{DrawData, DrawInputs},
     error::RenderError,
     frame_layout::{FrameLayout, LayoutInputs, Region, Span, Target},
-    glass::most_layers,
+    glass::{fewest_bands, most_layers},
     layer_sums::RoomForLayers,
     preparations::Preparation,
     queues::{Capacities, first_capacities, recorded_capacities},
@@ -200,6 +200,7 @@ impl ViewResources {
         let mut capacities = recorded_capacities(key, &self.capacities);
         capacities.glass = capacities.glass.min(most_layers(
             view.pixels() as u64,
+            key.framebuffer.glass_bands,
             &gpu.caps,
             device.tuning.glass_layers,
         ));
@@ -267,8 +268,11 @@ impl ViewResources {
             seen = self.see(&device.gpu, scene, &view, request)?;
             plan = self.plan_of(device, seen, request)?;
         }
-        if request.room.changes(&plan.key) {
-            request.room.make(&mut Arc::make_mut(&mut plan).key);
+        let mut room = request.room;
+        let fewest = fewest_bands(view.pixels() as u64, &device.gpu.caps);
+        room.glass_bands = room.glass_bands.max(fewest);
+        if room.changes(&plan.key) {
+            room.make(&mut Arc::make_mut(&mut plan).key);
         }
         Ok((plan, view, self.seen[seen].draws.clone()))
     }

@@ -72,7 +72,7 @@ pub(super) fn key_of(
             deepest_glass: if caps.software {
                 loops::DEEPEST_GLASS
             } else {
-                u32::MAX
+                loops::DEEPEST_GLASS_OF_CARDS
             },
             paired_sums,
             sums_with_nearest: paired_sums
