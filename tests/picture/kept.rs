@@ -8,9 +8,9 @@ use rasterlab::{
     effect_files::read,
     effects::{Conflict, Effect, Stack},
     measure::compare::pictures,
+    oracle,
     preset::{Clock, Preset, SceneSource},
 };
-use rasterlab_oracle as oracle;
 
 use super::common::{exactness, judged_preset, renderer, scene};
 
@@ -35,7 +35,9 @@ fn trail() -> Arc<Effect> {
 /// A turning knot with these effects.
 fn spinning(effects: &[Arc<Effect>]) -> Preset {
     let mut stack = Stack::default();
-    effects.iter().for_each(|effect| stack.enable(effect));
+    for effect in effects {
+        stack.enable(effect);
+    }
     let mut preset = Preset {
         scene: SceneSource::Builtin("knot?tess=6".into()),
         spin_deg_per_s: 90.0,
@@ -69,7 +71,7 @@ fn a_kept_pass_reads_the_frame_before_and_its_picture_does_not_depend_on_what_wa
     let (capture, verdict) = judged_preset(&mut renderer, &scene, &preset, &Default::default());
     exactness(&verdict.report).unwrap_or_else(|why| panic!("{why}"));
     let far = pictures(&capture.frame.color, &reference.color, 1);
-    assert!(far.pixels_over_tolerance <= 2, "{far:?}");
+    assert!(far.pixels_over_tolerance <= 4, "{far:?}");
     let (again, _) = judged_preset(&mut renderer, &scene, &preset, &Default::default());
     assert!(again.frame == capture.frame, "the same to the bit");
 

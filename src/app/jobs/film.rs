@@ -309,12 +309,12 @@ pub fn export(
     }
     let mut end = None;
     if let Some(look) = &request.from_look_of {
-        let own = preset_file.preset.clone();
-        let accuracy = own.accuracy;
+        let [own, look] =
+            [&preset_file.preset, &**look].map(|preset| preset.in_meters(&scene).into_owned());
         end = Some(preset_file.clone());
         preset_file.preset = Preset {
-            accuracy,
-            ..own.with_look_of((**look).clone())
+            accuracy: own.accuracy,
+            ..own.with_look_of(look)
         };
     }
     let mut film =
