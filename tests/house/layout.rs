@@ -205,8 +205,15 @@ fn every_binding_has_a_resource_and_every_bound_struct_is_shared() {
             );
         }
     }
-    // Kernels bind neither what is only copied nor, without an effect of a file, its pictures.
-    let idle = ["background", "previous", "image_files"];
+    // Kernels bind neither what is only copied nor, without an effect of a file, its pictures and
+    // what it keeps.
+    let idle = [
+        "background",
+        "previous",
+        "image_files",
+        "image_kept",
+        "image_kept_before",
+    ];
     let all = ResourceId::all().filter(|id| !idle.contains(&id.name()));
     let idle: Vec<_> = all
         .filter(|id| !bound.contains(id))

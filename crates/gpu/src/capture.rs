@@ -168,6 +168,10 @@ impl Renderer {
         } else {
             (resolved, None)
         };
+        let kept = match key.kept_pass() {
+            Some(pass) => Some(picture.kept(pass.size([width, height])).await?),
+            None => None,
+        };
         let frame = Frame {
             width,
             height,
@@ -175,6 +179,7 @@ impl Renderer {
             depth_key: depth_keys,
             color,
             resolved,
+            kept,
             layer_sums: picture.layer_sums().await?,
             glass: picture.glass().await?,
             dots: picture.dot_strengths().await?,

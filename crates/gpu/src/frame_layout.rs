@@ -182,11 +182,12 @@ const VISIBLE_MESHLET: u64 = 16;
 /// Bytes of a pixel in linear light.
 const LINEAR_PIXEL: u64 = 16;
 
-/// The pictures that image passes read and write by turns.
-pub const IMAGE_BUFFERS: [BufferId; IMAGE_SLOTS] = [
+/// The pictures that image passes read and write by turns, then the one that a kept pass writes.
+pub const IMAGE_BUFFERS: [BufferId; IMAGE_SLOTS + 1] = [
     BufferId::ImageSource,
     BufferId::ImageBefore,
     BufferId::ImageTarget,
+    BufferId::ImageKept,
 ];
 
 /// Side of a tile of the resolve, which can be dispatched over listed tiles alone; pixels.
@@ -668,6 +669,12 @@ impl FrameLayout {
         self.clear_only(BufferId::Color, has_dots.then_some(Region::DotStrengths));
         for &slot in IMAGE_BUFFERS.iter().take(key.image_slots()) {
             self.add(slot, LINEAR_PIXEL * self.pixels());
+        }
+        if let Some(pass) = key.kept_pass() {
+            let [width, height] = pass.size(self.size).map(u64::from);
+            for buffer in [BufferId::ImageKept, BufferId::ImageKeptBefore] {
+                self.add(buffer, LINEAR_PIXEL * width * height);
+            }
         }
         if key.has_passes() {
             self.add(BufferId::Finished, picture);

@@ -18,7 +18,7 @@ use super::{
 use crate::{
     accuracy::{DepthFormat, PositionFormat, Transparency, VertexTransform, XraySums},
     effects::hooks::Layers,
-    frame::{BitExact, Geometry, GlassHit, GlassLayers, ShadowMap},
+    frame::{BitExact, Geometry, GlassHit, GlassLayers, KeptPass, ShadowMap},
     shader::{
         key::{FramebufferLayout, KernelKey},
         pass::RasterPhase,
@@ -155,6 +155,15 @@ impl Readback<'_> {
     /// The picture, or what is shown of it: gamma-encoded, row-major.
     pub async fn picture(&self, id: BufferId, size: [u32; 2]) -> Result<Vec<[u8; 4]>, RenderError> {
         buffers::read_picture(self.gpu, self.view.buffers.get(id)?, size).await
+    }
+
+    /// What the kept pass of an effect read and wrote, `size` pixels of its own.
+    pub async fn kept(&self, size: [u32; 2]) -> Result<KeptPass, RenderError> {
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        Ok(KeptPass {
+            before: self.elements(BufferId::ImageKeptBefore, pixels).await?,
+            after: self.elements(BufferId::ImageKept, pixels).await?,
+        })
     }
 
     /// The triangles that clipping made, each with its slot in the buffer; by parent and position

@@ -362,6 +362,7 @@ impl Renderer {
             fill_background(encoder, &picture.buffers, &frame.layout)?;
         }
         history.keep_previous(encoder, picture, view, stack)?;
+        history.keep_pass(encoder, picture, view, stack)?;
         history.keep_occluders(encoder, picture, view, stack)?;
         let passes = frame.plan.key.frame();
         // The shadow map comes after the passes that deform the scene for both.

@@ -111,6 +111,8 @@ pub struct Request {
     /// Begin and end, seconds; the end is not drawn.
     pub range_s: [f64; 2],
     pub turntable: Option<Turntable>,
+    /// The preset whose look the first frame has; the last one has its own.
+    pub from_look_of: Option<Box<Preset>>,
     /// Drawn per shown pixel; none: as the preset has it.
     pub scale: Option<RenderScale>,
     /// The person agreed to replace what is there.
@@ -305,8 +307,21 @@ pub fn export(
         Format::Apng => outputs.apng = Some(request.path.clone()),
         Format::Video(_) => outputs.video = Some(VideoTarget::new(&request.path, request.size)?),
     }
-    let film =
+    let mut end = None;
+    if let Some(look) = &request.from_look_of {
+        let [own, look] =
+            [&preset_file.preset, &**look].map(|preset| preset.in_meters(&scene).into_owned());
+        end = Some(preset_file.clone());
+        preset_file.preset = Preset {
+            accuracy: own.accuracy,
+            ..own.with_look_of(look)
+        };
+    }
+    let mut film =
         Film::new(preset_file, scene, schedule, request.turntable).map_err(FilmError::from)?;
+    if let Some(end) = end {
+        film = film.toward(end)?;
+    }
     let gpu = Gpu::open(&AdapterChoice::Named(adapter))
         .block_on()
         .map_err(|error| Failure::Other(error.to_string()))?;

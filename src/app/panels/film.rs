@@ -18,7 +18,7 @@ use crate::{
         widgets::{panel::Panel, size::size_ui, text::cut_middle, theme},
     },
     film::{Turntable, find_ffmpeg},
-    preset::Clock,
+    preset::{Clock, Preset},
 };
 
 const MAX_SIDE: u32 = FilmSettings::MAX_SIDE;
@@ -66,6 +66,9 @@ struct Form {
     fps: f64,
     range_s: [f64; 2],
     turntable: Option<Turntable>,
+    /// The preset that is kept as A, if there is one, and whether the film begins with its look.
+    a: Option<Box<Preset>>,
+    is_from_a: bool,
     scale: Option<RenderScale>,
     has_ffmpeg: bool,
 }
@@ -103,6 +106,8 @@ impl Form {
             fps: last.fps,
             range_s: own_range_s.unwrap_or(session.preset().clock.range_s),
             turntable: None,
+            a: None,
+            is_from_a: false,
             scale: last.scale,
             has_ffmpeg: find_ffmpeg().is_some(),
         }
@@ -116,6 +121,7 @@ impl Form {
             fps: self.fps,
             range_s: self.range_s,
             turntable: self.turntable,
+            from_look_of: self.a.clone().filter(|_| self.is_from_a),
             scale: self.scale,
             replaces,
         }
@@ -160,8 +166,8 @@ impl Form {
 }
 
 impl FilmPanel {
-    /// Shows or hides the dialog, filled in for the open preset.
-    pub fn toggle(&mut self, state: &State) {
+    /// Shows or hides the dialog, filled in for the open preset; `a` is the preset that is kept as A.
+    pub fn toggle(&mut self, state: &State, a: Option<&Preset>) {
         self.is_open = !self.is_open;
         self.takes_focus = self.is_open;
         if !self.is_open || self.running.is_some() {
@@ -173,6 +179,9 @@ impl FilmPanel {
                 form.has_ffmpeg = find_ffmpeg().is_some()
             }
             form => (*form, self.failure) = (Some(Form::new(state, &self.last)), None),
+        }
+        if let Some(form) = &mut self.form {
+            form.a = a.cloned().map(Box::new);
         }
     }
 
@@ -448,9 +457,32 @@ fn form_ui(ui: &mut Ui, form: &mut Form, clock: &Clock, takes_focus: bool) -> bo
                 }
             });
             ui.end_row();
+            if form.a.is_some() {
+                look_ui(ui, &mut form.is_from_a);
+            }
         });
     ui.add_space(theme::HALF);
     is_entered
+}
+
+/// Whether the film goes from the look of the kept preset to that of the open one.
+fn look_ui(ui: &mut Ui, is_from_a: &mut bool) {
+    const LOOKS: [(bool, &str, &str); 2] = [
+        (false, "This preset", "Its own look in every frame"),
+        (
+            true,
+            "From A to B",
+            "The first frame has the look of the preset kept as A, the last one that of this preset, and numbers and colors are in between",
+        ),
+    ];
+    ui.label("Look");
+    ui.horizontal(|ui| {
+        for (from_a, name, hint) in LOOKS {
+            ui.selectable_value(is_from_a, from_a, name)
+                .on_hover_text(hint);
+        }
+    });
+    ui.end_row();
 }
 
 /// What a person reads when a film was stopped: which of its files are there.
