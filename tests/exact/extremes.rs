@@ -122,6 +122,7 @@ const SWEEPS: &[&str] = &[
     "scheduler-order-over-32-bits",
     "million-triangles",
     "ten-million-triangles",
+    "million-instances",
     "thousand-full-screen-triangles",
     "parameters-at-range-ends",
     "all-effects-at-range-ends",

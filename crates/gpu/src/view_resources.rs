@@ -362,6 +362,9 @@ impl ViewResources {
             view: view.clone(),
             attributes: scene.attributes(),
             culls: key.culls(),
+            is_instanced: key.vertices.is_instanced,
+            // A light sees the instances of the picture where that has them.
+            places_instances: self.target != Target::ShadowMap,
             deforms_offscreen: !key.culls() || request.stack.light().is_some(),
             scopes: request.stack.scopes(),
             glass: request.glass(),
@@ -379,7 +382,15 @@ impl ViewResources {
         } else {
             &[]
         };
-        let mut data = DrawData::new(scene.scene(), draws, inputs, boxes, meshlets.as_deref());
+        let before = self.draw_data.take();
+        let mut data = DrawData::new(
+            scene.scene(),
+            draws,
+            inputs,
+            boxes,
+            meshlets.as_deref(),
+            before,
+        );
         data.counts.particles = scene.particle_count();
         self.draw_data = Some(data);
         true
@@ -424,8 +435,9 @@ impl ViewResources {
         let Some(data) = &self.draw_data else {
             return Ok(());
         };
-        let contents: [(BufferId, &[u8]); 5] = [
-            (BufferId::Draws, bytemuck::cast_slice(&data.records)),
+        let contents: [(BufferId, &[u8]); 6] = [
+            (BufferId::Draws, data.records.draws()),
+            (BufferId::Shapes, data.records.shapes()),
             (
                 BufferId::Deforms,
                 bytemuck::cast_slice(&data.deforms.records),
@@ -443,18 +455,11 @@ impl ViewResources {
         {
             self.buffers.write_at(gpu, id, 0, bytes).await?;
         }
+        if is_changed && data.has_new_placements {
+            scene.place_instances(gpu, &data.placements).await?;
+        }
         if new.contains(&BufferId::Meshlets) || new.contains(&BufferId::MeshletLists) {
-            let meshlets = scene.meshlets();
-            let contents: [(BufferId, &[u8]); 2] = [
-                (BufferId::Meshlets, bytemuck::cast_slice(&meshlets.records)),
-                (
-                    BufferId::MeshletLists,
-                    bytemuck::cast_slice(&meshlets.lists),
-                ),
-            ];
-            for (id, bytes) in contents {
-                self.buffers.write_at(gpu, id, 0, bytes).await?;
-            }
+            scene.meshlets().write(gpu, &self.buffers).await?;
         }
         Ok(())
     }
