@@ -30,7 +30,7 @@ use crate::{
 };
 
 /// The plan of a frame, the view on its grid, and that view's draws.
-type PlannedView = (Arc<Plan>, View, Arc<[Draw]>);
+type PlannedView = (Arc<Plan>, View, Arc<Vec<Draw>>);
 
 /// What is to be drawn.
 #[derive(Clone, Copy, Debug)]
@@ -59,7 +59,7 @@ struct Seen {
     /// Scopes of the stack that the draws are for, and which of them are glass.
     scopes: Vec<Scope>,
     glass: GlassDraws,
-    draws: Arc<[Draw]>,
+    draws: Arc<Vec<Draw>>,
     needs: Arc<Needs>,
     /// The same where every path is kept.
     needs_all_paths: Arc<Needs>,
@@ -308,7 +308,7 @@ impl ViewResources {
                 view: view.clone(),
                 scopes,
                 glass,
-                draws: draws.into(),
+                draws: Arc::new(draws),
                 needs: Arc::new(needs),
                 needs_all_paths,
             },
