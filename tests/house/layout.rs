@@ -48,6 +48,8 @@ fn keys() -> Vec<KernelKey> {
     let one = |effect| whole(Visibility::Split32, &[effect]);
     let mut buffered = one(&rasterlab::effects::shadow::EFFECT);
     buffered.work.buffered_shadow_map = true;
+    let mut instanced = plain.clone();
+    instanced.vertices.is_instanced = true;
     vec![
         plain,
         culling,
@@ -56,6 +58,7 @@ fn keys() -> Vec<KernelKey> {
         dots(LineSource::Polyline, DotCulling::Cpu),
         one(&rasterlab::effects::shadow::EFFECT),
         buffered,
+        instanced,
         one(&rasterlab::effects::overdraw::EFFECT),
         one(&rasterlab::effects::xray::EFFECT),
         one(&rasterlab::effects::bloom::EFFECT),

@@ -11,9 +11,9 @@ use super::{
     queues::Capacities,
     records::{
         ClippedTriangleRecord, CounterRecord, CullingUniform, DeformRecord, DispatchArgs,
-        DispatchSize, DotFrame, DotPoints, DotRunRecord, DrawRecord, FrameUniform, InstanceRecord,
-        MeshletRecord, MorphTargetRecord, OrderRecord, PunctualLights, ScalingUniform,
-        VertexRecord,
+        DispatchSize, DotFrame, DotPoints, DotRunRecord, DrawRecord, DrawShapeRecord, FrameUniform,
+        InstanceRecord, InstancedDrawRecord, MeshletRecord, MorphTargetRecord, OrderRecord,
+        PunctualLights, ScalingUniform, VertexRecord,
     },
     resource_id::{BufferId, ClearedBy},
 };
@@ -21,7 +21,7 @@ use crate::{
     accuracy::{Culling, DotCulling},
     effects::{draw_order::Mode, hooks::Layers},
     math::rounded_columns,
-    scene::view::View,
+    scene::{model::MOST_SHAPES, view::View},
     shader::{
         image_passes::IMAGE_SLOTS,
         key::{FramebufferLayout, KernelKey},
@@ -426,10 +426,20 @@ impl FrameLayout {
     fn add_geometry(&mut self, key: &KernelKey) {
         let scene = self.scene;
         // A binding needs at least one element, even for an empty scene.
-        self.add(
-            BufferId::Draws,
-            scene.draws.max(1) * size_of::<DrawRecord>() as u64,
-        );
+        let draw = if key.vertices.is_instanced {
+            let shapes = MOST_SHAPES * size_of::<DrawShapeRecord>();
+            self.add(BufferId::Shapes, shapes as u64);
+            size_of::<InstancedDrawRecord>()
+        } else {
+            size_of::<DrawRecord>()
+        };
+        self.add(BufferId::Draws, scene.draws.max(1) * draw as u64);
+        if key.vertices.is_instanced {
+            self.describe(
+                BufferId::Draws,
+                "matrix and first vertex and triangle, one record per instance",
+            );
+        }
         // The shadow map reuses the deformed vertices of the picture.
         if self.target != Target::ShadowMap {
             if key.deforms() {

@@ -58,6 +58,7 @@ macro_rules! buffers {
 buffers! {
     Frame = "frame", UNIFORM, Nothing, "size, viewpoint, capacities";
     Draws = "draws", STORAGE.union(UNIFORM), Nothing, "matrices and attribute offsets, one record per instance";
+    Shapes = "shapes", UNIFORM.union(STORAGE), Nothing, "what all instances of a primitive share: attribute offsets and base color";
     Effects = "effects", UNIFORM.union(STORAGE), Nothing, "parameters of the stack";
     PunctualLights = "punctual_lights", UNIFORM, Nothing, "lights that come with the scene";
     VertexBytes = "vertex_bytes", STORAGE.union(BufferUsages::VERTEX), Nothing, "attributes as the file has them";
