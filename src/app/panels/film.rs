@@ -1,5 +1,5 @@
 //! Exporting a film: its format, size, rate and range, and how far it is. It is drawn on another
-//! thread and another device.
+//! thread and another device, in a page between the window's frames.
 
 use std::{path::Path, sync::Arc};
 
@@ -90,7 +90,10 @@ impl Form {
         let own_range_s = last
             .range_s
             .filter(|_| last.range_of.as_ref() == Some(&session.preset_file.id));
-        let path = last.format.named(
+        let format = Format::here()
+            .find(|format| *format == last.format)
+            .unwrap_or(Format::Apng);
+        let path = format.named(
             &std::env::current_dir()
                 .unwrap_or_default()
                 .join(format!("{id}-film.png")),
@@ -98,7 +101,7 @@ impl Form {
         Self {
             preset: session.preset_file.id.clone(),
             path: path.display().to_string(),
-            format: last.format,
+            format,
             // Even, as MP4 needs it.
             size: last
                 .size
@@ -324,15 +327,16 @@ impl Panel for FilmPanel {
         }
         let mut is_open = true;
         let area = ui.ctx().content_rect();
+        let width = WIDTH.min(area.width() - 4.0 * theme::GAP);
         egui::Window::new("Export film")
             .open(&mut is_open)
             .collapsible(false)
             .resizable(false)
-            .default_width(WIDTH)
+            .default_width(width)
             .pivot(egui::Align2::CENTER_CENTER)
             .default_pos(area.center())
             .show(ui.ctx(), |ui| {
-                ui.set_width(WIDTH);
+                ui.set_width(width);
                 if let Some((request, progress)) = self.running.clone() {
                     if progress_ui(ui, &request, &progress) {
                         self.stop();
@@ -359,7 +363,7 @@ impl Panel for FilmPanel {
 /// Returns true if Enter was pressed in the path.
 fn form_ui(ui: &mut Ui, form: &mut Form, clock: &Clock, takes_focus: bool) -> bool {
     ui.horizontal(|ui| {
-        for format in Format::ALL {
+        for format in Format::here() {
             if ui
                 .selectable_label(form.format == format, format.name())
                 .clicked()

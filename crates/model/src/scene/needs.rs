@@ -119,7 +119,8 @@ impl Needs {
                 .par_iter()
                 .with_min_len(MANY_DRAWS)
                 .map(|draw| of(&scene.primitives[draw.primitive], draw, view))
-                .reduce(|| 0.0, f64::max)
+                .reduce_with(f64::max)
+                .map_or(0.0, |largest| largest.max(0.0))
         };
         let largest_px = largest(largest_px);
         Self {
