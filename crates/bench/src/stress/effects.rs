@@ -194,8 +194,8 @@ fn layers_of_glass_on_one_pixel(context: &mut CaseContext) -> Result<(), EarlyEn
         equal(&capture.frame.glass.counts(), &vec![count; 4], &what)?;
     }
     let count = if context.is_software() {
-        context.note("40,000 layers stand for a million on a CPU adapter".into());
-        40_000
+        context.note("2,056 layers stand for a million on a CPU adapter".into());
+        2056
     } else {
         1_000_000
     };
