@@ -17,7 +17,7 @@ use super::{
 };
 
 /// Effects with as many features of the language as there are room for.
-pub const EXAMPLES: [&str; 7] = [
+pub const EXAMPLES: [&str; 8] = [
     "// Ink: loops, helpers and every kind of parameter.
 //@ use lib/surface
 //@ use lib/hash

@@ -196,7 +196,7 @@ mod tests {
 
     #[test]
     fn a_line_begins_and_ends_with_a_whole_dash_wherever_it_ends() {
-        for (dash_m, gap_m, spacing_m) in [(0.2, 0.1, 0.01), (0.3, 0.0, 0.07), (0.01, 0.4, 0.05)] {
+        for (dash_m, gap_m, spacing_m) in [(0.2, 0.1, 0.01), (0.3, 0.02, 0.07), (0.01, 0.4, 0.05)] {
             let dots = Dots {
                 dash_m,
                 gap_m,
@@ -212,10 +212,10 @@ mod tests {
                 assert!(row.step_m <= f64::from(spacing_m) * (1.0 + 1e-9));
                 let places = (0..row.count()).map(|dot| row.place_m(dot));
                 assert!(places.is_sorted(), "{row:?}");
-                // No dash is twice as long as it is asked to be, unless the line is too short for one.
+                // Where there are several, they are stretched by half at most.
                 let dash = f64::from(dash_m.max(spacing_m));
                 let drawn = row.step_m * (row.per_dash - 1) as f64;
-                assert!(drawn < 2.0 * dash, "{drawn} m");
+                assert!(row.dashes == 1 || drawn < 1.5 * dash + 1e-9, "{drawn} m");
             }
         }
         let even = Dots::default().row(1.0);
