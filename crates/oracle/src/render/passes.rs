@@ -72,6 +72,7 @@ pub fn passed_colors(
                 source: &source,
                 last: last.as_ref().unwrap_or(&source),
                 signs: perturbation.signs,
+                panorama: shot.scene.panorama.as_deref(),
             };
             let size = pass.size(size);
             let pixels = size[0] as usize * size[1] as usize;
