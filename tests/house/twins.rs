@@ -505,6 +505,7 @@ fn image_passes_agree() {
                         source: &source,
                         last: &last,
                         signs: Signs::None,
+                        panorama: None,
                     };
                     let size = pass.size(size);
                     for i in 0..size[0] * size[1] {
