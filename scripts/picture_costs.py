@@ -56,6 +56,7 @@ ROWS = [
     ("golf balls, studio", GOLF + "[effects.studio]", ""),
     ("8 sheets, opaque", SHEETS, ""),
     ("8 sheets of glass, exact", SHEETS + "[effects.glass]", ""),
+    ("its passes that sort and compose", SHEETS + "[effects.glass]", "glass_compose"),
     ("8 sheets of glass, nearest4", SHEETS + '[effects.glass]\n[accuracy]\ntransparency = "nearest4"', ""),
     ("8 sheets of glass, weighted", SHEETS + '[effects.glass]\n[accuracy]\ntransparency = "weighted"', ""),
     ("town, lambert", TOWN, ""),

@@ -17,8 +17,9 @@ case "${1:-}" in
 esac
 
 target="${CARGO_TARGET_DIR:-target}"
-# Together, so that the crates that both have are compiled once.
-cargo build --profile web -p rasterlab-page -p rasterlab-window --target wasm32-unknown-unknown
+# All crates of the page as one compilation, which makes it smaller; that of the window would take many minutes.
+CARGO_PROFILE_WEB_LTO=fat cargo build --profile web -p rasterlab-page --target wasm32-unknown-unknown
+cargo build --profile web -p rasterlab-window --target wasm32-unknown-unknown
 
 # The command must have the version of the crate; setup.sh installs it into the target folder.
 wasm_bindgen="$target/web/bin/wasm-bindgen"

@@ -5,6 +5,7 @@
 //@ use lib/triangle
 //@ use lib/surface
 //@ use lib/color
+//@ use variants/draw_records
 //@ use glue/surface
 
 // ---- Materials that are a base color and nothing else.
@@ -25,8 +26,8 @@ fn hardware_vertex(@location(0) position: vec3f, @location(1) normal: vec3f, @bu
 fn hardware_projected(position: vec3f, normal: vec3f, draw: u32) -> Varyings {
     var v: Varyings;
     v.at = draws[draw].clip_from_object * vec4f(position, 1.0);
-    v.position = (draws[draw].world_from_object * vec4f(position, 1.0)).xyz;
-    v.normal = (draws[draw].normal_from_object * vec4f(normal, 0.0)).xyz;
+    v.position = draw_point(draw, position);
+    v.normal = draw_normal(draw, normal);
     if (draws[draw].flags & DRAW_UNEVEN) != 0u { v.normal = normalize(v.normal) * length(normal); }
     v.depth_m = v.at.w;
     v.draw = draw;
@@ -36,7 +37,7 @@ fn hardware_projected(position: vec3f, normal: vec3f, draw: u32) -> Varyings {
 @fragment
 fn hardware_fragment(v: Varyings, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
     var s = hardware_surface(v, is_front);
-    s.color = draws[v.draw].base_color;
+    s.color = draw_base_color(v.draw);
     return hardware_encoded(glue_surface(s, v.draw));
 }
 
@@ -104,7 +105,7 @@ fn hardware_painted_vertex(
     let emission = vec3f(emission_texcoord, 1.0);
     let base_uv = vec2f(dot(hardware_material.base_u.xyz, base), dot(hardware_material.base_v.xyz, base));
     let emission_uv = vec2f(dot(hardware_material.emission_u.xyz, emission), dot(hardware_material.emission_v.xyz, emission));
-    return PaintedVaryings(v.at, v.position, v.normal, v.depth_m, v.draw, base_uv, emission_uv, color * draws[draw].base_color);
+    return PaintedVaryings(v.at, v.position, v.normal, v.depth_m, v.draw, base_uv, emission_uv, color * draw_base_color(draw));
 }
 
 // What the images say of a fragment, linear RGB.

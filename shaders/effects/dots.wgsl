@@ -12,6 +12,8 @@ struct Dots {
     hidden_opacity: f32,
     bias: f32,
     show_model: u32,
+    dash_m: f32,
+    gap_m: f32,
 }
 
 const DOTS_FULL = 256u;

@@ -1,6 +1,7 @@
 // Vertex attributes, pulled from the bytes of the file by offset, stride and component type.
 // Format word: component type - 5120 in bits 0 to 2 (glTF's numbers), normalized in bit 3, component count from bit 8 on.
 //@ use lib/triangle
+//@ use variants/draw_records
 //@ use variants/loads
 
 const PULL_I8 = 0u;
@@ -71,11 +72,12 @@ override PACKED_POSITION_BITS: u32 = 0u;
 fn position_bits(draw: u32, vertex: u32) -> vec3u {
     if PACKED_POSITION_BITS == 10u { return position_packed10(draw, vertex); }
     if PACKED_POSITION_BITS == 16u { return position_packed16(draw, vertex); }
-    let byte = draws[draw].position_offset + vertex * draws[draw].position_stride;
+    let positions = draw_positions(draw);
+    let byte = positions.offset + vertex * positions.stride;
     if F32_POSITIONS {
         return load_words3(byte / 4u);
     }
-    return pull_bits3(draws[draw].position_format, byte);
+    return pull_bits3(positions.format, byte);
 }
 
 // Rejected components of packed positions: NaN, and 2^127.
@@ -85,9 +87,9 @@ const POSITION_OUT_OF_RANGE = 0x7f000000u;
 // One word per vertex: ten bits per component, x lowest, in steps of the primitive's box. The two bits above tell that the
 // file's position is rejected: 1 for NaN or infinity, 2 for out of range.
 fn position_packed10(draw: u32, vertex: u32) -> vec3u {
-    let word = load_word(draws[draw].position_offset / 4u + vertex);
+    let word = load_word(draw_positions(draw).offset / 4u + vertex);
     let steps = vec3f((vec3u(word) >> vec3u(0u, 10u, 20u)) & vec3u(1023u));
-    let position = draws[draw].origin.xyz + draws[draw].step.xyz * steps;
+    let position = draw_origin(draw) + draw_step(draw) * steps;
     let rejected = select(POSITION_OUT_OF_RANGE, POSITION_NAN, (word & 0x40000000u) != 0u);
     return select(bitcast<vec3u>(position), vec3u(rejected), vec3<bool>((word >> 30u) != 0u));
 }
@@ -95,10 +97,10 @@ fn position_packed10(draw: u32, vertex: u32) -> vec3u {
 // Two words per vertex: sixteen bits per component, in steps of the primitive's box. The upper half of the second word tells
 // that the file's position is rejected, as above.
 fn position_packed16(draw: u32, vertex: u32) -> vec3u {
-    let at = draws[draw].position_offset / 4u + 2u * vertex;
+    let at = draw_positions(draw).offset / 4u + 2u * vertex;
     let words = vec2u(load_word(at), load_word(at + 1u));
     let steps = vec3f(vec3u(words.x & 0xffffu, words.x >> 16u, words.y & 0xffffu));
-    let position = draws[draw].origin.xyz + draws[draw].step.xyz * steps;
+    let position = draw_origin(draw) + draw_step(draw) * steps;
     let rejected = select(POSITION_OUT_OF_RANGE, POSITION_NAN, (words.y & 0x10000u) != 0u);
     return select(bitcast<vec3u>(position), vec3u(rejected), vec3<bool>((words.y >> 16u) != 0u));
 }
@@ -108,11 +110,12 @@ override F32_NORMALS: bool = false;
 
 // A stored normal, as bits.
 fn normal_bits(draw: u32, vertex: u32) -> vec3u {
-    let byte = draws[draw].normal_offset + vertex * draws[draw].normal_stride;
+    let normals = draw_normals(draw);
+    let byte = normals.offset + vertex * normals.stride;
     if F32_NORMALS {
         return load_words3(byte / 4u);
     }
-    return pull_bits3(draws[draw].normal_format, byte);
+    return pull_bits3(normals.format, byte);
 }
 
 // A normal from its bits; w is 0 where a component is not finite or 2^40 and more.
@@ -126,9 +129,10 @@ override HAS_COLORS: bool = false;
 
 // Color of a vertex, RGBA; white where a component is not finite or 2^40 and more.
 fn vertex_color(draw: u32, vertex: u32) -> vec4f {
-    let format = draws[draw].color_format;
+    let colors = draw_colors(draw);
+    let format = colors.format;
     if !HAS_COLORS || format == 0u { return vec4f(1.0); }
-    let byte = draws[draw].color_offset + vertex * draws[draw].color_stride;
+    let byte = colors.offset + vertex * colors.stride;
     let rgb = pull_vec3(format, byte);
     let alpha = select(1.0, pull_component(format, byte + 3u * pull_bytes(format)), (format >> 8u) == 4u);
     let bits = bitcast<vec4u>(vec4f(rgb, alpha));

@@ -3,6 +3,7 @@
 //@ use lib/frame
 //@ use lib/triangle
 //@ use lib/geometry
+//@ use variants/draw_records
 
 struct Box {
     center: vec3f,
@@ -22,7 +23,7 @@ const EXTENT_ERROR = 7.62939453125e-6; // 2^-17
 
 // An object-space position as the draw's matrix expects it.
 fn extent_position(draw: u32, position: vec3f) -> vec3f {
-    return select(position, position - draws[draw].origin.xyz, vec3<bool>(IS_RELATIVE));
+    return select(position, position - draw_origin(draw), vec3<bool>(IS_RELATIVE));
 }
 
 fn extent_of(draw: u32, box: Box) -> Extent {

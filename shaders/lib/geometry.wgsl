@@ -2,6 +2,7 @@
 //@ use lib/frame
 //@ use lib/triangle
 //@ use lib/attributes
+//@ use variants/draw_records
 
 // Positions are taken relative to the draw's origin, which lies near the eye, before the matrix is applied.
 override IS_RELATIVE: bool = false;
@@ -11,7 +12,7 @@ override IS_PERSPECTIVE: bool = true;
 // Clip-space position of an object-space position.
 fn transform_clip(draw: u32, position: vec3f) -> vec4f {
     var p = position;
-    if IS_RELATIVE { p -= draws[draw].origin.xyz; }
+    if IS_RELATIVE { p -= draw_origin(draw); }
     let m = draws[draw].clip_from_object;
     return m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3];
 }
@@ -27,7 +28,7 @@ fn center_world(draw: u32, at: vec3u) -> vec3f {
 
 // The same from corners in object space.
 fn center_of(draw: u32, a: vec3f, b: vec3f, c: vec3f) -> vec3f {
-    return (draws[draw].world_from_object * vec4f((a + b + c) / 3.0, 1.0)).xyz;
+    return draw_point(draw, (a + b + c) / 3.0);
 }
 
 // 0 to 1 across the picture, for a triangle that is not clipped: corners are weighted by w, as the center of the plane is.

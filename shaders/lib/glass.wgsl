@@ -1,7 +1,7 @@
 // Layers of glass: what one does to the linear color behind it, and where the layers of all pixels lie. They stand in words behind
 // the pixels of the framebuffer, since portable adapters bind eight storage buffers to a pass, and raster_medium has no ninth:
-// the head of every pixel's list, 0 or 1 + the number of its first node; counts (`gpu::records::GlassRecord`); what the layers
-// of every pixel compose to; and the nodes.
+// the head of the list of every pixel of a band (lib/glass_band), 0 or 1 + the number of its first node; counts
+// (`gpu::glass::GlassRecord`); the opaque triangle of every pixel of the picture; and the nodes.
 //@ use lib/frame
 //@ use lib/surface
 
@@ -19,24 +19,36 @@ const GLASS_COUNTS = 8u;
 const GLASS_COUNT_BAND = 1u;
 const GLASS_COUNT_MOST = 2u;
 const GLASS_COUNT_DEEP = 3u;
-// Words of what the layers of a pixel compose to: the complemented id of the opaque triangle behind them, 0 for none, and a layer.
-const GLASS_COMPOSED = 4u;
-// Words of a node: depth key, triangle id, next node as in a head, and a layer.
+// Words of a node: depth key, triangle id, next node as in a head, and three of a layer. Nodes stand in blocks, in which the same word
+// of all nodes is a row: neighbors that write at once write whole rows.
 const GLASS_NODE = 6u;
-const GLASS_NODE_ID = 1u;
-const GLASS_NODE_NEXT = 2u;
-const GLASS_NODE_LAYER = 3u;
+const GLASS_BLOCK = 32u;
+// Words from the first word of a node to its others.
+const GLASS_NODE_ID = GLASS_BLOCK;
+const GLASS_NODE_NEXT = 2u * GLASS_BLOCK;
+const GLASS_NODE_LAYER = 3u * GLASS_BLOCK;
+
+// Bands of pixels that are drawn one after another.
+override GLASS_BANDS: u32 = 1u;
 
 // Layers of a band from which on they are not counted, so that the count does not overflow.
 const GLASS_MOST = 0x80000000u;
 
-// Words behind the last pixel, where each begins; heads begin at 0.
-fn glass_counts() -> u32 { return frame.size.x * frame.size.y; }
-fn glass_composed(pixel: u32) -> u32 { return glass_counts() + GLASS_COUNTS + GLASS_COMPOSED * pixel; }
-fn glass_node(link: u32) -> u32 { return glass_composed(frame.size.x * frame.size.y) + GLASS_NODE * (link - 1u); }
+// Pixels of a band.
+fn glass_band_length() -> u32 { return (frame.size.x * frame.size.y + GLASS_BANDS - 1u) / GLASS_BANDS; }
+
+// Words behind the last pixel, where each begins; heads begin at 0. That of the opaque triangle holds its complemented id, 0 for none.
+fn glass_counts() -> u32 { return glass_band_length(); }
+fn glass_opaque(pixel: u32) -> u32 { return glass_counts() + GLASS_COUNTS + pixel; }
+fn glass_nodes() -> u32 { return glass_opaque(frame.size.x * frame.size.y); }
+
+fn glass_node(link: u32) -> u32 {
+    let node = link - 1u;
+    return glass_nodes() + node / GLASS_BLOCK * (GLASS_BLOCK * GLASS_NODE) + node % GLASS_BLOCK;
+}
 
 // Nodes that so many words behind the last pixel hold.
-fn glass_room(words: u32) -> u32 { return (words - glass_node(1u)) / GLASS_NODE; }
+fn glass_room(words: u32) -> u32 { return (words - glass_nodes()) / (GLASS_BLOCK * GLASS_NODE) * GLASS_BLOCK; }
 
 // The layer of a shaded surface whose material blends.
 fn glass_blended(s: Surface) -> GlassLayer {

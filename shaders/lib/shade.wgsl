@@ -7,6 +7,7 @@
 //@ use lib/geometry
 //@ use lib/shape
 //@ use lib/surface
+//@ use variants/draw_records
 //@ use variants/loads
 //@ use variants/vertex_effects
 //@ use steps/shade_step
@@ -137,12 +138,12 @@ fn draw_smooth_normal(draw: u32, a: vec4f, b: vec4f, c: vec4f, weights: vec3f) -
     if (flags & DRAW_UNEVEN) != 0u && (any(a.xyz != b.xyz) || any(a.xyz != c.xyz)) {
         return normal_direction(normal_interpolated(draw_even_normal(draw, a), draw_even_normal(draw, b), draw_even_normal(draw, c), weights));
     }
-    return normal_direction((draws[draw].normal_from_object * vec4f(normal_interpolated(a, b, c, weights), 0.0)).xyz);
+    return normal_direction(draw_normal(draw, normal_interpolated(a, b, c, weights)));
 }
 
 // A corner's normal in world space, as long as in object space.
 fn draw_even_normal(draw: u32, n: vec4f) -> vec4f {
-    return vec4f(normal_direction((draws[draw].normal_from_object * vec4f(n.xyz, 0.0)).xyz) * length(n.xyz), n.w);
+    return vec4f(normal_direction(draw_normal(draw, n.xyz)) * length(n.xyz), n.w);
 }
 
 // The surface at a pixel's sample, before surface effects.
@@ -157,7 +158,6 @@ fn shade_surface(pixel: vec2u) -> Surface {
         position = sample_unclipped(t, pixel);
     }
     let k = position.weights;
-    let normal_from_object = draws[t.draw].normal_from_object;
 
     var s: Surface;
     s.triangle_id = id;
@@ -182,7 +182,7 @@ fn shade_surface(pixel: vec2u) -> Surface {
         s.position = frame.eye.xyz + aside + frame.forward.xyz * s.depth_m;
         s.view = -frame.forward.xyz;
     }
-    s.color = draws[t.draw].base_color
+    s.color = draw_base_color(t.draw)
         * (vertex_color(t.draw, at.x) * k.x + vertex_color(t.draw, at.y) * k.y + vertex_color(t.draw, at.z) * k.z);
 
     let na = normal_bits(t.draw, at.x);
@@ -192,7 +192,7 @@ fn shade_surface(pixel: vec2u) -> Surface {
     var has_direction = true;
     if !HAS_PLANES {
         let sum = bitcast<vec3f>(na) * k.x + bitcast<vec3f>(nb) * k.y + bitcast<vec3f>(nc) * k.z;
-        s.normal = normalize((normal_from_object * vec4f(sum, 0.0)).xyz);
+        s.normal = normalize(draw_normal(t.draw, sum));
         s.flat_normal = s.normal;
     } else {
         let smooth_normal = draw_smooth_normal(t.draw, normal_from_bits(na), normal_from_bits(nb), normal_from_bits(nc), k);
@@ -202,7 +202,7 @@ fn shade_surface(pixel: vec2u) -> Surface {
         s.center = center_world(t.draw, at);
         let normals = vertex_effects_normals(
             smooth_normal,
-            normal_direction((normal_from_object * vec4f(normal_of_plane(a, b, c), 0.0)).xyz), k);
+            normal_direction(draw_normal(t.draw, normal_of_plane(a, b, c))), k);
         s.normal = normals[0];
         s.flat_normal = normals[1];
         let has_smooth = any(s.normal != vec3f(0.0));

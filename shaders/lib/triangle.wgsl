@@ -1,12 +1,14 @@
 // Triangles: the draws that they belong to, the vertices that they join, and their three snapped vertices.
-// Mirrors `gpu::records::DrawRecord` and `frame::SnappedVertex`.
+// Mirrors `gpu::records::{DrawRecord, InstancedDrawRecord, DrawShapeRecord}` and `frame::SnappedVertex`.
 //@ use lib/frame
 //@ use lib/fixed
 //@ use glue/draws
 //@ use glue/index_bytes
+//@ use variants/draw_records
 //@ use variants/loads
 
-// ---- Draws. `draws` is a uniform where the scene has one draw, else a storage buffer: the glue declares it.
+// ---- Draws. `draws` is a uniform where the scene has one draw, else a storage buffer: the glue declares it. Its records are
+// `InstancedDraw` where many instances show few primitives; `variants/draw_records` reads what the two kinds keep in different places.
 
 struct Draw {
     clip_from_object: mat4x4f,
@@ -37,6 +39,45 @@ struct Draw {
     spare_2: u32,
 }
 
+// A draw whose primitive is described in `shapes`. Its matrices to the world lie behind the attributes.
+struct InstancedDraw {
+    clip_from_object: mat4x4f,
+    first_vertex: u32,
+    first_triangle: u32,
+    flags: u32,                  // as in `Draw`; the index of its primitive is that of its shape
+    scopes: u32,
+}
+
+// What all instances of a primitive share; members are those of `Draw`.
+struct DrawShape {
+    base_color: vec4f,
+    origin: vec4f,
+    step: vec4f,
+    vertex_count: u32,
+    topology: u32,
+    index_offset: u32,
+    index_format: u32,
+    position_offset: u32,
+    position_stride: u32,
+    position_format: u32,
+    normal_offset: u32,
+    normal_stride: u32,
+    normal_format: u32,
+    color_offset: u32,
+    color_stride: u32,
+    color_format: u32,
+    first_placement: u32,        // word of the attributes at which the matrices of all instances begin
+    spare_0: u32,
+    spare_1: u32,
+}
+
+// Where the values of an attribute lie, in bytes, and how.
+struct AttributePlace {
+    offset: u32,
+    stride: u32,
+    format: u32,
+}
+
 const DRAW_DOUBLE_SIDED = 1u;
 const DRAW_MIRRORED = 2u;
 const DRAW_PARTICLES = 4u;
@@ -58,20 +99,20 @@ const TOPOLOGY_FAN = 2u;
 // Vertex within its draw at a position of the draw's index list; an index out of range means the last vertex.
 fn index_at(draw: u32, position: u32) -> u32 {
     if !HAS_INDICES { return position; }
-    let first = draws[draw].index_offset;
-    if U32_INDICES { return min(index_bytes[first / 4u + position], draws[draw].vertex_count - 1u); }
-    let bytes = draws[draw].index_format;
+    let first = draw_index_offset(draw);
+    if U32_INDICES { return min(index_bytes[first / 4u + position], draw_vertex_count(draw) - 1u); }
+    let bytes = draw_index_format(draw);
     if bytes == 0u { return position; }
     let byte = first + position * bytes;
     let index = extractBits(index_bytes[byte / 4u], (byte % 4u) * 8u, bytes * 8u);
-    return min(index, draws[draw].vertex_count - 1u);
+    return min(index, draw_vertex_count(draw) - 1u);
 }
 
 // Vertices within the draw of the corners of its triangle `t`, in glTF's order.
 fn triangle_vertices(draw: u32, t: u32) -> vec3u {
     var positions = vec3u(3u * t, 3u * t + 1u, 3u * t + 2u);
     if !ONLY_TRIANGLE_LISTS {
-        let topology = draws[draw].topology;
+        let topology = draw_topology(draw);
         if topology == TOPOLOGY_STRIP { positions = vec3u(t, t + 1u + (t & 1u), t + 2u - (t & 1u)); }
         if topology == TOPOLOGY_FAN { positions = vec3u(t + 1u, t + 2u, 0u); }
     }

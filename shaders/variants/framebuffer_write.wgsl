@@ -173,27 +173,33 @@ fn framebuffer_write(pixel: u32, key: u32, id: u32) {
 //@ use glue/glass
 //@ use variants/glass_buffer
 
+var<private> first_of_band: u32;
+
 fn framebuffer_begin(id: u32) -> bool {
     shade_begin(id);
+    first_of_band = glass_band_first();
     return (draws[shaded.draw].flags & DRAW_GLASS) != 0u;
 }
 
 fn framebuffer_end(id: u32) {}
 
 fn framebuffer_write(pixel: u32, key: u32, id: u32) {
-    if !glass_band_has(pixel) || glass_buffer_hides(pixel, key) || glass_buffer_load(glass_counts()) >= GLASS_MOST { return; }
-    let surface = glue_surface(shade_surface(vec2u(pixel % frame.size.x, pixel / frame.size.x)), shaded.draw);
-    let layer = glass_packed(glue_glass(surface, shaded.draw));
+    if !glass_band_has(first_of_band, pixel) || glass_buffer_hides(pixel, key) { return; }
     let link = glass_buffer_add(glass_counts(), 1u) + 1u;
     // The count keeps the true demand: what does not fit is drawn again with more room.
-    if link > glass_room(glass_buffer_words()) { return; }
+    if link > glass_room(glass_buffer_words()) {
+        if link > GLASS_MOST { glass_buffer_add(glass_counts(), 0xffffffffu); }
+        return;
+    }
+    let surface = glue_surface(shade_surface(vec2u(pixel % frame.size.x, pixel / frame.size.x)), shaded.draw);
+    let layer = glass_packed(glue_glass(surface, shaded.draw));
     let node = glass_node(link);
     glass_buffer_store(node, key);
     glass_buffer_store(node + GLASS_NODE_ID, id);
     glass_buffer_store(node + GLASS_NODE_LAYER, layer.x);
-    glass_buffer_store(node + GLASS_NODE_LAYER + 1u, layer.y);
-    glass_buffer_store(node + GLASS_NODE_LAYER + 2u, layer.z);
-    glass_buffer_store(node + GLASS_NODE_NEXT, glass_buffer_exchange(pixel, link));
+    glass_buffer_store(node + GLASS_NODE_LAYER + GLASS_BLOCK, layer.y);
+    glass_buffer_store(node + GLASS_NODE_LAYER + 2u * GLASS_BLOCK, layer.z);
+    glass_buffer_store(node + GLASS_NODE_NEXT, glass_buffer_exchange(pixel - first_of_band, link));
 }
 
 //@ variant sample_counts

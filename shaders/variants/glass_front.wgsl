@@ -1,10 +1,10 @@
 // Glass front: the nearest triangle of a pixel, opaque until the layers of glass before it are composed, then the first of these.
 // Chosen by the layout of the framebuffer (accuracy axis `visibility`). Default: split32.
 //
-// Complemented id of the triangle; 0 for none.
-//@ declare fn glass_front_id(pixel: u32) -> u32
-// Is a sample nearer than that triangle? Of equal keys the smaller id is.
-//@ declare fn glass_front_is_behind(pixel: u32, key: u32, id: u32) -> bool
+// What the framebuffer holds of it, and in y its complemented id, 0 for none.
+//@ declare fn glass_front_load(pixel: u32) -> vec2u
+// Is a sample nearer than the triangle of which that was loaded? Of equal keys the smaller id is.
+//@ declare fn glass_front_is_behind(front: vec2u, key: u32, id: u32) -> bool
 //@ declare fn glass_front_store(pixel: u32, key: u32, id: u32)
 
 //@ variant split32
@@ -12,11 +12,10 @@
 //@ binding @group(0) @binding(5) var<storage, read_write> depth_keys: array<atomic<u32>>;
 //@ binding @group(0) @binding(6) var<storage, read_write> triangle_ids: array<u32>;
 
-fn glass_front_id(pixel: u32) -> u32 { return triangle_ids[pixel]; }
+fn glass_front_load(pixel: u32) -> vec2u { return vec2u(atomicLoad(&depth_keys[pixel]), triangle_ids[pixel]); }
 
-fn glass_front_is_behind(pixel: u32, key: u32, id: u32) -> bool {
-    let there = atomicLoad(&depth_keys[pixel]);
-    return key > there || (key == there && ~id > triangle_ids[pixel]);
+fn glass_front_is_behind(front: vec2u, key: u32, id: u32) -> bool {
+    return key > front.x || (key == front.x && ~id > front.y);
 }
 
 fn glass_front_store(pixel: u32, key: u32, id: u32) {
@@ -29,14 +28,12 @@ fn glass_front_store(pixel: u32, key: u32, id: u32) {
 //@ use lib/packed32
 //@ binding @group(0) @binding(5) var<storage, read_write> packed: array<atomic<u32>>;
 
-fn glass_front_id(pixel: u32) -> u32 {
+fn glass_front_load(pixel: u32) -> vec2u {
     let word = atomicLoad(&packed[pixel]);
-    return select(packed32_unpacked(word).x, 0u, word == 0u);
+    return vec2u(word, select(packed32_unpacked(word).x, 0u, word == 0u));
 }
 
-fn glass_front_is_behind(pixel: u32, key: u32, id: u32) -> bool {
-    return packed32_word(key, id) > atomicLoad(&packed[pixel]);
-}
+fn glass_front_is_behind(front: vec2u, key: u32, id: u32) -> bool { return packed32_word(key, id) > front.x; }
 
 fn glass_front_store(pixel: u32, key: u32, id: u32) { atomicStore(&packed[pixel], packed32_word(key, id)); }
 
@@ -44,11 +41,12 @@ fn glass_front_store(pixel: u32, key: u32, id: u32) { atomicStore(&packed[pixel]
 // The halves of a 64-bit word.
 //@ binding @group(0) @binding(5) var<storage, read_write> depth_and_id: array<atomic<u32>>;
 
-fn glass_front_id(pixel: u32) -> u32 { return atomicLoad(&depth_and_id[2u * pixel]); }
+fn glass_front_load(pixel: u32) -> vec2u {
+    return vec2u(atomicLoad(&depth_and_id[2u * pixel + 1u]), atomicLoad(&depth_and_id[2u * pixel]));
+}
 
-fn glass_front_is_behind(pixel: u32, key: u32, id: u32) -> bool {
-    let there = atomicLoad(&depth_and_id[2u * pixel + 1u]);
-    return key > there || (key == there && ~id > atomicLoad(&depth_and_id[2u * pixel]));
+fn glass_front_is_behind(front: vec2u, key: u32, id: u32) -> bool {
+    return key > front.x || (key == front.x && ~id > front.y);
 }
 
 fn glass_front_store(pixel: u32, key: u32, id: u32) {

@@ -96,6 +96,7 @@ fn projection_cut_record(clip: ClipPosition, planes: u32) -> vec4u {
 //@ use lib/geometry
 //@ use lib/softfloat
 //@ use lib/snap
+//@ use variants/draw_records
 
 // Bits of x, y, z, w.
 alias ClipPosition = vec4u;
@@ -113,7 +114,7 @@ fn projection_row(m: vec4f, p: vec3u) -> u32 {
 fn projection_clip(draw: u32, position: vec3u) -> ClipPosition {
     var p = position;
     if IS_RELATIVE {
-        let origin = bitcast<vec3u>(draws[draw].origin.xyz);
+        let origin = bitcast<vec3u>(draw_origin(draw));
         p = vec3u(softfloat_subtract(p.x, origin.x), softfloat_subtract(p.y, origin.y), softfloat_subtract(p.z, origin.z));
     }
     let rows = transpose(draws[draw].clip_from_object);

@@ -177,6 +177,7 @@ fn shade_step_finish_maps(surface: Surface, t: Triangle, at: vec3u, position: Sa
 //@ use lib/shade
 //@ use lib/material_atlas
 //@ use lib/map_atlas
+//@ use variants/draw_records
 //@ use variants/shade_step
 
 // Shortest part of a tangent, of the whole, that makes a direction on the surface. Shorter ones fade.
@@ -216,8 +217,8 @@ fn tangent_at(t: Triangle, at: vec3u, weights: vec3f, tangents: u32) -> vec4f {
     let a = floats_of_class(position_bits(t.draw, at.x), 0u);
     let ab = floats_of_class(position_bits(t.draw, at.y), 0u) - a;
     let ac = floats_of_class(position_bits(t.draw, at.z), 0u) - a;
-    let tangent = draws[t.draw].world_from_object * vec4f(ab * factors.x + ac * factors.y, 0.0);
-    return vec4f(tangent.xyz, select(1.0, -1.0, factors.z < 0.0));
+    let tangent = draw_vector(t.draw, ab * factors.x + ac * factors.y);
+    return vec4f(tangent, select(1.0, -1.0, factors.z < 0.0));
 }
 
 //@ step shadow_map

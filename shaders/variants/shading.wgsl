@@ -56,20 +56,19 @@ fn shading_color(id: u32, pixel: vec2u) -> vec4f {
 //@ use lib/picture
 //@ use lib/shade
 //@ use lib/glass
+//@ use lib/glass_composed
 //@ use glue/surface
 //@ use variants/framebuffer_read
 
 fn shading_color(id: u32, pixel: vec2u) -> vec4f {
     let index = pixel.y * frame.size.x + pixel.x;
-    let word = glass_composed(index);
-    let is_seen_through = framebuffer_load_behind(index) != 0u;
-    let opaque = select(~id, framebuffer_load_behind(word), is_seen_through);
+    let opaque = framebuffer_load_behind(glass_opaque(index));
+    let is_seen_through = opaque != ~id;
     shade_begin(select(0u, ~opaque, opaque != 0u));
     let surface = glue_surface(shade_surface(pixel), shaded.draw);
     let behind = select(vec4f(color_decode(background.rgb), background.a), surface.color, opaque != 0u);
     if !is_seen_through { return behind; }
-    let layer = glass_unpacked(vec3u(
-        framebuffer_load_behind(word + 1u), framebuffer_load_behind(word + 2u), framebuffer_load_behind(word + 3u)));
+    let layer = glass_composed_load(index);
     let passed = dot(layer.passed, vec3f(1.0 / 3.0));
     return vec4f(behind.rgb * layer.passed + layer.added, 1.0 + (behind.a - 1.0) * passed);
 }

@@ -43,6 +43,7 @@ fn vertex_effects_normals(smooth_normal: vec3f, flat_normal: vec3f, weights: vec
 //@ use lib/vertex
 //@ use lib/attributes
 //@ use lib/geometry
+//@ use variants/draw_records
 // What a corner knows before the effects, beyond its own vertex: triangle where an effect moves corners triangle by triangle.
 //@ steps fn corner_step(v: Vertex, draw: u32, id: u32, p: vec3f) -> Vertex
 //@ use glue/vertex
@@ -50,12 +51,12 @@ fn vertex_effects_normals(smooth_normal: vec3f, flat_normal: vec3f, weights: vec
 // The stored normal in world space, of any length; zero where there is none.
 fn vertex_effects_stored_normal(draw: u32, vertex: u32) -> vec3f {
     let stored = normal_from_bits(normal_bits(draw, vertex));
-    return (draws[draw].normal_from_object * vec4f(stored.xyz, 0.0)).xyz;
+    return draw_normal(draw, stored.xyz);
 }
 
 // A corner after the effects.
 fn vertex_effects_corner(draw: u32, vertex: u32, id: u32, p: vec3f) -> Vertex {
-    let position = clamp_world((draws[draw].world_from_object * vec4f(p, 1.0)).xyz);
+    let position = clamp_world(draw_point(draw, p));
     let normal = normal_direction(vertex_effects_stored_normal(draw, vertex));
     let v = Vertex(position, vec3f(0.0), normal, vec3f(0.0), position, vec3f(0.0), vec2f(0.0), 0u, 0u);
     return glue_vertex(corner_step(v, draw, id, p), draw);
@@ -127,9 +128,8 @@ fn vertex_effects_begin(id: u32, draw: u32, at: vec3u) {
         if i == 0u { a = v; } else if i == 1u { b = v; } else { c = v; }
     }
     moved.is_deformed = any(a.offset != b.offset) || any(a.offset != c.offset);
-    let m = draws[draw].world_from_object;
-    let ab = (m * vec4f(pb - pa, 0.0)).xyz + (b.offset - a.offset);
-    let ac = (m * vec4f(pc - pa, 0.0)).xyz + (c.offset - a.offset);
+    let ab = draw_vector(draw, pb - pa) + (b.offset - a.offset);
+    let ac = draw_vector(draw, pc - pa) + (c.offset - a.offset);
     let plane = normal_direction(normal_of_plane(vec3f(0.0), ab, ac));
     moved.flat_normal = select(plane, -plane, (draws[draw].flags & DRAW_MIRRORED) != 0u);
 
@@ -166,6 +166,7 @@ fn vertex_effects_normals(smooth_normal: vec3f, flat_normal: vec3f, weights: vec
 //@ use lib/vertex
 //@ use lib/attributes
 //@ use lib/geometry
+//@ use variants/draw_records
 
 fn corner_step_triangle(v: Vertex, draw: u32, id: u32, p: vec3f) -> Vertex {
     var corner = v;
@@ -173,10 +174,9 @@ fn corner_step_triangle(v: Vertex, draw: u32, id: u32, p: vec3f) -> Vertex {
     let a = corner_position(draw, at.x);
     let b = corner_position(draw, at.y);
     let c = corner_position(draw, at.z);
-    let plane = draws[draw].normal_from_object * vec4f(normal_of_plane(a, b, c), 0.0);
-    corner.flat_normal = normal_direction(plane.xyz);
+    corner.flat_normal = normal_direction(draw_normal(draw, normal_of_plane(a, b, c)));
     corner.center = clamp_world(center_of(draw, a, b, c));
-    corner.arm = (draws[draw].world_from_object * vec4f(((p - a) + (p - b) + (p - c)) / 3.0, 0.0)).xyz;
+    corner.arm = draw_vector(draw, ((p - a) + (p - b) + (p - c)) / 3.0);
     let middle = transform_clip(draw, (a + b + c) / 3.0);
     corner.center_screen = center_in_picture(corner.center, center_clipped(middle, middle, middle, vec2f(0.5)));
     corner.triangle = id;

@@ -218,18 +218,18 @@ impl Backend {
                 let ((view, stack), before) = moments
                     .split_last()
                     .expect("a preset has at least one frame");
-                let previous = if before.is_empty() {
+                let before = if before.is_empty() {
                     None
                 } else {
-                    Some(oracle::render_sequence(scene, before)?.resolved().to_vec())
+                    Some(oracle::render_sequence(scene, before)?)
                 };
-                let (frame, geometry) =
-                    oracle::render_with_geometry(scene, view, stack, previous.as_deref())?;
+                let earlier = before.as_ref().map(Frame::earlier);
+                let (frame, geometry) = oracle::render_with_geometry(scene, view, stack, earlier)?;
                 Ok(Capture {
                     frame,
                     geometry,
                     layers: None,
-                    previous,
+                    previous: before.map(|before| before.resolved().to_vec()),
                     shown: None,
                 })
             }

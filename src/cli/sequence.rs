@@ -3,6 +3,7 @@
 use std::{path::Path, sync::Arc};
 
 use indicatif::ProgressBar;
+use pollster::FutureExt as _;
 use serde_json::{Value, json};
 
 use super::{
@@ -32,7 +33,7 @@ impl Painter for Backend {
         self.provenance()
     }
 
-    fn paint(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Frame, CliError> {
+    async fn paint(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Frame, CliError> {
         self.frame(preset, scene)
     }
 }
@@ -112,7 +113,7 @@ pub fn run(common: &Common, args: &Sequence, streams: &mut Streams) -> Result<Ex
         ));
     }
     let bar = FilmBar(streams.progress(production.jobs.len() as u64));
-    production.draw(&mut backend, &bar)?;
+    production.draw(&mut backend, &bar).block_on()?;
     bar.0.finish_and_clear();
     let (kept, schedule) = (production.kept(), &production.film().schedule);
     let drawn = production.jobs.len() - kept;

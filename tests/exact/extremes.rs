@@ -115,6 +115,7 @@ const SWEEPS: &[&str] = &[
     "near-plane-sweep",
     "largest-pictures",
     "xray-at-5k",
+    "glass-at-4k",
     "binding-too-large",
     "resizing",
     "hundred-equal-frames",
@@ -134,15 +135,20 @@ const SWEEPS: &[&str] = &[
     "fill",
     "workgroups-indirect",
     "layers-on-one-pixel",
+    "layers-of-glass-on-one-pixel",
     "strict-rows",
-    "scenes-by-options",
-    "scenes-by-axes",
     "written-corpus",
 ];
 
-/// Drawn by hand before a release: some 1,200 pictures, which take longer than all sweeps together.
-/// `every-pair` draws each pair of a scene and an effect that differ in their kernels.
-const BY_HAND: &[&str] = &["scenes-by-effects"];
+/// Drawn by hand before a release, since lavapipe compiles kernels for each of their pictures: some
+/// 1,200 of scenes by effects alone. The gallery shows every scene and is judged with every option,
+/// and `every-pair` draws each pair of a scene and an effect or an axis that differ in their kernels.
+const BY_HAND: &[&str] = &[
+    "scenes-by-effects",
+    "scenes-by-options",
+    "scenes-by-axes",
+    "million-instances",
+];
 
 #[test]
 fn every_case_of_the_table_is_tested_here_or_is_a_sweep_of_the_continuous_integration() {

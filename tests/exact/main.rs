@@ -17,6 +17,7 @@ mod evaluator_gpu;
 mod extremes;
 mod grounds;
 mod hardware;
+mod instances;
 mod judge_at_extremes;
 mod oracle;
 mod probe;

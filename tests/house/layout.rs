@@ -48,6 +48,8 @@ fn keys() -> Vec<KernelKey> {
     let one = |effect| whole(Visibility::Split32, &[effect]);
     let mut buffered = one(&rasterlab::effects::shadow::EFFECT);
     buffered.work.buffered_shadow_map = true;
+    let mut instanced = plain.clone();
+    instanced.vertices.is_instanced = true;
     vec![
         plain,
         culling,
@@ -56,6 +58,7 @@ fn keys() -> Vec<KernelKey> {
         dots(LineSource::Polyline, DotCulling::Cpu),
         one(&rasterlab::effects::shadow::EFFECT),
         buffered,
+        instanced,
         one(&rasterlab::effects::overdraw::EFFECT),
         one(&rasterlab::effects::xray::EFFECT),
         one(&rasterlab::effects::bloom::EFFECT),
@@ -205,8 +208,15 @@ fn every_binding_has_a_resource_and_every_bound_struct_is_shared() {
             );
         }
     }
-    // Kernels bind neither what is only copied nor, without an effect of a file, its pictures.
-    let idle = ["background", "previous", "image_files"];
+    // Kernels bind neither what is only copied nor, without an effect of a file, its pictures and
+    // what it keeps.
+    let idle = [
+        "background",
+        "previous",
+        "image_files",
+        "image_kept",
+        "image_kept_before",
+    ];
     let all = ResourceId::all().filter(|id| !idle.contains(&id.name()));
     let idle: Vec<_> = all
         .filter(|id| !bound.contains(id))

@@ -145,15 +145,17 @@ fn every_variant_links_and_validates_within_eight_storage_buffers() {
     for fetch in [Fetch::Direct, Fetch::Indexed] {
         for visibility in Visibility::EXACT {
             for has_queues in [false, true] {
-                for is_single_draw in [false, true] {
-                    let is_fullest = has_queues && !is_single_draw;
+                for (is_single_draw, is_instanced) in [(false, false), (false, true), (true, false)]
+                {
+                    let is_fullest = has_queues && !is_single_draw && !is_instanced;
                     for effects in if is_fullest {
                         slot_stacks()
                     } else {
                         vec![vec![]]
                     } {
                         let mut key = key(fetch, visibility, has_queues, effects);
-                        key.vertices.is_single_draw = is_single_draw;
+                        (key.vertices.is_single_draw, key.vertices.is_instanced) =
+                            (is_single_draw, is_instanced);
                         for pass in all_passes(&key) {
                             let storage = validate(&key, pass);
                             assert!(

@@ -504,6 +504,7 @@ fn image_passes_agree() {
                         lens,
                         source: &source,
                         last: &last,
+                        kept: None,
                         signs: Signs::None,
                         panorama: None,
                     };

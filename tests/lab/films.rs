@@ -301,6 +301,40 @@ fn a_turntable_is_one_click_and_does_not_change_the_preset() {
 }
 
 #[test]
+fn a_film_goes_from_the_kept_preset_to_the_open_one() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let Some(mut lab) = lab_of(folder.path(), SECOND) else {
+        return;
+    };
+    press(&mut lab, Modifiers::COMMAND | Modifiers::SHIFT, Key::E);
+    assert!(
+        lab.query_by_label("From A to B").is_none(),
+        "nothing is kept"
+    );
+    press(&mut lab, Modifiers::NONE, Key::Escape);
+    press(&mut lab, Modifiers::SHIFT, Key::Backslash);
+    click(&mut lab, Role::Button, "Keep B");
+    click(&mut lab, Role::Button, "Mute facet");
+    open_dialog(&mut lab, "PNG frames", &folder.path().join("way.png"), "3");
+    lab.get_by_label("From A to B").click();
+    lab.run_steps(3);
+    click(&mut lab, Role::Button, "Export film");
+    let files = files_in(folder.path());
+    let has_facet = files.iter().map(|path| {
+        let bytes = std::fs::read(path).expect("a frame");
+        let frame = preset_file::preset_from_png(&bytes, "frame").expect("a preset inside");
+        frame.preset.stack.get("facet").is_some()
+    });
+    let has_facet: Vec<bool> = has_facet.collect();
+    assert_eq!(
+        has_facet,
+        [true, false, false],
+        "{}",
+        lab.state().log_text()
+    );
+}
+
+#[test]
 fn frames_are_kept_after_a_cancel_that_takes_effect_at_once() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let Some(mut lab) = lab_of(folder.path(), SECOND) else {

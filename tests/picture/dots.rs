@@ -108,7 +108,7 @@ fn three_ways_of_choosing_dots_give_the_oracle_s_picture() {
     let Some(mut renderer) = renderer() else {
         return;
     };
-    let cases: [(&str, &[(&str, f64)]); 6] = [
+    let cases: [(&str, &[(&str, f64)]); 7] = [
         ("teapot?tess=8", &[("spacing_m", 0.02)]),
         (
             "knot?tess=6",
@@ -137,6 +137,15 @@ fn three_ways_of_choosing_dots_give_the_oracle_s_picture() {
             &[("spacing_m", 1.5), ("levels", 0.0), ("size_px", 1.0)],
         ),
         ("slivers", &[("spacing_m", 3.0)]),
+        (
+            "teapot?tess=4",
+            &[
+                ("spacing_m", 0.01),
+                ("dash_m", 0.07),
+                ("gap_m", 0.05),
+                ("min_gap_px", 1.0),
+            ],
+        ),
     ];
     for (query, values) in cases {
         let scene = scene(query);

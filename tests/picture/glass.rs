@@ -97,6 +97,32 @@ fn every_exact_option_composes_crossing_layers_as_the_oracle_does() {
 }
 
 #[test]
+fn tinted_layers_cover_a_translucent_background_as_far_as_they_dim_it() {
+    let Some(mut renderer) = renderer() else {
+        return;
+    };
+    let (scene, mut view) = (soup(&(0..40).collect::<Vec<_>>()), soup_view());
+    view.background = [0.2, 0.5, 0.8, 0.25].into();
+    let mut stack = stack(&["glass"]);
+    let glass = stack.get_mut("glass").expect("just enabled");
+    let tint = glass.effect.field("tint").expect("glass has it");
+    tint.set(&mut glass.words, &[0.9, 0.4, 0.1, 1.0])
+        .expect("a color");
+    let accuracy = AccuracyRequest::default();
+    let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &accuracy, "tinted");
+    let is_between = |color: &[u8; 4]| color[3] > 64 && color[3] < 255;
+    assert!(
+        capture
+            .frame
+            .color
+            .iter()
+            .filter(|color| is_between(color))
+            .count()
+            > 20
+    );
+}
+
+#[test]
 fn no_order_of_triangles_shows() {
     let Some(mut renderer) = renderer() else {
         return;
@@ -394,13 +420,13 @@ fn mistakes_in_order_count_band_and_blend_are_caught() {
     for (what, from, to) in [
         (
             "farther layers come first",
-            "return key_a > key_b ||",
-            "return key_a < key_b ||",
+            "return (keys > vec4u(key)) |",
+            "return (keys < vec4u(key)) |",
         ),
         (
             "keys are compared without their last bits",
-            "let key_a = glass_key(a);",
-            "let key_a = glass_key(a) & 0xffff0000u;",
+            "let key = glass_key(rest);",
+            "let key = glass_key(rest) & 0xffff0000u;",
         ),
         (
             "the nearest layer is left out",
@@ -419,8 +445,8 @@ fn mistakes_in_order_count_band_and_blend_are_caught() {
         ),
         (
             "a band ends a pixel early",
-            "return GLASS_BANDS == 1u || pixel / glass_band_length()",
-            "return GLASS_BANDS == 1u || (pixel + 1u) / glass_band_length()",
+            "return GLASS_BANDS == 1u || pixel - first < glass_band_length();",
+            "return GLASS_BANDS == 1u || pixel - first + 1u < glass_band_length();",
         ),
         (
             "opaque triangles hide nothing and are hidden",
@@ -525,4 +551,63 @@ fn light_passes_through_glass() {
         floor.iter().map(|color| u64::from(color[0])).sum::<u64>()
     };
     assert!(lit(&scene) > lit(&opaque));
+}
+
+#[test]
+fn small_bindings_divide_the_lists_of_pixels_too() {
+    let (Some(mut renderer), Some(mut own)) = (renderer(), own_gpu()) else {
+        return;
+    };
+    let (scene, stack) = (scene("panes?sheets=9"), stack(&["lambert"]));
+    let (view, request) = (view(&scene, [128, 54]), AccuracyRequest::default());
+    let whole = captured(&mut renderer, &scene, &view, &stack, &request).frame;
+    // Sixteen bytes for every pixel and four for every tile of 8 x 8, as the picture takes with
+    // what its layers compose to. Depths, ids and heads of all pixels leave no layer any room.
+    let most = 16 * 128 * 54 + 4 * 16 * 7;
+    let gpu = Arc::get_mut(&mut own).expect("one device of its own");
+    gpu.caps.max_storage_binding_bytes = most;
+    let mut bound = Renderer::new(own);
+    bound.set_scene(&scene).block_on().expect("it fits");
+    let frame = bound
+        .capture(&view, &stack, &request)
+        .block_on()
+        .unwrap_or_else(|error| panic!("{error}"))
+        .frame;
+    assert_eq!(frame.color, whole.color);
+    assert_eq!(frame.triangle_id, whole.triangle_id);
+    let explained = bound.explain();
+    let largest = explained.buffers.iter().map(|buffer| buffer.bytes).max();
+    assert!(largest <= Some(most), "{largest:?} of {most} bytes");
+    let bands = bound.key().map_or(0, |key| key.framebuffer.glass_bands);
+    let says = |note: &rasterlab::plan::Note| note.why.contains(&format!("in {bands} bands"));
+    assert!(bands > 8 && explained.reasons.iter().any(says), "{bands}");
+}
+
+#[test]
+fn layers_make_do_with_the_memory_that_is_left() {
+    let Some(gpu) = own_gpu() else {
+        return;
+    };
+    let (scene, stack) = (scene("panes?sheets=9"), stack(&["lambert"]));
+    let (view, request) = (view(&scene, [320, 240]), AccuracyRequest::default());
+    let drawn = || {
+        let mut renderer = Renderer::new(gpu.clone());
+        let color = renderer
+            .set_scene(&scene)
+            .block_on()
+            .and_then(|()| renderer.capture(&view, &stack, &request).block_on())
+            .unwrap_or_else(|error| panic!("{error}"))
+            .frame
+            .color;
+        let bands = renderer.key().map_or(0, |key| key.framebuffer.glass_bands);
+        (color, bands, gpu.memory.used())
+    };
+    let (whole, one, all) = drawn();
+    gpu.memory.allow(all * 3 / 4);
+    let (divided, bands, less) = drawn();
+    assert_eq!(divided, whole);
+    assert!(
+        one == 1 && bands > 1 && less < all,
+        "{bands} bands, {less} of {all} bytes"
+    );
 }

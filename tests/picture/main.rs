@@ -10,6 +10,7 @@ mod effects_move;
 mod effects_paint;
 mod effects_samples;
 mod glass;
+mod kept;
 mod lights;
 mod looks;
 mod maps;

@@ -1,5 +1,5 @@
 //! The layout of `vertex_bytes`: attributes as the file has them, then vertices that joints and
-//! morph targets deform, then packed positions.
+//! morph targets deform, then packed positions, then the matrices of instances.
 
 use super::packing;
 use crate::scene::{Accessor, Scene};
@@ -7,12 +7,16 @@ use crate::scene::{Accessor, Scene};
 /// Bytes of a deformed vertex: position and normal, three floats each.
 pub const DEFORMED_BYTES: u32 = 24;
 
+/// Words of an instance's matrices: `PLACEMENT_WORDS` of `shaders/variants/draw_records.wgsl`.
+pub const PLACEMENT_WORDS: usize = 21;
+
 /// Bytes of each part.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AttributeLayout {
     file: u64,
     deformed: u64,
     packed: u64,
+    placements: u64,
     /// Bits per axis of packed positions, where there are any.
     pub packed_bits: Option<u32>,
 }
@@ -24,13 +28,18 @@ impl AttributeLayout {
             file: scene.vertex_bytes.len() as u64,
             deformed: u64::from(DEFORMED_BYTES) * scene.deformable_vertex_count(),
             packed: packed_bits.map_or(0, |bits| packing::bytes_of(scene, bits)),
+            placements: if scene.is_instanced() {
+                (size_of::<[f32; PLACEMENT_WORDS]>() * scene.instances.len()) as u64
+            } else {
+                0
+            },
             packed_bits,
         }
     }
 
     /// Bytes in all.
     pub const fn bytes(&self) -> u64 {
-        self.file + self.deformed + self.packed
+        self.first_placement() + self.placements
     }
 
     /// First byte of a vertex that may be deformed, by its index among all of those.
@@ -43,9 +52,22 @@ impl AttributeLayout {
         self.file + self.deformed
     }
 
+    /// First byte of the matrices of instances.
+    pub const fn first_placement(&self) -> u64 {
+        self.first_packed() + self.packed
+    }
+
+    /// Are there matrices of instances?
+    pub const fn has_placements(&self) -> bool {
+        self.placements > 0
+    }
+
     /// What the buffer holds, for `explain`.
     pub const fn purpose(&self) -> &'static str {
         match (self.deformed, self.packed_bits) {
+            _ if self.has_placements() => {
+                "attributes as the file has them, then matrices of instances, 84 bytes each"
+            }
             (0, None) => "attributes as the file has them",
             (0, Some(10)) => "attributes as the file has them, then packed positions, 4 bytes each",
             (0, Some(_)) => "attributes as the file has them, then packed positions, 8 bytes each",

@@ -168,6 +168,10 @@ impl Renderer {
         } else {
             (resolved, None)
         };
+        let kept = match key.kept_pass() {
+            Some(pass) => Some(picture.kept(pass.size([width, height])).await?),
+            None => None,
+        };
         let frame = Frame {
             width,
             height,
@@ -175,6 +179,7 @@ impl Renderer {
             depth_key: depth_keys,
             color,
             resolved,
+            kept,
             layer_sums: picture.layer_sums().await?,
             glass: picture.glass().await?,
             dots: picture.dot_strengths().await?,
@@ -272,7 +277,7 @@ impl Renderer {
             let key = &judge.frame()?.plan.key;
             let (room, passes) = (
                 recorded_capacities(key, &judge.capacities),
-                key.passes(&key.phases()),
+                key.judge_frame(),
             );
             judge
                 .prepare_passes(device, passes, &shared(scene, particles, shadow.as_ref()))
@@ -343,8 +348,10 @@ impl Renderer {
             let report = self.finish().await?;
             if !report.redraw && report.counters.full_pixels > 0 {
                 let pixels = report.counters.full_pixels;
-                return Err(if self.picture.frame()?.plan.key.has_glass() {
-                    RenderError::DeepGlass(pixels)
+                let key = &self.picture.frame()?.plan.key;
+                return Err(if key.has_glass() {
+                    let most = key.work.deepest_glass;
+                    RenderError::DeepGlass { pixels, most }
                 } else {
                     RenderError::FullSums(pixels)
                 });

@@ -52,8 +52,8 @@ struct Source {
 pub struct DotStore {
     source: Source,
     lines: Lines,
-    /// Bits of the spacing.
-    spacing: u32,
+    /// Bits of the spacing, and of the lengths of dashes and gaps.
+    spacing: [u32; 3],
     dot_runs: Vec<DotRunRecord>,
     dots: u32,
     /// Segments and runs are not on the device yet.
@@ -74,7 +74,7 @@ impl DotStore {
             LineSource::Polyline => Lines::polyline(&source.polyline),
         };
         let (spacing, dot_runs, dots, tree, chosen, frame) =
-            (0, Vec::new(), 0, None, None, DotFrame::default());
+            ([0; 3], Vec::new(), 0, None, None, DotFrame::default());
         Ok(Self {
             source,
             lines,
@@ -119,13 +119,11 @@ impl DotStore {
         };
         let known = previous.filter(|store| store.source == source);
         let mut store = known.map_or_else(|| Self::new(scene, source), Ok)?;
-        if store.spacing != dots.spacing_m.to_bits() {
+        let spacing = [dots.spacing_m, dots.dash_m, dots.gap_m].map(f32::to_bits);
+        if store.spacing != spacing {
             let count = counted(&store.lines, &dots)?;
-            (store.dot_runs, store.dots, store.spacing) = (
-                dot_runs(&store.lines, &dots),
-                count as u32,
-                dots.spacing_m.to_bits(),
-            );
+            (store.dot_runs, store.dots, store.spacing) =
+                (dot_runs(&store.lines, &dots), count as u32, spacing);
             (store.tree, store.is_stale) = (None, true);
         }
         store.frame = DotFrame {
@@ -325,7 +323,7 @@ fn words(ends: SegmentEnds) -> Vec<u32> {
 pub fn counted(lines: &Lines, dots: &Dots) -> Result<u64, DrawError> {
     let on_line = |line: &[Segment]| {
         line.last()
-            .map_or(0, |last| dots.count(last.start_m + last.length_m))
+            .map_or(0, |last| dots.row(last.start_m + last.length_m).count())
     };
     let count = lines
         .each()
@@ -341,27 +339,26 @@ pub fn counted(lines: &Lines, dots: &Dots) -> Result<u64, DrawError> {
     }
 }
 
-/// Cuts lines into runs of dots. As many steps as there are dots, so these are [`counted`] first.
+/// Cuts lines into runs of dots, none longer than a dash. As many steps as there are dots, so these are [`counted`] first.
 pub fn dot_runs(lines: &Lines, dots: &Dots) -> Vec<DotRunRecord> {
-    let spacing_m = f64::from(dots.spacing_m);
     let (mut dot_runs, mut before) = (Vec::new(), 0);
     for (first_segment, line) in lines.each() {
-        let count = line
-            .last()
-            .map_or(0, |last| dots.count(last.start_m + last.length_m));
-        let mut dot = 0;
+        let Some(last) = line.last() else { continue };
+        let row = dots.row(last.start_m + last.length_m);
+        let (count, mut dot) = (row.count(), 0);
         for (i, segment) in line.iter().enumerate() {
             let next_m = line.get(i + 1).map_or(f64::INFINITY, |next| next.start_m);
-            while dot < count && dot as f64 * spacing_m < next_m {
+            while dot < count && row.place_m(dot) < next_m {
                 let first = dot;
                 while dot < count
-                    && dot as f64 * spacing_m < next_m
+                    && row.place_m(dot) < next_m
                     && dot - first < MAX_COUNT.into()
+                    && row.dash(dot) == row.dash(first)
                 {
                     dot += 1;
                 }
                 let fraction = |dot: u64| {
-                    (((dot as f64 * spacing_m - segment.start_m) / segment.length_m) as f32)
+                    (((row.place_m(dot) - segment.start_m) / segment.length_m) as f32)
                         .clamp(0.0, 1.0)
                 };
                 dot_runs.push(DotRunRecord {
@@ -369,7 +366,7 @@ pub fn dot_runs(lines: &Lines, dots: &Dots) -> Vec<DotRunRecord> {
                     first: (before + first) as u32,
                     count: (dot - first) as u32,
                     start: fraction(first),
-                    step: (spacing_m / segment.length_m) as f32,
+                    step: (row.step_m / segment.length_m) as f32,
                 });
             }
         }

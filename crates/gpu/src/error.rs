@@ -3,7 +3,7 @@
 use super::glass::MOST_BANDS;
 use crate::{
     accuracy::RenderScale,
-    plan::{MOST_CPU_GLASS_LAYERS, PlanError},
+    plan::{MOST_CARD_GLASS_LAYERS, PlanError},
     scene::{draw::DrawError, view::View},
     shader::{link::LinkError, reflect::ShaderError},
 };
@@ -71,10 +71,10 @@ pub enum RenderError {
     )]
     FullSums(u32),
     #[error(
-        "{0} pixels have more than {most} layers of glass, the most that this CPU adapter sorts; take a graphics card, or show fewer",
-        most = MOST_CPU_GLASS_LAYERS
+        "{pixels} pixels have more than {most} layers of glass, the most that this adapter sorts (a graphics card {card}); show fewer",
+        card = MOST_CARD_GLASS_LAYERS
     )]
-    DeepGlass(u32),
+    DeepGlass { pixels: u32, most: u32 },
     #[error(
         "the layers of glass do not fit in memory even in {bands} bands of pixels: one has {0}; draw a larger picture of fewer triangles, or show fewer layers",
         bands = MOST_BANDS
@@ -104,7 +104,7 @@ impl RenderError {
         self.depends_on_adapter()
             || matches!(self, Self::Plan(error) if !matches!(error, PlanError::Conflict(_)))
             || matches!(self, Self::Untrusted | Self::Tickets(_))
-            || matches!(self, Self::DeepGlass(_) | Self::ManyLayers(_))
+            || matches!(self, Self::DeepGlass { .. } | Self::ManyLayers(_))
     }
 
     /// Another adapter may draw it: one with the option or the size. What no adapter could draw is

@@ -7,13 +7,13 @@ use std::{collections::BTreeMap, mem::offset_of, ops::Range};
 
 use super::{
     buffers::color_stride,
-    glass::{COMPOSED_BYTES, GlassRecord, HEAD_BYTES, LAYER_BYTES},
+    glass::{COMPOSED_BYTES, GlassRecord, HEAD_BYTES, OPAQUE_BYTES, band_length, layer_bytes},
     queues::Capacities,
     records::{
         ClippedTriangleRecord, CounterRecord, CullingUniform, DeformRecord, DispatchArgs,
-        DispatchSize, DotFrame, DotPoints, DotRunRecord, DrawRecord, FrameUniform, InstanceRecord,
-        MeshletRecord, MorphTargetRecord, OrderRecord, PunctualLights, ScalingUniform,
-        VertexRecord,
+        DispatchSize, DotFrame, DotPoints, DotRunRecord, DrawRecord, DrawShapeRecord, FrameUniform,
+        InstanceRecord, InstancedDrawRecord, MeshletRecord, MorphTargetRecord, OrderRecord,
+        PunctualLights, ScalingUniform, VertexRecord,
     },
     resource_id::{BufferId, ClearedBy},
 };
@@ -21,7 +21,7 @@ use crate::{
     accuracy::{Culling, DotCulling},
     effects::{draw_order::Mode, hooks::Layers},
     math::rounded_columns,
-    scene::view::View,
+    scene::{model::MOST_SHAPES, view::View},
     shader::{
         image_passes::IMAGE_SLOTS,
         key::{FramebufferLayout, KernelKey},
@@ -114,18 +114,20 @@ pub enum Region {
     Nearest,
     /// The sums of the x-ray; behind the nearest samples.
     XraySums,
-    /// The heads of the lists of layers of glass; behind the nearest samples.
+    /// The heads of the lists of layers of glass of a band; behind the nearest samples.
     GlassHeads,
     /// What a frame counts of these layers.
     GlassCounts,
-    /// What the layers of each pixel compose to.
-    GlassComposed,
+    /// The opaque triangle of every pixel.
+    GlassOpaque,
     /// The layers; behind all of these.
     GlassLayers,
     /// The picture.
     Pixels,
     /// Tiles that the resolve visits; behind the picture.
     TileList,
+    /// What the layers of glass of each pixel compose to; behind the list of tiles.
+    GlassComposed,
     /// The strongest dot on every pixel; behind the picture.
     DotStrengths,
     /// A color for every row of a gradient; behind all else of the picture.
@@ -180,11 +182,12 @@ const VISIBLE_MESHLET: u64 = 16;
 /// Bytes of a pixel in linear light.
 const LINEAR_PIXEL: u64 = 16;
 
-/// The pictures that image passes read and write by turns.
-pub const IMAGE_BUFFERS: [BufferId; IMAGE_SLOTS] = [
+/// The pictures that image passes read and write by turns, then the one that a kept pass writes.
+pub const IMAGE_BUFFERS: [BufferId; IMAGE_SLOTS + 1] = [
     BufferId::ImageSource,
     BufferId::ImageBefore,
     BufferId::ImageTarget,
+    BufferId::ImageKept,
 ];
 
 /// Side of a tile of the resolve, which can be dispatched over listed tiles alone; pixels.
@@ -423,10 +426,20 @@ impl FrameLayout {
     fn add_geometry(&mut self, key: &KernelKey) {
         let scene = self.scene;
         // A binding needs at least one element, even for an empty scene.
-        self.add(
-            BufferId::Draws,
-            scene.draws.max(1) * size_of::<DrawRecord>() as u64,
-        );
+        let draw = if key.vertices.is_instanced {
+            let shapes = MOST_SHAPES * size_of::<DrawShapeRecord>();
+            self.add(BufferId::Shapes, shapes as u64);
+            size_of::<InstancedDrawRecord>()
+        } else {
+            size_of::<DrawRecord>()
+        };
+        self.add(BufferId::Draws, scene.draws.max(1) * draw as u64);
+        if key.vertices.is_instanced {
+            self.describe(
+                BufferId::Draws,
+                "matrix and first vertex and triangle, one record per instance",
+            );
+        }
         // The shadow map reuses the deformed vertices of the picture.
         if self.target != Target::ShadowMap {
             if key.deforms() {
@@ -582,7 +595,7 @@ impl FrameLayout {
             self.describe(nearest, with_sums);
         }
         if key.has_glass() && self.target != Target::ShadowMap {
-            self.add_glass(nearest, words * WORD * pixels);
+            self.add_glass(key, nearest, words * WORD * pixels);
         }
         if key.framebuffer_layout() == FramebufferLayout::Split32
             && self.target != Target::ShadowMap
@@ -599,27 +612,25 @@ impl FrameLayout {
 
     /// The layers of glass behind the nearest samples, which take so many bytes. Layers are written
     /// before they are read.
-    fn add_glass(&mut self, nearest: BufferId, nearest_bytes: u64) {
+    fn add_glass(&mut self, key: &KernelKey, nearest: BufferId, nearest_bytes: u64) {
         let (pixels, counts) = (self.pixels(), size_of::<GlassRecord>() as u64);
+        let heads = HEAD_BYTES * band_length(pixels, key.framebuffer.glass_bands);
         self.add_regions(
             nearest,
             &[
                 (Region::Nearest, nearest_bytes),
-                (Region::GlassHeads, HEAD_BYTES * pixels),
+                (Region::GlassHeads, heads),
                 (Region::GlassCounts, counts),
-                (Region::GlassComposed, COMPOSED_BYTES * pixels),
-                (
-                    Region::GlassLayers,
-                    LAYER_BYTES * u64::from(self.capacities.glass),
-                ),
+                (Region::GlassOpaque, OPAQUE_BYTES * pixels),
+                (Region::GlassLayers, layer_bytes(self.capacities.glass)),
             ],
         );
         self.describe(
             nearest,
-            "depth and triangle of the nearest sample per pixel, 20 bytes per pixel for the list of its layers of glass, then the layers, 24 bytes each",
+            "depth and triangle of the nearest sample per pixel, 4 bytes per pixel for the opaque one and 4 per pixel of a band for the list of its layers of glass, then the layers of a band, 24 bytes each",
         );
         if let Some(spec) = self.buffers.get_mut(&nearest) {
-            spec.cleared = 0..nearest_bytes + HEAD_BYTES * pixels + counts;
+            spec.cleared = 0..nearest_bytes + heads + counts;
         }
     }
 
@@ -628,7 +639,7 @@ impl FrameLayout {
         let rows =
             |[width, height]: [u32; 2]| WORD * u64::from(color_stride(width)) * u64::from(height);
         let picture = rows(self.size);
-        let tiles = if key.work.listed_tiles {
+        let tiles = if key.work.listed_tiles || key.has_glass() {
             WORD * self.tile_count(RESOLVE_TILE)
         } else {
             0
@@ -640,27 +651,40 @@ impl FrameLayout {
         };
         let has_dots = key.effects.dots.is_some();
         let strengths = if has_dots { WORD * self.pixels() } else { 0 };
+        let composed = if key.has_glass() {
+            COMPOSED_BYTES * self.pixels()
+        } else {
+            0
+        };
         let regions = [
             (Region::Pixels, picture),
             (Region::DotStrengths, strengths),
             (Region::TileList, tiles),
+            (Region::GlassComposed, composed),
         ];
         self.add_regions(BufferId::Color, &[&regions[..], &gradient].concat());
-        if has_dots {
-            self.describe(
-                BufferId::Color,
-                "the picture, 4 bytes per pixel, as many for the strongest dot on each, and the list of tiles to resolve",
-            );
-            self.clear_only(BufferId::Color, Some(Region::DotStrengths));
-        } else {
-            self.describe(
-                BufferId::Color,
-                "the picture, 4 bytes per pixel, and the list of tiles to resolve",
-            );
-            self.clear_only(BufferId::Color, None);
-        }
+        let purpose = match (has_dots, key.has_glass()) {
+            (false, false) => "the picture, 4 bytes per pixel, and the list of tiles to resolve",
+            (true, false) => {
+                "the picture, 4 bytes per pixel, as many for the strongest dot on each, and the list of tiles to resolve"
+            }
+            (false, true) => {
+                "the picture, 4 bytes per pixel, the list of tiles to resolve, and 12 bytes per pixel for what its layers of glass compose to"
+            }
+            (true, true) => {
+                "the picture, 4 bytes per pixel, as many for the strongest dot on each, the list of tiles to resolve, and 12 bytes per pixel for what its layers of glass compose to"
+            }
+        };
+        self.describe(BufferId::Color, purpose);
+        self.clear_only(BufferId::Color, has_dots.then_some(Region::DotStrengths));
         for &slot in IMAGE_BUFFERS.iter().take(key.image_slots()) {
             self.add(slot, LINEAR_PIXEL * self.pixels());
+        }
+        if let Some(pass) = key.kept_pass() {
+            let [width, height] = pass.size(self.size).map(u64::from);
+            for buffer in [BufferId::ImageKept, BufferId::ImageKeptBefore] {
+                self.add(buffer, LINEAR_PIXEL * width * height);
+            }
         }
         if key.has_passes() {
             self.add(BufferId::Finished, picture);
@@ -836,9 +860,7 @@ impl FrameLayout {
             | Pass::GlassBand
             | Pass::DotsArgs => Dispatch::once([1, 1]),
             Pass::GlassCompose => {
-                let band = self
-                    .pixels()
-                    .div_ceil(key.framebuffer.glass_bands.max(1).into());
+                let band = band_length(self.pixels(), key.framebuffer.glass_bands);
                 Dispatch::once(folded(band.div_ceil(GLASS_GROUP) as u32))
             }
             Pass::Clip | Pass::TileLarge | Pass::RasterMedium(_) | Pass::RasterLarge(_)

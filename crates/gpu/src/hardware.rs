@@ -471,9 +471,10 @@ fn pipelines(
     materials: Option<&HardwareMaterials>,
     recipes: Vec<Recipe>,
 ) -> Result<(Vec<(wgpu::RenderPipeline, Recipe)>, wgpu::BindGroup), RenderError> {
-    // Every draw is an instance of a storage buffer here.
+    // Every draw is an instance of a storage buffer here, with a whole record.
     let vertices = VertexInputs {
         is_single_draw: false,
+        is_instanced: false,
         ..key.vertices.clone()
     };
     let key = KernelKey {

@@ -19,6 +19,8 @@ use crate::{
 pub struct History {
     /// What the color buffer shows, where an effect reads it as the previous picture.
     previous: Option<(View, Stack)>,
+    /// The picture whose kept pass wrote the buffer of kept pixels last.
+    kept: Option<(View, Stack)>,
     /// Size and stack of the picture whose depths and meshlets the next one may start from.
     occluders: Option<([u32; 2], Stack)>,
     /// The last picture.
@@ -36,7 +38,7 @@ pub struct History {
 impl History {
     /// Forgets what the next picture would start from: background comes before it.
     pub fn clear(&mut self) {
-        (self.previous, self.occluders) = (None, None);
+        (self.previous, self.kept, self.occluders) = (None, None, None);
     }
 
     /// Forgets all pictures of a scene.
@@ -155,6 +157,44 @@ impl History {
             }
         }
         self.previous = Some(now);
+        Ok(())
+    }
+
+    /// Gives the kept pass of an effect what it wrote in the previous picture: zeros if that had
+    /// another size or none. A picture that is drawn again starts from the same one as before.
+    ///
+    /// # Errors
+    /// When a buffer is missing.
+    pub fn keep_pass(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        resources: &ViewResources,
+        view: &View,
+        stack: &Stack,
+    ) -> Result<(), RenderError> {
+        let frame = resources.frame()?;
+        let Some(pass) = frame.plan.key.kept_pass() else {
+            self.kept = None;
+            return Ok(());
+        };
+        let (kept, before) = (
+            resources.buffers.get(BufferId::ImageKept)?,
+            resources.buffers.get(BufferId::ImageKeptBefore)?,
+        );
+        let is_next = |(other, with): &(View, Stack)| {
+            let size = |view: &View| pass.size([view.width, view.height]);
+            size(other) == size(view) && with.kept() == stack.kept()
+        };
+        let now = (view.clone(), stack.clone());
+        match &self.kept {
+            Some(last) if *last == now => {}
+            Some(last) if is_next(last) => {
+                let bytes = kept.size().min(before.size());
+                encoder.copy_buffer_to_buffer(kept, 0, before, 0, bytes);
+            }
+            _ => encoder.clear_buffer(before, 0, None),
+        }
+        self.kept = Some(now);
         Ok(())
     }
 }

@@ -42,6 +42,7 @@ pub mod pipelines;
 mod deforms;
 mod meshlets;
 
+mod draw_records;
 mod draws;
 mod scene_resources;
 

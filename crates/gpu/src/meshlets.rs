@@ -7,8 +7,12 @@ use glam::{DMat3, DMat4, DVec3, DVec4};
 use rayon::prelude::*;
 
 use super::{
+    buffers::Buffers,
+    device::Gpu,
+    error::RenderError,
     frame_layout::SceneCounts,
     records::{InstanceRecord, MeshletRecord},
+    resource_id::BufferId,
 };
 use crate::scene::{
     Scene,
@@ -80,6 +84,23 @@ impl MeshletBuffers {
             meshlet_words,
             ..SceneCounts::default()
         }
+    }
+
+    /// Writes them.
+    ///
+    /// # Errors
+    /// When a buffer of them is missing.
+    pub async fn write(&self, gpu: &Gpu, buffers: &Buffers) -> Result<(), RenderError> {
+        let (records, lists) = (
+            bytemuck::cast_slice(&self.records),
+            bytemuck::cast_slice(&self.lists),
+        );
+        buffers
+            .write_at(gpu, BufferId::Meshlets, 0, records)
+            .await?;
+        buffers
+            .write_at(gpu, BufferId::MeshletLists, 0, lists)
+            .await
     }
 
     /// A record of every draw as `view` sees it; one at least.

@@ -1,7 +1,7 @@
 //! The queues of triangles that wait for the clip, medium, large and tile kernels: the capacity of
 //! each, and what a frame demanded.
 
-use super::records::CounterRecord;
+use super::{glass::FIRST_LAYERS, records::CounterRecord};
 use crate::{frame::Counters, scene::Scene, shader::key::KernelKey};
 
 /// Entries that fit each queue.
@@ -72,9 +72,6 @@ pub fn recorded_capacities(key: &KernelKey, all: &Capacities) -> Capacities {
     }
 }
 
-/// Layers of glass that the first picture of a scene has room for.
-const FIRST_GLASS_LAYERS: u32 = 1 << 16;
-
 /// Room for an ordinary picture of the scene; demand beyond it grows the queues and draws again.
 pub fn first_capacities(scene: &Scene) -> Capacities {
     let triangles = scene.triangle_count().min(u64::from(u32::MAX)) as u32;
@@ -85,7 +82,7 @@ pub fn first_capacities(scene: &Scene) -> Capacities {
         medium: room(65_536),
         large: room(16_384),
         tiles: 16 * room(4096),
-        glass: FIRST_GLASS_LAYERS,
+        glass: FIRST_LAYERS,
     }
 }
 

@@ -5,7 +5,7 @@ use super::{
     device::Gpu,
     error::RenderError,
     frame_layout::Region,
-    glass::{COMPOSED_BYTES, LAYER_BYTES},
+    glass::{LAYER_WORDS, layer_word},
     particles::ParticleSimulation,
     queues::recorded_capacities,
     recording::{CommandList, Device, DispatchSizes, Resources, Timing},
@@ -18,7 +18,7 @@ use super::{
 use crate::{
     accuracy::{DepthFormat, PositionFormat, Transparency, VertexTransform, XraySums},
     effects::hooks::Layers,
-    frame::{BitExact, Geometry, GlassHit, GlassLayers, ShadowMap},
+    frame::{BitExact, Geometry, GlassHit, GlassLayers, KeptPass, ShadowMap},
     shader::{
         key::{FramebufferLayout, KernelKey},
         pass::RasterPhase,
@@ -120,8 +120,6 @@ impl Readback<'_> {
     /// The layers of glass of every pixel; empty without glass, where bands of pixels were drawn
     /// one after another, of which only the last is left, and where lists are not sorted.
     pub async fn glass(&self) -> Result<GlassLayers, RenderError> {
-        const COMPOSED_WORDS: usize = COMPOSED_BYTES as usize / 4;
-        const LAYER_WORDS: usize = LAYER_BYTES as usize / 4;
         let key = &self.frame()?.plan.key;
         let mut lists = GlassLayers::default();
         let is_sorted = key.options.transparency != Transparency::Weighted;
@@ -129,28 +127,22 @@ impl Readback<'_> {
             return Ok(lists);
         }
         let heads: Vec<u32> = self.region(Region::GlassHeads).await?;
-        let composed: Vec<u32> = self.region(Region::GlassComposed).await?;
+        let opaque: Vec<u32> = self.region(Region::GlassOpaque).await?;
         let nodes: Vec<u32> = self.region(Region::GlassLayers).await?;
-        let (nearest, _) = self.visibility().await?;
-        let pixels = heads
-            .into_iter()
-            .zip(composed.chunks_exact(COMPOSED_WORDS))
-            .zip(nearest);
-        for ((head, composed), nearest) in pixels {
-            let behind = if head == 0 { nearest } else { !composed[0] };
+        for (head, opaque) in heads.into_iter().zip(opaque) {
             let mut link = head;
-            while let Some(node) = (link as usize)
+            while let Some(layer) = (link as usize)
                 .checked_sub(1)
-                .and_then(|node| nodes.get(LAYER_WORDS * node..LAYER_WORDS * (node + 1)))
+                .filter(|layer| layer_word(*layer, LAYER_WORDS - 1) < nodes.len())
                 .filter(|_| lists.layers.len() * LAYER_WORDS < nodes.len())
             {
                 lists.layers.push(GlassHit {
-                    triangle_id: node[1],
-                    depth_key: key.depth_bits(node[0]),
+                    triangle_id: nodes[layer_word(layer, 1)],
+                    depth_key: key.depth_bits(nodes[layer_word(layer, 0)]),
                 });
-                link = node[2];
+                link = nodes[layer_word(layer, 2)];
             }
-            lists.end_pixel(behind);
+            lists.end_pixel(!opaque);
         }
         Ok(lists)
     }
@@ -163,6 +155,15 @@ impl Readback<'_> {
     /// The picture, or what is shown of it: gamma-encoded, row-major.
     pub async fn picture(&self, id: BufferId, size: [u32; 2]) -> Result<Vec<[u8; 4]>, RenderError> {
         buffers::read_picture(self.gpu, self.view.buffers.get(id)?, size).await
+    }
+
+    /// What the kept pass of an effect read and wrote, `size` pixels of its own.
+    pub async fn kept(&self, size: [u32; 2]) -> Result<KeptPass, RenderError> {
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        Ok(KeptPass {
+            before: self.elements(BufferId::ImageKeptBefore, pixels).await?,
+            after: self.elements(BufferId::ImageKept, pixels).await?,
+        })
     }
 
     /// The triangles that clipping made, each with its slot in the buffer; by parent and position

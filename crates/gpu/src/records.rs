@@ -76,6 +76,42 @@ gpu_record! {
 }
 
 gpu_record! {
+    /// One draw of an instanced scene. Each member is explained in `shaders/lib/triangle.wgsl`.
+    pub struct InstancedDrawRecord = "InstancedDraw" {
+        pub clip_from_object: [[f32; 4]; 4],
+        pub first_vertex: u32,
+        pub first_triangle: u32,
+        pub flags: u32,
+        pub scopes: u32,
+    }
+}
+
+gpu_record! {
+    /// What all instances of a primitive share. Each member is explained in `shaders/lib/triangle.wgsl`.
+    pub struct DrawShapeRecord = "DrawShape" {
+        pub base_color: [f32; 4],
+        pub origin: [f32; 4],
+        pub step: [f32; 4],
+        pub vertex_count: u32,
+        pub topology: u32,
+        pub index_offset: u32,
+        pub index_format: u32,
+        pub position_offset: u32,
+        pub position_stride: u32,
+        pub position_format: u32,
+        pub normal_offset: u32,
+        pub normal_stride: u32,
+        pub normal_format: u32,
+        pub color_offset: u32,
+        pub color_stride: u32,
+        pub color_format: u32,
+        pub first_placement: u32,
+        pub spare_0: u32,
+        pub spare_1: u32,
+    }
+}
+
+gpu_record! {
     /// Demand of the queues and what was not drawn. Each member is explained in `shaders/lib/frame.wgsl`.
     pub struct CounterRecord = "Counters" {
         pub clip: u32,
@@ -436,6 +472,8 @@ impl WgslType for Particles {
 pub const RECORDS: &[RecordLayout] = &[
     FrameUniform::LAYOUT,
     DrawRecord::LAYOUT,
+    InstancedDrawRecord::LAYOUT,
+    DrawShapeRecord::LAYOUT,
     CounterRecord::LAYOUT,
     OrderRecord::LAYOUT,
     ScalingUniform::LAYOUT,

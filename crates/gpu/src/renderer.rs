@@ -236,17 +236,18 @@ impl Renderer {
         }
         self.attach_particles(stack).await?;
         let room = self.history.room_for_layers(view, stack);
-        self.prepare(
-            &Request {
-                view,
-                stack,
-                accuracy,
-                shown,
-                room,
-            },
-            wait,
-        )
-        .await?;
+        let request = Request {
+            view,
+            stack,
+            accuracy,
+            shown,
+            room,
+        };
+        while let Err(error) = self.prepare(&request, wait).await {
+            if !self.makes_do_with_less_glass(&error) {
+                return Err(error);
+            }
+        }
         if view.pixels() == 0 {
             self.presentation = None;
             return Ok(());
@@ -361,6 +362,7 @@ impl Renderer {
             fill_background(encoder, &picture.buffers, &frame.layout)?;
         }
         history.keep_previous(encoder, picture, view, stack)?;
+        history.keep_pass(encoder, picture, view, stack)?;
         history.keep_occluders(encoder, picture, view, stack)?;
         let passes = frame.plan.key.frame();
         // The shadow map comes after the passes that deform the scene for both.

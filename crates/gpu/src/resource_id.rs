@@ -58,6 +58,7 @@ macro_rules! buffers {
 buffers! {
     Frame = "frame", UNIFORM, Nothing, "size, viewpoint, capacities";
     Draws = "draws", STORAGE.union(UNIFORM), Nothing, "matrices and attribute offsets, one record per instance";
+    Shapes = "shapes", UNIFORM.union(STORAGE), Nothing, "what all instances of a primitive share: attribute offsets and base color";
     Effects = "effects", UNIFORM.union(STORAGE), Nothing, "parameters of the stack";
     PunctualLights = "punctual_lights", UNIFORM, Nothing, "lights that come with the scene";
     VertexBytes = "vertex_bytes", STORAGE.union(BufferUsages::VERTEX), Nothing, "attributes as the file has them";
@@ -95,6 +96,8 @@ buffers! {
     ImageSource = "image_source", STORAGE, Nothing, "the picture in linear light, 16 bytes per pixel, that image passes read and write by turns";
     ImageBefore = "image_before", STORAGE, Nothing, "a second such picture";
     ImageTarget = "image_target", STORAGE, Nothing, "a third such picture";
+    ImageKept = "image_kept", STORAGE, Nothing, "what the kept pass of an effect writes, 16 bytes per pixel of its own";
+    ImageKeptBefore = "image_kept_before", STORAGE, Nothing, "what it wrote in the previous picture";
     Finished = "finished", STORAGE, Nothing, "the picture after image passes, 4 bytes per pixel";
     Scaling = "scaling", UNIFORM, Nothing, "size of what is shown";
     ScaledColor = "shown", STORAGE, Nothing, "the picture at the size that is shown, 4 bytes per pixel";

@@ -7,6 +7,7 @@ use super::{
     attributes::AttributeLayout,
     buffers::Buffers,
     device::Gpu,
+    draw_records::Placement,
     error::RenderError,
     image_files::ImageFiles,
     material_atlas::{self, AtlasContents},
@@ -119,6 +120,20 @@ impl SceneResources {
 
     pub fn particle_count(&self) -> u32 {
         self.particle_settings.map_or(0, |settings| settings.count)
+    }
+
+    /// Writes the matrices of instances behind the attributes.
+    ///
+    /// # Errors
+    /// When there are no attributes.
+    pub async fn place_instances(
+        &self,
+        gpu: &Gpu,
+        placements: &[Placement],
+    ) -> Result<(), RenderError> {
+        let (id, first) = (BufferId::VertexBytes, self.attributes.first_placement());
+        let bytes = bytemuck::cast_slice(placements);
+        self.buffers.write_at(gpu, id, first, bytes).await
     }
 
     /// The meshlets of the scene, which are found at the first call.

@@ -11,7 +11,7 @@ use super::{
     draws::{DrawData, DrawInputs},
     error::RenderError,
     frame_layout::{FrameLayout, LayoutInputs, Region, Span, Target},
-    glass::most_layers,
+    glass::{fewest_bands, most_layers},
     layer_sums::RoomForLayers,
     preparations::Preparation,
     queues::{Capacities, first_capacities, recorded_capacities},
@@ -30,7 +30,7 @@ use crate::{
 };
 
 /// The plan of a frame, the view on its grid, and that view's draws.
-type PlannedView = (Arc<Plan>, View, Arc<[Draw]>);
+type PlannedView = (Arc<Plan>, View, Arc<Vec<Draw>>);
 
 /// What is to be drawn.
 #[derive(Clone, Copy, Debug)]
@@ -59,7 +59,7 @@ struct Seen {
     /// Scopes of the stack that the draws are for, and which of them are glass.
     scopes: Vec<Scope>,
     glass: GlassDraws,
-    draws: Arc<[Draw]>,
+    draws: Arc<Vec<Draw>>,
     needs: Arc<Needs>,
     /// The same where every path is kept.
     needs_all_paths: Arc<Needs>,
@@ -203,6 +203,7 @@ impl ViewResources {
         let mut capacities = recorded_capacities(key, &self.capacities);
         capacities.glass = capacities.glass.min(most_layers(
             view.pixels() as u64,
+            key.framebuffer.glass_bands,
             &gpu.caps,
             device.tuning.glass_layers,
         ));
@@ -270,8 +271,11 @@ impl ViewResources {
             seen = self.see(&device.gpu, scene, &view, request)?;
             plan = self.plan_of(device, seen, request)?;
         }
-        if request.room.changes(&plan.key) {
-            request.room.make(&mut Arc::make_mut(&mut plan).key);
+        let mut room = request.room;
+        let fewest = fewest_bands(view.pixels() as u64, &device.gpu.caps);
+        room.glass_bands = room.glass_bands.max(fewest);
+        if room.changes(&plan.key) {
+            room.make(&mut Arc::make_mut(&mut plan).key);
         }
         Ok((plan, view, self.seen[seen].draws.clone()))
     }
@@ -311,7 +315,7 @@ impl ViewResources {
                 view: view.clone(),
                 scopes,
                 glass,
-                draws: draws.into(),
+                draws: Arc::new(draws),
                 needs: Arc::new(needs),
                 needs_all_paths,
             },
@@ -365,6 +369,9 @@ impl ViewResources {
             view: view.clone(),
             attributes: scene.attributes(),
             culls: key.culls(),
+            is_instanced: key.vertices.is_instanced,
+            // A light sees the instances of the picture where that has them.
+            places_instances: self.target != Target::ShadowMap,
             deforms_offscreen: !key.culls() || request.stack.light().is_some(),
             scopes: request.stack.scopes(),
             glass: request.glass(),
@@ -382,7 +389,15 @@ impl ViewResources {
         } else {
             &[]
         };
-        let mut data = DrawData::new(scene.scene(), draws, inputs, boxes, meshlets.as_deref());
+        let before = self.draw_data.take();
+        let mut data = DrawData::new(
+            scene.scene(),
+            draws,
+            inputs,
+            boxes,
+            meshlets.as_deref(),
+            before,
+        );
         data.counts.particles = scene.particle_count();
         self.draw_data = Some(data);
         true
@@ -427,8 +442,9 @@ impl ViewResources {
         let Some(data) = &self.draw_data else {
             return Ok(());
         };
-        let contents: [(BufferId, &[u8]); 5] = [
-            (BufferId::Draws, bytemuck::cast_slice(&data.records)),
+        let contents: [(BufferId, &[u8]); 6] = [
+            (BufferId::Draws, data.records.draws()),
+            (BufferId::Shapes, data.records.shapes()),
             (
                 BufferId::Deforms,
                 bytemuck::cast_slice(&data.deforms.records),
@@ -446,18 +462,11 @@ impl ViewResources {
         {
             self.buffers.write_at(gpu, id, 0, bytes).await?;
         }
+        if is_changed && data.has_new_placements {
+            scene.place_instances(gpu, &data.placements).await?;
+        }
         if new.contains(&BufferId::Meshlets) || new.contains(&BufferId::MeshletLists) {
-            let meshlets = scene.meshlets();
-            let contents: [(BufferId, &[u8]); 2] = [
-                (BufferId::Meshlets, bytemuck::cast_slice(&meshlets.records)),
-                (
-                    BufferId::MeshletLists,
-                    bytemuck::cast_slice(&meshlets.lists),
-                ),
-            ];
-            for (id, bytes) in contents {
-                self.buffers.write_at(gpu, id, 0, bytes).await?;
-            }
+            scene.meshlets().write(gpu, &self.buffers).await?;
         }
         Ok(())
     }

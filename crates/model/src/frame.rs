@@ -329,6 +329,8 @@ pub struct Frame {
     pub color: Vec<[u8; 4]>,
     /// The picture before the passes of image effects; none where no effect has passes.
     pub resolved: Option<Vec<[u8; 4]>>,
+    /// What the kept pass of an effect read and wrote; none where no pass is kept.
+    pub kept: Option<KeptPass>,
     /// Sum of the weights of all layers of a pixel, or their number, if an effect fills the
     /// visibility slot; otherwise empty.
     pub layer_sums: Vec<u32>,
@@ -371,15 +373,24 @@ impl Frame {
             layer_sums: of(&self.layer_sums),
             dots: of(&self.dots),
             resolved: None,
+            kept: None,
             glass: GlassLayers::default(),
             ..*self
         }
     }
 
-    /// The picture before the passes of image effects: what the next picture of a sequence starts
-    /// from.
+    /// The picture before the passes of image effects.
     pub fn resolved(&self) -> &[[u8; 4]] {
         self.resolved.as_deref().unwrap_or(&self.color)
+    }
+
+    /// What the next picture of a sequence starts from.
+    pub fn earlier(&self) -> Earlier<'_> {
+        let kept = self.kept.as_ref();
+        Earlier {
+            resolved: self.resolved(),
+            kept: kept.map_or(&[], |kept| &kept.after),
+        }
     }
 
     /// Number of pixels with a triangle.
@@ -389,6 +400,24 @@ impl Frame {
             .filter(|&&id| id != NO_TRIANGLE)
             .count()
     }
+}
+
+/// What the kept pass of an effect read and wrote, row-major, by its own pixels.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct KeptPass {
+    /// What it had written in the previous frame; empty, which reads as zeros, before the first.
+    pub before: Vec<[f32; 4]>,
+    /// What it wrote in this one.
+    pub after: Vec<[f32; 4]>,
+}
+
+/// What a picture starts from of the one before it.
+#[derive(Clone, Copy, Debug)]
+pub struct Earlier<'a> {
+    /// The picture before passes of image effects, gamma-encoded.
+    pub resolved: &'a [[u8; 4]],
+    /// What the kept pass wrote; empty without one.
+    pub kept: &'a [[f32; 4]],
 }
 
 /// A picture that an adapter drew, with everything that a judge compares.

@@ -21,6 +21,9 @@ const PIXEL_BYTES: u64 = 12 + 4 + 4 + 32 + 4;
 /// More bytes of each pixel where an effect has passes: two pictures in linear light beside the
 /// one that is written, and two of right answers.
 const PASS_BYTES: u64 = 5 * 32;
+/// More bytes of each pixel where a pass is kept: what it read and wrote, in f32, f64, and between
+/// two right answers.
+const KEPT_BYTES: u64 = 2 * 16 + 2 * 32 + 2 * 32;
 /// More bytes of each pixel where layers are summed.
 const LAYER_BYTES: u64 = 32 + 4;
 /// Bytes of each texel of a shadow map: its depth in f64 and its key.
@@ -80,6 +83,11 @@ fn bytes(shot: &Shot) -> u64 {
         }
         + if shot.stack.has_passes() {
             PASS_BYTES
+        } else {
+            0
+        }
+        + if shot.stack.kept().is_some() {
+            KEPT_BYTES
         } else {
             0
         };

@@ -9,6 +9,7 @@ use rasterlab_files::{
 use rasterlab_model::{
     accuracy::AccuracyRequest,
     effects::Stack,
+    frame::Frame,
     math::fnv1a,
     measure::compare,
     preset::{Preset, SceneSource},
@@ -252,17 +253,14 @@ pub fn oracle_rows(open: &OpenPreset, rows_begin: u32, rows_end: u32) -> Result<
         let frame = oracle::render_scaled(&open.scene, &moments, preset.accuracy.scale().factor())?;
         return Ok(frame.color.into_flattened());
     };
-    let previous = match before {
+    let before = match before {
         [] => None,
-        before => Some(
-            oracle::render_sequence(&open.scene, before)?
-                .resolved()
-                .to_vec(),
-        ),
+        before => Some(oracle::render_sequence(&open.scene, before)?),
     };
+    let earlier = before.as_ref().map(Frame::earlier);
     let (view, stack) = last;
     let rows = rows_begin..rows_end;
-    let frame = oracle::render_rows(&open.scene, view, stack, previous.as_deref(), rows)?;
+    let frame = oracle::render_rows(&open.scene, view, stack, earlier, rows)?;
     Ok(frame.color.into_flattened())
 }
 

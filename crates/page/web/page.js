@@ -79,6 +79,13 @@ function allowed(code) {
 
 const saysLoss = () => say("The device was lost; another one is opened …");
 
+/** A link to the program's window with the same preset. */
+function offerWindow() {
+  const link = document.createElement("a");
+  [link.textContent, link.href] = ["Open it in the window", `window.html${location.search}${location.hash.split(";")[0]}`];
+  add("").append(link);
+}
+
 /** Draws the preset in portable bits, and says whether they are the oracle's and the link's. */
 async function prove(preset, text, id, bits) {
   const proof = add("The bits of its triangles and depths are compared …");
@@ -143,6 +150,7 @@ async function picture() {
   else say(`${preset.name()}: ${faults.join("; ")}`, "wrong");
   if (bits) await prove(preset, text, id, bits);
   offerOracle(preset);
+  offerWindow();
 }
 
 async function embed() {

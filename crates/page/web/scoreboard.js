@@ -115,7 +115,8 @@ export async function scoreboard(main) {
   const copy = element("button", "", "Copy the result");
   const here = element("button", "", "Count here");
   copy.disabled = here.disabled = true;
-  head.append(element("h1", "", "Who draws the right pixel?"), element("p", "lead", `One scene on ${adapter}, five ways to find the triangle of each pixel. An exact oracle on your processor draws it too, and every pixel that differs is red.`));
+  const home = Object.assign(element("a", "home", "rasterlab"), { href: "./" });
+  head.append(home, element("h1", "", "Who draws the right pixel?"), element("p", "lead", `One scene on ${adapter}, five ways to find the triangle of each pixel. An exact oracle on your processor draws it too, and every pixel that differs is red.`));
   const foot = element("footer", "");
   foot.append(status, here, copy);
   main.replaceChildren(head, grid, foot);

@@ -412,7 +412,7 @@ pub fn export_film(state: &State, request: film::Request, progress: Arc<film::Pr
         .iter()
         .for_each(|effect| exported.preset.disable(effect));
     state.jobs.export_film(
-        state.picture.screen.gpu.summary.name.clone(),
+        state.picture.screen.gpu.clone(),
         scene.clone(),
         exported,
         request,

@@ -4,8 +4,6 @@
 //! The window's thread uses the common pool for moments (a pick, the image of an overlay). A
 //! picture of the oracle there would keep it waiting, for seconds with a large one.
 
-use rayon::ThreadPoolBuilder;
-
 /// From now on this thread, and every thread that it starts, leaves the processor to all others:
 /// for work that may take any time. Drivers start threads, too: a device that is opened afterwards
 /// is as patient. On Linux alone; other systems with a CPU adapter are rare.
@@ -20,13 +18,14 @@ pub fn yield_processor() {
 /// In a pool that all work shares, a thread that waits for the parts of one picture takes up other
 /// work meanwhile; that work may wait for a lock which the same thread holds.
 pub fn compute<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    match ThreadPoolBuilder::new()
+    #[cfg(not(target_arch = "wasm32"))]
+    if let Ok(pool) = rayon::ThreadPoolBuilder::new()
         .thread_name(|i| format!("background {i}"))
         .build()
     {
-        Ok(pool) => pool.install(work),
-        Err(_) => work(),
+        return pool.install(work);
     }
+    work()
 }
 
 #[cfg(test)]

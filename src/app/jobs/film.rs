@@ -1,5 +1,6 @@
 //! Films that the window exports: what is asked for, how far it is, and the work of drawing it on a
-//! device of its own.
+//! device of its own. A page has one device and no files: there the frames are drawn between those
+//! of the window, and a film is a download.
 
 use std::{
     path::{Path, PathBuf},
@@ -11,7 +12,6 @@ use std::{
 };
 
 use eframe::egui;
-use pollster::FutureExt as _;
 use web_time::Instant;
 
 use crate::{
@@ -26,6 +26,10 @@ use crate::{
     preset_file::{PresetFile, Provenance},
     scene::Scene,
 };
+#[cfg(target_arch = "wasm32")]
+use crate::{app::shell::page, archive, host::disk};
+
+const IN_PAGE: bool = cfg!(target_arch = "wasm32");
 
 /// What a film is written as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,8 +50,15 @@ impl Format {
         Self::Video(Container::Gif),
     ];
 
+    /// The formats that can be written here. A page has no programs beside it.
+    pub fn here() -> impl Iterator<Item = Self> {
+        let is_here = |format: &Self| !(IN_PAGE && format.needs_ffmpeg());
+        Self::ALL.into_iter().filter(is_here)
+    }
+
     pub const fn name(self) -> &'static str {
         match self {
+            Self::Frames if IN_PAGE => "PNG frames (ZIP)",
             Self::Frames => "PNG frames",
             Self::Apng => "Animated PNG",
             Self::Video(Container::Mp4) => "MP4",
@@ -67,6 +78,7 @@ impl Format {
 
     pub const fn extension(self) -> &'static str {
         match self {
+            Self::Frames if IN_PAGE => "zip",
             Self::Frames | Self::Apng => "png",
             Self::Video(container) => container.extension(),
         }
@@ -74,7 +86,7 @@ impl Format {
 
     /// Frames of a film that was stopped stay, and the next export goes on after them.
     pub const fn keeps_frames(self) -> bool {
-        matches!(self, Self::Frames)
+        matches!(self, Self::Frames) && !IN_PAGE
     }
 
     pub const fn needs_ffmpeg(self) -> bool {
@@ -88,6 +100,7 @@ impl Format {
             .map(|extension| extension.to_string_lossy().to_lowercase());
         match extension.as_deref() {
             Some(there) if there == self.extension() => path.to_owned(),
+            Some("zip") if IN_PAGE => path.with_extension(self.extension()),
             Some("png" | "apng" | "mp4" | "webm" | "gif") => path.with_extension(self.extension()),
             _ => {
                 // Appended, so that `walk.v2` keeps its dot.
@@ -111,6 +124,8 @@ pub struct Request {
     /// Begin and end, seconds; the end is not drawn.
     pub range_s: [f64; 2],
     pub turntable: Option<Turntable>,
+    /// The preset whose look the first frame has; the last one has its own.
+    pub from_look_of: Option<Box<Preset>>,
     /// Drawn per shown pixel; none: as the preset has it.
     pub scale: Option<RenderScale>,
     /// The person agreed to replace what is there.
@@ -247,10 +262,10 @@ impl Painter for Studio {
         }
     }
 
-    fn paint(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Frame, Failure> {
-        self.renderer.set_scene(scene).block_on()?;
+    async fn paint(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Frame, Failure> {
+        self.renderer.set_scene(scene).await?;
         let moments = preset.moments(scene, preset.output.size);
-        Ok(self.renderer.still(&moments, &preset.accuracy).block_on()?)
+        Ok(self.renderer.still(&moments, &preset.accuracy).await?)
     }
 }
 
@@ -276,12 +291,22 @@ impl Observer for Counter<'_> {
     }
 }
 
-/// Draws the film `request` of a preset on a second device of the adapter of this name.
+/// A second device of the window's adapter; in a page the same.
+async fn device_beside(window: Arc<Gpu>) -> Result<Arc<Gpu>, Failure> {
+    if IN_PAGE {
+        return Ok(window);
+    }
+    Gpu::open(&AdapterChoice::Named(window.summary.name.clone()))
+        .await
+        .map_err(|error| Failure::Other(error.to_string()))
+}
+
+/// Draws the film `request` of a preset with a second device of the adapter of the window's.
 ///
 /// # Errors
 /// The film was stopped, or failed for a reason that is a sentence for people.
-pub fn export(
-    adapter: String,
+pub async fn export(
+    window: Arc<Gpu>,
     scene: Arc<Scene>,
     mut preset_file: PresetFile,
     request: &Request,
@@ -295,21 +320,33 @@ pub fn export(
     }
     preset.accuracy = preset.accuracy.anti_aliased();
     let schedule = request.schedule(&preset.clock)?;
-    let frames = request.frame_paths(&schedule);
     let mut outputs = Outputs {
-        frames,
+        frames: request.frame_paths(&schedule),
         ..Outputs::default()
     };
+    #[cfg(target_arch = "wasm32")]
+    let gathered = Gathered::begin(&mut outputs.frames);
     match request.format {
         Format::Frames => {}
         Format::Apng => outputs.apng = Some(request.path.clone()),
         Format::Video(_) => outputs.video = Some(VideoTarget::new(&request.path, request.size)?),
     }
-    let film =
+    let mut end = None;
+    if let Some(look) = &request.from_look_of {
+        let [own, look] =
+            [&preset_file.preset, &**look].map(|preset| preset.in_meters(&scene).into_owned());
+        end = Some(preset_file.clone());
+        preset_file.preset = Preset {
+            accuracy: own.accuracy,
+            ..own.with_look_of(look)
+        };
+    }
+    let mut film =
         Film::new(preset_file, scene, schedule, request.turntable).map_err(FilmError::from)?;
-    let gpu = Gpu::open(&AdapterChoice::Named(adapter))
-        .block_on()
-        .map_err(|error| Failure::Other(error.to_string()))?;
+    if let Some(end) = end {
+        film = film.toward(end)?;
+    }
+    let gpu = device_beside(window).await?;
     let mut studio = Studio {
         renderer: Renderer::new(gpu.clone()),
         gpu,
@@ -322,11 +359,48 @@ pub fn export(
         since: Some(Instant::now()),
         ..Counts::default()
     };
-    production.draw(&mut studio, &Counter { progress, ctx })?;
+    production
+        .draw(&mut studio, &Counter { progress, ctx })
+        .await?;
+    #[cfg(target_arch = "wasm32")]
+    gathered.download(request).map_err(Failure::Other)?;
     Ok(Finished {
         drawn: all - kept,
         kept,
     })
+}
+
+/// The frames that a page has drawn, in memory until it downloads them as one archive.
+#[cfg(target_arch = "wasm32")]
+struct Gathered;
+
+#[cfg(target_arch = "wasm32")]
+impl Gathered {
+    /// Has `frames` written to memory.
+    fn begin(frames: &mut [PathBuf]) -> Self {
+        for frame in frames {
+            *frame = Path::new(page::UNPACKED).join(frame.file_name().unwrap_or_default());
+        }
+        Self
+    }
+
+    fn download(self, request: &Request) -> Result<(), String> {
+        if request.format != Format::Frames {
+            return Ok(());
+        }
+        let frames = disk::below(Path::new(page::UNPACKED));
+        let name = |path: &Path| path.file_name().unwrap_or_default().display().to_string();
+        let named: Vec<_> = frames.iter().map(|(path, png)| (name(path), png)).collect();
+        let packed = archive::write(named.iter().map(|(name, png)| (name.as_str(), &***png)))?;
+        page::download(&request.path, &packed)
+    }
+}
+
+#[cfg(target_arch = "wasm32")]
+impl Drop for Gathered {
+    fn drop(&mut self) {
+        disk::remove(Path::new(page::UNPACKED));
+    }
 }
 
 /// `2 min 5 s left`.

@@ -437,29 +437,24 @@ impl Jobs {
         });
     }
 
-    /// Draws a film on a second device.
+    /// Draws a film on a second device of the window's adapter.
     pub fn export_film(
         &self,
-        adapter: String,
+        window: Arc<Gpu>,
         scene: Arc<Scene>,
         preset_file: PresetFile,
         request: film::Request,
         progress: Arc<film::Progress>,
     ) {
         let ctx = self.ctx.clone();
-        self.spawn("film", move || {
-            let work = || {
-                Ok(film::export(
-                    adapter,
-                    scene,
-                    preset_file,
-                    &request,
-                    &progress,
-                    &ctx,
-                ))
+        self.spawn_waiting("film", move || async move {
+            let work = async {
+                let exported = film::export(window, scene, preset_file, &request, &progress, &ctx);
+                Ok(exported.await)
             };
-            let ended = giving_back(|| caught("drawing the film", work))
-                .unwrap_or_else(|bug| Err(film::Failure::Other(bug)));
+            let ended = caught_future("drawing the film", work).await;
+            memory::give_back();
+            let ended = ended.unwrap_or_else(|bug| Err(film::Failure::Other(bug)));
             Done::Film(progress, ended)
         });
     }

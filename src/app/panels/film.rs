@@ -1,5 +1,5 @@
 //! Exporting a film: its format, size, rate and range, and how far it is. It is drawn on another
-//! thread and another device.
+//! thread and another device, in a page between the window's frames.
 
 use std::{path::Path, sync::Arc};
 
@@ -18,7 +18,7 @@ use crate::{
         widgets::{panel::Panel, size::size_ui, text::cut_middle, theme},
     },
     film::{Turntable, find_ffmpeg},
-    preset::Clock,
+    preset::{Clock, Preset},
 };
 
 const MAX_SIDE: u32 = FilmSettings::MAX_SIDE;
@@ -66,6 +66,9 @@ struct Form {
     fps: f64,
     range_s: [f64; 2],
     turntable: Option<Turntable>,
+    /// The preset that is kept as A, if there is one, and whether the film begins with its look.
+    a: Option<Box<Preset>>,
+    is_from_a: bool,
     scale: Option<RenderScale>,
     has_ffmpeg: bool,
 }
@@ -87,7 +90,10 @@ impl Form {
         let own_range_s = last
             .range_s
             .filter(|_| last.range_of.as_ref() == Some(&session.preset_file.id));
-        let path = last.format.named(
+        let format = Format::here()
+            .find(|format| *format == last.format)
+            .unwrap_or(Format::Apng);
+        let path = format.named(
             &std::env::current_dir()
                 .unwrap_or_default()
                 .join(format!("{id}-film.png")),
@@ -95,7 +101,7 @@ impl Form {
         Self {
             preset: session.preset_file.id.clone(),
             path: path.display().to_string(),
-            format: last.format,
+            format,
             // Even, as MP4 needs it.
             size: last
                 .size
@@ -103,6 +109,8 @@ impl Form {
             fps: last.fps,
             range_s: own_range_s.unwrap_or(session.preset().clock.range_s),
             turntable: None,
+            a: None,
+            is_from_a: false,
             scale: last.scale,
             has_ffmpeg: find_ffmpeg().is_some(),
         }
@@ -116,6 +124,7 @@ impl Form {
             fps: self.fps,
             range_s: self.range_s,
             turntable: self.turntable,
+            from_look_of: self.a.clone().filter(|_| self.is_from_a),
             scale: self.scale,
             replaces,
         }
@@ -160,8 +169,8 @@ impl Form {
 }
 
 impl FilmPanel {
-    /// Shows or hides the dialog, filled in for the open preset.
-    pub fn toggle(&mut self, state: &State) {
+    /// Shows or hides the dialog, filled in for the open preset; `a` is the preset that is kept as A.
+    pub fn toggle(&mut self, state: &State, a: Option<&Preset>) {
         self.is_open = !self.is_open;
         self.takes_focus = self.is_open;
         if !self.is_open || self.running.is_some() {
@@ -173,6 +182,9 @@ impl FilmPanel {
                 form.has_ffmpeg = find_ffmpeg().is_some()
             }
             form => (*form, self.failure) = (Some(Form::new(state, &self.last)), None),
+        }
+        if let Some(form) = &mut self.form {
+            form.a = a.cloned().map(Box::new);
         }
     }
 
@@ -315,15 +327,16 @@ impl Panel for FilmPanel {
         }
         let mut is_open = true;
         let area = ui.ctx().content_rect();
+        let width = WIDTH.min(area.width() - 4.0 * theme::GAP);
         egui::Window::new("Export film")
             .open(&mut is_open)
             .collapsible(false)
             .resizable(false)
-            .default_width(WIDTH)
+            .default_width(width)
             .pivot(egui::Align2::CENTER_CENTER)
             .default_pos(area.center())
             .show(ui.ctx(), |ui| {
-                ui.set_width(WIDTH);
+                ui.set_width(width);
                 if let Some((request, progress)) = self.running.clone() {
                     if progress_ui(ui, &request, &progress) {
                         self.stop();
@@ -350,7 +363,7 @@ impl Panel for FilmPanel {
 /// Returns true if Enter was pressed in the path.
 fn form_ui(ui: &mut Ui, form: &mut Form, clock: &Clock, takes_focus: bool) -> bool {
     ui.horizontal(|ui| {
-        for format in Format::ALL {
+        for format in Format::here() {
             if ui
                 .selectable_label(form.format == format, format.name())
                 .clicked()
@@ -448,9 +461,32 @@ fn form_ui(ui: &mut Ui, form: &mut Form, clock: &Clock, takes_focus: bool) -> bo
                 }
             });
             ui.end_row();
+            if form.a.is_some() {
+                look_ui(ui, &mut form.is_from_a);
+            }
         });
     ui.add_space(theme::HALF);
     is_entered
+}
+
+/// Whether the film goes from the look of the kept preset to that of the open one.
+fn look_ui(ui: &mut Ui, is_from_a: &mut bool) {
+    const LOOKS: [(bool, &str, &str); 2] = [
+        (false, "This preset", "Its own look in every frame"),
+        (
+            true,
+            "From A to B",
+            "The first frame has the look of the preset kept as A, the last one that of this preset, and numbers and colors are in between",
+        ),
+    ];
+    ui.label("Look");
+    ui.horizontal(|ui| {
+        for (from_a, name, hint) in LOOKS {
+            ui.selectable_value(is_from_a, from_a, name)
+                .on_hover_text(hint);
+        }
+    });
+    ui.end_row();
 }
 
 /// What a person reads when a film was stopped: which of its files are there.

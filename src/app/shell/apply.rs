@@ -219,6 +219,10 @@ fn toggle(state: &mut State, panels: &mut Panels, which: Toggle) {
         }
         Toggle::Randomize => panels.randomize.toggle(),
         Toggle::Sweep => panels.sweep.toggle(),
-        Toggle::Film => panels.film.toggle(state),
+        Toggle::Film => {
+            panels
+                .film
+                .toggle(state, panels.viewport.compare.kept.as_deref());
+        }
     }
 }

@@ -34,6 +34,9 @@ pub const KEPT: &str = "/rasterlab";
 /// The folder of files that a person has given.
 pub const GIVEN: &str = "/given";
 
+/// The folder of files that lie in memory until they are packed.
+pub const UNPACKED: &str = "/unpacked";
+
 /// Shows the window on a canvas, and opens the model `then` in it. The browser keeps its settings
 /// and its session.
 ///
@@ -162,8 +165,12 @@ fn read_kept() {
     }
 }
 
-/// The browser keeps files of [`KEPT`], and all others are downloads.
+/// The browser keeps files of [`KEPT`], those of [`UNPACKED`] stay in memory, and all others are
+/// downloads.
 fn keep(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if path.starts_with(UNPACKED) {
+        return has_room(bytes.len());
+    }
     if !path.starts_with(KEPT) {
         return download(path, bytes).map_err(io::Error::other);
     }
@@ -178,6 +185,19 @@ fn keep(path: &Path, bytes: &[u8]) -> io::Result<()> {
                 "the browser's storage for this page is full; File > Export everything saves what is open as a file",
             )
         })
+}
+
+/// An error if the files of [`UNPACKED`] would be larger than an archive may be with so many bytes
+/// more.
+fn has_room(more: usize) -> io::Result<()> {
+    let files = disk::below(Path::new(UNPACKED));
+    let bytes = more + files.iter().map(|(_, file)| file.len()).sum::<usize>();
+    if bytes as u64 > archive::MOST_BYTES {
+        let most = archive::MOST_BYTES >> 20;
+        let error = format!("all frames have more than {most} MiB; choose a smaller size or fewer");
+        return Err(io::Error::other(error));
+    }
+    Ok(())
 }
 
 /// The page has the text of what is open, to be saved after a panic.

@@ -334,24 +334,23 @@ impl App {
 
     /// Starts drawing a thumbnail when nothing more urgent needs the processor.
     fn request_thumbnail(&mut self, ctx: &egui::Context) {
-        let (screen, is_playing) = (
-            &self.state.picture.screen,
-            self.state.session.playback.playing,
-        );
-        if self.panels.film.is_exporting()
+        let screen = &self.state.picture.screen;
+        let is_playing = self.state.session.playback.playing;
+        let is_busy = self.panels.film.is_exporting()
             || self.state.session.scenes.is_loading()
             || screen.is_awaited(is_playing)
-            || (!is_playing && screen.needs_measuring())
-        {
-            return;
-        }
+            || (!is_playing && screen.needs_measuring());
         let browser = &mut self.panels.browser;
-        if let Some((next, size)) = browser.next_thumbnail(ctx) {
+        // A page fetches goldens instead.
+        if (!is_busy || cfg!(target_arch = "wasm32"))
+            && let Some((next, size)) = browser.next_thumbnail(ctx)
+        {
             return self.state.jobs.thumbnail(next, size);
         }
         let own = &self.state.session.preset_file;
         let key = SceneKey::of(own);
-        let Some(scene) = self.state.session.scenes.shown_for(&key) else {
+        let scene = self.state.session.scenes.shown_for(&key);
+        let Some(scene) = scene.filter(|_| !is_busy) else {
             return;
         };
         if let Some((next, size)) = browser.next_on_model(ctx, &key) {

@@ -17,7 +17,7 @@ use super::{
 };
 
 /// Effects with as many features of the language as there are room for.
-pub const EXAMPLES: [&str; 7] = [
+pub const EXAMPLES: [&str; 8] = [
     "// Ink: loops, helpers and every kind of parameter.
 //@ use lib/surface
 //@ use lib/hash
@@ -99,6 +99,11 @@ fn ink(at: ImageAt, p: Ink) -> vec4f {
     if image_at(at.x, at.y).x == IMAGE_NO_TRIANGLE { sum.r += image_depth_m(at.x, at.y) * image_pixel_size_m(1.0); }
     return sum;
 }",
+    "// Ink: a pass that is kept.
+struct Ink { @range(0.0, 1.0, 0.5) helper: f32 }
+@kept(3, 0.5) @pass(quarter)
+fn kept(at: ImageAt, p: Ink) -> vec4f { return p.helper * image_kept(at.x - 1, at.y) + image_color(4 * at.x, 4 * at.y); }
+fn ink(at: ImageAt, p: Ink) -> vec4f { return image_last(at.x / 4, at.y / 4) + image_kept_at(0.5, f32(at.size.y)); }",
     "// Ink: constants in let, of which naga's pipelines once made what its writers could not write; half words.
 struct Ink { @range(0.0, 1.0, 0.5) helper: f32 }
 fn ink(surface: Surface, p: Ink) -> Surface {

@@ -487,6 +487,30 @@ fn hooks_with_a_mistake() {
             "no pass",
         ),
         (
+            "@kept(4, 0.1)\nfn «f(at: ImageAt, p: Q) -> vec4f { return image_kept(at.x, at.y); }",
+            "is not kept; write another pass after it",
+        ),
+        (
+            "@kept(4, 0.1)\nfn g(at: ImageAt, p: Q) -> vec4f { return vec4f(0.0); }\n@kept(2, 0.1) @pass(half)\nfn «h(at: ImageAt, p: Q) -> vec4f { return vec4f(0.0); }\nfn f(at: ImageAt, p: Q) -> vec4f { return image_last(at.x, at.y); }",
+            "g and h are both kept",
+        ),
+        (
+            "«@kept(33, 0.1)\nfn g(at: ImageAt, p: Q) -> vec4f { return vec4f(0.0); }\nfn f(at: ImageAt, p: Q) -> vec4f { return vec4f(0.0); }",
+            "1 to 32 earlier frames",
+        ),
+        (
+            "«@kept(4, 0)\nfn g(at: ImageAt, p: Q) -> vec4f { return vec4f(0.0); }\nfn f(at: ImageAt, p: Q) -> vec4f { return vec4f(0.0); }",
+            "above 0 and at most 60",
+        ),
+        (
+            "@kept(4, 0.1)\nfn «g(x: f32) -> f32 { return x; }\nfn f(at: ImageAt, p: Q) -> vec4f { return vec4f(0.0); }",
+            "@kept stands before g, which is no pass",
+        ),
+        (
+            "fn f(at: ImageAt, p: Q) -> vec4f { return «image_kept(at.x, at.y); }",
+            "write @kept(12, 0.04) before a pass",
+        ),
+        (
             "fn f(at: ImageAt, p: Q) -> vec4f { return «image_background(); }",
             "pixel effect",
         ),

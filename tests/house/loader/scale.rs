@@ -313,4 +313,15 @@ fn the_script_that_writes_large_models_writes_good_ones() {
         let primitive = &scene.primitives[0];
         assert!(primitive.normals_agree != primitive.is_faceted);
     }
+    let path = folder.path().join("cubes.glb");
+    let run = Command::new("python3")
+        .args([&script, std::path::Path::new("2000"), &path])
+        .arg("--cubes")
+        .output()
+        .expect("it ran above");
+    assert!(run.status.success());
+    let scene = host::model::load(&path).expect("a good model");
+    assert_sound(&scene);
+    assert_eq!((scene.instances.len(), scene.primitives.len()), (166, 1));
+    assert_eq!(scene.triangle_count(), 12 * 166);
 }

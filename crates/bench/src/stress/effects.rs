@@ -29,6 +29,13 @@ pub const CASES: &[Case] = &[
         run: layers_on_one_pixel,
     },
     Case {
+        number: 16,
+        name: "layers-of-glass-on-one-pixel",
+        about: "2,048 layers of glass on a pixel are composed in order; of a million a message says that they are too many",
+        expectation: Expectation::Refused("the message names the most layers that are sorted"),
+        run: layers_of_glass_on_one_pixel,
+    },
+    Case {
         number: 25,
         name: "fill",
         about: "fills of 0, 2^-24, 1/2, 1 - 2^-24 and 1 of large and sub-pixel triangles: exact sets, each a subset of the next",
@@ -78,7 +85,7 @@ fn set(stack: &mut Stack, effect: &str, field: &str, value: f64) -> Result<(), E
 }
 
 /// A stack of one effect with some fields set.
-fn only(effect: &str, fields: &[(&str, f64)]) -> Result<Stack, EarlyEnd> {
+pub(super) fn only(effect: &str, fields: &[(&str, f64)]) -> Result<Stack, EarlyEnd> {
     let mut stack = Stack::default();
     fields
         .iter()
@@ -176,6 +183,42 @@ fn layers_on_one_pixel(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         }
     }
     Ok(())
+}
+
+fn layers_of_glass_on_one_pixel(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    let (view, stack) = (pixel_view(2, 2), only("glass", &[("frost", 0.25)])?);
+    let accuracy = AccuracyRequest::default();
+    for count in [7, 8, 9, 2048] {
+        let what = format!("{count} layers of glass");
+        let (capture, _) = context.exact(&pile(count), &view, &stack, &accuracy, &what)?;
+        equal(&capture.frame.glass.counts(), &vec![count; 4], &what)?;
+    }
+    let count = if context.is_software() {
+        context.note("2,056 layers stand for a million on a CPU adapter".into());
+        2056
+    } else {
+        1_000_000
+    };
+    let what = format!("{count} layers of glass");
+    let scene = pile(count);
+    context.step(&scene, &view, &what)?;
+    context.renderer.set_scene(&scene).block_on()?;
+    match (context.renderer)
+        .draw_complete(&view, &stack, &accuracy)
+        .block_on()
+    {
+        Err(error @ RenderError::DeepGlass { pixels: 4, most }) => {
+            let text = error.to_string();
+            check!(
+                error.is_unsupported() && text.contains(&format!("more than {most} layers")),
+                "{what}: {text}"
+            );
+            context.refused(text);
+            Ok(())
+        }
+        Err(error) => Err(EarlyEnd::Failed(format!("{what}: {error}"))),
+        Ok(_) => Err(EarlyEnd::Failed(format!("{what} were drawn"))),
+    }
 }
 
 fn fill(context: &mut CaseContext) -> Result<(), EarlyEnd> {

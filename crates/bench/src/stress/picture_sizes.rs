@@ -1,7 +1,7 @@
 //! Picture sizes: empty pictures, one pixel, odd sides and the largest ones, resizing, and a lost
 //! device.
 
-use std::time::Duration;
+use std::{sync::Arc, time::Duration};
 
 use pollster::FutureExt as _;
 use web_time::Instant;
@@ -11,12 +11,14 @@ use super::{
     checks::{EarlyEnd, check, equal, same},
     context::CaseContext,
     drawing::{captured, pinned, stack},
+    effects::only,
     scenes::{SimpleMesh, pixel_view, scene_of_meshes},
 };
 use crate::{
     effects::{Stack, hooks::Layers},
     gpu::{Gpu, RenderError, Renderer, device::AdapterChoice},
     plan::AccuracyRequest,
+    scene::Scene,
 };
 
 pub const CASES: &[Case] = &[
@@ -54,6 +56,13 @@ pub const CASES: &[Case] = &[
         about: "an x-ray picture of 5,120 x 2,880 pixels, whose sums need 24 bytes per pixel",
         expectation: Expectation::Exact,
         run: xray_at_5k,
+    },
+    Case {
+        number: 20,
+        name: "glass-at-4k",
+        about: "32 layers of glass over 3,840 x 2,160 pixels, in as many bands as the bindings ask for",
+        expectation: Expectation::Exact,
+        run: glass_at_4k,
     },
     Case {
         number: 20,
@@ -189,6 +198,12 @@ fn picture_too_large(context: &mut CaseContext) -> Result<(), EarlyEnd> {
 
 /// Two layers of different colors over the whole picture.
 fn veils() -> SimpleMesh {
+    let colors = [[1.0, 0.0, 0.25, 1.0], [0.0, 1.0, 0.25, 1.0]];
+    veils_of(&colors)
+}
+
+/// A layer of each color over the whole picture, the nearest first.
+fn veils_of(colors: &[[f32; 4]]) -> SimpleMesh {
     let corners = |depth: f32| {
         [
             [-16.0, -16.0, depth],
@@ -196,16 +211,33 @@ fn veils() -> SimpleMesh {
             [-16.0, 40_000.0, depth],
         ]
     };
-    let colors = [[1.0, 0.0, 0.25, 1.0], [0.0, 1.0, 0.25, 1.0]];
     SimpleMesh {
-        positions: [corners(0.5), corners(0.25)].concat(),
+        positions: (0..colors.len())
+            .flat_map(|layer| corners(0.5 / (layer + 1) as f32))
+            .collect(),
         colors: colors.iter().flat_map(|color| [*color; 3]).collect(),
         ..SimpleMesh::default()
     }
 }
 
+fn glass_at_4k(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    if context.is_software() {
+        return Err(EarlyEnd::Skipped(
+            "a quarter of a thousand million layers take a CPU adapter minutes; \
+             tests/picture/glass.rs draws a small picture with small bindings"
+                .into(),
+        ));
+    }
+    let colors: Vec<_> = (0..32)
+        .map(|layer| [layer as f32 / 31.0, 0.5, 1.0 - layer as f32 / 31.0, 1.0])
+        .collect();
+    let scene = scene_of_meshes(&[veils_of(&colors)]);
+    let frosted = only("glass", &[("frost", 0.25)])?;
+    uniform(context, &scene, &frosted, [3840, 2160])
+}
+
 fn xray_at_5k(context: &mut CaseContext) -> Result<(), EarlyEnd> {
-    let (scene, accuracy) = (scene_of_meshes(&[veils()]), pinned(context.quick_option()));
+    let scene = scene_of_meshes(&[veils()]);
     let (stack, [width, height]) = (stack(&["xray"]), [5120u32, 2880]);
     let bytes = 24 * u64::from(width) * u64::from(height);
     let caps = &context.renderer.gpu().caps;
@@ -215,28 +247,31 @@ fn xray_at_5k(context: &mut CaseContext) -> Result<(), EarlyEnd> {
             "its sums need a binding of {bytes} bytes, and this adapter binds at most {room}"
         )));
     }
-    // The oracle judges a small picture; every pixel of the large one must equal it.
-    let (small, _) = context.exact(
-        &scene,
-        &pixel_view(64, 36),
-        &stack,
-        &accuracy,
-        "64 x 36 pixels",
-    )?;
-    let (color, count) = (small.frame.color[0], small.frame.layer_sums[0]);
+    uniform(context, &scene, &stack, [width, height])
+}
+
+/// Draws a large picture of layers that cover it whole. The oracle judges a small one; every pixel
+/// of the large one must equal it.
+fn uniform(
+    context: &mut CaseContext,
+    scene: &Arc<Scene>,
+    stack: &Stack,
+    [width, height]: [u32; 2],
+) -> Result<(), EarlyEnd> {
+    let accuracy = pinned(context.quick_option());
+    let small_view = pixel_view(64, 36);
+    let (small, _) = context.exact(scene, &small_view, stack, &accuracy, "64 x 36 pixels")?;
+    let color = small.frame.color[0];
+    let count = small.frame.layer_sums.first();
     check!(
         small.frame.color.iter().all(|c| *c == color),
         "the layers are not uniform"
     );
-    let what = "5,120 x 2,880 pixels";
-    let large = context.captured(&scene, &pixel_view(width, height), &stack, &accuracy, what)?;
-    let odd = large
-        .frame
-        .color
-        .iter()
-        .zip(&large.frame.layer_sums)
-        .filter(|found| *found != (&color, &count))
-        .count();
+    let what = format!("{width} x {height} pixels");
+    let large = context.captured(scene, &pixel_view(width, height), stack, &accuracy, &what)?;
+    let odd_color = (large.frame.color.iter()).filter(|found| **found != color);
+    let odd_count = (large.frame.layer_sums.iter()).filter(|found| Some(*found) != count);
+    let odd = odd_color.count() + odd_count.count();
     equal(
         &odd,
         &0,

@@ -11,14 +11,14 @@ use super::{
     checks::{EarlyEnd, check, equal, layers, same},
     context::CaseContext,
     drawing::{WorkDistribution, pinned, stack},
-    scenes::{SimpleMesh, pixel_view, scene_of_meshes, triangle_soup_in_units},
+    scenes::{SimpleMesh, pixel_view, scene_of_meshes, triangle_soup, triangle_soup_in_units},
 };
 use crate::{
-    accuracy::Visibility,
+    accuracy::{Culling, PinnedOptions, Visibility},
     frame::vertex_flags,
     gpu::{Capacities, Capture},
     math::GUARD_BAND,
-    plan::Tuning,
+    plan::{AccuracyRequest, Tuning},
     scene::{Scene, view::View},
 };
 
@@ -64,6 +64,13 @@ pub const CASES: &[Case] = &[
         about: "ten million tiny triangles with known triangle ids and hits",
         expectation: Expectation::Exact,
         run: ten_million_triangles,
+    },
+    Case {
+        number: 27,
+        name: "million-instances",
+        about: "a million instances of one triangle, one for each pixel of 1000 x 1000: known triangle ids, culled by instance too",
+        expectation: Expectation::Exact,
+        run: million_instances,
     },
     Case {
         number: 27,
@@ -478,6 +485,37 @@ fn ten_million_triangles(context: &mut CaseContext) -> Result<(), EarlyEnd> {
         let what = format!("{count} triangles on {}", option.name());
         let capture = context.captured(&scene, &view, &stack(&[]), &pinned(option), &what)?;
         tiny.check(&capture, &what)?;
+    }
+    Ok(())
+}
+
+fn million_instances(context: &mut CaseContext) -> Result<(), EarlyEnd> {
+    const SIDE: u32 = 1000;
+    let mesh = SimpleMesh {
+        transforms: (0..SIDE * SIDE)
+            .map(|i| DMat4::from_translation(DVec3::new((i % SIDE).into(), (i / SIDE).into(), 0.0)))
+            .collect(),
+        ..triangle_soup([[0.25, 0.25, 0.5], [0.75, 0.5, 0.5], [0.25, 0.75, 0.5]])
+    };
+    let scene = scene_of_meshes(&[mesh]);
+    let option = context.quick_option();
+    for culling in [Culling::None, Culling::Frustum] {
+        let what = format!("a million instances, culling {}", culling.name());
+        let pins = PinnedOptions::of(option).with(culling);
+        let request = AccuracyRequest {
+            pins,
+            ..AccuracyRequest::default()
+        };
+        let capture = context.captured(
+            &scene,
+            &pixel_view(SIDE, SIDE),
+            &stack(&[]),
+            &request,
+            &what,
+        )?;
+        let found = (0..).zip(&capture.frame.triangle_id);
+        let other = found.clone().find(|(pixel, id)| pixel != *id);
+        check!(other.is_none(), "{what}: pixel and triangle id {other:?}");
     }
     Ok(())
 }

@@ -11,7 +11,10 @@ use super::{
     tokens::{Token, closing, tokens},
     words,
 };
-use crate::effects::{HookFunctions, hooks::ImagePass};
+use crate::effects::{
+    HookFunctions,
+    hooks::{EarlierFrames, ImagePass},
+};
 
 /// Files of `shaders/lib` that an effect file may use: pure functions and the types of hooks.
 pub const LIBRARY: [&str; 15] = [
@@ -54,6 +57,9 @@ const PASS_SIZES: [(&str, u32); 3] = [("full", 1), ("half", 2), ("quarter", 4)];
 /// Functions of `lib/image` that only a pixel effect may call.
 const OF_PIXELS: [&str; 2] = ["image_background", "image_previous"];
 
+/// Functions of `lib/image_kept`, which is there where a pass is kept.
+const OF_KEPT: [&str; 2] = ["image_kept", "image_kept_at"];
+
 /// What an effect file says.
 #[derive(Debug)]
 pub struct Declaration<'a> {
@@ -80,8 +86,17 @@ struct Function<'a> {
     /// Where the type of the last parameter begins.
     last_type: Option<Token<'a>>,
     result: String,
-    /// What `@pass` before it says: pixels of the picture for one that it writes, along a side.
+    /// What stands before it.
+    of_pass: OfPass,
+}
+
+/// What attributes before a function say of a pass.
+#[derive(Clone, Copy, Default, PartialEq)]
+struct OfPass {
+    /// `@pass`: pixels of the picture for one that it writes, along a side.
     scale: Option<u32>,
+    /// `@kept`: what it writes lives to the next frame, and a picture follows so many.
+    kept: Option<EarlierFrames>,
 }
 
 /// Reads an effect file; its constants of choices begin with `stem`.
@@ -94,7 +109,7 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
     bounds::check(text, &tokens)?;
     let uses = uses(text)?;
     let (mut structs, mut functions, mut declared) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut scale, mut attributes) = (None, Vec::new());
+    let (mut of_pass, mut attributes) = (OfPass::default(), Vec::new());
     let mut at = 0;
     while at < tokens.len() {
         let token = tokens[at];
@@ -132,9 +147,8 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
                     return Err(text.error(name.offset, name.text.len(), message));
                 };
                 declared.push(name);
-                let scale = scale.take();
                 functions.push(Function {
-                    scale,
+                    of_pass: std::mem::take(&mut of_pass),
                     ..function(text, &tokens, at, name, body)
                 });
                 at = closing(&tokens, body) + 1;
@@ -158,11 +172,18 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
             ("enable" | "requires" | "diagnostic", _) => {
                 return refuse("an effect file has no directives of WGSL; remove this one");
             }
-            ("@", Some(name)) if name.text == "pass" => {
+            ("@", Some(name)) if ["pass", "kept"].contains(&name.text) => {
                 let (attribute, next) = attributes::read(text, &tokens, at)?;
-                scale = Some(pass_scale(text, &attribute)?);
-                if tokens.get(next).is_none_or(|token| token.text != "fn") {
-                    return Err(attribute.error(text, "@pass stands before the fn of a pass"));
+                match attribute.name {
+                    "pass" => of_pass.scale = Some(pass_scale(text, &attribute)?),
+                    _ => of_pass.kept = Some(kept_frames(text, &attribute)?),
+                }
+                if tokens
+                    .get(next)
+                    .is_none_or(|token| !["fn", "@"].contains(&token.text))
+                {
+                    let message = format!("@{} stands before the fn of a pass", name.text);
+                    return Err(attribute.error(text, message));
                 }
                 attributes.push(attribute.begin..attribute.end);
                 at = next;
@@ -231,6 +252,17 @@ pub fn read<'a>(text: &Text<'a>, stem: &str) -> Result<Declaration<'a>, EffectEr
         }
         if tokens.iter().any(|token| token.text == "image_normal") {
             uses.push("lib/image_normal".into());
+        }
+        let reads_kept = |token: &&Token<'_>| OF_KEPT.contains(&token.text);
+        if let Some(token) = tokens.iter().find(reads_kept) {
+            if passes.iter().all(|pass| pass.kept.is_none()) {
+                let message = format!(
+                    "{} reads what a kept pass wrote in the previous frame, and no pass of this file is one; write @kept(12, 0.04) before a pass",
+                    token.text
+                );
+                return Err(text.error(token.offset, token.text.len(), message));
+            }
+            uses.push("lib/image_kept".into());
         }
     }
     // The library's file for pixels reads buffers, which passes with the other hooks do not have.
@@ -335,7 +367,7 @@ fn function<'a>(
         parameters,
         last_type,
         result,
-        scale: None,
+        of_pass: OfPass::default(),
     }
 }
 
@@ -440,6 +472,26 @@ fn pass_scale(text: &Text<'_>, attribute: &Attribute<'_>) -> Result<u32, EffectE
     })
 }
 
+/// The earlier frames that `@kept(frames, seconds)` says.
+fn kept_frames(text: &Text<'_>, attribute: &Attribute<'_>) -> Result<EarlierFrames, EffectError> {
+    let usage = format!(
+        "two numbers: 1 to {} earlier frames that a picture follows, and the seconds from one to the next, above 0 and at most {}",
+        EarlierFrames::MOST,
+        EarlierFrames::LONGEST_STEP_S
+    );
+    let numbers = attribute.numbers(text, (2, 2), &usage)?;
+    let [frames, step_s] = [numbers[0], numbers[1]];
+    let is_allowed = frames.fract() == 0.0
+        && (1.0..=f64::from(EarlierFrames::MOST)).contains(&frames)
+        && step_s > 0.0
+        && step_s <= EarlierFrames::LONGEST_STEP_S;
+    if !is_allowed {
+        return Err(attribute.error(text, format!("@kept takes {usage}")));
+    }
+    let frames = frames as u32;
+    Ok(EarlierFrames { frames, step_s })
+}
+
 /// The passes of an effect, of which the last one writes the picture.
 fn image_passes<'a>(
     text: &Text<'a>,
@@ -456,15 +508,38 @@ fn image_passes<'a>(
     };
     if let Some(other) = functions
         .iter()
-        .find(|function| function.scale.is_some() && !is_pass(function))
+        .find(|function| function.of_pass != OfPass::default() && !is_pass(function))
     {
+        let attribute = if other.of_pass.scale.is_some() {
+            "pass"
+        } else {
+            "kept"
+        };
         let message = format!(
-            "@pass stands before {}, which is no pass: fn {0}(at: ImageAt, p: Parameters) -> vec4f",
+            "@{attribute} stands before {}, which is no pass: fn {0}(at: ImageAt, p: Parameters) -> vec4f",
             other.name.text
         );
         return Err(error(other, message));
     }
-    if let Some(last) = passes.last().filter(|last| last.scale.unwrap_or(1) != 1) {
+    let mut kept = passes.iter().filter(|pass| pass.of_pass.kept.is_some());
+    if let (Some(first), Some(second)) = (kept.next(), kept.next()) {
+        let message = format!(
+            "{} and {} are both kept; an effect keeps one pass, so remove one @kept",
+            first.name.text, second.name.text
+        );
+        return Err(error(second, message));
+    }
+    if let Some(last) = passes.last().filter(|last| last.of_pass.kept.is_some()) {
+        let message = format!(
+            "{} is the last pass and writes the picture, which is not kept; write another pass after it, for instance one that returns image_last(at.x, at.y)",
+            last.name.text
+        );
+        return Err(error(last, message));
+    }
+    if let Some(last) = passes
+        .last()
+        .filter(|last| last.of_pass.scale.unwrap_or(1) != 1)
+    {
         let message = format!(
             "{} is the last pass and writes the picture, which has its full size; remove @pass, or write another pass after it",
             last.name.text
@@ -481,7 +556,8 @@ fn image_passes<'a>(
     }
     let pass = |function: &&Function<'_>| ImagePass {
         name: function.name.text.to_owned(),
-        scale: function.scale.unwrap_or(1),
+        scale: function.of_pass.scale.unwrap_or(1),
+        kept: function.of_pass.kept,
     };
     Ok(passes.iter().map(pass).collect())
 }

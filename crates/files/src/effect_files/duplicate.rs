@@ -9,7 +9,7 @@ use super::{
     tokens::{closing, tokens},
 };
 use crate::{
-    effects::Effect,
+    effects::{Effect, hooks::ImagePass},
     params::{Field, ValueType, format_number},
     shader::{
         image_passes::pass_function,
@@ -136,10 +136,10 @@ fn renamed(effect: &Effect, name: &str, text: &str) -> String {
             )
         };
         let pass = hooks_pass(effect, token.text).filter(|_| before == "fn");
-        if let Some(scale) = pass {
+        if let Some(attributes) = pass {
             // The attribute stands before `fn`, which was not copied yet.
             result.push_str(&text[copied..tokens[at - 1].offset]);
-            result.push_str(scale);
+            result.push_str(&attributes);
             copied = tokens[at - 1].offset;
         }
         if let Some(replacement) = replacement {
@@ -172,15 +172,18 @@ fn renamed(effect: &Effect, name: &str, text: &str) -> String {
     result
 }
 
-/// The attribute of the pass that a function of a built-in effect is, where it needs one.
-fn hooks_pass(effect: &Effect, function: &str) -> Option<&'static str> {
+/// The attributes of the pass that a function of a built-in effect is.
+fn hooks_pass(effect: &Effect, function: &str) -> Option<String> {
     let hook = effect.hooks.passes.as_ref()?;
     let index = (0..hook.passes.len()).find(|&index| pass_function(effect, index) == function)?;
-    match hook.passes[index].scale {
-        2 => Some("@pass(half)\n"),
-        4 => Some("@pass(quarter)\n"),
-        _ => None,
-    }
+    let ImagePass { scale, kept, .. } = &hook.passes[index];
+    let size = match scale {
+        2 => "@pass(half)\n",
+        4 => "@pass(quarter)\n",
+        _ => "",
+    };
+    let kept = kept.map(|earlier| format!("@kept({}, {})\n", earlier.frames, earlier.step_s));
+    Some(size.to_owned() + &kept.unwrap_or_default())
 }
 
 /// The struct with its documentation and attributes. Choices come first, since the other parameters

@@ -26,9 +26,9 @@ use crate::{
 
 /// Instructions of one call. The loops of an effect end long before.
 const MAX_STEPS: u64 = 100_000_000;
-/// Functions of the library that read more than their arguments: of `lib/image` and
-/// `lib/image_pass`, then of `lib/image_file`.
-const EXTERNALS: [&str; 16] = [
+/// Functions of the library that read more than their arguments: of `lib/image`,
+/// `lib/image_pass`, `lib/image_direction` and `lib/image_kept`, then of `lib/image_file`.
+const EXTERNALS: [&str; 18] = [
     "image_has",
     "image_at",
     "image_background",
@@ -43,11 +43,13 @@ const EXTERNALS: [&str; 16] = [
     "image_pixel_size_m",
     "image_normal",
     "image_direction",
+    "image_kept",
+    "image_kept_at",
     "image_file_size",
     "image_file_texel",
 ];
 /// Index of the first function of `lib/image_file`.
-const IMAGE_FILES: usize = 14;
+const IMAGE_FILES: usize = 16;
 /// How much the inputs of a color may be off on the f32 side, relative to the largest component of
 /// each.
 const INPUT_ERROR: f64 = 1.0 / (1 << 17) as f64;
@@ -388,6 +390,8 @@ impl Host for PassHost<'_> {
                 result.copy_from_slice(&direction.to_array().map(Word::from_f64));
                 return;
             }
+            14 => at.kept(pixel()[0], pixel()[1]),
+            15 => at.kept_at(place()),
             _ => return PictureHost(at.input.picture, 0).external(index, arguments, result),
         };
         result.copy_from_slice(&color.to_array().map(Word::from_f64));

@@ -5,7 +5,10 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 
 use super::{error::FilmError, story::Film};
-use crate::preset_file::{self, Existing, FrameStatus, PresetError};
+use crate::{
+    host::disk,
+    preset_file::{self, Existing, FrameStatus, PresetError},
+};
 
 /// A frame to draw or to keep.
 pub struct FrameJob {
@@ -55,7 +58,7 @@ pub fn find_finished(
         .and_then(Path::parent)
         .filter(|f| !f.as_os_str().is_empty())
     {
-        std::fs::create_dir_all(folder).map_err(|e| FilmError::Folder {
+        disk::create_folder(folder).map_err(|e| FilmError::Folder {
             folder: folder.display().to_string(),
             reason: e.to_string(),
         })?;

@@ -34,7 +34,11 @@ pub trait Painter {
     ///
     /// # Errors
     /// The picture cannot be drawn.
-    fn paint(&mut self, preset: &Preset, scene: &Arc<Scene>) -> Result<Frame, Self::Error>;
+    fn paint(
+        &mut self,
+        preset: &Preset,
+        scene: &Arc<Scene>,
+    ) -> impl Future<Output = Result<Frame, Self::Error>>;
 }
 
 /// Watches a film being drawn.
@@ -148,7 +152,7 @@ impl Production {
     ///
     /// # Errors
     /// A frame cannot be drawn, a file cannot be written, or the person stopped the film.
-    pub fn draw<P: Painter>(
+    pub async fn draw<P: Painter>(
         &mut self,
         painter: &mut P,
         observer: &dyn Observer,
@@ -165,7 +169,7 @@ impl Production {
         } = self;
         for reel in &mut *reels {
             if let (Reel::Apng(animation), Some(still)) = (reel, film.still()) {
-                let frame = painter.paint(&still.preset, &film.scene)?;
+                let frame = painter.paint(&still.preset, &film.scene).await?;
                 animation.push(&frame.color).map_err(FilmError::from)?;
             }
         }
@@ -179,7 +183,8 @@ impl Production {
                 drawn.push(if job.is_kept {
                     None
                 } else {
-                    Some(painter.paint(&film.at(job.frame).preset, &film.scene)?)
+                    let preset = film.at(job.frame).preset;
+                    Some(painter.paint(&preset, &film.scene).await?)
                 });
                 observer.ended(job);
             }

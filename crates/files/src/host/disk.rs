@@ -107,6 +107,11 @@ mod page {
         Ok(())
     }
 
+    /// Forgets the files in a folder and below.
+    pub fn remove(folder: &Path) {
+        files().retain(|path, _| !path.starts_with(folder));
+    }
+
     fn found(path: &Path) -> io::Result<Arc<[u8]>> {
         let found = files().get(path).cloned();
         found.ok_or_else(|| io::Error::new(ErrorKind::NotFound, "the page has no such file"))

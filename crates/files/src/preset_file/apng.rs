@@ -1,13 +1,24 @@
 //! Animated PNG (APNG) files of many frames.
 
-use std::{fs::File, io::BufWriter, path::Path};
+use std::{io::BufWriter, path::Path};
 
 use super::{
-    atomic::{AtomicFile, Existing},
+    atomic::Existing,
     error::PresetError,
     file::PresetFile,
     picture::{Provenance, encoder, failed, texts},
 };
+
+#[cfg(not(target_arch = "wasm32"))]
+use super::atomic::AtomicFile;
+#[cfg(target_arch = "wasm32")]
+use super::in_memory::InMemory as AtomicFile;
+
+/// What is written to while the file is not yet there under its name.
+#[cfg(not(target_arch = "wasm32"))]
+type Handle = std::fs::File;
+#[cfg(target_arch = "wasm32")]
+type Handle = AtomicFile;
 
 /// Size and timing of an animation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +39,7 @@ pub struct AnimationOptions {
 /// An animated PNG that is being written. The file appears when it is finished, and otherwise not
 /// at all.
 pub struct AnimatedPng {
-    writer: png::Writer<BufWriter<File>>,
+    writer: png::Writer<BufWriter<Handle>>,
     /// The file that `writer` writes to.
     file: AtomicFile,
 }

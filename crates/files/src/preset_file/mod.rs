@@ -17,6 +17,8 @@ mod frame_status;
 mod gallery;
 mod goldens;
 mod hash;
+#[cfg(target_arch = "wasm32")]
+mod in_memory;
 mod keyframes;
 mod landing;
 mod load;

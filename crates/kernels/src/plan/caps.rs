@@ -82,8 +82,10 @@ impl Caps {
 /// The most samples of a triangle that one invocation may walk.
 pub const MOST_SMALL_SAMPLES: u32 = 128 * 128;
 
-/// Layers of glass that take 256 MiB.
-pub const MOST_GLASS_LAYERS: u32 = (256 << 20) / 24;
+/// Bytes of a layer of glass.
+pub const GLASS_LAYER_BYTES: u64 = 24;
+/// Layers of glass that take 1 GiB: eight over each pixel at 2560x1440, and one band of pixels.
+pub const MOST_GLASS_LAYERS: u32 = ((1 << 30) / GLASS_LAYER_BYTES) as u32;
 
 /// How the kernels divide their work: it changes speed alone, never a picture. [`Caps::tuning`]
 /// knows what suits an adapter; benches and tests try others.
@@ -131,8 +133,8 @@ pub struct Tuning {
     /// A shadow map is read from the buffer that the light's passes wrote, which is one storage
     /// buffer more in the resolve; else it is copied to a texture first.
     pub buffered_shadow_map: bool,
-    /// Layers of glass that are in memory at a time, at least 1: a picture that has more is drawn
-    /// in bands of pixels.
+    /// Layers of glass that are in memory at a time, at least 1 and as far as there is memory: a
+    /// picture that has more is drawn in bands of pixels.
     pub glass_layers: u32,
     /// Omit what the scene does not need; else keep every path and every branch.
     pub specialized: bool,

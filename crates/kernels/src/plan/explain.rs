@@ -286,7 +286,7 @@ impl Plan {
             Layers::Glass => note(
                 "layers",
                 format!(
-                    "glass: {} of {} draws are seen through; their layers are listed pixel by pixel, {}",
+                    "glass: {} of {} draws are seen through; their layers are listed pixel by pixel, {}{}",
                     self.needs.glass_draws,
                     self.needs.draws,
                     match self.key.options.transparency {
@@ -297,6 +297,12 @@ impl Plan {
                         Transparency::Opaque | Transparency::Exact => {
                             "sorted in integers and composed"
                         }
+                    },
+                    match self.key.framebuffer.glass_bands {
+                        0 | 1 => String::new(),
+                        bands => format!(
+                            ", in {bands} bands of pixels one after another: all at once take too much memory"
+                        ),
                     }
                 ),
             ),

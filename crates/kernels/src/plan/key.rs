@@ -6,7 +6,9 @@ use super::{
     traits::StackTraits,
 };
 use crate::{
-    accuracy::{AccuracyOptions, Clipping, Culling, Parameters, Visibility, XraySums},
+    accuracy::{
+        AccuracyOptions, Clipping, Culling, Parameters, PositionFormat, Visibility, XraySums,
+    },
     effects::hooks::{Layers, Shape},
     math::SMALL_EXTENT,
     scene::needs::Needs,
@@ -34,7 +36,7 @@ pub(super) fn key_of(
     let has_normal_maps = needs.normal_maps > 0 && stack.reads_normals();
     KernelKey {
         options,
-        vertices: vertex_inputs(needs),
+        vertices: vertex_inputs(needs, &options),
         generated: GeneratedVertices {
             has_joints: needs.skinning.is_some(),
             has_morph_targets: needs.morph_targets,
@@ -72,7 +74,7 @@ pub(super) fn key_of(
             deepest_glass: if caps.software {
                 loops::DEEPEST_GLASS
             } else {
-                u32::MAX
+                loops::DEEPEST_GLASS_OF_CARDS
             },
             paired_sums,
             sums_with_nearest: paired_sums
@@ -140,7 +142,7 @@ fn has_one64_sums(options: &AccuracyOptions, layers: Option<Layers>, stack: &Sta
     fits && options.xray_sums == XraySums::Four32 && stack.xray.is_some_and(|xray| xray.unit() == 1)
 }
 
-fn vertex_inputs(needs: &Needs) -> VertexInputs {
+fn vertex_inputs(needs: &Needs, options: &AccuracyOptions) -> VertexInputs {
     let format = |is_f32: bool| {
         if is_f32 {
             AttributeFormat::F32
@@ -159,6 +161,10 @@ fn vertex_inputs(needs: &Needs) -> VertexInputs {
         has_colors: needs.colors,
         only_triangle_lists: !needs.has_strips_or_fans,
         is_single_draw: needs.draws == 1,
+        // Positions relative to the eye have an origin of their own in each draw.
+        is_instanced: needs.instanced
+            && needs.draws > 1
+            && options.position_format != PositionFormat::Relative,
     }
 }
 

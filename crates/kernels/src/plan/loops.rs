@@ -13,9 +13,13 @@ use crate::{
 /// Iterations that an invocation may make for its samples; the others are for what precedes them.
 pub const MAX_ITERATIONS: u32 = 64_000;
 
-/// Most layers of glass that one invocation sorts: it visits each twice for every doubling of the
-/// sorted runs, and twice more.
+/// Most layers of glass that one invocation of a CPU adapter sorts, a multiple of 8: it visits each
+/// twice for every doubling of runs of 8, and three times more.
 pub const DEEPEST_GLASS: u32 = 2048;
+
+/// The same on a card, whose driver takes a kernel that works for seconds for one that hangs: each
+/// visit may wait for memory.
+pub const DEEPEST_GLASS_OF_CARDS: u32 = 1 << 15;
 
 /// Most samples and rows under the discs of a triangle: three of 64 px, the largest that `points`
 /// draws.

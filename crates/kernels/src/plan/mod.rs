@@ -15,9 +15,9 @@ use std::sync::Arc;
 pub use crate::accuracy::{AccuracyRequest, MeasuredCosts, Tier, Tolerance};
 
 pub use self::{
-    caps::{Caps, MOST_GLASS_LAYERS, MOST_SMALL_SAMPLES, Tuning},
+    caps::{Caps, GLASS_LAYER_BYTES, MOST_GLASS_LAYERS, MOST_SMALL_SAMPLES, Tuning},
     error::PlanError,
-    loops::DEEPEST_GLASS as MOST_CPU_GLASS_LAYERS,
+    loops::DEEPEST_GLASS_OF_CARDS as MOST_CARD_GLASS_LAYERS,
     traits::{InexactEffect, StackTraits},
 };
 use self::{

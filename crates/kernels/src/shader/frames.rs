@@ -43,6 +43,13 @@ impl KernelKey {
             .collect()
     }
 
+    /// Every pass of the frame that the judge asks for, which lists no layers of glass.
+    pub fn judge_frame(&self) -> Vec<Pass> {
+        let mut phases = self.phases();
+        phases.retain(|phase| *phase != RasterPhase::Glass);
+        self.passes(&phases)
+    }
+
     /// The raster phases of one frame, in order.
     pub fn phases(&self) -> Vec<RasterPhase> {
         let nearest: &[RasterPhase] = match (self.framebuffer.layers, self.options.visibility) {

@@ -7,6 +7,7 @@ use super::image_files::kernel_words;
 use crate::{
     effects::{Effect, EffectSource, EnabledEffect, constant_name},
     params::{Field, ValueType, WgslType},
+    scene::model::MOST_SHAPES,
     shader::key::{EffectList, Fetch, KernelKey},
 };
 
@@ -289,8 +290,9 @@ pub fn is_lit(effect: &Effect, key: &KernelKey) -> bool {
 }
 
 /// Buffers that [`binding`] declares.
-pub const BINDINGS: [&str; 5] = [
+pub const BINDINGS: [&str; 6] = [
     "draws",
+    "shapes",
     "index_bytes",
     "queues",
     "clipped_triangles",
@@ -335,7 +337,15 @@ pub fn binding(name: &str, key: &KernelKey) -> Option<String> {
     };
     match name {
         "draws" if key.vertices.is_single_draw => Some(binding(1, uniform(key), "array<Draw, 1>")),
+        "draws" if key.vertices.is_instanced => {
+            Some(binding(1, "storage, read", "array<InstancedDraw>"))
+        }
         "draws" => Some(binding(1, "storage, read", "array<Draw>")),
+        "shapes" => Some(binding(
+            39,
+            uniform(key),
+            &format!("array<DrawShape, {MOST_SHAPES}>"),
+        )),
         "index_bytes" => Some(or_none(
             key.vertices.fetch != Fetch::Direct,
             3,

@@ -2,13 +2,16 @@
 //! writes.
 
 use super::{key::KernelKey, pass::Pass};
-use crate::effects::Effect;
+use crate::effects::{Effect, hooks::ImagePass};
 
 /// Most passes of all effects of a stack together.
 pub use crate::effects::MAX_IMAGE_PASSES;
 
 /// Pictures in linear light that passes read and write by turns.
 pub const IMAGE_SLOTS: usize = 3;
+
+/// The picture that a kept pass writes, which lives to the next frame, behind those.
+pub const KEPT_SLOT: usize = IMAGE_SLOTS;
 
 /// One pass of one effect in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,9 +26,10 @@ pub struct ImageStep {
     pub last_scale: u32,
     /// The picture that the effect began with, of [`IMAGE_SLOTS`].
     pub source: usize,
-    /// What the pass before it wrote; the source in the first pass of an effect.
+    /// What the pass before it wrote, perhaps [`KEPT_SLOT`]; the source in the first pass of an
+    /// effect.
     pub last: usize,
-    /// What it writes; none: the finished picture.
+    /// What it writes, [`KEPT_SLOT`] if it is kept; none: the finished picture.
     pub target: Option<usize>,
 }
 
@@ -48,7 +52,10 @@ impl KernelKey {
             };
             let (mut last, mut last_scale) = (source, 1);
             for (pass, spec) in hook.passes.iter().enumerate() {
-                let free = (0..IMAGE_SLOTS).find(|slot| *slot != source && *slot != last);
+                let free = match spec.kept {
+                    Some(_) => Some(KEPT_SLOT),
+                    None => (0..IMAGE_SLOTS).find(|slot| *slot != source && *slot != last),
+                };
                 steps.push(ImageStep {
                     effect: index,
                     pass,
@@ -76,13 +83,20 @@ impl KernelKey {
         }
     }
 
-    /// Pictures in linear light that the passes take, at most [`IMAGE_SLOTS`].
+    /// The pass whose result lives to the next frame.
+    pub fn kept_pass(&self) -> Option<&ImagePass> {
+        let mut hooks = self.effects.list.iter().map(|effect| &effect.hooks);
+        hooks.find_map(|hooks| Some(hooks.passes.as_ref()?.kept()?.0))
+    }
+
+    /// Pictures in linear light that the passes take by turns, at most [`IMAGE_SLOTS`].
     pub fn image_slots(&self) -> usize {
         let steps = self.image_steps();
         let slots = steps
             .iter()
             .flat_map(|step| [Some(step.last), step.target])
-            .flatten();
+            .flatten()
+            .filter(|slot| *slot < IMAGE_SLOTS);
         slots.max().map_or(0, |last| last + 1)
     }
 

@@ -74,6 +74,8 @@ pub struct VertexInputs {
     pub only_triangle_lists: bool,
     /// There is one draw, so no triangle has to search for its own.
     pub is_single_draw: bool,
+    /// Draws share what they say of their primitives.
+    pub is_instanced: bool,
 }
 
 /// Which vertices compute passes write before the frame is projected.
@@ -284,6 +286,7 @@ impl KernelKey {
                 has_colors: true,
                 only_triangle_lists: false,
                 is_single_draw: false,
+                is_instanced: false,
             },
             generated: GeneratedVertices {
                 has_joints: true,

@@ -9,7 +9,7 @@ use std::{
 
 use include_dir::{Dir, include_dir};
 
-static EMBEDDED: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../shaders");
+static EMBEDDED: Dir = include_dir!("$RASTERLAB_SHADERS");
 
 /// WGSL files outside of the program.
 pub trait ShaderFiles: Send + Sync {

@@ -27,7 +27,7 @@ params! {
         /// Strength: 1 darkens by the fraction that is hidden.
         strength: f32 = 2.0, hard 0.0..=16.0, soft 0.0..=4.0;
         /// The radius in the picture is at most this.
-        most_px: f32 = 32.0, hard 1.0..=256.0, soft 4.0..=96.0, unit "px";
+        most_px: f32 = 32.0, hard 1.0..=512.0, soft 4.0..=96.0, unit "px";
         /// How far noise is smoothed, on what is about equally far away.
         soft_px: u32 = 3, hard 0.0..=16.0, soft 0.0..=8.0, unit "px";
     }

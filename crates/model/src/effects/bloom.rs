@@ -20,7 +20,7 @@ params! {
         /// How far above it a place shines entirely.
         knee: f32 = 0.35, hard 0.01..=1.0;
         /// How far the light reaches.
-        radius_px: f32 = 36.0, hard 1.0..=192.0, soft 1.0..=96.0, unit "px";
+        radius_px: f32 = 36.0, hard 1.0..=512.0, soft 1.0..=96.0, unit "px";
         /// Strength of the light.
         intensity: f32 = 1.4, hard 0.0..=16.0, soft 0.0..=4.0;
     }

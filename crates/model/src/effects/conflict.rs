@@ -23,6 +23,10 @@ pub enum Conflict {
     )]
     Passes { last: String },
     #[error(
+        "{first} and {second} both remember earlier frames, and a stack has room for one of them; switch the other off"
+    )]
+    EarlierFrames { first: String, second: String },
+    #[error(
         "{order} counts the samples of opaque surfaces, so {glass} cannot be drawn with it; switch one of them off"
     )]
     GlassInOrder { order: String, glass: String },
@@ -32,7 +36,7 @@ impl Conflict {
     /// The later of the effects.
     pub fn effect(&self) -> &str {
         match self {
-            Self::Slot { second, .. } => second,
+            Self::Slot { second, .. } | Self::EarlierFrames { second, .. } => second,
             Self::Scopes { last, .. } | Self::Passes { last } => last,
             Self::GlassInOrder { glass, .. } => glass,
         }

@@ -31,7 +31,7 @@ params! {
         /// Radius of the disc to which a point infinitely far away spreads.
         aperture_px: f32 = 16.0, hard 0.0..=1024.0, soft 0.0..=64.0, unit "px";
         /// The largest such radius.
-        most_px: f32 = 10.0, hard 1.0..=96.0, soft 1.0..=32.0, unit "px";
+        most_px: f32 = 10.0, hard 1.0..=120.0, soft 1.0..=32.0, unit "px";
         /// How much more bright points weigh than dark ones.
         highlights: f32 = 3.0, hard 0.0..=64.0, soft 0.0..=16.0;
     }

@@ -50,6 +50,10 @@ params! {
         bias: f32 = 0.01, hard 0.0..=0.5, soft 0.0001..=0.1, log true;
         /// The model shows beneath the dots; without it, it only hides them.
         show_model: Flag = 1;
+        /// Length of a dash of dots, at least their distance; 0: the line has dots all along.
+        dash_m: f32 = 0.0, hard 0.0..=1000.0, soft 0.0..=2.0, unit "m";
+        /// Gap between two dashes. Both are stretched alike so that a line begins and ends with a whole dash.
+        gap_m: f32 = 0.1, hard 0.0..=1000.0, soft 0.0..=2.0, unit "m";
     }
 }
 
@@ -68,10 +72,62 @@ pub const FULL: u32 = 256;
 /// Bits of a float's fraction: so many steps lead from a power of two to the next.
 const STEPS: u32 = 23;
 
+/// Where the dots of one line lie.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DotRow {
+    /// Dots of a dash, at least 1; without dashes all of the line.
+    pub per_dash: u64,
+    /// Dashes of the line, at least 1.
+    pub dashes: u64,
+    /// From one dot of a dash to the next, meters: at most the spacing.
+    pub step_m: f64,
+    /// From the beginning of one dash to that of the next, meters.
+    pub period_m: f64,
+}
+
+impl DotRow {
+    /// Dots of the line.
+    pub const fn count(&self) -> u64 {
+        self.per_dash.saturating_mul(self.dashes)
+    }
+
+    /// The dash of a dot.
+    pub const fn dash(&self, dot: u64) -> u64 {
+        dot / self.per_dash
+    }
+
+    /// Where a dot lies, meters from the beginning of the line.
+    pub fn place_m(&self, dot: u64) -> f64 {
+        self.dash(dot) as f64 * self.period_m + (dot % self.per_dash) as f64 * self.step_m
+    }
+}
+
 impl Dots {
-    /// Dots on a line so long: one at its beginning, the others evenly.
-    pub fn count(&self, length_m: f64) -> u64 {
-        ((length_m / f64::from(self.spacing_m)).floor() as u64).saturating_add(1)
+    /// The dots on a line so long, above 0: one at its beginning, the others evenly, or in dashes
+    /// of which the last one ends where the line does.
+    pub fn row(&self, length_m: f64) -> DotRow {
+        let spacing_m = f64::from(self.spacing_m);
+        if self.dash_m == 0.0 {
+            return DotRow {
+                per_dash: ((length_m / spacing_m).floor() as u64).saturating_add(1),
+                dashes: 1,
+                step_m: spacing_m,
+                period_m: 0.0,
+            };
+        }
+        let (dash_m, gap_m) = (
+            f64::from(self.dash_m.max(self.spacing_m)),
+            f64::from(self.gap_m),
+        );
+        let dashes = ((length_m + gap_m) / (dash_m + gap_m)).round().max(1.0);
+        let stretched = length_m / (dashes * dash_m + (dashes - 1.0) * gap_m);
+        let steps = (dash_m * stretched / spacing_m).ceil().max(1.0);
+        DotRow {
+            per_dash: (steps as u64).saturating_add(1),
+            dashes: dashes as u64,
+            step_m: dash_m * stretched / steps,
+            period_m: (dash_m + gap_m) * stretched,
+        }
     }
 
     /// Radius in units of 1/256 px.
@@ -131,5 +187,38 @@ impl Dots {
         let radius = u64::from(self.radius());
         (((radius + 256) * radius).saturating_sub(squared) / (2 * radius)).min(u64::from(FULL))
             as u32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_begins_and_ends_with_a_whole_dash_wherever_it_ends() {
+        for (dash_m, gap_m, spacing_m) in [(0.2, 0.1, 0.01), (0.3, 0.02, 0.07), (0.01, 0.4, 0.05)] {
+            let dots = Dots {
+                dash_m,
+                gap_m,
+                spacing_m,
+                ..Dots::default()
+            };
+            for k in 1..400 {
+                let length_m = 0.013 * f64::from(k);
+                let row = dots.row(length_m);
+                let last_m = row.place_m(row.count() - 1);
+                assert_eq!(row.place_m(0), 0.0);
+                assert!((last_m - length_m).abs() < 1e-9, "{last_m} of {length_m}");
+                assert!(row.step_m <= f64::from(spacing_m) * (1.0 + 1e-9));
+                let places = (0..row.count()).map(|dot| row.place_m(dot));
+                assert!(places.is_sorted(), "{row:?}");
+                // Where there are several, they are stretched by half at most.
+                let dash = f64::from(dash_m.max(spacing_m));
+                let drawn = row.step_m * (row.per_dash - 1) as f64;
+                assert!(row.dashes == 1 || drawn < 1.5 * dash + 1e-9, "{drawn} m");
+            }
+        }
+        let even = Dots::default().row(1.0);
+        assert_eq!((even.dashes, even.place_m(3)), (1, 3.0 * f64::from(0.05f32)));
     }
 }

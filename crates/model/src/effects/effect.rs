@@ -131,12 +131,13 @@ impl Effect {
 
     /// The same effect, also in passes over the finished picture.
     pub fn on_passes<P: PassEffect>(mut self) -> Self {
-        let named = |&(name, scale): &(&str, u32)| ImagePass {
+        let named = |(index, &(name, scale)): (usize, &(&str, u32))| ImagePass {
             name: name.into(),
             scale,
+            kept: P::KEPT.and_then(|(kept, frames)| (kept == index).then_some(frames)),
         };
         self.hooks.passes = Some(PassHook {
-            passes: P::PASSES.iter().map(named).collect(),
+            passes: P::PASSES.iter().enumerate().map(named).collect(),
             run: Arc::new(|index, at: &ImageAt<'_>, words: &[u32]| {
                 P::pass(index, at, &read(words))
             }),
@@ -209,8 +210,15 @@ impl Effect {
         let is_alone = hooks.slot.is_some()
             || hooks.has_lines
             || hooks.particle_settings.is_some()
-            || hooks.casts_shadows;
+            || hooks.casts_shadows
+            || self.keeps_pass();
         !is_alone && !hooks.image.as_ref().is_some_and(|hook| hook.reads_previous)
+    }
+
+    /// Does what one of its passes writes live to the next frame?
+    pub fn keeps_pass(&self) -> bool {
+        let passes = self.hooks.passes.as_ref();
+        passes.is_some_and(|hook| hook.kept().is_some())
     }
 
     /// Is it the effect of a file, or an instance of one?

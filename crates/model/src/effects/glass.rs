@@ -58,6 +58,12 @@ pub struct GlassLayer {
 }
 
 impl GlassLayer {
+    /// Nothing between.
+    pub const CLEAR: Self = Self {
+        passed: DVec3::ONE,
+        added: DVec3::ZERO,
+    };
+
     /// Of a shaded surface whose material blends.
     pub fn blended(s: &Surface) -> Self {
         let alpha = s.color.w.clamp(0.0, 1.0);
@@ -67,9 +73,22 @@ impl GlassLayer {
         }
     }
 
+    /// Two layers as one, this one before `back`.
+    pub fn merged(&self, back: &Self) -> Self {
+        Self {
+            passed: self.passed * back.passed,
+            added: self.passed * back.added + self.added,
+        }
+    }
+
     /// What is seen of a linear color behind it.
     pub fn over(&self, behind: DVec3) -> DVec3 {
         self.passed * behind + self.added
+    }
+
+    /// Alpha of what covers the background, with this alpha behind it.
+    pub fn alpha_over(&self, behind: f64) -> f64 {
+        1.0 + (behind - 1.0) * self.passed.dot(DVec3::splat(1.0 / 3.0))
     }
 }
 

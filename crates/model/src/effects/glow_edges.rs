@@ -27,7 +27,7 @@ params! {
         /// What color the tubes have.
         hue: Hue = Hue::Objects as u32;
         /// How far the light reaches.
-        radius_px: f32 = 16.0, hard 1.0..=128.0, soft 1.0..=64.0, unit "px";
+        radius_px: f32 = 16.0, hard 1.0..=256.0, soft 1.0..=64.0, unit "px";
         /// Strength of the light around the tubes.
         intensity: f32 = 3.0, hard 0.0..=32.0, soft 0.0..=8.0;
         /// How much of the picture is seen beneath.

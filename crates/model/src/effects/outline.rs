@@ -180,4 +180,64 @@ mod tests {
         assert_eq!(lines(0, 1, 0.001), [false, false]);
         assert_eq!(lines(0, 1, 0.5), [true, true]);
     }
+
+    /// The pixels of a wedge that points to the left, row-major, its tip in the middle of the picture.
+    fn wedge(side: u32, half_angle: f64) -> Vec<u32> {
+        let middle = f64::from(side / 2) + 0.5;
+        let inside = |x: u32, y: u32| {
+            let (across, down) = (f64::from(x) + 0.5 - middle, f64::from(y) + 0.5 - middle);
+            across >= 0.0 && down.abs() <= across * half_angle.tan()
+        };
+        let pixels = (0..side * side).map(|i| inside(i % side, i / side));
+        pixels.map(|is_inside| if is_inside { 0 } else { u32::MAX }).collect()
+    }
+
+    #[test]
+    fn a_thick_line_goes_round_corners_without_a_gap() {
+        const SIDE: u32 = 64;
+        for (width_px, half_angle_deg) in [6, 8, 12, 16]
+            .into_iter()
+            .flat_map(|width| [15.0, 30.0, 45.0, 75.0].map(|angle| (width, angle)))
+        {
+            let half_angle = f64::to_radians(half_angle_deg);
+            let triangle_ids = wedge(SIDE, half_angle);
+            let picture = Picture {
+                width: SIDE,
+                height: SIDE,
+                triangle_ids: &triangle_ids,
+                keys: &vec![0.5f32.to_bits(); triangle_ids.len()],
+                draws: &[0],
+                previous: None,
+                background: &[[0; 4]; SIDE as usize],
+            };
+            let p = Outline {
+                width_px,
+                ..Outline::default()
+            };
+            // A neighbor is looked for at every step, so a tip begins where it is as wide as one.
+            let tip_px = 1.0 + f64::from(p.step()) / half_angle.sin();
+            for i in 0..SIDE * SIDE {
+                let (x, y) = (i % SIDE, i / SIDE);
+                let pixel = Pixel {
+                    color: DVec4::ONE,
+                    x,
+                    y,
+                    step_offset: 0.0,
+                };
+                let is_line = Outline::finish(pixel, &picture, &p) != pixel;
+                let [across, down] = [x, y].map(|at| f64::from(at) - f64::from(SIDE / 2));
+                let from_tip = across.hypot(down);
+                let is_outside = triangle_ids[i as usize] == u32::MAX;
+                let is_near = from_tip + tip_px <= f64::from(width_px);
+                assert!(
+                    is_line || !is_outside || !is_near,
+                    "{width_px} px, {half_angle_deg}°: a gap at {x}, {y}"
+                );
+                // Nothing of the wedge is nearer than its tip.
+                let is_ahead = down.abs() * half_angle.tan() <= -across;
+                let is_beyond = is_ahead && from_tip > f64::from(width_px);
+                assert!(!is_line || !is_beyond, "{width_px} px: a spike at {x}, {y}");
+            }
+        }
+    }
 }

@@ -7,7 +7,7 @@ use super::{
     dots, draw_order,
     effect::{Effect, read},
     glass::GlassDraws,
-    hooks::{self, Hooks, Layers, Lighting, Picture, Pixel, Shape, Slot, Surface},
+    hooks::{self, EarlierFrames, Hooks, Layers, Lighting, Picture, Pixel, Shape, Slot, Surface},
     points, race, shadow, smear, xray,
 };
 use crate::{
@@ -251,6 +251,21 @@ impl Stack {
             .any(|(hook, _)| hook.reads_previous)
     }
 
+    /// The effect with a pass whose result lives to the next frame.
+    pub fn kept(&self) -> Option<&Arc<Effect>> {
+        let keeps = |effect: &&Arc<Effect>| effect.keeps_pass();
+        self.0.iter().map(|enabled| &enabled.effect).find(keeps)
+    }
+
+    /// The earlier frames that a picture follows, if an effect remembers them.
+    pub fn earlier_frames(&self) -> Option<EarlierFrames> {
+        let smeared = self.smear().map(|smear| EarlierFrames {
+            frames: smear.frames,
+            step_s: smear.step_s.into(),
+        });
+        smeared.or_else(|| Some(self.kept()?.hooks.passes.as_ref()?.kept()?.1))
+    }
+
     /// Does an effect's color have steps?
     pub fn has_steps(&self) -> bool {
         self.0.iter().any(|enabled| enabled.effect.hooks.has_steps)
@@ -467,8 +482,8 @@ impl Stack {
         })
     }
 
-    /// Checks that no two effects take one slot, that at most [`MAX_SCOPES`] effects have a scope,
-    /// and that there are at most [`MAX_IMAGE_PASSES`].
+    /// Checks that no two effects take one slot or follow earlier frames, that at most
+    /// [`MAX_SCOPES`] effects have a scope, and that there are at most [`MAX_IMAGE_PASSES`].
     ///
     /// # Errors
     /// Names the effects.
@@ -496,6 +511,17 @@ impl Stack {
                     last: effect.name.clone(),
                 });
             }
+        }
+        let mut remembering = self
+            .0
+            .iter()
+            .map(|enabled| &enabled.effect)
+            .filter(|effect| effect.keeps_pass() || effect.name == smear::EFFECT.name);
+        if let (Some(first), Some(second)) = (remembering.next(), remembering.next()) {
+            return Err(Conflict::EarlierFrames {
+                first: first.name.clone(),
+                second: second.name.clone(),
+            });
         }
         if let (Some(glass), Some(order)) = (
             self.0

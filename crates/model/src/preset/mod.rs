@@ -475,13 +475,13 @@ impl Preset {
     }
 
     /// The view and stack of every frame that this picture depends on, in order; the last is the
-    /// picture itself. There are several where an effect reads the previous picture.
+    /// picture itself. There are several where an effect remembers earlier ones.
     pub fn moments(&self, scene: &Scene, size: [u32; 2]) -> Vec<(View, Stack)> {
         let preset = self.in_meters(scene);
         let (frames, step_s) = preset
             .evaluated_stack()
-            .smear()
-            .map_or((0, 0.0), |smear| (smear.frames, f64::from(smear.step_s)));
+            .earlier_frames()
+            .map_or((0, 0.0), |earlier| (earlier.frames, earlier.step_s));
         let moment = |before: u32| {
             let clock = Clock {
                 time_s: preset.clock.time_s - f64::from(before) * step_s,

@@ -95,6 +95,21 @@ fn mixed_stack(a: &Stack, b: &Stack, nearer: &Stack, by: f64) -> Stack {
 }
 
 impl Preset {
+    /// This preset with the look of another: its effects, keyframes, options of accuracy and
+    /// background. Scene, camera, clock and size stay.
+    #[must_use]
+    pub fn with_look_of(self, other: Self) -> Self {
+        let mut output = other.output;
+        output.resize(self.output.size);
+        Self {
+            stack: other.stack,
+            animation: other.animation,
+            accuracy: other.accuracy,
+            output,
+            ..self
+        }
+    }
+
     /// The preset `by` of the way from this one to `other`, 0 to 1, both on `scene`. Numbers, colors
     /// and cameras are in between, also those of effects that both have; everything else is that of
     /// the nearer: effects, choices, whole numbers, keyframes, the ground. Size and accuracy of the

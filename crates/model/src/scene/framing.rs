@@ -20,6 +20,8 @@ const MAX_VERTICES: usize = 200_000;
 const MAX_PLACE_M: f64 = (1u64 << 40) as f64;
 /// Directions in which the farthest points are kept.
 const DIRECTIONS: usize = 256;
+/// Places that are looked at in all directions before the next ones.
+const BLOCK: usize = 1024;
 /// Times of a clip at which the scene is looked at.
 const TIMES: usize = 8;
 /// A part is a sheet if it is so flat, as a fraction of its width.
@@ -161,18 +163,22 @@ fn hull(places: Vec<DVec3>) -> Vec<DVec3> {
         let turned = DMat4::from_rotation_y(turns * std::f64::consts::TAU);
         turned.transform_vector3(DVec3::new((1.0 - y * y).sqrt(), y, 0.0))
     };
-    let farthest = |direction: DVec3| {
-        places
-            .iter()
-            .copied()
-            .max_by(|a, b| a.dot(direction).total_cmp(&b.dot(direction)))
-    };
     let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| [axis, -axis]);
-    let mut found: Vec<DVec3> = (0..DIRECTIONS)
-        .map(direction)
-        .chain(axes.concat())
-        .filter_map(farthest)
-        .collect();
+    let directions = (0..DIRECTIONS).map(direction).chain(axes.concat());
+    let mut found: Vec<(DVec3, DVec3)> = directions.map(|axis| (axis, places[0])).collect();
+    // Block by block, since all places are more than a cache holds.
+    for block in places.chunks(BLOCK) {
+        for (axis, farthest) in &mut found {
+            let mut most = farthest.dot(*axis);
+            for place in block {
+                let along = place.dot(*axis);
+                if along.total_cmp(&most).is_ge() {
+                    (most, *farthest) = (along, *place);
+                }
+            }
+        }
+    }
+    let mut found: Vec<DVec3> = found.into_iter().map(|(_, farthest)| farthest).collect();
     found.dedup();
     found
 }

@@ -294,7 +294,24 @@ pub fn named(names: &[String], name: &str) -> Option<usize> {
         .or_else(by_index)
 }
 
+/// Instances up to which every draw has a whole record on the device.
+pub const MANY_INSTANCES: usize = 4096;
+
+/// Most primitives of a scene whose draws share what they say of them: a uniform buffer holds as
+/// many shapes.
+pub const MOST_SHAPES: usize = 512;
+
 impl Scene {
+    /// Returns true if many instances show few primitives, so that what a primitive says is kept
+    /// once on the device and not once for each draw. What deforms has vertices of its own in each
+    /// draw.
+    pub fn is_instanced(&self) -> bool {
+        self.instances.len() > MANY_INSTANCES
+            && self.primitives.len() <= MOST_SHAPES
+            && self.particle_discs.is_none()
+            && self.primitives.iter().all(|p| p.deformation.is_none())
+    }
+
     /// The index of the variant of materials called `name`. `#2` is the variant at index 2, under
     /// any name.
     pub fn variant(&self, name: &str) -> Option<usize> {

@@ -27,6 +27,8 @@ pub struct Needs {
     pub triangles: u64,
     pub vertices: u64,
     pub draws: usize,
+    /// Many draws show few primitives.
+    pub instanced: bool,
     /// Some primitive has indices.
     pub indexed: bool,
     /// All indices are u32.
@@ -98,14 +100,15 @@ pub struct Needs {
 impl Needs {
     /// Reads `scene` as `view` sees it through `draws`.
     pub fn of(scene: &Scene, draws: &[Draw], view: &View) -> Self {
-        let drawn = || draws.iter().map(|draw| &scene.primitives[draw.primitive]);
+        // Of millions of draws few primitives are drawn.
+        let [mut is_drawn, mut is_unbent] = [(); 2].map(|()| vec![false; scene.primitives.len()]);
+        for draw in draws {
+            is_drawn[draw.primitive] = true;
+            is_unbent[draw.primitive] |= draw.deform.is_none();
+        }
+        let drawn = || chosen(scene, &is_drawn);
         // Deformed vertices are stored as f32, in place of any other format.
-        let unbent = || {
-            draws
-                .iter()
-                .filter(|draw| draw.deform.is_none())
-                .map(|draw| &scene.primitives[draw.primitive])
-        };
+        let unbent = || chosen(scene, &is_unbent);
         let materials: BTreeSet<usize> = drawn().map(|p| p.material).collect();
         let count = |is_counted: fn(&Material) -> bool| {
             let has = |&&material: &&usize| is_counted(&scene.materials[material]);
@@ -118,7 +121,8 @@ impl Needs {
                 .par_iter()
                 .with_min_len(MANY_DRAWS)
                 .map(|draw| of(&scene.primitives[draw.primitive], draw, view))
-                .reduce(|| 0.0, f64::max)
+                .reduce_with(f64::max)
+                .map_or(0.0, |largest| largest.max(0.0))
         };
         let largest_px = largest(largest_px);
         Self {
@@ -126,6 +130,7 @@ impl Needs {
             triangles: scene.triangle_count(),
             vertices: scene.vertex_count(),
             draws: draws.len(),
+            instanced: scene.is_instanced(),
             indexed: drawn().any(|p| p.indices.is_some()),
             u32_indices: drawn().all(|p| {
                 p.indices
@@ -167,7 +172,8 @@ impl Needs {
             normals_agree: draws.iter().all(|draw| draw.deform.is_none())
                 && drawn().all(|p| p.normals_agree)
                 && draws
-                    .iter()
+                    .par_iter()
+                    .with_min_len(MANY_DRAWS)
                     .all(|draw| keeps_normals(draw) && !draw.is_uneven && !draw.is_faceted),
             perspective: view.linear_depth_m.is_none(),
             clipping: largest_px.is_infinite(),
@@ -216,6 +222,15 @@ impl Needs {
             ..self.clone()
         }
     }
+}
+
+/// The primitives that are chosen, in their order.
+fn chosen<'a>(scene: &'a Scene, is_chosen: &'a [bool]) -> impl Iterator<Item = &'a Primitive> {
+    scene
+        .primitives
+        .iter()
+        .zip(is_chosen)
+        .filter_map(|(primitive, is_chosen)| is_chosen.then_some(primitive))
 }
 
 /// See [`Needs::box_px`].

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::{
     super::render::{
         draw_order::ranks,
-        glass::{GlassShader, linear_background, through},
+        glass::{GlassShader, linear_background},
         layers::LayerInput,
         shadow::Light,
         surface::{SurfaceTriangle, encoded},
@@ -100,20 +100,25 @@ pub fn glass_bounds(
                 },
             );
             let hits = layers.at(pixel);
-            let seen = hits.iter().rev().fold(behind, |behind, hit| {
+            if hits.is_empty() {
+                return behind.map(encoded);
+            }
+            let nothing = [GlassLayer::CLEAR; 2];
+            let seen = hits.iter().fold(nothing, |seen, hit| {
                 let Some((surfaces, slack, scopes)) = shaded(hit.triangle_id, x) else {
-                    return behind;
+                    return seen;
                 };
                 let layers = surfaces.iter().map(|surface| shader.layer(surface, scopes));
-                let [least, most] = layer_span(layers, slack);
-                [through(&least, behind[0]), through(&most, behind[1])]
+                let span = layer_span(layers, slack);
+                [0, 1].map(|end| seen[end].merged(&span[end]))
             });
-            let error = if hits.is_empty() {
-                0.0
-            } else {
-                2.0 * COMPOSED_ERROR
-            };
-            widened(seen, 0.0, error).map(encoded)
+            let error = 2.0 * COMPOSED_ERROR;
+            let ends = [(0, -error), (1, error)];
+            ends.map(|(end, error)| {
+                let color = seen[end].over(behind[end].truncate()) + DVec3::splat(error);
+                // The less passes, the more is covered.
+                encoded(color.extend(seen[1 - end].alpha_over(behind[end].w) + error))
+            })
         };
         Ok((0..width).map(pixel).collect::<Vec<_>>())
     };

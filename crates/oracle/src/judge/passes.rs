@@ -7,7 +7,7 @@ use glam::DVec4;
 use super::super::{
     bounds::perturbations::STEP,
     render::{
-        passes::{PassPerturbation, passed_colors},
+        passes::{PassPerturbation, PassStart, passed_colors},
         resolve::{ResolveInput, TIE, bytes},
     },
     shot::Shot,
@@ -45,12 +45,17 @@ pub fn judge_passes(verdict: &mut Verdict, shot: &Shot, frame: &Frame) -> Result
         dots: &[],
         previous: None,
     };
-    let mut ends = vec![[DVec4::INFINITY, DVec4::NEG_INFINITY]; frame.color.len()];
+    let kept = frame.kept.as_ref();
+    let start = PassStart {
+        resolved: frame.resolved(),
+        kept: kept.map_or(&[], |kept| &kept.before),
+    };
+    let mut ends = unknown(frame.color.len());
+    let mut kept_ends = unknown(kept.map_or(0, |kept| kept.after.len()));
     for perturbation in PERTURBATIONS {
-        let colors = passed_colors(shot, &input, frame.resolved(), perturbation)?;
-        for ([least, most], color) in ends.iter_mut().zip(colors) {
-            (*least, *most) = (least.min(color), most.max(color));
-        }
+        let passed = passed_colors(shot, &input, start, perturbation)?;
+        widen(&mut ends, passed.colors);
+        widen(&mut kept_ends, passed.kept.unwrap_or_default());
     }
     let right: Vec<[[u8; 4]; 2]> = ends
         .into_iter()
@@ -63,7 +68,8 @@ pub fn judge_passes(verdict: &mut Verdict, shot: &Shot, frame: &Frame) -> Result
         .collect();
     let report = &mut verdict.report;
     let [delta, beyond] = [0, 1].map(|step| compare::pictures(&nearest, &frame.color, step));
-    report.max_color_delta = report.max_color_delta.max(delta.max_delta);
+    let kept_delta = kept.map_or(0, |kept| kept_delta(&kept_ends, &kept.after));
+    report.max_color_delta = report.max_color_delta.max(delta.max_delta).max(kept_delta);
     report.rms_color_delta = report.rms_color_delta.max(delta.rms);
     let rounding = delta.pixels_over_tolerance - beyond.pixels_over_tolerance;
     report.rounding_pixels = report.rounding_pixels.max(rounding);
@@ -89,4 +95,28 @@ pub fn judge_passes(verdict: &mut Verdict, shot: &Shot, frame: &Frame) -> Result
     let expected = &mut verdict.expected;
     expected.resolved = Some(std::mem::replace(&mut expected.color, nearest));
     Ok(())
+}
+
+/// The ends of what is right for each of so many pixels, before any is known.
+fn unknown(pixels: usize) -> Vec<[DVec4; 2]> {
+    vec![[DVec4::INFINITY, DVec4::NEG_INFINITY]; pixels]
+}
+
+/// Moves the ends apart so that `colors` are right too.
+fn widen(ends: &mut [[DVec4; 2]], colors: Vec<DVec4>) {
+    for ([least, most], color) in ends.iter_mut().zip(colors) {
+        (*least, *most) = (least.min(color), most.max(color));
+    }
+}
+
+/// How far the farthest channel that the kept pass wrote lies from what is right, in steps of 1/255,
+/// rounded up. Channels are not limited to 1, so an f32 may be off by a fraction of its size.
+fn kept_delta(ends: &[[DVec4; 2]], written: &[[f32; 4]]) -> u8 {
+    let beyond = ends.iter().zip(written).map(|([least, most], written)| {
+        let written = DVec4::from_array(written.map(f64::from));
+        let room = TIE * (1.0 + written.abs().max_element());
+        let outside = (least - written).max(written - most) - room;
+        outside.max_element().max(0.0)
+    });
+    (255.0 * beyond.fold(0.0, f64::max)).ceil() as u8
 }

@@ -223,11 +223,14 @@ impl OrientedTriangle {
     /// The edges opposite the corners, at the center of a pixel of `unit` sub-pixel units.
     pub fn edges(&self, x: usize, y: usize, unit: i64) -> [EdgeAtSample; 3] {
         let [a, b, c] = &self.corners;
-        let [px, py] = [x, y].map(|k| unit * k as i64 + unit / 2);
-        [(b, c), (c, a), (a, b)].map(|(from, to)| EdgeAtSample {
+        let center = |k: usize| unit * k as i64 + unit / 2;
+        let [px, py] = [center(x), center(y)];
+        let opposite = |from: &SnappedVertex, to: &SnappedVertex| EdgeAtSample {
             value: edge(from, to, px, py),
             along: [to.x - from.x, to.y - from.y],
-        })
+        };
+        // Written out: where size counts, compilers call a closure for every element of a `map`.
+        [opposite(b, c), opposite(c, a), opposite(a, b)]
     }
 
     /// What the triangle has at the center of a pixel with these edges; none if it does not cover
@@ -239,7 +242,8 @@ impl OrientedTriangle {
         edges: &[EdgeAtSample; 3],
         tests: &SampleTests,
     ) -> Option<Hit> {
-        let [px, py] = [x, y].map(|k| tests.unit * k as i64 + tests.unit / 2);
+        let center = |k: usize| tests.unit * k as i64 + tests.unit / 2;
+        let [px, py] = [center(x), center(y)];
         let exact = |depth: f32| Hit {
             depth: depth.into(),
             is_interpolated: false,

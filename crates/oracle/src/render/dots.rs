@@ -54,11 +54,13 @@ impl<'a> DotPlacement<'a> {
             LineSource::Creases => Lines::edges(scene, Some(dots.crease_deg.into()))?,
             LineSource::Polyline => Lines::polyline(&view.scene_state.polyline),
         };
-        let count = |line: &[Segment]| {
+        let row = |line: &[Segment]| {
             line.last()
-                .map_or(0, |last| dots.count(last.start_m + last.length_m))
+                .map(|last| dots.row(last.start_m + last.length_m))
         };
-        let all: u64 = lines.each().map(|(_, line)| count(line)).sum();
+        let all = lines.each().fold(0u64, |sum, (_, line)| {
+            sum.saturating_add(row(line).map_or(0, |row| row.count()))
+        });
         if all > MAX_DOTS {
             return Err(DrawError::TooMany {
                 what: "dots",
@@ -68,8 +70,9 @@ impl<'a> DotPlacement<'a> {
         }
         let mut placed = Vec::with_capacity(all as usize);
         for (first, line) in lines.each() {
-            placed.extend((0..count(line)).map(|dot| {
-                let at_m = dot as f64 * f64::from(dots.spacing_m);
+            let Some(row) = row(line) else { continue };
+            placed.extend((0..row.count()).map(|dot| {
+                let at_m = row.place_m(dot);
                 let segment = line.partition_point(|segment| segment.start_m <= at_m) - 1;
                 let fraction = (at_m - line[segment].start_m) / line[segment].length_m;
                 Dot {

@@ -1,9 +1,9 @@
-//! Glass: all layers of a pixel sorted by exact depth, shaded and composed from back to front in
+//! Glass: all layers of a pixel sorted by exact depth, shaded and composed in
 //! f64, in linear light.
 
 use std::{cmp::Reverse, collections::HashMap};
 
-use glam::{DVec3, DVec4};
+use glam::DVec4;
 use rayon::prelude::*;
 
 use super::{
@@ -102,14 +102,6 @@ impl GlassShader {
     }
 }
 
-/// A linear color seen through a layer. Alpha is that of what covers the background.
-pub fn through(layer: &GlassLayer, behind: DVec4) -> DVec4 {
-    let passed = layer.passed.dot(DVec3::splat(1.0 / 3.0));
-    layer
-        .over(behind.truncate())
-        .extend(1.0 + (behind.w - 1.0) * passed)
-}
-
 /// The background of every row, linear.
 pub fn linear_background(shot: &Shot) -> Vec<DVec4> {
     background(shot.view)
@@ -163,12 +155,16 @@ pub fn glass_colors(input: &LayerInput, layers: &GlassLayers) -> Result<Vec<DVec
             let pixel = y * width + x;
             let behind =
                 shaded(layers.behind[pixel], x).map_or(background[y], |(surface, _)| surface.color);
-            let seen = layers.at(pixel).iter().rev().fold(behind, |behind, hit| {
-                shaded(hit.triangle_id, x).map_or(behind, |(surface, scopes)| {
-                    through(&shader.layer(&surface, scopes), behind)
-                })
-            });
-            encoded(seen)
+            let seen = layers
+                .at(pixel)
+                .iter()
+                .fold(GlassLayer::CLEAR, |seen, hit| {
+                    shaded(hit.triangle_id, x).map_or(seen, |(surface, scopes)| {
+                        seen.merged(&shader.layer(&surface, scopes))
+                    })
+                });
+            let color = seen.over(behind.truncate());
+            encoded(color.extend(seen.alpha_over(behind.w)))
         };
         Ok((0..width).map(pixel).collect::<Vec<_>>())
     };

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     effects::hooks::{Image, ImageAt, Lens, PassInput, Picture, Signs},
-    frame::linear_bytes,
+    frame::{KeptPass, linear_bytes},
     math::srgb,
     work::{Canceled, map_each},
 };
@@ -26,30 +26,49 @@ pub struct PassPerturbation {
     pub signs: Signs,
 }
 
-/// Bytes of the picture that the passes of a stack make of `resolved`; those of `resolved` without
-/// passes.
+/// What the passes of a stack read: the picture before them, and what the kept one wrote in the
+/// previous frame, which reads as zeros where that had another size.
+#[derive(Clone, Copy, Debug)]
+pub struct PassStart<'a> {
+    pub resolved: &'a [[u8; 4]],
+    pub kept: &'a [[f32; 4]],
+}
+
+/// What they make of it.
+pub struct Passed {
+    /// The picture, gamma-encoded, not yet rounded to bytes; without passes that before them.
+    pub colors: Vec<DVec4>,
+    /// What the kept pass wrote, if there is one.
+    pub kept: Option<Vec<DVec4>>,
+}
+
+/// Bytes of the picture that the passes of a stack make of `start`, and what the kept one wrote.
 ///
 /// # Errors
 /// The work was canceled.
 pub fn passed(
     shot: &Shot,
     input: &ResolveInput,
-    resolved: &[[u8; 4]],
-) -> Result<Vec<[u8; 4]>, Canceled> {
-    let colors = passed_colors(shot, input, resolved, PassPerturbation::default())?;
-    Ok(colors.into_iter().map(bytes).collect())
+    start: PassStart<'_>,
+) -> Result<(Vec<[u8; 4]>, Option<KeptPass>), Canceled> {
+    let passed = passed_colors(shot, input, start, PassPerturbation::default())?;
+    let kept = passed.kept.map(|after| KeptPass {
+        before: start.kept.to_vec(),
+        after: after.iter().map(|c| c.as_vec4().to_array()).collect(),
+    });
+    Ok((passed.colors.into_iter().map(bytes).collect(), kept))
 }
 
-/// The same before it is rounded to bytes: gamma-encoded.
+/// The same before anything is rounded.
 ///
 /// # Errors
 /// The work was canceled.
 pub fn passed_colors(
     shot: &Shot,
     input: &ResolveInput,
-    resolved: &[[u8; 4]],
+    start: PassStart<'_>,
     perturbation: PassPerturbation,
-) -> Result<Vec<DVec4>, Canceled> {
+) -> Result<Passed, Canceled> {
     let tables = PictureTables::of(shot);
     let picture = tables.picture(shot, input);
     let light = linear_bytes();
@@ -61,9 +80,13 @@ pub fn passed_colors(
     };
     let mut source = Image {
         size,
-        colors: map_each(resolved.par_iter().enumerate(), of_bytes)?,
+        colors: map_each(start.resolved.par_iter().enumerate(), of_bytes)?,
     };
+    let mut written = None;
     for (hook, words) in shot.stack.each(|hooks| hooks.passes.as_ref()) {
+        let before = hook
+            .kept()
+            .and_then(|(pass, _)| kept_image(pass.size(size), start.kept));
         let mut last: Option<Image> = None;
         for (index, pass) in hook.passes.iter().enumerate() {
             let input = PassInput {
@@ -71,6 +94,7 @@ pub fn passed_colors(
                 lens: Lens::of(shot.view),
                 source: &source,
                 last: last.as_ref().unwrap_or(&source),
+                kept: before.as_ref(),
                 signs: perturbation.signs,
                 panorama: shot.scene.panorama.as_deref(),
             };
@@ -88,12 +112,29 @@ pub fn passed_colors(
                 perturbed((hook.run)(index, &at, words), i, size, perturbation)
             };
             let colors = map_each((0..pixels).into_par_iter(), write)?;
+            if pass.kept.is_some() {
+                written = Some(colors.clone());
+            }
             last = Some(Image { size, colors });
         }
         source = last.unwrap_or(source);
     }
     let encoded = |color: DVec4| DVec4::new(srgb(color.x), srgb(color.y), srgb(color.z), color.w);
-    Ok(source.colors.into_iter().map(encoded).collect())
+    Ok(Passed {
+        colors: source.colors.into_iter().map(encoded).collect(),
+        kept: written,
+    })
+}
+
+/// What a kept pass of this size wrote in the previous frame; none, which reads as zeros, if that
+/// frame had another size.
+fn kept_image(size: [u32; 2], pixels: &[[f32; 4]]) -> Option<Image> {
+    let is_same = pixels.len() == size[0] as usize * size[1] as usize;
+    let color = |pixel: &[f32; 4]| DVec4::from_array(pixel.map(f64::from));
+    is_same.then(|| Image {
+        size,
+        colors: pixels.iter().map(color).collect(),
+    })
 }
 
 /// A color of the pixel with this index, moved as a perturbation says.

@@ -12,7 +12,7 @@ use super::{
     draw_order::limited,
     layers::{LayerInput, layer_image},
     particles::{check_particles, scene_with_particles},
-    passes::passed,
+    passes::{PassStart, passed},
     project::project,
     resolve::{ResolveInput, finish, shade_rows},
     sample_setup::sample_setups,
@@ -24,7 +24,7 @@ use super::{
 };
 use crate::{
     effects::Stack,
-    frame::{Frame, Geometry},
+    frame::{Earlier, Frame, Geometry},
     scene::{Scene, draw::DrawError, view::View},
 };
 
@@ -37,7 +37,7 @@ pub fn render(scene: &Scene, view: &View, stack: &Stack) -> Result<Frame, DrawEr
     render_next(scene, view, stack, None)
 }
 
-/// The exact picture of `scene` that follows `previous`, a picture of the same size.
+/// The exact picture of `scene` that follows an `earlier` one of the same size.
 ///
 /// # Errors
 /// As [`render`].
@@ -45,9 +45,9 @@ pub fn render_next(
     scene: &Scene,
     view: &View,
     stack: &Stack,
-    previous: Option<&[[u8; 4]]>,
+    earlier: Option<Earlier<'_>>,
 ) -> Result<Frame, DrawError> {
-    render_rows(scene, view, stack, previous, 0..view.height)
+    render_rows(scene, view, stack, earlier, 0..view.height)
 }
 
 /// The same, with the colors of `rows` alone, the bytes that the whole picture has there. All else
@@ -60,10 +60,10 @@ pub fn render_rows(
     scene: &Scene,
     view: &View,
     stack: &Stack,
-    previous: Option<&[[u8; 4]]>,
+    earlier: Option<Earlier<'_>>,
     rows: Range<u32>,
 ) -> Result<Frame, DrawError> {
-    drawn(scene, view, stack, previous, rows).map(|(frame, _)| frame)
+    drawn(scene, view, stack, earlier, rows).map(|(frame, _)| frame)
 }
 
 /// The picture of [`render_next`] and what it was drawn from: vertices, what clipping made, setups
@@ -75,9 +75,9 @@ pub fn render_with_geometry(
     scene: &Scene,
     view: &View,
     stack: &Stack,
-    previous: Option<&[[u8; 4]]>,
+    earlier: Option<Earlier<'_>>,
 ) -> Result<(Frame, Geometry), DrawError> {
-    drawn(scene, view, stack, previous, 0..view.height)
+    drawn(scene, view, stack, earlier, 0..view.height)
 }
 
 /// The picture with the colors of `rows` alone, and what it was drawn from.
@@ -85,7 +85,7 @@ fn drawn(
     scene: &Scene,
     view: &View,
     stack: &Stack,
-    previous: Option<&[[u8; 4]]>,
+    earlier: Option<Earlier<'_>>,
     rows: Range<u32>,
 ) -> Result<(Frame, Geometry), DrawError> {
     let rows = rows.start.min(view.height)..rows.end.min(view.height);
@@ -119,7 +119,7 @@ fn drawn(
         triangle_ids,
         depth_keys,
         dots: &dots,
-        previous,
+        previous: earlier.map(|earlier| earlier.resolved),
     };
     let layer_input = LayerInput {
         shot,
@@ -132,7 +132,7 @@ fn drawn(
     };
     // Passes read pixels of all rows.
     let has_passes = stack.has_passes();
-    let kept = rows.clone();
+    let asked = rows.clone();
     let rows = if has_passes { 0..view.height } else { rows };
     let (color, counted) = match layer_image(&layer_input, || coverage.layers())? {
         Some(image) => {
@@ -143,12 +143,16 @@ fn drawn(
         }
         None => (shade_rows(&shot, &input, &geometry, rows)?, Vec::new()),
     };
-    let (color, resolved) = if has_passes {
-        let passed = passed(&shot, &input, &color)?;
-        let [first, end] = [kept.start, kept.end].map(|row| (row * view.width) as usize);
-        (passed[first..end.max(first)].to_vec(), Some(color))
+    let (color, resolved, kept) = if has_passes {
+        let start = PassStart {
+            resolved: &color,
+            kept: earlier.map_or(&[], |earlier| earlier.kept),
+        };
+        let (passed, kept) = passed(&shot, &input, start)?;
+        let [first, end] = [asked.start, asked.end].map(|row| (row * view.width) as usize);
+        (passed[first..end.max(first)].to_vec(), Some(color), kept)
     } else {
-        (color, None)
+        (color, None, None)
     };
     let frame = Frame {
         width: view.width,
@@ -157,6 +161,7 @@ fn drawn(
         depth_key,
         color,
         resolved,
+        kept,
         layer_sums: counted,
         dots,
         counters,
@@ -179,7 +184,7 @@ pub fn render_sequence(scene: &Scene, sequence: &[(View, Stack)]) -> Result<Fram
             scene,
             view,
             stack,
-            last.as_ref().map(Frame::resolved),
+            last.as_ref().map(Frame::earlier),
         )?);
     }
     Ok(last.expect("a sequence has a picture"))

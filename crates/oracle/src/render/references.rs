@@ -71,14 +71,14 @@ pub fn render_scaled_row(
     }
     let scaled = |(view, stack): &(View, Stack)| (view.scaled(factor), stack.scaled(factor));
     let before: Vec<_> = before.iter().map(scaled).collect();
-    let previous = match &before[..] {
+    let earlier = match &before[..] {
         [] => None,
         before => Some(render_sequence(scene, before)?),
     };
     let (drawn, stack) = scaled(&(view.clone(), stack.clone()));
     let rows = row * side..(row + 1) * side;
-    let previous = previous.as_ref().map(Frame::resolved);
-    let color = render_rows(scene, &drawn, &stack, previous, rows)?.color;
+    let earlier = earlier.as_ref().map(Frame::earlier);
+    let color = render_rows(scene, &drawn, &stack, earlier, rows)?.color;
     Ok(match side {
         1 => color,
         _ => resampled(&color, [drawn.width, side], [view.width, 1]),

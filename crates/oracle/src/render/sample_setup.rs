@@ -95,10 +95,13 @@ pub fn entries<'a>(
             .then(|| entry(shot, geometry, triangle.parent, &Drawn::Clipped(triangle)))
             .flatten()
     };
-    (0..totals(shot.scene, shot.draws)[1] as u32)
+    let wholes = totals(shot.scene, shot.draws)[1] as usize;
+    (0..wholes + geometry.clipped_triangles.len())
         .into_par_iter()
-        .map(whole)
-        .chain(geometry.clipped_triangles.par_iter().map(clipped))
+        .map(move |index| match index.checked_sub(wholes) {
+            None => whole(index as u32),
+            Some(index) => clipped(&geometry.clipped_triangles[index]),
+        })
 }
 
 /// What is drawn of a triangle.

@@ -147,7 +147,10 @@ impl Panel for Timeline {
             transport_ui(ui, session, commands);
             time_ui(ui, session, commands);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                range_ui(ui, session, commands);
+                // A phone has no room for it.
+                if ui.available_width() >= RANGE {
+                    range_ui(ui, session, commands);
+                }
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     self.selection_ui(ui, state, commands)
                 });
@@ -271,6 +274,9 @@ fn time_ui(ui: &mut Ui, session: &Session, commands: &Commands) {
         }
     }
 }
+
+/// Width of the range that plays, points.
+const RANGE: f32 = 240.0;
 
 /// The range that plays, at the right end.
 fn range_ui(ui: &mut Ui, session: &Session, commands: &Commands) {

@@ -239,24 +239,12 @@ impl Compare {
             };
         };
         let own = session.next_preset();
-        let Preset {
-            stack,
-            animation,
-            accuracy,
-            mut output,
-            ..
-        } = match self.toward > 0.0 {
+        let look = match self.toward > 0.0 {
             true => kept.toward(&own, self.toward, &live.scene),
             false => kept.in_meters(&live.scene).into_owned(),
         };
-        output.resize(own.output.size);
-        let preset = Preset {
-            stack,
-            animation,
-            accuracy,
-            output,
-            ..own
-        };
+        let preset = own.with_look_of(look);
+        let accuracy = preset.accuracy;
         let scene = match &self.grounded {
             Some((_, [of, grounded])) if Arc::ptr_eq(of, &live.scene) => grounded,
             _ => &live.scene,

@@ -159,14 +159,20 @@ const CLIPPING: Feature = Feature {
 };
 
 const VERTEX_FORMATS: Feature = Feature {
+    label: |key| word_if(key.vertices.is_instanced, "instanced"),
     part: Some(Part {
         name: "index fetch",
         is_used: |key| key.vertices.fetch != Fetch::Direct,
         why_omitted: |_| "no primitive has indices".into(),
     }),
-    variants: &[("loads", |key, pass| {
-        variant_if(key.work.wide_loads && pass.resolves(), "wide")
-    })],
+    variants: &[
+        ("loads", |key, pass| {
+            variant_if(key.work.wide_loads && pass.resolves(), "wide")
+        }),
+        ("draw_records", |key, _| {
+            variant_if(key.vertices.is_instanced, "instanced")
+        }),
+    ],
     constants: &[
         ("ONLY_TRIANGLE_LISTS", |key, _| {
             flag(key.vertices.only_triangle_lists)

@@ -319,6 +319,9 @@ const IMAGE_PASSES: Feature = Feature {
             key.image_step(pass)
                 .map_or(1.0, |step| step.last_scale.into())
         }),
+        ("IMAGE_KEPT_SCALE", |key, _| {
+            key.kept_pass().map_or(1.0, |pass| pass.scale.into())
+        }),
     ],
 };
 

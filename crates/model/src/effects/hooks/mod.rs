@@ -14,8 +14,8 @@ mod vertex;
 pub use front::{Front, Pattern};
 pub use image::{ImageEffect, ImageHook, Picture, Pixel};
 pub use passes::{
-    EMPTY_DEPTH_M, Image, ImageAt, ImagePass, Lens, PassEffect, PassFunction, PassHook, PassInput,
-    Signs,
+    EMPTY_DEPTH_M, EarlierFrames, Image, ImageAt, ImagePass, Lens, PassEffect, PassFunction,
+    PassHook, PassInput, Signs,
 };
 pub use sample::{Sample, SampleEffect, SampleHook, SetupFunction, TriangleSetup};
 pub use slot::{Layers, Shape, Slot};

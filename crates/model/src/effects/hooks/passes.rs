@@ -169,6 +169,8 @@ pub struct PassInput<'a> {
     pub source: &'a Image,
     /// What the pass before this one wrote; `source` in the first pass of an effect.
     pub last: &'a Image,
+    /// What the kept pass of the effect wrote in the previous frame; none in the first one.
+    pub kept: Option<&'a Image>,
     /// In which direction depths in meters err.
     pub signs: Signs,
     /// The picture of what surrounds the scene.
@@ -208,6 +210,18 @@ impl ImageAt<'_> {
     /// The same at a place between its pixels.
     pub fn last_at(&self, at: DVec2) -> DVec4 {
         self.input.last.between(at, self.step_offset / 128.0)
+    }
+
+    /// What the kept pass wrote in the previous frame, by its own pixels; zeros in the first one.
+    pub fn kept(&self, x: i64, y: i64) -> DVec4 {
+        self.input.kept.map_or(DVec4::ZERO, |kept| kept.at(x, y))
+    }
+
+    /// The same at a place between its pixels.
+    pub fn kept_at(&self, at: DVec2) -> DVec4 {
+        self.input.kept.map_or(DVec4::ZERO, |kept| {
+            kept.between(at, self.step_offset / 128.0)
+        })
     }
 
     /// Depth of a pixel of the picture along the viewing direction, meters; [`EMPTY_DEPTH_M`]
@@ -261,13 +275,32 @@ impl ImageAt<'_> {
     }
 }
 
+/// Earlier frames that a picture follows: those from which an effect remembers something.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EarlierFrames {
+    /// How many are drawn before a single picture, at most [`Self::MOST`].
+    pub frames: u32,
+    /// Time from one of them to the next, seconds.
+    pub step_s: f64,
+}
+
+impl EarlierFrames {
+    /// Most frames that are drawn before a single picture.
+    pub const MOST: u32 = 32;
+    /// Longest time from one frame to the next, seconds.
+    pub const LONGEST_STEP_S: f64 = 60.0;
+}
+
 /// One pass of an effect.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ImagePass {
     /// Its WGSL function; in a built-in effect, what follows the effect's name in it.
     pub name: String,
     /// Pixels of the picture for one that it writes, along a side: 1, 2 or 4.
     pub scale: u32,
+    /// What it writes lives to the next frame, and a single picture follows so many frames. At most
+    /// one pass of a stack, and never the last one of its effect.
+    pub kept: Option<EarlierFrames>,
 }
 
 impl ImagePass {
@@ -287,11 +320,21 @@ pub struct PassHook {
     pub run: Arc<PassFunction>,
 }
 
+impl PassHook {
+    /// The pass whose result lives to the next frame, and how many frames a picture follows.
+    pub fn kept(&self) -> Option<(&ImagePass, EarlierFrames)> {
+        self.passes.iter().find_map(|pass| Some((pass, pass.kept?)))
+    }
+}
+
 /// The f64 side of an effect of image passes.
 pub trait PassEffect: Params {
     /// Name and scale of every pass, in order; the last one has scale 1. A single pass has no
     /// name.
     const PASSES: &'static [(&'static str, u32)];
+
+    /// Index of the pass that is [kept](ImagePass::kept), and the frames that a picture follows.
+    const KEPT: Option<(usize, EarlierFrames)> = None;
 
     /// What the pass of this index writes: linear RGBA.
     fn pass(index: usize, at: &ImageAt, params: &Self) -> DVec4;
