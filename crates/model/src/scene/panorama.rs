@@ -359,7 +359,7 @@ mod tests {
         let size = [64, 32];
         let light = |i: usize| match [i % 64, i / 64] {
             [20..28, 6..12] => DVec3::new(12.0, 11.0, 9.0),
-            [_, 17..] => DVec3::new(0.2, 0.15, 0.1),
+            [_, y] if y > 16 => DVec3::new(0.2, 0.15, 0.1),
             _ => DVec3::splat(0.4),
         };
         LightPicture {
