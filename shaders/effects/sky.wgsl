@@ -4,6 +4,7 @@
 //@ use lib/image
 //@ use lib/image_pass
 //@ use lib/image_direction
+//@ use variants/surroundings
 
 struct Sky {
     environment: u32,
@@ -16,6 +17,6 @@ fn sky(at: ImageAt, p: Sky) -> vec4f {
     if image_at(at.x, at.y).x != IMAGE_NO_TRIANGLE { return image_color(at.x, at.y); }
     let middle = image_middle(at);
     let toward = environment_turned(image_direction(middle.x, middle.y), direction_degrees(p.turn_deg));
-    let light = environment_radiance(environment_of(p.environment), toward, p.blur * p.blur);
+    let light = surroundings_radiance(p.environment, environment_of(p.environment), toward, p.blur * p.blur);
     return vec4f(light * p.strength, 1.0);
 }

@@ -2,6 +2,7 @@
 //@ use lib/surface
 //@ use lib/angle
 //@ use lib/environment
+//@ use variants/surroundings
 
 struct Studio {
     sun: vec4f,
@@ -29,8 +30,8 @@ fn studio(surface: Surface, p: Studio) -> Surface {
     let spread = mirrored + (s.normal - mirrored) * (m.alpha * m.alpha);
     let turn = direction_degrees(p.turn_deg);
     let sky = environment_of(p.environment);
-    let diffuse = environment_irradiance(sky, environment_turned(s.normal, turn));
-    let reflected = environment_radiance(sky, environment_turned(spread / sqrt(max(dot(spread, spread), 1e-12)), turn), m.alpha);
+    let diffuse = surroundings_irradiance(p.environment, sky, environment_turned(s.normal, turn));
+    let reflected = surroundings_radiance(p.environment, sky, environment_turned(spread / sqrt(max(dot(spread, spread), 1e-12)), turn), m.alpha);
     let from_sky = (m.diffuse * (1.0 - seen.all) + seen.repeated) * diffuse + seen.once * reflected;
 
     s.color = vec4f(from_sun + from_sky * (p.strength * s.finish.occlusion) + s.glow, s.color.a);

@@ -5,7 +5,7 @@
 @group(0) @binding(37) var image_files: texture_2d_array<u32>;
 
 const IMAGE_FILE_COUNT = 256u;    // word of the number of pictures; linear light of every byte is before it
-const IMAGE_FILE_RECORDS = 257u;  // two words of each picture: its first word, its width and height
+const IMAGE_FILE_RECORDS = 257u;  // two words of each picture: its first word, its width and height; then the first word of a panorama
 const IMAGE_FILE_FARTHEST = 16.0; // farthest place that is told from others, in pictures
 
 fn image_file_word(index: u32) -> u32 {

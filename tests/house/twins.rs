@@ -506,6 +506,7 @@ fn image_passes_agree() {
                         last: &last,
                         kept: None,
                         signs: Signs::None,
+                        panorama: None,
                     };
                     let size = pass.size(size);
                     for i in 0..size[0] * size[1] {

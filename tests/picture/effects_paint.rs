@@ -145,7 +145,8 @@ fn surface(color: DVec3) -> Surface {
 }
 
 fn shaded(stack: &Stack, surface: Surface) -> DVec3 {
-    stack.shade(surface, 0, &[]).color.truncate()
+    let none = rasterlab::effects::hooks::Lighting::default();
+    stack.shade(surface, 0, &none).color.truncate()
 }
 
 #[test]

@@ -128,7 +128,12 @@ fn shown(light: &PlacedLight, stack: &Stack) -> DVec3 {
         view: DVec3::new(0.6, 0.8, 0.0),
         ..Surface::example(DVec3::ONE, 0)
     };
-    stack.shade(up, u32::MAX, &[*light]).color.truncate()
+    let lights = [*light];
+    let light = rasterlab::effects::hooks::Lighting {
+        lights: &lights,
+        panorama: None,
+    };
+    stack.shade(up, u32::MAX, &light).color.truncate()
 }
 
 #[test]

@@ -21,6 +21,8 @@ pub const COMPOSED_BYTES: u64 = 12;
 const NEAREST_BYTES: u64 = 8;
 /// Layers that the first picture of a scene has room for.
 pub const FIRST_LAYERS: u32 = 1 << 16;
+/// Layers that take so little memory that fewer would not help.
+const FEWEST_LAYERS: u32 = 1 << 12;
 /// Most bands of pixels that a picture is drawn in.
 pub const MOST_BANDS: u32 = 4096;
 
@@ -137,7 +139,7 @@ impl Renderer {
     /// left and they may be the reason; false where they are not.
     pub(super) fn makes_do_with_less_glass(&mut self, error: &RenderError) -> bool {
         let room = &mut self.picture.capacities.glass;
-        if !matches!(error, RenderError::OutOfMemory { .. }) || *room <= FIRST_LAYERS {
+        if !matches!(error, RenderError::OutOfMemory { .. }) || *room <= FEWEST_LAYERS {
             return false;
         }
         *room /= 2;

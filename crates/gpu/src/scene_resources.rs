@@ -216,13 +216,20 @@ impl SceneResources {
         Ok(())
     }
 
-    /// Keeps the pictures that the effects of a stack take as inputs, and no others.
+    /// Keeps the pictures that the effects of a stack take as inputs and that of what surrounds the
+    /// scene, where an effect shows it, and no others.
     ///
     /// # Errors
     /// When they do not fit.
-    pub async fn keep_image_files(&mut self, gpu: &Gpu, stack: &Stack) -> Result<(), RenderError> {
+    pub async fn keep_image_files(
+        &mut self,
+        gpu: &Gpu,
+        stack: &Stack,
+        shows_panorama: bool,
+    ) -> Result<(), RenderError> {
+        let panorama = self.base.panorama.as_ref().filter(|_| shows_panorama);
         let known = self.image_files.take();
-        self.image_files = ImageFiles::of(gpu, stack, known).await?;
+        self.image_files = ImageFiles::of(gpu, stack, panorama, known).await?;
         Ok(())
     }
 

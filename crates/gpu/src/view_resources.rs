@@ -189,7 +189,10 @@ impl ViewResources {
             }
             scene.pack_positions(gpu, packed_bits).await?;
             scene.keep_materials(gpu, &key.surface).await?;
-            scene.keep_image_files(gpu, request.stack).await?;
+            let shows_panorama = key.surface.has_panorama;
+            scene
+                .keep_image_files(gpu, request.stack, shows_panorama)
+                .await?;
         }
         let is_changed = self.update_draw_data(scene, key, &view, &draws, request);
         if self.target == Target::Picture {

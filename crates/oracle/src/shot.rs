@@ -1,9 +1,9 @@
 //! What a picture shows, and how global triangle ids lead to draws and corner records.
 
 use crate::{
-    effects::Stack,
+    effects::{Stack, hooks::Lighting},
     frame::{Geometry, SnappedVertex},
-    scene::{Scene, draw::Draw, punctual::PlacedLight, view::View},
+    scene::{Scene, draw::Draw, view::View},
 };
 
 /// Everything that determines a picture: a scene, its draws for a view, and the effect stack.
@@ -31,9 +31,12 @@ impl<'a> Shot<'a> {
         }
     }
 
-    /// The lights that come with the scene, where they are.
-    pub fn lights(&self) -> &'a [PlacedLight] {
-        &self.view.scene_state.lights
+    /// The light that comes with the scene.
+    pub fn light(&self) -> Lighting<'a> {
+        Lighting {
+            lights: &self.view.scene_state.lights,
+            panorama: self.scene.panorama.as_deref(),
+        }
     }
 
     /// Is something seen through glass?

@@ -25,6 +25,7 @@ fn main() -> io::Result<()> {
             "model" => models::seeds(),
             "mesh" => mesh_files::seeds(),
             "image" => pictures::images(),
+            "light" => pictures::light(),
             "compressed" => meshes::seeds(),
             "preset" => texts::presets(),
             "share" => texts::shared(),

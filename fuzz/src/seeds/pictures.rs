@@ -6,6 +6,7 @@ use image::{DynamicImage, ImageFormat, RgbaImage, codecs::jpeg::JpegEncoder};
 use rasterlab::{
     frame::Frame,
     preset_file::{self, Provenance},
+    scene::radiance,
 };
 
 use crate::{Seed, texts};
@@ -19,6 +20,23 @@ fn gradient(width: u32, height: u32) -> RgbaImage {
             255 - (x * y) as u8,
         ])
     })
+}
+
+/// Lines with runs, lines that are too short for them, old runs, and a size without pixels.
+pub fn light() -> Vec<Seed> {
+    let picture = |size: [usize; 2]| {
+        let light = |i: usize| glam::DVec3::new(i as f64, (i % 7) as f64, 2.0) * 0.1;
+        let light: Vec<_> = (0..size[0] * size[1]).map(light).collect();
+        radiance::write(size, &light)
+    };
+    let old = b"#?RGBE\nEXPOSURE=2\n\n-Y 1 +X 9\n\x80\x40\0\x81\x01\x01\x01\x08".to_vec();
+    let huge = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4096 +X 8192\n\x02\x02\x20\0".to_vec();
+    vec![
+        ("runs.hdr".into(), picture([32, 8])),
+        ("narrow.hdr".into(), picture([5, 3])),
+        ("old-runs.hdr".into(), old),
+        ("huge.hdr".into(), huge),
+    ]
 }
 
 pub fn images() -> Vec<Seed> {

@@ -4,6 +4,7 @@ mod command_line;
 mod compressed;
 mod effect;
 mod image;
+mod light;
 mod mesh;
 mod model;
 mod picture;
@@ -32,10 +33,11 @@ pub struct Target {
 /// What became of input: it was accepted, or refused with this text.
 pub type Outcome = Result<(), String>;
 
-pub const TARGETS: [Target; 9] = [
+pub const TARGETS: [Target; 10] = [
     model::TARGET,
     mesh::TARGET,
     image::TARGET,
+    light::TARGET,
     compressed::TARGET,
     preset::TARGET,
     share::TARGET,

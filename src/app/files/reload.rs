@@ -64,6 +64,7 @@ fn targets(state: &State) -> Targets {
         effect_folders: state.files.folders.effect_folders.clone(),
         preset,
         model,
+        surroundings: open.surroundings_path(),
         shaders,
     }
 }
@@ -526,7 +527,8 @@ pub fn take_preset(state: &mut State, panels: &mut Panels, mut theirs: PresetFil
 }
 
 fn model_changed(state: &mut State, path: &Path) {
-    if state.files.live.watcher.targets().model.as_deref() != Some(path) {
+    let targets = state.files.live.watcher.targets();
+    if ![&targets.model, &targets.surroundings].contains(&&Some(path.to_owned())) {
         return;
     }
     let key = SceneKey::of(&state.session.preset_file);

@@ -1,7 +1,7 @@
 //! Scene loader: the scene that is shown, the one that is loading, and recent ones that are kept in
 //! memory.
 
-use std::{collections::VecDeque, sync::Arc};
+use std::{collections::VecDeque, path::PathBuf, sync::Arc};
 
 use crate::{
     preset::SceneSource,
@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// Identifies a scene: its source, with the path of a model as it is read, the parts that are shown,
-/// the room round it, and the ground under it.
+/// the room round it, the ground under it, and the picture of what surrounds it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneKey {
     pub source: SceneSource,
@@ -19,6 +19,9 @@ pub struct SceneKey {
     /// Width of the room over that of the scene; 0 for none.
     pub room: f64,
     pub ground: Option<Ground>,
+    pub surroundings: String,
+    /// The preset beside which that picture lies; none without one.
+    pub beside: Option<PathBuf>,
 }
 
 impl SceneKey {
@@ -28,6 +31,10 @@ impl SceneKey {
             parts: preset_file.preset.parts.clone(),
             room: preset_file.preset.room,
             ground: preset_file.preset.ground,
+            surroundings: preset_file.preset.surroundings.clone(),
+            beside: preset_file
+                .surroundings_path()
+                .and(preset_file.path.clone()),
         }
     }
 }
@@ -200,6 +207,8 @@ mod tests {
             parts: ShownParts::default(),
             room: 0.0,
             ground: None,
+            surroundings: String::new(),
+            beside: None,
         }
     }
 

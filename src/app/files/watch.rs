@@ -12,7 +12,7 @@ use eframe::egui;
 use super::system_watch::SystemWatch;
 use crate::{
     effect_files::{Catalog, EffectError},
-    preset_file::{self, MODEL_FORMATS, ModelFormat, PresetFile},
+    preset_file::{self, MODEL_FORMATS, ModelFormat, PresetFile, surroundings},
 };
 
 /// Files are read when nothing has changed for this long: an editor may write a file in several
@@ -27,7 +27,7 @@ fn is_watched(extension: &str) -> bool {
     let models = MODEL_FORMATS
         .iter()
         .flat_map(|format| format.beside.iter().chain([&format.extension]));
-    ["wgsl", "toml", "png"]
+    ["wgsl", "toml", "png", surroundings::EXTENSION]
         .iter()
         .chain(models)
         .any(|known| extension.eq_ignore_ascii_case(known))
@@ -42,6 +42,8 @@ pub struct Targets {
     pub preset: Option<PathBuf>,
     /// The open model.
     pub model: Option<PathBuf>,
+    /// The picture of what surrounds it.
+    pub surroundings: Option<PathBuf>,
     /// The folder of shaders that replaces the built-in ones.
     pub shaders: Option<PathBuf>,
 }
@@ -50,7 +52,7 @@ impl Targets {
     /// Folders that are watched, each with whether those inside it are too.
     fn folders(&self) -> Vec<(PathBuf, bool)> {
         let beside = self.preset_effects();
-        let files = [&self.preset, &self.model]
+        let files = [&self.preset, &self.model, &self.surroundings]
             .into_iter()
             .flatten()
             .map(|file| folder_of(file).to_owned());
@@ -227,7 +229,9 @@ impl Reader {
         if targets.preset != self.targets.preset {
             self.preset = None;
         }
-        if targets.model != self.targets.model {
+        if (&targets.model, &targets.surroundings)
+            != (&self.targets.model, &self.targets.surroundings)
+        {
             self.model = model_stamps(&targets);
         }
         if targets.shaders != self.targets.shaders {
@@ -298,10 +302,11 @@ impl Reader {
 
     fn read_model(&mut self) -> bool {
         let stamps = model_stamps(&self.targets);
-        let Some(path) = self
-            .targets
+        let targets = &self.targets;
+        let Some(path) = targets
             .model
             .clone()
+            .or_else(|| targets.surroundings.clone())
             .filter(|path| stamps != self.model && path.is_file())
         else {
             return true;
@@ -431,12 +436,14 @@ fn stamps_in(folder: &Path, extensions: &[&str], is_deep: bool) -> Vec<Stamp> {
     stamps
 }
 
-/// The model, and the files beside it that it may refer to.
+/// The model, the files beside it that it may refer to, and the picture of its surroundings.
 fn model_stamps(targets: &Targets) -> Vec<Stamp> {
+    let surroundings = targets.surroundings.as_deref();
+    let mut stamps: Vec<Stamp> = surroundings.and_then(stamp).into_iter().collect();
     let Some(model) = &targets.model else {
-        return Vec::new();
+        return stamps;
     };
-    let mut stamps: Vec<Stamp> = stamp(model).into_iter().collect();
+    stamps.extend(stamp(model));
     if let Some(format) = ModelFormat::of(model).filter(|format| !format.beside.is_empty()) {
         stamps.extend(stamps_in(folder_of(model), format.beside, false));
     }

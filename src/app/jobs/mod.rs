@@ -203,9 +203,12 @@ impl Jobs {
                 parts: key.parts.clone(),
                 room: key.room,
                 ground: key.ground,
+                surroundings: key.surroundings.clone(),
                 ..Preset::default()
             };
-            let load = || preset_file::load_scene(&preset, None).map_err(|e| e.to_string());
+            let beside = [None, key.beside.as_deref()];
+            let load =
+                || preset_file::load_scene_beside(&preset, beside).map_err(|e| e.to_string());
             let scene = giving_back(|| {
                 caught("loading the scene", || {
                     background::compute(|| work.run(load)).transpose()

@@ -16,7 +16,7 @@ use super::{round_trip::any_preset, *};
 /// Does the setting belong to the scene? The rule as a person would write it down.
 fn is_of_scene(setting: &Setting) -> bool {
     match (setting.section, setting.name.as_str()) {
-        ("scene", "polyline" | "unit" | "room") => false,
+        ("scene", "polyline" | "unit" | "room" | "surroundings") => false,
         ("scene" | "camera", _) | ("output", "size") => true,
         _ => false,
     }

@@ -11,6 +11,7 @@ mod saving;
 mod scopes;
 mod sharing;
 mod shown_parts;
+mod surroundings;
 mod text;
 
 use std::path::{Path, PathBuf};

@@ -195,6 +195,7 @@ prop_compose! {
         let variant = if size[1] % 2 == 0 { "night and day".into() } else { String::new() };
         let parts = ShownParts { only: scope(2), hidden: scope(1), variant };
         Preset {
+            surroundings: if reversed { "hall.hdr".into() } else { String::new() },
             name, about, tags, scene, parts, room, ground, spin_deg_per_s, playback, camera,
             polyline: if reversed { [[background[0], -background[1], 1.0], [1e9, background[2], 1e-9], [0.0; 3]].into() } else { [].into() },
             unit: if size[0] % 2 == 0 { LengthUnit::Meter } else { LengthUnit::Scene },

@@ -46,8 +46,18 @@ pub fn duplicate(effect: &Effect, name: &str) -> Result<String, String> {
     let Some(text) = Library::Embedded.text(&file) else {
         return Err("has no text of its own".into());
     };
-    // The lights that come with a scene do not shine on an effect file.
-    let text = &text[sections(&text)[0].1.clone()];
+    // The light that comes with a scene does not shine on an effect file: neither its lights nor the
+    // picture of its surroundings.
+    let text = &text[sections(&text)[0].1.clone()]
+        .replace("//@ use variants/surroundings\n", "")
+        .replace(
+            "surroundings_irradiance(p.environment, ",
+            "environment_irradiance(",
+        )
+        .replace(
+            "surroundings_radiance(p.environment, ",
+            "environment_radiance(",
+        );
     let used = text
         .lines()
         .filter_map(|line| line.trim().strip_prefix("//@ use lib/"));

@@ -268,7 +268,8 @@ pub fn to_toml(preset_file: &PresetFile) -> String {
     document.to_string()
 }
 
-/// The preset as TOML with the effects of files that it uses, so that it can be opened elsewhere.
+/// The preset as TOML with the effects of files and the picture of surroundings that it uses, so that
+/// it can be opened elsewhere.
 pub fn to_shared_toml(preset_file: &PresetFile) -> String {
     let sources = preset_file
         .preset
@@ -276,9 +277,11 @@ pub fn to_shared_toml(preset_file: &PresetFile) -> String {
         .0
         .iter()
         .filter_map(|enabled| enabled.effect.source.as_ref());
-    let mut document: DocumentMut = match to_toml(preset_file).parse() {
+    let mut shared = preset_file.clone();
+    shared.preset.surroundings = preset_file.shared_surroundings();
+    let mut document: DocumentMut = match to_toml(&shared).parse() {
         Ok(document) => document,
-        Err(_) => return to_toml(preset_file),
+        Err(_) => return to_toml(&shared),
     };
     let mut table = Table::new();
     for source in sources {

@@ -25,7 +25,7 @@ pub fn preset_hash(preset: &Preset) -> Fnv {
     Fnv::new().bytes(to_toml(&PresetFile::new("", picture)).as_bytes())
 }
 
-/// Hash of a scene's bytes, accessors, materials, placements and lights.
+/// Hash of a scene's bytes, accessors, materials, placements, lights and surroundings.
 pub fn scene_hash(scene: &Scene) -> Fnv {
     let mut hash = Fnv::new()
         .bytes(&scene.vertex_bytes)
@@ -102,6 +102,9 @@ pub fn scene_hash(scene: &Scene) -> Fnv {
             u32::from(placed.has_position),
             light.node.map_or(u32::MAX, |node| node as u32),
         ]);
+    }
+    if let Some(panorama) = &scene.panorama {
+        hash = hash.words(panorama.words());
     }
     if scene.rig.is_empty() {
         hash

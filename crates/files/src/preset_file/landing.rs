@@ -83,6 +83,7 @@ impl PresetFile {
         if let SceneSource::File(model) = own.scene_source() {
             preset.scene = SceneSource::File(disk::absolute(&model).unwrap_or(model));
         }
+        preset.surroundings = self.shared_surroundings();
         let look = self.origin();
         let model = own.scene_name();
         let (id, name) = match &look {

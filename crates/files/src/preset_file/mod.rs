@@ -35,6 +35,7 @@ mod scene;
 pub mod schema;
 mod scope;
 mod share;
+pub mod surroundings;
 pub mod sweep;
 pub mod toml_value;
 mod toward;
@@ -63,5 +64,5 @@ pub use picture::{
     Provenance, pixels_of_png, png_bytes, png_of_frame, png_pixels, png_with_preset,
     preset_from_png,
 };
-pub use scene::{SceneError, load_scene, scene_bounds};
+pub use scene::{SceneError, load_scene, load_scene_beside, scene_bounds};
 pub use share::{from_line, to_line};

@@ -5,9 +5,11 @@ use std::{path::Path, sync::Arc};
 use super::{
     file::model_path,
     formats::{MODEL_FORMATS, ModelFormat},
+    surroundings,
 };
 use crate::{
     host::disk,
+    params::legible_line,
     preset::{MissingInScene, Preset, SceneSource},
     scene::{Bounds, Scene, builtin, gltf},
 };
@@ -25,18 +27,40 @@ pub enum SceneError {
         "scene.only and scene.hidden leave no part of the scene; show some part of it (rasterlab parts SCENE lists them)"
     )]
     NothingShown,
+    #[error("{file}, the picture of scene.surroundings, {reason}")]
+    Surroundings { file: String, reason: String },
     #[error(transparent)]
     Missing(#[from] MissingInScene),
 }
 
-/// Builds or loads the scene of a preset: the parts that it shows, its ground and its room; a relative model path
-/// starts at the folder of `preset_path`.
+/// Builds or loads the scene of a preset: the parts that it shows, its ground, its room and the picture
+/// of its surroundings; relative paths start at the folder of `preset_path`.
 ///
 /// # Errors
-/// No such built-in scene or model, a model that cannot be read, no part that is shown, or a
+/// No such built-in scene, model or picture, one that cannot be read, no part that is shown, or a
 /// variant, clip or camera that the scene does not have.
 pub fn load_scene(preset: &Preset, preset_path: Option<&Path>) -> Result<Arc<Scene>, SceneError> {
-    let scene = load_source(&preset.scene, &preset.parts.variant, preset_path)?;
+    load_scene_beside(preset, [preset_path; 2])
+}
+
+/// [`load_scene`], with one path of the preset for its model and one for its picture.
+///
+/// # Errors
+/// As [`load_scene`].
+pub fn load_scene_beside(
+    preset: &Preset,
+    [for_model, for_picture]: [Option<&Path>; 2],
+) -> Result<Arc<Scene>, SceneError> {
+    let surroundings = surroundings::load(&preset.surroundings, for_picture);
+    let surroundings = surroundings.map_err(|reason| SceneError::Surroundings {
+        file: legible_line(surroundings::shown(&preset.surroundings)),
+        reason,
+    })?;
+    let mut scene = load_source(&preset.scene, &preset.parts.variant, for_model)?;
+    if let Some(surroundings) = surroundings {
+        scene.panorama = Some(surroundings.panorama);
+        scene.notes.extend(surroundings.note);
+    }
     preset.check(&scene)?;
     let has_parts = !scene.instances.is_empty();
     let scene = scene.showing(&preset.parts);

@@ -95,7 +95,7 @@ fn section_schema(section: &Section) -> Map<String, Json> {
 fn refused(path: &str) -> Option<Json> {
     match path {
         "scene.room" => Some(json!({ "exclusiveMinimum": 0, "exclusiveMaximum": 1 })),
-        "scene.path" => Some(json!({ "pattern": "://" })),
+        "scene.path" | "scene.surroundings" => Some(json!({ "pattern": "://" })),
         _ => None,
     }
 }

@@ -104,6 +104,7 @@ pub(super) fn key_of(
             has_normal_maps,
             has_planes: stack.reads_planes() || !needs.normals_agree,
             lights: if stack.is_lit() { needs.lights } else { 0 },
+            has_panorama: needs.has_panorama && stack.shows_surroundings(),
         },
         view: ViewKind {
             projection: if needs.perspective {

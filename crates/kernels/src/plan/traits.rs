@@ -143,6 +143,13 @@ impl StackTraits {
         self.effects.iter().any(|effect| effect.hooks.lit.is_some())
     }
 
+    /// Does an effect show what surrounds the scene?
+    pub fn shows_surroundings(&self) -> bool {
+        self.effects
+            .iter()
+            .any(|effect| effect.hooks.shows_surroundings)
+    }
+
     /// Does an effect ask how much of a light arrives?
     pub fn reads_light(&self) -> bool {
         self.effects.iter().any(|effect| effect.hooks.casts_shadows)

@@ -1,10 +1,14 @@
-//! Pictures that effects of files take as inputs, as `shaders/lib/image_file.wgsl` reads them.
+//! Pictures that effects of files take as inputs, as `shaders/lib/image_file.wgsl` reads them, and
+//! that of what surrounds the scene, as `shaders/lib/panorama.wgsl` does.
 
 use std::{borrow::Cow, sync::Arc};
 
-use crate::effects::{
-    EnabledEffect,
-    image_file::{ImageFile, LIGHT_OF_BYTES},
+use crate::{
+    effects::{
+        EnabledEffect,
+        image_file::{ImageFile, LIGHT_OF_BYTES},
+    },
+    scene::panorama::Panorama,
 };
 
 /// The pictures of a stack, in order. Instances of one file share theirs.
@@ -33,17 +37,19 @@ pub fn kernel_words(stack: &[EnabledEffect]) -> impl Iterator<Item = Cow<'_, [u3
 }
 
 /// Everything that kernels read of pictures, word after word: linear light of every byte; how many
-/// pictures there are; the first word and the size of each; then their texels, red in the lowest
-/// byte.
-pub fn words(files: &[Arc<ImageFile>]) -> Vec<u32> {
+/// pictures there are; the first word and the size of each, and the first word of a panorama; then
+/// texels, red in the lowest byte, and the words of the panorama.
+pub fn words(files: &[Arc<ImageFile>], panorama: Option<&Panorama>) -> Vec<u32> {
     let mut words: Vec<u32> = LIGHT_OF_BYTES.iter().map(|light| light.to_bits()).collect();
     words.push(files.len() as u32);
-    let mut first = words.len() + 2 * files.len();
+    let mut first = words.len() + 2 * files.len() + 1;
     for file in files {
         words.extend([first as u32, file.size[0] | file.size[1] << 16]);
         first += file.texels.len();
     }
+    words.push(first as u32);
     let texels = files.iter().flat_map(|file| &file.texels);
     words.extend(texels.map(|texel| u32::from_le_bytes(*texel)));
+    words.extend(panorama.map_or([].as_slice(), Panorama::words));
     words
 }

@@ -199,6 +199,8 @@ pub struct SurfaceInputs {
     pub has_planes: bool,
     /// Lights that come with the scene and shine on some effect.
     pub lights: u32,
+    /// A picture of what surrounds the scene comes with it, and an effect shows it.
+    pub has_panorama: bool,
 }
 
 /// How a view maps depth.
@@ -340,6 +342,8 @@ impl KernelKey {
                 has_normal_maps: true,
                 has_planes: true,
                 lights: 2,
+                // Effects are read alone, too, without a scene.
+                has_panorama: false,
             },
             view: ViewKind {
                 projection: ProjectionKind::Perspective,

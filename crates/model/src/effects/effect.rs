@@ -74,11 +74,17 @@ impl Effect {
         self
     }
 
-    /// The same effect, on which the lights that come with a scene shine.
-    pub fn under_lights<P: LitEffect>(mut self) -> Self {
-        self.hooks.lit = Some(Arc::new(|surface, lights, words| {
-            P::under_lights(surface, lights, &read(words))
+    /// The same effect, on which the light that comes with a scene shines.
+    pub fn in_light<P: LitEffect>(mut self) -> Self {
+        self.hooks.lit = Some(Arc::new(|surface, light, words| {
+            P::in_light(surface, light, &read(words))
         }));
+        self
+    }
+
+    /// The same effect, which shows what surrounds the scene.
+    pub fn in_surroundings(mut self) -> Self {
+        self.hooks.shows_surroundings = true;
         self
     }
 

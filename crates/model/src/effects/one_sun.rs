@@ -75,7 +75,12 @@ mod tests {
     use glam::DVec3;
 
     use super::{
-        super::{hooks::Surface, lambert::Lambert, shadow::Shadow, studio::Studio},
+        super::{
+            hooks::{Lighting, Surface},
+            lambert::Lambert,
+            shadow::Shadow,
+            studio::Studio,
+        },
         *,
     };
 
@@ -123,7 +128,10 @@ mod tests {
                 lit,
                 ..Surface::example(DVec3::splat(0.5), 0)
             };
-            stack.shade(surface, u32::MAX, &[]).color.truncate()
+            stack
+                .shade(surface, u32::MAX, &Lighting::default())
+                .color
+                .truncate()
         };
         let (bright, none) = ([0.5, 0.4, 0.3, 1.0], [0.0, 0.0, 0.0, 1.0]);
         let sky = shade(none, 1.0);

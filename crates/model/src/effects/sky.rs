@@ -1,14 +1,14 @@
 //! Sky: what surrounds the scene is seen where nothing is drawn.
 //!
-//! The environments are those that the effect studio reflects.
+//! The environments are those that the effect studio reflects: a formula, or a picture of light.
 
-use glam::DVec4;
+use glam::{DVec2, DVec4};
 
 use super::{
     BuiltIn, Effect,
     hooks::{
         ImageAt, PassEffect,
-        environment::{Environment, Surroundings, turned_by},
+        environment::{Environment, Seen, turned_by},
         tone::turned,
     },
 };
@@ -34,8 +34,12 @@ pub static EFFECT: BuiltIn = BuiltIn::new(|| {
         "what surrounds the scene is seen where nothing is drawn",
     )
     .on_passes::<Sky>()
+    .in_surroundings()
     .into()
 });
+
+/// How far a direction in f32 may be off its place in a picture, whose side is 1.
+const PLACE_ERROR: f64 = 1.0 / (1 << 20) as f64;
 
 impl PassEffect for Sky {
     const PASSES: &'static [(&'static str, u32)] = &[("", 1)];
@@ -46,9 +50,12 @@ impl PassEffect for Sky {
             return at.color(at.x, at.y);
         }
         let toward = turned_by(at.direction(at.middle()), turned(p.turn_deg.into()));
-        let surroundings = Surroundings::of(Environment::of(p.environment));
+        let surroundings = Seen::of(Environment::of(p.environment), at.input.panorama);
         let blur = f64::from(p.blur);
-        let light = surroundings.radiance(toward, blur * blur);
+        // What a direction of f32 may be off in a picture: along both diagonals.
+        let (along, across) = (at.step_offset.signum() * f64::from(at.step_offset != 0.0), at.input.signs.at(at.x, at.y));
+        let moved = DVec2::new(along + across, along - across) * PLACE_ERROR;
+        let light = surroundings.radiance(toward, blur * blur, moved);
         (light * f64::from(p.strength)).extend(1.0)
     }
 }

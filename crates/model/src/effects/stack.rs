@@ -7,7 +7,7 @@ use super::{
     dots, draw_order,
     effect::{Effect, read},
     glass::GlassDraws,
-    hooks::{self, EarlierFrames, Hooks, Layers, Picture, Pixel, Shape, Slot, Surface},
+    hooks::{self, EarlierFrames, Hooks, Layers, Lighting, Picture, Pixel, Shape, Slot, Surface},
     points, race, shadow, smear, xray,
 };
 use crate::{
@@ -18,7 +18,6 @@ use crate::{
         light::light_view,
         particle_discs::ParticleSettings,
         parts::{MAX_SCOPES, Scope},
-        punctual::PlacedLight,
         shadow_resolution::ShadowResolution,
         view::View,
     },
@@ -184,11 +183,11 @@ impl Stack {
     }
 
     /// Applies every surface effect in order, as far as they act on a draw with these `scopes`
-    /// ([`Draw::scopes`]), under the `lights` that come with the scene.
-    pub fn shade(&self, surface: Surface, scopes: u32, lights: &[PlacedLight]) -> Surface {
+    /// ([`Draw::scopes`]), in the `light` that comes with the scene.
+    pub fn shade(&self, surface: Surface, scopes: u32, light: &Lighting<'_>) -> Surface {
         self.each_on(scopes, |hooks| Some((hooks.surface.as_ref()?, &hooks.lit)))
             .fold(surface, |surface, ((apply, lit), words)| match lit {
-                Some(lit) if !lights.is_empty() => lit(surface, lights, words),
+                Some(lit) if !light.is_none() => lit(surface, light, words),
                 _ => apply(surface, words),
             })
     }

@@ -7,20 +7,20 @@
 //! stays white. The fractions of light that this takes are rational functions fitted to the integral
 //! over all directions, within 0.013 of it.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::{
     BuiltIn, Effect, Surface, SurfaceEffect, SurfaceInput,
     hooks::{
-        LitEffect,
-        environment::{Environment, Surroundings, turned_by},
+        LitEffect, Lighting,
+        environment::{Environment, Seen, turned_by},
         tone::{rgb, turned},
     },
 };
 use crate::{
     choice, params,
     params::{Color, Point},
-    scene::punctual::PlacedLight,
+    scene::{panorama::Panorama, punctual::PlacedLight},
 };
 
 choice! {
@@ -65,7 +65,8 @@ pub static EFFECT: BuiltIn = BuiltIn::new(|| {
         "Studio",
         "metals, plastics and glazes under a sun and what surrounds them",
     )
-    .under_lights::<Studio>()
+    .in_light::<Studio>()
+    .in_surroundings()
     .into()
 });
 
@@ -79,7 +80,15 @@ impl SurfaceEffect for Studio {
         SurfaceInput::Finish,
     ];
 
-    fn apply(mut s: Surface, p: &Self) -> Surface {
+    fn apply(s: Surface, p: &Self) -> Surface {
+        p.in_surroundings(s, None)
+    }
+}
+
+impl Studio {
+    /// Under the sun, in an environment, which may be the picture of the scene's surroundings.
+    fn in_surroundings(&self, mut s: Surface, picture: Option<&Panorama>) -> Surface {
+        let p = self;
         let reflector = Reflector::of(&s, p);
         let seen = reflector.albedo(s.normal.dot(s.view).max(GRAZING));
 
@@ -94,9 +103,9 @@ impl SurfaceEffect for Studio {
         let spread = mirrored + (s.normal - mirrored) * (reflector.alpha * reflector.alpha);
         let spread = spread / spread.length_squared().max(1e-12).sqrt();
         let turn = turned(p.turn_deg.into());
-        let sky = Surroundings::of(Environment::of(p.environment));
+        let sky = Seen::of(Environment::of(p.environment), picture);
         let diffuse = sky.irradiance(turned_by(s.normal, turn));
-        let reflected = sky.radiance(turned_by(spread, turn), reflector.alpha);
+        let reflected = sky.radiance(turned_by(spread, turn), reflector.alpha, DVec2::ZERO);
         let from_sky = (reflector.diffuse * (1.0 - seen.all) + seen.repeated) * diffuse
             + seen.once * reflected;
 
@@ -107,7 +116,7 @@ impl SurfaceEffect for Studio {
 }
 
 impl LitEffect for Studio {
-    fn under_lights(surface: Surface, lights: &[PlacedLight], p: &Self) -> Surface {
+    fn in_light(surface: Surface, light: &Lighting<'_>, p: &Self) -> Surface {
         let reflector = Reflector::of(&surface, p);
         let (normal, view) = (surface.normal, surface.view);
         let seen = reflector.albedo(normal.dot(view).max(GRAZING));
@@ -115,8 +124,8 @@ impl LitEffect for Studio {
             let arriving = light.arriving(surface.position);
             arriving.light * reflector.sunlight(&seen, normal, view, arriving.toward)
         };
-        let sum: DVec3 = lights.iter().map(reflected).sum();
-        let mut s = Self::apply(surface, p);
+        let sum: DVec3 = light.lights.iter().map(reflected).sum();
+        let mut s = p.in_surroundings(surface, light.panorama);
         s.color += (sum * f64::from(p.lights)).extend(0.0);
         s
     }
@@ -267,9 +276,7 @@ fn fifth(x: f64) -> f64 {
 mod tests {
     use std::f64::consts::TAU;
 
-    use glam::DVec2;
-
-    use super::*;
+    use super::{super::hooks::environment::Surroundings, *};
 
     /// Stratified points of the unit square.
     fn square(side: u32) -> impl Iterator<Item = DVec2> {

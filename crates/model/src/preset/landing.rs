@@ -39,6 +39,7 @@ impl Preset {
             mut output,
             ground,
             room,
+            surroundings,
             ..
         } = self.clone();
         output.resize(size);
@@ -49,6 +50,7 @@ impl Preset {
             scene,
             parts,
             room,
+            surroundings,
             ground,
             spin_deg_per_s,
             playback,

@@ -213,6 +213,9 @@ pub struct Preset {
     pub scene: SceneSource,
     /// Distance of the walls of a room, as a multiple of the scene's width; 0: no room.
     pub room: f64,
+    /// The picture of what surrounds the scene: an `.hdr` file in the folder of the preset, or
+    /// base64; empty: none.
+    pub surroundings: String,
     /// The parts of the scene that are shown.
     pub parts: ShownParts,
     /// What the scene stands on; none: nothing.
@@ -249,6 +252,7 @@ impl Default for Preset {
             tags: Vec::new(),
             scene: SceneSource::Builtin("teapot".into()),
             room: 0.0,
+            surroundings: String::new(),
             parts: ShownParts::default(),
             ground: None,
             spin_deg_per_s: 0.0,

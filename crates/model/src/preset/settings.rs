@@ -223,6 +223,13 @@ pub static SCENE: Section = Section {
                 .range(0.0, 100.0)
                 .slider(0.0, 4.0)
                 .rule(encloses_scene),
+                Setting::new(
+                    "surroundings",
+                    ValueType::Text { max_chars: 600_000 },
+                    "A picture of what surrounds the scene, a Radiance .hdr file in the folder of the preset, shown where the environment of studio or sky is picture; empty: none",
+                    field!(surroundings),
+                )
+                .rule(is_file),
                 Setting::new("spin_deg_per_s", ValueType::F64, "Turns the scene about its vertical axis", field!(spin_deg_per_s))
                     .range(-1e6, 1e6)
                     .slider(-180.0, 180.0)

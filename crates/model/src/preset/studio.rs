@@ -78,7 +78,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::effects::hooks::Surface;
+    use crate::effects::hooks::{Lighting, Surface};
 
     #[test]
     fn the_brightest_white_face_is_light_and_not_clipped() {
@@ -99,7 +99,7 @@ mod tests {
                     ..Surface::example(DVec3::ONE, 0)
                 };
                 light
-                    .shade(face, u32::MAX, &[])
+                    .shade(face, u32::MAX, &Lighting::default())
                     .color
                     .truncate()
                     .max_element()

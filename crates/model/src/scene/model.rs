@@ -1,5 +1,7 @@
 //! The model: primitives, materials and instances, and the bytes that they refer to.
 
+use std::sync::Arc;
+
 use glam::{DMat4, DVec3};
 
 use super::{
@@ -9,6 +11,7 @@ use super::{
     deformation::Deformation,
     framing::FramingPoints,
     material::{Material, TEXTURE_SLOTS},
+    panorama::Panorama,
     punctual::SceneLight,
     rig::Rig,
     texture::Image,
@@ -261,6 +264,8 @@ pub struct Scene {
     pub content: Option<Bounds>,
     /// Cameras that come with the scene.
     pub cameras: Vec<SceneCamera>,
+    /// The picture of what surrounds it.
+    pub panorama: Option<Arc<Panorama>>,
     /// Lights that come with the scene, at most [`MAX_LIGHTS`](super::punctual::MAX_LIGHTS).
     pub lights: Vec<SceneLight>,
     /// Nodes, skins and clips.

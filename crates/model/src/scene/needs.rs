@@ -56,6 +56,8 @@ pub struct Needs {
     pub has_blended_textures: bool,
     /// Lights that come with the scene.
     pub lights: u32,
+    /// A picture of what surrounds the scene comes with it.
+    pub has_panorama: bool,
     /// How finely shadows are drawn.
     pub shadow: ShadowResolution,
     /// The view is a light's.
@@ -138,6 +140,7 @@ impl Needs {
             f32_positions: all_f32(|p| p.positions.component_type),
             f32_normals: all_f32(|p| p.normals.component_type),
             lights: view.scene_state.lights.len() as u32,
+            has_panorama: scene.panorama.is_some(),
             shadow: view.precision.shadow,
             is_light: view.is_light(),
             colors: drawn().any(|p| p.colors.is_some()),

@@ -195,7 +195,7 @@ impl SampleShade<'_> {
                     step_offset: step,
                     ..known.surface(x, y, &perturbation)
                 };
-                stack.shade(surface, known.scopes, self.shot.lights())
+                stack.shade(surface, known.scopes, &self.shot.light())
             })
             .collect();
         all.into_iter()

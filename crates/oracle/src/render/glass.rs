@@ -148,7 +148,7 @@ pub fn glass_colors(input: &LayerInput, layers: &GlassLayers) -> Result<Vec<DVec
                 lit,
                 ..surface
             };
-            let shaded = shot.stack.shade(surface, triangle.scopes, shot.lights());
+            let shaded = shot.stack.shade(surface, triangle.scopes, &shot.light());
             Some((shaded, triangle.scopes))
         };
         let pixel = |x: usize| {

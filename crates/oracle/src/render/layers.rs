@@ -208,7 +208,7 @@ fn sums(input: &LayerInput, params: &Xray, bits: u32) -> Result<Vec<LayerSum>, C
                     ..surface
                 },
                 known.scopes,
-                input.shot.lights(),
+                &input.shot.light(),
             );
             let weight = fixed_weight(params.weight_of(&shaded), 0.0);
             let color = fixed_color(shaded.color.truncate(), 0.0, bits);

@@ -96,6 +96,7 @@ pub fn passed_colors(
                 last: last.as_ref().unwrap_or(&source),
                 kept: before.as_ref(),
                 signs: perturbation.signs,
+                panorama: shot.scene.panorama.as_deref(),
             };
             let size = pass.size(size);
             let pixels = size[0] as usize * size[1] as usize;

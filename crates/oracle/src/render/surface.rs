@@ -89,7 +89,7 @@ pub fn shaded(
                     ..surface
                 },
                 triangle.scopes,
-                shot.lights(),
+                &shot.light(),
             )
             .color,
     )

@@ -21,6 +21,7 @@ const FOLDERS: &[(&str, &[&str])] = &[
             "scene.only",
             "scene.hidden",
             "scene.room",
+            "scene.surroundings",
             "scene.spin_deg_per_s",
             "output.background",
             "output.background_bottom",

@@ -19,6 +19,7 @@ use crate::{
         Preset,
         settings::{GROUND, Setting},
     },
+    preset_file::surroundings,
     scene::{Scene, parts::ShownParts, texture::Image},
 };
 
@@ -26,6 +27,7 @@ pub fn scene_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     folder(ui, "Scene", true, |ui| {
         let preset = state.session.preset();
         setting_ui(ui, state, commands, "scene.room");
+        surroundings_ui(ui, state, commands);
         setting_ui(ui, state, commands, "scene.spin_deg_per_s");
         setting_ui(ui, state, commands, "output.background");
         gradient_ui(ui, preset, commands);
@@ -68,6 +70,42 @@ pub fn scene_ui(ui: &mut Ui, state: &State, commands: &Commands) {
                 });
             });
         }
+    });
+}
+
+/// A menu of the pictures that may surround the scene.
+fn surroundings_ui(ui: &mut Ui, state: &State, commands: &Commands) {
+    const NONE: &str = "no picture around it";
+    let Some(setting) = Setting::find("scene.surroundings") else {
+        return;
+    };
+    let (file, named) = (
+        &state.session.preset_file,
+        &state.session.preset().surroundings,
+    );
+    ui.horizontal(|ui| {
+        ui.set_min_height(theme::ROW);
+        ui.add_space(theme::GAP);
+        let chosen = match named.as_str() {
+            "" => NONE.to_owned(),
+            name => format!("in {}", surroundings::shown(name)),
+        };
+        let menu = ComboBox::from_id_salt("scene.surroundings")
+            .selected_text(chosen)
+            .width(ui.available_width() - theme::GAP);
+        let menu = menu.show_ui(ui, |ui| {
+            let known = surroundings::known(file.path.as_deref()).into_iter();
+            for name in [String::new()].into_iter().chain(known) {
+                let label = if name.is_empty() { NONE } else { name.as_str() };
+                let is_chosen = *named == name;
+                if ui.selectable_label(is_chosen, label).clicked() && !is_chosen {
+                    commands.edit(Edit::Setting(setting, name.to_value()));
+                }
+            }
+        });
+        menu.response
+            .on_hover_text("The .hdr files beside the preset, and those of the gallery. Studio and sky show the picture where their environment is picture.")
+            .accessible_name("scene.surroundings");
     });
 }
 

@@ -19,6 +19,7 @@ pub(super) const FEATURES: &[Feature] = &[
     NORMAL_MAPS,
     MASK,
     PUNCTUAL_LIGHTS,
+    PANORAMA,
     LIGHT,
     DOTS,
     IMAGE_EFFECTS,
@@ -205,6 +206,26 @@ const PUNCTUAL_LIGHTS: Feature = Feature {
         },
     }),
     constants: &[("PUNCTUAL_LIGHTS", |key, _| key.surface.lights.into())],
+    ..Feature::NONE
+};
+
+const PANORAMA: Feature = Feature {
+    label: |key| word_if(key.surface.has_panorama, "panorama"),
+    part: Some(Part {
+        name: "picture of the surroundings",
+        is_used: |key| key.surface.has_panorama,
+        why_omitted: |needs| match needs.has_panorama {
+            false => "the scene has none".into(),
+            true => "no effect shows it".into(),
+        },
+    }),
+    variants: &[("surroundings", |key, _| {
+        if key.surface.has_panorama {
+            "picture"
+        } else {
+            "formulas"
+        }
+    })],
     ..Feature::NONE
 };
 

@@ -7,7 +7,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::choice;
+use crate::{choice, scene::panorama::Panorama};
 
 choice! {
     /// What surrounds the scene.
@@ -20,6 +20,40 @@ choice! {
         LowSun = "low_sun",
         /// The moon, a street lamp and a colored sign.
         Night = "night",
+        /// The picture that the preset names as `scene.surroundings`; without one the studio.
+        Picture = "picture",
+    }
+}
+
+/// What an effect shows of an environment: a formula, or the picture of the scene's surroundings.
+pub struct Seen<'a> {
+    formula: Surroundings,
+    picture: Option<&'a Panorama>,
+}
+
+impl<'a> Seen<'a> {
+    pub fn of(environment: Environment, picture: Option<&'a Panorama>) -> Self {
+        Self {
+            formula: Surroundings::of(environment),
+            picture: picture.filter(|_| environment == Environment::Picture),
+        }
+    }
+
+    /// As [`Surroundings::irradiance`].
+    pub fn irradiance(&self, normal: DVec3) -> DVec3 {
+        match self.picture {
+            Some(picture) => picture.irradiance(normal),
+            None => self.formula.irradiance(normal),
+        }
+    }
+
+    /// As [`Surroundings::radiance`]. `moved` moves the place in a picture
+    /// ([`Panorama::radiance`]).
+    pub fn radiance(&self, d: DVec3, alpha: f64, moved: DVec2) -> DVec3 {
+        match self.picture {
+            Some(picture) => picture.radiance(d, alpha, moved),
+            None => self.formula.radiance(d, alpha),
+        }
     }
 }
 
@@ -58,7 +92,7 @@ impl Surroundings {
         };
         const NONE: ([f64; 3], f64, [f64; 3]) = ([0.0, 1.0, 0.0], 0.84, [0.0; 3]);
         match environment {
-            Environment::Studio => sky(
+            Environment::Studio | Environment::Picture => sky(
                 [[0.46, 0.47, 0.5], [0.2, 0.205, 0.215], [0.09, 0.085, 0.08]],
                 [
                     ([-0.55, 0.62, 0.559553], 0.955, [0.58, 0.56, 0.52]),

@@ -19,18 +19,18 @@ pub use passes::{
 };
 pub use sample::{Sample, SampleEffect, SampleHook, SetupFunction, TriangleSetup};
 pub use slot::{Layers, Shape, Slot};
-pub use surface::{Finish, LitEffect, Surface, SurfaceEffect, SurfaceInput};
+pub use surface::{Finish, Lighting, LitEffect, Surface, SurfaceEffect, SurfaceInput};
 pub use vertex::{ErrorBound, ROUNDING, Vertex, VertexEffect, VertexHook};
 
 use std::sync::Arc;
 
-use crate::scene::{particle_discs::ParticleSettings, punctual::PlacedLight};
+use crate::scene::particle_discs::ParticleSettings;
 
 /// A surface effect's function over its parameter words.
 pub type SurfaceFunction = dyn Fn(Surface, &[u32]) -> Surface + Send + Sync;
 
-/// A surface effect's function where the scene has lights, over them and its parameter words.
-pub type LitFunction = dyn Fn(Surface, &[PlacedLight], &[u32]) -> Surface + Send + Sync;
+/// A surface effect's function where the scene brings light, over it and its parameter words.
+pub type LitFunction = dyn Fn(Surface, &Lighting<'_>, &[u32]) -> Surface + Send + Sync;
 
 /// Every hook of one effect, each with its function over the parameter words.
 #[derive(Clone, Default)]
@@ -41,7 +41,7 @@ pub struct Hooks {
     pub sample: Option<SampleHook>,
     /// What color is it?
     pub surface: Option<Arc<SurfaceFunction>>,
-    /// The same under the lights that come with the scene, in place of `surface` where it has any.
+    /// The same in the light that comes with the scene, in place of `surface` where there is any.
     pub lit: Option<Arc<LitFunction>>,
     /// Finish the pixel.
     pub image: Option<ImageHook>,
@@ -49,6 +49,8 @@ pub struct Hooks {
     pub passes: Option<PassHook>,
     /// The part of the rasterizer that the effect replaces.
     pub slot: Option<Slot>,
+    /// It shows what surrounds the scene.
+    pub shows_surroundings: bool,
     /// It turns the parts on which it acts into glass.
     pub makes_glass: bool,
     /// It draws along lines, in separate passes before pixels are shaded.

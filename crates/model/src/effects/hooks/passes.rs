@@ -6,7 +6,10 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3, DVec4};
 
 use super::Picture;
-use crate::{params::Params, scene::view::View};
+use crate::{
+    params::Params,
+    scene::{panorama::Panorama, view::View},
+};
 
 /// Depth of a pixel that shows nothing, meters.
 pub const EMPTY_DEPTH_M: f64 = 1e9;
@@ -170,6 +173,8 @@ pub struct PassInput<'a> {
     pub kept: Option<&'a Image>,
     /// In which direction depths in meters err.
     pub signs: Signs,
+    /// The picture of what surrounds the scene.
+    pub panorama: Option<&'a Panorama>,
 }
 
 /// The pixel that a pass writes, and what it may read.

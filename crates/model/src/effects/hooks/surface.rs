@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3, DVec4};
 
 use crate::{
     params::Params,
-    scene::{material::Material, punctual::PlacedLight},
+    scene::{material::Material, panorama::Panorama, punctual::PlacedLight},
 };
 
 /// What the rasterizer knows about a visible sample; a surface effect changes it and passes it on.
@@ -217,9 +217,25 @@ pub trait SurfaceEffect: Params {
     fn apply(surface: Surface, params: &Self) -> Surface;
 }
 
-/// The f64 side of an effect on the surface hook that the lights of a scene shine on. In WGSL, the
-/// function `NAME_under_lights` in the section `lights` of its file.
+/// The light that comes with a scene.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Lighting<'a> {
+    /// Lamps and suns, where they are.
+    pub lights: &'a [PlacedLight],
+    /// The picture of what surrounds the scene.
+    pub panorama: Option<&'a Panorama>,
+}
+
+impl Lighting<'_> {
+    /// Does no light come with the scene?
+    pub const fn is_none(&self) -> bool {
+        self.lights.is_empty() && self.panorama.is_none()
+    }
+}
+
+/// The f64 side of an effect on the surface hook that the light of a scene shines on. In WGSL, the
+/// function `NAME_under_lights` in the section `lights` of its file, and `variants/surroundings`.
 pub trait LitEffect: SurfaceEffect {
-    /// The same as [`SurfaceEffect::apply`] under these lights.
-    fn under_lights(surface: Surface, lights: &[PlacedLight], params: &Self) -> Surface;
+    /// The same as [`SurfaceEffect::apply`] in this light.
+    fn in_light(surface: Surface, light: &Lighting<'_>, params: &Self) -> Surface;
 }
