@@ -19,7 +19,7 @@ fn picture(bright: f64) -> Vec<u8> {
 fn naming(folder: &Path, named: &str) -> preset_file::PresetFile {
     let path = folder.join("mine.toml");
     let text = format!(
-        "schema = 2\n[scene]\nbuiltin = \"sphere?triangles=20\"\nsurroundings = {named:?}\n[effects.studio]\nenvironment = \"picture\"\n"
+        "schema = 2\n[scene]\nbuiltin = \"sphere?triangles=100\"\nsurroundings = {named:?}\n[effects.studio]\nenvironment = \"picture\"\n"
     );
     fs::write(&path, text).expect("a file");
     preset_file::load(&path).expect("a preset")
