@@ -237,7 +237,8 @@ fn the_core_names_nothing_that_a_page_lacks() {
     let native = CORE
         .iter()
         .flat_map(|folder| sources(folder))
-        .filter(|source| is_native(&source.code));
+        // What a build runs is never in a page.
+        .filter(|source| !source.name.ends_with("/build.rs") && is_native(&source.code));
     let native: Vec<_> = native.map(|source| source.name).collect();
     assert_eq!(
         native, [""; 0],

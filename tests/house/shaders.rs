@@ -467,7 +467,7 @@ fn plain_key() -> KernelKey {
 #[test]
 fn a_pass_is_read_in_few_files() {
     for (pass, most) in [
-        (Pass::RasterSmall(RasterPhase::Depth), 11),
+        (Pass::RasterSmall(RasterPhase::Depth), 12),
         (Pass::Resolve, 15),
     ] {
         let linked = linked(&plain_key(), pass);

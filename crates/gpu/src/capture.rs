@@ -290,7 +290,8 @@ impl Renderer {
                         label: Some("judge"),
                     });
             judge.clear(&mut encoder, |occasion| occasion != ClearedBy::History)?;
-            judge.record_all(
+            judge.record(
+                judge.passes(),
                 &mut encoder,
                 Timing {
                     timer: None,

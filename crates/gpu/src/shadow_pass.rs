@@ -119,7 +119,8 @@ impl ShadowPass {
     ) -> Result<(), RenderError> {
         self.resources
             .clear(encoder, |occasion| occasion != ClearedBy::History)?;
-        self.resources.record_all(
+        self.resources.record(
+            self.resources.passes(),
             encoder,
             Timing {
                 timer,

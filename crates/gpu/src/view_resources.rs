@@ -616,20 +616,9 @@ impl ViewResources {
         commands.record(part, encoder, &sizes, timing)
     }
 
-    /// Records all passes that were prepared.
-    ///
-    /// # Errors
-    /// When none were.
-    pub fn record_all(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        timing: Timing<'_>,
-    ) -> Result<(), RenderError> {
-        self.record(
-            0..self.commands.as_ref().map_or(0, CommandList::len),
-            encoder,
-            timing,
-        )
+    /// All passes that were prepared.
+    pub fn passes(&self) -> Range<usize> {
+        0..self.commands.as_ref().map_or(0, CommandList::len)
     }
 
     /// Makes room for what the queues lost, or gives up an estimate that was wrong; true if either
