@@ -2,7 +2,6 @@
 //@ use lib/frame
 //@ use lib/triangle
 //@ use lib/attributes
-//@ use glue/draws
 //@ use variants/draw_records
 
 // Positions are taken relative to the draw's origin, which lies near the eye, before the matrix is applied.

@@ -22,7 +22,6 @@
 //@ variant default
 // The record of the draw holds all.
 //@ use lib/triangle
-//@ use glue/draws
 
 fn draw_vertex_count(draw: u32) -> u32 {
     return draws[draw].vertex_count;
@@ -80,7 +79,6 @@ fn draw_normal(draw: u32, n: vec3f) -> vec3f {
 // What instances share lies in a table, and what only colors need of each behind the attributes: a record is read for every
 // triangle, and a million of them fit where a whole one of 336 bytes would fit 399,457 times.
 //@ use lib/triangle
-//@ use glue/draws
 //@ use glue/shapes
 //@ use variants/loads
 

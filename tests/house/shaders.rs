@@ -468,7 +468,7 @@ fn plain_key() -> KernelKey {
 fn a_pass_is_read_in_few_files() {
     for (pass, most) in [
         (Pass::RasterSmall(RasterPhase::Depth), 12),
-        (Pass::Resolve, 15),
+        (Pass::Resolve, 16),
     ] {
         let linked = linked(&plain_key(), pass);
         let files = linked.files();

@@ -1,6 +1,8 @@
 //! Layers of glass: what a frame counts of them, and how much room they get.
 
-use super::{error::RenderError, renderer::Renderer, view_resources::Request};
+use super::{
+    error::RenderError, renderer::Renderer, resource_id::BufferId, view_resources::Request,
+};
 use crate::{
     effects::glass::GlassDraws,
     plan::{Caps, GLASS_LAYER_BYTES},
@@ -143,6 +145,13 @@ impl Renderer {
             return false;
         }
         *room /= 2;
+        // A buffer that is somewhat larger than it must be would be kept.
+        let layered = [
+            BufferId::DepthKeys,
+            BufferId::DepthAndId,
+            BufferId::PackedDepthId,
+        ];
+        self.picture.buffers.keep(|id| !layered.contains(&id));
         self.device.tuning.glass_layers = self.device.tuning.glass_layers.min(*room);
         true
     }
