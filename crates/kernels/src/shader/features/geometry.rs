@@ -197,7 +197,6 @@ const VERTEX_FORMATS: Feature = Feature {
                 .into()
         }),
     ],
-    ..Feature::NONE
 };
 
 const TRANSFORM: Feature = Feature {
