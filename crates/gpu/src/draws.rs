@@ -127,7 +127,7 @@ impl DrawData {
         }
     }
 
-    /// Would these inputs give the same matrices of instances, whatever they are seen by?
+    /// Do these inputs give instances the same matrices to the world? The camera does not count.
     fn places_like(&self, scene: &Arc<Scene>, inputs: &DrawInputs) -> bool {
         let of = |inputs: &DrawInputs| (inputs.attributes, inputs.places_instances);
         Arc::ptr_eq(&self.scene, scene)

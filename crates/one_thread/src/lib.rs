@@ -10,7 +10,7 @@ pub fn current_num_threads() -> usize {
 pub mod prelude {
     use std::{iter, slice};
 
-    /// Whatever can be iterated over.
+    /// Collections and iterators.
     pub trait IntoParallelIterator: IntoIterator + Sized {
         /// All items.
         fn into_par_iter(self) -> Self::IntoIter {
@@ -63,7 +63,7 @@ pub mod prelude {
 
     /// What rayon's iterators have beside the methods of plain ones.
     pub trait ParallelIterator: Iterator + Sized {
-        /// The items as they are: one thread shares them with nobody.
+        /// The same items: with one thread there is nothing to divide.
         fn with_min_len(self, _: usize) -> Self {
             self
         }

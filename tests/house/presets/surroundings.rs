@@ -105,7 +105,7 @@ fn a_shared_preset_brings_its_picture_and_a_look_takes_it_to_another_scene() {
 }
 
 /// Light that comes to the middle of a hall from a direction: three windows in one wall, a floor of
-/// boards that shines below them, plaster, and a lamp at the other end.
+/// boards that shines below them, plaster, and a light at the other end.
 fn hall(d: DVec3) -> DVec3 {
     let half = DVec3::new(2.0, 1.2, 3.2);
     let reach = half / d.abs().max(DVec3::splat(1e-9));

@@ -3,7 +3,7 @@
 
 use std::{
     borrow::Cow,
-    path::{Path, PathBuf},
+    path::{Component, Path, PathBuf},
     sync::{Arc, Mutex, PoisonError},
 };
 
@@ -110,10 +110,7 @@ fn bytes_of(named: &str, preset_path: Option<&Path>) -> Result<Cow<'static, [u8]
         _ => Path::new("."),
     };
     // A folder below that of the preset is inside, too.
-    let folder = folder
-        .ancestors()
-        .nth(path.components().count() - 1)
-        .unwrap_or(folder);
+    let folder = folder.ancestors().nth(folders_of(path)).unwrap_or(folder);
     let leads_out = || -> std::io::Result<bool> {
         let folder = if folder.as_os_str().is_empty() {
             Path::new(".")
@@ -132,6 +129,12 @@ fn bytes_of(named: &str, preset_path: Option<&Path>) -> Result<Cow<'static, [u8]
         ));
     }
     disk::read(&place).map(Cow::Owned).map_err(absent)
+}
+
+/// Folders of a relative path: 0 for `a.hdr` and `./a.hdr`.
+fn folders_of(path: &Path) -> usize {
+    let names = path.components().filter(|part| *part != Component::CurDir);
+    names.count().saturating_sub(1)
 }
 
 fn is_picture(path: &Path) -> bool {
