@@ -206,7 +206,7 @@ fn light_of([red, green, blue, exponent]: [u8; 4]) -> DVec3 {
     DVec3::new(red.into(), green.into(), blue.into()) * scale
 }
 
-/// A file with these pixels, row by row from the top, each as [`light_of`] has it.
+/// A file with these pixels, row by row from the top, each linear RGB.
 ///
 /// Lines are run-length encoded where the format allows it.
 pub fn write(size: [usize; 2], light: &[DVec3]) -> Vec<u8> {
