@@ -12,8 +12,11 @@ fn every_widget_of_every_folder_and_dialog_has_a_name() {
         return;
     };
     for folder in ["Camera", "Clock", "Kernel", "Preset"] {
+        // Opened folders push the next one below the end of the panel.
+        lab.get_by_label(folder).scroll_to_me();
+        lab.run_steps(3);
         lab.get_by_label(folder).click();
-        lab.run_steps(2);
+        lab.run_steps(3);
     }
     lab.check_accessibility();
     for tab in ["Scene", "Presets"] {
