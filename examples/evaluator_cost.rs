@@ -48,6 +48,7 @@ fn surface(rng: &mut Rng) -> Surface {
         rank: rng.real(0.0, 1.0),
         lit: rng.real(0.0, 1.0),
         finish: Finish::default(),
+        passed: DVec3::ZERO,
         step_offset: 0.0,
     }
 }

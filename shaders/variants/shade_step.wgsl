@@ -1,6 +1,6 @@
 // Shade steps: what is added to the surface at a sample before surface effects. `at`: vertices of the triangle within its draw.
 // Chosen by the scene and the stack: textures where materials are more than a base color, alpha where some of them blend, finish where an effect reads
-// how they reflect, with finish_maps where textures tell it, normal_map where they turn normals that an effect reads, shadow_map where an effect reads how
+// how they reflect, with finish_maps where textures tell it, transmission where light passes through some of them, normal_map where they turn normals that an effect reads, shadow_map where an effect reads how
 // much light arrives.
 //@ steps fn shade_step(surface: Surface, t: Triangle, at: vec3u, position: SamplePosition) -> Surface
 // Of the step textures, for those behind it.
@@ -166,6 +166,26 @@ fn shade_step_finish_maps(surface: Surface, t: Triangle, at: vec3u, position: Sa
             s.finish.occlusion = 1.0 + maps.occlusion_strength * (texel.r - 1.0);
         }
     }
+    return s;
+}
+
+//@ step transmission
+// What passes through the material instead of being scattered by its color. Comes after textures, alpha, finish and finish_maps.
+//@ use lib/triangle
+//@ use lib/surface
+//@ use lib/shade
+//@ use lib/glass
+//@ use lib/material_atlas
+//@ use lib/transmission
+
+fn shade_step_transmission(surface: Surface, t: Triangle, at: vec3u, position: SamplePosition) -> Surface {
+    var s = surface;
+    if (draws[t.draw].flags & DRAW_GLASS) == 0u { return s; }
+    let transmission = transmission_record(atlas_record(t.draw));
+    let through = 1.0 - s.finish.metallic;
+    let base = s.color.rgb - s.glow;
+    s.passed = base * vec3f(transmission.red, transmission.green, transmission.blue) * through;
+    s.color = vec4f(base * (1.0 - transmission.amount * through) + s.glow, select(s.color.a, 1.0, transmission.is_opaque != 0u));
     return s;
 }
 

@@ -59,6 +59,7 @@ fn keys() -> Vec<KernelKey> {
         one(&rasterlab::effects::shadow::EFFECT),
         buffered,
         instanced,
+        one(&rasterlab::effects::glass::EFFECT),
         one(&rasterlab::effects::overdraw::EFFECT),
         one(&rasterlab::effects::xray::EFFECT),
         one(&rasterlab::effects::bloom::EFFECT),

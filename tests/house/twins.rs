@@ -148,6 +148,7 @@ fn surface(rng: &mut Rng) -> Surface {
             roughness: rng.real(0.0, 1.0),
             occlusion: rng.real(0.0, 1.0),
         },
+        passed: DVec3::ZERO,
         step_offset: 0.0,
     }
 }

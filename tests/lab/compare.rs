@@ -119,6 +119,47 @@ fn black(image: &image::RgbaImage) -> f64 {
 }
 
 #[test]
+fn numbers_that_differ_are_keyed_from_a_to_b_in_one_undo_step() {
+    let Some(mut lab) = lab("facet-sweep") else {
+        return;
+    };
+    press(&mut lab, Modifiers::SHIFT, Key::Backslash);
+    click(&mut lab, Role::Button, "Keep B");
+    let before = lab.state().undo_steps();
+    click(&mut lab, Role::Button, "Key A to B");
+    assert!(
+        lab.state().log_text().contains("no effect in common"),
+        "{}",
+        lab.state().log_text()
+    );
+    let rail = slider(&lab, "facet.front").rect();
+    drag(
+        &mut lab,
+        rail.center(),
+        rail.right_center() - vec2(10.0, 0.0),
+    );
+    click(&mut lab, Role::Button, "Key A to B");
+    let preset = &lab.state().preset_file().preset;
+    let track = preset.animation.get("facet", "front").expect("it is keyed");
+    let [first, last] = [track.keys().first(), track.keys().last()].map(Option::unwrap);
+    assert_eq!([first.time_s, last.time_s], preset.clock.range_s);
+    assert!(
+        (first.value[0] - 0.48).abs() < 1e-6 && last.value[0] > 0.6,
+        "{track:?}"
+    );
+    assert_eq!(lab.state().undo_steps(), before + 2);
+    undo(&mut lab);
+    assert!(
+        lab.state()
+            .preset_file()
+            .preset
+            .animation
+            .get("facet", "front")
+            .is_none()
+    );
+}
+
+#[test]
 fn both_sides_stand_beside_each_other_and_their_difference_shows_what_changed() {
     draw_pictures();
     let Some(mut lab) = lab("facet-sweep") else {

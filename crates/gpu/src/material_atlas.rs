@@ -2,7 +2,7 @@
 //! costs no storage buffer.
 //!
 //! The texture is used as a row of words (`WordTexture::of_words`): sRGB decoded, a word per byte; a record per primitive; how primitives reflect, where an
-//! effect reads it, with the maps that effects read; where the vertices of masked ones lie in their
+//! effect reads it, behind what passes through them and before the maps that effects read; where the vertices of masked ones lie in their
 //! images; then where the levels of each image that is looked up begin, and the levels of all these
 //! images, a texel a word. Mirrors of `shaders/lib/material_atlas.wgsl`.
 
@@ -12,12 +12,12 @@ use super::{
     attributes::format_word,
     device::Gpu,
     error::RenderError,
-    records::{FinishRecord, LookupRecord, MapsRecord, MaterialRecord},
+    records::{FinishRecord, LookupRecord, MapsRecord, MaterialRecord, TransmissionRecord},
     resource_id::TextureId,
     textures::WordTexture,
 };
 use crate::{
-    effects::hooks::Finish,
+    effects::hooks::{Finish, Transmission},
     math::linear_light,
     scene::{Primitive, Scene, material::TextureSlot, texture::texcoord},
     shader::key::SurfaceInputs,
@@ -38,6 +38,8 @@ const FINISH_SHIFT: u32 = 4;
 const MAX_FINISH_WORD: usize = 1 << (32 - FINISH_SHIFT);
 /// Words of a primitive's finish.
 const FINISH_WORDS: usize = size_of::<FinishRecord>() / 4;
+/// Words of what passes through a primitive, before its finish.
+const TRANSMISSION_WORDS: usize = size_of::<TransmissionRecord>() / 4;
 
 /// The textures behind a finish, where an effect reads any: in order.
 const MAP_SLOTS: [TextureSlot; 3] = [
@@ -55,6 +57,8 @@ const MAPS_WORDS: usize =
 pub struct AtlasContents {
     /// How materials reflect.
     pub has_finish: bool,
+    /// What passes through them.
+    pub has_transmission: bool,
     /// By their textures, too.
     pub has_finish_maps: bool,
     /// How textures turn normals.
@@ -66,6 +70,7 @@ impl AtlasContents {
     pub fn of(inputs: &SurfaceInputs) -> Option<Self> {
         (inputs.has_material_atlas || inputs.has_finish).then_some(Self {
             has_finish: inputs.has_finish,
+            has_transmission: inputs.has_transmission,
             has_finish_maps: inputs.has_finish_maps,
             has_normal_maps: inputs.has_normal_maps,
         })
@@ -74,6 +79,7 @@ impl AtlasContents {
     /// Is all that `other` tells here, too?
     pub fn includes(self, other: Self) -> bool {
         (self.has_finish || !other.has_finish)
+            && (self.has_transmission || !other.has_transmission)
             && (self.has_finish_maps || !other.has_finish_maps)
             && (self.has_normal_maps || !other.has_normal_maps)
     }
@@ -89,13 +95,23 @@ impl AtlasContents {
 
     /// Words of a primitive behind its record.
     fn words(self) -> usize {
-        match (
+        let reflected = match (
             self.has_finish,
             self.has_finish_maps || self.has_normal_maps,
         ) {
             (false, false) => 0,
             (true, false) => FINISH_WORDS,
             (_, true) => FINISH_WORDS + MAPS_WORDS,
+        };
+        self.transmission_words() + reflected
+    }
+
+    /// Words of a primitive before its finish.
+    fn transmission_words(self) -> usize {
+        if self.has_transmission {
+            TRANSMISSION_WORDS
+        } else {
+            0
         }
     }
 }
@@ -133,7 +149,10 @@ fn words(scene: &Scene, contents: AtlasContents) -> Vec<u32> {
     let mut first = first_finish + finish_words * records;
     let finish_at = |index: usize| match finish_words {
         0 => 0,
-        words => ((first_finish + words * index) as u32) << FINISH_SHIFT,
+        words => {
+            let finish = first_finish + words * index + contents.transmission_words();
+            (finish as u32) << FINISH_SHIFT
+        }
     };
     let corners = corners(scene, &mut first);
     let lists = Lists::of(scene, contents, first as u32);
@@ -194,8 +213,11 @@ fn words(scene: &Scene, contents: AtlasContents) -> Vec<u32> {
     words.resize(first_finish, 0);
     if finish_words > 0 {
         for primitive in &scene.primitives {
+            if contents.has_transmission {
+                words.extend_from_slice(bytemuck::cast_slice(&[transmission(primitive, scene)]));
+            }
             words.extend_from_slice(bytemuck::cast_slice(&[finish(primitive, scene)]));
-            if finish_words > FINISH_WORDS {
+            if contents.has_finish_maps || contents.has_normal_maps {
                 words.extend_from_slice(bytemuck::cast_slice(&[maps(primitive, scene, contents)]));
                 let lookups = MAP_SLOTS.map(|slot| lookup(primitive, slot));
                 words.extend_from_slice(bytemuck::cast_slice(&lookups));
@@ -229,6 +251,21 @@ fn finish(primitive: &Primitive, scene: &Scene) -> FinishRecord {
         metallic: finish.metallic as f32,
         roughness: finish.roughness as f32,
     }
+}
+
+/// What passes through a primitive.
+fn transmission(primitive: &Primitive, scene: &Scene) -> TransmissionRecord {
+    let known = Transmission::of(&scene.materials[primitive.material]);
+    known.map_or(TransmissionRecord::default(), |transmission| {
+        let [red, green, blue] = transmission.attenuated.as_vec3().to_array();
+        TransmissionRecord {
+            red,
+            green,
+            blue,
+            amount: transmission.amount as f32,
+            is_opaque: transmission.is_opaque.into(),
+        }
+    })
 }
 
 /// Which maps of a primitive are looked up, bit k for the slot k of [`MAP_SLOTS`], and by which

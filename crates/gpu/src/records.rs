@@ -403,6 +403,17 @@ gpu_record! {
 }
 
 gpu_record! {
+    /// What passes through one primitive. Each member is explained in `shaders/lib/transmission.wgsl`.
+    pub struct TransmissionRecord = "TransmissionRecord" {
+        pub red: f32,
+        pub green: f32,
+        pub blue: f32,
+        pub amount: f32,
+        pub is_opaque: u32,
+    }
+}
+
+gpu_record! {
     /// The textures of one primitive that are no colors. Each member is explained in
     /// `shaders/lib/map_atlas.wgsl`.
     pub struct MapsRecord = "Maps" {
@@ -492,6 +503,7 @@ pub const RECORDS: &[RecordLayout] = &[
     LookupRecord::LAYOUT,
     MaterialRecord::LAYOUT,
     FinishRecord::LAYOUT,
+    TransmissionRecord::LAYOUT,
     MapsRecord::LAYOUT,
     HardwareMaterial::LAYOUT,
     DispatchSize::LAYOUT,

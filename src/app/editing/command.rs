@@ -1,13 +1,15 @@
 //! Commands that change keyframes and the time that is shown.
 
 use super::key_id::KeyId;
-use crate::preset::animation::Easing;
+use crate::preset::{Preset, animation::Easing};
 
 /// A change of the keyframes of an animated parameter.
 pub enum KeyframeEdit {
     Move(KeyId, f64),
     Ease(KeyId, Easing),
     Remove(KeyId),
+    /// The preset begins its clock as this one and ends it as it is.
+    From(Box<Preset>),
 }
 
 /// A change of the time that is shown. Seconds.

@@ -183,6 +183,10 @@ impl Session {
                 Ok(Some(key))
             }
             KeyframeEdit::Remove(key) => self.remove_key(key).map(|()| None),
+            KeyframeEdit::From(other) => match self.preset_mut().key_from(&other) {
+                0 => Err("A and B have no effect in common with numbers or colors that differ, so nothing is keyed".into()),
+                _ => Ok(None),
+            },
         }
     }
 

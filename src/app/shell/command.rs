@@ -225,7 +225,9 @@ impl Command {
             | Self::SetValues(_)
             | Self::SetText(..)
             | Self::PinOptions(..)
-            | Self::Keyframe(KeyframeEdit::Ease(..) | KeyframeEdit::Remove(_)) => true,
+            | Self::Keyframe(
+                KeyframeEdit::Ease(..) | KeyframeEdit::Remove(_) | KeyframeEdit::From(_),
+            ) => true,
             _ => false,
         }
     }

@@ -307,6 +307,33 @@ fn materials_reflect_as_the_file_says() {
 }
 
 #[test]
+fn materials_let_light_through_as_the_file_says() {
+    let of = |extensions: Value| {
+        let material = Model::textured()
+            .with("/materials/0/extensions", extensions)
+            .material();
+        (material.transmission, material.attenuation)
+    };
+    assert_eq!(of(json!({})), (0.0, [1.0; 3]));
+    let thin = json!({ "KHR_materials_transmission": { "transmissionFactor": 0.75 } });
+    assert_eq!(of(thin), (0.75, [1.0; 3]));
+    // Twice as thick as the distance in which the color is left: its square.
+    let thick = json!({
+        "KHR_materials_transmission": { "transmissionFactor": 1 },
+        "KHR_materials_volume": { "thicknessFactor": 3, "attenuationDistance": 1.5, "attenuationColor": [0.5, 1, 0] },
+    });
+    assert_eq!(of(thick), (1.0, [0.25, 1.0, 0.0]));
+    let endless =
+        json!({ "KHR_materials_volume": { "thicknessFactor": 3, "attenuationColor": [0, 0, 0] } });
+    assert_eq!(of(endless), (0.0, [1.0; 3]), "no distance absorbs nothing");
+    let refused = Model::textured().with(
+        "/materials/0/extensions",
+        json!({ "KHR_materials_volume": { "thicknessFactor": 1, "attenuationDistance": 0 } }),
+    );
+    assert_eq!(refused.material().attenuation, [1.0; 3]);
+}
+
+#[test]
 fn alpha_modes_say_what_is_cut_out() {
     let with_mode = |mode: &str| Model::textured().with("/materials/0/alphaMode", json!(mode));
     assert_eq!(

@@ -75,6 +75,11 @@ pub fn scene_hash(scene: &Scene) -> Fnv {
         if material.is_blended {
             hash = hash.words(&[1]);
         }
+        if material.transmits() {
+            hash = hash
+                .words(&[material.transmission.to_bits()])
+                .words(&material.attenuation.map(f32::to_bits));
+        }
         let [finish, usual] = [material, &Material::default()]
             .map(|material| (material.metallic, material.roughness, material.specular));
         if finish != usual {

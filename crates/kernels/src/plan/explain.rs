@@ -216,7 +216,14 @@ impl Plan {
             .map(|effect| effect.name.as_str())
             .collect();
         let why = "metallic, roughness and reflectance of every primitive stand in the atlas";
-        (!readers.is_empty()).then(|| note("finish", format!("{}: {why}", readers.join(", "))))
+        let transmission = "light passes through materials";
+        let readers = match (readers.is_empty(), self.key.surface.has_transmission) {
+            (true, false) => return None,
+            (true, true) => transmission.to_owned(),
+            (false, false) => readers.join(", "),
+            (false, true) => format!("{} and {transmission}", readers.join(", ")),
+        };
+        Some(note("finish", format!("{readers}: {why}")))
     }
 
     fn maps_reason(&self) -> Option<Note> {

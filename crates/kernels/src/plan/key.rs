@@ -32,7 +32,9 @@ pub(super) fn key_of(
     let loops = loops::of_a_sample(has_mask, layers, &options);
     let paired_sums = adds_pairs(&options, layers, caps);
     let clears_in_passes = tuning.clears_in_passes && options.culling == Culling::None;
-    let has_finish_maps = needs.finish_maps > 0 && stack.reads_finish();
+    let has_transmission = layers == Some(Layers::Glass) && needs.transmitting > 0;
+    let has_finish = stack.reads_finish() || has_transmission;
+    let has_finish_maps = needs.finish_maps > 0 && has_finish;
     let has_normal_maps = needs.normal_maps > 0 && stack.reads_normals();
     KernelKey {
         options,
@@ -99,7 +101,8 @@ pub(super) fn key_of(
         surface: SurfaceInputs {
             has_material_atlas: needs.material_count > 0 || has_finish_maps || has_normal_maps,
             has_alpha: layers == Some(Layers::Glass) && needs.has_blended_textures,
-            has_finish: stack.reads_finish(),
+            has_finish,
+            has_transmission,
             has_finish_maps,
             has_normal_maps,
             has_planes: stack.reads_planes() || !needs.normals_agree,

@@ -220,6 +220,10 @@ impl Chain {
                 "fn glue_surface(surface: Surface, draw: u32) -> Surface {\n    var s = surface;\n",
                 "    return s;\n}\n",
             ),
+            Self::Glass if key.surface.has_transmission => (
+                "fn glue_glass(surface: Surface, draw: u32) -> GlassLayer {\n    var layer = transmission_layer(surface);\n",
+                "    return layer;\n}\n",
+            ),
             Self::Glass => (
                 "fn glue_glass(surface: Surface, draw: u32) -> GlassLayer {\n    var layer = glass_blended(surface);\n",
                 "    return layer;\n}\n",
@@ -373,12 +377,17 @@ const fn uniform(key: &KernelKey) -> &'static str {
     }
 }
 
-/// The text of `lib/surface` with one more member of the surface: how its material reflects, which
-/// only kernels have whose effects read it.
-pub fn with_finish(surface: &str) -> Cow<'_, str> {
+/// The text of `lib/surface` with more members of the surface: how its material reflects, which only
+/// kernels have whose effects read it, and what passes through it, where light does.
+pub fn with_finish(surface: &str, has_transmission: bool) -> Cow<'_, str> {
+    let passed = if has_transmission {
+        "    passed: vec3f,\n"
+    } else {
+        ""
+    };
     match surface.rfind('}') {
         Some(end) => Cow::Owned(format!(
-            "{}    finish: Finish,\n{}",
+            "{}    finish: Finish,\n{passed}{}",
             &surface[..end],
             &surface[end..]
         )),

@@ -188,8 +188,10 @@ pub struct SurfaceInputs {
     pub has_material_atlas: bool,
     /// The alpha of a texture tells how much some glass covers.
     pub has_alpha: bool,
-    /// How materials reflect: an effect reads it.
+    /// How materials reflect: an effect reads it, or light passes through some.
     pub has_finish: bool,
+    /// Light passes through some material.
+    pub has_transmission: bool,
     /// Textures tell how some material reflects, and an effect reads it.
     pub has_finish_maps: bool,
     /// Textures turn the normals of some material, and an effect reads normals.
@@ -338,6 +340,7 @@ impl KernelKey {
                 has_material_atlas: true,
                 has_alpha: layers == Some(Layers::Glass),
                 has_finish: true,
+                has_transmission: layers == Some(Layers::Glass),
                 has_finish_maps: true,
                 has_normal_maps: true,
                 has_planes: true,

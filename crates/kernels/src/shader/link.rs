@@ -302,7 +302,7 @@ impl<'a> Linker<'a> {
         }
         let has_finish = file == "lib/surface" && self.key.surface.has_finish;
         let text = if has_finish {
-            glue::with_finish(&section.text)
+            glue::with_finish(&section.text, self.key.surface.has_transmission)
         } else {
             Cow::Borrowed(&*section.text)
         };
@@ -471,6 +471,12 @@ impl<'a> Linker<'a> {
             self.has_effects = true;
             self.generated
                 .insert(format!("glue_{name}"), format!("glue/{name}"));
+            if chain == Chain::Glass && key.surface.has_transmission {
+                let taken = self.take_head("lib/transmission", "glue/glass");
+                if taken.is_err() {
+                    return Some(taken);
+                }
+            }
             for effect in chain.effects(&self.key.effects.list) {
                 let file = format!("effects/{}", effect.file_stem());
                 let mut taken = self.take_head(&file, &format!("glue/{name}"));

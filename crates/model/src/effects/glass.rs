@@ -3,7 +3,8 @@
 //! A layer passes a fraction of each channel of what lies behind it and adds light of its own, so
 //! layers are affine maps of a color. They compose from back to front, in linear light, in the order
 //! of depth. A material that blends is a layer too: it passes 1 − alpha and adds alpha times its
-//! color.
+//! color. One that transmits light also passes, where it covers, what it does not reflect
+//! (Schlick 1994), tinted by its base color (glTF's thin surfaces, without refraction).
 
 use glam::DVec3;
 
@@ -64,11 +65,14 @@ impl GlassLayer {
         added: DVec3::ZERO,
     };
 
-    /// Of a shaded surface whose material blends.
+    /// Of a shaded surface whose material blends or transmits light.
     pub fn blended(s: &Surface) -> Self {
         let alpha = s.color.w.clamp(0.0, 1.0);
+        let slant = 1.0 - s.normal.dot(s.view).abs().min(1.0);
+        let [straight, grazing] = [s.finish.specular.truncate(), DVec3::splat(s.finish.specular.w)];
+        let reflected = straight.lerp(grazing, slant.powi(5));
         Self {
-            passed: DVec3::splat(1.0 - alpha),
+            passed: DVec3::splat(1.0 - alpha) + clamped(s.passed * (1.0 - reflected)) * alpha,
             added: clamped(s.color.truncate()) * alpha,
         }
     }
@@ -142,7 +146,9 @@ impl GlassDraws {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use glam::DVec4;
+
+    use super::{super::hooks::Transmission, *};
 
     #[test]
     fn a_layer_never_brightens_beyond_white_and_blending_is_a_weighted_mean() {
@@ -164,5 +170,25 @@ mod tests {
         assert!((seen - DVec3::new(0.35, 0.525, 0.55)).length() < 1e-12, "{seen}");
         s.color.w = 0.0;
         assert_eq!(GlassLayer::blended(&s).over(DVec3::X), DVec3::X);
+    }
+
+    #[test]
+    fn clear_glass_tints_what_passes_and_mirrors_the_rest_more_where_it_glances() {
+        let clear = Transmission {
+            amount: 0.5,
+            attenuated: DVec3::new(0.5, 0.25, 0.0),
+            is_opaque: true,
+        };
+        let mut s = Surface::example(DVec3::new(0.2, 0.8, 0.4), 0);
+        (s.finish.metallic, s.finish.specular) = (0.0, DVec4::new(0.1, 0.1, 0.1, 1.0));
+        s.normal = s.view;
+        let layer = GlassLayer::blended(&clear.through(s));
+        assert!((layer.passed - 0.9 * DVec3::new(0.1, 0.2, 0.0)).length() < 1e-12, "{layer:?}");
+        assert!((layer.added - DVec3::new(0.1, 0.4, 0.2)).length() < 1e-12, "{layer:?}");
+        s.normal = s.view.any_orthonormal_vector();
+        assert!(GlassLayer::blended(&clear.through(s)).passed.length() < 1e-12);
+        s.finish.metallic = 1.0;
+        s.normal = s.view;
+        assert_eq!(GlassLayer::blended(&clear.through(s)).passed, DVec3::ZERO);
     }
 }

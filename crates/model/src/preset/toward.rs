@@ -3,7 +3,10 @@
 
 use glam::DVec3;
 
-use super::{Preset, animation::steps};
+use super::{
+    Preset,
+    animation::{Keyframe, Track, default_easing, steps},
+};
 use crate::{
     effects::{EnabledEffect, Stack},
     scene::{
@@ -151,6 +154,41 @@ impl Preset {
     }
 }
 
+impl Preset {
+    /// Sets keyframes with which this preset begins its clock as `other` and ends it as it is: of
+    /// numbers and colors that differ, of the effects that both have. Tracks of these are replaced;
+    /// everything else stays. Returns how many parameters move.
+    pub fn key_from(&mut self, other: &Self) -> usize {
+        let [from_s, to_s] = self.clock.range_s;
+        let start = other.animation.evaluate(&other.stack, from_s);
+        let end = self.animation.evaluate(&self.stack, to_s);
+        let mut moving = 0;
+        for enabled in &end.0 {
+            let effect = &enabled.effect;
+            let Some(before) = start.get(&effect.name).filter(|e| e.effect == *effect) else {
+                continue;
+            };
+            for field in effect.fields.iter().filter(|field| !steps(field)) {
+                let values = [field.get(&before.words), field.get(&enabled.words)];
+                if values[0] == values[1] {
+                    continue;
+                }
+                let keys = [from_s, to_s].into_iter().zip(values);
+                let keys = keys.map(|(time_s, value)| Keyframe {
+                    time_s,
+                    value,
+                    easing: default_easing(field),
+                });
+                if let Ok(track) = Track::new(effect, field, keys.collect()) {
+                    self.animation.put(track);
+                    moving += 1;
+                }
+            }
+        }
+        moving
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -219,5 +257,28 @@ mod tests {
             assert_eq!((has("lambert"), has("posterize")), (k < 4, k >= 4));
         }
         assert_eq!(a.toward(&b, 0.0, &scene), a);
+    }
+
+    #[test]
+    fn keys_lead_from_one_preset_to_the_other_in_its_clock() {
+        let [mut a, mut b] = [Preset::default(), Preset::default()];
+        b.clock.range_s = [1.0, 3.0];
+        let amount = facet::EFFECT.field("amount").expect("a parameter");
+        for (preset, value) in [(&mut a, 0.25), (&mut b, 0.75)] {
+            preset.stack.enable(&facet::EFFECT);
+            preset.stack.enable(&lambert::EFFECT);
+            let enabled = preset.stack.get_mut("facet").expect("it is enabled");
+            amount.set(&mut enabled.words, &[value]).expect("in range");
+        }
+        assert_eq!(b.key_from(&a), 1);
+        let at = |time_s| {
+            let stack = b.animation.evaluate(&b.stack, time_s);
+            amount.get(&stack.get("facet").expect("it is enabled").words)[0]
+        };
+        assert_eq!([at(0.0), at(1.0), at(3.0)], [0.25, 0.25, 0.75]);
+        assert!(at(2.0) > 0.25 && at(2.0) < 0.75);
+        // From itself nothing moves that is not keyed already.
+        let mut same = a.clone();
+        assert_eq!((same.key_from(&a), same), (0, a));
     }
 }

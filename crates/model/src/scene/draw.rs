@@ -276,7 +276,7 @@ pub fn scoped_draws(scene: &Scene, view: &View, scopes: &[Scope]) -> Result<Vec<
                 != deform.as_ref().is_some_and(Deform::mirrors),
             is_uneven: is_uneven(&world_from_object),
             is_faceted: primitive.is_faceted,
-            is_glass: scene.materials[primitive.material].is_blended,
+            is_glass: scene.materials[primitive.material].is_glass(),
             deform,
             first_deformable: 0,
             scopes: masks.get(index).copied().unwrap_or_default(),

@@ -23,6 +23,11 @@ pub struct Material {
     /// What it reflects where it is no metal: linear RGB of light that meets it straight on, and
     /// the part of light that grazes it. Each 0 to 1.
     pub specular: [f32; 4],
+    /// Fraction of the light that its color, where it is no metal, does not scatter but lets through,
+    /// 0 to 1: a thin wall that does not refract.
+    pub transmission: f32,
+    /// What of that light is left behind its thickness: linear RGB, each 0 to 1.
+    pub attenuation: [f32; 3],
     /// Emitted light, linear RGB, from 0 up.
     pub emission: [f32; 3],
     /// Multiplies the emission.
@@ -117,6 +122,16 @@ impl Material {
         !self.unlit && (self.finish_texture.is_some() || self.occlusion_texture.is_some())
     }
 
+    /// Does light pass through its color?
+    pub fn transmits(&self) -> bool {
+        self.transmission > 0.0 && !self.unlit
+    }
+
+    /// Is seen through it what lies behind?
+    pub fn is_glass(&self) -> bool {
+        self.is_blended || self.transmits()
+    }
+
     /// Does a texture turn its normals?
     pub fn has_normal_map(&self) -> bool {
         self.normal_texture.is_some()
@@ -150,6 +165,8 @@ impl Default for Material {
             roughness: 0.5,
             // Glass, plastic and most else that is no metal: a refractive index of 1.5.
             specular: [0.04, 0.04, 0.04, 1.0],
+            transmission: 0.0,
+            attenuation: [1.0; 3],
             emission: [0.0; 3],
             emission_texture: None,
             finish_texture: None,

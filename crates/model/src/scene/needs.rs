@@ -52,6 +52,8 @@ pub struct Needs {
     pub masked: bool,
     /// Draws through which others are seen.
     pub glass_draws: usize,
+    /// Materials that let light through.
+    pub transmitting: usize,
     /// Some material that blends has a texture.
     pub has_blended_textures: bool,
     /// Lights that come with the scene.
@@ -150,6 +152,7 @@ impl Needs {
             normal_maps: count(Material::has_normal_map),
             masked: drawn().any(|p| scene.materials[p.material].alpha_threshold().is_some()),
             glass_draws: draws.iter().filter(|draw| draw.is_glass).count(),
+            transmitting: count(Material::transmits),
             has_blended_textures: drawn().any(|p| {
                 let material = &scene.materials[p.material];
                 material.is_blended && material.base_texture.is_some()

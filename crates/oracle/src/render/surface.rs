@@ -29,7 +29,7 @@ use super::{
 use crate::{
     effects::{
         Surface,
-        hooks::{Finish, ROUNDING, Shape},
+        hooks::{Finish, ROUNDING, Shape, Transmission},
     },
     frame::{Geometry, SnappedVertex},
     math::srgb,
@@ -172,6 +172,8 @@ pub struct SurfaceTriangle<'a> {
     center: DVec3,
     colors: [DVec4; 3],
     finish: Finish,
+    /// What passes through its material, where it is drawn as glass.
+    transmission: Option<Transmission>,
     /// None for a material that is only a base color.
     material: Option<TriangleMaterial<'a>>,
     /// In object space; none if a corner has no finite normal.
@@ -263,6 +265,7 @@ impl<'a> SurfaceTriangle<'a> {
             positions: object.map(|position| draw.world_from_object.transform_point3(position)),
             colors: vertices.map(color),
             finish: Finish::from(material),
+            transmission: Transmission::of(material).filter(|_| draw.is_glass),
             material: TriangleMaterial::of(scene, primitive, vertices),
             normals: n0
                 .zip(n1)
@@ -409,7 +412,7 @@ impl<'a> SurfaceTriangle<'a> {
             material.finish(self.finish, at, perturbation.texture)
         });
         let across_m = view.ndc_axes[1].length() * 2.0 / f64::from(view.height);
-        Surface {
+        let surface = Surface {
             color: color.extend(base.w * alpha),
             glow,
             position,
@@ -435,8 +438,11 @@ impl<'a> SurfaceTriangle<'a> {
             rank: 0.0,
             lit: 0.0,
             finish,
+            passed: DVec3::ZERO,
             step_offset: 0.0,
-        }
+        };
+        self.transmission
+            .map_or(surface, |transmission| transmission.through(surface))
     }
 
     /// What is interpolated at the center of a pixel, and from what.

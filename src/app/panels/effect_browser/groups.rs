@@ -133,6 +133,7 @@ fn surface(index: f64, tone: f64) -> Surface {
         rank: 0.5,
         lit: 0.5,
         finish: Finish::default(),
+        passed: DVec3::ZERO,
         step_offset: 0.0,
     }
 }

@@ -5,11 +5,15 @@ use eframe::egui::{self, Color32, Rect, RichText, Ui, pos2, vec2};
 use super::compare::{Compare, Mode};
 use crate::{
     app::{
+        editing::command::KeyframeEdit,
         picture::{
             measured::{error_line, time_line},
             screen::Screen,
         },
-        shell::state::State,
+        shell::{
+            command::{Command, Commands},
+            state::State,
+        },
         widgets::{
             icons::{Icon, icon_button},
             theme,
@@ -25,7 +29,7 @@ const PLATE: egui::Vec2 = vec2(312.0, 54.0);
 pub fn plates_ui(
     ui: &mut Ui,
     compare: &mut Compare,
-    state: &State,
+    (state, commands): (&State, &Commands),
     rect: Rect,
     mode: Mode,
 ) -> Rect {
@@ -37,7 +41,7 @@ pub fn plates_ui(
         plate_a_ui(
             &mut ui.new_child(builder(corner.x).id_salt("A")),
             compare,
-            state,
+            (state, commands),
         );
     }
     let mut left = rect.left();
@@ -55,7 +59,7 @@ pub fn plates_ui(
     )
 }
 
-fn plate_a_ui(ui: &mut Ui, compare: &mut Compare, state: &State) {
+fn plate_a_ui(ui: &mut Ui, compare: &mut Compare, (state, commands): (&State, &Commands)) {
     let (color, error, hint) = match compare.screen.as_ref().is_some_and(Screen::is_refused) {
         true => (
             theme::red(),
@@ -92,6 +96,17 @@ fn plate_a_ui(ui: &mut Ui, compare: &mut Compare, state: &State) {
                     },
                 };
                 (compare.kept, compare.toward) = (Some(Box::new(kept)), 0.0);
+            }
+            if let Some(kept) = &compare.kept
+                && ui
+                    .small_button("Key A to B")
+                    .on_hover_text(
+                        "Numbers and colors that differ get keyframes: A's at the begin of the clock, B's at its end",
+                    )
+                    .clicked()
+            {
+                let edit = KeyframeEdit::From(kept.clone());
+                commands.send(Command::Keyframe(edit));
             }
             if is_kept
                 && ui

@@ -9,14 +9,18 @@ use super::{
     layout::fitted,
     overlays::OverlayPainter,
 };
-use crate::app::{picture::screen::Screen, shell::state::State, widgets::theme};
+use crate::app::{
+    picture::screen::Screen,
+    shell::{command::Commands, state::State},
+    widgets::theme,
+};
 
 /// Shows A over B, the overlays of B, the divider, the bar and the plates. `rect` is the whole
 /// viewport and `at` where B is. Returns what they do not cover.
 pub fn compare_ui(
     ui: &mut Ui,
     compare: &mut Compare,
-    state: &State,
+    (state, commands): (&State, &Commands),
     (rect, at): (Rect, Rect),
     overlays: &mut OverlayPainter,
 ) -> Rect {
@@ -75,7 +79,7 @@ pub fn compare_ui(
         mode == Mode::Difference,
     );
     bar_ui(ui, compare, state, rect);
-    plates_ui(ui, compare, state, rect, mode)
+    plates_ui(ui, compare, (state, commands), rect, mode)
 }
 
 /// The divider of a wipe. It can be dragged, or moved with the arrow keys while it has the focus.

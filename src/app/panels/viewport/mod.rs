@@ -281,8 +281,13 @@ impl Viewport {
     /// Shows the picture in `rect`, and everything over it.
     pub fn show(&mut self, ui: &mut Ui, state: &State, commands: &Commands, rect: Rect) {
         let at = picture_ui(ui, state, self.compare.side_b(rect));
-        let free =
-            compare_ui::compare_ui(ui, &mut self.compare, state, (rect, at), &mut self.overlays);
+        let free = compare_ui::compare_ui(
+            ui,
+            &mut self.compare,
+            (state, commands),
+            (rect, at),
+            &mut self.overlays,
+        );
         chips::chips_ui(ui, state, commands, rect, self.compare.is_open());
         if !self.compare.hides_b() {
             guides::guides_ui(ui, state, rect, at);

@@ -16,6 +16,7 @@ pub(super) const FEATURES: &[Feature] = &[
     MATERIAL_ATLAS,
     FINISH,
     FINISH_MAPS,
+    TRANSMISSION,
     NORMAL_MAPS,
     MASK,
     PUNCTUAL_LIGHTS,
@@ -162,6 +163,22 @@ const FINISH_MAPS: Feature = Feature {
     }),
     variants: &[("shade_step", |key, _| {
         step_if(key.surface.has_finish_maps, "finish_maps")
+    })],
+    ..Feature::NONE
+};
+
+const TRANSMISSION: Feature = Feature {
+    label: |key| word_if(key.surface.has_transmission, "transmission"),
+    part: Some(Part {
+        name: "transmission",
+        is_used: |key| key.surface.has_transmission,
+        why_omitted: |needs| match needs.transmitting {
+            0 => "no material lets light through".into(),
+            _ => "nothing is seen through glass".into(),
+        },
+    }),
+    variants: &[("shade_step", |key, _| {
+        step_if(key.surface.has_transmission, "transmission")
     })],
     ..Feature::NONE
 };

@@ -19,7 +19,9 @@ pub use passes::{
 };
 pub use sample::{Sample, SampleEffect, SampleHook, SetupFunction, TriangleSetup};
 pub use slot::{Layers, Shape, Slot};
-pub use surface::{Finish, Lighting, LitEffect, Surface, SurfaceEffect, SurfaceInput};
+pub use surface::{
+    Finish, Lighting, LitEffect, Surface, SurfaceEffect, SurfaceInput, Transmission,
+};
 pub use vertex::{ErrorBound, ROUNDING, Vertex, VertexEffect, VertexHook};
 
 use std::sync::Arc;

@@ -56,6 +56,9 @@ pub struct Surface {
     pub lit: f64,
     /// How the material reflects.
     pub finish: Finish,
+    /// Where light passes through the material: the fraction of each channel that does straight on,
+    /// of what it does not reflect; else 0.
+    pub passed: DVec3,
     /// Added to each value that decides a step of color. It is 0 except for the judge, which finds
     /// with it the pixels so close to a step that either answer is right.
     pub step_offset: f64,
@@ -86,6 +89,7 @@ impl Surface {
             rank: 0.0,
             lit: 1.0,
             finish: Finish::default(),
+            passed: DVec3::ZERO,
             step_offset: 0.0,
         }
     }
@@ -125,6 +129,40 @@ impl From<&Material> for Finish {
 impl Default for Finish {
     fn default() -> Self {
         Self::from(&Material::default())
+    }
+}
+
+/// What passes through a material that transmits light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transmission {
+    /// Fraction of light that its color does not scatter but lets through.
+    pub amount: f64,
+    /// The same, behind its thickness: linear RGB.
+    pub attenuated: DVec3,
+    /// Its alpha covers nothing less than all.
+    pub is_opaque: bool,
+}
+
+impl Transmission {
+    /// That of a material; none where nothing passes.
+    pub fn of(material: &Material) -> Option<Self> {
+        let amount = f64::from(material.transmission);
+        material.transmits().then(|| Self {
+            amount,
+            attenuated: amount * DVec3::from(material.attenuation.map(f64::from)),
+            is_opaque: !material.is_blended,
+        })
+    }
+
+    /// The surface of glass: what passes is tinted by its color, which scatters the rest. Metals let
+    /// nothing through.
+    pub fn through(&self, mut s: Surface) -> Surface {
+        let through = 1.0 - s.finish.metallic;
+        let base = s.color.truncate() - s.glow;
+        let scattered = base * (1.0 - self.amount * through) + s.glow;
+        s.passed = base * self.attenuated * through;
+        s.color = scattered.extend(if self.is_opaque { 1.0 } else { s.color.w });
+        s
     }
 }
 

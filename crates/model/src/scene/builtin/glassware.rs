@@ -37,6 +37,18 @@ fn glass(color: [f32; 3], covers: f32) -> Material {
     }
 }
 
+/// Clear glass that lets a fraction of the light through each of its walls, which takes away all but a
+/// linear color, less strongly.
+fn transmitting(color: [f32; 3], fraction: f32) -> Material {
+    Material {
+        transmission: fraction,
+        attenuation: color.map(|channel| libm::sqrtf(libm::sqrtf(channel))),
+        double_sided: true,
+        roughness: 0.06,
+        ..Material::default()
+    }
+}
+
 fn lacquer(color: [f32; 3], roughness: f32) -> Material {
     let [red, green, blue] = color;
     Material {
@@ -212,9 +224,11 @@ fn flat(mesh: &mut MeshBuilder, corners: &[DVec3]) {
 }
 
 /// Two tubes of glass with thick walls that cross in the middle, so that neither is in front, and a
-/// rod that goes through one of them.
+/// rod that goes through one of them. Their walls cover what lies behind, or let a fraction of the light
+/// through.
+
 pub fn crossing(values: &Values) -> Result<Scene, BuiltinError> {
-    let tess = values.whole("tess");
+    let (tess, clear) = (values.whole("tess"), values.get("clear") as f32);
     let mut scene = Scene::default();
     let tilted = |turns: f64| {
         let (sin, cos) = libm::sincos(TAU * turns);
@@ -232,7 +246,11 @@ pub fn crossing(values: &Values) -> Result<Scene, BuiltinError> {
     ];
     for (name, color, turns) in tubes {
         let mesh = tube(tess, [0.34, 0.42], 1.25);
-        add(&mut scene, name, mesh, glass(color, 0.3), tilted(turns));
+        let material = match clear > 0.0 {
+            true => transmitting(color, clear),
+            false => glass(color, 0.3),
+        };
+        add(&mut scene, name, mesh, material, tilted(turns));
     }
     let rod = tube(tess, [0.05, 0.13], 1.4);
     add(

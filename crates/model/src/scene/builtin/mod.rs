@@ -270,7 +270,15 @@ pub const BUILTINS: &[Builtin] = &[
     Builtin {
         name: "crossing",
         about: "two thick tubes of glass that cross in the middle, with a rod in one of them",
-        params: &[whole("tess", "sides of a tube", 32.0, 3.0..=256.0)],
+        params: &[
+            whole("tess", "sides of a tube", 32.0, 3.0..=256.0),
+            real(
+                "clear",
+                "fraction of light that passes through clear walls; 0: colored walls cover a part of what lies behind",
+                0.0,
+                0.0..=1.0,
+            ),
+        ],
         build: glassware::crossing,
     },
     Builtin {

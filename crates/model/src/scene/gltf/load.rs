@@ -200,5 +200,10 @@ fn omissions(document: &Document) -> impl Iterator<Item = String> {
         .iter()
         .any(|material| material.has_more)
         .then(|| "textures of specular reflection and of glossiness are not drawn".into());
-    notes.chain(textures)
+    let more = document
+        .materials
+        .iter()
+        .any(|material| material.has_more_transmission)
+        .then(|| "textures of transmission and of thickness are not drawn".into());
+    notes.chain(textures).chain(more)
 }

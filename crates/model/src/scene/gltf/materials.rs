@@ -18,13 +18,15 @@ use crate::scene::{
 };
 
 /// Supported material extensions.
-pub const EXTENSIONS: [&str; 6] = [
+pub const EXTENSIONS: [&str; 8] = [
     "KHR_texture_transform",
     "KHR_materials_unlit",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
     "KHR_materials_specular",
     "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_transmission",
+    "KHR_materials_volume",
 ];
 
 /// Reads every material, and the images of those on `shown` nodes. A texture that cannot be read is
@@ -59,6 +61,8 @@ pub fn read(
             metallic: about.metallic,
             roughness: about.roughness,
             specular: about.specular,
+            transmission: about.transmission,
+            attenuation: about.attenuation,
             emission: about.emission,
             double_sided: about.double_sided,
             unlit: about.unlit,

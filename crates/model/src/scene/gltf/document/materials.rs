@@ -136,6 +136,8 @@ pub fn material(lists: &Lists, index: usize, value: &Value) -> Material {
         metallic: 1.0,
         roughness: 1.0,
         specular: [0.04, 0.04, 0.04, 1.0],
+        transmission: 0.0,
+        attenuation: [1.0; 3],
         emission: [0.0; 3],
         emission_texture: None,
         finish_texture: None,
@@ -148,6 +150,7 @@ pub fn material(lists: &Lists, index: usize, value: &Value) -> Material {
         double_sided: false,
         unlit: false,
         has_more: false,
+        has_more_transmission: false,
     };
     let Some(part) = lists.object("material", index, value) else {
         return material;
@@ -177,6 +180,7 @@ pub fn material(lists: &Lists, index: usize, value: &Value) -> Material {
         .field(part.flag("doubleSided"))
         .unwrap_or(false);
     if !material.unlit {
+        reader.transmission(part, &mut material);
         reader.emission(part, &mut material);
         reader.relief(part, &mut material);
     }
@@ -255,6 +259,38 @@ impl Reader<'_, '_> {
         let textures = ["specularTexture", "specularColorTexture"];
         material.has_more |=
             specular.is_some_and(|given| textures.iter().any(|key| given.value(key).is_some()));
+    }
+
+    /// What passes through: KHR_materials_transmission, and of KHR_materials_volume what is absorbed
+    /// behind the whole thickness, by the law of Beer and Lambert.
+    fn transmission(&self, part: Object, material: &mut Material) {
+        let extension = |name: &str| self.lenient.field(part.extension(name));
+        let number = |part: Object, key: &str| self.lenient.field(part.number(key));
+        let mut has_texture = false;
+        if let Some(given) = extension("KHR_materials_transmission") {
+            let factor = number(given, "transmissionFactor").unwrap_or(0.0);
+            material.transmission = factor.clamp(0.0, 1.0);
+            has_texture |= given.value("transmissionTexture").is_some();
+        }
+        if let Some(volume) = extension("KHR_materials_volume") {
+            let thickness = number(volume, "thicknessFactor").unwrap_or(0.0).max(0.0);
+            let distance = number(volume, "attenuationDistance").unwrap_or(f32::INFINITY);
+            let color = self.lenient.field(volume.vector::<3>("attenuationColor"));
+            let color = color
+                .unwrap_or([1.0; 3])
+                .map(|channel| channel.clamp(0.0, 1.0));
+            if distance > 0.0 {
+                let distances = f64::from(thickness) / f64::from(distance);
+                material.attenuation =
+                    color.map(|channel| libm::pow(channel.into(), distances) as f32);
+            } else {
+                let reason =
+                    format_args!("its attenuationDistance is {distance}; it must be above 0");
+                self.lenient.fault(reason);
+            }
+            has_texture |= volume.value("thicknessTexture").is_some();
+        }
+        material.has_more_transmission = has_texture && material.transmission > 0.0;
     }
 
     /// A factor from 0 to 1, by default 1.

@@ -182,6 +182,10 @@ pub struct Material {
     /// What it reflects where it is no metal: linear RGB straight on, and where light grazes it; 0
     /// to 1.
     pub specular: [f32; 4],
+    /// Fraction of the light that its color does not scatter but lets through, 0 to 1.
+    pub transmission: f32,
+    /// What of that is left behind its thickness: linear RGB, each 0 to 1.
+    pub attenuation: [f32; 3],
     /// Linear RGB, from 0 up.
     pub emission: [f32; 3],
     pub emission_texture: Option<TextureUse>,
@@ -196,8 +200,10 @@ pub struct Material {
     pub alpha_cutoff: f32,
     pub double_sided: bool,
     pub unlit: bool,
-    /// It has textures that are not drawn.
+    /// It has textures of specular reflection or glossiness that are not drawn.
     pub has_more: bool,
+    /// It has textures of transmission or thickness that are not drawn.
+    pub has_more_transmission: bool,
 }
 
 #[derive(Debug)]
