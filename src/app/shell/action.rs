@@ -319,7 +319,6 @@ impl Action {
                 | Self::AcceptGolden
                 | Self::RejectGolden
                 | Self::NextGolden
-                | Self::Trade
         );
         !is_native || cfg!(not(target_arch = "wasm32"))
     }
