@@ -226,7 +226,6 @@ async fn measured(
     };
     let wish = || match (progress.is_canceled(), progress.pause_left()) {
         (true, _) if !progress.has_reference() => Wish::End,
-        _ if !progress.has_reference() => Wish::GoOn,
         (true, _) => Wish::Stop,
         (false, Duration::ZERO) => Wish::GoOn,
         (false, left) => Wish::Pause(left),

@@ -120,6 +120,8 @@ impl Watch for Watched<'_> {
             done: done.map(|(kind, began)| (kind, began.elapsed().as_secs_f64())),
             expected: Some((kind, step.all)),
         });
+        // In a worker this lets in what the page has said meanwhile.
+        threads::pause(Duration::ZERO).await;
         while self.progress.is_paused() && self.is_wanted() {
             threads::pause(LOOK).await;
         }

@@ -20,7 +20,7 @@ pub const SAMPLES: usize = 30;
 
 /// Most pixels that are measured, where there is a limit: in a page one thread judges them.
 pub const MOST_PIXELS: Option<u32> = match cfg!(target_arch = "wasm32") {
-    true => Some(320 * 240),
+    true => Some(640 * 480),
     false => None,
 };
 
