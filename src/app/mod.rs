@@ -26,6 +26,6 @@ pub use shell::{
 };
 #[cfg(target_arch = "wasm32")]
 pub use {
-    jobs::worker::answer,
+    jobs::worker::{answer, heed},
     shell::page::{open_given, refuse, reopen, start},
 };

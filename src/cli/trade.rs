@@ -1,6 +1,7 @@
 //! `bench --axes`: time and error of every combination of options on chosen accuracy axes.
 
 use indicatif::ProgressBar;
+use pollster::FutureExt as _;
 use serde_json::Value;
 
 use super::{
@@ -18,8 +19,8 @@ use crate::{
     params::did_you_mean,
     scene::{Scene, view::View},
     trade::{
-        AS_PLANNED, Judged, Phase, Reference, Step, TradeError, TradeOptions, TradeRow, Watch,
-        factors, trade,
+        AS_PLANNED, Clock, Judged, Phase, Reference, Step, TradeError, TradeOptions, TradeRow,
+        Watch, factors, trade,
     },
 };
 
@@ -28,6 +29,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
     let options = TradeOptions {
         size: args.size,
         samples: args.samples as usize,
+        clock: Clock::Adapter,
         axes,
         is_one_option_at_a_time: args.each,
     };
@@ -50,18 +52,13 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
             .try_for_each(|factor| oracle::can_judge(scene, &view, &preset.stack, *factor))?;
         let references = oracle::references(scene, &view, &preset.stack, &factors)?;
         let mut progress = Progress(&bar);
-        rows.extend(trade(
-            gpu,
-            preset,
-            scene,
-            &preset_file.id,
-            &options,
-            &Reference {
-                references: &references,
-                judge: &|view, stack, capture| Some(judged(scene, view, stack, capture)),
-            },
-            &mut progress,
-        )?);
+        let reference = Reference {
+            references: &references,
+            judge: &|view, stack, capture| Some(judged(scene, view, stack, capture)),
+        };
+        let id = &preset_file.id;
+        let measured = trade(gpu, preset, scene, id, &options, &reference, &mut progress);
+        rows.extend(measured.block_on()?);
     }
     bar.finish_and_clear();
     let results = || {
@@ -93,7 +90,7 @@ pub fn run(common: &Common, args: &Bench, streams: &mut Streams) -> Result<Exit,
 struct Progress<'a>(&'a ProgressBar);
 
 impl Watch for Progress<'_> {
-    fn goes_on(&mut self, step: &Step) -> bool {
+    async fn goes_on(&mut self, step: &Step<'_>) -> bool {
         self.0.set_length(step.all as u64);
         self.0.set_position(step.done as u64);
         let doing = if step.phase == Phase::SetUp {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Promise: the window opens in a page of Chromium and draws its preset, an edit changes the picture, a preset is saved by a download,
-dropped models, archives, folders and effects and models at addresses open, judgements go on in workers, films are downloads, everything is exported and taken in
+dropped models, archives, folders and effects and models at addresses open, judgements and Trade go on in workers, films are downloads, everything is exported and taken in
 again, settings survive a reload, a narrow window folds its panels, and a mistake shows its words.
 
 Serves dist/ (sh scripts/web.sh) and tests/web/window_test.html as run.py does.

@@ -36,9 +36,18 @@ pub async fn answer(
     width: u32,
     height: u32,
     files: Option<Array>,
+    axes: Option<String>,
 ) -> Result<JsValue, JsError> {
-    let answered = app::answer(task, &text, [width, height], files).await;
+    let axes = axes.unwrap_or_default();
+    let answered = app::answer(task, &text, [width, height], files, &axes).await;
     answered.map_err(|error| JsError::new(&error))
+}
+
+/// Has the measurement under way in this worker wait for so many milliseconds, or end with what it
+/// has.
+#[wasm_bindgen]
+pub fn heed(pause_ms: Option<f64>) {
+    app::heed(pause_ms);
 }
 
 /// Puts a file where the window looks for files that it was given.

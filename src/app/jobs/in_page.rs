@@ -1,14 +1,20 @@
 //! The jobs of a page. Workers do what takes long, from the text of a preset.
 
-use std::sync::{
-    Arc,
-    atomic::{AtomicBool, Ordering},
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::Duration,
 };
 
 use eframe::egui;
 use js_sys::Uint8Array;
 
-use super::{Done, Jobs, THUMBNAIL_TRIANGLES, landed, worker, worker::Task};
+use super::{
+    Done, Jobs, THUMBNAIL_TRIANGLES, landed, worker,
+    worker::{Question, Task, Wish},
+};
 use crate::{
     app::{
         editing::session::FileId,
@@ -22,9 +28,15 @@ use crate::{
             screen::Inputs,
         },
         shell::page,
+        trade::{
+            point::Point,
+            request::{Progress, Request},
+            sent,
+        },
     },
     link,
-    preset_file::{Folders, PresetFile},
+    preset::Preset,
+    preset_file::{self, Folders, PresetFile},
     scene::Scene,
     work::Work,
 };
@@ -55,6 +67,20 @@ impl Jobs {
             let received = |sent| Findings::received(sent, &inputs.stack).map(Box::new);
             let judged = asked.and_then(|sent| sent.map(received).transpose());
             Done::Verdict(Box::new(inputs), work, judged)
+        });
+    }
+
+    /// Measures combinations of accuracy options in a worker, on a device of its own; the preset is
+    /// that of the request as a file.
+    pub fn measure_in_worker(
+        &self,
+        preset_file: PresetFile,
+        scene: Arc<Scene>,
+        request: Request,
+        progress: Arc<Progress>,
+    ) {
+        self.spawn_waiting("trade", async move || {
+            Done::Trade(measured(&preset_file, &scene, &request, &progress).await)
         });
     }
 
@@ -171,6 +197,48 @@ impl Jobs {
         self.spawn_idle("files", async move || {
             Done::Given(page::take_dropped(files).await)
         });
+    }
+}
+
+/// What a worker measures. Canceled, it ends as soon as it hears that, with what has been timed; it
+/// hears nothing while the oracle draws its references, and has timed nothing then.
+///
+/// # Errors
+/// No text says what is to be measured, or the worker cannot: why, in one sentence.
+async fn measured(
+    preset_file: &PresetFile,
+    scene: &Scene,
+    request: &Request,
+    progress: &Arc<Progress>,
+) -> Result<Vec<Point>, String> {
+    let size = request.size;
+    let text = preset_file::to_shared_toml(preset_file);
+    let said = preset_file::parse(&text, "preset").map_err(|error| error.to_string())?;
+    let drawn = |preset: &Preset| (preset.view(scene, size), preset.stack_on(scene, size));
+    if drawn(&said.preset) != drawn(&request.preset) {
+        return Err("the text of the preset says another picture than this one, so no worker can measure it".into());
+    }
+    let hearing = progress.clone();
+    let told = move |text: String| {
+        sent::heard(&text)
+            .into_iter()
+            .for_each(|report| hearing.report(report))
+    };
+    let wish = || match (progress.is_canceled(), progress.pause_left()) {
+        (true, _) if !progress.has_reference() => Wish::End,
+        (true, _) => Wish::Stop,
+        (false, Duration::ZERO) => Wish::GoOn,
+        (false, left) => Wish::Pause(left),
+    };
+    let question = Question {
+        task: Task::Trade,
+        preset_file,
+        size,
+        axes: &sent::names(&request.axes),
+    };
+    match worker::converse(&question, told, wish).await? {
+        Some(answer) => sent::received(&answer.as_string().unwrap_or_default()),
+        None => Ok(Vec::new()),
     }
 }
 

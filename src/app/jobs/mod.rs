@@ -43,11 +43,7 @@ use crate::{
             screen::Inputs,
             tier_times::{self, TierDrawing, Timed},
         },
-        trade::{
-            measure,
-            point::Point,
-            request::{Progress, Request},
-        },
+        trade::point::Point,
     },
     effect_files::{self, EffectError},
     effects::{Effect, Stack},
@@ -379,22 +375,6 @@ impl Jobs {
         // The receiver lives as long as `self`.
         let _ = self.sender.send(Done::NoEditor(path, failed));
         self.ctx.request_repaint();
-    }
-
-    /// Measures combinations of accuracy options on a second device, so that the window stays
-    /// responsive.
-    pub fn measure(
-        &self,
-        adapter: String,
-        scene: Arc<Scene>,
-        request: Request,
-        progress: Arc<Progress>,
-    ) {
-        let work = move || measure::measure(adapter, &scene, &request, &progress);
-        // What it measures is time, so it yields to nothing.
-        self.spawn("trade", || {
-            giving_back(|| Done::Trade(caught("measuring the trade", work)))
-        });
     }
 
     /// Writes the favorites with this function.

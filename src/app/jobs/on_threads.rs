@@ -7,12 +7,19 @@ use std::sync::{
 
 use eframe::egui;
 
-use super::{Done, Jobs, background, caught, giving_back, landed, small_picture};
+use super::{
+    Done, Jobs, background, caught, caught_future, giving_back, landed, memory, small_picture,
+};
 use crate::{
     app::{
         files::scene_loader::SceneKey,
         picture::{effect_picture::EffectPicture, golden_check, precision, review, screen::Inputs},
+        trade::{
+            measure,
+            request::{Progress, Request},
+        },
     },
+    gpu::{Gpu, device::AdapterChoice},
     link,
     preset::Preset,
     preset_file::{self, Folders, PresetFile},
@@ -28,6 +35,28 @@ impl Jobs {
                 giving_back(|| background::compute(measure)).map(|measured| measured.map(Box::new))
             });
             Done::Precision(Box::new(inputs), measured)
+        });
+    }
+
+    /// Measures combinations of accuracy options on a second device of this adapter, so that the
+    /// window stays responsive.
+    pub fn measure(
+        &self,
+        adapter: String,
+        scene: Arc<Scene>,
+        request: Request,
+        progress: Arc<Progress>,
+    ) {
+        // What it measures is time, so it yields to nothing.
+        self.spawn_waiting("trade", move || async move {
+            let work = async {
+                let opened = Gpu::open(&AdapterChoice::Named(adapter)).await;
+                let gpu = opened.map_err(|error| error.to_string())?;
+                measure::measure(&gpu, &scene, &request, &progress).await
+            };
+            let measured = caught_future("measuring the trade", work).await;
+            memory::give_back();
+            Done::Trade(measured)
         });
     }
 

@@ -39,7 +39,8 @@ mod native {
 mod page {
     use std::{io, thread::JoinHandle, time::Duration};
 
-    use js_sys::{Function, Promise};
+    use js_sys::{Function, Promise, Reflect};
+    use wasm_bindgen::{JsCast as _, JsValue};
     use wasm_bindgen_futures::{JsFuture, spawn_local};
 
     pub fn start<F: Future<Output = ()> + 'static>(
@@ -62,9 +63,11 @@ mod page {
     pub fn wait(wait: Duration) -> Promise {
         let ms = i32::try_from(wait.as_millis()).unwrap_or(i32::MAX);
         let mut begin = |resolve: Function, _: Function| {
-            if let Some(window) = web_sys::window() {
-                // Refused by no browser; the wait would then be endless.
-                let _ = window.set_timeout_with_callback_and_timeout_and_arguments_0(&resolve, ms);
+            // A window and a worker both have it, and refuse it to nobody; the wait would be endless.
+            let timeout = Reflect::get(&js_sys::global(), &"setTimeout".into());
+            if let Some(timeout) = timeout.ok().and_then(|timeout| timeout.dyn_into().ok()) {
+                let timeout: Function = timeout;
+                let _ = timeout.call2(&JsValue::UNDEFINED, &resolve, &ms.into());
             }
         };
         Promise::new(&mut begin)

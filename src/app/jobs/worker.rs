@@ -19,6 +19,11 @@ use crate::{
         files::scene_loader::SceneKey,
         picture::{inputs::Inputs, precision},
         shell::page::GIVEN,
+        trade::{
+            measure,
+            request::{Progress, Report, Request},
+            sent,
+        },
     },
     gpu::{Gpu, device::AdapterChoice},
     host::disk,
@@ -57,10 +62,40 @@ pub enum Task {
     Precision,
     /// Finds the bits of its picture for a link.
     Bits,
+    /// Measures combinations of the options of axes on a device of its own. The answer is that of
+    /// [`sent::sent`].
+    Trade,
 }
 
 impl Task {
-    const ALL: [Self; 4] = [Self::Judge, Self::Picture, Self::Precision, Self::Bits];
+    const ALL: [Self; 5] = [
+        Self::Judge,
+        Self::Picture,
+        Self::Precision,
+        Self::Bits,
+        Self::Trade,
+    ];
+}
+
+/// What a worker is asked.
+pub struct Question<'a> {
+    pub task: Task,
+    pub preset_file: &'a PresetFile,
+    /// Width and height, pixels.
+    pub size: [u32; 2],
+    /// Names of the axes that are measured; empty where none are.
+    pub axes: &'a str,
+}
+
+/// What the page wishes of a worker meanwhile.
+pub enum Wish {
+    GoOn,
+    /// It waits for so long.
+    Pause(Duration),
+    /// It ends with what it has.
+    Stop,
+    /// It ends at once and gives no answer.
+    End,
 }
 
 /// A worker that waits for its next task.
@@ -86,30 +121,63 @@ pub async fn ask(
     work: Arc<Work>,
     is_canceled: impl Fn() -> bool,
 ) -> Result<Option<JsValue>, String> {
+    let question = Question {
+        task,
+        preset_file,
+        size,
+        axes: "",
+    };
+    let told = move |told: String| {
+        let stage = STAGES.into_iter().find(|stage| *stage == told);
+        work.begin(stage.unwrap_or("judging"));
+    };
+    let wish = || match is_canceled() {
+        true => Wish::End,
+        false => Wish::GoOn,
+    };
+    converse(&question, told, wish).await
+}
+
+/// Asks a worker; `told` is given what it tells meanwhile. Returns the answer; none if the worker
+/// was ended by the wish for that.
+///
+/// # Errors
+/// The worker cannot: why, in one sentence.
+pub async fn converse(
+    question: &Question<'_>,
+    told: impl Fn(String) + 'static,
+    wish: impl Fn() -> Wish,
+) -> Result<Option<JsValue>, String> {
     let failed = |_| "the browser starts no worker".to_owned();
     let idle = IDLE.with_borrow_mut(Vec::pop);
     let Idle { worker, puts: had } = idle.map_or_else(started, Ok).map_err(failed)?;
     let puts = disk::puts();
-    let question = Array::of5(
-        &(task as u32).into(),
-        &preset_file::to_shared_toml(preset_file).into(),
-        &size[0].into(),
-        &size[1].into(),
-        &(had != puts).then(given).into(),
-    );
+    let question = Array::from_iter([
+        JsValue::from(question.task as u32),
+        preset_file::to_shared_toml(question.preset_file).into(),
+        question.size[0].into(),
+        question.size[1].into(),
+        (had != puts).then(given).into(),
+        question.axes.into(),
+    ]);
     let mut hears = None;
+    let mut told = Some(told);
     let answered = Promise::new(&mut |resolve: Function, _: Function| {
-        hears = Some(hear(&worker, resolve, work.clone()));
+        hears = told.take().map(|told| hear(&worker, resolve, told));
     });
-    worker
-        .post_message(&Array::of2(&wasm_bindgen::module(), &question))
-        .map_err(failed)?;
+    let say = |word: &JsValue| worker.post_message(word).map_err(failed);
+    say(&Array::of2(&wasm_bindgen::module(), &question))?;
     loop {
         let first = Promise::race(&Array::of2(&answered, &threads::wait(LOOK)));
         let answer = JsFuture::from(first).await.map_err(failed)?;
-        if is_canceled() {
-            worker.terminate();
-            return Ok(None);
+        match wish() {
+            Wish::GoOn => {}
+            Wish::Pause(wait) => say(&(wait.as_secs_f64() * 1e3).into())?,
+            Wish::Stop => say(&JsValue::UNDEFINED)?,
+            Wish::End => {
+                worker.terminate();
+                return Ok(None);
+            }
         }
         let Ok(answer) = answer.dyn_into::<Array>() else {
             continue;
@@ -140,16 +208,13 @@ fn given() -> JsValue {
     Array::from_iter(disk::below(Path::new(GIVEN)).into_iter().map(pair)).into()
 }
 
-/// What hears a worker: its words are stages, an array is the end.
+/// What hears a worker: its words are told, an array is the end.
 type Hears = (Closure<dyn FnMut(MessageEvent)>, Closure<dyn FnMut(Event)>);
 
-fn hear(worker: &Worker, resolve: Function, work: Arc<Work>) -> Hears {
+fn hear(worker: &Worker, resolve: Function, told: impl Fn(String) + 'static) -> Hears {
     let end = resolve.clone();
     let message = Closure::new(move |event: MessageEvent| match event.data().as_string() {
-        Some(told) => {
-            let stage = STAGES.into_iter().find(|stage| *stage == told);
-            work.begin(stage.unwrap_or("judging"));
-        }
+        Some(words) => told(words),
         None => drop(end.call1(&JsValue::NULL, &event.data())),
     });
     let error = Closure::new(move |_: Event| {
@@ -166,9 +231,24 @@ thread_local! {
     static DEVICE: RefCell<Option<Arc<Gpu>>> = const { RefCell::new(None) };
     /// The scene of its last task.
     static SCENE: RefCell<Option<(SceneKey, Arc<Scene>)>> = const { RefCell::new(None) };
+    /// The measurement under way.
+    static MEASURING: RefCell<Option<Arc<Progress>>> = const { RefCell::new(None) };
 }
 
-/// Does the task of this number, in a worker; `files` are new ones, where there are any.
+/// Has the measurement under way in this worker wait for so many milliseconds, or end with what it
+/// has. Nothing where none is under way.
+pub fn heed(pause_ms: Option<f64>) {
+    let Some(progress) = MEASURING.with_borrow(Clone::clone) else {
+        return;
+    };
+    match pause_ms {
+        Some(ms) => progress.pause_for(Duration::try_from_secs_f64(ms / 1e3).unwrap_or_default()),
+        None => progress.cancel(),
+    }
+}
+
+/// Does the task of this number, in a worker; `files` are new ones, where there are any, and `axes`
+/// the names of those that are measured.
 ///
 /// # Errors
 /// It cannot be done: why, in one sentence.
@@ -177,6 +257,7 @@ pub async fn answer(
     text: &str,
     size: [u32; 2],
     files: Option<Array>,
+    axes: &str,
 ) -> Result<JsValue, String> {
     for file in files.iter().flat_map(Array::iter) {
         let file: Array = file.unchecked_into();
@@ -189,7 +270,7 @@ pub async fn answer(
     let task = Task::ALL.into_iter().find(|known| *known as u32 == task);
     match task.ok_or("this is no task of a worker")? {
         Task::Judge => {
-            let work = Arc::new(Work::telling(tell));
+            let work = Arc::new(Work::telling(|stage| tell(stage)));
             let inputs = Inputs::of(preset_file, scene, size);
             let found = verify(device().await?, &inputs, &work).await?;
             found.ok_or("it was canceled")?.sent()
@@ -205,14 +286,29 @@ pub async fn answer(
             let measured = precision::measure(&inputs, &Arc::default())?;
             measured.ok_or("it was canceled")?.sent()
         }
+        Task::Trade => {
+            let request = Request {
+                preset: preset_file.preset,
+                size,
+                axes: sent::named(axes),
+                title: String::new(),
+            };
+            let report = |report: &Report| sent::told(report).iter().for_each(|text| tell(text));
+            let progress = Arc::new(Progress::telling(report));
+            let gpu = device().await?;
+            MEASURING.set(Some(progress.clone()));
+            let measured = measure::measure(&gpu, &scene, &request, &progress).await;
+            MEASURING.take();
+            Ok(sent::sent(&measured?)?.into())
+        }
     }
 }
 
-/// Tells the page which stage begins.
-fn tell(stage: &'static str) {
+/// Tells the page these words.
+fn tell(words: &str) {
     let worker: DedicatedWorkerGlobalScope = js_sys::global().unchecked_into();
     // A page that has gone does not listen.
-    let _ = worker.post_message(&stage.into());
+    let _ = worker.post_message(&words.into());
 }
 
 fn scene_of(preset_file: &PresetFile) -> Result<Arc<Scene>, String> {

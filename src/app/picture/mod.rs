@@ -17,7 +17,7 @@ pub mod precision;
 pub mod review;
 pub mod screen;
 #[cfg(target_arch = "wasm32")]
-mod sent;
+pub mod sent;
 pub mod state;
 pub mod tier_times;
 pub mod timings;

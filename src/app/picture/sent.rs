@@ -101,7 +101,7 @@ impl Findings {
             bytemuck::cast_slice(self.reference.as_deref().unwrap_or_default()),
         ];
         let lists = lists.map(|list| JsValue::from(Uint8Array::from(list)));
-        Ok(Array::from_iter([words].into_iter().chain(lists)).into())
+        Ok(Array::from_iter([words.into()].into_iter().chain(lists)).into())
     }
 
     /// The findings that a worker has sent, on a picture with this stack.
@@ -110,7 +110,7 @@ impl Findings {
     /// It has sent something else.
     pub fn received(sent: JsValue, stack: &Stack) -> Result<Self, String> {
         let sent: Array = sent.dyn_into().map_err(|_| strange())?;
-        let words: FindingsInWords = of_words(&sent.get(0))?;
+        let words: FindingsInWords = of_words(&text_of(&sent.get(0))?)?;
         let bytes = |at: u32| Uint8Array::new(&sent.get(at)).to_vec();
         let numbers = |at: u32| bytemuck::pod_collect_to_vec::<u8, u32>(&bytes(at));
         let crossings = words.crossings.into_iter();
@@ -141,10 +141,11 @@ impl Measured {
             effect: effect.name.clone(),
             errors: errors.clone(),
         });
-        in_words(&MeasuredInWords {
+        let words = in_words(&MeasuredInWords {
             size: self.size,
             effects: effects.collect(),
-        })
+        });
+        words.map(JsValue::from)
     }
 
     /// The errors that a worker has sent, in the picture of `inputs`.
@@ -152,7 +153,7 @@ impl Measured {
     /// # Errors
     /// It has sent something else.
     pub fn received(sent: JsValue, inputs: &Inputs) -> Result<Self, String> {
-        let words: MeasuredInWords = of_words(&sent)?;
+        let words: MeasuredInWords = of_words(&text_of(&sent)?)?;
         let effects = words.effects.into_iter().filter_map(|of| {
             let enabled = inputs.stack.get(&of.effect)?;
             Some((enabled.effect.clone(), of.errors))
@@ -165,14 +166,24 @@ impl Measured {
     }
 }
 
-fn in_words(value: &impl Serialize) -> Result<JsValue, String> {
-    let text = toml_edit::ser::to_string(value).map_err(|error| error.to_string())?;
-    Ok(text.into())
+/// A value as TOML.
+///
+/// # Errors
+/// An integer is larger than those of TOML.
+pub fn in_words(value: &impl Serialize) -> Result<String, String> {
+    toml_edit::ser::to_string(value).map_err(|error| error.to_string())
 }
 
-fn of_words<T: DeserializeOwned>(sent: &JsValue) -> Result<T, String> {
-    let text = sent.as_string().ok_or_else(strange)?;
-    toml_edit::de::from_str(&text).map_err(|_| strange())
+/// The value that a worker has sent as TOML.
+///
+/// # Errors
+/// It has sent something else.
+pub fn of_words<T: DeserializeOwned>(text: &str) -> Result<T, String> {
+    toml_edit::de::from_str(text).map_err(|_| strange())
+}
+
+fn text_of(sent: &JsValue) -> Result<String, String> {
+    sent.as_string().ok_or_else(strange)
 }
 
 fn strange() -> String {

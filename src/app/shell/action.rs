@@ -304,8 +304,8 @@ pub const POINTER: &[(&str, &str)] = &[
 ];
 
 impl Action {
-    /// Does the window have it here? A page has no programs beside it and no thread for what takes
-    /// minutes; its tab is closed by the browser. A page alone has files that go with it.
+    /// Does the window have it here? A page has no folders and no thread for all extreme cases; its
+    /// tab is closed by the browser. A page alone has files that go with it.
     pub const fn is_here(self) -> bool {
         if matches!(self, Self::ExportAll) {
             return cfg!(target_arch = "wasm32");
@@ -319,7 +319,6 @@ impl Action {
                 | Self::AcceptGolden
                 | Self::RejectGolden
                 | Self::NextGolden
-                | Self::Trade
         );
         !is_native || cfg!(not(target_arch = "wasm32"))
     }

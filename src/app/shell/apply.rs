@@ -105,10 +105,18 @@ fn apply(ctx: &egui::Context, state: &mut State, panels: &mut Panels, command: C
         Command::View(command) => view(state, panels, command),
         Command::Review(command) => review(state, panels, command),
         Command::MeasureTrade(request, progress) => {
-            if let Some(scene) = state.session.scene() {
+            if let Some(scene) = state.session.scene().cloned() {
+                #[cfg(target_arch = "wasm32")]
+                state.jobs.measure_in_worker(
+                    request.preset_file(&state.session.preset_file),
+                    scene,
+                    *request,
+                    progress,
+                );
+                #[cfg(not(target_arch = "wasm32"))]
                 state.jobs.measure(
                     state.picture.screen.gpu.summary.name.clone(),
-                    scene.clone(),
+                    scene,
                     *request,
                     progress,
                 );

@@ -2,32 +2,39 @@
 
 use std::{sync::Arc, time::Duration};
 
-use pollster::FutureExt as _;
 use web_time::Instant;
 
 use super::{
     pace::Kind,
     point::{Metric, Point},
-    request::{Progress, Request, SAMPLES},
+    request::{Progress, Report, Request, SAMPLES},
 };
 use crate::{
     accuracy::{Axis, PinnedOptions},
+    app::jobs::threads,
     effects::Stack,
-    gpu::{Capture, Gpu, device::AdapterChoice},
+    gpu::{Capture, Gpu},
     oracle,
     scene::{Scene, draw::DrawError, view::View},
-    trade::{Judged, Phase, Reference, Step, TradeOptions, TradeRow, Watch, factors, trade},
+    trade::{Clock, Judged, Phase, Reference, Step, TradeOptions, TradeRow, Watch, factors, trade},
 };
 
 /// How often a measurement that waits looks whether it may go on.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Measures every combination, on a second device. Canceled, it returns what has been timed so far.
+/// A browser rounds the timestamps of an adapter.
+const CLOCK: Clock = match cfg!(target_arch = "wasm32") {
+    true => Clock::Processor,
+    false => Clock::Adapter,
+};
+
+/// Measures every combination on a device that is not the window's. Canceled, it returns what has
+/// been timed so far.
 ///
 /// # Errors
 /// In a sentence for people.
-pub fn measure(
-    adapter: String,
+pub async fn measure(
+    gpu: &Arc<Gpu>,
     scene: &Arc<Scene>,
     request: &Request,
     progress: &Progress,
@@ -38,9 +45,6 @@ pub fn measure(
         axes,
         title,
     } = request;
-    let gpu = Gpu::open(&AdapterChoice::Named(adapter))
-        .block_on()
-        .map_err(|e| e.to_string())?;
     let preset = &preset.drawn_on(scene, size[1]);
     let view = preset.view(scene, *size);
     let began = Instant::now();
@@ -56,8 +60,10 @@ pub fn measure(
         return Ok(Vec::new());
     };
     let references = references.map_err(|e| e.to_string())?;
-    progress.report("", |pace| {
-        pace.add(Kind::Reference, began.elapsed().as_secs_f64())
+    progress.report(Report {
+        now: String::new(),
+        done: Some((Kind::Reference, began.elapsed().as_secs_f64())),
+        expected: None,
     });
     let judge = |view: &View, stack: &Stack, capture: &Capture| {
         let judged = progress.work.run(|| {
@@ -76,6 +82,7 @@ pub fn measure(
     let options = TradeOptions {
         size: *size,
         samples: SAMPLES,
+        clock: CLOCK,
         axes: axes.clone(),
         is_one_option_at_a_time: false,
     };
@@ -87,7 +94,8 @@ pub fn measure(
         progress,
         step: None,
     };
-    let rows = trade(&gpu, preset, scene, title, &options, &reference, &mut watch)
+    let rows = trade(gpu, preset, scene, title, &options, &reference, &mut watch)
+        .await
         .map_err(|e| e.to_string())?;
     Ok(rows.into_iter().map(|row| point(row, axes)).collect())
 }
@@ -100,21 +108,22 @@ struct Watched<'a> {
 }
 
 impl Watch for Watched<'_> {
-    fn goes_on(&mut self, step: &Step) -> bool {
+    async fn goes_on(&mut self, step: &Step<'_>) -> bool {
         let done = self.step.take();
         let kind = if step.phase == Phase::SetUp {
             Kind::SetUp
         } else {
             Kind::Time
         };
-        self.progress.report(step.what, |pace| {
-            if let Some((kind, began)) = done {
-                pace.add(kind, began.elapsed().as_secs_f64());
-            }
-            pace.expect(kind, step.all);
+        self.progress.report(Report {
+            now: step.what.to_owned(),
+            done: done.map(|(kind, began)| (kind, began.elapsed().as_secs_f64())),
+            expected: Some((kind, step.all)),
         });
+        // In a worker this lets in what the page has said meanwhile.
+        threads::pause(Duration::ZERO).await;
         while self.progress.is_paused() && self.is_wanted() {
-            std::thread::sleep(LOOK);
+            threads::pause(LOOK).await;
         }
         self.step = Some((kind, Instant::now()));
         self.is_wanted()
@@ -168,13 +177,15 @@ fn point(row: TradeRow, axes: &[&'static Axis]) -> Point {
         ms: row.spread,
         samples: row.samples,
         errors,
-        more: more.collect(),
+        more: more.map(|(name, value)| (name.to_owned(), value)).collect(),
         note: row.note,
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use pollster::FutureExt as _;
+
     use super::*;
     use crate::app::trade::pace::{Pace, Rates};
 
@@ -191,13 +202,13 @@ mod tests {
             done: 0,
             all: 6,
         };
-        assert!(watch.goes_on(&step) && watch.was_undisturbed());
-        assert!(watch.goes_on(&step));
+        assert!(watch.goes_on(&step).block_on() && watch.was_undisturbed());
+        assert!(watch.goes_on(&step).block_on());
         progress.pause();
         assert!(!watch.was_undisturbed(), "the sample counts");
         progress.cancel();
         assert!(
-            !watch.goes_on(&step),
+            !watch.goes_on(&step).block_on(),
             "it waits for the person although it is canceled"
         );
     }

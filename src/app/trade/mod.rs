@@ -5,3 +5,5 @@ pub mod measure;
 pub mod pace;
 pub mod point;
 pub mod request;
+#[cfg(target_arch = "wasm32")]
+pub mod sent;

@@ -2,7 +2,7 @@
 //! earlier measurements; each step that is done corrects the guess.
 
 /// One kind of step: how many there are, how many are done, and how long each takes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Steps {
     all: usize,
     done: usize,
@@ -40,7 +40,7 @@ impl Steps {
 }
 
 /// The kinds of steps of a measurement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Kind {
     /// The oracle draws the reference pictures.
     Reference,
@@ -51,7 +51,7 @@ pub enum Kind {
 }
 
 /// How long a measurement takes, and how much of it is done.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pace {
     steps: [Steps; 3],
 }
@@ -110,6 +110,12 @@ impl Pace {
     /// Some combinations cannot be drawn: so many steps of this kind there are.
     pub fn expect(&mut self, kind: Kind, all: usize) {
         self.steps[kind as usize].all = all;
+    }
+
+    /// Was a step of this kind done?
+    #[cfg(target_arch = "wasm32")]
+    pub const fn has_done(&self, kind: Kind) -> bool {
+        self.steps[kind as usize].done > 0
     }
 
     /// Seconds that are left.

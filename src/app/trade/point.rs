@@ -63,7 +63,7 @@ pub struct Point {
     /// In the order of [`Metric::ALL`].
     pub errors: [Option<f64>; Metric::ALL.len()],
     /// Further numbers, each with its name and unit.
-    pub more: Vec<(&'static str, f64)>,
+    pub more: Vec<(String, f64)>,
     /// Why it could not be drawn, or what dominates it.
     pub note: Option<String>,
 }
@@ -136,11 +136,7 @@ pub fn csv(points: &[Point], axes: &[&'static Axis]) -> String {
         .iter()
         .map(|point| &point.more)
         .max_by_key(|more| more.len());
-    head.extend(
-        more.into_iter()
-            .flatten()
-            .map(|(name, _)| (*name).to_owned()),
-    );
+    head.extend(more.into_iter().flatten().map(|(name, _)| name.clone()));
     head.push("note".into());
     let mut text = head.join(",") + "\n";
     for point in points {
@@ -186,7 +182,7 @@ mod tests {
             ms: Spread::of(&samples),
             samples: 30,
             errors: [Some(wrong), Some(0.0), None, None],
-            more: vec![("bytes", 7.0)],
+            more: vec![("bytes".into(), 7.0)],
             note: None,
         }
     }

@@ -6,7 +6,7 @@ mod watch;
 
 use std::{collections::HashSet, sync::Arc};
 
-use pollster::FutureExt as _;
+use web_time::Instant;
 
 pub use self::{
     error::{Judged, Reference, TradeError},
@@ -27,12 +27,36 @@ use crate::{
     scene::{Scene, view::View},
 };
 
+/// Whose clock tells the milliseconds of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clock {
+    /// The adapter's: timestamps of the last of two frames.
+    Adapter,
+    /// The processor's, over repeated frames, with what asking for them takes: a browser rounds
+    /// timestamps.
+    Processor,
+}
+
+/// By the processor's clock frames are repeated until they take so long together, since a browser
+/// rounds it to 0.1 ms.
+const MEASURED_MS: f64 = 20.0;
+/// Most frames of such a sample.
+const MOST_FRAMES: usize = 64;
+
+/// Frames of a sample by the processor's clock where one takes `each_ms`.
+fn repeated(each_ms: f64) -> usize {
+    (MEASURED_MS / each_ms)
+        .ceil()
+        .clamp(FRAMES_PER_SAMPLE as f64, MOST_FRAMES as f64) as usize
+}
+
 /// What to measure.
 #[derive(Clone, Debug)]
 pub struct TradeOptions {
     pub size: [u32; 2],
-    /// Timed frames per combination.
+    /// Timed samples per combination.
     pub samples: usize,
+    pub clock: Clock,
     /// Axes to walk; the others stay where the preset has them.
     pub axes: Vec<&'static Axis>,
     /// Every option alone beside the preset as it is planned, instead of every combination.
@@ -50,8 +74,8 @@ pub struct TradeRow {
     pub options: String,
     #[serde(skip)]
     pub pins: PinnedOptions,
-    /// Whole frame by timestamps, and what the CPU chose before it by the clock; none without
-    /// timestamps or where the combination cannot be drawn.
+    /// Whole frame by the chosen clock, with what the CPU chose before it; none where that is the
+    /// adapter's and it has no timestamps, or where the combination cannot be drawn.
     pub ms_p5: Option<f64>,
     pub ms_p50: Option<f64>,
     pub ms_p95: Option<f64>,
@@ -108,6 +132,9 @@ struct Entry {
     /// Triangles that own a pixel.
     triangle_ids: usize,
     bytes: u64,
+    clock: Clock,
+    /// Frames of a sample.
+    frames: usize,
     /// Times while it warmed up. They count only if the measurement ends before its rounds.
     alone: Vec<f64>,
     ms: Vec<f64>,
@@ -121,14 +148,14 @@ struct Entry {
 /// # Errors
 /// When the device is lost or the scene does not fit. What a combination cannot draw becomes its
 /// row's note.
-pub fn trade(
+pub async fn trade(
     gpu: &Arc<Gpu>,
     preset: &Preset,
     scene: &Arc<Scene>,
     scene_name: &str,
     options: &TradeOptions,
-    reference: &Reference,
-    watch: &mut dyn Watch,
+    reference: &Reference<'_>,
+    watch: &mut impl Watch,
 ) -> Result<Vec<TradeRow>, RenderError> {
     const WARM_UP: usize = 3;
     let pins = preset.accuracy.pins;
@@ -142,12 +169,14 @@ pub fn trade(
     for (i, &pins) in combinations.iter().enumerate() {
         let what = words(&pins, &options.axes);
         is_wanted = is_wanted
-            && watch.goes_on(&Step {
-                what: &what,
-                phase: Phase::SetUp,
-                done: i,
-                all: combinations.len(),
-            });
+            && watch
+                .goes_on(&Step {
+                    what: &what,
+                    phase: Phase::SetUp,
+                    done: i,
+                    all: combinations.len(),
+                })
+                .await;
         if !is_wanted {
             break;
         }
@@ -159,17 +188,12 @@ pub fn trade(
             },
             ..preset.clone()
         };
-        match Entry::new(
-            gpu,
-            preset,
-            scene,
-            pinned.view(scene, options.size),
-            pins,
-            reference,
-        ) {
+        let view = pinned.view(scene, options.size);
+        let entry = Entry::new(gpu, preset, scene, view, pins, options.clock, reference);
+        match entry.await {
             Ok(Some(mut entry)) => {
                 for _ in 0..WARM_UP {
-                    entry.sample(preset, Kept::Alone, FRAMES_PER_SAMPLE)?;
+                    entry.sample(preset, Kept::Alone, entry.frames).await?;
                     is_wanted = watch.is_wanted();
                     if !is_wanted {
                         break;
@@ -188,12 +212,12 @@ pub fn trade(
             warm_up::FROM_IDLE,
             entries.len(),
             async |at, frames| {
-                entries[at].sample(preset, Kept::Alone, frames)?;
+                entries[at].sample(preset, Kept::Alone, frames).await?;
                 is_wanted = watch.is_wanted();
                 Ok(is_wanted)
             },
         )
-        .block_on()?;
+        .await?;
     }
     let steps = entries.len() * options.samples;
     for round in 0..options.samples {
@@ -207,12 +231,15 @@ pub fn trade(
                     done: round * entries.len() + at,
                     all: steps,
                 };
-                is_wanted = is_wanted && watch.goes_on(&step);
+                is_wanted = is_wanted && watch.goes_on(&step).await;
                 if !is_wanted {
                     break;
                 }
                 let before = entries[at].marks();
-                entries[at].sample(preset, Kept::Interleaved, FRAMES_PER_SAMPLE)?;
+                let frames = entries[at].frames;
+                entries[at]
+                    .sample(preset, Kept::Interleaved, frames)
+                    .await?;
                 if watch.was_undisturbed() {
                     break;
                 }
@@ -293,26 +320,23 @@ fn words(pins: &PinnedOptions, axes: &[&'static Axis]) -> String {
 
 impl Entry {
     /// Draws twice and measures the error; none if the judge was canceled.
-    fn new(
+    async fn new(
         gpu: &Arc<Gpu>,
         preset: &Preset,
         scene: &Arc<Scene>,
         view: View,
         pins: PinnedOptions,
-        reference: &Reference,
+        clock: Clock,
+        reference: &Reference<'_>,
     ) -> Result<Option<Self>, RenderError> {
         let mut renderer = Renderer::new(gpu.clone());
-        renderer.set_scene(scene).block_on()?;
+        renderer.set_scene(scene).await?;
         let accuracy = AccuracyRequest {
             pins,
             ..preset.accuracy
         };
-        let first = renderer
-            .capture(&view, &preset.stack, &accuracy)
-            .block_on()?;
-        let second = renderer
-            .capture(&view, &preset.stack, &accuracy)
-            .block_on()?;
+        let first = renderer.capture(&view, &preset.stack, &accuracy).await?;
+        let second = renderer.capture(&view, &preset.stack, &accuracy).await?;
         let bytes = renderer
             .explain()
             .buffers
@@ -338,6 +362,8 @@ impl Entry {
             error,
             triangle_ids,
             bytes,
+            clock,
+            frames: FRAMES_PER_SAMPLE,
             alone,
             ms,
             cpu_ms,
@@ -345,12 +371,19 @@ impl Entry {
         }))
     }
 
-    /// Draws so many frames without a pause, waits, and times the last.
-    fn sample(&mut self, preset: &Preset, kept: Kept, frames: usize) -> Result<(), RenderError> {
+    /// Draws so many frames without a pause, waits, and times the last by the adapter's clock or
+    /// all of them by the processor's.
+    async fn sample(
+        &mut self,
+        preset: &Preset,
+        kept: Kept,
+        frames: usize,
+    ) -> Result<(), RenderError> {
         let accuracy = AccuracyRequest {
             pins: self.pins,
             ..preset.accuracy
         };
+        let begin = Instant::now();
         for _ in 0..frames {
             self.renderer
                 .draw_timed(
@@ -360,17 +393,26 @@ impl Entry {
                     Detail::Whole,
                     Wait::Simulation,
                 )
-                .block_on()?;
+                .await?;
         }
-        let report = self.renderer.finish().block_on()?;
-        match report.gpu_ms {
-            Some(ms) if kept == Kept::Alone => self.alone.push(ms + report.cpu_ms.unwrap_or(0.0)),
-            None if kept == Kept::Alone => {}
-            Some(ms) => {
-                self.ms.push(ms + report.cpu_ms.unwrap_or(0.0));
+        let report = self.renderer.finish().await?;
+        let ms = match self.clock {
+            Clock::Adapter => report.gpu_ms.map(|ms| ms + report.cpu_ms.unwrap_or(0.0)),
+            Clock::Processor => Some(begin.elapsed().as_secs_f64() * 1e3 / frames as f64),
+        };
+        match (ms, kept) {
+            (Some(ms), Kept::Alone) => {
+                self.alone.push(ms);
+                if self.clock == Clock::Processor {
+                    self.frames = repeated(ms);
+                }
+            }
+            (None, Kept::Alone) => {}
+            (Some(ms), Kept::Interleaved) => {
+                self.ms.push(ms);
                 self.cpu_ms.extend(report.cpu_ms);
             }
-            None => self.invalid += 1,
+            (None, Kept::Interleaved) => self.invalid += 1,
         }
         Ok(())
     }
@@ -482,6 +524,12 @@ mod tests {
                 DepthFormat::ALL[0].name()
             )
         );
+    }
+
+    #[test]
+    fn quick_frames_are_repeated_until_the_clock_of_a_browser_can_tell() {
+        let frames = [0.0, 0.01, 0.4, 1.5, 9.0, 800.0].map(repeated);
+        assert_eq!(frames, [64, 64, 50, 14, 3, 2]);
     }
 
     #[test]

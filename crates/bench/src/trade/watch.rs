@@ -24,7 +24,7 @@ pub enum Phase {
 pub trait Watch {
     /// Called before each step; false ends the measurement. It may wait, for instance until the
     /// device is free.
-    fn goes_on(&mut self, step: &Step) -> bool;
+    fn goes_on(&mut self, step: &Step<'_>) -> impl Future<Output = bool>;
 
     /// False ends the measurement.
     fn is_wanted(&mut self) -> bool {

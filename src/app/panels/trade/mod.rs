@@ -22,7 +22,7 @@ use crate::{
         trade::{
             pace::{Pace, Rates, about},
             point::{Metric, Point, csv},
-            request::{Progress, Request, SAMPLES},
+            request::{MOST_PIXELS, Progress, Request, SAMPLES, measured_size},
         },
         widgets::{
             icons::{Icon, icon_button},
@@ -262,9 +262,12 @@ impl TradePanel {
                 0..2 => "Choose an axis with more than one option",
                 _ => "At most 256 combinations can be measured at once. Choose fewer axes.",
             };
+            let limit = MOST_PIXELS.map_or_else(String::new, |most| {
+                format!(" A page measures a picture of at most {most} pixels, and a sample is the mean of repeated frames.")
+            });
             let hint = format!(
                 "Draw every combination {SAMPLES} times on a second device, and compare each with the oracle. While you work in the \
-                 window, the measurement waits."
+                 window, the measurement waits.{limit}"
             );
             let button = ui.add_enabled(is_ready, button).on_hover_text(hint).on_disabled_hover_text(reason);
             if let Some((request, workload)) = request.as_ref().filter(|_| button.clicked()) {
@@ -286,7 +289,7 @@ impl TradePanel {
     fn request(&self, state: &State, shown: &Inputs) -> (Request, Workload) {
         let request = Request {
             preset: state.session.visible_preset().evaluated(),
-            size: [shown.view.width, shown.view.height],
+            size: measured_size([shown.view.width, shown.view.height], MOST_PIXELS),
             axes: self.axes(),
             title: state.session.title().to_owned(),
         };
@@ -374,7 +377,11 @@ impl TradePanel {
             } else {
                 ""
             };
-            let of = format!("{}, {width} × {height} px{software}", request.title);
+            let clock = match MOST_PIXELS {
+                Some(_) => "; times of repeated frames",
+                None => "",
+            };
+            let of = format!("{}, {width} × {height} px{clock}{software}", request.title);
             let (color, text) = if is_stale {
                 (
                     theme::amber(),
