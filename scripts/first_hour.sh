@@ -112,6 +112,11 @@ picture_changed() {
     [ "${count%%[. e]*}" -gt 400 ]
 }
 
+# The log tells of a picture that answers an input of this step, and the window shows it in place of the last one.
+picture_arrived() {
+    tail -n "+$((noted + 1))" "$log" | grep -q "pictures after their inputs" && picture_changed
+}
+
 # A person looks before going on, and so does this script; on a busy machine it must look longer.
 nap() { sleep "$(awk "BEGIN { print $1 * ${PACE:-1} }")"; }
 key() { xdotool key --clearmodifiers "$@"; nap 0.4; }
@@ -153,7 +158,7 @@ for preset in comic engraving one-bit xray wireframe-cage; do
     key Return
     until_true 60 session_has "id = \"$preset-$name\""
     title_has " on $name" || until_true 1 title_has " on $name"
-    until_true 30 picture_changed
+    until_true 180 picture_arrived
     done_step
 done
 
@@ -289,16 +294,17 @@ film="$work/first-hour-film.png"
 key ctrl+shift+e
 key ctrl+a
 write "$film"
-# Width, height and frames per second follow; Enter in the path exports.
+# Width, height, the names of sizes and frames per second follow; Enter in the path exports.
 key Tab
 write 320
 key Tab
 write 240
 key Tab
+key Tab
 write 10
 key Tab
 shot
-for _ in 1 2 3 4; do key shift+Tab; done
+for _ in 1 2 3 4 5; do key shift+Tab; done
 key Return
 until_true 240 log_has "Saved $film: "
 test -s "$film"

@@ -7,10 +7,10 @@ struct Contours {
     @color(0.95, 0.9, 0.76) near: vec4f,
     /// Color of the farthest sheet.
     @color(0.16, 0.36, 0.38) far: vec4f,
-    /// Distance from the eye at which the sheets begin, meters.
-    @range(0.0, 50.0, 4.0) @hard(0.0, 10000.0) first: f32,
-    /// Distance from sheet to sheet, meters.
-    @range(0.01, 5.0, 0.2) @hard(0.001, 1000.0) @log step: f32,
+    /// Distance from the eye at which the sheets begin.
+    @range(0.0, 50.0, 4.0) @hard(0.0, 10000.0) @unit(m) first: f32,
+    /// Distance from sheet to sheet.
+    @range(0.01, 5.0, 0.2) @hard(0.001, 1000.0) @unit(m) @log step: f32,
     /// Number of sheets.
     @range(2, 32, 12) sheets: u32,
     /// How far the shadow of a sheet reaches on the next one.
