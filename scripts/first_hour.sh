@@ -183,9 +183,16 @@ begin animate
 palette "clock.time_s 0"
 palette "facet.amount 1"
 # The palette leads to the row, whose number has the focus; the diamond beside it is the next control.
-palette "facet.amount"
-key Tab
-key Return
+# A busy machine may take the keys before the row has the focus; then they are pressed once more.
+tries=3
+until session_has "[animation.facet]" || [ "$tries" -le 0 ]; do
+    tries=$((tries - 1))
+    palette "facet.amount"
+    nap 1
+    key Tab
+    key Return
+    nap 4
+done
 until_true 20 session_has "[animation.facet]"
 palette "clock.time_s 2"
 palette "facet.amount 0"
