@@ -278,24 +278,6 @@ key ctrl+z
 key ctrl+z
 until_true 20 session_has "path = \"$saved\""
 
-begin own-effect
-palette "new effect of my own"
-nap 1
-write first_hour_ink
-key Return
-until_true 60 session_has "[effects.first_hour_ink]"
-inked="$work/inked/mine.toml"
-key ctrl+shift+s
-key ctrl+a
-write "$inked"
-key Return
-until_true 20 test -s "$inked"
-# Elsewhere, and without the adapter that RASTERLAB may name: only the oracle blesses.
-(cd / && "${RASTERLAB%% *}" bless "$inked" --snapshots "$work/goldens") >> "$work/out.txt" 2>&1
-until_true 1 test -s "$work/goldens/mine.png"
-done_step
-key ctrl+z
-
 begin film
 film="$work/first-hour-film.png"
 key ctrl+shift+e
@@ -335,6 +317,24 @@ sleep 1
 click 54 $((height - 346))
 # It waits while the pointer moves, so nothing is done until it ends.
 until_true 480 log_has "Trade: combinations measured: "
+done_step
+key Escape
+
+begin own-effect
+palette "new effect of my own"
+nap 1
+write first_hour_ink
+key Return
+until_true 60 session_has "[effects.first_hour_ink]"
+inked="$work/inked/mine.toml"
+key ctrl+shift+s
+key ctrl+a
+write "$inked"
+key Return
+until_true 20 test -s "$inked"
+# Elsewhere, and without the adapter that RASTERLAB may name: only the oracle blesses.
+(cd / && "${RASTERLAB%% *}" bless "$inked" --snapshots "$work/goldens") >> "$work/out.txt" 2>&1
+until_true 1 test -s "$work/goldens/mine.png"
 done_step
 
 if grep "^error: " "$log"; then

@@ -267,7 +267,7 @@ pub struct NewEffect {
     /// Name of the effect, in small letters
     pub name: String,
     /// What the effect does: surface (what color is it), vertex (where is it), sample (is it
-    /// drawn), pixel (finish the picture)
+    /// drawn), pixel (finish the picture), image (passes that read other pixels)
     #[arg(long, default_value = "surface", value_parser = Hook::parse)]
     pub hook: Hook,
     /// Begin with the text of this effect instead

@@ -132,7 +132,7 @@ impl SceneLoader {
         let mut known = self.shown.iter().chain(&self.recent);
         known
             .find(|(key, _)| key.source == *source)
-            .map(|(_, scene)| scene.content_bounds())
+            .map(|(_, scene)| scene.subject_bounds(None))
     }
 
     /// True if the scene of `key` is shown or cannot be loaded.

@@ -8,6 +8,8 @@ use web_time::Instant;
 
 /// Frames that are remembered.
 const HISTORY: usize = 600;
+/// A button that is held longer, in frames that take no time, is not clicked, seconds.
+const CLICK_S: f64 = 0.8;
 
 /// How long the UI thread took for a frame of the window, milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -66,8 +68,10 @@ impl Plugin for UiFrames {
         "UI frames"
     }
 
-    fn input_hook(&mut self, _: &egui::Context, _: &mut RawInput) {
+    fn input_hook(&mut self, ctx: &egui::Context, _: &mut RawInput) {
         self.begin(Instant::now());
+        let longest_s = self.longest_click_s();
+        ctx.options_mut(|options| options.input_options.max_click_duration = longest_s);
     }
 
     fn output_hook(&mut self, _: &egui::Context, output: &mut egui::FullOutput) {
@@ -104,6 +108,12 @@ impl UiFrames {
             next_in: Duration::MAX,
             shows: Vec::new(),
         });
+    }
+
+    /// How long a click may take. egui times a press and its release by the frames that they come
+    /// with, so the time of a slow frame between them does not count.
+    fn longest_click_s(&self) -> f64 {
+        CLICK_S + self.times.back().map_or(0.0, |time| time.total() / 1e3)
     }
 
     fn end(&mut self, now: Instant, next_in: Duration) {
@@ -259,5 +269,18 @@ mod tests {
             (frames.longest_ms(), frames.times_ms().len()),
             (Some(5.0), HISTORY)
         );
+    }
+
+    #[test]
+    fn a_slow_frame_does_not_make_a_click_a_long_press() {
+        let (mut frames, start) = (UiFrames::default(), Instant::now());
+        let ms = Duration::from_millis;
+        frames.begin(start);
+        frames.end(start + ms(4), Duration::ZERO);
+        frames.begin(start + ms(1000));
+        assert!(frames.longest_click_s() > 1.7, "the frame took a second");
+        frames.end(start + ms(1004), Duration::MAX);
+        frames.begin(start + ms(9000));
+        assert!(frames.longest_click_s() < 0.9, "nothing was due");
     }
 }

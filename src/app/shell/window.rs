@@ -76,6 +76,8 @@ const PLAY_STEP_S: f32 = 1.0 / 30.0;
 const CODE_WIDTH: f32 = 440.0;
 const LEAST_CODE: f32 = 260.0;
 const LEAST_PICTURE: f32 = 200.0;
+/// Least width of the picture for which the presets stay beside the text, points.
+const PICTURE_BESIDE_PRESETS: f32 = 400.0;
 
 /// The whole window.
 pub struct App {
@@ -459,7 +461,7 @@ impl App {
         self.state.open.log = is_open;
         let window = ui.ctx().content_rect().width();
         let [left_width, right_width] = self.state.settings.panel_widths(window);
-        let beside_code = window - right_width - LEAST_PICTURE;
+        let beside_code = window - right_width - PICTURE_BESIDE_PRESETS;
         // Where there is no room for both, the text stands in place of the presets.
         if !self.panels.code.is_open() || left_width + CODE_WIDTH <= beside_code {
             let left = egui::Panel::left("left")

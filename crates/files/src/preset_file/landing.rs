@@ -43,8 +43,9 @@ impl PresetFile {
     }
 
     /// The fit from the box of this preset's scene to that of `own`, and from what its camera sees
-    /// to what the other sees; none where a box has no extent. Where `scene`, that of `own`, is not
-    /// known, its camera is taken to frame the box, from farther away than it frames the shape.
+    /// to what the other sees; none where a box has no extent. Where `scene`, that of `own`, is
+    /// known, its box is that of what its camera frames ([`Preset::subject_bounds`]); where it is
+    /// not, its camera is taken to frame the box, from farther away than it frames the shape.
     pub fn fit_to(
         &self,
         own: &Self,
@@ -64,6 +65,8 @@ impl PresetFile {
             || camera(&own.preset, to),
             |scene| own.preset.camera_for(scene, aspect(&own.preset)),
         );
+        let framed = scene.map(|scene| own.preset.subject_bounds(scene));
+        let to = framed.as_ref().unwrap_or(to);
         let cameras = [camera(&self.preset, from), own_camera];
         Fit::between(from, to).map(|fit| fit.with_cameras((&cameras[0], from), (&cameras[1], to)))
     }

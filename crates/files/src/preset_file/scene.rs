@@ -75,7 +75,8 @@ pub fn load_scene_beside(
     }))
 }
 
-/// The box of a scene without ground and room, which is built or loaded for that.
+/// The box that lengths of a scene are measured by ([`Scene::subject_bounds`]), without ground and
+/// room. The scene is built or loaded for that.
 ///
 /// # Errors
 /// No such built-in scene or model, or a model that cannot be read.
@@ -83,7 +84,7 @@ pub fn scene_bounds(
     source: &SceneSource,
     preset_path: Option<&Path>,
 ) -> Result<Bounds, SceneError> {
-    Ok(load_source(source, "", preset_path)?.bounds())
+    Ok(load_source(source, "", preset_path)?.subject_bounds(None))
 }
 
 fn load_source(

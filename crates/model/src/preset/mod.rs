@@ -432,6 +432,11 @@ impl Preset {
         self.camera.or_else(own).unwrap_or_else(framing)
     }
 
+    /// The box of `scene` that a look is fitted to, see [`Scene::subject_bounds`].
+    pub fn subject_bounds(&self, scene: &Scene) -> Bounds {
+        scene.subject_bounds(self.motion(scene).clip)
+    }
+
     /// The points of `scene` that its automatic camera frames, before the scene's spin: of its clips
     /// from their begin to their end and of its particles near them, and of a scene that spins from
     /// all sides.

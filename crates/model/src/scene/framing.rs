@@ -60,6 +60,18 @@ impl Scene {
         lock().insert(clip, points.clone());
         points
     }
+
+    /// The box that the lengths of a look are measured by: [`Scene::content_bounds`], but only what
+    /// stands on a sheet where [`Scene::framing_points`] of `clip` leave that out.
+    pub fn subject_bounds(&self, clip: Option<usize>) -> Bounds {
+        let all = self.content_bounds();
+        let framed = bounds_of(self.framing_points(clip).iter());
+        if framed.is_empty() || all.radius() < DOMINATES * framed.radius() {
+            all
+        } else {
+            framed
+        }
+    }
 }
 
 /// The places of each instance's corners, in all poses.
@@ -268,6 +280,8 @@ mod tests {
         let [with, without] =
             [&scene, &alone].map(|scene| bounds_of(scene.framing_points(None).iter()));
         assert_eq!(with, without);
+        assert_eq!(scene.subject_bounds(None), without);
+        assert_eq!(alone.subject_bounds(None), bounds);
         // As one part, too.
         let merged = without_sheets(&[parts(&scene, None).concat()]);
         assert!(width(&bounds_of(&merged)) <= width(&without) * 1.001);

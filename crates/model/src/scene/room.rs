@@ -18,8 +18,8 @@ const CELLS: u32 = 8;
 const GAP: f64 = 1e-3;
 
 impl Scene {
-    /// Adds a room `times` as wide as the scene. The room stands still while the scene spins about
-    /// its vertical axis.
+    /// Adds a room whose width is `times` the width of the scene, or its height where that is more.
+    /// The room stands still while the scene spins about its vertical axis.
     #[must_use]
     pub fn in_room(mut self, times: f64) -> Self {
         let bounds = self.bounds();
@@ -27,8 +27,10 @@ impl Scene {
             return self;
         }
         let reach = |corner: DVec3| libm::hypot(corner.x, corner.z);
-        let half = times * bounds.corners().map(reach).into_iter().fold(1e-6, f64::max);
-        let height = (bounds.max.y - bounds.min.y).max(1e-3 * half);
+        let height = bounds.max.y - bounds.min.y;
+        let widest = bounds.corners().map(reach).into_iter().fold(1e-6, f64::max);
+        let half = times * widest.max(0.5 * height);
+        let height = height.max(1e-3 * half);
         let floor = bounds.min.y - GAP * height;
         let ceiling = floor + (2.0 * half).min(height * (1.0 + times)).max(height * 1.1);
         let room = Bounds {
