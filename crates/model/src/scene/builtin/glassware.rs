@@ -226,7 +226,6 @@ fn flat(mesh: &mut MeshBuilder, corners: &[DVec3]) {
 /// Two tubes of glass with thick walls that cross in the middle, so that neither is in front, and a
 /// rod that goes through one of them. Their walls cover what lies behind, or let a fraction of the light
 /// through.
-
 pub fn crossing(values: &Values) -> Result<Scene, BuiltinError> {
     let (tess, clear) = (values.whole("tess"), values.get("clear") as f32);
     let mut scene = Scene::default();
