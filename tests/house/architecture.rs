@@ -67,10 +67,6 @@ const LONG_FOR_A_REASON: &[(&str, &str)] = &[
         "crates/model/src/preset/settings.rs",
         "one list of all settings of a preset, in the order of its file",
     ),
-    (
-        "src/app/jobs/mod.rs",
-        "one list of all jobs, and a function that starts each",
-    ),
 ];
 
 struct Source {

@@ -59,8 +59,7 @@ pub struct Options {
     /// What `open` names, where it has been read, perhaps with changes.
     pub opened: Option<PresetFile>,
     pub adapter: AdapterChoice,
-    /// The window's devices with the pipelines that were compiled for them before; none before the
-    /// first window.
+    /// The window's devices and the pipelines compiled for them; none before the first window.
     pub devices: Option<Devices>,
     /// Where presets and effects are, beside the user's own presets.
     pub folders: Folders,
@@ -461,9 +460,9 @@ impl App {
         self.state.open.log = is_open;
         let window = ui.ctx().content_rect().width();
         let [left_width, right_width] = self.state.settings.panel_widths(window);
-        let beside_code = window - right_width - PICTURE_BESIDE_PRESETS;
         // Where there is no room for both, the text stands in place of the presets.
-        if !self.panels.code.is_open() || left_width + CODE_WIDTH <= beside_code {
+        let beside = left_width + CODE_WIDTH + PICTURE_BESIDE_PRESETS + right_width;
+        if !self.panels.code.is_open() || beside <= window {
             let left = egui::Panel::left("left")
                 .frame(theme::panel_frame())
                 .default_size(left_width)
