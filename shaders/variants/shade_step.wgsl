@@ -1,7 +1,7 @@
 // Shade steps: what is added to the surface at a sample before surface effects. `at`: vertices of the triangle within its draw.
 // Chosen by the scene and the stack: textures where materials are more than a base color, alpha where some of them blend, finish where an effect reads
-// how they reflect, with finish_maps where textures tell it, transmission where light passes through some of them, normal_map where they turn normals that an effect reads, shadow_map where an effect reads how
-// much light arrives.
+// how they reflect, with finish_maps where textures tell it, transmission where light passes through some of them, normal_map where they turn
+// normals that an effect reads, shadow_map where an effect reads how much light arrives.
 //@ steps fn shade_step(surface: Surface, t: Triangle, at: vec3u, position: SamplePosition) -> Surface
 // Of the step textures, for those behind it.
 //@ may declare fn slopes_of(t: Triangle, at: vec3u, position: SamplePosition, screen: vec2f) -> Slopes

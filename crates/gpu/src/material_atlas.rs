@@ -1,9 +1,10 @@
 //! Texels: what the resolve knows of materials that are more than a base color, in one texture that
 //! costs no storage buffer.
 //!
-//! The texture is used as a row of words (`WordTexture::of_words`): sRGB decoded, a word per byte; a record per primitive; how primitives reflect, where an
-//! effect reads it, behind what passes through them and before the maps that effects read; where the vertices of masked ones lie in their
-//! images; then where the levels of each image that is looked up begin, and the levels of all these
+//! The texture is used as a row of words (`WordTexture::of_words`): sRGB decoded, a word per byte; a
+//! record per primitive; behind the records, for each primitive, what light passes through it, how it
+//! reflects and the maps that effects read, each where a kernel needs it; where the vertices of masked
+//! ones lie in their images; then where the levels of each image that is looked up begin, and the levels of all these
 //! images, a texel a word. Mirrors of `shaders/lib/material_atlas.wgsl`.
 
 use std::mem::size_of;

@@ -63,7 +63,7 @@ mod page {
     pub fn wait(wait: Duration) -> Promise {
         let ms = i32::try_from(wait.as_millis()).unwrap_or(i32::MAX);
         let mut begin = |resolve: Function, _: Function| {
-            // A window and a worker both have it, and refuse it to nobody; the wait would be endless.
+            // Windows and workers both have `setTimeout`. Without it the promise would never resolve.
             let timeout = Reflect::get(&js_sys::global(), &"setTimeout".into());
             if let Some(timeout) = timeout.ok().and_then(|timeout| timeout.dyn_into().ok()) {
                 let timeout: Function = timeout;

@@ -139,7 +139,7 @@ pub struct Transmission {
     pub amount: f64,
     /// The same, behind its thickness: linear RGB.
     pub attenuated: DVec3,
-    /// Its alpha covers nothing less than all.
+    /// Its alpha is not read: it covers all that lies behind it.
     pub is_opaque: bool,
 }
 
