@@ -5,6 +5,8 @@
 
 use glam::DVec3;
 
+use crate::legible::legible_name;
+
 /// Most pixels of a file across and down.
 pub const MAX_SIZE: [usize; 2] = [8192, 4096];
 /// Most bytes of a file.
@@ -59,10 +61,10 @@ pub fn read(bytes: &[u8]) -> Result<LightPicture, String> {
             *weights += weight;
         }
     }
-    let light = sums.into_iter().map(|(sum, weights)| sum / weights);
+    let light = |(sum, weights): (DVec3, f64)| (sum / weights).min(DVec3::splat(BRIGHTEST));
     Ok(LightPicture {
         size,
-        light: light.collect(),
+        light: sums.into_iter().map(light).collect(),
         clamped,
     })
 }
@@ -120,8 +122,9 @@ fn head(input: &mut &[u8]) -> Result<Head, String> {
     let size = [width, height].map(|side| side.parse().unwrap_or(0));
     let [most_width, most_height] = MAX_SIZE;
     if size.contains(&0) || size[0] > most_width || size[1] > most_height {
+        let [width, height] = [width, height].map(|side| legible_name(side, 20));
         return Err(format!(
-            "has {width:.20} x {height:.20} pixels; allowed: 1 x 1 to {most_width} x {most_height}"
+            "has {width} x {height} pixels; allowed: 1 x 1 to {most_width} x {most_height}"
         ));
     }
     Ok(Head { size, brightness })
@@ -298,6 +301,14 @@ mod tests {
         assert_eq!(run.light, [DVec3::new(0.5, 0.25, 0.0); 3]);
         let bright = read(&file("", &[[128, 0, 0, 255], [0; 4], [0; 4]])).expect("a picture");
         assert_eq!((bright.light[0].x, bright.clamped), (BRIGHTEST, 1));
+        // Cells whose sums are rounded up.
+        for [width, height] in [[3000, 7], [2500, 1100]] {
+            let head = format!("#?RGBE\n\n-Y {height} +X {width}\n");
+            let pixels = [128, 128, 128, 255].repeat(width * height);
+            let bright = read(&[head.as_bytes(), &pixels].concat()).expect("a picture");
+            let most = bright.light.iter().map(|light| light.max_element());
+            assert_eq!(most.fold(0.0, f64::max), BRIGHTEST, "{width} x {height}");
+        }
         for pixels in [[[1, 1, 1, 2]; 3], [[9, 9, 9, 128], [1, 1, 1, 3], [0; 4]]] {
             let error = read(&file("", &pixels)).expect_err("runs of nothing, or too long");
             assert!(
@@ -310,7 +321,7 @@ mod tests {
     #[test]
     fn hostile_files_are_refused_in_a_sentence_before_memory_is_taken() {
         let head = |text: &str| format!("#?RADIANCE\n{text}").into_bytes();
-        let cases: [(Vec<u8>, &str); 9] = [
+        let cases: [(Vec<u8>, &str); 10] = [
             (Vec::new(), "is no Radiance picture"),
             (b"\x89PNG\r\n\x1a\n\0\0".to_vec(), "is no Radiance picture"),
             (head("no end"), "has no end of its head"),
@@ -322,6 +333,7 @@ mod tests {
             (head("EXPOSURE=0\n\n-Y 1 +X 1\n"), "has an exposure"),
             (head("\n+Y 4 +X 4\n"), "has no size"),
             (head("\n-Y 100000 +X 4\n"), "has 4 x 100000 pixels"),
+            (head("\n-Y \x1b[2J +X 4\n"), "has 4 x \\u{1b}[2J pixels"),
             (
                 head("\n-Y 4096 +X 8192\n\x02\x02\x20\0"),
                 "is cut off in line 0 of its 4096",
