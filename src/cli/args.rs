@@ -572,6 +572,10 @@ pub struct Fuzz {
     /// Number of presets
     #[arg(long, value_name = "M", default_value_t = 100)]
     pub count: u32,
+    /// Effects that every preset has, separated by commas, instead of those that cannot be beside
+    /// them
+    #[arg(long, value_name = "EFFECTS", value_delimiter = ',')]
+    pub with: Vec<String>,
     /// Folder for the presets that failed, shrunk, and as they are for those that took long or
     /// lost the device
     #[arg(short, long, value_name = "DIR")]

@@ -3,6 +3,7 @@
 
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
+    sync::Arc,
     time::{Duration, Instant},
 };
 
@@ -14,10 +15,12 @@ use super::{
     backend::Backend,
     error::{CliError, Exit},
     files::{self, Names},
+    new_effect::named_effect,
     streams::Streams,
     verify,
 };
 use crate::{
+    effects::{Effect, Stack},
     gpu::{RenderError, Renderer},
     preset::Preset,
     preset_file::{self, PresetFile},
@@ -66,6 +69,8 @@ pub fn run(common: &Common, args: &Fuzz, streams: &mut Streams) -> Result<Exit, 
             "fuzz takes no --set and no --unset: its presets are random",
         ));
     }
+    let with = effects_with(common, args)?;
+    let drawn = |seed| random::preset_with(seed, &with);
     let mut backend = Backend::open(common, streams)?;
     if let Some(folder) = &args.output {
         std::fs::create_dir_all(folder).map_err(|e| {
@@ -79,18 +84,13 @@ pub fn run(common: &Common, args: &Fuzz, streams: &mut Streams) -> Result<Exit, 
     for seed in (0..args.count).map(|n| args.seed.wrapping_add(n)) {
         bar.set_message(format!("seed {seed}"));
         let begin = Instant::now();
-        let outcome = match outcome(common, &random::preset(seed), &mut backend) {
+        let outcome = match outcome(common, &drawn(seed), &mut backend) {
             Ok(outcome) => outcome,
             Err(error) => {
                 note_kept(
                     &bar,
                     streams,
-                    keep(
-                        args,
-                        &format!("lost-{seed}"),
-                        random::preset(seed),
-                        common.force,
-                    ),
+                    keep(args, &format!("lost-{seed}"), drawn(seed), common.force),
                 );
                 return Err(error.during(format!("seed {seed}")));
             }
@@ -108,12 +108,7 @@ pub fn run(common: &Common, args: &Fuzz, streams: &mut Streams) -> Result<Exit, 
             note_kept(
                 &bar,
                 streams,
-                keep(
-                    args,
-                    &format!("slow-{seed}"),
-                    random::preset(seed),
-                    common.force,
-                ),
+                keep(args, &format!("slow-{seed}"), drawn(seed), common.force),
             );
         }
         let smallest = match &outcome {
@@ -121,7 +116,13 @@ pub fn run(common: &Common, args: &Fuzz, streams: &mut Streams) -> Result<Exit, 
                 bar.suspend(|| {
                     streams.note(&format!("seed {seed} failed: {}", reasons.join("; ")))
                 });
-                Some(shrunk(common, args, seed, &mut backend, streams)?)
+                Some(shrunk(
+                    common,
+                    args,
+                    (seed, drawn(seed)),
+                    &mut backend,
+                    streams,
+                )?)
             }
             _ => None,
         };
@@ -150,26 +151,39 @@ pub fn run(common: &Common, args: &Fuzz, streams: &mut Streams) -> Result<Exit, 
     Ok(Exit::failed_if(failed > 0))
 }
 
+/// The effects that every preset is to have.
+fn effects_with(common: &Common, args: &Fuzz) -> Result<Vec<Arc<Effect>>, CliError> {
+    let folders = common.folders();
+    let mut stack = Stack::default();
+    for name in &args.with {
+        let effect = named_effect(&folders, "--with", name)?;
+        if let Some(conflict) = stack.conflict_with(&effect) {
+            return Err(CliError::usage(format!("--with: {conflict}")));
+        }
+        stack.enable(&effect);
+    }
+    let enabled = stack.0.into_iter();
+    Ok(enabled.map(|enabled| enabled.effect).collect())
+}
+
 /// Shrinks the preset of a seed that failed, shows it and keeps it in the output folder.
 fn shrunk(
     common: &Common,
     args: &Fuzz,
-    seed: u32,
+    (seed, preset): (u32, Preset),
     backend: &mut Backend,
     streams: &mut Streams,
 ) -> Result<String, CliError> {
     let mut lost = None;
-    let smallest = shrink::shrink(
-        random::preset(seed),
-        MAX_SHRINK_CALLS,
-        |preset| match outcome(common, preset, backend) {
+    let smallest = shrink::shrink(preset, MAX_SHRINK_CALLS, |preset| {
+        match outcome(common, preset, backend) {
             Ok(outcome) => matches!(outcome, Outcome::Failed(_)),
             Err(error) => {
                 lost.get_or_insert(error);
                 false
             }
-        },
-    );
+        }
+    });
     if let Some(error) = lost {
         return Err(error);
     }

@@ -1,5 +1,7 @@
 //! `new-effect`: writes a commented effect file, and says what to do next.
 
+use std::sync::Arc;
+
 use serde_json::{Value, json};
 
 use super::{
@@ -10,8 +12,9 @@ use super::{
 };
 use crate::{
     effect_files::{check_name, duplicate, template},
+    effects::Effect,
     params::did_you_mean,
-    preset_file::Existing,
+    preset_file::{Existing, Folders},
 };
 
 pub fn run(common: &Common, args: &NewEffect, streams: &mut Streams) -> Result<Exit, CliError> {
@@ -20,16 +23,9 @@ pub fn run(common: &Common, args: &NewEffect, streams: &mut Streams) -> Result<E
     let text = match &args.from {
         None => template(name, args.hook),
         Some(from) => {
-            let folders = common.folders();
-            let found = folders
-                .effects
-                .find(from)
-                .map_err(|error| CliError::usage(error.to_string()))?;
-            let effect = found.ok_or_else(|| {
-                let hint = did_you_mean(from, folders.effects.names());
-                CliError::usage(format!("--from {from}: there is no such effect{hint}"))
-            })?;
-            duplicate(effect, name).map_err(|reason| CliError::usage(format!("{from} {reason}")))?
+            let effect = named_effect(&common.folders(), "--from", from)?;
+            duplicate(&effect, name)
+                .map_err(|reason| CliError::usage(format!("{from} {reason}")))?
         }
     };
     let path = common.effects_dir().join(format!("{name}.wgsl"));
@@ -67,4 +63,17 @@ pub fn run(common: &Common, args: &NewEffect, streams: &mut Streams) -> Result<E
         "edit it while the lab shows it: rasterlab teapot --set {name}"
     ));
     Ok(Exit::Done)
+}
+
+/// The effect that an option names.
+///
+/// # Errors
+/// There is none of this name, or its file has a mistake.
+pub fn named_effect(folders: &Folders, option: &str, name: &str) -> Result<Arc<Effect>, CliError> {
+    let found = folders.effects.find(name);
+    let effect = found.map_err(|error| CliError::usage(error.to_string()))?;
+    effect.cloned().ok_or_else(|| {
+        let hint = did_you_mean(name, folders.effects.names());
+        CliError::usage(format!("{option} {name}: there is no such effect{hint}"))
+    })
 }

@@ -19,17 +19,23 @@ use rasterlab::{
 
 use crate::common::*;
 
-/// Every built-in scene, each on the next option in turn, and on one option a preset for every effect:
-/// the resolve of its effects hardly knows the option.
-fn pictures(options: &[Visibility]) -> Vec<(String, Arc<Scene>, View, Stack, Visibility)> {
-    let mut pictures = Vec::new();
-    for (turn, query) in SCENES.iter().enumerate() {
+type Picture = (String, Arc<Scene>, View, Stack, Visibility);
+
+/// Every built-in scene, each on the next option in turn.
+fn pictures_of_scenes(options: &[Visibility]) -> Vec<Picture> {
+    let picture = |(turn, query): (usize, &&str)| {
         let scene = scene(query);
         let view = view(&scene, [200, 150]);
         let stack = stack(&["depth", "lambert"]);
         let option = options[turn % options.len()];
-        pictures.push(((*query).to_owned(), scene, view, stack, option));
-    }
+        ((*query).to_owned(), scene, view, stack, option)
+    };
+    SCENES.iter().enumerate().map(picture).collect()
+}
+
+/// A preset for every effect on one option: the resolve of its effects hardly knows the option.
+fn pictures_of_effects(options: &[Visibility]) -> Vec<Picture> {
+    let mut pictures = Vec::new();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets");
     let entries = std::fs::read_dir(folder).expect("presets/ can be read");
     let mut preset_files: Vec<_> = entries
@@ -105,7 +111,17 @@ fn assert_same(a: &Frame, b: &Frame, band: &[bool], what: &str) {
 }
 
 #[test]
-fn the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same() {
+fn the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same_scenes() {
+    planned_as_everything(pictures_of_scenes);
+}
+
+#[test]
+fn the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same_effects() {
+    planned_as_everything(pictures_of_effects);
+}
+
+/// Draws the pictures both ways.
+fn planned_as_everything(pictures: fn(&[Visibility]) -> Vec<Picture>) {
     let Some(mut renderer) = renderer() else {
         return;
     };

@@ -199,14 +199,26 @@ fn within_budget(errors: &rasterlab::measure::ErrorReport, preset: &Preset) -> R
 }
 
 #[test]
-fn every_preset_is_exact_and_looks_like_its_golden() {
+fn every_preset_is_exact_and_looks_like_its_golden_first_half() {
+    exact_and_like_their_goldens(0);
+}
+
+#[test]
+fn every_preset_is_exact_and_looks_like_its_golden_second_half() {
+    exact_and_like_their_goldens(1);
+}
+
+/// Judges and compares the presets of one half, so that two threads have something to do.
+fn exact_and_like_their_goldens(half: usize) {
     let Some(mut renderer) = renderer() else {
         return;
     };
     let update = std::env::var("UPDATE_SNAPSHOTS").unwrap_or_default();
     let mut failures = Vec::new();
     let options = options(&renderer);
-    for (turn, preset_file) in all_preset_files().iter().enumerate() {
+    let files = all_preset_files();
+    let (first, second) = files.split_at(files.len() / 2);
+    for (turn, preset_file) in [first, second][half].iter().enumerate() {
         let (id, preset) = (&preset_file.id, &preset_file.preset);
         let scene = scene_of(preset_file);
         let snapshot = Snapshot {

@@ -327,7 +327,11 @@ fn adapter_ui(ui: &mut Ui, state: &State, is_narrow: bool) {
     };
     let hint = |ui: &mut Ui| {
         ui.label(RichText::new(&summary.name).color(theme::text_strong()));
-        ui.label(format!("{} · {}", summary.backend, summary.driver));
+        let driver = match summary.driver.as_str() {
+            "" => "driver unknown",
+            driver => driver,
+        };
+        ui.label(format!("{} · {driver}", summary.backend));
         ui.label(theme::weak(format!("class {}", gpu.caps.class())));
         if summary.software {
             let text = "A software adapter: its pictures are right, but its times do not tell how fast a graphics card is.";

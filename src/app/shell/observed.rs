@@ -10,6 +10,7 @@ use crate::{
         picture::{
             state::PictureState,
             tier_times::{self, TierTime},
+            timings::Occasion,
         },
     },
     gpu::Gpu,
@@ -39,6 +40,15 @@ impl App {
     /// Frames drawn so far; unchanged while nothing changes.
     pub fn draws(&self) -> u64 {
         self.state.picture.screen.draws()
+    }
+
+    /// Times of the newest frames that were drawn again to be measured, oldest first, milliseconds.
+    pub fn measured_ms(&self) -> Vec<f64> {
+        let frames = self.state.picture.screen.timings().history();
+        frames
+            .filter(|(_, occasion)| *occasion == Occasion::Rest)
+            .map(|(sample, _)| sample.ms)
+            .collect()
     }
 
     /// Triangles of the scene that is shown; 0 without one.

@@ -132,13 +132,10 @@ impl App {
         settings.theme.choose(ctx);
         ctx.set_zoom_factor(settings.scale);
         let summary = &devices.picture.summary;
-        log.add(
-            Level::Info,
-            format!(
-                "adapter: {}, {}, {}",
-                summary.name, summary.backend, summary.driver
-            ),
-        );
+        // A page is told of no driver.
+        let known = [&summary.name, &summary.backend, &summary.driver].map(String::as_str);
+        let known: Vec<&str> = known.into_iter().filter(|word| !word.is_empty()).collect();
+        log.add(Level::Info, format!("adapter: {}", known.join(", ")));
         let mut panels = Panels::new(&options.folders);
         panels.browser.show(settings.browsing);
         panels.film.begin_with(settings.film.clone());

@@ -227,6 +227,8 @@ fn usage_errors_exit_with_2_and_leave_stdout_empty() {
         &["bench", "--adapter", "cpu"],
         &["stress", "--adapter", "cpu"],
         &["fuzz", "--adapter", "cpu", "--set", "facet"],
+        &["fuzz", "--adapter", "cpu", "--with", "facet,glas"],
+        &["fuzz", "--adapter", "cpu", "--with", "glass,xray"],
         &["stress", "--filter", "no-such-case"],
         &["bless", "facet", "--adapter", "cpu"],
         &["facet", "list"],

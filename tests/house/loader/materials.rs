@@ -10,6 +10,7 @@ use rasterlab::{
     scene::{
         camera::Camera,
         gltf::limits,
+        model::Instance,
         texture::{Filter, MipFilter, Texture, Wrap},
     },
 };
@@ -322,7 +323,23 @@ fn materials_let_light_through_as_the_file_says() {
         "KHR_materials_transmission": { "transmissionFactor": 1 },
         "KHR_materials_volume": { "thicknessFactor": 3, "attenuationDistance": 1.5, "attenuationColor": [0.5, 1, 0] },
     });
-    assert_eq!(of(thick), (1.0, [0.25, 1.0, 0.0]));
+    assert_eq!(of(thick.clone()), (1.0, [0.25, 1.0, 0.0]));
+    // A node that doubles its mesh doubles the thickness, too; its neighbor shows the mesh as it is.
+    let scene = Model::textured()
+        .with("/materials/0/extensions", thick)
+        .with("/nodes", json!([{ "mesh": 0 }, { "mesh": 0, "scale": [2, 2, 2] }, { "mesh": 0, "scale": [-2, 2, 2] }]))
+        .with("/scenes/0/nodes", json!([0, 1, 2]))
+        .scene();
+    let attenuation = |instance: &Instance| {
+        let primitive = &scene.primitives[instance.primitive];
+        scene.materials[primitive.material].attenuation
+    };
+    let of_nodes: Vec<[f32; 3]> = scene.instances.iter().map(attenuation).collect();
+    assert_eq!(
+        of_nodes,
+        [[0.25, 1.0, 0.0], [0.0625, 1.0, 0.0], [0.0625, 1.0, 0.0]]
+    );
+    assert_eq!(scene.primitives.len(), 2, "nodes of one scale share one");
     let endless =
         json!({ "KHR_materials_volume": { "thicknessFactor": 3, "attenuationColor": [0, 0, 0] } });
     assert_eq!(of(endless), (0.0, [1.0; 3]), "no distance absorbs nothing");

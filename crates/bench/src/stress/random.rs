@@ -9,7 +9,7 @@ use super::scenes::Rng;
 use crate::{
     accuracy::{AXES, Visibility},
     effects::{EFFECTS, Effect, EnabledEffect, Stack},
-    math::hash_unit,
+    math::{hash, hash_unit},
     params::{Field, Param, ValueType},
     plan::Tier,
     preset::{
@@ -273,6 +273,22 @@ fn camera(rng: &mut Rng, bounds: &Bounds) -> Camera {
     }
 }
 
+/// The preset of `seed` with these effects among its own: each replaces its rivals, and takes
+/// random values where the preset has it not.
+pub fn preset_with(seed: u32, effects: &[Arc<Effect>]) -> Preset {
+    let mut preset = preset(seed);
+    let mut rng = Rng(hash(seed));
+    for effect in effects {
+        while let Some(rival) = preset.stack.rival_of(effect).cloned() {
+            preset.disable(&rival.name);
+        }
+        if preset.stack.get(&effect.name).is_none() {
+            shake(&mut rng, preset.stack.enable(effect), Values::Allowed);
+        }
+    }
+    preset
+}
+
 /// A preset of `seed`.
 pub fn preset(seed: u32) -> Preset {
     let mut rng = Rng(seed.wrapping_mul(0x1234_5679).wrapping_add(0x51ed_270b));
@@ -467,6 +483,32 @@ mod tests {
     fn a_seed_gives_one_preset_and_other_seeds_give_others() {
         assert_eq!(preset(7), preset(7));
         assert_ne!(preset(7), preset(8));
+    }
+
+    #[test]
+    fn effects_that_are_asked_for_are_among_those_of_every_preset() {
+        let asked = ["glass", "studio"].map(|name| Effect::find(name).expect("an effect").clone());
+        for seed in 0..200 {
+            let (with, without) = (preset_with(seed, &asked), preset(seed));
+            let names = |preset: &Preset| -> Vec<String> {
+                let enabled = preset.stack.0.iter();
+                enabled.map(|enabled| enabled.effect.name.clone()).collect()
+            };
+            assert!(
+                asked
+                    .iter()
+                    .all(|effect| with.stack.get(&effect.name).is_some()
+                        && with.stack.rival_of(effect).is_none()),
+                "{seed}: {:?}",
+                names(&with)
+            );
+            assert_eq!(with.scene, without.scene);
+            let rivals = names(&without)
+                .into_iter()
+                .filter(|name| !names(&with).contains(name));
+            assert!(rivals.count() <= asked.len() + 1, "{seed}");
+        }
+        assert_eq!(preset_with(9, &[]), preset(9));
     }
 
     #[test]

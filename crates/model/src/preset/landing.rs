@@ -74,7 +74,7 @@ impl Preset {
         let (clip, own_clip) = (&self.playback.clip, &own.playback.clip);
         let is_left = !clip.is_empty() && own_clip.is_empty();
         let clip = format!(
-            "scene.clip {clip:?} was left out; choose a clip of this model under Clips, or with --set scene.clip=NAME"
+            "scene.clip {clip:?} was left out; choose one that this model has, if any, under Clips, or with --set scene.clip=NAME"
         );
         is_left.then_some(clip).into_iter().collect()
     }

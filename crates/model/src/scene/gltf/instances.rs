@@ -1,6 +1,6 @@
 //! Instances: the nodes show the primitives of their meshes, once or many times.
 
-use glam::DMat4;
+use glam::{DMat3, DMat4};
 
 use super::{
     deformation,
@@ -9,7 +9,32 @@ use super::{
     meshes::Loader,
     nodes::node_name,
 };
-use crate::scene::{model::Instance, rig::Rig};
+use crate::scene::{
+    material::Material,
+    model::{Instance, Primitive},
+    rig::Rig,
+};
+
+/// How often a node makes the volume of a material as thick as it is in the space of its mesh, in
+/// steps so small that no color shows them: a model of many sizes makes few materials.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Thickness(i32);
+
+impl Thickness {
+    const STEPS_PER_OCTAVE: f64 = 256.0;
+
+    /// That of a node, by the volume of what it makes of a unit cube.
+    fn of(world_from_node: &DMat4) -> Self {
+        let volume = DMat3::from_mat4(*world_from_node).determinant().abs();
+        // Beyond these a wall lets nothing or all through.
+        let octaves = (libm::log2(volume) / 3.0).clamp(-30.0, 30.0);
+        Self((octaves * Self::STEPS_PER_OCTAVE).round() as i32)
+    }
+
+    fn scale(self) -> f64 {
+        libm::exp2(f64::from(self.0) / Self::STEPS_PER_OCTAVE)
+    }
+}
 
 impl Loader<'_> {
     /// Adds the instances of a node. A skinned mesh ignores the transform of its node: its joints
@@ -23,13 +48,19 @@ impl Loader<'_> {
             return Ok(());
         };
         let range = self.mesh(mesh)?;
+        let thickness = Thickness::of(&self.tree.world_from_node[node]);
         let mut shown = Vec::with_capacity(range.len());
         for primitive in range {
             let skin = match about.skin {
                 Some(skin) => self.followed(primitive, skin, rig)?,
                 None => None,
             };
-            shown.push((primitive, skin));
+            let thickness = if skin.is_some() {
+                Thickness(0)
+            } else {
+                thickness
+            };
+            shown.push((self.scaled(primitive, thickness), skin));
         }
         let placements = self.placements(node, shown.len())?;
         let rig_node = (!rig.is_empty()).then(|| self.tree.rig_index[node]);
@@ -71,6 +102,31 @@ impl Loader<'_> {
             instances.extend(shown.iter().map(instance));
         }
         Ok(())
+    }
+
+    /// The primitive with its material as thick as the file says of `thickness`, where that shows.
+    fn scaled(&mut self, primitive: usize, thickness: Thickness) -> usize {
+        let scene = &mut self.writer.scene;
+        let material = scene.primitives[primitive].material;
+        let absorbs =
+            |material: &Material| material.transmission > 0.0 && material.attenuation != [1.0; 3];
+        if thickness == Thickness(0) || !absorbs(&scene.materials[material]) {
+            return primitive;
+        }
+        let made = self.scaled.entry((primitive, thickness));
+        *made.or_insert_with(|| {
+            let mut thick = scene.materials[material].clone();
+            thick.attenuation = thick
+                .attenuation
+                .map(|left| libm::pow(left.into(), thickness.scale()) as f32);
+            scene.materials.push(thick);
+            scene.primitives.push(Primitive {
+                material: scene.materials.len() - 1,
+                ..scene.primitives[primitive].clone()
+            });
+            self.sources.push(self.sources[primitive]);
+            scene.primitives.len() - 1
+        })
     }
 
     /// Counts more instances, before they are made.

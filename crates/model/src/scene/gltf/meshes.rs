@@ -13,6 +13,7 @@ use super::{
     deformation,
     document::{self, AlphaMode, Document},
     error::{LoadError, called, part_name},
+    instances::Thickness,
     limits::Limits,
     mask,
     nodes::Tree,
@@ -51,6 +52,9 @@ pub struct Loader<'a> {
     meshes: HashMap<usize, Range<usize>>,
     /// Materials that the file does not have as they are drawn: each with what it is made from.
     variants: HashMap<(Option<usize>, mask::Variant), usize>,
+    /// Primitives whose materials are as thick as nodes scale them, each with what it is made from
+    /// and [`Thickness`](super::instances::Thickness).
+    pub(super) scaled: HashMap<(usize, Thickness), usize>,
     vertices: u64,
     triangles: u64,
 }
@@ -70,6 +74,7 @@ impl<'a> Loader<'a> {
             claimed: 0,
             meshes: HashMap::new(),
             variants: HashMap::new(),
+            scaled: HashMap::new(),
             vertices: 0,
             triangles: 0,
         }
