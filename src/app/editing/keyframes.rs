@@ -124,6 +124,12 @@ impl Session {
         self.set_keyframe((effect, field), value)
     }
 
+    /// [`Preset::key_from`] on the scene that is shown.
+    fn key_from(&mut self, other: &Preset) -> usize {
+        let scene = self.scene().cloned().unwrap_or_default();
+        self.preset_mut().key_from(other, &scene)
+    }
+
     /// Removes a key. The value of the last one stays.
     fn remove_key(&mut self, key: KeyId) -> Result<(), String> {
         let preset = self.preset_mut();
@@ -183,7 +189,7 @@ impl Session {
                 Ok(Some(key))
             }
             KeyframeEdit::Remove(key) => self.remove_key(key).map(|()| None),
-            KeyframeEdit::From(other) => match self.preset_mut().key_from(&other) {
+            KeyframeEdit::From(other) => match self.key_from(&other) {
                 0 => Err("A and B have no effect in common with numbers or colors that differ, so nothing is keyed".into()),
                 _ => Ok(None),
             },

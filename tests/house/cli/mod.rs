@@ -186,7 +186,7 @@ fn adapters_always_end_with_cpu() {
 
 #[test]
 fn usage_errors_exit_with_2_and_leave_stdout_empty() {
-    let cases: [&[&str]; 21] = [
+    let cases: [&[&str]; 23] = [
         &["--no-such-flag"],
         &["--log", "no-such-folder/window.log"],
         &["--log", "window.log", "list"],

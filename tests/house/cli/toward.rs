@@ -161,10 +161,11 @@ fn a_size_has_a_name() {
         ("square", [1080, 1080]),
         ("story", [1080, 1920]),
     ] {
-        let explained = json(&run(&["explain", "lambert", "--size", name, "--json"]));
+        let explain = ["explain", "lambert", "--adapter", "cpu", "--size", name];
+        let explained = json(&run(&[&explain[..], &["--json"]].concat()));
         assert_eq!(explained["results"][0]["size"], serde_json::json!(size));
     }
-    let wrong = run(&["explain", "lambert", "--size", "huge"]);
+    let wrong = run(&["explain", "lambert", "--adapter", "cpu", "--size", "huge"]);
     assert!(
         wrong.code == 2 && wrong.err.contains("1080p, 4k, square, story"),
         "{}",

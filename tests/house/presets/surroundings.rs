@@ -85,6 +85,33 @@ fn a_picture_lies_beside_the_preset_or_below_or_is_one_of_the_gallery() {
 }
 
 #[test]
+fn a_preset_that_is_saved_elsewhere_has_its_picture_there() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for part in ["old/light", "new", "other/light"] {
+        fs::create_dir_all(folder.path().join(part)).expect("a folder");
+    }
+    let place = |name: &str| folder.path().join(name);
+    fs::write(place("old/light/a.hdr"), picture(3.0)).expect("a file");
+    fs::write(place("other/light/a.hdr"), picture(1.0)).expect("a file");
+    let file = naming(&place("old"), "light/a.hdr");
+    let words = loaded(&file).expect("a picture");
+    for (to, is_named) in [
+        ("new/b.toml", true),
+        ("old/b.toml", true),
+        ("other/b.toml", false),
+    ] {
+        let mut saved = file.clone();
+        preset_file::save(&mut saved, &place(to)).expect("it is saved");
+        assert_eq!(loaded(&saved).expect("a picture"), words, "{to}");
+        assert_eq!(saved.preset.surroundings == "light/a.hdr", is_named, "{to}");
+    }
+    assert_eq!(
+        fs::read(place("other/light/a.hdr")).expect("it stays"),
+        picture(1.0)
+    );
+}
+
+#[test]
 fn a_shared_preset_brings_its_picture_and_a_look_takes_it_to_another_scene() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("a.hdr"), picture(3.0)).expect("a file");

@@ -296,7 +296,7 @@ pub fn to_shared_toml(preset_file: &PresetFile) -> String {
 
 /// Writes the preset to `path`, whole or not at all, and makes that its file. A file that has this
 /// text already is not written. A relative model path is rewritten so that it still leads to the
-/// model.
+/// model, and the picture of surroundings is put beside the preset.
 ///
 /// # Errors
 /// The preset has a newer schema, or the file cannot be written; then `preset_file` stays as it is.
@@ -311,6 +311,7 @@ pub fn save(preset_file: &mut PresetFile, path: &Path) -> Result<(), PresetError
     if let SceneSource::File(model) = &preset_file.preset.scene {
         next.preset.scene = SceneSource::File(rebase(model, preset_file.path.as_deref(), path));
     }
+    next.preset.surroundings = preset_file.surroundings_beside(path);
     let text = to_toml(&next);
     let is_there = preset_file.path.as_deref() == Some(path)
         && std::fs::read(path).is_ok_and(|there| there == text.as_bytes());

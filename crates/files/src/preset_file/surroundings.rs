@@ -10,6 +10,7 @@ use std::{
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 
 use super::{
+    atomic::{Existing, write_atomically},
     file::{PresetFile, model_path},
     gallery::BUILTIN_DIR,
     hash::Fnv,
@@ -176,6 +177,36 @@ impl PresetFile {
                 format!("{EMBEDDED}{}", STANDARD.encode(bytes))
             }
             _ => named.clone(),
+        }
+    }
+
+    /// `scene.surroundings` for this preset as it is saved at `to`: its picture is put beside it where
+    /// none is. One that is there stays; if it is another, the picture is inside the preset.
+    pub(super) fn surroundings_beside(&self, to: &Path) -> String {
+        let named = &self.preset.surroundings;
+        let stays = self
+            .path
+            .as_deref()
+            .is_some_and(|path| path.parent() == to.parent());
+        if stays || named.is_empty() || named.starts_with(EMBEDDED) {
+            return named.clone();
+        }
+        let bytes = match bytes_of(named, self.path.as_deref()) {
+            Ok(Cow::Owned(bytes)) => bytes,
+            _ => return named.clone(),
+        };
+        let place = model_path(Path::new(named), Some(to));
+        let is_there = || match bytes_of(named, Some(to)) {
+            Ok(Cow::Owned(there)) => there == bytes,
+            _ => {
+                // A folder that cannot be made is one that cannot be written to.
+                let _ = place.parent().map(std::fs::create_dir_all);
+                write_atomically(&place, &bytes, Existing::Keep).is_ok()
+            }
+        };
+        match is_there() {
+            true => named.clone(),
+            false => self.shared_surroundings(),
         }
     }
 }

@@ -1,6 +1,8 @@
 //! One preset on the way to another: numbers, colors and cameras in between, and everything else of
 //! the nearer one.
 
+use std::borrow::Cow;
+
 use glam::DVec3;
 
 use super::{
@@ -157,8 +159,14 @@ impl Preset {
 impl Preset {
     /// Sets keyframes with which this preset begins its clock as `other` and ends it as it is: of
     /// numbers and colors that differ, of the effects that both have. Tracks of these are replaced;
-    /// everything else stays. Returns how many parameters move.
-    pub fn key_from(&mut self, other: &Self) -> usize {
+    /// everything else stays, but that lengths are in meters of `scene` from now on where the other's
+    /// have another unit. Returns how many parameters move.
+    pub fn key_from(&mut self, other: &Self, scene: &Scene) -> usize {
+        let mut other = Cow::Borrowed(other);
+        if self.unit != other.unit {
+            *self = self.in_meters(scene).into_owned();
+            other = Cow::Owned(other.in_meters(scene).into_owned());
+        }
         let [from_s, to_s] = self.clock.range_s;
         let start = other.animation.evaluate(&other.stack, from_s);
         let end = self.animation.evaluate(&self.stack, to_s);
@@ -192,7 +200,11 @@ impl Preset {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effects::{facet, lambert, posterize};
+    use crate::{
+        effects::{explode, facet, lambert, posterize},
+        preset::LengthUnit,
+        scene::builtin,
+    };
 
     fn camera(eye: [f64; 3], fov_y_deg: f64) -> Camera {
         Camera {
@@ -270,7 +282,8 @@ mod tests {
             let enabled = preset.stack.get_mut("facet").expect("it is enabled");
             amount.set(&mut enabled.words, &[value]).expect("in range");
         }
-        assert_eq!(b.key_from(&a), 1);
+        let scene = Scene::default();
+        assert_eq!(b.key_from(&a, &scene), 1);
         let at = |time_s| {
             let stack = b.animation.evaluate(&b.stack, time_s);
             amount.get(&stack.get("facet").expect("it is enabled").words)[0]
@@ -279,6 +292,29 @@ mod tests {
         assert!(at(2.0) > 0.25 && at(2.0) < 0.75);
         // From itself nothing moves that is not keyed already.
         let mut same = a.clone();
-        assert_eq!((same.key_from(&a), same), (0, a));
+        assert_eq!((same.key_from(&a, &scene), same), (0, a));
+    }
+
+    #[test]
+    fn keys_between_presets_of_two_units_are_in_meters() {
+        let scene = builtin::build("sphere?triangles=200").expect("a scene");
+        let [mut a, mut b] = [LengthUnit::Scene, LengthUnit::Meter].map(|unit| Preset {
+            unit,
+            ..Preset::default()
+        });
+        let amount = explode::EFFECT.field("amount_m").expect("a parameter");
+        for (preset, value) in [(&mut a, 0.5), (&mut b, 4.0)] {
+            let enabled = preset.stack.enable(&explode::EFFECT);
+            amount.set(&mut enabled.words, &[value]).expect("in range");
+        }
+        let of = |preset: &Preset| {
+            let stack = preset.animation.evaluate(&preset.stack, 0.0);
+            amount.get(&stack.get("explode").expect("it is enabled").words)[0]
+        };
+        let meters = of(&a.in_meters(&scene));
+        assert_ne!(meters, 0.5);
+        assert_eq!((b.key_from(&a, &scene), of(&b)), (1, meters));
+        let back = b.clone();
+        assert_eq!((a.key_from(&back, &scene), a.unit), (1, LengthUnit::Meter));
     }
 }
