@@ -22,6 +22,7 @@ fn ambient_find(at: ImageAt, p: Ambient) -> vec4f {
     let depth = bitcast<f32>(here.y);
     // On a plane, depths change evenly across the picture.
     let slope = vec2f(ambient_slope(at, depth, vec2i(1, 0)), ambient_slope(at, depth, vec2i(0, 1)));
+    let radius_m = ambient_radius_m(here_m, p);
     let reach_px = clamp(p.radius_m / image_pixel_size_m(here_m), 1.0, p.most_px);
     let first = hash_unit(hash(u32(at.x)) + u32(at.y));
     var hidden = 0.0;
@@ -31,7 +32,7 @@ fn ambient_find(at: ImageAt, p: Ambient) -> vec4f {
         let step = vec2i(floor(away * vec2f(cosine_turns(turns), sine_turns(turns)) + 0.5));
         let plane_m = image_meters(depth + dot(slope, vec2f(step)));
         // How far what is seen there stands out from the plane of this pixel.
-        let height = (plane_m - image_depth_m(at.x + step.x, at.y + step.y)) / p.radius_m;
+        let height = (plane_m - image_depth_m(at.x + step.x, at.y + step.y)) / radius_m;
         hidden += clamp(4.0 * height - 0.1, 0.0, 1.0) * clamp(2.0 - height, 0.0, 1.0);
     }
     return vec4f(hidden / f32(AMBIENT_TAPS), 0.0, 0.0, here_m);
@@ -47,6 +48,11 @@ fn ambient_shade(at: ImageAt, p: Ambient) -> vec4f {
     return vec4f(color.rgb * mix(vec3f(1.0), p.shade.rgb, hidden), color.a);
 }
 
+// No less than a pixel is, whose depth tells nothing smaller.
+fn ambient_radius_m(here_m: f32, p: Ambient) -> f32 {
+    return max(p.radius_m, image_pixel_size_m(here_m));
+}
+
 // The smaller of the changes of depth to both sides.
 fn ambient_slope(at: ImageAt, depth: f32, step: vec2i) -> f32 {
     let ahead = bitcast<f32>(image_at(at.x + step.x, at.y + step.y).y) - depth;
@@ -57,12 +63,13 @@ fn ambient_slope(at: ImageAt, depth: f32, step: vec2i) -> f32 {
 // Mean along a direction of pixels at about the same depth.
 fn ambient_mean(at: ImageAt, along: vec2i, p: Ambient) -> vec4f {
     let here = image_last(at.x, at.y);
+    let radius_m = ambient_radius_m(here.a, p);
     var sum = 0.0;
     var weights = 0.0;
     let reach = i32(p.soft_px);
     for (var i = -reach; i <= reach; i += 1) {
         let there = image_last(at.x + i * along.x, at.y + i * along.y);
-        let apart = (there.a - here.a) / p.radius_m;
+        let apart = (there.a - here.a) / radius_m;
         let weight = 1.0 / (1.0 + 16.0 * apart * apart);
         sum += weight * there.r;
         weights += weight;

@@ -22,7 +22,7 @@ params! {
     pub struct Ambient {
         /// What hidden light is multiplied by, linear; its alpha is the strength.
         shade: Color = [0.05, 0.06, 0.1, 1.0];
-        /// How far away something still hides the sky.
+        /// How far away something still hides the sky; at least a pixel.
         radius_m: f32 = 0.5, hard 0.0001..=10000.0, soft 0.01..=10.0, log true, unit "m";
         /// Strength: 1 darkens by the fraction that is hidden.
         strength: f32 = 2.0, hard 0.0..=16.0, soft 0.0..=4.0;
@@ -75,7 +75,7 @@ impl Ambient {
         let depth = f64::from(f32::from_bits(key));
         // On a plane, depths change evenly across the picture.
         let slope = [[1, 0], [0, 1]].map(|step| slope(at, depth, step));
-        let radius_m = f64::from(self.radius_m);
+        let radius_m = self.radius_m(at, here_m);
         let reach_px =
             (radius_m / at.input.lens.pixel_size_m(here_m)).clamp(1.0, f64::from(self.most_px));
         let first = hash_unit(hash(at.x as u32).wrapping_add(at.y as u32));
@@ -97,16 +97,22 @@ impl Ambient {
     /// Mean along a direction of pixels at about the same depth.
     fn mean(&self, at: &ImageAt, along: [i64; 2]) -> DVec4 {
         let here = at.last(at.x, at.y);
+        let radius_m = self.radius_m(at, here.w);
         let (mut sum, mut weights) = (0.0, 0.0);
         let reach = i64::from(self.soft_px);
         for i in -reach..=reach {
             let there = at.last(at.x + i * along[0], at.y + i * along[1]);
-            let apart = (there.w - here.w) / f64::from(self.radius_m);
+            let apart = (there.w - here.w) / radius_m;
             let weight = 1.0 / (1.0 + 16.0 * apart * apart);
             sum += weight * there.x;
             weights += weight;
         }
         DVec4::new(sum / weights, 0.0, 0.0, here.w)
+    }
+
+    /// No less than a pixel is, whose depth tells nothing smaller.
+    fn radius_m(&self, at: &ImageAt, here_m: f64) -> f64 {
+        f64::from(self.radius_m).max(at.input.lens.pixel_size_m(here_m))
     }
 }
 
