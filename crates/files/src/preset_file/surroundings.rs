@@ -197,7 +197,8 @@ impl PresetFile {
         };
         let place = model_path(Path::new(named), Some(to));
         let is_there = || match bytes_of(named, Some(to)) {
-            Ok(Cow::Owned(there)) => there == bytes,
+            Ok(there) if *there == bytes => true,
+            Ok(Cow::Owned(_)) => false,
             _ => {
                 // A folder that cannot be made is one that cannot be written to.
                 let _ = place.parent().map(std::fs::create_dir_all);

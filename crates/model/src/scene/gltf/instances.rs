@@ -15,7 +15,7 @@ use crate::scene::{
     rig::Rig,
 };
 
-/// How often a node makes the volume of a material as thick as it is in the space of its mesh, in
+/// How many times as thick as in the space of its mesh a node makes the volume of a material, in
 /// steps so small that no color shows them: a model of many sizes makes few materials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Thickness(i32);
@@ -104,7 +104,7 @@ impl Loader<'_> {
         Ok(())
     }
 
-    /// The primitive with its material as thick as the file says of `thickness`, where that shows.
+    /// The primitive with its material `thickness` times as thick, where that shows.
     fn scaled(&mut self, primitive: usize, thickness: Thickness) -> usize {
         let scene = &mut self.writer.scene;
         let material = scene.primitives[primitive].material;
