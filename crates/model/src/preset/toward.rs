@@ -160,16 +160,16 @@ impl Preset {
     /// Sets keyframes with which this preset begins its clock as `other` and ends it as it is: of
     /// numbers and colors that differ, of the effects that both have. Tracks of these are replaced;
     /// everything else stays, but that lengths are in meters of `scene` from now on where the other's
-    /// have another unit. Returns how many parameters move.
+    /// have another unit. Returns how many parameters move; where none does, nothing changes.
     pub fn key_from(&mut self, other: &Self, scene: &Scene) -> usize {
-        let mut other = Cow::Borrowed(other);
+        let (mut keyed, mut other) = (self.clone(), Cow::Borrowed(other));
         if self.unit != other.unit {
-            *self = self.in_meters(scene).into_owned();
+            keyed = self.in_meters(scene).into_owned();
             other = Cow::Owned(other.in_meters(scene).into_owned());
         }
-        let [from_s, to_s] = self.clock.range_s;
+        let [from_s, to_s] = keyed.clock.range_s;
         let start = other.animation.evaluate(&other.stack, from_s);
-        let end = self.animation.evaluate(&self.stack, to_s);
+        let end = keyed.animation.evaluate(&keyed.stack, to_s);
         let mut moving = 0;
         for enabled in &end.0 {
             let effect = &enabled.effect;
@@ -188,10 +188,13 @@ impl Preset {
                     easing: default_easing(field),
                 });
                 if let Ok(track) = Track::new(effect, field, keys.collect()) {
-                    self.animation.put(track);
+                    keyed.animation.put(track);
                     moving += 1;
                 }
             }
+        }
+        if moving > 0 {
+            *self = keyed;
         }
         moving
     }
@@ -317,5 +320,11 @@ mod tests {
         assert_eq!((b.key_from(&a, &scene), of(&b)), (1, meters));
         assert_eq!((a.key_from(&plain, &scene), of(&a)), (1, 4.0));
         assert_eq!(a.unit, LengthUnit::Meter);
+        let bare = Preset {
+            unit: LengthUnit::Scene,
+            ..Preset::default()
+        };
+        let mut same = bare.clone();
+        assert_eq!((same.key_from(&plain, &scene), same), (0, bare));
     }
 }
