@@ -3,7 +3,7 @@
 
 use std::{path::Path, sync::Arc};
 
-use eframe::egui::{self, ComboBox, DragValue, Grid, Key, RichText, Ui};
+use eframe::egui::{self, ComboBox, DragValue, Grid, Key, Ui};
 
 use crate::{
     accuracy::RenderScale,
@@ -15,7 +15,12 @@ use crate::{
             log::Level,
             state::State,
         },
-        widgets::{panel::Panel, size::size_ui, text::cut_middle, theme},
+        widgets::{
+            panel::{Panel, at_right},
+            size::size_ui,
+            text::cut_middle,
+            theme,
+        },
     },
     film::{Turntable, find_ffmpeg},
     preset::{Clock, Preset},
@@ -523,7 +528,7 @@ fn about(form: &Form, schedule: &crate::film::Schedule) -> String {
 fn progress_ui(ui: &mut Ui, request: &Request, progress: &Progress) -> bool {
     let counts = progress.read();
     let path = request.path.display().to_string();
-    ui.label(RichText::new(cut_middle(&path, 56)).color(theme::text_strong()))
+    ui.label(theme::strong(cut_middle(&path, 56)))
         .on_hover_text(path);
     ui.add_space(theme::HALF);
     let text = if counts.all == 0 {
@@ -545,7 +550,7 @@ fn progress_ui(ui: &mut Ui, request: &Request, progress: &Progress) -> bool {
     let mut is_stopped = false;
     ui.horizontal(|ui| {
         ui.label(theme::weak(left));
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        at_right(ui, |ui| {
             is_stopped = ui
                 .add(egui::Button::new("Cancel").min_size(egui::vec2(72.0, theme::ROW)))
                 .clicked();

@@ -17,7 +17,10 @@ use crate::{
             command::{Command, Commands},
             state::State,
         },
-        widgets::{panel::Panel, theme},
+        widgets::{
+            panel::{Panel, describe_chosen, main_button},
+            theme,
+        },
     },
     effects::{EnabledEffect, Stack},
 };
@@ -152,7 +155,7 @@ impl Panel for RandomizePanel {
 
 fn controls_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     ui.horizontal(|ui| {
-        let button = egui::Button::new("Randomize").fill(theme::accent_ground());
+        let button = main_button("Randomize");
         let is_possible = !state.session.preset().stack.0.is_empty();
         let hint = format!("Give every parameter that is not locked a random value ({})", Action::Randomize.shortcut_text());
         if ui.add_enabled(is_possible, button).on_hover_text(hint).accessible_name("Randomize now").clicked() {
@@ -188,9 +191,7 @@ fn locks_ui(ui: &mut Ui, state: &State, commands: &Commands, enabled: &EnabledEf
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 10.0;
         let mut varies = locked < shown.len();
-        let title = RichText::new(&effect.name)
-            .strong()
-            .color(theme::text_strong());
+        let title = theme::strong(&effect.name).strong();
         let all = ui
             .checkbox(&mut varies, title)
             .on_hover_text("Let all of its parameters vary, or lock them all");
@@ -286,8 +287,11 @@ fn seed_ui(
         .rect_filled(plate, 3.0, egui::Color32::from_black_alpha(150));
     ui.painter()
         .galley(plate.min + vec2(4.0, 1.0), note, theme::text_strong());
-    response.widget_info(|| {
-        egui::WidgetInfo::selected(egui::Role::Button, true, is_current, format!("Seed {seed}"))
-    });
+    describe_chosen(
+        &response,
+        egui::Role::Button,
+        is_current,
+        format!("Seed {seed}"),
+    );
     response.on_hover_text(format!("Go back to seed {seed}"))
 }

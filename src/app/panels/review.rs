@@ -14,7 +14,10 @@ use crate::{
             command::{Command, Commands},
             state::State,
         },
-        widgets::{panel::Panel, theme},
+        widgets::{
+            panel::{Panel, describe, main_button},
+            theme,
+        },
     },
     measure::compare::difference_picture,
 };
@@ -139,9 +142,7 @@ impl ReviewPanel {
             }
         }
         let has_golden = golden.is_some();
-        response.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::Role::Image, true, format!("Review: {shown}"))
-        });
+        describe(&response, egui::Role::Image, format!("Review: {shown}"));
         if has_golden && mode == Mode::Wipe {
             divider_ui(ui, "review wipe", &mut self.split, rect);
         }
@@ -149,7 +150,7 @@ impl ReviewPanel {
 
     fn entry_ui(&mut self, ui: &mut Ui, entry: &Entry, commands: &Commands) {
         ui.set_width(PICTURE);
-        ui.label(RichText::new(&entry.name).color(theme::text_strong()));
+        ui.label(theme::strong(&entry.name));
         match &entry.drawn {
             None => drop(ui.label(theme::weak("The oracle draws it"))),
             Some(Err(error)) => theme::notice(ui, theme::red(), error),
@@ -227,7 +228,7 @@ fn begin_ui(ui: &mut Ui, review: &Review, commands: &Commands) {
             ui.label(theme::weak(format!("{done} of {planned} presets drawn")));
         }
         None => {
-            let button = egui::Button::new("Look for differences").fill(theme::accent_ground());
+            let button = main_button("Look for differences");
             let hint = "The oracle draws every preset that has a golden, beside the window";
             if ui.add(button).on_hover_text(hint).clicked() {
                 send(ReviewCommand::Begin);

@@ -18,7 +18,10 @@ use crate::{
             command::{Command, Commands},
             state::State,
         },
-        widgets::{panel::Panel, theme},
+        widgets::{
+            panel::{Panel, describe, main_button},
+            theme,
+        },
     },
     params::{Field, ValueType},
     preset::Preset,
@@ -270,7 +273,7 @@ impl SweepPanel {
         }
         ui.horizontal(|ui| {
             let requested = state.picture.screen.requested();
-            let button = egui::Button::new("Draw the sheet").fill(theme::accent_ground());
+            let button = main_button("Draw the sheet");
             let is_clicked = ui.add_enabled(requested.is_some(), button).clicked();
             if let Some(requested) = requested.filter(|_| is_clicked) {
                 self.start(state, commands, requested);
@@ -437,9 +440,11 @@ fn cell_ui(ui: &mut Ui, cell: &DrawnCell, size: egui::Vec2) -> egui::Response {
             egui::Label::new(RichText::new(&cell.caption).size(11.0).color(theme::text()))
                 .truncate(),
         );
-        response.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Take {}", cell.caption))
-        });
+        describe(
+            &response,
+            egui::Role::Button,
+            format!("Take {}", cell.caption),
+        );
         match &cell.picture {
             Some(Err(error)) => response.on_hover_text(error),
             _ => response.on_hover_text(format!("Take {}", cell.caption)),

@@ -13,7 +13,7 @@ use crate::{
         shell::{action::Action, command::Commands, state::State, ui_frames::UiFrames},
         widgets::{
             icons::{Icon, icon_button},
-            panel::Panel,
+            panel::{Panel, at_right},
             text::short,
             theme,
         },
@@ -75,12 +75,12 @@ fn header_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         ui.label(theme::heading("Timing"));
         let (text, hint) = time_line(Some(&state.picture.screen));
         ui.label(theme::weak(text)).on_hover_text(hint);
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        at_right(ui, |ui| {
             if icon_button(ui, Icon::Cross, "Close timing").clicked() {
                 commands.perform(Action::Timing);
             }
             for (occasion, name) in OCCASIONS {
-                ui.label(theme::weak(name).size(11.0));
+                ui.label(theme::small(name));
                 let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
                 ui.painter().rect_filled(rect, 2.0, color(occasion));
             }
@@ -203,7 +203,7 @@ fn table_ui(ui: &mut Ui, state: &State) {
                 .spacing([14.0, 3.0])
                 .show(ui, |ui| {
                     for title in ["", "median", "p5 – p95", "of frame"] {
-                        ui.label(theme::weak(title).size(11.0));
+                        ui.label(theme::small(title));
                     }
                     ui.end_row();
                     for (name, spread, color) in rows(summary) {
@@ -214,9 +214,8 @@ fn table_ui(ui: &mut Ui, state: &State) {
                                 .color(color),
                         );
                         ui.label(
-                            RichText::new(format!("{:.3} – {:.3}", spread.p5, spread.p95))
-                                .monospace()
-                                .color(theme::text_weak()),
+                            theme::weak(format!("{:.3} – {:.3}", spread.p5, spread.p95))
+                                .monospace(),
                         );
                         let percent =
                             100.0 * spread.median / summary.frame.median.max(f64::MIN_POSITIVE);

@@ -20,7 +20,7 @@ use crate::app::{
     widgets::{
         fields::dot,
         icons::{Icon, icon_button},
-        panel::Panel,
+        panel::{Panel, at_right},
         theme::{self, ThemeChoice},
     },
 };
@@ -127,7 +127,7 @@ impl Panel for TopBar {
             ui.set_min_height(28.0);
             menus_ui(ui, state, commands);
             ui.add_space(theme::HALF);
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            at_right(ui, |ui| {
                 ui.spacing_mut().item_spacing.x = 6.0;
                 adapter_ui(ui, state, ui.ctx().content_rect().width() < NARROW);
                 ui.separator();
@@ -280,9 +280,7 @@ fn looks_ui(ui: &mut Ui, chosen: ThemeChoice, commands: &Commands) {
 fn name_ui(ui: &mut Ui, state: &State) {
     ui.spacing_mut().item_spacing.x = 6.0;
     let open = &state.session.preset_file;
-    let name = RichText::new(open.title())
-        .color(theme::text_strong())
-        .strong();
+    let name = theme::strong(open.title()).strong();
     let file = match (&open.path, open.read_only) {
         (Some(path), _) => path.display().to_string(),
         (None, true) => format!("{}, built in. Save asks for a file name.", open.id),
@@ -326,7 +324,7 @@ fn adapter_ui(ui: &mut Ui, state: &State, is_narrow: bool) {
         theme::text()
     };
     let hint = |ui: &mut Ui| {
-        ui.label(RichText::new(&summary.name).color(theme::text_strong()));
+        ui.label(theme::strong(&summary.name));
         let driver = match summary.driver.as_str() {
             "" => "driver unknown",
             driver => driver,
@@ -387,7 +385,7 @@ fn cost_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     }
     ui.label(theme::weak("·"));
     let (time, hint) = time_line(Some(&state.picture.screen));
-    let time = RichText::new(time).color(theme::text_strong());
+    let time = theme::strong(time);
     number_ui(ui, TIME_WIDTH, Align::Max, time, hint);
     pins_ui(ui, &state.session.preset().accuracy.pins.words());
 }

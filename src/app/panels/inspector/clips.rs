@@ -10,7 +10,7 @@ use crate::{
             command::{Commands, Edit},
             state::State,
         },
-        widgets::theme,
+        widgets::{panel::row, theme},
     },
     preset::{ClipPlayback, Clock},
     scene::{Scene, rig::Clip},
@@ -61,9 +61,7 @@ pub fn clips_ui(ui: &mut Ui, state: &State, commands: &Commands) {
 /// Holds a time of the clip, or lets the clip follow the clock, whose range may span it.
 fn hold_ui(ui: &mut Ui, commands: &Commands, clip: &Clip, clock: &Clock, play: &mut ClipPlayback) {
     let (duration_s, speed) = (clip.duration_s, play.speed);
-    ui.horizontal(|ui| {
-        ui.set_min_height(theme::ROW);
-        ui.add_space(theme::GAP);
+    row(ui, |ui| {
         let mut is_held = play.clip_time_s.is_some();
         let hold = ui
             .checkbox(&mut is_held, "Hold")
@@ -114,9 +112,7 @@ fn clip_ui(ui: &mut Ui, name: &str, none: &str, scene: &Scene, chosen: &mut Stri
     } else {
         chosen.clone()
     };
-    ui.horizontal(|ui| {
-        ui.set_min_height(theme::ROW);
-        ui.add_space(theme::GAP);
+    row(ui, |ui| {
         let menu = ComboBox::from_id_salt(name)
             .selected_text(shown)
             .width(ui.available_width() - theme::GAP);

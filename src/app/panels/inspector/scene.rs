@@ -12,7 +12,7 @@ use crate::{
             command::{Command, Commands, Edit, RowCommand},
             state::State,
         },
-        widgets::{text, theme},
+        widgets::{panel::row, text, theme},
     },
     params::{Stored as _, Value},
     preset::{
@@ -55,9 +55,7 @@ pub fn scene_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             variants_ui(ui, scene, &preset.parts, commands);
         }
         if let Some(text) = images_text(scene) {
-            ui.horizontal(|ui| {
-                ui.set_min_height(theme::ROW);
-                ui.add_space(theme::GAP);
+            row(ui, |ui| {
                 ui.label(theme::weak(text)).on_hover_ui(|ui| {
                     for image in &scene.images {
                         let [width, height] = image.size();
@@ -83,9 +81,7 @@ fn surroundings_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         &state.session.preset_file,
         &state.session.preset().surroundings,
     );
-    ui.horizontal(|ui| {
-        ui.set_min_height(theme::ROW);
-        ui.add_space(theme::GAP);
+    row(ui, |ui| {
         let chosen = match named.as_str() {
             "" => NONE.to_owned(),
             name => format!("in {}", surroundings::shown(name)),
@@ -117,9 +113,7 @@ fn gradient_ui(ui: &mut Ui, preset: &Preset, commands: &Commands) {
     let Some(setting) = Setting::find(BOTTOM) else {
         return;
     };
-    ui.horizontal(|ui| {
-        ui.set_min_height(theme::ROW);
-        ui.add_space(theme::GAP);
+    row(ui, |ui| {
         let mut is_on = preset.output.background_bottom.is_some();
         let tick = ui.checkbox(&mut is_on, "gradient").on_hover_text(
             "The background changes from this color at the top to another at the bottom",
@@ -138,9 +132,7 @@ fn gradient_ui(ui: &mut Ui, preset: &Preset, commands: &Commands) {
 /// The tick of the ground, which adds it or removes it, and the parts of the scene.
 fn ground_ui(ui: &mut Ui, state: &State, commands: &Commands) {
     let preset = state.session.preset();
-    ui.horizontal(|ui| {
-        ui.set_min_height(theme::ROW);
-        ui.add_space(theme::GAP);
+    row(ui, |ui| {
         let mut is_on = preset.ground.is_some();
         let tick = ui
             .checkbox(&mut is_on, "ground")
@@ -186,9 +178,7 @@ fn cameras_ui(ui: &mut Ui, scene: &Scene, preset: &Preset, commands: &Commands) 
         .camera
         .is_none()
         .then(|| scene.camera(&preset.scene_camera).unwrap_or(0));
-    ui.horizontal(|ui| {
-        ui.set_min_height(theme::ROW);
-        ui.add_space(theme::GAP);
+    row(ui, |ui| {
         let shown = chosen.map_or_else(
             || "the preset's own camera".to_owned(),
             |index| format!("camera {}", id(index)),
@@ -231,9 +221,7 @@ fn variants_ui(ui: &mut Ui, scene: &Scene, shown: &ShownParts, commands: &Comman
             format!("#{index}")
         }
     };
-    ui.horizontal(|ui| {
-        ui.set_min_height(theme::ROW);
-        ui.add_space(theme::GAP);
+    row(ui, |ui| {
         let chosen = match shown.variant.as_str() {
             "" => NONE.to_owned(),
             name => format!("variant {name}"),

@@ -7,7 +7,7 @@ use egui_plot::{GridMark, HLine, Line, LineStyle, Plot, PlotPoint, PlotPoints};
 
 use crate::app::{
     trade::point::{Metric, Point, Standing, standings},
-    widgets::{text::short, theme},
+    widgets::{panel::describe, text::short, theme},
 };
 
 /// Least distance of two points, so that each can be clicked, points of the screen.
@@ -268,9 +268,7 @@ pub fn plot_ui(ui: &mut Ui, shown: &Shown<'_>) -> Option<usize> {
             Sense::click(),
         );
         let words = points[i].pins.words();
-        handle.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Point {words}"))
-        });
+        describe(&handle, egui::Role::Button, format!("Point {words}"));
         if handle.hovered() || handle.has_focus() {
             ui.painter()
                 .circle_stroke(at, 7.0, (1.5, theme::text_strong()));
@@ -322,11 +320,7 @@ fn spread(places: &[Pos2]) -> Vec<Pos2> {
 
 /// Options and numbers of a point.
 fn details_ui(ui: &mut Ui, point: &Point, role: &str) {
-    ui.label(
-        RichText::new(point.pins.words().replace(' ', "\n"))
-            .monospace()
-            .color(theme::text_strong()),
-    );
+    ui.label(theme::strong(point.pins.words().replace(' ', "\n")).monospace());
     ui.label(point.ms.map_or_else(
         || "not timed".to_owned(),
         |ms| {
@@ -365,7 +359,7 @@ pub fn legend_ui(ui: &mut Ui) {
     ];
     ui.spacing_mut().item_spacing.x = 4.0;
     for (color, filled, radius, text) in marks {
-        ui.label(RichText::new(text).size(11.0).color(theme::text_weak()));
+        ui.label(theme::small(text));
         let (rect, _) = ui.allocate_exact_size(vec2(14.0, 16.0), Sense::hover());
         match filled {
             true => ui.painter().circle_filled(rect.center(), radius, color),
