@@ -15,7 +15,8 @@ use crate::{
             state::State,
         },
         widgets::{
-            panel::{Panel, describe, main_button},
+            form::modes_ui,
+            panel::{Panel, describe, main_button, performs, window},
             theme,
         },
     },
@@ -156,16 +157,7 @@ impl ReviewPanel {
             Some(Err(error)) => theme::notice(ui, theme::red(), error),
             Some(Ok(drawn)) => {
                 ui.horizontal(|ui| {
-                    for (mode, name, hint) in MODES {
-                        let button = egui::Button::new(name).small().selected(self.mode == mode);
-                        let button = ui.add(button).on_hover_text(hint);
-                        if button
-                            .accessible_name(format!("Review: {}", name.to_lowercase()))
-                            .clicked()
-                        {
-                            self.mode = mode;
-                        }
-                    }
+                    modes_ui(ui, "Review", &mut self.mode, MODES);
                 });
                 self.picture_ui(ui, drawn);
                 ui.label(theme::weak(drawn.text.as_str()));
@@ -183,9 +175,7 @@ impl ReviewPanel {
             ] {
                 let is_ready = action != Action::AcceptGolden || matches!(entry.drawn, Some(Ok(_)));
                 let button = ui.add_enabled(is_ready, egui::Button::new(text));
-                if button.on_hover_text(action.hint()).clicked() {
-                    commands.perform(action);
-                }
+                performs(button, commands, action);
             }
         });
     }
@@ -283,10 +273,7 @@ impl Panel for ReviewPanel {
         let mut is_open = true;
         let area = ui.ctx().content_rect();
         let review = &state.picture.review;
-        egui::Window::new("Review")
-            .open(&mut is_open)
-            .collapsible(false)
-            .resizable(false)
+        window("Review", &mut is_open)
             .default_pos(area.left_top() + vec2(280.0, 72.0))
             .show(ui.ctx(), |ui| {
                 ui.set_width((QUEUE + PICTURE + 2.0 * theme::GAP).min(area.width() - 48.0));

@@ -1,7 +1,7 @@
 //! The panel Trade: choose axes, measure every combination of their options, and see the error over
 //! the time as a plot and a table. A click pins the options of a combination.
 
-mod plot;
+pub mod plot;
 mod table;
 
 use std::sync::Arc;
@@ -254,7 +254,6 @@ impl TradePanel {
             .map(|inputs| self.request(state, inputs));
         ui.horizontal(|ui| {
             let is_ready = request.is_some() && count >= 2;
-            let button = main_button("Measure").min_size(egui::vec2(84.0, theme::ROW));
             let reason = match count {
                 _ if shown.is_none() => "There is no picture yet",
                 0..2 => "Choose an axis with more than one option",
@@ -264,15 +263,19 @@ impl TradePanel {
                 format!(" A page measures a picture of at most {most} pixels, and a sample is the mean of repeated frames.")
             });
             let hint = format!(
-                "Draw every combination {SAMPLES} times on a second device, and compare each with the oracle. While you work in the \
-                 window, the measurement waits.{limit}"
+                "Draw every combination {SAMPLES} times on a second device, and compare each with the oracle. While you work in the window, the measurement waits.{limit}"
             );
-            let button = ui.add_enabled(is_ready, button).on_hover_text(hint).on_disabled_hover_text(reason);
+            let button = main_button("Measure").min_size(egui::vec2(84.0, theme::ROW));
+            let button = ui.add_enabled(is_ready, button).on_hover_text(hint);
+            let button = button.on_disabled_hover_text(reason);
             if let Some((request, workload)) = request.as_ref().filter(|_| button.clicked()) {
                 self.start(commands, request.clone(), *workload);
             }
-            let color = if count > MAX_COMBINATIONS { theme::red() } else { theme::text_weak() };
-            ui.label(RichText::new(format!("{count} combinations")).color(color));
+            let text = RichText::new(format!("{count} combinations"));
+            ui.label(text.color(match count > MAX_COMBINATIONS {
+                true => theme::red(),
+                false => theme::text_weak(),
+            }));
         });
         if let Some((_, workload)) = request.as_ref().filter(|_| count >= 2) {
             ui.label(theme::small(format!("takes {}", about(workload.pace(&self.rates).left_s()))))
