@@ -483,7 +483,7 @@ fn kernels_with_a_mistake_are_caught(reach: Reach) {
     };
     healthy.set_tuning(GRAPHICS_CARD);
     let mut failures = Vec::new();
-    for mutant in reach.of(6, mutants()) {
+    for mutant in reach.of(4, mutants()) {
         let Mutant {
             what,
             scene,

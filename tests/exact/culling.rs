@@ -305,8 +305,7 @@ fn backs_that_the_snap_turns_over_are_not_left_out() {
     }
 }
 
-#[test]
-fn mistakes_of_culling_are_seen() {
+fn mistakes_of_culling_are_seen(reach: Reach) {
     let Some(healthy) = renderer() else { return };
     let gpu = healthy.gpu().clone();
     drop(healthy);
@@ -314,7 +313,7 @@ fn mistakes_of_culling_are_seen() {
     let field = scene("field?count=64&triangles=600");
     let through = walk(&field, &mut Rng(11), 8, SIZE);
     let mut failures = Vec::new();
-    for (what, from, to, option, scene, views) in [
+    let mistakes = [
         (
             "cones are too narrow",
             "let across = sqrt(",
@@ -363,7 +362,8 @@ fn mistakes_of_culling_are_seen() {
             &field,
             &through,
         ),
-    ] {
+    ];
+    for (what, from, to, option, scene, views) in reach.of(2, mistakes) {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(gpu.clone(), library.shaders());
         match followed(&mut wrong, scene, views, split(option)) {
@@ -796,6 +796,7 @@ fn what_lies_far_from_its_origin_is_culled_about_the_eye() {
 }
 
 few_and_all!(
+    mistakes_of_culling_are_seen,
     a_picture_that_cannot_be_culled_says_why_and_is_drawn,
     another_scene_another_size_and_a_pause_leave_nothing_stale,
     two_passes_lose_nothing_on_any_walk,

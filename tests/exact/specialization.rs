@@ -267,8 +267,7 @@ fn an_effect_that_is_switched_off_again_leaves_no_pass_and_no_buffer(reach: Reac
     );
 }
 
-#[test]
-fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles() {
+fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles(reach: Reach) {
     let tuning = Tuning {
         max_small_samples: 64,
         max_small_side: 32,
@@ -335,7 +334,7 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles() {
     }
 
     // The same scene with nothing spared, and the hall, which needs everything.
-    for (query, tuning) in [
+    let whole = [
         (
             "sphere?triangles=20000",
             Tuning {
@@ -344,7 +343,8 @@ fn a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles() {
             },
         ),
         ("near", tuning),
-    ] {
+    ];
+    for (query, tuning) in reach.of(1, whole.into_iter().rev()) {
         let (all, ..) = explained(query, tuning).expect("there was an adapter");
         let (passes, buffers) = names(&all);
         for pass in [
@@ -438,8 +438,7 @@ fn only_a_deformed_scene_has_the_skin_pass_and_only_the_buffers_that_it_needs() 
     );
 }
 
-#[test]
-fn only_a_stack_with_dots_has_their_passes_and_only_their_way_s_buffers() {
+fn only_a_stack_with_dots_has_their_passes_and_only_their_way_s_buffers(reach: Reach) {
     let Some(gpu) = gpu() else { return };
     let (scene, dots) = (scene("teapot?tess=4"), stack(&["dots"]));
     let view = view(&scene, [160, 120]);
@@ -508,7 +507,7 @@ fn only_a_stack_with_dots_has_their_passes_and_only_their_way_s_buffers() {
             ],
         ),
     ];
-    for (way, its_passes, its_buffers) in ways {
+    for (way, its_passes, its_buffers) in reach.of(1, ways.into_iter().rev()) {
         let all = explained(&dots, way);
         let (passes, buffers) = names(&all);
         assert_eq!(
@@ -649,6 +648,8 @@ fn a_known_key_compiles_nothing(reach: Reach) {
 }
 
 few_and_all!(
+    only_a_stack_with_dots_has_their_passes_and_only_their_way_s_buffers,
+    a_scene_of_small_triangles_has_no_queues_arguments_or_clipped_triangles,
     the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same_scenes,
     the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same_effects,
     an_effect_that_is_switched_off_again_leaves_no_pass_and_no_buffer,
