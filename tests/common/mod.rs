@@ -160,6 +160,46 @@ pub fn options(renderer: &Renderer) -> Vec<Visibility> {
     stress::options(&renderer.gpu().caps)
 }
 
+/// How far a test goes: the few pictures that every run draws, or all of them in `.ci/full`.
+/// Compiling kernels takes most of a test's time, so the few have few kernels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    Few,
+    All,
+}
+
+impl Reach {
+    /// The first `few` of a list, or all of it.
+    pub fn of<T>(self, few: usize, list: impl IntoIterator<Item = T>) -> Vec<T> {
+        let count = if self == Reach::Few { few } else { usize::MAX };
+        list.into_iter().take(count).collect()
+    }
+
+    /// One of the [`options`], or all of them.
+    pub fn options(self, renderer: &Renderer) -> Vec<Visibility> {
+        self.of(1, options(renderer))
+    }
+}
+
+/// Two tests of each function of a [`Reach`].
+macro_rules! few_and_all {
+    ($($test:ident),* $(,)?) => {
+        $(mod $test {
+            #[test]
+            fn few() {
+                super::$test(crate::common::Reach::Few);
+            }
+
+            #[test]
+            #[ignore = "slow: .ci/full"]
+            fn all() {
+                super::$test(crate::common::Reach::All);
+            }
+        })*
+    };
+}
+pub(crate) use few_and_all;
+
 /// The exact option that a CPU adapter is quickest on, for what takes long.
 pub fn quick_option(renderer: &Renderer) -> Visibility {
     stress::quick_option(&renderer.gpu().caps)

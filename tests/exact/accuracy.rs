@@ -165,12 +165,14 @@ fn moved(scene: &Scene, offset: DVec3) -> Scene {
     scene
 }
 
-#[test]
-fn every_viewpoint_is_within_tolerance() {
+fn every_viewpoint_is_within_tolerance(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
-    let (options, stack) = (options(&renderer), stack(&["facet", "depth", "lambert"]));
+    let (options, stack) = (
+        reach.options(&renderer),
+        stack(&["facet", "depth", "lambert"]),
+    );
     for (turn, (what, scene, view)) in viewpoints().into_iter().enumerate() {
         let option = options[turn % options.len()];
         let (capture, verdict) = exact(
@@ -475,14 +477,13 @@ fn map_agrees(verdict: &Verdict) -> Result<(), String> {
     }
 }
 
-#[test]
-fn kernels_with_a_mistake_are_caught() {
+fn kernels_with_a_mistake_are_caught(reach: Reach) {
     let Some(mut healthy) = renderer() else {
         return;
     };
     healthy.set_tuning(GRAPHICS_CARD);
     let mut failures = Vec::new();
-    for mutant in mutants() {
+    for mutant in reach.of(4, mutants()) {
         let Mutant {
             what,
             scene,
@@ -520,3 +521,8 @@ fn kernels_with_a_mistake_are_caught() {
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
+
+few_and_all!(
+    every_viewpoint_is_within_tolerance,
+    kernels_with_a_mistake_are_caught,
+);

@@ -112,8 +112,7 @@ fn empty_pixels_are_the_bytes_of_their_row_with_every_option_and_tuning() {
 /// Where the resolve visits listed tiles, the others keep what they show. A model that moves,
 /// another size, another background and effects that visit every pixel must leave nothing of the
 /// pictures before.
-#[test]
-fn tiles_that_a_model_leaves_show_the_background_again() {
+fn tiles_that_a_model_leaves_show_the_background_again(reach: Reach) {
     let Some(gpu) = gpu() else { return };
     let tuning = Tuning {
         listed_tiles: true,
@@ -140,7 +139,7 @@ fn tiles_that_a_model_leaves_show_the_background_again() {
     let mut rng = Rng(36);
     let mut renderer = fresh();
     let (mut left, mut before) = (0, Vec::new());
-    for turn in 0..60 {
+    for turn in reach.of(24, 0..60) {
         // Most pictures differ from the one before by the camera alone.
         let [at, which, behind] = [turn / 20, turn / 3, turn / 7];
         let (scene, stack) = (
@@ -185,7 +184,7 @@ fn tiles_that_a_model_leaves_show_the_background_again() {
         }
         before = covered;
     }
-    assert!(left > 5000, "models left only {left} pixels");
+    assert!(left > 1000, "models left only {left} pixels");
 }
 
 /// A background of one color needs no rows: the buffers and the picture are those without a
@@ -232,21 +231,20 @@ fn readers() -> Vec<Stack> {
     ]
 }
 
-#[test]
-fn what_reads_the_background_reads_that_of_its_row() {
+fn what_reads_the_background_reads_that_of_its_row(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
     let scene = scene("knot?tess=8");
     let view = view_of(&scene, GRADIENT);
-    for listed in [false, true] {
+    for listed in reach.of(1, [true, false]) {
         renderer.set_tuning(
             tunings()
                 .into_iter()
                 .find(|tuning| tuning.listed_tiles == listed)
                 .expect("a tuning"),
         );
-        for stack in readers() {
+        for stack in reach.of(4, readers()) {
             let names: Vec<&str> = stack
                 .0
                 .iter()
@@ -292,8 +290,7 @@ fn spinning() -> Preset {
     preset
 }
 
-#[test]
-fn trails_start_from_the_gradient_and_fade_to_it() {
+fn trails_start_from_the_gradient_and_fade_to_it(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -305,7 +302,7 @@ fn trails_start_from_the_gradient_and_fade_to_it() {
             && reference.color[*i] != row(*i as u32 / SIZE[0], SIZE[1])
     };
     assert!((0..reference.color.len()).filter(trail).count() > 200);
-    for option in options(&renderer) {
+    for option in reach.options(&renderer) {
         let (capture, verdict) = judged_preset(&mut renderer, &scene, &spinning(), &pinned(option));
         exactness(&verdict.report).unwrap_or_else(|why| panic!("{}: {why}", option.name()));
         let far = pictures(&capture.frame.color, &reference.color, 1);
@@ -442,3 +439,9 @@ fn a_list_that_forgets_tiles_is_caught() {
         "tiles of the picture before are not missed"
     );
 }
+
+few_and_all!(
+    tiles_that_a_model_leaves_show_the_background_again,
+    what_reads_the_background_reads_that_of_its_row,
+    trails_start_from_the_gradient_and_fade_to_it,
+);

@@ -175,8 +175,7 @@ fn hiding(renderer: &Renderer) -> Vec<PinnedOptions> {
         .collect()
 }
 
-#[test]
-fn two_passes_lose_nothing_on_any_walk() {
+fn two_passes_lose_nothing_on_any_walk(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -184,7 +183,7 @@ fn two_passes_lose_nothing_on_any_walk() {
     for (what, scene) in scenes().into_iter().filter(|(what, _)| {
         ["field?count=64&triangles=600", "near", "mirrored", "grown"].contains(&&**what)
     }) {
-        for (i, pins) in hiding(&renderer).into_iter().enumerate() {
+        for (i, pins) in reach.of(1, hiding(&renderer)).into_iter().enumerate() {
             let tuning = both_tunings(&renderer)[i % 2];
             renderer.set_tuning(tuning);
             let views = walk(&scene, &mut rng, 8, SIZE);
@@ -198,8 +197,7 @@ fn two_passes_lose_nothing_on_any_walk() {
     }
 }
 
-#[test]
-fn another_scene_another_size_and_a_pause_leave_nothing_stale() {
+fn another_scene_another_size_and_a_pause_leave_nothing_stale(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -213,7 +211,7 @@ fn another_scene_another_size_and_a_pause_leave_nothing_stale() {
         let scene = &scenes[turn % 3];
         let size = [[160, 120], [65, 63], [1, 1], [200, 8]][turn % 4];
         let views = walk(scene, &mut rng, 2, size);
-        for pins in hiding(&renderer) {
+        for pins in reach.of(1, hiding(&renderer)) {
             followed(&mut renderer, scene, &views, pins)
                 .unwrap_or_else(|why| panic!("turn {turn}: {why}"));
             drawn(&mut renderer, &views[0], pins.with(Culling::Frustum));
@@ -307,8 +305,7 @@ fn backs_that_the_snap_turns_over_are_not_left_out() {
     }
 }
 
-#[test]
-fn mistakes_of_culling_are_seen() {
+fn mistakes_of_culling_are_seen(reach: Reach) {
     let Some(healthy) = renderer() else { return };
     let gpu = healthy.gpu().clone();
     drop(healthy);
@@ -316,7 +313,7 @@ fn mistakes_of_culling_are_seen() {
     let field = scene("field?count=64&triangles=600");
     let through = walk(&field, &mut Rng(11), 8, SIZE);
     let mut failures = Vec::new();
-    for (what, from, to, option, scene, views) in [
+    let mistakes = [
         (
             "cones are too narrow",
             "let across = sqrt(",
@@ -365,7 +362,8 @@ fn mistakes_of_culling_are_seen() {
             &field,
             &through,
         ),
-    ] {
+    ];
+    for (what, from, to, option, scene, views) in reach.of(2, mistakes) {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(gpu.clone(), library.shaders());
         match followed(&mut wrong, scene, views, split(option)) {
@@ -376,8 +374,7 @@ fn mistakes_of_culling_are_seen() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-#[test]
-fn more_meshlets_than_one_row_of_workgroups_are_all_drawn() {
+fn more_meshlets_than_one_row_of_workgroups_are_all_drawn(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -399,8 +396,8 @@ fn more_meshlets_than_one_row_of_workgroups_are_all_drawn() {
     });
     renderer.set_scene(&scene).block_on().expect("it fits");
     let view = pixel_view(260, 260);
-    for option in [Culling::Frustum, Culling::TwoPass] {
-        for visibility in options(&renderer) {
+    for option in reach.of(1, [Culling::TwoPass, Culling::Frustum]) {
+        for visibility in reach.options(&renderer) {
             let (culled, stats) = drawn(
                 &mut renderer,
                 &view,
@@ -541,10 +538,9 @@ fn only_an_option_that_culls_has_passes_and_buffers_for_it() {
     }
 }
 
-#[test]
-fn a_picture_that_cannot_be_culled_says_why_and_is_drawn() {
+fn a_picture_that_cannot_be_culled_says_why_and_is_drawn(reach: Reach) {
     let query = "field?count=8&triangles=200";
-    for (effects, visibility, got) in [
+    let refusals = [
         (
             &["explode"][..],
             Visibility::Split32,
@@ -581,7 +577,8 @@ fn a_picture_that_cannot_be_culled_says_why_and_is_drawn() {
             "frustum instead of two-pass: packed32",
         ),
         (&["dissolve"], Visibility::Split32, "two-pass: pinned"),
-    ] {
+    ];
+    for (effects, visibility, got) in reach.of(3, refusals) {
         let Some((.., why)) = explained(
             query,
             effects,
@@ -611,25 +608,27 @@ fn a_picture_that_cannot_be_culled_says_why_and_is_drawn() {
     );
 }
 
-#[test]
-fn effects_and_layers_keep_their_picture() {
+fn effects_and_layers_keep_their_picture(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
     let scene = scene("field?count=27&triangles=400");
     let views = walk(&scene, &mut Rng(9), 4, SIZE);
     renderer.set_scene(&scene).block_on().expect("it fits");
-    for effects in [
-        &["dissolve", "outline"][..],
-        &["stipple", "lambert"],
-        &["wireframe"],
-        &["xray"],
-        &["overdraw"],
-        &["boxes"],
-        &["facet", "fog"],
-    ] {
+    for effects in reach.of(
+        2,
+        [
+            &["dissolve", "outline"][..],
+            &["overdraw"],
+            &["stipple", "lambert"],
+            &["wireframe"],
+            &["xray"],
+            &["boxes"],
+            &["facet", "fog"],
+        ],
+    ) {
         for view in &views {
-            for visibility in options(&renderer) {
+            for visibility in reach.options(&renderer) {
                 let mut draw = |option| {
                     let pins = PinnedOptions::of(visibility).with(option);
                     renderer
@@ -764,7 +763,7 @@ fn what_lies_far_from_its_origin_is_culled_about_the_eye() {
     (bounds.min, bounds.max) = (bounds.min * 8.0 + FAR - 1.0, bounds.max * 8.0 + FAR + 1.0);
     scene.primitives[0].longest_edge *= 9.0;
     let scene = Arc::new(scene);
-    let views = (0..5).map(|i| {
+    let views = (0..3).map(|i| {
         let eye = FAR + DVec3::new(2.0 + f64::from(i), 0.5, 11.0 - f64::from(i));
         let camera = Camera {
             eye,
@@ -795,3 +794,12 @@ fn what_lies_far_from_its_origin_is_culled_about_the_eye() {
         );
     }
 }
+
+few_and_all!(
+    mistakes_of_culling_are_seen,
+    a_picture_that_cannot_be_culled_says_why_and_is_drawn,
+    another_scene_another_size_and_a_pause_leave_nothing_stale,
+    two_passes_lose_nothing_on_any_walk,
+    more_meshlets_than_one_row_of_workgroups_are_all_drawn,
+    effects_and_layers_keep_their_picture,
+);

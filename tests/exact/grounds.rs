@@ -49,22 +49,21 @@ fn grounds() -> [Ground; 2] {
     ]
 }
 
-#[test]
-fn a_model_on_a_ground_with_its_shadow_is_exact_with_every_option() {
+fn a_model_on_a_ground_with_its_shadow_is_exact_with_every_option(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
-    for (query, ground) in ["teapot?tess=4", "walker?tess=1", "tentacle?tess=3"]
+    let stands = ["teapot?tess=4", "walker?tess=1", "tentacle?tess=3"]
         .into_iter()
-        .flat_map(|query| grounds().map(|g| (query, g)))
-    {
+        .flat_map(|query| grounds().map(|g| (query, g)));
+    for (query, ground) in reach.of(2, stands) {
         let mut preset = preset(query, &["shadow", "facet"], Some(ground));
         (preset.spin_deg_per_s, preset.clock.time_s) = (30.0, 1.0);
         let scene = loaded(&preset);
         let (view, stack) = (preset.view(&scene, SIZE), preset.stack_on(&scene, SIZE));
         let first = scene.triangle_count()
             - u64::from(scene.primitives[scene.ground_instances()[0].primitive].triangle_count());
-        for option in options(&renderer) {
+        for option in reach.options(&renderer) {
             let what = format!("{query} on {:?} with {}", ground.shape, option.name());
             let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &pinned(option), &what);
             let shown = capture
@@ -223,3 +222,5 @@ fn particles_come_before_the_ground_and_fall_on_it_in_shadow() {
     let (_, verdict) = judged_preset(&mut renderer, &scene, &preset, &accuracy);
     exactness(&verdict.report).unwrap_or_else(|why| panic!("{why}"));
 }
+
+few_and_all!(a_model_on_a_ground_with_its_shadow_is_exact_with_every_option,);

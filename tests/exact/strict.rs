@@ -204,10 +204,9 @@ fn differences(gpu: &Gpu, library: &Library, seed: u32, count: u32) -> Vec<Strin
     different
 }
 
-#[test]
-fn soft_floats_are_those_of_the_cpu_with_subnormals_flushed() {
+fn soft_floats_are_those_of_the_cpu_with_subnormals_flushed(reach: Reach) {
     let Some(gpu) = gpu() else { return };
-    for seed in 0..4 {
+    for seed in reach.of(1, 0..4) {
         let different = differences(&gpu, &Library::Embedded, seed, 1 << 20);
         assert!(
             different.is_empty(),
@@ -455,8 +454,7 @@ fn stray(
     })
 }
 
-#[test]
-fn the_adapter_finds_the_hashes_of_the_list() {
+fn the_adapter_finds_the_hashes_of_the_list(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -466,7 +464,7 @@ fn the_adapter_finds_the_hashes_of_the_list() {
         HASHES.lines().count(),
         "the list is of other pictures"
     );
-    let ways = ways(&renderer);
+    let ways = reach.of(1, ways(&renderer));
     let strays: Vec<String> = pictures
         .iter()
         .zip(HASHES.lines())
@@ -484,12 +482,11 @@ fn the_adapter_finds_the_hashes_of_the_list() {
     );
 }
 
-#[test]
-fn the_judge_finds_nothing_to_excuse_in_strict_pictures() {
+fn the_judge_finds_nothing_to_excuse_in_strict_pictures(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
-    for picture in pictures().into_iter().step_by(5) {
+    for picture in reach.of(2, pictures().into_iter().step_by(5)) {
         let option = Visibility::Split32;
         let Picture {
             name,
@@ -516,15 +513,14 @@ fn the_judge_finds_nothing_to_excuse_in_strict_pictures() {
     }
 }
 
-#[test]
-fn integer_keys_alone_leave_no_depth_band() {
+fn integer_keys_alone_leave_no_depth_band(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
     for query in ["knot?tess=24", "sizes", "near"] {
         let scene = scene(query);
         let view = view(&scene, [256, 192]);
-        for (tuning, option) in ways(&renderer) {
+        for (tuning, option) in reach.of(1, ways(&renderer)) {
             renderer.set_tuning(tuning);
             let accuracy = AccuracyRequest {
                 pins: PinnedOptions::of(option).with(DepthFormat::Integer),
@@ -629,3 +625,10 @@ fn what_floats_decide_is_refused_by_name() {
         .block_on()
         .expect("integers decide here");
 }
+
+few_and_all!(
+    integer_keys_alone_leave_no_depth_band,
+    the_judge_finds_nothing_to_excuse_in_strict_pictures,
+    soft_floats_are_those_of_the_cpu_with_subnormals_flushed,
+    the_adapter_finds_the_hashes_of_the_list,
+);

@@ -141,8 +141,7 @@ fn two_effects_in_one_slot_are_refused_in_one_sentence_that_names_both() {
 
 // -------- x-ray
 
-#[test]
-fn the_average_is_bit_equal_in_any_order_on_every_run_option_and_tuning() {
+fn the_average_is_bit_equal_in_any_order_on_every_run_option_and_tuning(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -158,15 +157,15 @@ fn the_average_is_bit_equal_in_any_order_on_every_run_option_and_tuning() {
         first.1.iter().filter(|&&weight| weight > 20).count() > 1000,
         "many layers"
     );
-    for run in 0..20 {
+    for run in reach.of(4, 0..20) {
         assert!(
             draw(&mut renderer, &scene, Visibility::Split32) == first,
             "run {run}"
         );
     }
     let mut rng = Rng(7);
-    for option in options(&renderer) {
-        for tuning in tunings() {
+    for option in reach.options(&renderer) {
+        for tuning in reach.of(2, tunings()) {
             renderer.set_tuning(tuning);
             let scene = scene_from(&shuffled(&mut rng, triangles.clone()));
             assert!(
@@ -229,8 +228,7 @@ fn more_layers_than_any_sum_holds_are_a_sentence_and_a_mark_never_silent() {
     );
 }
 
-#[test]
-fn windows_weights_and_opacities_are_the_oracles() {
+fn windows_weights_and_opacities_are_the_oracles(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -239,17 +237,15 @@ fn windows_weights_and_opacities_are_the_oracles() {
     let deep = (knot.clone(), view(&knot, [120, 90]));
     let hall = scene("near");
     let cut = (hall.clone(), view(&hall, [96, 72]));
-    let options = options(&renderer);
+    let options = reach.options(&renderer);
     let windows = [
         "xray.layers=all",
         "xray.layers=window,xray.window=0",
         "xray.layers=window,xray.window=30",
         "xray.layers=window,xray.window=500",
     ];
-    for (turn, weight) in ["equal", "facing", "grazing", "near"]
-        .into_iter()
-        .enumerate()
-    {
+    let weights = reach.of(2, ["facing", "near", "equal", "grazing"]);
+    for (turn, weight) in weights.into_iter().enumerate() {
         for (i, window) in windows.iter().enumerate() {
             let weight = format!("xray.weight={weight}");
             let mut values = vec![
@@ -312,8 +308,7 @@ fn windows_weights_and_opacities_are_the_oracles() {
 
 // -------- race
 
-#[test]
-fn a_race_is_exact_where_one_layer_covers_and_elsewhere_a_covering_triangle_wins() {
+fn a_race_is_exact_where_one_layer_covers_and_elsewhere_a_covering_triangle_wins(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -342,7 +337,7 @@ fn a_race_is_exact_where_one_layer_covers_and_elsewhere_a_covering_triangle_wins
 
     let crowded = scene_from(&soup(5, 400, 64, 1.0));
     let view = pixel_view(64, 64);
-    for tuning in tunings() {
+    for tuning in reach.of(1, tunings()) {
         renderer.set_tuning(tuning);
         for delay in [0, 4] {
             let stack = with(&["race", &format!("race.delay={delay}")]);
@@ -585,8 +580,7 @@ fn mutants() -> Vec<Mutant> {
     ]
 }
 
-#[test]
-fn layers_with_a_mistake_are_caught() {
+fn layers_with_a_mistake_are_caught(reach: Reach) {
     let Some(mut healthy) = renderer() else {
         return;
     };
@@ -604,7 +598,7 @@ fn layers_with_a_mistake_are_caught() {
         to,
         stack,
         shown_by: (figure, shown_by),
-    } in mutants()
+    } in reach.of(3, mutants())
     {
         exact(
             &mut healthy,
@@ -638,8 +632,7 @@ fn layers_with_a_mistake_are_caught() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-#[test]
-fn a_card_lists_the_covered_samples_of_a_small_box_and_draws_each_of_them() {
+fn a_card_lists_the_covered_samples_of_a_small_box_and_draws_each_of_them(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -656,7 +649,7 @@ fn a_card_lists_the_covered_samples_of_a_small_box_and_draws_each_of_them() {
         specialized: true,
         ..usual
     };
-    for option in options(&renderer) {
+    for option in reach.options(&renderer) {
         let whole = captured(&mut renderer, &scene, &view, &stack, &pinned(option)).frame;
         renderer.set_tuning(card);
         let (listed, _) = exact(
@@ -690,3 +683,11 @@ fn every_effect_of_the_slot_is_known_to_the_planner() {
         );
     }
 }
+
+few_and_all!(
+    the_average_is_bit_equal_in_any_order_on_every_run_option_and_tuning,
+    windows_weights_and_opacities_are_the_oracles,
+    a_race_is_exact_where_one_layer_covers_and_elsewhere_a_covering_triangle_wins,
+    layers_with_a_mistake_are_caught,
+    a_card_lists_the_covered_samples_of_a_small_box_and_draws_each_of_them,
+);

@@ -85,8 +85,9 @@ fn lit(mut stack: Stack) -> Stack {
     stack
 }
 
-#[test]
-fn all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_parallel_rays() {
+fn all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_parallel_rays(
+    reach: Reach,
+) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -120,7 +121,7 @@ fn all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_paral
         set(&mut stack, "explode", "amount_m", &[0.1]);
         for (pattern, name) in ["uniform", "sweep", "radial", "random"].iter().enumerate() {
             set(&mut stack, "explode", "pattern", &[pattern as f64]);
-            for option in options(&renderer) {
+            for option in reach.options(&renderer) {
                 exact(
                     &mut renderer,
                     &scene,
@@ -134,8 +135,7 @@ fn all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_paral
     }
 }
 
-#[test]
-fn an_effect_that_moves_nothing_changes_nothing() {
+fn an_effect_that_moves_nothing_changes_nothing(reach: Reach) {
     for query in ["cube-wall", "near"] {
         let scene = scene(query);
         let view = view(&scene, [160, 120]);
@@ -169,7 +169,7 @@ fn an_effect_that_moves_nothing_changes_nothing() {
             &lit(Stack::default()),
             &pinned(Visibility::Split32),
         );
-        for effect in MOVING {
+        for effect in reach.of(1, MOVING) {
             let resting = captured(
                 &mut renderer,
                 &scene,
@@ -196,14 +196,13 @@ fn telescope() -> (Arc<Scene>, View) {
 }
 
 /// Shares of its stated bound that an adapter uses, seen through a telescope.
-#[test]
-fn stated_bounds_hold_under_a_telescope_and_are_not_idle() {
+fn stated_bounds_hold_under_a_telescope_and_are_not_idle(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
     let (scene, view) = telescope();
     let draws = draws(&scene, &view).expect("a builtin fits");
-    for effect in MOVING {
+    for effect in reach.of(1, MOVING) {
         let stack = suited(effect, &scene);
         let (capture, _) = exact(
             &mut renderer,
@@ -381,8 +380,7 @@ fn exploding_and_turning_keeps_every_triangle_and_its_area() {
     }
 }
 
-#[test]
-fn corners_snap_to_cells_and_the_adapter_agrees_on_each() {
+fn corners_snap_to_cells_and_the_adapter_agrees_on_each(reach: Reach) {
     const CELL_PX: i32 = 6;
     let size = [200, 150];
     let mut stack = lit(stack(&["wobble", "psx"]));
@@ -421,7 +419,7 @@ fn corners_snap_to_cells_and_the_adapter_agrees_on_each() {
         let Some(renderer) = &mut renderer else {
             continue;
         };
-        for option in options(renderer) {
+        for option in reach.options(renderer) {
             let (what, pins) = (format!("{what}, {}", option.name()), pinned(option));
             let (capture, verdict) = judged(renderer, &scene, &view, &stack, &pins);
             let judgement = verdict.report.within(&Budget::default());
@@ -491,8 +489,7 @@ fn still_life(query: &str) -> (Arc<Scene>, View) {
     (scene, view)
 }
 
-#[test]
-fn kernels_that_move_wrongly_are_caught() {
+fn kernels_that_move_wrongly_are_caught(reach: Reach) {
     let Some(mut healthy) = renderer() else {
         return;
     };
@@ -523,7 +520,7 @@ fn kernels_that_move_wrongly_are_caught() {
         ),
     ];
     let mut failures = Vec::new();
-    for (what, effect, from, to) in mutants {
+    for (what, effect, from, to) in reach.of(2, mutants) {
         let (scene, view) = match what {
             "the last term of the sine is halved" => telescope(),
             "movement is forgotten where triangles are clipped" => still_life("near"),
@@ -557,3 +554,11 @@ fn kernels_that_move_wrongly_are_caught() {
     }
     assert_eq!(failures, Vec::<&str>::new(), "not caught");
 }
+
+few_and_all!(
+    all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_parallel_rays,
+    corners_snap_to_cells_and_the_adapter_agrees_on_each,
+    stated_bounds_hold_under_a_telescope_and_are_not_idle,
+    an_effect_that_moves_nothing_changes_nothing,
+    kernels_that_move_wrongly_are_caught,
+);

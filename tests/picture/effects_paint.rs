@@ -51,8 +51,9 @@ fn drawn(scene: &Scene, view: &View, stack: &Stack) -> Frame {
 
 // -------- every effect against the oracle
 
-#[test]
-fn fog_thins_out_by_the_height_on_the_ray_of_a_pixel_and_not_by_that_of_snapped_corners() {
+fn fog_thins_out_by_the_height_on_the_ray_of_a_pixel_and_not_by_that_of_snapped_corners(
+    reach: Reach,
+) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -73,7 +74,7 @@ fn fog_thins_out_by_the_height_on_the_ray_of_a_pixel_and_not_by_that_of_snapped_
         .concat(),
     );
     let scene = scene("sizes");
-    for option in options(&renderer) {
+    for option in reach.options(&renderer) {
         exact(
             &mut renderer,
             &scene,
@@ -85,8 +86,7 @@ fn fog_thins_out_by_the_height_on_the_ray_of_a_pixel_and_not_by_that_of_snapped_
     }
 }
 
-#[test]
-fn what_is_off_leaves_no_trace_to_the_bit() {
+fn what_is_off_leaves_no_trace_to_the_bit(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -113,7 +113,7 @@ fn what_is_off_leaves_no_trace_to_the_bit() {
         &[("outline", "color", 0.0)],
         &[("smear", "fade", 1.0)],
     ];
-    for settings in off {
+    for settings in reach.of(2, off) {
         let stack = with(&[&[("lambert", "", 0.0)], settings].concat());
         let color = captured(
             &mut renderer,
@@ -389,8 +389,7 @@ fn mirrored(values: &[u32], width: usize) -> Vec<u32> {
         .collect()
 }
 
-#[test]
-fn a_step_of_depth_of_exactly_the_threshold_is_no_line() {
+fn a_step_of_depth_of_exactly_the_threshold_is_no_line(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -412,7 +411,7 @@ fn a_step_of_depth_of_exactly_the_threshold_is_no_line() {
         let [before, here, after] = [i - step, i, i + step].map(|i| i64::from(frame.depth_key[i]));
         covered.then_some(before + after - 2 * here)
     };
-    for side in [0.0, 1.0, 2.0] {
+    for side in reach.of(1, [0.0, 1.0, 2.0]) {
         // A pixel with a step across that the effect's range contains, and with less down.
         let steps = (width + 1..frame.depth_key.len() - width - 1)
             .filter(|i| ![0, width - 1].contains(&(i % width)))
@@ -590,8 +589,7 @@ fn spinning(fade: f64) -> Preset {
     preset
 }
 
-#[test]
-fn a_trail_is_exact_and_bit_equal_on_repeats_and_with_every_option() {
+fn a_trail_is_exact_and_bit_equal_on_repeats_and_with_every_option(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -608,7 +606,7 @@ fn a_trail_is_exact_and_bit_equal_on_repeats_and_with_every_option() {
         .filter(|&i| reference.triangle_id[i] == NO_TRIANGLE && reference.color[i] != bare.color[i])
         .count();
     assert!(trail > 200, "{trail} pixels of trail");
-    for option in options(&renderer) {
+    for option in reach.options(&renderer) {
         let (capture, verdict) = judged_preset(&mut renderer, &scene, &preset, &pinned(option));
         exactness(&verdict.report).unwrap_or_else(|why| panic!("{}: {why}", option.name()));
         let far = pictures(&capture.frame.color, &reference.color, 1);
@@ -713,8 +711,7 @@ fn another_size_or_scene_begins_without_a_trail_and_drawing_again_adds_none() {
 
 // -------- mutants
 
-#[test]
-fn effects_with_a_mistake_are_caught() {
+fn effects_with_a_mistake_are_caught(reach: Reach) {
     let Some(healthy) = renderer() else { return };
     let gpu = healthy.gpu().clone();
     let scene = scene("knot?tess=10");
@@ -743,7 +740,7 @@ fn effects_with_a_mistake_are_caught() {
         ),
         ("smear", "fraction + 65535", "fraction * 2 + 65535"),
     ];
-    for (name, from, to) in mutants {
+    for (name, from, to) in reach.of(3, mutants) {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(gpu.clone(), library.shaders());
         let stack = with(&[("lambert", "", 0.0), coarse(name)]);
@@ -770,3 +767,11 @@ fn effects_with_a_mistake_are_caught() {
         );
     }
 }
+
+few_and_all!(
+    fog_thins_out_by_the_height_on_the_ray_of_a_pixel_and_not_by_that_of_snapped_corners,
+    a_trail_is_exact_and_bit_equal_on_repeats_and_with_every_option,
+    what_is_off_leaves_no_trace_to_the_bit,
+    effects_with_a_mistake_are_caught,
+    a_step_of_depth_of_exactly_the_threshold_is_no_line,
+);

@@ -329,15 +329,14 @@ fn a_draw_order_draws_n_samples_and_one_more_with_every_step() {
     }
 }
 
-#[test]
-fn a_scheduler_draws_as_many_samples_as_it_should_and_only_right_ones() {
+fn a_scheduler_draws_as_many_samples_as_it_should_and_only_right_ones(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
     let scene = scene("cube-wall");
     let view = view(&scene, [160, 120]);
     let total = sum(&Drawn::of(&scene, &view, &Stack::default()).layers(&view, &Stack::default()));
-    for option in options(&renderer) {
+    for option in reach.options(&renderer) {
         for limit in [0, 1, total / 2, total, total + 100] {
             let stack = only(
                 "draw_order",
@@ -358,8 +357,7 @@ fn a_scheduler_draws_as_many_samples_as_it_should_and_only_right_ones() {
     }
 }
 
-#[test]
-fn kernels_with_a_mistake_are_caught() {
+fn kernels_with_a_mistake_are_caught(reach: Reach) {
     let Some(mut healthy) = renderer() else {
         return;
     };
@@ -406,7 +404,7 @@ fn kernels_with_a_mistake_are_caught() {
     let scene = scene("sphere?triangles=5000");
     let view = view(&scene, [128, 96]);
     let mut failures = Vec::new();
-    for (what, from, to, stack) in mutants {
+    for (what, from, to, stack) in reach.of(2, mutants) {
         let option = pinned(rasterlab::accuracy::Visibility::Split32);
         exact(
             &mut healthy,
@@ -427,3 +425,8 @@ fn kernels_with_a_mistake_are_caught() {
     }
     assert!(failures.is_empty(), "these do not show: {failures:?}");
 }
+
+few_and_all!(
+    a_scheduler_draws_as_many_samples_as_it_should_and_only_right_ones,
+    kernels_with_a_mistake_are_caught,
+);

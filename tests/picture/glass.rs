@@ -64,14 +64,13 @@ fn soup_view() -> View {
     pixel_view(32, 32)
 }
 
-#[test]
-fn every_exact_option_composes_crossing_layers_as_the_oracle_does() {
+fn every_exact_option_composes_crossing_layers_as_the_oracle_does(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
     let (scene, view) = (soup(&(0..40).collect::<Vec<_>>()), soup_view());
     let mut first = None;
-    for option in options(&renderer) {
+    for option in reach.of(2, options(&renderer)) {
         let (capture, verdict) = exact(
             &mut renderer,
             &scene,
@@ -122,12 +121,11 @@ fn tinted_layers_cover_a_translucent_background_as_far_as_they_dim_it() {
     );
 }
 
-#[test]
-fn no_order_of_triangles_shows() {
+fn no_order_of_triangles_shows(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
-    for &transparency in Transparency::ALL {
+    for &transparency in reach.of(1, Transparency::ALL) {
         let mut strict = on(transparency);
         strict.pins = strict
             .pins
@@ -270,8 +268,7 @@ fn wrongly_composed(renderer: &mut Renderer, option: Transparency, exact: &Captu
     (0..frame.color.len()).filter(is_wrong).count()
 }
 
-#[test]
-fn every_option_composes_as_it_says_and_mistakes_in_it_are_caught() {
+fn every_option_composes_as_it_says_and_mistakes_in_it_are_caught(reach: Reach) {
     let Some(mut healthy) = renderer() else {
         return;
     };
@@ -293,7 +290,7 @@ fn every_option_composes_as_it_says_and_mistakes_in_it_are_caught() {
     }
     let (nearest4, weighted) = (Transparency::Nearest4, Transparency::Weighted);
     let mut missed = Vec::new();
-    for (option, what, from, to) in [
+    let mistakes = [
         (
             nearest4,
             "a layer too many",
@@ -330,7 +327,8 @@ fn every_option_composes_as_it_says_and_mistakes_in_it_are_caught() {
             "if first == 0u || glass_is_before(link, first)",
             "if first == 0u || !glass_is_before(link, first)",
         ),
-    ] {
+    ];
+    for (option, what, from, to) in reach.of(2, mistakes) {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         if wrongly_composed(&mut wrong, option, &exact) == 0 {
@@ -398,8 +396,7 @@ fn bands_of_pixels_draw_the_same_picture_in_less_memory() {
     );
 }
 
-#[test]
-fn mistakes_in_order_count_band_and_blend_are_caught() {
+fn mistakes_in_order_count_band_and_blend_are_caught(reach: Reach) {
     let Some(mut healthy) = renderer() else {
         return;
     };
@@ -417,7 +414,7 @@ fn mistakes_in_order_count_band_and_blend_are_caught() {
         .layers
         .len() as u32;
     let mut missed = Vec::new();
-    for (what, from, to) in [
+    let mistakes = [
         (
             "farther layers come first",
             "return (keys > vec4u(key)) |",
@@ -453,7 +450,8 @@ fn mistakes_in_order_count_band_and_blend_are_caught() {
             "return (draws[t.draw].flags & DRAW_GLASS) == 0u;",
             "return true;",
         ),
-    ] {
+    ];
+    for (what, from, to) in reach.of(3, mistakes) {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         wrong.set_tuning(Tuning {
@@ -481,8 +479,7 @@ fn mistakes_in_order_count_band_and_blend_are_caught() {
     assert!(missed.is_empty(), "not caught: {}", missed.join("; "));
 }
 
-#[test]
-fn glass_meets_other_effects() {
+fn glass_meets_other_effects(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -494,25 +491,28 @@ fn glass_meets_other_effects() {
             .stack
     };
     let bottle = "[effects.glass]\non = [\"node:bottle\", \"node:jug\"]\n";
-    for (scene, text) in [
-        (
-            &still,
-            format!("{bottle}[effects.lambert]\n[effects.outline]\n[effects.dissolve]\n"),
-        ),
-        (
-            &still,
-            format!("{bottle}[effects.shadow]\n[effects.explode]\n[effects.facet]\n"),
-        ),
-        (
-            &panes,
-            "[effects.stipple]\n[effects.lambert]\n[effects.fog]\n".into(),
-        ),
-        (
-            &panes,
-            "[effects.glass]\n[effects.dots]\n[effects.wobble]\n".into(),
-        ),
-        (&panes, "[effects.xray]\n".into()),
-    ] {
+    for (scene, text) in reach.of(
+        2,
+        [
+            (
+                &still,
+                format!("{bottle}[effects.lambert]\n[effects.outline]\n[effects.dissolve]\n"),
+            ),
+            (
+                &still,
+                format!("{bottle}[effects.shadow]\n[effects.explode]\n[effects.facet]\n"),
+            ),
+            (
+                &panes,
+                "[effects.stipple]\n[effects.lambert]\n[effects.fog]\n".into(),
+            ),
+            (
+                &panes,
+                "[effects.glass]\n[effects.dots]\n[effects.wobble]\n".into(),
+            ),
+            (&panes, "[effects.xray]\n".into()),
+        ],
+    ) {
         let view = view(scene, [72, 54]);
         exact(
             &mut renderer,
@@ -623,3 +623,11 @@ fn layers_make_do_with_the_memory_that_is_left() {
         "{bands} bands, {less} of {all} bytes"
     );
 }
+
+few_and_all!(
+    every_exact_option_composes_crossing_layers_as_the_oracle_does,
+    no_order_of_triangles_shows,
+    every_option_composes_as_it_says_and_mistakes_in_it_are_caught,
+    mistakes_in_order_count_band_and_blend_are_caught,
+    glass_meets_other_effects,
+);

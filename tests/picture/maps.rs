@@ -28,8 +28,9 @@ fn balls(change: impl FnOnce(&mut Scene)) -> (Arc<Scene>, View) {
     (Arc::new(golf), view)
 }
 
-#[test]
-fn maps_look_as_in_the_oracle_on_mirrored_sheared_faceted_and_moved_surfaces_and_from_behind() {
+fn maps_look_as_in_the_oracle_on_mirrored_sheared_faceted_and_moved_surfaces_and_from_behind(
+    reach: Reach,
+) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -67,7 +68,7 @@ fn maps_look_as_in_the_oracle_on_mirrored_sheared_faceted_and_moved_surfaces_and
         ("moved", &["wobble", "studio"], &|_| {}),
     ];
     let option = pinned(quick_option(&renderer));
-    for (what, effects, change) in cases {
+    for (what, effects, change) in reach.of(2, cases) {
         let (scene, view) = balls(change);
         exact(&mut renderer, &scene, &view, &stack(effects), &option, what);
     }
@@ -134,8 +135,7 @@ fn maps_are_in_the_kernel_only_where_an_effect_reads_them() {
     assert_eq!(maps(&["studio"]), (true, true, true));
 }
 
-#[test]
-fn mistakes_in_maps_are_caught() {
+fn mistakes_in_maps_are_caught(reach: Reach) {
     let Some(healthy) = renderer() else {
         return;
     };
@@ -151,10 +151,15 @@ fn mistakes_in_maps_are_caught() {
             "select(-tangent.w, tangent.w, is_mirrored)",
         ),
     ];
-    for (from, to) in mistakes {
+    for (from, to) in reach.of(1, mistakes) {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &option);
         assert!(exactness(&verdict.report).is_err(), "{to}");
     }
 }
+
+few_and_all!(
+    maps_look_as_in_the_oracle_on_mirrored_sheared_faceted_and_moved_surfaces_and_from_behind,
+    mistakes_in_maps_are_caught,
+);

@@ -58,8 +58,7 @@ fn panels(size: [u32; 2]) -> (Arc<Scene>, View) {
 
 // -------- pictures
 
-#[test]
-fn images_look_as_in_the_oracle_from_every_side() {
+fn images_look_as_in_the_oracle_from_every_side(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -74,7 +73,7 @@ fn images_look_as_in_the_oracle_from_every_side() {
     let parallel = seen_by(&panels, flat, [160, 120]);
     let globe = scene("globe?tess=6");
     let near = from_eye(&globe, [0.4, 0.5, 1.5], [0.0, 0.0, 0.0], [160, 120]);
-    let (mut cut, options) = (0, options(&renderer));
+    let (mut cut, options) = (0, reach.options(&renderer));
     for (turn, (what, scene, view)) in [
         ("in front", &panels, &front),
         ("over the ground", &panels, &low),
@@ -323,8 +322,7 @@ fn what_shines_is_seen_in_the_dark_and_what_is_unlit_in_any_light() {
     assert!(seen.iter().all(|count| *count > 50), "{seen:?}");
 }
 
-#[test]
-fn mistakes_in_looking_up_texels_are_caught() {
+fn mistakes_in_looking_up_texels_are_caught(reach: Reach) {
     let Some(mut healthy) = renderer() else {
         return;
     };
@@ -351,7 +349,7 @@ fn mistakes_in_looking_up_texels_are_caught() {
         ),
     ];
     let mut missed = Vec::new();
-    for (what, from, to) in mistakes {
+    for (what, from, to) in reach.of(1, mistakes) {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &option);
@@ -379,8 +377,7 @@ fn crowns(size: [u32; 2]) -> (Arc<Scene>, [(&'static str, View); 2]) {
     (scene, [("outside", outside), ("inside", inside)])
 }
 
-#[test]
-fn masks_leave_out_the_same_samples_in_every_kernel_and_in_the_oracle() {
+fn masks_leave_out_the_same_samples_in_every_kernel_and_in_the_oracle(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -391,9 +388,9 @@ fn masks_leave_out_the_same_samples_in_every_kernel_and_in_the_oracle() {
         &["draw_order"],
         &["explode"],
     ];
-    let (options, mut cut) = (options(&renderer), 0);
+    let (options, mut cut) = (reach.options(&renderer), 0);
     for (what, view) in &views {
-        for (turn, names) in stacks.iter().enumerate() {
+        for (turn, names) in reach.of(2, stacks.iter().enumerate()) {
             renderer.set_tuning(tunings()[turn % 4]);
             let option = options[turn % options.len()];
             let (capture, _) = exact(
@@ -532,8 +529,7 @@ fn a_mask_of_a_texel_a_pixel_is_the_alpha_of_the_image() {
     }
 }
 
-#[test]
-fn mistakes_in_masks_are_caught() {
+fn mistakes_in_masks_are_caught(reach: Reach) {
     let Some(mut healthy) = renderer() else {
         return;
     };
@@ -562,7 +558,7 @@ fn mistakes_in_masks_are_caught() {
         );
     }
     let mut missed = Vec::new();
-    for (what, from, to) in mistakes {
+    for (what, from, to) in reach.of(1, mistakes) {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
         let why = views.iter().find_map(|(_, view)| {
@@ -807,3 +803,10 @@ fn textured_boxes_of_the_corpus_show_their_image() {
         "three ways to store one box"
     );
 }
+
+few_and_all!(
+    masks_leave_out_the_same_samples_in_every_kernel_and_in_the_oracle,
+    images_look_as_in_the_oracle_from_every_side,
+    mistakes_in_masks_are_caught,
+    mistakes_in_looking_up_texels_are_caught,
+);

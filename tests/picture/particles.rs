@@ -298,8 +298,7 @@ fn a_disc_is_the_ellipse_that_touches_the_sides_in_their_middles() {
 
 // -------- on an adapter
 
-#[test]
-fn every_step_is_within_its_bound_with_every_option() {
+fn every_step_is_within_its_bound_with_every_option(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -332,7 +331,7 @@ fn every_step_is_within_its_bound_with_every_option() {
             ("center", &[40.0, -3.0, 7.0]),
         ],
     ];
-    for (number, fields) in preset_files.iter().enumerate() {
+    for (number, fields) in reach.of(2, preset_files.iter().enumerate()) {
         // Of four options each look meets two.
         for (curl, state) in particle_options().skip(number % 2).step_by(2) {
             for frame in [0, 1, 13, 40] {
@@ -361,11 +360,10 @@ fn every_step_is_within_its_bound_with_every_option() {
     }
 }
 
-#[test]
-fn a_frame_is_the_same_however_it_was_reached() {
+fn a_frame_is_the_same_however_it_was_reached(reach: Reach) {
     let Some(gpu) = gpu() else { return };
     let scene = scene("chamber");
-    for (curl, state) in particle_options() {
+    for (curl, state) in reach.of(1, particle_options()) {
         let accuracy = on(curl, state);
         let preset = preset_file(&[("lifetime_s", &[0.4]), ("count", &[333.0])]);
         let fresh = |gpu: &Arc<Gpu>| Renderer::new(gpu.clone());
@@ -492,8 +490,7 @@ fn captured_of(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View) -> Capt
     )
 }
 
-#[test]
-fn lives_end_and_begin_again_inside_the_room() {
+fn lives_end_and_begin_again_inside_the_room(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -507,7 +504,7 @@ fn lives_end_and_begin_again_inside_the_room() {
     let p: Particles = preset.stack.params(&EFFECT.name).expect("particles");
     let [longest, _] = particles::life_steps(&p);
     assert_eq!(longest, 15);
-    for (curl, state) in particle_options() {
+    for (curl, state) in reach.of(1, particle_options()) {
         let particle_readback = flown(&mut renderer, &scene, &preset, 100, &on(curl, state)).1;
         let held = |flight: &ParticleState| flight.position.iter().all(|at| at.abs() <= 0.8 + 1e-5);
         assert!(particle_readback.after.iter().all(|flight| held(flight)
@@ -535,8 +532,7 @@ fn lives_end_and_begin_again_inside_the_room() {
     }
 }
 
-#[test]
-fn for_a_second_particles_follow_the_reference_and_rough_options_drift() {
+fn for_a_second_particles_follow_the_reference_and_rough_options_drift(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -560,7 +556,7 @@ fn for_a_second_particles_follow_the_reference_and_rough_options_drift() {
         accuracy
     };
     let mut last = 0.0;
-    for frame in [0, 30, 60, 120, 240, 480] {
+    for frame in reach.of(4, [0, 30, 60, 120, 240, 480]) {
         let accuracy = drift(
             &mut renderer,
             frame,
@@ -595,21 +591,23 @@ fn for_a_second_particles_follow_the_reference_and_rough_options_drift() {
     }
 }
 
-#[test]
-fn discs_of_every_size_are_the_oracle_s_with_every_option_and_tuning() {
+fn discs_of_every_size_are_the_oracle_s_with_every_option_and_tuning(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
     let scene = scene("chamber");
     // Less than a pixel, ordinary, larger than a tile, and as large as the picture with the eye
     // among them.
-    for (size, effects) in [
-        (0.004, &[][..]),
-        (0.03, &["xray"]),
-        (0.5, &["dissolve"]),
-        (3.0, &["overdraw"]),
-        (9.0, &[]),
-    ] {
+    for (size, effects) in reach.of(
+        2,
+        [
+            (0.004, &[][..]),
+            (0.03, &["xray"]),
+            (0.5, &["dissolve"]),
+            (3.0, &["overdraw"]),
+            (9.0, &[]),
+        ],
+    ) {
         let mut preset = at(
             &preset_file(&[
                 ("radius_m", &[size]),
@@ -630,10 +628,10 @@ fn discs_of_every_size_are_the_oracle_s_with_every_option_and_tuning() {
         }
         let (view, stack) = (preset.view(&scene, SIZE), preset.evaluated_stack());
         let mut first: Option<Capture> = None;
-        for (tuning, option) in tunings()
+        let ways = tunings()
             .into_iter()
-            .zip(options(&renderer).into_iter().cycle())
-        {
+            .zip(options(&renderer).into_iter().cycle());
+        for (tuning, option) in reach.of(2, ways) {
             renderer.set_tuning(tuning);
             let what = format!("size {size}, {} {tuning:?}", option.name());
             let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &pinned(option), &what);
@@ -749,8 +747,7 @@ fn too_many_particles_are_refused_with_a_sentence() {
     );
 }
 
-#[test]
-fn a_mistake_in_the_pass_is_found() {
+fn a_mistake_in_the_pass_is_found(reach: Reach) {
     let Some(gpu) = gpu() else { return };
     let scene = scene("chamber");
     let preset = preset_file(&[
@@ -758,15 +755,18 @@ fn a_mistake_in_the_pass_is_found() {
         ("attraction", &[2.0]),
         ("radius_m", &[0.1]),
     ]);
-    for (right, wrong) in [
-        ("(t - 1.0) * (t - 1.0)", "(t - 1.0) * t"),
-        (
-            "(frame_number & 1u) * particle_step.count + id);\n    particle_states",
-            "id);\n    particle_states",
-        ),
-        ("vec2f(0.0, 2.0)", "vec2f(0.0, 1.99)"),
-        ("2u * areas.x", "areas.x"),
-    ] {
+    for (right, wrong) in reach.of(
+        2,
+        [
+            ("(t - 1.0) * (t - 1.0)", "(t - 1.0) * t"),
+            (
+                "(frame_number & 1u) * particle_step.count + id);\n    particle_states",
+                "id);\n    particle_states",
+            ),
+            ("vec2f(0.0, 2.0)", "vec2f(0.0, 1.99)"),
+            ("2u * areas.x", "areas.x"),
+        ],
+    ) {
         let mutant = mutated(right, wrong);
         let mut renderer = Renderer::with_library(gpu.clone(), mutant.shaders());
         let is_found = [0, 1, 18].into_iter().any(|frame| {
@@ -800,3 +800,12 @@ fn a_mistake_in_the_pass_is_found() {
         assert!(is_found, "{wrong:?} for {right:?} goes unnoticed");
     }
 }
+
+few_and_all!(
+    every_step_is_within_its_bound_with_every_option,
+    a_frame_is_the_same_however_it_was_reached,
+    lives_end_and_begin_again_inside_the_room,
+    for_a_second_particles_follow_the_reference_and_rough_options_drift,
+    discs_of_every_size_are_the_oracle_s_with_every_option_and_tuning,
+    a_mistake_in_the_pass_is_found,
+);

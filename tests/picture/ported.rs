@@ -10,7 +10,7 @@ use rasterlab::{
     measure::Budget,
 };
 
-use super::common;
+use super::common::{self, Reach, few_and_all};
 
 /// Most lines of an effect.
 const MOST_LINES: usize = 60;
@@ -32,8 +32,7 @@ fn files() -> Vec<PathBuf> {
     files
 }
 
-#[test]
-fn every_ported_effect_is_drawn_as_the_oracle_draws_it() {
+fn every_ported_effect_is_drawn_as_the_oracle_draws_it(reach: Reach) {
     let Some(mut renderer) = common::renderer() else {
         return;
     };
@@ -53,7 +52,12 @@ fn every_ported_effect_is_drawn_as_the_oracle_draws_it() {
     plain.enable(lambert);
     let before = common::captured(&mut renderer, &scene, &view, &plain, &accuracy);
     let mut faults = Vec::new();
-    for path in files {
+    for path in reach.of(
+        3,
+        files
+            .into_iter()
+            .step_by(if reach == Reach::Few { 7 } else { 1 }),
+    ) {
         let text = std::fs::read_to_string(&path).expect("it is text");
         let name = stem(&path);
         assert!(text.lines().count() <= MOST_LINES, "{name} is long");
@@ -117,3 +121,5 @@ fn faulty_effects_are_refused_with_what_to_do() {
         assert!(error.place.is_some(), "{error}");
     }
 }
+
+few_and_all!(every_ported_effect_is_drawn_as_the_oracle_draws_it,);

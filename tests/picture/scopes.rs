@@ -98,13 +98,14 @@ fn drawn(
     .0
 }
 
-#[test]
-fn a_surface_effect_colors_its_parts_as_if_it_were_everywhere_and_leaves_all_others_as_they_were() {
+fn a_surface_effect_colors_its_parts_as_if_it_were_everywhere_and_leaves_all_others_as_they_were(
+    reach: Reach,
+) {
     let Some(mut renderer) = renderer() else {
         return;
     };
     let picture = wall();
-    for visibility in options(&renderer) {
+    for visibility in reach.options(&renderer) {
         let accuracy = AccuracyRequest {
             pins: PinnedOptions::of(visibility),
             ..AccuracyRequest::default()
@@ -145,8 +146,7 @@ fn a_surface_effect_colors_its_parts_as_if_it_were_everywhere_and_leaves_all_oth
     }
 }
 
-#[test]
-fn a_sample_effect_leaves_out_samples_of_its_parts_alone() {
+fn a_sample_effect_leaves_out_samples_of_its_parts_alone(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -156,7 +156,7 @@ fn a_sample_effect_leaves_out_samples_of_its_parts_alone() {
         ("dissolve", &[("fill", 0.4)]),
         ("wireframe", &[("hidden", 0.0)]),
     ] {
-        for visibility in options(&renderer) {
+        for visibility in reach.options(&renderer) {
             let accuracy = AccuracyRequest {
                 pins: PinnedOptions::of(visibility),
                 ..AccuracyRequest::default()
@@ -193,17 +193,19 @@ fn a_sample_effect_leaves_out_samples_of_its_parts_alone() {
     }
 }
 
-#[test]
-fn a_vertex_effect_moves_its_parts_and_their_shadows_alone() {
+fn a_vertex_effect_moves_its_parts_and_their_shadows_alone(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
     let picture = wall();
-    for (name, fields) in [
-        ("inflate", &[("amount_m", 0.1)][..]),
-        ("wobble", &[]),
-        ("explode", &[("amount_m", 0.6)]),
-    ] {
+    for (name, fields) in reach.of(
+        1,
+        [
+            ("inflate", &[("amount_m", 0.1)][..]),
+            ("wobble", &[]),
+            ("explode", &[("amount_m", 0.6)]),
+        ],
+    ) {
         let mut draw =
             |stack: &Stack| drawn(&mut renderer, &picture, stack, &AccuracyRequest::default());
         let with_shadow = |patterns: &[&str]| {
@@ -308,8 +310,7 @@ fn layers_are_shaded_with_the_scope_of_their_own_draw() {
     assert!(some != all && some != none && all != none);
 }
 
-#[test]
-fn skinned_animals_in_a_room_are_told_apart() {
+fn skinned_animals_in_a_room_are_told_apart(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
@@ -341,7 +342,7 @@ fn skinned_animals_in_a_room_are_told_apart() {
         &[("fill", 0.6)],
     );
     enable(&mut stack, effect("shadow"), &[], &[]);
-    for visibility in options(&renderer) {
+    for visibility in reach.options(&renderer) {
         let accuracy = AccuracyRequest {
             pins: PinnedOptions::of(visibility),
             ..AccuracyRequest::default()
@@ -421,3 +422,10 @@ fn the_scope_of_another_draw_is_found() {
         );
     }
 }
+
+few_and_all!(
+    a_surface_effect_colors_its_parts_as_if_it_were_everywhere_and_leaves_all_others_as_they_were,
+    a_sample_effect_leaves_out_samples_of_its_parts_alone,
+    a_vertex_effect_moves_its_parts_and_their_shadows_alone,
+    skinned_animals_in_a_room_are_told_apart,
+);

@@ -135,14 +135,13 @@ fn on_floor(view: &View, x: usize, y: usize) -> DVec3 {
     view.eye - ray * (view.eye.y / ray.y)
 }
 
-#[test]
-fn a_plate_throws_its_shadow_where_geometry_says_to_a_texel() {
+fn a_plate_throws_its_shadow_where_geometry_says_to_a_texel(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
     const HALF: f64 = 0.6;
     let scene = scene_of_meshes(&[plate(2.0, 0.0), plate(HALF as f32, 1.0)]);
-    for (azimuth, elevation) in [(0.0, 90.0), (25.0, 60.0), (-130.0, 40.0)] {
+    for (azimuth, elevation) in reach.of(2, [(0.0, 90.0), (25.0, 60.0), (-130.0, 40.0)]) {
         let stack = light_alone(&[
             ("shadow", "azimuth_deg", azimuth),
             ("shadow", "elevation_deg", elevation),
@@ -488,15 +487,14 @@ fn the_light_may_stand_anywhere() {
 
 /// The light's view drawn as a picture: triangle ids to the sample, keys within their bound, and
 /// the map has those keys.
-#[test]
-fn the_map_is_the_picture_that_the_light_sees() {
+fn the_map_is_the_picture_that_the_light_sees(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
-    for (scene, stack) in cases()
+    let cases = cases()
         .into_iter()
-        .filter(|(scene, _)| scene.triangle_count() > 0)
-    {
+        .filter(|(scene, _)| scene.triangle_count() > 0);
+    for (scene, stack) in reach.of(3, cases) {
         let view = on(
             &view(&scene, [64, 48]),
             ShadowMapSize::Side256,
@@ -745,8 +743,7 @@ fn walls_catch_shadows_and_cast_none_and_stand_still() {
 
 // -------- mutants
 
-#[test]
-fn mistakes_in_the_light_are_found() {
+fn mistakes_in_the_light_are_found(reach: Reach) {
     let Some(usual) = renderer() else { return };
     let gpu = usual.gpu().clone();
     drop(usual);
@@ -757,28 +754,31 @@ fn mistakes_in_the_light_are_found() {
         ("explode", "front", 0.5),
     ];
     let (plain, parted) = (lit(&["shadow"], &[]), lit(&["explode", "shadow"], &sweep));
-    for (from, to, stack) in [
-        (
-            "texel.y * side + texel.x",
-            "texel.x * side + texel.y",
-            &plain,
-        ),
-        (
-            "vec2i(first) + texel",
-            "vec2i(first) + texel + vec2i(1, 0)",
-            &plain,
-        ),
-        (
-            "atomicMax(&depth_keys[pixel], key)",
-            "atomicMin(&depth_keys[pixel], key)",
-            &plain,
-        ),
-        (
-            "picture_from_world * vec4f(center, 1.0)",
-            "picture_from_world * vec4f(center.zyx, 1.0)",
-            &parted,
-        ),
-    ] {
+    for (from, to, stack) in reach.of(
+        2,
+        [
+            (
+                "texel.y * side + texel.x",
+                "texel.x * side + texel.y",
+                &plain,
+            ),
+            (
+                "vec2i(first) + texel",
+                "vec2i(first) + texel + vec2i(1, 0)",
+                &plain,
+            ),
+            (
+                "atomicMax(&depth_keys[pixel], key)",
+                "atomicMin(&depth_keys[pixel], key)",
+                &plain,
+            ),
+            (
+                "picture_from_world * vec4f(center, 1.0)",
+                "picture_from_world * vec4f(center.zyx, 1.0)",
+                &parted,
+            ),
+        ],
+    ) {
         if from == "texel.y * side + texel.x" && !gpu.caps.tuning().buffered_shadow_map {
             continue;
         }
@@ -802,3 +802,9 @@ fn mistakes_in_the_light_are_found() {
         );
     }
 }
+
+few_and_all!(
+    the_map_is_the_picture_that_the_light_sees,
+    a_plate_throws_its_shadow_where_geometry_says_to_a_texel,
+    mistakes_in_the_light_are_found,
+);

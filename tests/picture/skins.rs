@@ -419,18 +419,20 @@ fn insist(
     a.max_deform_ulp
 }
 
-#[test]
-fn every_option_deforms_as_the_oracle_does() {
+fn every_option_deforms_as_the_oracle_does(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
     let stack = stack(&["lambert", "depth"]);
     let mut largest: f64 = 0.0;
-    for query in [
-        "tentacle?tess=4",
-        "tentacle?tess=3&influences=8&joints=16",
-        "tentacle?tess=2&influences=1&instances=7",
-    ] {
+    for query in reach.of(
+        1,
+        [
+            "tentacle?tess=4",
+            "tentacle?tess=3&influences=8&joints=16",
+            "tentacle?tess=2&influences=1&instances=7",
+        ],
+    ) {
         let scene = scene(query);
         for (clips, time_s) in [
             (["", ""], 0.0),
@@ -441,7 +443,7 @@ fn every_option_deforms_as_the_oracle_does() {
         ] {
             for (skinning, option) in Skinning::ALL
                 .iter()
-                .zip(options(&renderer).into_iter().cycle())
+                .zip(reach.options(&renderer).into_iter().cycle())
             {
                 let view = moment(&scene, clips, time_s, *skinning, [160, 120]);
                 let what = format!("{query} {clips:?} {} {}", skinning.name(), option.name());
@@ -452,22 +454,24 @@ fn every_option_deforms_as_the_oracle_does() {
     eprintln!("largest error of a bent vertex: {largest} ulp");
 }
 
-#[test]
-fn effects_work_on_deformed_meshes() {
+fn effects_work_on_deformed_meshes(reach: Reach) {
     let Some(mut renderer) = renderer() else {
         return;
     };
     let scene = scene("tentacle?tess=4");
     for skinning in Skinning::ALL {
         let view = moment(&scene, ["Curl", "Breathe"], 1.3, *skinning, [160, 120]);
-        for effects in [
-            &["explode", "facet"][..],
-            &["wobble", "lambert"],
-            &["inflate", "normals"],
-            &["dissolve", "lambert"],
-            &["xray"],
-            &["points"],
-        ] {
+        for effects in reach.of(
+            1,
+            [
+                &["explode", "facet"][..],
+                &["wobble", "lambert"],
+                &["inflate", "normals"],
+                &["dissolve", "lambert"],
+                &["xray"],
+                &["points"],
+            ],
+        ) {
             let what = format!("{effects:?} {}", skinning.name());
             insist(
                 &mut renderer,
@@ -654,8 +658,7 @@ fn quantized_positions_are_drawn_and_deformed_like_any() {
     }
 }
 
-#[test]
-fn mistakes_in_the_pass_are_found() {
+fn mistakes_in_the_pass_are_found(reach: Reach) {
     let Some(gpu) = gpu() else { return };
     let stack = stack(&["lambert"]);
     let scene = careless();
@@ -681,7 +684,7 @@ fn mistakes_in_the_pass_are_found() {
             "select(weight, weight,",
         ),
     ];
-    for (what, from, to) in mutants {
+    for (what, from, to) in reach.of(2, mutants) {
         let mutant = mutated(from, to);
         let mut found = false;
         for (skinning, clips, time_s) in Skinning::ALL
@@ -711,3 +714,9 @@ fn mistakes_in_the_pass_are_found() {
         assert!(found, "{what} was not found");
     }
 }
+
+few_and_all!(
+    every_option_deforms_as_the_oracle_does,
+    effects_work_on_deformed_meshes,
+    mistakes_in_the_pass_are_found,
+);
