@@ -157,14 +157,14 @@ fn whole(renderer: &Renderer, scene: &Arc<Scene>, view: &View, pins: PinnedOptio
     let mut whole = whole
         .lock()
         .unwrap_or_else(|poisoned| poisoned.into_inner());
-    captured(
-        &mut whole,
-        scene,
-        view,
-        &stack(&["lambert"]),
-        &on(pins.with(Culling::None)),
-    )
-    .frame
+    whole
+        .captured(
+            scene,
+            view,
+            &stack(&["lambert"]),
+            &on(pins.with(Culling::None)),
+        )
+        .frame
 }
 
 /// AccuracyOptions that two passes can hide behind.
@@ -176,9 +176,7 @@ fn hiding(renderer: &Renderer) -> Vec<PinnedOptions> {
 }
 
 fn two_passes_lose_nothing_on_any_walk(reach: Reach) {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let mut rng = Rng(11);
     for (what, scene) in scenes().into_iter().filter(|(what, _)| {
         ["field?count=64&triangles=600", "near", "mirrored", "grown"].contains(&&**what)
@@ -198,9 +196,7 @@ fn two_passes_lose_nothing_on_any_walk(reach: Reach) {
 }
 
 fn another_scene_another_size_and_a_pause_leave_nothing_stale(reach: Reach) {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let mut rng = Rng(5);
     let scenes = [
         scene("field?count=64&triangles=400"),
@@ -281,9 +277,7 @@ fn grown() -> Arc<Scene> {
 
 #[test]
 fn backs_that_the_snap_turns_over_are_not_left_out() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let (scene, views) = dust();
     let shown: usize = views
         .iter()
@@ -306,7 +300,7 @@ fn backs_that_the_snap_turns_over_are_not_left_out() {
 }
 
 fn mistakes_of_culling_are_seen(reach: Reach) {
-    let Some(healthy) = renderer() else { return };
+    let Some(healthy) = loan() else { return };
     let gpu = healthy.gpu().clone();
     drop(healthy);
     let split = |option: Culling| PinnedOptions::of(option).with(Visibility::Split32);
@@ -375,9 +369,7 @@ fn mistakes_of_culling_are_seen(reach: Reach) {
 }
 
 fn more_meshlets_than_one_row_of_workgroups_are_all_drawn(reach: Reach) {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     const SIDE: u32 = 257;
     // One triangle over one sample, 66,049 times: as many meshlets, and more than 65,535
     // workgroups.
@@ -609,9 +601,7 @@ fn a_picture_that_cannot_be_culled_says_why_and_is_drawn(reach: Reach) {
 }
 
 fn effects_and_layers_keep_their_picture(reach: Reach) {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("field?count=27&triangles=400");
     let views = walk(&scene, &mut Rng(9), 4, SIZE);
     renderer.set_scene(&scene).block_on().expect("it fits");
@@ -656,9 +646,7 @@ fn effects_and_layers_keep_their_picture(reach: Reach) {
 
 #[test]
 fn the_picture_before_hides_what_has_come_out_since() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("field?count=216&triangles=400");
     renderer.set_scene(&scene).block_on().expect("it fits");
     let pins = PinnedOptions::of(Culling::Hiz).with(Visibility::Split32);
@@ -716,8 +704,7 @@ fn what_lies_outside_the_picture_is_not_deformed() {
             .block_on()
             .expect("it is drawn");
         let buffers = renderer.explain().buffers;
-        let capture = captured(
-            &mut renderer,
+        let capture = renderer.captured(
             &scene,
             &view,
             &stack(&["lambert"]),
@@ -743,9 +730,7 @@ fn what_lies_outside_the_picture_is_not_deformed() {
 
 #[test]
 fn what_lies_far_from_its_origin_is_culled_about_the_eye() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     const FAR: DVec3 = DVec3::new(3e5, -2e5, 1e5);
     let mut scene = (*scene("sphere?triangles=3000")).clone();
     // The mesh itself lies there, in whole sixteenths.

@@ -119,7 +119,7 @@ fn compared(gpu: &Arc<Gpu>, heavy: &Mutated) -> Result<(), String> {
                 ));
             }
 
-            let drawn = captured(&mut counting, &scene, &view, &stack, &accuracy).frame;
+            let drawn = counting.captured(&scene, &view, &stack, &accuracy).frame;
             let shown = |pixel: u64| {
                 if pixel < rest {
                     sheet as u32
@@ -136,7 +136,7 @@ fn compared(gpu: &Arc<Gpu>, heavy: &Mutated) -> Result<(), String> {
                 ));
             }
             let stack = limited(Unit::Count, (sheet * PIXELS + rest) as f64);
-            let reference = captured(&mut ordinary, &scene, &view, &stack, &accuracy).frame;
+            let reference = ordinary.captured(&scene, &view, &stack, &accuracy).frame;
             let is_far =
                 |(a, b): (&[u8; 4], &[u8; 4])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 1);
             if let Some(pixel) = drawn.color.iter().zip(&reference.color).position(is_far) {

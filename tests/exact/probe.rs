@@ -7,7 +7,6 @@ use rasterlab::{
     frame::NO_TRIANGLE,
     math::hash,
     oracle::{self, Outcome, ProbedTriangle},
-    plan::AccuracyRequest,
     preset_file::{self, Folders},
 };
 
@@ -102,18 +101,13 @@ fn nearest_edge_px(triangle: &ProbedTriangle, unit: f64) -> f64 {
 
 #[test]
 fn every_pixel_that_float_edges_get_wrong_lies_at_an_edge_of_what_was_drawn() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     // Corners on 1/2 px: every other sample lies on an edge.
     let scene = scene("grid?cell=4&lattice=2&width=256&height=256");
     let size = [256, 256];
     let (view, stack) = (view(&scene, size), Stack::default());
-    let accuracy = AccuracyRequest {
-        pins: PinnedOptions::of(Coverage::Float),
-        ..AccuracyRequest::default()
-    };
-    let capture = captured(&mut renderer, &scene, &view, &stack, &accuracy);
+    let accuracy = request(PinnedOptions::of(Coverage::Float));
+    let capture = renderer.captured(&scene, &view, &stack, &accuracy);
     let wrong = {
         let expected = verdict(&scene, &view, &stack, &capture).expected;
         let drawn = &capture.frame.triangle_id;

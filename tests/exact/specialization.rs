@@ -11,7 +11,7 @@ use rasterlab::{
     gpu::{Explanation, Renderer, ResourceId},
     measure::compare,
     oracle,
-    plan::{AccuracyRequest, Tuning},
+    plan::Tuning,
     preset_file,
     scene::{Scene, view::View},
     shader::{Fetch, key::AttributeFormat},
@@ -120,9 +120,7 @@ fn the_planned_kernel_and_the_one_that_leaves_nothing_out_draw_the_same_effects(
 
 /// Draws the pictures both ways.
 fn planned_as_everything(reach: Reach, pictures: fn(&[Visibility]) -> Vec<Picture>) {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let usual = renderer.gpu().caps.tuning();
     // Thresholds of a GPU, so that medium triangles occur.
     let planned_tuning = Tuning {
@@ -137,7 +135,7 @@ fn planned_as_everything(reach: Reach, pictures: fn(&[Visibility]) -> Vec<Pictur
                 specialized,
                 ..planned_tuning
             });
-            let capture = captured(&mut renderer, &scene, &view, &stack, &pinned(option));
+            let capture = renderer.captured(&scene, &view, &stack, &pinned(option));
             (
                 capture,
                 renderer.key().expect("something was drawn").clone(),
@@ -238,13 +236,7 @@ fn an_effect_that_is_switched_off_again_leaves_no_pass_and_no_buffer(reach: Reac
     let (mut renderer, scene) = (Renderer::new(gpu), scene("teapot?tess=4"));
     let view = view(&scene, [64, 48]);
     let mut explained = |names: &[&str]| {
-        captured(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack(names),
-            &pinned(Visibility::Split32),
-        );
+        renderer.captured(&scene, &view, &stack(names), &split32());
         renderer.explain()
     };
     let bare = explained(&[]);
@@ -444,16 +436,7 @@ fn only_a_stack_with_dots_has_their_passes_and_only_their_way_s_buffers(reach: R
     let view = view(&scene, [160, 120]);
     let explained = |stack: &Stack, way: DotCulling| {
         let mut renderer = Renderer::new(gpu.clone());
-        captured(
-            &mut renderer,
-            &scene,
-            &view,
-            stack,
-            &AccuracyRequest {
-                pins: PinnedOptions::of(way),
-                ..AccuracyRequest::default()
-            },
-        );
+        renderer.captured(&scene, &view, stack, &request(PinnedOptions::of(way)));
         renderer.explain()
     };
     let bare = explained(&stack(&["lambert"]), DotCulling::Gpu);
@@ -600,13 +583,7 @@ fn a_known_key_compiles_nothing(reach: Reach) {
         for scene in &scenes {
             for stack in &stacks {
                 for option in reach.options(renderer) {
-                    captured(
-                        renderer,
-                        scene,
-                        &view(scene, [64, 48]),
-                        stack,
-                        &pinned(option),
-                    );
+                    renderer.captured(scene, &view(scene, [64, 48]), stack, &pinned(option));
                 }
             }
         }
@@ -626,20 +603,8 @@ fn a_known_key_compiles_nothing(reach: Reach) {
     field
         .set(&mut effect.words, &[0.5])
         .expect("within its range");
-    captured(
-        &mut renderer,
-        &scenes[0],
-        &view(&scenes[0], [64, 48]),
-        &turned,
-        &pinned(Visibility::Split32),
-    );
-    captured(
-        &mut renderer,
-        &scenes[0],
-        &view(&scenes[0], [80, 61]),
-        &turned,
-        &pinned(Visibility::Split32),
-    );
+    renderer.captured(&scenes[0], &view(&scenes[0], [64, 48]), &turned, &split32());
+    renderer.captured(&scenes[0], &view(&scenes[0], [80, 61]), &turned, &split32());
     assert_eq!(
         renderer.compiled(),
         first,

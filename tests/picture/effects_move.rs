@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec2, DVec3};
 use rasterlab::{
-    accuracy::Visibility,
     effects::{
         Effect, Stack,
         hooks::{ErrorBound, Vertex},
@@ -88,9 +87,7 @@ fn lit(mut stack: Stack) -> Stack {
 fn all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_parallel_rays(
     reach: Reach,
 ) {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let mut far = Scene::clone(&scene("knot?tess=6"));
     let offset = DVec3::new(1e4, -2e4, 1e4);
     far.instances[0].world_from_object =
@@ -122,8 +119,7 @@ fn all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_paral
         for (pattern, name) in ["uniform", "sweep", "radial", "random"].iter().enumerate() {
             set(&mut stack, "explode", "pattern", &[pattern as f64]);
             for option in reach.options(&renderer) {
-                exact(
-                    &mut renderer,
+                renderer.exact(
                     &scene,
                     &view,
                     &stack,
@@ -150,9 +146,7 @@ fn an_effect_that_moves_nothing_changes_nothing(reach: Reach) {
             );
         }
     }
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let usual = renderer.gpu().caps.tuning();
     for query in ["cube-wall", "near"] {
         let scene = scene(query);
@@ -162,21 +156,10 @@ fn an_effect_that_moves_nothing_changes_nothing(reach: Reach) {
             specialized: false,
             ..usual
         });
-        let none = captured(
-            &mut renderer,
-            &scene,
-            &view,
-            &lit(Stack::default()),
-            &pinned(Visibility::Split32),
-        );
+        let none = renderer.captured(&scene, &view, &lit(Stack::default()), &split32());
         for effect in reach.of(1, MOVING) {
-            let resting = captured(
-                &mut renderer,
-                &scene,
-                &view,
-                &lit(resting(effect, &scene)),
-                &pinned(Visibility::Split32),
-            );
+            let resting =
+                renderer.captured(&scene, &view, &lit(resting(effect, &scene)), &split32());
             assert_eq!(resting.frame, none.frame, "{query} {effect}");
         }
     }
@@ -197,21 +180,12 @@ fn telescope() -> (Arc<Scene>, View) {
 
 /// Shares of its stated bound that an adapter uses, seen through a telescope.
 fn stated_bounds_hold_under_a_telescope_and_are_not_idle(reach: Reach) {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let (scene, view) = telescope();
     let draws = draws(&scene, &view).expect("a builtin fits");
     for effect in reach.of(1, MOVING) {
         let stack = suited(effect, &scene);
-        let (capture, _) = exact(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack,
-            &pinned(Visibility::Split32),
-            effect,
-        );
+        let (capture, _) = renderer.exact(&scene, &view, &stack, &split32(), effect);
         let reference = oracle::project(&oracle::Shot::new(&scene, &draws, &view, &stack))
             .expect("nobody cancels it");
         let bounds = oracle::snap_bounds(&oracle::Shot::new(&scene, &draws, &view, &stack));
@@ -405,7 +379,7 @@ fn corners_snap_to_cells_and_the_adapter_agrees_on_each(reach: Reach) {
         projection: Projection::Orthographic { height_m: 3.0 },
         ..Camera::default()
     };
-    let mut renderer = renderer();
+    let mut renderer = loan();
     for (what, query, camera) in [
         ("in front", "knot?tess=6", Camera::default()),
         ("inside the mesh", "sphere?triangles=3000", inside),
@@ -421,7 +395,7 @@ fn corners_snap_to_cells_and_the_adapter_agrees_on_each(reach: Reach) {
         };
         for option in reach.options(renderer) {
             let (what, pins) = (format!("{what}, {}", option.name()), pinned(option));
-            let (capture, verdict) = judged(renderer, &scene, &view, &stack, &pins);
+            let (capture, verdict) = renderer.judged(&scene, &view, &stack, &pins);
             let judgement = verdict.report.within(&Budget::default());
             assert_eq!(judgement, Ok(()), "{what}: {:?}", verdict.report);
             assert!(on_grid(&capture.geometry), "{what}");
@@ -490,9 +464,7 @@ fn still_life(query: &str) -> (Arc<Scene>, View) {
 }
 
 fn kernels_that_move_wrongly_are_caught(reach: Reach) {
-    let Some(mut healthy) = renderer() else {
-        return;
-    };
+    let Some(mut healthy) = loan() else { return };
     let mutants = [
         (
             "a wave turns normals the wrong way",
@@ -530,23 +502,16 @@ fn kernels_that_move_wrongly_are_caught(reach: Reach) {
         if effect == "wobble" {
             set(&mut stack, effect, "amplitude_m", &[0.15]);
         }
-        exact(
-            &mut healthy,
+        healthy.exact(
             &scene,
             &view,
             &stack,
-            &pinned(Visibility::Split32),
+            &split32(),
             &format!("without the mistake: {what}"),
         );
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
-        let (_, verdict) = judged(
-            &mut wrong,
-            &scene,
-            &view,
-            &stack,
-            &pinned(Visibility::Split32),
-        );
+        let (_, verdict) = wrong.judged(&scene, &view, &stack, &split32());
         match exactness(&verdict.report) {
             Ok(()) => failures.push(what),
             Err(faults) => eprintln!("{what}: {faults}"),

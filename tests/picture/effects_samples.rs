@@ -330,9 +330,7 @@ fn a_draw_order_draws_n_samples_and_one_more_with_every_step() {
 }
 
 fn a_scheduler_draws_as_many_samples_as_it_should_and_only_right_ones(reach: Reach) {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("cube-wall");
     let view = view(&scene, [160, 120]);
     let total = sum(&Drawn::of(&scene, &view, &Stack::default()).layers(&view, &Stack::default()));
@@ -343,8 +341,7 @@ fn a_scheduler_draws_as_many_samples_as_it_should_and_only_right_ones(reach: Rea
                 &[("mode", 1.0), ("unit", 1.0), ("limit", limit as f64)],
             );
             assert!(!stack.is_repeatable());
-            let (capture, _) = exact(
-                &mut renderer,
+            let (capture, _) = renderer.exact(
                 &scene,
                 &view,
                 &stack,
@@ -358,9 +355,7 @@ fn a_scheduler_draws_as_many_samples_as_it_should_and_only_right_ones(reach: Rea
 }
 
 fn kernels_with_a_mistake_are_caught(reach: Reach) {
-    let Some(mut healthy) = renderer() else {
-        return;
-    };
+    let Some(mut healthy) = loan() else { return };
     let card = tunings()[2];
     healthy.set_tuning(card);
     let mutants = [
@@ -406,8 +401,7 @@ fn kernels_with_a_mistake_are_caught(reach: Reach) {
     let mut failures = Vec::new();
     for (what, from, to, stack) in reach.of(2, mutants) {
         let option = pinned(rasterlab::accuracy::Visibility::Split32);
-        exact(
-            &mut healthy,
+        healthy.exact(
             &scene,
             &view,
             &stack,
@@ -418,7 +412,7 @@ fn kernels_with_a_mistake_are_caught(reach: Reach) {
         let mut wrong =
             rasterlab::gpu::Renderer::with_library(healthy.gpu().clone(), library.shaders());
         wrong.set_tuning(card);
-        let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &option);
+        let (_, verdict) = wrong.judged(&scene, &view, &stack, &option);
         if exactness(&verdict.report).is_ok() {
             failures.push(what);
         }

@@ -41,9 +41,7 @@ fn dark(lights: f32) -> Stack {
 }
 
 fn lamps_look_as_in_the_oracle_alone_through_glass_in_an_xray_and_behind_effects(reach: Reach) {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let (scene, view) = balls(6);
     let option = pinned(quick_option(&renderer));
     for effects in reach.of(
@@ -57,34 +55,18 @@ fn lamps_look_as_in_the_oracle_alone_through_glass_in_an_xray_and_behind_effects
         ],
     ) {
         let what = effects.join(" ");
-        exact(
-            &mut renderer,
-            &scene,
-            &view,
-            &stack(effects),
-            &option,
-            &what,
-        );
+        renderer.exact(&scene, &view, &stack(effects), &option, &what);
     }
-    exact(
-        &mut renderer,
-        &scene,
-        &view,
-        &dark(1.0),
-        &option,
-        "lamps alone",
-    );
+    renderer.exact(&scene, &view, &dark(1.0), &option, "lamps alone");
 }
 
 #[test]
 fn lamps_are_in_the_kernel_only_where_they_shine() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let option = pinned(quick_option(&renderer));
     let mut lights = |lamps: u32, effects: &[&str]| {
         let (scene, view) = balls(lamps);
-        judged(&mut renderer, &scene, &view, &stack(effects), &option);
+        renderer.judged(&scene, &view, &stack(effects), &option);
         let key = renderer.key().expect("something was drawn");
         let variants = key.variants(Pass::Resolve);
         let linked = link::link(&Library::Embedded, &Pass::Resolve.path(), key, &variants);
@@ -97,7 +79,7 @@ fn lamps_are_in_the_kernel_only_where_they_shine() {
 }
 
 fn mistakes_in_lamps_are_caught(reach: Reach) {
-    let Some(healthy) = renderer() else {
+    let Some(healthy) = loan() else {
         return;
     };
     let (scene, view) = balls(3);
@@ -116,7 +98,7 @@ fn mistakes_in_lamps_are_caught(reach: Reach) {
     for (from, to) in reach.of(1, mistakes) {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
-        let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &option);
+        let (_, verdict) = wrong.judged(&scene, &view, &stack, &option);
         assert!(exactness(&verdict.report).is_err(), "{to}");
     }
 }

@@ -31,9 +31,7 @@ fn balls(change: impl FnOnce(&mut Scene)) -> (Arc<Scene>, View) {
 fn maps_look_as_in_the_oracle_on_mirrored_sheared_faceted_and_moved_surfaces_and_from_behind(
     reach: Reach,
 ) {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let place = |scene: &mut Scene, matrix: DMat4| {
         for instance in &mut scene.instances {
             instance.world_from_object *= matrix;
@@ -70,7 +68,7 @@ fn maps_look_as_in_the_oracle_on_mirrored_sheared_faceted_and_moved_surfaces_and
     let option = pinned(quick_option(&renderer));
     for (what, effects, change) in reach.of(2, cases) {
         let (scene, view) = balls(change);
-        exact(&mut renderer, &scene, &view, &stack(effects), &option, what);
+        renderer.exact(&scene, &view, &stack(effects), &option, what);
     }
 }
 
@@ -116,13 +114,11 @@ fn a_flat_map_of_normals_changes_nothing_and_an_even_map_is_a_factor() {
 
 #[test]
 fn maps_are_in_the_kernel_only_where_an_effect_reads_them() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let (scene, view) = balls(|_| {});
     let option = pinned(quick_option(&renderer));
     let mut maps = |effects: &[&str]| {
-        judged(&mut renderer, &scene, &view, &stack(effects), &option);
+        renderer.judged(&scene, &view, &stack(effects), &option);
         let surface = &renderer.key().expect("something was drawn").surface;
         (
             surface.has_material_atlas,
@@ -136,7 +132,7 @@ fn maps_are_in_the_kernel_only_where_an_effect_reads_them() {
 }
 
 fn mistakes_in_maps_are_caught(reach: Reach) {
-    let Some(healthy) = renderer() else {
+    let Some(healthy) = loan() else {
         return;
     };
     let (scene, view) = balls(|_| {});
@@ -154,7 +150,7 @@ fn mistakes_in_maps_are_caught(reach: Reach) {
     for (from, to) in reach.of(1, mistakes) {
         let library = mutated(from, to);
         let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
-        let (_, verdict) = judged(&mut wrong, &scene, &view, &stack, &option);
+        let (_, verdict) = wrong.judged(&scene, &view, &stack, &option);
         assert!(exactness(&verdict.report).is_err(), "{to}");
     }
 }

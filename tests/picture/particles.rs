@@ -60,10 +60,7 @@ fn at(preset: &Preset, frame: u32) -> Preset {
 }
 
 fn on(curl: CurlNoise, state: ParticleStorage) -> AccuracyRequest {
-    AccuracyRequest {
-        pins: PinnedOptions::of(curl).with(state),
-        ..AccuracyRequest::default()
-    }
+    request(PinnedOptions::of(curl).with(state))
 }
 
 fn particle_options() -> impl Iterator<Item = (CurlNoise, ParticleStorage)> {
@@ -81,8 +78,7 @@ fn flown(
     accuracy: &AccuracyRequest,
 ) -> (Capture, ParticleReadback) {
     let preset = at(preset, frame);
-    let capture = captured(
-        renderer,
+    let capture = renderer.captured(
         scene,
         &preset.view(scene, SIZE),
         &preset.evaluated_stack(),
@@ -104,8 +100,7 @@ fn measured(
     accuracy: &AccuracyRequest,
 ) -> (Capture, Measured) {
     let preset = at(preset, frame);
-    let (capture, verdict) = judged(
-        renderer,
+    let (capture, verdict) = renderer.judged(
         scene,
         &preset.view(scene, SIZE),
         &preset.evaluated_stack(),
@@ -299,9 +294,7 @@ fn a_disc_is_the_ellipse_that_touches_the_sides_in_their_middles() {
 // -------- on an adapter
 
 fn every_step_is_within_its_bound_with_every_option(reach: Reach) {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("chamber");
     let preset_files: [&[(&str, &[f64])]; 5] = [
         &[],
@@ -425,16 +418,13 @@ fn a_frame_is_the_same_however_it_was_reached(reach: Reach) {
 
 #[test]
 fn none_few_and_odd_numbers_of_particles_are_drawn() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("chamber");
-    let bare = captured(
-        &mut renderer,
+    let bare = renderer.captured(
         &scene,
         &Preset::default().view(&scene, SIZE),
         &stack(&[]),
-        &AccuracyRequest::default(),
+        &unpinned(),
     );
     for count in [0u32, 1, 2, 63, 65, 257] {
         let preset = at(
@@ -442,13 +432,8 @@ fn none_few_and_odd_numbers_of_particles_are_drawn() {
             20,
         );
         let view = preset.view(&scene, SIZE);
-        let (capture, verdict) = judged(
-            &mut renderer,
-            &scene,
-            &view,
-            &preset.evaluated_stack(),
-            &AccuracyRequest::default(),
-        );
+        let (capture, verdict) =
+            renderer.judged(&scene, &view, &preset.evaluated_stack(), &unpinned());
         exactness(&verdict.report).unwrap_or_else(|why| panic!("{count}: {why}"));
         let particle_readback = capture
             .geometry
@@ -481,19 +466,11 @@ fn none_few_and_odd_numbers_of_particles_are_drawn() {
 }
 
 fn captured_of(renderer: &mut Renderer, scene: &Arc<Scene>, view: &View) -> Capture {
-    captured(
-        renderer,
-        scene,
-        view,
-        &stack(&[]),
-        &AccuracyRequest::default(),
-    )
+    renderer.captured(scene, view, &stack(&[]), &unpinned())
 }
 
 fn lives_end_and_begin_again_inside_the_room(reach: Reach) {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("chamber");
     let preset = preset_file(&[
         ("lifetime_s", &[0.25]),
@@ -533,9 +510,7 @@ fn lives_end_and_begin_again_inside_the_room(reach: Reach) {
 }
 
 fn for_a_second_particles_follow_the_reference_and_rough_options_drift(reach: Reach) {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("chamber");
     let preset = preset_file(&[
         ("lifetime_s", &[30.0]),
@@ -592,9 +567,7 @@ fn for_a_second_particles_follow_the_reference_and_rough_options_drift(reach: Re
 }
 
 fn discs_of_every_size_are_the_oracle_s_with_every_option_and_tuning(reach: Reach) {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("chamber");
     // Less than a pixel, ordinary, larger than a tile, and as large as the picture with the eye
     // among them.
@@ -634,7 +607,7 @@ fn discs_of_every_size_are_the_oracle_s_with_every_option_and_tuning(reach: Reac
         for (tuning, option) in reach.of(2, ways) {
             renderer.set_tuning(tuning);
             let what = format!("size {size}, {} {tuning:?}", option.name());
-            let (capture, _) = exact(&mut renderer, &scene, &view, &stack, &pinned(option), &what);
+            let (capture, _) = renderer.exact(&scene, &view, &stack, &pinned(option), &what);
             let first = first.get_or_insert_with(|| capture.clone());
             assert!(
                 capture.frame.triangle_id == first.frame.triangle_id
@@ -649,19 +622,16 @@ fn discs_of_every_size_are_the_oracle_s_with_every_option_and_tuning(reach: Reac
 
 #[test]
 fn what_fills_boxes_or_draws_corners_shows_no_discs() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("chamber");
     for name in ["boxes", "points"] {
         let mut preset = at(&preset_file(&[("count", &[60.0])]), 10);
         preset.stack.enable(Effect::find(name).expect("an effect"));
-        exact(
-            &mut renderer,
+        renderer.exact(
             &scene,
             &preset.view(&scene, SIZE),
             &preset.evaluated_stack(),
-            &AccuracyRequest::default(),
+            &unpinned(),
             name,
         );
     }
@@ -669,9 +639,7 @@ fn what_fills_boxes_or_draws_corners_shows_no_discs() {
 
 #[test]
 fn keys_lead_the_attractor_and_a_frame_of_them_is_the_same_however_it_was_reached() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("chamber");
     let mut preset = preset_file(&[
         ("attraction", &[9.0]),
@@ -714,9 +682,7 @@ fn keys_lead_the_attractor_and_a_frame_of_them_is_the_same_however_it_was_reache
 
 #[test]
 fn too_many_particles_are_refused_with_a_sentence() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("chamber");
     let most = renderer.gpu().caps.max_storage_binding_bytes;
     let preset = preset_file(&[("count", &[4e6])]);
@@ -728,7 +694,7 @@ fn too_many_particles_are_refused_with_a_sentence() {
         .draw_complete(
             &preset.view(&scene, [8, 8]),
             &preset.evaluated_stack(),
-            &AccuracyRequest::default(),
+            &unpinned(),
         )
         .block_on();
     if most < 4_000_000 * 72 {
@@ -737,12 +703,11 @@ fn too_many_particles_are_refused_with_a_sentence() {
     }
     // What was there before is still drawn.
     let few = at(&preset_file(&[]), 3);
-    exact(
-        &mut renderer,
+    renderer.exact(
         &scene,
         &few.view(&scene, SIZE),
         &few.evaluated_stack(),
-        &AccuracyRequest::default(),
+        &unpinned(),
         "after a refusal",
     );
 }
@@ -776,10 +741,7 @@ fn a_mistake_in_the_pass_is_found(reach: Reach) {
                 .block_on()
                 .expect("a builtin fits");
             let (view, stack) = (preset.view(&scene, SIZE), preset.evaluated_stack());
-            let Ok(capture) = renderer
-                .capture(&view, &stack, &AccuracyRequest::default())
-                .block_on()
-            else {
+            let Ok(capture) = renderer.capture(&view, &stack, &unpinned()).block_on() else {
                 return true;
             };
             let verdict = oracle::judge(

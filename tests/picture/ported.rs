@@ -10,7 +10,7 @@ use rasterlab::{
     measure::Budget,
 };
 
-use super::common::{self, Reach, few_and_all};
+use super::common::{self, Draws as _, Reach, few_and_all};
 
 /// Most lines of an effect.
 const MOST_LINES: usize = 60;
@@ -33,7 +33,7 @@ fn files() -> Vec<PathBuf> {
 }
 
 fn every_ported_effect_is_drawn_as_the_oracle_draws_it(reach: Reach) {
-    let Some(mut renderer) = common::renderer() else {
+    let Some(mut renderer) = common::loan() else {
         return;
     };
     let files = files();
@@ -50,7 +50,7 @@ fn every_ported_effect_is_drawn_as_the_oracle_draws_it(reach: Reach) {
     let lambert = Effect::find("lambert").expect("it is built in");
     let mut plain = Stack::default();
     plain.enable(lambert);
-    let before = common::captured(&mut renderer, &scene, &view, &plain, &accuracy);
+    let before = renderer.captured(&scene, &view, &plain, &accuracy);
     let mut faults = Vec::new();
     for path in reach.of(
         3,
@@ -65,7 +65,7 @@ fn every_ported_effect_is_drawn_as_the_oracle_draws_it(reach: Reach) {
         let effect = read.unwrap_or_else(|error| panic!("{error}"));
         let mut stack = plain.clone();
         stack.enable(&effect);
-        let (capture, verdict) = common::judged(&mut renderer, &scene, &view, &stack, &accuracy);
+        let (capture, verdict) = renderer.judged(&scene, &view, &stack, &accuracy);
         if let Err(fault) = verdict.report.within(&budget) {
             faults.push(format!("{name}: {fault}"));
         }

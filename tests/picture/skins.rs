@@ -11,7 +11,6 @@ use rasterlab::{
     math::rounded_columns,
     measure::Budget,
     oracle,
-    plan::AccuracyRequest,
     preset::{ClipPlayback, Clock, MissingInScene, PinnedOptions, Preset},
     scene::{
         Accessor, ComponentType, Scene,
@@ -45,10 +44,7 @@ fn moment(
             time_s,
             ..Clock::default()
         },
-        accuracy: AccuracyRequest {
-            pins: PinnedOptions::of(skinning),
-            ..AccuracyRequest::default()
-        },
+        accuracy: request(PinnedOptions::of(skinning)),
         ..Preset::default()
     }
     .view(scene, size)
@@ -410,7 +406,7 @@ fn insist(
     option: Visibility,
     what: &str,
 ) -> f64 {
-    let (_, verdict) = exact(renderer, scene, view, stack, &pinned(option), what);
+    let (_, verdict) = renderer.exact(scene, view, stack, &pinned(option), what);
     let a = &verdict.report;
     assert!(
         a.deformed_vertices > 0 && a.max_deform_px < 0.01 && a.max_deform_ulp < 100.0,
@@ -420,9 +416,7 @@ fn insist(
 }
 
 fn every_option_deforms_as_the_oracle_does(reach: Reach) {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let stack = stack(&["lambert", "depth"]);
     let mut largest: f64 = 0.0;
     for query in reach.of(
@@ -455,9 +449,7 @@ fn every_option_deforms_as_the_oracle_does(reach: Reach) {
 }
 
 fn effects_work_on_deformed_meshes(reach: Reach) {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("tentacle?tess=4");
     for skinning in Skinning::ALL {
         let view = moment(&scene, ["Curl", "Breathe"], 1.3, *skinning, [160, 120]);
@@ -487,9 +479,7 @@ fn effects_work_on_deformed_meshes(reach: Reach) {
 
 #[test]
 fn a_camera_among_the_joints_is_clipped_like_any() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("tentacle?tess=4&instances=9");
     let camera = rasterlab::scene::camera::Camera {
         eye: DVec3::new(0.1, 0.8, 0.1),
@@ -511,14 +501,8 @@ fn a_camera_among_the_joints_is_clipped_like_any() {
         ..Preset::default()
     };
     let view = preset.view(&scene, [160, 120]);
-    let (capture, verdict) = exact(
-        &mut renderer,
-        &scene,
-        &view,
-        &stack(&["lambert"]),
-        &pinned(Visibility::Split32),
-        "inside",
-    );
+    let (capture, verdict) =
+        renderer.exact(&scene, &view, &stack(&["lambert"]), &split32(), "inside");
     assert!(
         capture.frame.counters.clipped > 0 && verdict.report.deformed_vertices > 0,
         "{:?}",
@@ -528,9 +512,7 @@ fn a_camera_among_the_joints_is_clipped_like_any() {
 
 #[test]
 fn a_thousand_skinned_instances_are_exact() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = scene("tentacle?tess=1&instances=1000");
     let view = moment(
         &scene,
@@ -570,9 +552,7 @@ fn careless() -> Arc<Scene> {
 
 #[test]
 fn weights_that_are_zero_or_do_not_sum_to_one_are_put_right_alike() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     let scene = careless();
     for skinning in Skinning::ALL {
         let view = moment(&scene, ["Curl", ""], 1.2, *skinning, [160, 120]);
@@ -589,9 +569,7 @@ fn weights_that_are_zero_or_do_not_sum_to_one_are_put_right_alike() {
 
 #[test]
 fn quantized_positions_are_drawn_and_deformed_like_any() {
-    let Some(mut renderer) = renderer() else {
-        return;
-    };
+    let Some(mut renderer) = loan() else { return };
     for normalized in [false, true] {
         let mut scene = (*scene("tentacle?tess=3")).clone();
         let primitive = scene.primitives[0].clone();
@@ -629,14 +607,7 @@ fn quantized_positions_are_drawn_and_deformed_like_any() {
         placed.primitives[0].longest_edge *= 1.1 / scale;
         let placed = Arc::new(placed);
         let view = crate::common::view(&placed, [160, 120]);
-        exact(
-            &mut renderer,
-            &placed,
-            &view,
-            &stack(&["lambert"]),
-            &pinned(Visibility::Split32),
-            "placed",
-        );
+        renderer.exact(&placed, &view, &stack(&["lambert"]), &split32(), "placed");
         if normalized {
             let scene = Arc::new(scene);
             let view = moment(
@@ -700,13 +671,7 @@ fn mistakes_in_the_pass_are_found(reach: Reach) {
             };
             let view = moment(&scene, clips, time_s, skinning, [120, 90]);
             let mut renderer = Renderer::with_library(gpu.clone(), mutant.shaders());
-            let (_, verdict) = judged(
-                &mut renderer,
-                &scene,
-                &view,
-                &stack,
-                &pinned(Visibility::Split32),
-            );
+            let (_, verdict) = renderer.judged(&scene, &view, &stack, &split32());
             let faults = verdict.report.within(&Budget::default());
             found |= faults
                 .is_err_and(|faults| faults.contains("deformed vertices lie outside their bound"));
