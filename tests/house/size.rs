@@ -34,7 +34,7 @@ const PACKAGES: usize = 459;
 /// Words of the pages that people read.
 const WORDS: usize = 51_100;
 
-/// Widest line of a page, in characters.
+/// Widest line of prose, in characters. Rows of tables and of HTML stand on one line.
 const WIDEST_LINE: usize = 160;
 
 fn root() -> &'static Path {
@@ -113,6 +113,7 @@ fn no_line_of_a_page_is_too_wide() {
         .flat_map(|(name, text)| {
             text.lines()
                 .enumerate()
+                .filter(|(_, line)| !line.trim_start().starts_with(['|', '<']))
                 .filter(|(_, line)| line.chars().count() > WIDEST_LINE)
                 .map(move |(at, _)| format!("{name}:{}", at + 1))
         })
