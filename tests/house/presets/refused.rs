@@ -62,7 +62,7 @@ amount = [{ time_s = 0, value = 0 },¶ { time_s = -0.0, value = 1 }] ⇒ preset.
 amount = [{ time_s = 0, value = 0, easing = "smoth" }] ⇒ "smoth" is not one of hold, linear, smooth, in, out; did you mean "smooth"?
 amount = [{ time_s = 0 }] ⇒ preset.toml:4: animation.facet.amount keyframe 1 must have time_s and value
 amount = [{}] ⇒ animation.facet.amount keyframe 1 must have time_s and value
-amount = [] ⇒ preset.toml:4: animation.facet.amount must be a list of 1 to 256 keyframes
+amount = [] ⇒ preset.toml:4: animation.facet.amount must be a list of 1 to 256 keyframes such as { time_s = 0.0, value = … }
 amount = [0.5] ⇒ must be a list of 1 to 256 keyframes
 amount = 3 ⇒ must be a list of 1 to 256 keyframes
 seed = [{ time_s = 0, value = 1, easing = "linear" }] ⇒ keyframe 1: easing must be hold, not linear

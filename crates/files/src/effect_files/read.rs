@@ -95,9 +95,6 @@ pub fn stem(path: &Path) -> String {
 }
 
 /// [`read_beside`] of a text without a folder: pictures that it takes as inputs are inside it.
-///
-/// # Errors
-/// As [`read_beside`].
 pub fn read(file: &str, stem: &str, written: &str) -> Result<Arc<Effect>, EffectError> {
     read_beside(file, stem, written, None)
 }
@@ -292,9 +289,6 @@ fn read_anew(
 }
 
 /// The text of a file.
-///
-/// # Errors
-/// It is not UTF-8.
 pub fn decoded(text: &Text<'_>, bytes: Vec<u8>) -> Result<String, EffectError> {
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();

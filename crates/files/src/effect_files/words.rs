@@ -24,9 +24,6 @@ pub fn is_predeclared(name: &str) -> bool {
 }
 
 /// Refuses names at module scope that mean something else, or stand there twice.
-///
-/// # Errors
-/// At the name.
 pub fn check_declared(text: &Text<'_>, declared: &[Token<'_>]) -> Result<(), EffectError> {
     let mut known = BTreeMap::new();
     for name in declared {
@@ -45,9 +42,6 @@ pub fn check_declared(text: &Text<'_>, declared: &[Token<'_>]) -> Result<(), Eff
 }
 
 /// Refuses what only kernels may do. Names that the file declares are its own.
-///
-/// # Errors
-/// At the word.
 pub fn refuse(
     text: &Text<'_>,
     tokens: &[Token<'_>],
