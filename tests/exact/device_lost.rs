@@ -29,6 +29,7 @@ fn run(args: &[String], lost_after: Option<Duration>) -> Result<Exit, CliError> 
         let Some(after) = lost_after else { return };
         let device = device.clone();
         let spawned = std::thread::spawn(move || {
+            // Sleeps: the device is lost in the middle of a run, at a share of the time that one takes here.
             std::thread::sleep(after);
             device.destroy();
         });

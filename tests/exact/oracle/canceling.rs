@@ -21,6 +21,7 @@ fn ends_when_canceled<T>(what: &str, after: Duration, work: impl FnOnce() -> T) 
     let canceler = thread::spawn({
         let shared = shared.clone();
         move || {
+            // Sleeps and asks for the real time: work is canceled in its middle and ends soon after.
             thread::sleep(after);
             shared.cancel();
             Instant::now()

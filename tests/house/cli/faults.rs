@@ -30,6 +30,7 @@ fn unfinished(folder: &Path) -> Vec<std::path::PathBuf> {
 fn kill_at_random(folder: &Path, args: &[&str], rounds: u32, prepare: impl Fn(), check: impl Fn()) {
     let timed = || {
         prepare();
+        // Asks for the real time: processes are killed at a share of what a whole run takes here.
         let began = Instant::now();
         let run = run_in(folder, args);
         assert_eq!(run.code, 0, "{args:?}: {}", run.err);
@@ -58,6 +59,7 @@ fn kill_at_random(folder: &Path, args: &[&str], rounds: u32, prepare: impl Fn(),
     }
     assert!(killed > 0, "none of {rounds} processes was still running");
     // Unfinished files of the dead are removed once they are a minute old.
+    // Whether they are is told from the time of the day.
     let long_ago = SystemTime::now() - Duration::from_secs(120);
     unfinished(folder).iter().for_each(|path| {
         fs::File::options()
@@ -375,6 +377,7 @@ fn after_the_clock_went_back_files_are_written_and_what_seems_to_come_from_the_f
         )
     };
     assert_eq!(render().code, 0);
+    // Asks for the time of the day: a file may seem to come from tomorrow.
     let later = SystemTime::now() + Duration::from_secs(86_400);
     let from_the_future = [".rasterlab-aaaaaaaaaaaa.tmp", "a.png", "move.toml"];
     fs::write(folder.path().join(from_the_future[0]), "unfinished").unwrap();

@@ -626,6 +626,7 @@ mod special {
             let file = fs::File::create(path).unwrap();
             if *path != young {
                 file.set_modified(
+                    // Asks for the time of the day: whether an unfinished file is old is told from it.
                     std::time::SystemTime::now() - std::time::Duration::from_secs(7200),
                 )
                 .unwrap();

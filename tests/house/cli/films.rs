@@ -314,6 +314,7 @@ fn a_killed_film_leaves_no_torn_video() {
         .spawn()
         .unwrap();
     let received = || fs::metadata(folder.path().join("received")).map_or(0, |about| about.len());
+    // Asks for the real time only to give up: another process draws meanwhile.
     let patience = std::time::Instant::now();
     while received() < 10 * 24 * 18 * 4 && patience.elapsed().as_secs() < 60 {
         std::thread::sleep(std::time::Duration::from_millis(2));

@@ -185,6 +185,7 @@ fn an_interrupted_sequence_leaves_whole_files_alone() {
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
+    // Asks for the real time only to give up: another process draws meanwhile.
     let patience = std::time::Instant::now();
     while frames(folder.path()).len() < 3 && patience.elapsed().as_secs() < 60 {
         std::thread::sleep(std::time::Duration::from_millis(2));

@@ -323,6 +323,7 @@ fn loops_end() {
         validates(vec![effect.clone()]);
         let surface = super::super::twins::plain_surface();
         let apply = effect.hooks.surface.as_ref().expect("a surface effect");
+        // Asks for the real time: the promise is that this is quick, with a limit far above what it takes.
         let start = std::time::Instant::now();
         let result = apply(surface, &effect.defaults);
         assert!(

@@ -25,6 +25,7 @@ const MOST_TIME: Duration = Duration::from_secs(1);
 
 /// Reads a file called `ink.wgsl` and checks how a refusal is told.
 fn read_ink(text: &str) -> Result<Arc<Effect>, EffectError> {
+    // Asks for the real time: the promise is that this is quick, with a limit far above what it takes.
     let start = Instant::now();
     let result = read("ink.wgsl", "ink", text);
     assert!(

@@ -187,6 +187,7 @@ fn progress_counts_every_byte_that_is_read_and_decoded() {
 fn canceled_loading_ends_within_a_moment_wherever_it_is() {
     let glb = cloth(700).glb();
     let load = || gltf::load(&glb, &mut |_, _| unreachable!());
+    // Asks for the real time: loading is canceled at shares of what it takes here, and ends soon after.
     let began = Instant::now();
     load().expect("it is a good model");
     let whole = began.elapsed();
@@ -241,6 +242,7 @@ fn peak(model: &std::path::Path) -> u64 {
             assert!(ended.success() && peak > 0);
             return peak;
         }
+        // Sleeps between two looks at another process.
         thread::sleep(Duration::from_millis(1));
     }
 }

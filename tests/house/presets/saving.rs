@@ -36,6 +36,7 @@ fn saving_is_atomic_and_leaves_an_unmodified_file_alone() {
     );
     let stamp = |path: &Path| std::fs::metadata(path).unwrap().modified().unwrap();
     let before = stamp(&path);
+    // Sleeps: a file that is written again gets a later time than the clock of files can tell apart.
     std::thread::sleep(std::time::Duration::from_millis(20));
     preset_file::save(&mut preset_file, &path).unwrap();
     assert_eq!(stamp(&path), before, "an unmodified preset was rewritten");
