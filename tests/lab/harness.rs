@@ -279,25 +279,6 @@ pub fn created(
     ))
 }
 
-/// A window that shows the preset `open` and appends its log to `file`.
-pub fn lab_with_log(open: &str, file: std::fs::File) -> Option<Lab> {
-    crate::common::gpu()?;
-    let adapter =
-        std::env::var("RASTERLAB_ADAPTER").map_or(AdapterChoice::Any, AdapterChoice::Named);
-    let (window, devices) = shared_devices(&adapter);
-    let log = Some(Arc::new(file));
-    let mut lab = built(
-        Some(open),
-        Folders::default(),
-        (None, SIZE),
-        log,
-        adapter,
-        (window, Some(devices)),
-    );
-    settle(&mut lab);
-    Some(lab)
-}
-
 /// A window on devices for which nothing has been compiled yet, with its first picture drawn.
 pub fn lab_on_new_devices(open: &str) -> Option<Lab> {
     crate::common::gpu()?;

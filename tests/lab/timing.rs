@@ -1,7 +1,6 @@
 //! Promise: the numbers in the header are those of the picture that is shown: measured at rest,
 //! never a first sample, never of another preset or size; and the same count of wrong pixels stands
-//! in the header and in the legend. The file of the log tells how long the window and the pictures
-//! took.
+//! in the header and in the legend.
 
 use std::time::Duration;
 
@@ -260,53 +259,4 @@ fn the_timing_panel_lists_passes_rest_and_latency() {
         texts(&lab, "Times of ").is_empty(),
         "Escape closes the panel"
     );
-}
-
-#[test]
-fn the_file_of_the_log_tells_the_longest_frame_and_the_slowest_picture_and_a_window_at_rest_writes_nothing()
- {
-    draw_pictures();
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = folder.path().join("window.log");
-    let Some(mut lab) = lab_with_log("lambert", std::fs::File::create(&path).expect("a file"))
-    else {
-        return;
-    };
-    let view = lab.get_by_label("Picture").rect();
-    drag(&mut lab, view.center(), view.center() + vec2(60.0, 20.0));
-    lab.run_steps(12); // More than a second.
-    let notes = || {
-        std::fs::read_to_string(&path)
-            .expect("the log")
-            .lines()
-            .filter(|line| line.starts_with("timing: "))
-            .map(str::to_owned)
-            .collect::<Vec<_>>()
-    };
-    let written = notes();
-    assert!(
-        !written.is_empty()
-            && written
-                .iter()
-                .all(|line| line.contains(" frames, longest ")),
-        "{written:#?}"
-    );
-    assert!(
-        written
-            .iter()
-            .any(|line| line.contains(" pictures after their inputs: median ")),
-        "{written:#?}"
-    );
-    assert!(
-        !lab.state().log_text().contains("timing: "),
-        "the log of the window is for messages"
-    );
-    // The frame that writes a note asks for no other.
-    let rests = (0..12).any(|_| {
-        let before = notes().len();
-        lab.step();
-        notes().len() > before
-            && lab.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay == Duration::MAX
-    });
-    assert!(rests, "{:?}", lab.ctx.repaint_causes());
 }

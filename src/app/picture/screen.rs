@@ -320,9 +320,6 @@ impl Screen {
             match outcome {
                 Outcome::Drawn(drawn, asked_at) => {
                     self.is_waiting &= !is_newest || drawn.is_partial;
-                    self.ctx.with_plugin(|frames: &mut UiFrames| {
-                        frames.shows(asked_at, drawn.is_compiled)
-                    });
                     if let Some((_, time_s)) = self.times.iter().rfind(|(at, _)| *at == asked_at) {
                         self.time_s = Some(*time_s);
                     }

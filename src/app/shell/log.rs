@@ -89,16 +89,6 @@ impl Log {
         }
     }
 
-    /// Are messages appended to a file?
-    pub fn is_kept(&self) -> bool {
-        self.file.is_some()
-    }
-
-    /// Appends a line to the file alone: `timing: text`.
-    pub fn note_timing(&mut self, text: &str) {
-        self.append(&format!("timing: {text}\n"));
-    }
-
     /// Logs a message. One that was logged before is counted and moves to the end.
     pub fn add(&mut self, level: Level, text: impl Into<String>) {
         let text = text.into();
@@ -199,21 +189,20 @@ mod tests {
             let mut log = Log::kept_in(Some(Arc::new(file)));
             log.add(Level::Info, "opened");
             log.notify(Level::Error, "no such file", 0.0);
-            log.note_timing("1 frame");
             log.clear();
             assert_eq!(
                 std::fs::read_to_string(&path)
                     .expect("a file")
                     .lines()
                     .count(),
-                3 * (run + 1)
+                2 * (run + 1)
             );
-            assert_eq!(log.entries().len(), 0, "timings are in the file alone");
+            assert_eq!(log.entries().len(), 0);
         }
         assert!(
             std::fs::read_to_string(&path)
                 .expect("a file")
-                .ends_with("info: opened\nerror: no such file\ntiming: 1 frame\n")
+                .ends_with("info: opened\nerror: no such file\n")
         );
         // A file that cannot be written is given up once, in words.
         let read_only = File::open(&path).expect("a file");

@@ -7,7 +7,6 @@ pub mod device;
 pub mod ending;
 pub mod escape;
 pub mod fold;
-pub mod frame_notes;
 pub mod input;
 pub mod keep;
 pub mod log;

@@ -12,32 +12,19 @@ const HISTORY: usize = 600;
 const CLICK_S: f64 = 0.8;
 
 /// How long the UI thread took for a frame of the window, milliseconds.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FrameTime {
+#[derive(Clone, Copy, Debug)]
+struct FrameTime {
     /// Input, panels and layout.
-    pub panels: f64,
-    /// Handing it to the device, as far as the window system knows.
-    pub painting: f64,
-    /// What the next frame waited for beside that although it was due: presenting, and what the
-    /// driver makes wait.
-    pub waiting: f64,
+    panels: f64,
+    /// Handing it to the device, as far as the window system knows, or what the next frame waited
+    /// for although it was due, whichever is longer.
+    rest: f64,
 }
 
 impl FrameTime {
-    pub fn total(&self) -> f64 {
-        self.panels + self.painting + self.waiting
+    fn total(&self) -> f64 {
+        self.panels + self.rest
     }
-}
-
-/// What happened since the last note.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Noted {
-    /// Frames of the window.
-    pub frames: usize,
-    pub longest: FrameTime,
-    /// From the frame that took an input to the end of painting the one that shows its picture,
-    /// milliseconds: pictures that compiled nothing, and those that did.
-    pub latencies_ms: [Vec<f64>; 2],
 }
 
 /// The newest frames of the window. A plugin, because egui alone knows when a frame asks for the
@@ -47,9 +34,6 @@ pub struct UiFrames {
     /// Oldest first.
     times: VecDeque<FrameTime>,
     newest: Option<Frame>,
-    /// The frame before the newest, until it is known how long it was painted.
-    painting: Option<Frame>,
-    noted: Noted,
 }
 
 #[derive(Clone, Debug)]
@@ -58,9 +42,6 @@ struct Frame {
     ended: Instant,
     /// After this long the next frame is due.
     next_in: Duration,
-    /// Pictures that it shows first: when they were asked for, and whether something was compiled
-    /// for them.
-    shows: Vec<(Instant, bool)>,
 }
 
 impl Plugin for UiFrames {
@@ -89,24 +70,20 @@ fn ms(duration: Duration) -> f64 {
 
 impl UiFrames {
     fn begin(&mut self, now: Instant) {
-        self.close();
         if let Some(frame) = self.newest.take() {
             // What a frame that is due waits for is work: painting, presenting, and what the driver
             // makes wait.
             let late = (now - frame.ended).saturating_sub(frame.next_in);
             self.times.push_back(FrameTime {
                 panels: ms(frame.ended - frame.begun),
-                painting: 0.0,
-                waiting: ms(late),
+                rest: ms(late),
             });
             self.times.drain(..self.times.len().saturating_sub(HISTORY));
-            self.painting = Some(frame);
         }
         self.newest = Some(Frame {
             begun: now,
             ended: now,
             next_in: Duration::MAX,
-            shows: Vec::new(),
         });
     }
 
@@ -125,43 +102,13 @@ impl UiFrames {
     /// The frame before took this long with painting, as far as the window system knows.
     pub fn painted(&mut self, taken: Duration) {
         if let Some(newest) = self.times.back_mut() {
-            newest.painting = (ms(taken) - newest.panels).max(0.0);
-            newest.waiting = (newest.waiting - newest.painting).max(0.0);
-        }
-        self.close();
-    }
-
-    /// Counts the frame before the newest; nothing more will be known of it.
-    fn close(&mut self) {
-        if let (Some(frame), Some(time)) = (self.painting.take(), self.times.back()) {
-            self.noted.frames += 1;
-            if time.total() > self.noted.longest.total() {
-                self.noted.longest = *time;
-            }
-            for (asked_at, is_compiled) in frame.shows {
-                let waited = frame.begun.saturating_duration_since(asked_at);
-                self.noted.latencies_ms[usize::from(is_compiled)]
-                    .push(ms(waited) + time.panels + time.painting);
-            }
+            newest.rest = newest.rest.max(ms(taken) - newest.panels);
         }
     }
 
     /// When the frame that is being made began; none before the first.
     pub fn begun(&self) -> Option<Instant> {
         self.newest.as_ref().map(|frame| frame.begun)
-    }
-
-    /// The frame that is being made is the first to show a picture that was asked for at
-    /// `asked_at`.
-    pub fn shows(&mut self, asked_at: Instant, is_compiled: bool) {
-        if let Some(newest) = &mut self.newest {
-            newest.shows.push((asked_at, is_compiled));
-        }
-    }
-
-    /// What happened since the last call.
-    pub fn take_noted(&mut self) -> Noted {
-        std::mem::take(&mut self.noted)
     }
 
     /// The longest of the newest frames, milliseconds; none before the second frame.
@@ -210,47 +157,6 @@ mod tests {
             [20.0, 250.0, 2.0, 31.0],
             "one that comes early is not late"
         );
-    }
-
-    #[test]
-    fn a_note_tells_the_longest_frame_and_how_long_pictures_took_until_they_were_painted() {
-        let (start, ms) = (Instant::now(), Duration::from_millis);
-        let mut frames = UiFrames::default();
-        frames.begin(start);
-        let asked_at = frames.begun().expect("a frame");
-        frames.end(start + ms(5), Duration::ZERO);
-        frames.begin(start + ms(45));
-        frames.painted(ms(15));
-        frames.shows(asked_at, false);
-        frames.end(start + ms(49), Duration::MAX);
-        frames.begin(start + ms(2000));
-        frames.painted(ms(24));
-        let Noted {
-            frames: count,
-            longest,
-            latencies_ms,
-        } = frames.take_noted();
-        assert_eq!((count, latencies_ms), (2, [vec![45.0 + 24.0], vec![]]));
-        assert_eq!(
-            longest,
-            FrameTime {
-                panels: 5.0,
-                painting: 10.0,
-                waiting: 30.0
-            }
-        );
-        assert_eq!(
-            frames.take_noted(),
-            Noted::default(),
-            "a frame is told once"
-        );
-        frames.shows(start + ms(1000), true);
-        frames.end(start + ms(2003), Duration::MAX);
-        // Where the window system does not say how long painting took, the frame counts without it.
-        frames.begin(start + ms(3000));
-        frames.end(start + ms(3001), Duration::MAX);
-        frames.begin(start + ms(4000));
-        assert_eq!(frames.take_noted().latencies_ms, [vec![], vec![1003.0]]);
     }
 
     #[test]

@@ -15,7 +15,6 @@ use super::{
     device::{self, Devices},
     escape::escape,
     fold::Fold,
-    frame_notes::FrameNotes,
     input,
     log::{Level, Log},
     loss::LossFlag,
@@ -93,7 +92,6 @@ pub struct App {
     pub(super) loss: LossFlag,
     /// When the time was last advanced, while the preset plays.
     played_at_s: Option<f64>,
-    notes: FrameNotes,
     pub(super) fold: Fold,
     title: String,
 }
@@ -217,7 +215,6 @@ impl App {
             looked_for: (Recents::default(), false),
             loss,
             played_at_s: None,
-            notes: FrameNotes::default(),
             fold: Fold::default(),
             title: String::new(),
         })
@@ -626,7 +623,6 @@ impl eframe::App for App {
         self.guard_close(&ctx);
         self.update_title(&ctx);
         self.keep(&ctx);
-        self.notes.follow(&ctx, &mut self.state);
         self.was_typing = ctx.text_edit_focused();
     }
 
