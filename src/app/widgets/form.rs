@@ -112,18 +112,13 @@ pub fn number_ui<N: Numeric>(
     range: RangeInclusive<N>,
     (speed, unit): (f64, &str),
 ) -> Response {
+    let decimals = if N::INTEGRAL { 0 } else { 3 };
     let drag = DragValue::new(value)
         .range(range)
         .speed(speed)
-        .max_decimals(3)
+        .max_decimals(decimals)
         .suffix(unit);
     ui.add(drag).accessible_name(name)
-}
-
-/// A factor of what is too faint to be seen, called `name`.
-pub fn gain_ui(ui: &mut Ui, name: &str, gain: &mut u8, hint: &str) -> Response {
-    let drag = DragValue::new(gain).range(1..=255).prefix("× ").speed(0.3);
-    ui.add(drag).accessible_name(name).on_hover_text(hint)
 }
 
 /// A text called `name`, in the whole width.
