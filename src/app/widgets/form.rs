@@ -121,6 +121,12 @@ pub fn number_ui<N: Numeric>(
     ui.add(drag).accessible_name(name)
 }
 
+/// A factor of what is too faint to be seen, called `name`.
+pub fn gain_ui(ui: &mut Ui, name: &str, gain: &mut u8, hint: &str) -> Response {
+    let drag = DragValue::new(gain).range(1..=255).prefix("× ").speed(0.3);
+    ui.add(drag).accessible_name(name).on_hover_text(hint)
+}
+
 /// A text called `name`, in the whole width.
 pub fn text_ui(ui: &mut Ui, name: &str, hint: &str, text: &mut String) -> Response {
     let field = TextEdit::singleline(text)
