@@ -56,60 +56,38 @@ pub fn entries(session: &Session, presets: &[GalleryEntry]) -> Vec<Entry> {
     entries.extend(accuracy(session));
     entries.extend(anti_aliasing(session));
     entries.extend(presets.iter().filter_map(preset));
-    entries.extend(BUILTINS.iter().map(|builtin| Entry {
-        kind: Kind::Scene,
-        text: format!("Scene {}", builtin.name),
-        detail: builtin.about.into(),
-        about: builtin.about.into(),
-        keys: String::new(),
-        choice: Choice::Builtin(builtin.name),
+    entries.extend(BUILTINS.iter().map(|builtin| {
+        let text = format!("Scene {}", builtin.name);
+        let entry = Entry::new(Kind::Scene, text, Choice::Builtin(builtin.name));
+        entry.with(builtin.about, builtin.about)
     }));
     entries
 }
 
 fn action(action: Action) -> Entry {
     Entry {
-        kind: Kind::Action,
-        text: action.label().into(),
-        detail: String::new(),
-        about: String::new(),
         keys: action.shortcut_text(),
-        choice: Choice::Perform(action),
+        ..Entry::new(Kind::Action, action.label(), Choice::Perform(action))
     }
 }
 
 fn bookmark(bookmark: &Bookmark) -> Entry {
-    Entry {
-        kind: Kind::Action,
-        text: format!("Camera: {}", bookmark.name),
-        detail: String::new(),
-        about: "bookmark of the preset".into(),
-        keys: String::new(),
-        choice: Choice::GoTo(bookmark.camera),
-    }
+    let text = format!("Camera: {}", bookmark.name);
+    let entry = Entry::new(Kind::Action, text, Choice::GoTo(bookmark.camera));
+    entry.with("", "bookmark of the preset")
 }
 
 fn theme(choice: ThemeChoice) -> Entry {
-    Entry {
-        kind: Kind::Action,
-        text: format!("Theme: {}", choice.label()),
-        detail: String::new(),
-        about: "colors of the window".into(),
-        keys: String::new(),
-        choice: Choice::Theme(choice),
-    }
+    let text = format!("Theme: {}", choice.label());
+    Entry::new(Kind::Action, text, Choice::Theme(choice)).with("", "colors of the window")
 }
 
 /// What can be done with an effect. That it is found neither switches it on nor off.
 fn of_effect(session: &Session, effect: &Arc<Effect>) -> Vec<Entry> {
     let stack = &session.preset().stack;
-    let entry = |verb: &str, detail: String, choice: Choice| Entry {
-        kind: Kind::Effect,
-        text: format!("{verb} {}", effect.name),
-        detail,
-        about: effect.about.clone(),
-        keys: String::new(),
-        choice,
+    let entry = |verb: &str, detail: String, choice: Choice| {
+        let entry = Entry::new(Kind::Effect, format!("{verb} {}", effect.name), choice);
+        entry.with(detail, effect.about.as_str())
     };
     let about = effect.about.clone();
     match (stack.get(&effect.name), stack.rival_of(effect)) {
@@ -161,14 +139,7 @@ fn parameters(session: &Session, effect: &Arc<Effect>) -> Vec<Entry> {
                 )
             }
         };
-        Entry {
-            kind: Kind::Parameter,
-            text: path,
-            detail,
-            about: field.doc.clone(),
-            keys: String::new(),
-            choice,
-        }
+        Entry::new(Kind::Parameter, path, choice).with(detail, field.doc.as_str())
     };
     effect.fields.iter().map(entry).collect()
 }
@@ -187,53 +158,34 @@ fn of_setting(session: &Session, setting: &'static Setting) -> Option<Entry> {
             setting.allowed()
         )),
     };
-    Some(Entry {
-        kind: Kind::Setting,
-        text: path,
-        detail,
-        about: setting.doc.clone(),
-        keys: String::new(),
-        choice,
-    })
+    Some(Entry::new(Kind::Setting, path, choice).with(detail, setting.doc.as_str()))
 }
 
 /// The tiers, and every option of every axis.
 fn accuracy(session: &Session) -> impl Iterator<Item = Entry> {
     let accuracy = session.preset().accuracy;
-    let tier = move |tier: Tier| Entry {
-        kind: Kind::Accuracy,
-        text: format!("accuracy.tier = {}", tier.name()),
-        detail: if accuracy.tier == tier {
-            "present".into()
-        } else {
-            String::new()
-        },
-        about: "tolerance".into(),
-        keys: String::new(),
-        choice: Choice::Set("accuracy.tier".into(), tier.name().into()),
+    let tier = move |tier: Tier| {
+        let choice = Choice::Set("accuracy.tier".into(), tier.name().into());
+        let text = format!("accuracy.tier = {}", tier.name());
+        let entry = Entry::new(Kind::Accuracy, text, choice);
+        entry.with(present(accuracy.tier == tier), "tolerance")
     };
     let options = AXES.iter().flat_map(move |axis| {
         let pinned = accuracy.pins.get(axis).map_or(0, |index| index + 1);
-        axis.choices
-            .iter()
-            .enumerate()
-            .map(move |(index, option)| Entry {
-                kind: Kind::Accuracy,
-                text: format!("{} = {option}", axis_path(axis)),
-                detail: match (
-                    index == pinned,
-                    index
-                        .checked_sub(1)
-                        .and_then(|index| axis.option_abouts.get(index)),
-                ) {
-                    (true, _) => "present".into(),
-                    (false, Some(about)) => about.trim().to_owned(),
-                    (false, None) => "the planner decides".into(),
-                },
-                about: axis.about.into(),
-                keys: String::new(),
-                choice: Choice::Set(axis_path(axis), (*option).to_owned()),
-            })
+        let options = axis.choices.iter().enumerate();
+        options.map(move |(index, option)| {
+            let choice = Choice::Set(axis_path(axis), (*option).to_owned());
+            let text = format!("{} = {option}", axis_path(axis));
+            let about = index
+                .checked_sub(1)
+                .and_then(|index| axis.option_abouts.get(index));
+            let detail = match about {
+                _ if index == pinned => "present",
+                Some(about) => about.trim(),
+                None => "the planner decides",
+            };
+            Entry::new(Kind::Accuracy, text, choice).with(detail, axis.about)
+        })
     });
     Tier::ALL.into_iter().map(tier).chain(options)
 }
@@ -244,20 +196,18 @@ fn anti_aliasing(session: &Session) -> Vec<Entry> {
     let pinned = session.preset().accuracy.pins.option::<RenderScale>();
     let entry = |option: Option<RenderScale>| {
         let word = option.map_or(axis.choices[0], |option| option.name());
-        Entry {
-            kind: Kind::Accuracy,
-            text: format!("AA {}", option.map_or("automatic", name)),
-            detail: match pinned == option {
-                true => "present".into(),
-                false => String::new(),
-            },
-            about: "anti-aliasing: samples of a pixel".into(),
-            keys: String::new(),
-            choice: Choice::Set(axis_path(axis), word.to_owned()),
-        }
+        let text = format!("AA {}", option.map_or("automatic", name));
+        let choice = Choice::Set(axis_path(axis), word.to_owned());
+        let about = "anti-aliasing: samples of a pixel";
+        Entry::new(Kind::Accuracy, text, choice).with(present(pinned == option), about)
     };
     let options = CHOICES.iter().map(|(option, _)| Some(*option));
     [None].into_iter().chain(options).map(entry).collect()
+}
+
+/// The detail of an option that is in use.
+const fn present(is_so: bool) -> &'static str {
+    if is_so { "present" } else { "" }
 }
 
 fn preset(entry: &GalleryEntry) -> Option<Entry> {
@@ -268,14 +218,9 @@ fn preset(entry: &GalleryEntry) -> Option<Entry> {
     } else {
         format!(" ({})", entry.id)
     };
-    Some(Entry {
-        kind: Kind::Preset,
-        text: format!("Open {title}{id}"),
-        detail: found.preset.about.clone(),
-        about: String::new(),
-        keys: String::new(),
-        choice: Choice::Open(entry.id.clone()),
-    })
+    let text = format!("Open {title}{id}");
+    let entry = Entry::new(Kind::Preset, text, Choice::Open(entry.id.clone()));
+    Some(entry.with(found.preset.about.as_str(), ""))
 }
 
 /// A value with its unit, short enough for a row.

@@ -82,6 +82,29 @@ pub struct Entry {
     pub choice: Choice,
 }
 
+impl Entry {
+    /// An entry without detail, description and keys.
+    pub fn new(kind: Kind, text: impl Into<String>, choice: Choice) -> Self {
+        let (detail, about, keys) = Default::default();
+        Self {
+            kind,
+            text: text.into(),
+            detail,
+            about,
+            keys,
+            choice,
+        }
+    }
+
+    pub fn with(self, detail: impl Into<String>, about: impl Into<String>) -> Self {
+        Self {
+            detail: detail.into(),
+            about: about.into(),
+            ..self
+        }
+    }
+}
+
 /// What the texts of entries begin with, before the name of what they are about.
 const VERBS: [&str; 7] = [
     "Enable ", "Disable ", "Show ", "Open ", "Scene ", "Camera: ", "Theme: ",

@@ -86,14 +86,10 @@ pub fn rank(
     } in assignments(query, entries)
     {
         let known = entries.iter().find(|entry| entry.text == path);
-        let entry = |choice: Choice, detail: String| Entry {
-            kind: known.map_or(Kind::Accuracy, |known| known.kind),
-            text: format!("Set {path} to {value}"),
-            detail,
-            about: String::new(),
-            keys: String::new(),
-            choice,
-        };
+        let kind = known.map_or(Kind::Accuracy, |known| known.kind);
+        let text = format!("Set {path} to {value}");
+        let entry =
+            |choice, detail: String| Entry::new(kind, text.clone(), choice).with(detail, "");
         match probe(&path, &value) {
             Ok(()) => {
                 let now = known.map_or_else(String::new, |known| match &known.choice {
@@ -168,14 +164,7 @@ mod tests {
     use crate::effects::Effect;
 
     fn entry(kind: Kind, text: &str, choice: Choice) -> Entry {
-        Entry {
-            kind,
-            text: text.into(),
-            detail: "0.25".into(),
-            about: String::new(),
-            keys: String::new(),
-            choice,
-        }
+        Entry::new(kind, text, choice).with("0.25", "")
     }
 
     fn entries() -> Vec<Entry> {

@@ -112,10 +112,11 @@ pub fn number_ui<N: Numeric>(
     range: RangeInclusive<N>,
     (speed, unit): (f64, &str),
 ) -> Response {
+    let decimals = if N::INTEGRAL { 0 } else { 3 };
     let drag = DragValue::new(value)
         .range(range)
         .speed(speed)
-        .max_decimals(3)
+        .max_decimals(decimals)
         .suffix(unit);
     ui.add(drag).accessible_name(name)
 }

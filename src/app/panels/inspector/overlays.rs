@@ -1,6 +1,6 @@
 //! The folder of the overlays: which are shown, and how many pixels each paints.
 
-use eframe::egui::{self, RichText, Ui};
+use eframe::egui::{RichText, Ui};
 
 use crate::app::{
     picture::{command::ViewCommand, overlay::Overlay},
@@ -9,7 +9,7 @@ use crate::app::{
         command::{Command, Commands},
         state::State,
     },
-    widgets::{icons::swatch, panel::at_right, text::grouped, theme},
+    widgets::{form::gain_ui, icons::swatch, panel::at_right, text::grouped, theme},
 };
 
 pub fn overlays_ui(ui: &mut Ui, state: &State, commands: &Commands) {
@@ -33,7 +33,11 @@ pub fn overlays_ui(ui: &mut Ui, state: &State, commands: &Commands) {
             }
             swatch(ui, overlay.color());
             if overlay == Overlay::Color {
-                gain_ui(ui, state.picture.overlays.gain, commands);
+                let mut gain = state.picture.overlays.gain;
+                let hint = "Factor of the color difference";
+                if gain_ui(ui, "Overlay gain", &mut gain, hint).changed() {
+                    commands.send(Command::View(ViewCommand::OverlayGain(gain)));
+                }
             }
             if let Some(findings) = findings {
                 let count = findings.count(overlay);
@@ -69,20 +73,5 @@ pub fn overlays_ui(ui: &mut Ui, state: &State, commands: &Commands) {
         ui.label(theme::weak(
             "To count pixels, show an overlay or press Verify.",
         ));
-    }
-}
-
-fn gain_ui(ui: &mut Ui, mut gain: u8, commands: &Commands) {
-    let drag = egui::DragValue::new(&mut gain)
-        .range(1..=255)
-        .prefix("× ")
-        .speed(0.3);
-    if ui
-        .add(drag)
-        .accessible_name("Overlay gain")
-        .on_hover_text("Factor of the color difference")
-        .changed()
-    {
-        commands.send(Command::View(ViewCommand::OverlayGain(gain)));
     }
 }

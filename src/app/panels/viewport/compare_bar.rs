@@ -1,22 +1,27 @@
 //! The bar of a comparison: how A and B are shown, how they differ, and which side is which.
 
-use eframe::egui::{self, Align2, FontId, Rect, RichText, Ui, pos2, vec2};
+use eframe::egui::{self, Align2, Rect, RichText, Ui, pos2, vec2};
 
 use super::compare::{Compare, Difference, Mode};
 use crate::{
     app::{
         picture::{screen::Inputs, verification::Verdict},
         shell::state::State,
-        widgets::{text::grouped, theme},
+        widgets::{
+            form::{gain_ui, modes_ui},
+            panel::plate,
+            text::grouped,
+            theme,
+        },
     },
     measure::compare::{pictures, triangle_ids},
 };
 
 /// The modes that show both at once.
-const MODES: [(Mode, &str); 3] = [
-    (Mode::Wipe, "Wipe"),
-    (Mode::SideBySide, "Side by side"),
-    (Mode::Difference, "Difference"),
+const MODES: [(Option<Mode>, &str, &str); 3] = [
+    (Some(Mode::Wipe), "Wipe", ""),
+    (Some(Mode::SideBySide), "Side by side", ""),
+    (Some(Mode::Difference), "Difference", ""),
 ];
 
 /// Height of the bar, points.
@@ -46,16 +51,9 @@ pub fn labels_ui(ui: &Ui, name: &str, sides: [Rect; 2], is_difference: bool) {
         if side.width() < 140.0 || !side.is_positive() {
             continue;
         }
-        let corner = align.pos_in_rect(&side.shrink2(vec2(19.0, UP_TO_LABELS)));
-        let painter = ui.painter_at(side);
-        let label = painter.layout_no_wrap(text, FontId::proportional(13.0), theme::text_strong());
-        let rect = align.anchor_size(corner, label.size());
-        painter.rect_filled(
-            rect.expand2(vec2(7.0, 4.0)),
-            5.0,
-            theme::bar().gamma_multiply(0.88),
-        );
-        painter.galley(rect.min, label, theme::text_strong());
+        let inner = side.shrink2(vec2(12.0, UP_TO_LABELS - 4.0));
+        let corner = align.pos_in_rect(&inner);
+        plate(&ui.painter_at(side), corner, align, inner, &text);
     }
 }
 
@@ -71,26 +69,10 @@ pub fn bar_ui(ui: &mut Ui, compare: &mut Compare, state: &State, rect: Rect) {
         .show(&mut bar, |ui| {
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 6.0;
-                for (mode, name) in MODES {
-                    let button = egui::Button::new(name)
-                        .small()
-                        .selected(compare.mode == Some(mode));
-                    if ui
-                        .add(button)
-                        .accessible_name(format!("Compare: {}", name.to_lowercase()))
-                        .clicked()
-                    {
-                        compare.mode = Some(mode);
-                    }
-                }
+                modes_ui(ui, "Compare", &mut compare.mode, MODES);
                 if compare.mode == Some(Mode::Difference) {
-                    let gain = egui::DragValue::new(&mut compare.gain)
-                        .range(1..=255)
-                        .prefix("\u{d7} ")
-                        .speed(0.3);
-                    ui.add(gain)
-                        .accessible_name("Difference gain")
-                        .on_hover_text("Factor of the difference");
+                    let hint = "Factor of the difference";
+                    gain_ui(ui, "Difference gain", &mut compare.gain, hint);
                 }
                 if compare.kept.is_some() {
                     ui.spacing_mut().slider_width = 72.0;

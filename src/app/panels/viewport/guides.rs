@@ -16,7 +16,11 @@ use crate::{
             log::Level,
             state::State,
         },
-        widgets::{panel::describe, text::short, theme},
+        widgets::{
+            panel::{describe, plate},
+            text::short,
+            theme,
+        },
     },
     scene::{Bounds, Scene, pick, view::View},
 };
@@ -96,27 +100,8 @@ impl Paper<'_> {
 
     /// A text on a plate beside `place`, where it lies inside the picture.
     fn text(&self, place: Pos2, id: &str, text: &str) {
-        let galley = self.painter.layout_no_wrap(
-            text.to_owned(),
-            FontId::proportional(12.0),
-            theme::text_strong(),
-        );
-        let size = galley.size() + vec2(12.0, 6.0);
-        let corner = (place + vec2(8.0, 4.0))
-            .min(self.at.max - size)
-            .max(self.at.min);
-        let plate = Rect::from_min_size(corner, size);
-        self.painter
-            .rect_filled(plate, 4.0, theme::bar().gamma_multiply(0.9));
-        let center = plate.center();
-        let font = FontId::proportional(12.0);
-        self.painter.text(
-            center,
-            Align2::CENTER_CENTER,
-            text,
-            font,
-            theme::text_strong(),
-        );
+        let corner = place + vec2(8.0, 4.0);
+        let plate = plate(&self.painter, corner, Align2::LEFT_TOP, self.at, text);
         let response = self
             .ui
             .interact(plate, egui::Id::unique(("guide", id)), Sense::hover());

@@ -4,7 +4,10 @@ use eframe::egui::{self, Align2, FontId, Rect, Sense, Ui, pos2, vec2};
 
 use crate::app::{
     shell::state::State,
-    widgets::{panel::describe, theme},
+    widgets::{
+        panel::{describe, plate},
+        theme,
+    },
 };
 
 /// Radius of the ring, and lengths of its four strokes, points.
@@ -40,30 +43,18 @@ pub fn marker_ui(ui: &Ui, state: &State, at: Rect) {
             );
         }
     }
-    let galley = painter.layout_no_wrap(
+    let right = center.x + RADIUS + STROKE + 4.0;
+    let width = painter.layout_no_wrap(
         marker.text.clone(),
         FontId::proportional(12.0),
         theme::text_strong(),
     );
-    // The text stays inside the picture.
-    let plate_size = galley.size() + vec2(16.0, 8.0);
-    let right = center.x + RADIUS + STROKE + 4.0;
-    let left = if right + plate_size.x <= at.right() {
-        right
-    } else {
-        center.x - RADIUS - STROKE - 4.0 - plate_size.x
+    // The text stays inside the picture, beside the ring.
+    let (x, align) = match right + width.size().x + 12.0 <= at.right() {
+        true => (right, Align2::LEFT_CENTER),
+        false => (center.x - RADIUS - STROKE - 4.0, Align2::RIGHT_CENTER),
     };
-    let top =
-        (center.y - plate_size.y * 0.5).clamp(at.top(), (at.bottom() - plate_size.y).max(at.top()));
-    let plate = Rect::from_min_size(pos2(left.max(at.left()), top), plate_size);
-    painter.rect_filled(plate, 4.0, theme::bar());
-    painter.text(
-        plate.center(),
-        Align2::CENTER_CENTER,
-        &marker.text,
-        FontId::proportional(12.0),
-        theme::text_strong(),
-    );
+    let plate = plate(&painter, pos2(x, center.y), align, at, &marker.text);
     let response = ui.interact(plate, egui::Id::unique("marker"), Sense::hover());
     describe(&response, egui::Role::Label, &marker.text);
 }
