@@ -79,29 +79,20 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
             return Err(text.error(first.offset, 1, "a parameter has the form name: type"));
         };
         if colon.text != ":" || at + 2 >= close {
-            return Err(text.error(
-                name.offset,
-                name.text.len(),
-                format!("the parameter {} needs a type", name.text),
-            ));
+            return Err(text.at(name, format!("the parameter {} needs a type", name.text)));
         }
         let end = (at + 2..close)
             .find(|&index| tokens[index].text == ",")
             .unwrap_or(close);
         if end == at + 2 {
-            return Err(text.error(
-                name.offset,
-                name.text.len(),
-                format!("the parameter {} needs a type", name.text),
-            ));
+            return Err(text.at(name, format!("the parameter {} needs a type", name.text)));
         }
         if let Some(other) =
             (at + 2..end).find(|&index| [":", ";", "@"].contains(&tokens[index].text))
         {
             let token = tokens[other];
-            return Err(text.error(
-                token.offset,
-                token.text.len(),
+            return Err(text.at(
+                token,
                 format!("expected , between parameters, and found {}", token.text),
             ));
         }
@@ -112,16 +103,14 @@ pub fn read(text: &Text<'_>, tokens: &[Token<'_>], open: usize) -> Result<Parame
             .any(|field: &Arc<Field>| field.name == name.text)
             || images.iter().any(|image| image.member == name.text)
         {
-            return Err(text.error(
-                name.offset,
-                name.text.len(),
+            return Err(text.at(
+                name,
                 format!("the parameter {} is declared twice", name.text),
             ));
         }
         if fields.len() == MAX_MEMBERS {
-            return Err(text.error(
-                name.offset,
-                name.text.len(),
+            return Err(text.at(
+                name,
                 format!("an effect has at most {MAX_MEMBERS} parameters"),
             ));
         }
@@ -196,7 +185,7 @@ fn check_name(text: &Text<'_>, name: Token<'_>) -> Result<(), EffectError> {
     } else {
         return Ok(());
     };
-    Err(text.error(name.offset, name.text.len(), message))
+    Err(text.at(name, message))
 }
 
 /// The constants that the choices of an effect called `stem` are given: `INK_MODE_DOTS`.
@@ -256,8 +245,7 @@ struct Member<'a> {
 
 impl<'a> Member<'a> {
     fn error(&self, message: impl Into<String>) -> EffectError {
-        self.text
-            .error(self.name.offset, self.name.text.len(), message)
+        self.text.at(self.name, message)
     }
 
     fn attribute(&self, name: &str) -> Option<&'a Attribute<'a>> {

@@ -180,10 +180,7 @@ fn read_anew(
     {
         let name = declaration.tokens.iter().find(|token| token.text == vertex);
         let message = "a vertex effect needs an f32 parameter with @unit(m): it moves a vertex by at most the sum of these lengths";
-        return Err(name.map_or_else(
-            || text.whole(message),
-            |name| text.error(name.offset, name.text.len(), message),
-        ));
+        return Err(text.at_any(name, message));
     }
     let rewritten = rewrite::rewritten(stem, written, &declaration);
     let source = Arc::new(EffectSource {

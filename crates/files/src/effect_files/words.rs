@@ -39,11 +39,7 @@ pub fn check_declared(text: &Text<'_>, declared: &[Token<'_>]) -> Result<(), Eff
         } else {
             continue;
         };
-        return Err(text.error(
-            name.offset,
-            name.text.len(),
-            format!("{} {reason}", name.text),
-        ));
+        return Err(text.at(name, format!("{} {reason}", name.text)));
     }
     Ok(())
 }
@@ -90,7 +86,7 @@ pub fn refuse(
         };
         if token.text == "discard" && !is_member {
             let message = "discard: an effect removes no invocation; a function on the hook Sample returns false to leave a sample out";
-            return Err(text.error(token.offset, token.text.len(), message));
+            return Err(text.at(token, message));
         }
         let is_used = next == "(" || next == "<" || before == "<" || before == ":";
         if is_member || !is_used || declared.iter().any(|name| name.text == token.text) {
@@ -106,9 +102,8 @@ pub fn refuse(
             })
         });
         if let Some((_, what)) = word.or(begun) {
-            return Err(text.error(
-                token.offset,
-                token.text.len(),
+            return Err(text.at(
+                token,
                 format!(
                     "{}: an effect has no {what}; it is a pure function of its arguments",
                     token.text
