@@ -26,13 +26,14 @@ pub use rasterlab::stress::{
     stack, tunings,
 };
 use rasterlab::{
-    accuracy::{PinnedOptions, Visibility},
+    accuracy::{AxisOption, PinnedOptions, Visibility},
     effects::Stack,
+    frame::Frame,
     gpu::{Capture, Gpu, Renderer, device::AdapterChoice},
     host,
-    measure::Verdict,
+    measure::{Verdict, compare},
     oracle,
-    plan::AccuracyRequest,
+    plan::{self, AccuracyRequest, Tuning},
     preset::Preset,
     scene::{Scene, builtin, view::View},
     shader::library::Library,
@@ -365,6 +366,51 @@ impl Draws for Renderer {
     }
 }
 
+/// Small triangles walk alone, middling ones get a workgroup, as on a GPU.
+pub const GRAPHICS_CARD: Tuning = Tuning {
+    max_small_samples: 32,
+    max_small_side: 32,
+    group_size: 256,
+    listed_tiles: false,
+    early_load: false,
+    exchanges_maximum: true,
+    queue_groups: 64,
+    dot_groups: 1024,
+    interleaves_triangles: false,
+    clears_in_passes: true,
+    hides_blocks: true,
+    stored_uniforms: false,
+    wide_loads: false,
+    buffered_shadow_map: false,
+    glass_layers: plan::MOST_GLASS_LAYERS,
+    specialized: true,
+};
+
+/// Every image of `a` is that of `b`, bit for bit.
+pub fn assert_same(a: &Frame, b: &Frame, what: &str) {
+    let triangle_ids = compare::triangle_ids(&a.triangle_id, &b.triangle_id);
+    assert_eq!(
+        triangle_ids.different,
+        0,
+        "{what}: triangle ids differ, first {:?}",
+        triangle_ids.mismatches.first()
+    );
+    let keys = compare::triangle_ids(&a.depth_key, &b.depth_key);
+    assert_eq!(
+        keys.different,
+        0,
+        "{what}: keys differ, first {:?}",
+        keys.mismatches.first()
+    );
+    let colors = compare::pictures(&a.color, &b.color, 0);
+    assert_eq!(
+        colors.pixels_over_tolerance,
+        0,
+        "{what}: colors differ, first {:?}",
+        colors.mismatches.first()
+    );
+}
+
 /// What the planner chooses.
 pub fn unpinned() -> AccuracyRequest {
     AccuracyRequest::default()
@@ -375,6 +421,11 @@ pub fn request(pins: PinnedOptions) -> AccuracyRequest {
         pins,
         ..AccuracyRequest::default()
     }
+}
+
+/// What the planner chooses beside this option.
+pub fn pin<O: AxisOption>(option: O) -> AccuracyRequest {
+    request(PinnedOptions::of(option))
 }
 
 /// The option that every adapter has.
@@ -473,6 +524,37 @@ pub fn mutated(from: &str, to: &str) -> Mutated {
 /// A copy of the project's shaders.
 pub fn own_shaders() -> Mutated {
     Mutated(shader_parts::copied())
+}
+
+/// A renderer whose shaders have one mistake.
+pub struct Mistaken {
+    renderer: Renderer,
+    _shaders: Mutated,
+}
+
+impl Mistaken {
+    /// As [`mutated`].
+    pub fn new(gpu: &Arc<Gpu>, from: &str, to: &str) -> Self {
+        let shaders = mutated(from, to);
+        Self {
+            renderer: Renderer::with_library(gpu.clone(), shaders.shaders()),
+            _shaders: shaders,
+        }
+    }
+}
+
+impl Deref for Mistaken {
+    type Target = Renderer;
+
+    fn deref(&self) -> &Renderer {
+        &self.renderer
+    }
+}
+
+impl DerefMut for Mistaken {
+    fn deref_mut(&mut self) -> &mut Renderer {
+        &mut self.renderer
+    }
 }
 
 fn files_below(folder: &Path, files: &mut Vec<PathBuf>) {

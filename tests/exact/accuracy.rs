@@ -7,10 +7,7 @@ use glam::{DMat4, DVec3};
 use pollster::FutureExt as _;
 use rasterlab::{
     accuracy::Visibility,
-    gpu::{
-        Renderer,
-        naive::{Naive, Viewport},
-    },
+    gpu::naive::{Naive, Viewport},
     measure::{ErrorReport as Errors, Verdict, error_map::PixelError},
     plan::Tuning,
     scene::{
@@ -429,23 +426,13 @@ fn mutants() -> Vec<Mutant> {
 }
 
 /// As on a graphics card, so that every kernel runs.
-const GRAPHICS_CARD: Tuning = Tuning {
+const CARD: Tuning = Tuning {
     max_small_samples: 64,
-    max_small_side: 32,
-    group_size: 256,
-    listed_tiles: false,
     early_load: true,
     exchanges_maximum: false,
     queue_groups: 0,
-    dot_groups: 1024,
-    interleaves_triangles: false,
     clears_in_passes: false,
-    hides_blocks: true,
-    stored_uniforms: false,
-    wide_loads: false,
-    buffered_shadow_map: false,
-    glass_layers: rasterlab::plan::MOST_GLASS_LAYERS,
-    specialized: true,
+    ..GRAPHICS_CARD
 };
 
 /// The map of faults shows what the counts count: as many wrong triangle ids, holes and doubles
@@ -468,7 +455,7 @@ fn map_agrees(verdict: &Verdict) -> Result<(), String> {
 
 fn kernels_with_a_mistake_are_caught(reach: Reach) {
     let Some(mut healthy) = loan() else { return };
-    healthy.set_tuning(GRAPHICS_CARD);
+    healthy.set_tuning(CARD);
     let mut failures = Vec::new();
     for mutant in reach.of(4, mutants()) {
         let Mutant {
@@ -487,9 +474,8 @@ fn kernels_with_a_mistake_are_caught(reach: Reach) {
             &format!("without the mistake: {what}"),
         );
 
-        let library = mutated(mutant.from, mutant.to);
-        let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
-        wrong.set_tuning(GRAPHICS_CARD);
+        let mut wrong = Mistaken::new(healthy.gpu(), mutant.from, mutant.to);
+        wrong.set_tuning(CARD);
         let (_, verdict) = wrong.judged(scene, view, &stack(&[]), &pinned(*option));
         eprintln!(
             "{what}: {}",

@@ -16,13 +16,6 @@ use rasterlab::{
 
 use crate::common::*;
 
-fn on(pins: PinnedOptions) -> AccuracyRequest {
-    AccuracyRequest {
-        pins,
-        ..AccuracyRequest::default()
-    }
-}
-
 fn verdict(
     renderer: &mut Renderer,
     query: &str,
@@ -31,7 +24,7 @@ fn verdict(
 ) -> (Capture, Verdict) {
     let scene = scene(query);
     let view = view(&scene, size);
-    renderer.judged(&scene, &view, &stack(&["lambert"]), &on(pins))
+    renderer.judged(&scene, &view, &stack(&["lambert"]), &request(pins))
 }
 
 /// Pixels whose triangle id is not that of the oracle's picture on its finest grid.
@@ -42,7 +35,7 @@ fn wrong_pixels(
     pins: PinnedOptions,
 ) -> u64 {
     let reference = oracle::render_finest(scene, view, &stack(&[])).expect("a scene that fits");
-    let capture = renderer.captured(scene, view, &stack(&[]), &on(pins));
+    let capture = renderer.captured(scene, view, &stack(&[]), &request(pins));
     compare::triangle_ids(&capture.frame.triangle_id, &reference.triangle_id).different
 }
 
@@ -132,12 +125,7 @@ fn few_bits_of_depth_confuse_layers_that_lie_close() {
     ]
     .map(|depth| {
         renderer
-            .judged(
-                &scene,
-                &pixel_view(64, 64),
-                &stack(&[]),
-                &on(PinnedOptions::of(depth)),
-            )
+            .judged(&scene, &pixel_view(64, 64), &stack(&[]), &pin(depth))
             .1
             .report
             .wrong_nearest
@@ -155,12 +143,7 @@ fn affine_attributes_bend_where_a_triangle_runs_into_depth() {
     let scene = scene("cube-wall");
     let view = view(&scene, [200, 150]);
     let depth = |renderer: &mut Renderer, option: Perspective| {
-        renderer.captured(
-            &scene,
-            &view,
-            &stack(&["depth"]),
-            &on(PinnedOptions::of(option)),
-        )
+        renderer.captured(&scene, &view, &stack(&["depth"]), &pin(option))
     };
     let (exact, affine) = (
         depth(&mut renderer, Perspective::Exact),
@@ -179,7 +162,7 @@ fn what_is_dropped_instead_of_clipped_is_counted_and_missing() {
     let scene = scene("near");
     let view = view(&scene, [160, 120]);
     let covered = |renderer: &mut Renderer, option: Clipping| {
-        let capture = renderer.captured(&scene, &view, &stack(&[]), &on(PinnedOptions::of(option)));
+        let capture = renderer.captured(&scene, &view, &stack(&[]), &pin(option));
         (capture.frame.covered(), capture.frame.counters.dropped)
     };
     let [drop, near, exact] = [Clipping::Drop, Clipping::Near, Clipping::Exact]
@@ -202,11 +185,7 @@ fn racy_counting_draws_no_fewer_samples_and_prefix_sums_draw_exactly() {
     let mut drawn = |option: SampleCounter| {
         renderer.set_scene(&scene).block_on().unwrap();
         renderer
-            .draw(
-                &view,
-                &stack(&["draw_order"]),
-                &on(PinnedOptions::of(option)),
-            )
+            .draw(&view, &stack(&["draw_order"]), &pin(option))
             .block_on()
             .unwrap();
         let order = renderer
@@ -231,7 +210,9 @@ fn narrow_sums_of_layers_err_by_steps_of_8_bits_and_say_when_they_are_full(reach
     for sums in [XraySums::Packed16, XraySums::Three8] {
         for visibility in reach.options(&renderer) {
             let pins = PinnedOptions::of(sums).with(visibility);
-            let narrow = renderer.captured(&scene, &view, &xray, &on(pins)).frame;
+            let narrow = renderer
+                .captured(&scene, &view, &xray, &request(pins))
+                .frame;
             assert_eq!(
                 narrow.layer_sums,
                 wide.layer_sums,
@@ -257,14 +238,9 @@ fn narrow_sums_of_layers_err_by_steps_of_8_bits_and_say_when_they_are_full(reach
         .collect();
     let deep = scene_of_meshes(&[triangle_soup_in_units(&sheets)]);
     let view = pixel_view(16, 16);
-    renderer.captured(
-        &deep,
-        &view,
-        &xray,
-        &on(PinnedOptions::of(XraySums::Three8)),
-    );
+    renderer.captured(&deep, &view, &xray, &pin(XraySums::Three8));
     let full = renderer
-        .capture(&view, &xray, &on(PinnedOptions::of(XraySums::Packed16)))
+        .capture(&view, &xray, &pin(XraySums::Packed16))
         .block_on()
         .expect_err("257 layers fit");
     assert!(matches!(full, RenderError::FullSums(256)), "{full}");
@@ -281,7 +257,7 @@ fn baked_parameters_and_trusted_shaders_change_no_pixel() {
         PinnedOptions::of(Parameters::Baked),
         PinnedOptions::of(ShaderChecks::Trusted),
     ] {
-        let other = renderer.captured(&scene, &view, &stack, &on(pins));
+        let other = renderer.captured(&scene, &view, &stack, &request(pins));
         assert_eq!(
             usual.frame.triangle_id,
             other.frame.triangle_id,
@@ -312,7 +288,7 @@ fn normals_that_a_vertex_effect_turns_are_right_without_checks(reach: Reach) {
             &scene,
             &view,
             &stack(effects),
-            &on(PinnedOptions::of(ShaderChecks::Trusted)),
+            &pin(ShaderChecks::Trusted),
             &effects.join(", "),
         );
     }
@@ -324,7 +300,7 @@ fn baking_leaves_the_uniform_out() {
     let scene = scene("teapot?tess=8");
     let view = view(&scene, [64, 48]);
     let buffers = |renderer: &mut Renderer, pins: PinnedOptions| {
-        renderer.captured(&scene, &view, &stack(&["fog"]), &on(pins));
+        renderer.captured(&scene, &view, &stack(&["fog"]), &request(pins));
         renderer
             .explain()
             .buffers
@@ -371,12 +347,7 @@ fn packed_positions_move_corners_by_half_a_step_at_most() {
     let scene = scene("teapot?tess=8");
     let view = view(&scene, [320, 240]);
     let mut of = |option: PositionFormat| {
-        let (capture, verdict) = renderer.judged(
-            &scene,
-            &view,
-            &stack(&["lambert"]),
-            &on(PinnedOptions::of(option)),
-        );
+        let (capture, verdict) = renderer.judged(&scene, &view, &stack(&["lambert"]), &pin(option));
         // Given its own corners, every option covers and compares as exactly as any.
         let a = &verdict.report;
         assert_eq!(
@@ -442,7 +413,7 @@ fn neighbors_in_boxes_of_their_own_crack_when_they_are_packed() {
     let view = pixel_view(256, 256);
     let mut empty = |option: PositionFormat| {
         let frame = renderer
-            .captured(&scene, &view, &stack(&[]), &on(PinnedOptions::of(option)))
+            .captured(&scene, &view, &stack(&[]), &pin(option))
             .frame;
         frame
             .triangle_id
@@ -506,7 +477,7 @@ fn positions_relative_to_the_eye_lose_no_precision_far_away(reach: Reach) {
                 &scene,
                 &view,
                 &stack(&[]),
-                &on(PinnedOptions::of(option).with(visibility)),
+                &request(PinnedOptions::of(option).with(visibility)),
             );
             assert_eq!(
                 exactness(&verdict.report),
@@ -565,12 +536,7 @@ fn culling_is_left_out_where_packed_positions_leave_its_bounds() {
     let Some(mut renderer) = loan() else { return };
     let scene = scene("sphere?triangles=5000");
     let view = view(&scene, [160, 120]);
-    let all = renderer.captured(
-        &scene,
-        &view,
-        &stack(&[]),
-        &on(PinnedOptions::of(PositionFormat::Relative)),
-    );
+    let all = renderer.captured(&scene, &view, &stack(&[]), &pin(PositionFormat::Relative));
     for (option, culling) in [
         (PositionFormat::Packed10, Culling::None),
         (PositionFormat::Packed16, Culling::None),
@@ -580,7 +546,7 @@ fn culling_is_left_out_where_packed_positions_leave_its_bounds() {
             &scene,
             &view,
             &stack(&[]),
-            &on(PinnedOptions::of(option).with(Culling::Frustum)),
+            &request(PinnedOptions::of(option).with(Culling::Frustum)),
         );
         let options = renderer.key().expect("something was drawn").options;
         assert_eq!(
@@ -600,7 +566,7 @@ fn strict_vertices_subtract_the_eye_to_the_bit_and_refuse_packed_positions() {
     let (scene, view) = modelled_far_away(1e6, [96, 72]);
     let strict = |option: PositionFormat| AccuracyRequest {
         tier: Tier::Strict,
-        ..on(PinnedOptions::of(option))
+        ..pin(option)
     };
     let capture = renderer.captured(
         &scene,
@@ -641,7 +607,7 @@ fn packed_positions_take_their_bytes_only_while_they_are_used() {
     let scene = scene("sphere?triangles=5000");
     let view = view(&scene, [64, 48]);
     let mut bytes = |option: PositionFormat| {
-        renderer.captured(&scene, &view, &stack(&[]), &on(PinnedOptions::of(option)));
+        renderer.captured(&scene, &view, &stack(&[]), &pin(option));
         let note = renderer
             .explain()
             .buffers
@@ -686,12 +652,8 @@ fn packed_positions_refuse_what_stored_ones_refuse_and_deformed_meshes() {
     }
     let scene = scene_of_meshes(&[rasterlab::stress::scenes::triangle_soup(positions)]);
     for option in [PositionFormat::Packed10, PositionFormat::Packed16] {
-        let (capture, verdict) = renderer.judged(
-            &scene,
-            &pixel_view(64, 64),
-            &stack(&[]),
-            &on(PinnedOptions::of(option)),
-        );
+        let (capture, verdict) =
+            renderer.judged(&scene, &pixel_view(64, 64), &stack(&[]), &pin(option));
         let counters = capture.frame.counters;
         assert_eq!(
             (counters.rejected_nonfinite, counters.rejected_range),
@@ -714,7 +676,7 @@ fn packed_positions_refuse_what_stored_ones_refuse_and_deformed_meshes() {
         .capture(
             &view(&soft, [64, 48]),
             &stack(&[]),
-            &on(PinnedOptions::of(PositionFormat::Packed10)),
+            &pin(PositionFormat::Packed10),
         )
         .block_on()
         .expect_err("its skin bends");
@@ -735,8 +697,7 @@ fn scaled_pictures_are_exact_in_their_own_pixels_and_shown_at_the_size_that_was_
     let (size, view) = ([161, 122], view(&scene, [161, 122]));
     let effects = stack(&["lambert", "outline"]);
     for option in RenderScale::ALL.iter().copied() {
-        let (capture, verdict) =
-            renderer.judged(&scene, &view, &effects, &on(PinnedOptions::of(option)));
+        let (capture, verdict) = renderer.judged(&scene, &view, &effects, &pin(option));
         assert_eq!(exactness(&verdict.report), Ok(()), "{}", option.name());
         let drawn = &capture.frame;
         let side = |side: u32| (f64::from(side) * option.factor()).ceil() as u32;
@@ -811,7 +772,7 @@ fn more_samples_come_nearer_to_eight_by_eight() {
         .iter()
         .map(|option| {
             let picture = renderer
-                .captured(&scene, &view, &lit, &on(PinnedOptions::of(*option)))
+                .captured(&scene, &view, &lit, &pin(*option))
                 .into_shown();
             compare::pictures(&picture.color, &smooth, 0).rms
         })
@@ -832,11 +793,7 @@ fn a_scale_that_the_adapter_cannot_hold_says_what_it_would_draw() {
     renderer.set_scene(&scene).block_on().unwrap();
     let wide = pixel_view(side, 8);
     let refused = renderer
-        .capture(
-            &wide,
-            &stack(&[]),
-            &on(PinnedOptions::of(RenderScale::Double)),
-        )
+        .capture(&wide, &stack(&[]), &pin(RenderScale::Double))
         .block_on()
         .expect_err("twice the widest");
     let sentence = format!(
@@ -850,7 +807,7 @@ fn a_scale_that_the_adapter_cannot_hold_says_what_it_would_draw() {
         &scene,
         &pixel_view(16, 8),
         &stack(&[]),
-        &on(PinnedOptions::of(RenderScale::Double)),
+        &pin(RenderScale::Double),
     );
 }
 
@@ -902,7 +859,7 @@ fn what_no_kernel_can_draw_is_one_sentence() {
     let mut refused = |size: [u32; 2], names: &[&str], pins: PinnedOptions| {
         let view = view(&scene, size);
         renderer
-            .capture(&view, &stack(names), &on(pins))
+            .capture(&view, &stack(names), &request(pins))
             .block_on()
             .expect_err("it cannot be drawn")
     };

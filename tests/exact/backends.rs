@@ -7,7 +7,7 @@ use pollster::FutureExt as _;
 use rasterlab::{
     accuracy::Visibility,
     effects::{Stack, dots},
-    frame::{Frame, NO_TRIANGLE},
+    frame::NO_TRIANGLE,
     gpu::{Capture, Renderer},
     measure::compare,
     oracle,
@@ -29,57 +29,12 @@ fn scenes_with_views(queries: &[&str]) -> Vec<(Arc<Scene>, View)> {
     queries.iter().map(with_view).collect()
 }
 
-/// Every image of `a` is that of `b`, bit for bit.
-fn assert_same(a: &Frame, b: &Frame, what: &str) {
-    let triangle_ids = compare::triangle_ids(&a.triangle_id, &b.triangle_id);
-    assert_eq!(
-        triangle_ids.different,
-        0,
-        "{what}: triangle ids differ, first {:?}",
-        triangle_ids.mismatches.first()
-    );
-    let keys = compare::triangle_ids(&a.depth_key, &b.depth_key);
-    assert_eq!(
-        keys.different,
-        0,
-        "{what}: keys differ, first {:?}",
-        keys.mismatches.first()
-    );
-    let colors = compare::pictures(&a.color, &b.color, 0);
-    assert_eq!(
-        colors.pixels_over_tolerance,
-        0,
-        "{what}: colors differ, first {:?}",
-        colors.mismatches.first()
-    );
-}
-
 /// The hall from inside: clipping, and triangles of every class.
 fn hall() -> (Arc<Scene>, View) {
     let scene = scene("near");
     let view = view(&scene, SIZE);
     (scene, view)
 }
-
-/// Small triangles walk alone, middling ones get a workgroup, as on a GPU.
-const GRAPHICS_CARD: Tuning = Tuning {
-    max_small_samples: 32,
-    max_small_side: 32,
-    group_size: 256,
-    listed_tiles: false,
-    early_load: false,
-    exchanges_maximum: true,
-    queue_groups: 64,
-    dot_groups: 1024,
-    interleaves_triangles: false,
-    clears_in_passes: true,
-    hides_blocks: true,
-    stored_uniforms: false,
-    wide_loads: false,
-    buffered_shadow_map: false,
-    glass_layers: rasterlab::plan::MOST_GLASS_LAYERS,
-    specialized: true,
-};
 
 fn every_exact_backend_gives_the_same_triangle_ids_and_depth_keys(reach: Reach) {
     let Some(mut renderer) = loan() else { return };

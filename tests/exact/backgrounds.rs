@@ -334,8 +334,7 @@ fn a_kernel_that_reads_another_row_is_caught() {
         ),
     ];
     for (from, to) in mutants {
-        let library = mutated(from, to);
-        let mut wrong = Renderer::with_library(gpu.clone(), library.shaders());
+        let mut wrong = Mistaken::new(&gpu, from, to);
         for stack in [
             stack(&["lambert"]),
             with(&["xray"], &[("xray", "opacity", 0.4)]),

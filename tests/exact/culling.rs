@@ -11,7 +11,7 @@ use rasterlab::{
     frame::{CullingStats, Frame},
     gpu::{Capture, Renderer},
     measure::compare,
-    plan::{AccuracyRequest, Tuning},
+    plan::Tuning,
     scene::{
         Scene,
         camera::{Camera, Projection},
@@ -24,40 +24,10 @@ use crate::common::*;
 
 const SIZE: [u32; 2] = [128, 96];
 
-fn on(pins: PinnedOptions) -> AccuracyRequest {
-    AccuracyRequest {
-        pins,
-        ..AccuracyRequest::default()
-    }
-}
-
-/// Every image of `a` is that of `b`, bit for bit.
-fn assert_same(a: &Frame, b: &Frame, what: &str) {
-    let triangle_ids = compare::triangle_ids(&a.triangle_id, &b.triangle_id);
-    assert_eq!(
-        triangle_ids.different,
-        0,
-        "{what}: triangle ids differ, first {:?}",
-        triangle_ids.mismatches.first()
-    );
-    let keys = compare::triangle_ids(&a.depth_key, &b.depth_key);
-    assert_eq!(
-        keys.different,
-        0,
-        "{what}: keys differ, first {:?}",
-        keys.mismatches.first()
-    );
-    assert_eq!(
-        compare::pictures(&a.color, &b.color, 0).pixels_over_tolerance,
-        0,
-        "{what}: colors differ"
-    );
-}
-
 /// The next picture, and what was left out of it.
 fn drawn(renderer: &mut Renderer, view: &View, pins: PinnedOptions) -> (Capture, CullingStats) {
     let capture = renderer
-        .capture_next(view, &stack(&["lambert"]), &on(pins))
+        .capture_next(view, &stack(&["lambert"]), &request(pins))
         .block_on()
         .unwrap_or_else(|error| panic!("{}: {error}", pins.words()));
     (capture, renderer.culled().unwrap_or_default())
@@ -95,22 +65,8 @@ fn scenes() -> Vec<(String, Arc<Scene>)> {
 /// As a CPU adapter likes it, and as a graphics card.
 fn both_tunings(renderer: &Renderer) -> [Tuning; 2] {
     let card = Tuning {
-        max_small_samples: 32,
-        max_small_side: 32,
-        group_size: 256,
-        listed_tiles: false,
-        early_load: false,
         exchanges_maximum: false,
-        queue_groups: 64,
-        dot_groups: 1024,
-        interleaves_triangles: false,
-        clears_in_passes: true,
-        hides_blocks: true,
-        stored_uniforms: false,
-        wide_loads: false,
-        buffered_shadow_map: false,
-        glass_layers: rasterlab::plan::MOST_GLASS_LAYERS,
-        specialized: true,
+        ..GRAPHICS_CARD
     };
     [renderer.gpu().caps.tuning(), card]
 }
@@ -162,7 +118,7 @@ fn whole(renderer: &Renderer, scene: &Arc<Scene>, view: &View, pins: PinnedOptio
             scene,
             view,
             &stack(&["lambert"]),
-            &on(pins.with(Culling::None)),
+            &request(pins.with(Culling::None)),
         )
         .frame
 }
@@ -358,8 +314,7 @@ fn mistakes_of_culling_are_seen(reach: Reach) {
         ),
     ];
     for (what, from, to, option, scene, views) in reach.of(2, mistakes) {
-        let library = mutated(from, to);
-        let mut wrong = Renderer::with_library(gpu.clone(), library.shaders());
+        let mut wrong = Mistaken::new(&gpu, from, to);
         match followed(&mut wrong, scene, views, split(option)) {
             Ok(_) => failures.push(format!("{what} does not show")),
             Err(why) => eprintln!("{what}: {why}"),
@@ -430,7 +385,7 @@ fn explained(
         .block_on()
         .expect("a builtin fits");
     renderer
-        .draw_complete(&view(&scene, SIZE), &stack(effects), &on(pins))
+        .draw_complete(&view(&scene, SIZE), &stack(effects), &request(pins))
         .block_on()
         .expect("a builtin is drawn");
     let explanation = renderer.explain();
@@ -622,7 +577,7 @@ fn effects_and_layers_keep_their_picture(reach: Reach) {
                 let mut draw = |option| {
                     let pins = PinnedOptions::of(visibility).with(option);
                     renderer
-                        .capture_next(view, &stack(effects), &on(pins))
+                        .capture_next(view, &stack(effects), &request(pins))
                         .block_on()
                         .unwrap_or_else(|error| panic!("{effects:?}: {error}"))
                 };
@@ -700,16 +655,11 @@ fn what_lies_outside_the_picture_is_not_deformed() {
         let mut renderer = Renderer::new(gpu()?);
         renderer.set_scene(&scene).block_on().expect("it fits");
         renderer
-            .draw_complete(&view, &stack(&["lambert"]), &on(PinnedOptions::of(option)))
+            .draw_complete(&view, &stack(&["lambert"]), &pin(option))
             .block_on()
             .expect("it is drawn");
         let buffers = renderer.explain().buffers;
-        let capture = renderer.captured(
-            &scene,
-            &view,
-            &stack(&["lambert"]),
-            &on(PinnedOptions::of(option)),
-        );
+        let capture = renderer.captured(&scene, &view, &stack(&["lambert"]), &pin(option));
         Some((
             capture.frame,
             buffers

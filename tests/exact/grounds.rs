@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use rasterlab::{
-    accuracy::{PinnedOptions, PositionFormat},
+    accuracy::PositionFormat,
     frame::NO_TRIANGLE,
     oracle,
     preset::{LengthUnit, Preset, SceneSource},
@@ -76,7 +76,7 @@ fn a_model_on_a_ground_with_its_shadow_is_exact_with_every_option(reach: Reach) 
             .starts_with("teapot")
             .then_some(PositionFormat::Packed16);
         for format in [PositionFormat::Relative].into_iter().chain(packed) {
-            let accuracy = request(PinnedOptions::of(format));
+            let accuracy = pin(format);
             let (_, verdict) = renderer.judged(&scene, &view, &stack, &accuracy);
             assert_eq!(
                 verdict.report.unexplained, 0,

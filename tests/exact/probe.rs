@@ -2,7 +2,7 @@
 //! the layers of every picture, and the edge near which an inexact option went wrong.
 
 use rasterlab::{
-    accuracy::{Coverage, PinnedOptions},
+    accuracy::Coverage,
     effects::Stack,
     frame::NO_TRIANGLE,
     math::hash,
@@ -106,7 +106,7 @@ fn every_pixel_that_float_edges_get_wrong_lies_at_an_edge_of_what_was_drawn() {
     let scene = scene("grid?cell=4&lattice=2&width=256&height=256");
     let size = [256, 256];
     let (view, stack) = (view(&scene, size), Stack::default());
-    let accuracy = request(PinnedOptions::of(Coverage::Float));
+    let accuracy = pin(Coverage::Float);
     let capture = renderer.captured(&scene, &view, &stack, &accuracy);
     let wrong = {
         let expected = verdict(&scene, &view, &stack, &capture).expected;

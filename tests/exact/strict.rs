@@ -510,7 +510,7 @@ fn the_judge_finds_nothing_to_excuse_in_strict_pictures(reach: Reach) {
 
 fn integer_keys_alone_leave_no_depth_band(reach: Reach) {
     let Some(mut renderer) = loan() else { return };
-    for query in ["knot?tess=24", "sizes", "near"] {
+    for query in reach.of(1, ["sizes", "knot?tess=24", "near"]) {
         let scene = scene(query);
         let view = view(&scene, [256, 192]);
         for (tuning, option) in reach.of(1, ways(&renderer)) {
@@ -531,8 +531,7 @@ fn integer_keys_alone_leave_no_depth_band(reach: Reach) {
     }
 }
 
-#[test]
-fn a_strict_picture_with_one_mistake_differs_from_the_list() {
+fn a_strict_picture_with_one_mistake_differs_from_the_list(reach: Reach) {
     let Some(healthy) = loan() else { return };
     let pictures = pictures();
     let way = (
@@ -543,7 +542,7 @@ fn a_strict_picture_with_one_mistake_differs_from_the_list() {
         },
         Visibility::Split32,
     );
-    for (what, name, from, to) in [
+    let mistakes = [
         (
             "another order of the sum",
             "teapot?tess=8",
@@ -562,9 +561,9 @@ fn a_strict_picture_with_one_mistake_differs_from_the_list() {
             "select(0u, 1u, left < 0)",
             "0u",
         ),
-    ] {
-        let mutant = mutated(from, to);
-        let mut wrong = Renderer::with_library(healthy.gpu().clone(), mutant.shaders());
+    ];
+    for (what, name, from, to) in reach.of(1, mistakes) {
+        let mut wrong = Mistaken::new(healthy.gpu(), from, to);
         let (picture, line) = pictures
             .iter()
             .zip(HASHES.lines())
@@ -586,7 +585,7 @@ fn what_floats_decide_is_refused_by_name() {
         .set_scene(&scene)
         .block_on()
         .expect("a builtin fits");
-    let accuracy = request(PinnedOptions::of(VertexTransform::Strict));
+    let accuracy = pin(VertexTransform::Strict);
     for name in ["explode", "inflate", "wobble", "race"] {
         let error = renderer
             .draw(&view, &stack(&["lambert", name]), &accuracy)
@@ -606,6 +605,7 @@ fn what_floats_decide_is_refused_by_name() {
 }
 
 few_and_all!(
+    a_strict_picture_with_one_mistake_differs_from_the_list,
     integer_keys_alone_leave_no_depth_band,
     the_judge_finds_nothing_to_excuse_in_strict_pictures,
     soft_floats_are_those_of_the_cpu_with_subnormals_flushed,

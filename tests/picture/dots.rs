@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use pollster::FutureExt as _;
 use rasterlab::{
-    accuracy::{DotCulling, PinnedOptions, Visibility},
+    accuracy::{DotCulling, Visibility},
     effects::{
         Effect, Stack,
         dots::{Dots, FULL, MAX_DOTS},
@@ -14,7 +14,7 @@ use rasterlab::{
     frame::SnappedVertex,
     gpu::{Capture, RenderError, Renderer},
     oracle,
-    plan::{AccuracyRequest, Tuning},
+    plan::Tuning,
     preset::{Preset, SceneSource},
     scene::{Scene, draw::draws, view::View},
 };
@@ -40,10 +40,6 @@ fn dotted(values: &[(&str, f64)], others: &[&str]) -> Stack {
     stack
 }
 
-fn on(way: DotCulling) -> AccuracyRequest {
-    request(PinnedOptions::of(way))
-}
-
 /// One picture by all three ways, judged, and found to be one.
 fn three_ways(
     renderer: &mut Renderer,
@@ -58,7 +54,7 @@ fn three_ways(
                 scene,
                 view,
                 stack,
-                &on(way),
+                &pin(way),
                 &format!("{what}, {}", way.name()),
             )
             .0
@@ -79,7 +75,7 @@ fn three_ways(
         dot_groups: 1024,
         ..usual
     });
-    let divided = renderer.captured(scene, view, stack, &on(DotCulling::Gpu));
+    let divided = renderer.captured(scene, view, stack, &pin(DotCulling::Gpu));
     renderer.set_tuning(usual);
     assert!(
         brute.frame.dots == divided.frame.dots,
@@ -260,7 +256,7 @@ fn a_tree_of_lines_refuses_lines_that_move() {
             .capture(
                 &view(&scene, [32, 24]),
                 &dotted(&[], others),
-                &on(DotCulling::Cpu),
+                &pin(DotCulling::Cpu),
             )
             .block_on()
             .expect_err(query);
@@ -336,7 +332,7 @@ fn dots_beyond_65_535_workgroups_are_all_drawn() {
         &[],
     );
     let [brute, gpu] = [DotCulling::Brute, DotCulling::Gpu]
-        .map(|way| renderer.captured(&scene, &view, &stack, &on(way)));
+        .map(|way| renderer.captured(&scene, &view, &stack, &pin(way)));
     assert_eq!(brute.geometry.dots.len(), count);
     let in_view = |dot: &SnappedVertex| {
         dot.flags == 0 && (0..64 * 256).contains(&dot.x) && (0..48 * 256).contains(&dot.y)
@@ -604,8 +600,7 @@ fn every_mistake_in_the_dots_shows(reach: Reach) {
             .any(|strength| (1..FULL).contains(strength))
     );
     for (from, to) in reach.of(3, mistakes) {
-        let wrong = mutated(from, to);
-        let mut renderer = Renderer::with_library(gpu.clone(), wrong.shaders());
+        let mut renderer = Mistaken::new(&gpu, from, to);
         let (_, verdict) = renderer.judged(&scene, &view, &stack, &unpinned());
         assert!(
             exactness(&verdict.report).is_err(),

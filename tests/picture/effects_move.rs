@@ -11,7 +11,6 @@ use rasterlab::{
         hooks::{ErrorBound, Vertex},
     },
     frame::Geometry,
-    gpu::Renderer,
     math::hash_unit,
     measure::Budget,
     oracle,
@@ -116,7 +115,10 @@ fn all_moving_effects_together_are_exact_far_from_the_origin_inside_and_in_paral
         let view = camera_view(&scene, &camera, [200, 150]);
         let mut stack = lit(stack(&MOVING));
         set(&mut stack, "explode", "amount_m", &[0.1]);
-        for (pattern, name) in ["uniform", "sweep", "radial", "random"].iter().enumerate() {
+        for (pattern, name) in reach.of(
+            2,
+            ["uniform", "sweep", "radial", "random"].iter().enumerate(),
+        ) {
             set(&mut stack, "explode", "pattern", &[pattern as f64]);
             for option in reach.options(&renderer) {
                 renderer.exact(
@@ -492,7 +494,7 @@ fn kernels_that_move_wrongly_are_caught(reach: Reach) {
         ),
     ];
     let mut failures = Vec::new();
-    for (what, effect, from, to) in reach.of(2, mutants) {
+    for (what, effect, from, to) in reach.of(1, mutants) {
         let (scene, view) = match what {
             "the last term of the sine is halved" => telescope(),
             "movement is forgotten where triangles are clipped" => still_life("near"),
@@ -509,8 +511,7 @@ fn kernels_that_move_wrongly_are_caught(reach: Reach) {
             &split32(),
             &format!("without the mistake: {what}"),
         );
-        let library = mutated(from, to);
-        let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
+        let mut wrong = Mistaken::new(healthy.gpu(), from, to);
         let (_, verdict) = wrong.judged(&scene, &view, &stack, &split32());
         match exactness(&verdict.report) {
             Ok(()) => failures.push(what),

@@ -11,7 +11,6 @@ use rasterlab::{
         hooks::{Picture, Pixel},
     },
     frame::{Frame, NO_TRIANGLE},
-    gpu::Renderer,
     measure::compare::pictures,
     oracle,
     preset::{Clock, Preset, SceneSource},
@@ -712,8 +711,7 @@ fn effects_with_a_mistake_are_caught(reach: Reach) {
         ("smear", "fraction + 65535", "fraction * 2 + 65535"),
     ];
     for (name, from, to) in reach.of(3, mutants) {
-        let library = mutated(from, to);
-        let mut wrong = Renderer::with_library(gpu.clone(), library.shaders());
+        let mut wrong = Mistaken::new(&gpu, from, to);
         let stack = with(&[("lambert", "", 0.0), coarse(name)]);
         let (_, verdict) = if name == "smear" {
             wrong.judged_preset(&scene, &spinning(0.2), &split32())

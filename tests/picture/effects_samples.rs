@@ -408,9 +408,7 @@ fn kernels_with_a_mistake_are_caught(reach: Reach) {
             &option,
             &format!("without the mistake: {what}"),
         );
-        let library = mutated(from, to);
-        let mut wrong =
-            rasterlab::gpu::Renderer::with_library(healthy.gpu().clone(), library.shaders());
+        let mut wrong = Mistaken::new(healthy.gpu(), from, to);
         wrong.set_tuning(card);
         let (_, verdict) = wrong.judged(&scene, &view, &stack, &option);
         if exactness(&verdict.report).is_ok() {

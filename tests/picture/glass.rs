@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use pollster::FutureExt as _;
 use rasterlab::{
-    accuracy::{AxisOption as _, DepthFormat, Transparency, VertexTransform},
+    accuracy::{DepthFormat, Transparency, VertexTransform},
     effects::Stack,
     gpu::{Capture, RenderError, Renderer},
     math::srgb_byte,
@@ -119,7 +119,7 @@ fn tinted_layers_cover_a_translucent_background_as_far_as_they_dim_it() {
 fn no_order_of_triangles_shows(reach: Reach) {
     let Some(mut renderer) = loan() else { return };
     for &transparency in reach.of(1, Transparency::ALL) {
-        let mut strict = on(transparency);
+        let mut strict = pin(transparency);
         strict.pins = strict
             .pins
             .with(VertexTransform::Strict)
@@ -146,25 +146,21 @@ fn no_order_of_triangles_shows(reach: Reach) {
     }
 }
 
-fn on(transparency: Transparency) -> AccuracyRequest {
-    let mut request = AccuracyRequest::default();
-    transparency.pin(&mut request.pins);
-    request
-}
-
-#[test]
-fn fewer_layers_and_no_order_err_in_color_alone_and_only_where_layers_lie_behind_one_another() {
+fn fewer_layers_and_no_order_err_in_color_alone_and_only_where_layers_lie_behind_one_another(
+    reach: Reach,
+) {
     let Some(mut renderer) = loan() else { return };
     let scene = scene("panes?sheets=9");
     let (view, stack) = (view(&scene, [96, 72]), stack(&["lambert"]));
-    let mut drawn = |option| renderer.judged(&scene, &view, &stack, &on(option));
+    let mut drawn = |option| renderer.judged(&scene, &view, &stack, &pin(option));
     let (exact, _) = drawn(Transparency::Exact);
     let counts = exact.frame.glass.counts();
-    for (option, most_exact) in [
+    let options = [
         (Transparency::Opaque, 0),
         (Transparency::Weighted, 1),
         (Transparency::Nearest4, 4),
-    ] {
+    ];
+    for (option, most_exact) in reach.of(2, options) {
         let (capture, verdict) = drawn(option);
         let (frame, report) = (&capture.frame, verdict.report);
         assert_eq!(
@@ -195,7 +191,7 @@ fn what_is_drawn_as_if_opaque_is_what_does_not_blend() {
     }
     let opaque = Arc::new(opaque);
     let stack = stack(&["lambert", "outline"]);
-    let mut drawn = |scene, option| renderer.captured(scene, &view, &stack, &on(option)).frame;
+    let mut drawn = |scene, option| renderer.captured(scene, &view, &stack, &pin(option)).frame;
     let (seen, without) = (
         drawn(&blended, Transparency::Opaque),
         drawn(&opaque, Transparency::Exact),
@@ -240,7 +236,7 @@ fn wrongly_composed(renderer: &mut Renderer, option: Transparency, exact: &Captu
     let scene = soup(&(0..count).collect::<Vec<_>>());
     let view = soup_view();
     let frame = renderer
-        .captured(&scene, &view, &Stack::default(), &on(option))
+        .captured(&scene, &view, &Stack::default(), &pin(option))
         .frame;
     let lists = &exact.frame.glass;
     let is_wrong = |pixel: &usize| {
@@ -312,8 +308,7 @@ fn every_option_composes_as_it_says_and_mistakes_in_it_are_caught(reach: Reach) 
         ),
     ];
     for (option, what, from, to) in reach.of(2, mistakes) {
-        let library = mutated(from, to);
-        let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
+        let mut wrong = Mistaken::new(healthy.gpu(), from, to);
         if wrongly_composed(&mut wrong, option, &exact) == 0 {
             missed.push(what);
         }
@@ -321,8 +316,7 @@ fn every_option_composes_as_it_says_and_mistakes_in_it_are_caught(reach: Reach) 
     assert!(missed.is_empty(), "not caught: {}", missed.join("; "));
 }
 
-#[test]
-fn bands_of_pixels_draw_the_same_picture_in_less_memory() {
+fn bands_of_pixels_draw_the_same_picture_in_less_memory(reach: Reach) {
     let Some(mut renderer) = loan() else { return };
     let (scene, stack) = (soup(&(0..40).collect::<Vec<_>>()), Stack::default());
     // Rows of other lengths than bands, so that bands begin and end inside rows.
@@ -331,7 +325,7 @@ fn bands_of_pixels_draw_the_same_picture_in_less_memory() {
     let whole = renderer.captured(&scene, &view, &stack, &unpinned());
     let layers = whole.frame.glass.layers.len() as u32;
     let mut banded = Renderer::new(renderer.gpu().clone());
-    for part in [3, 11] {
+    for part in reach.of(1, [3, 11]) {
         banded.set_tuning(Tuning {
             glass_layers: layers / part,
             ..usual
@@ -342,10 +336,10 @@ fn bands_of_pixels_draw_the_same_picture_in_less_memory() {
         assert_eq!(capture.frame.color, whole.frame.color, "{bands} bands");
         assert_eq!(capture.frame.triangle_id, whole.frame.triangle_id);
     }
-    for option in [Transparency::Weighted, Transparency::Nearest4] {
+    for option in reach.of(0, [Transparency::Weighted, Transparency::Nearest4]) {
         let [at_once, in_bands] = [&mut renderer, &mut banded].map(|renderer| {
             renderer
-                .captured(&scene, &view, &stack, &on(option))
+                .captured(&scene, &view, &stack, &pin(option))
                 .frame
                 .color
         });
@@ -418,8 +412,7 @@ fn mistakes_in_order_count_band_and_blend_are_caught(reach: Reach) {
         ),
     ];
     for (what, from, to) in reach.of(3, mistakes) {
-        let library = mutated(from, to);
-        let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
+        let mut wrong = Mistaken::new(healthy.gpu(), from, to);
         wrong.set_tuning(Tuning {
             glass_layers: if what.contains("band") {
                 layers / 3
@@ -456,7 +449,7 @@ fn glass_meets_other_effects(reach: Reach) {
     };
     let bottle = "[effects.glass]\non = [\"node:bottle\", \"node:jug\"]\n";
     for (scene, text) in reach.of(
-        2,
+        1,
         [
             (
                 &still,
@@ -520,6 +513,7 @@ fn light_passes_through_glass() {
 }
 
 #[test]
+#[ignore = "slow: .ci/full"]
 fn small_bindings_divide_the_lists_of_pixels_too() {
     let (Some(mut renderer), Some(mut own)) = (loan(), own_gpu()) else {
         return;
@@ -550,6 +544,7 @@ fn small_bindings_divide_the_lists_of_pixels_too() {
 }
 
 #[test]
+#[ignore = "slow: .ci/full"]
 fn layers_make_do_with_the_memory_that_is_left() {
     let Some(gpu) = own_gpu() else {
         return;
@@ -582,6 +577,8 @@ fn layers_make_do_with_the_memory_that_is_left() {
 }
 
 few_and_all!(
+    fewer_layers_and_no_order_err_in_color_alone_and_only_where_layers_lie_behind_one_another,
+    bands_of_pixels_draw_the_same_picture_in_less_memory,
     every_exact_option_composes_crossing_layers_as_the_oracle_does,
     no_order_of_triangles_shows,
     every_option_composes_as_it_says_and_mistakes_in_it_are_caught,

@@ -7,7 +7,6 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3, DVec4};
 use rasterlab::{
     effects::{Stack, hooks::Surface, studio},
-    gpu::Renderer,
     oracle,
     scene::{
         Scene,
@@ -45,7 +44,7 @@ fn lamps_look_as_in_the_oracle_alone_through_glass_in_an_xray_and_behind_effects
     let (scene, view) = balls(6);
     let option = pinned(quick_option(&renderer));
     for effects in reach.of(
-        2,
+        1,
         [
             &["studio"][..],
             &["studio", "tonemap", "fog"],
@@ -96,8 +95,7 @@ fn mistakes_in_lamps_are_caught(reach: Reach) {
         ),
     ];
     for (from, to) in reach.of(1, mistakes) {
-        let library = mutated(from, to);
-        let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
+        let mut wrong = Mistaken::new(healthy.gpu(), from, to);
         let (_, verdict) = wrong.judged(&scene, &view, &stack, &option);
         assert!(exactness(&verdict.report).is_err(), "{to}");
     }

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 use rasterlab::{
-    gpu::Renderer,
     measure::compare,
     oracle,
     scene::{
@@ -148,8 +147,7 @@ fn mistakes_in_maps_are_caught(reach: Reach) {
         ),
     ];
     for (from, to) in reach.of(1, mistakes) {
-        let library = mutated(from, to);
-        let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
+        let mut wrong = Mistaken::new(healthy.gpu(), from, to);
         let (_, verdict) = wrong.judged(&scene, &view, &stack, &option);
         assert!(exactness(&verdict.report).is_err(), "{to}");
     }

@@ -8,7 +8,6 @@ use pollster::FutureExt as _;
 use rasterlab::{
     accuracy::Visibility,
     effects::{EFFECTS, Effect, Stack},
-    gpu::Renderer,
     host,
     measure::compare,
     oracle,
@@ -325,8 +324,7 @@ fn mistakes_in_looking_up_texels_are_caught(reach: Reach) {
     ];
     let mut missed = Vec::new();
     for (what, from, to) in reach.of(1, mistakes) {
-        let library = mutated(from, to);
-        let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
+        let mut wrong = Mistaken::new(healthy.gpu(), from, to);
         let (_, verdict) = wrong.judged(&scene, &view, &stack, &option);
         match exactness(&verdict.report) {
             Ok(()) => missed.push(what),
@@ -522,8 +520,7 @@ fn mistakes_in_masks_are_caught(reach: Reach) {
     }
     let mut missed = Vec::new();
     for (what, from, to) in reach.of(1, mistakes) {
-        let library = mutated(from, to);
-        let mut wrong = Renderer::with_library(healthy.gpu().clone(), library.shaders());
+        let mut wrong = Mistaken::new(healthy.gpu(), from, to);
         let why = views.iter().find_map(|(_, view)| {
             exactness(&wrong.judged(&scene, view, &stack, &option).1.report).err()
         });

@@ -732,8 +732,7 @@ fn a_mistake_in_the_pass_is_found(reach: Reach) {
             ("2u * areas.x", "areas.x"),
         ],
     ) {
-        let mutant = mutated(right, wrong);
-        let mut renderer = Renderer::with_library(gpu.clone(), mutant.shaders());
+        let mut renderer = Mistaken::new(&gpu, right, wrong);
         let is_found = [0, 1, 18].into_iter().any(|frame| {
             let preset = at(&preset, frame);
             renderer

@@ -10,7 +10,7 @@ use rasterlab::{
     frame::NO_TRIANGLE,
     gpu::{Capture, Renderer},
     plan::AccuracyRequest,
-    preset::{ClipPlayback, Clock, PinnedOptions, Preset},
+    preset::{ClipPlayback, Clock, Preset},
     scene::{
         Scene,
         parts::{PartPattern, Scope, scope_masks},
@@ -98,7 +98,7 @@ fn a_surface_effect_colors_its_parts_as_if_it_were_everywhere_and_leaves_all_oth
     let Some(mut renderer) = loan() else { return };
     let picture = wall();
     for visibility in reach.options(&renderer) {
-        let accuracy = request(PinnedOptions::of(visibility));
+        let accuracy = pin(visibility);
         let mut draw = |stack: &Stack| drawn(&mut renderer, &picture, stack, &accuracy);
         let (none, all) = (
             draw(&only("lambert", &[], &[])),
@@ -144,7 +144,7 @@ fn a_sample_effect_leaves_out_samples_of_its_parts_alone(reach: Reach) {
         ("wireframe", &[("hidden", 0.0)]),
     ] {
         for visibility in reach.options(&renderer) {
-            let accuracy = request(PinnedOptions::of(visibility));
+            let accuracy = pin(visibility);
             let mut draw = |stack: &Stack| drawn(&mut renderer, &picture, stack, &accuracy);
             let (none, all, some) = (
                 draw(&only("lambert", &[], &[])),
@@ -245,7 +245,7 @@ fn instances_of_one_effect_act_on_parts_of_their_own() {
     let mut swapped = stack.clone();
     let [a, b] = [2, 3].map(|index| stack.0[index].on.clone());
     (swapped.0[2].on, swapped.0[3].on) = (b, a);
-    let baked = request(PinnedOptions::of(Parameters::Baked));
+    let baked = pin(Parameters::Baked);
     let first = drawn(&mut renderer, &picture, &stack, &unpinned());
     let second = drawn(&mut renderer, &picture, &swapped, &unpinned());
     // The scopes of the stack change while the view and the kernel stay.
@@ -305,7 +305,7 @@ fn skinned_animals_in_a_room_are_told_apart(reach: Reach) {
     );
     enable(&mut stack, effect("shadow"), &[], &[]);
     for visibility in reach.options(&renderer) {
-        let accuracy = request(PinnedOptions::of(visibility));
+        let accuracy = pin(visibility);
         renderer.exact(&scene, &view, &stack, &accuracy, visibility.name());
     }
 }
@@ -356,8 +356,7 @@ fn the_scope_of_another_draw_is_found() {
         ),
     ];
     for (from, to, stack) in mistakes {
-        let shaders = mutated(from, to);
-        let mut renderer = Renderer::with_library(gpu.clone(), shaders.shaders());
+        let mut renderer = Mistaken::new(&gpu, from, to);
         let (_, verdict) = renderer.judged(&scene, &view, &stack, &unpinned());
         assert!(
             exactness(&verdict.report).is_err(),

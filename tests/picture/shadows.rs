@@ -697,8 +697,7 @@ fn mistakes_in_the_light_are_found(reach: Reach) {
         if from == "texel.y * side + texel.x" && !gpu.caps.tuning().buffered_shadow_map {
             continue;
         }
-        let mutated = mutated(from, to);
-        let mut renderer = Renderer::with_library(gpu.clone(), mutated.shaders());
+        let mut renderer = Mistaken::new(&gpu, from, to);
         let view = on(
             &view(&scene, [120, 90]),
             ShadowMapSize::Side512,

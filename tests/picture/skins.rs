@@ -11,7 +11,7 @@ use rasterlab::{
     math::rounded_columns,
     measure::Budget,
     oracle,
-    preset::{ClipPlayback, Clock, MissingInScene, PinnedOptions, Preset},
+    preset::{ClipPlayback, Clock, MissingInScene, Preset},
     scene::{
         Accessor, ComponentType, Scene,
         draw::draws,
@@ -44,7 +44,7 @@ fn moment(
             time_s,
             ..Clock::default()
         },
-        accuracy: request(PinnedOptions::of(skinning)),
+        accuracy: pin(skinning),
         ..Preset::default()
     }
     .view(scene, size)
