@@ -165,8 +165,8 @@ fn every_case_of_the_table_is_tested_here_or_is_a_sweep_of_the_continuous_integr
         listed.len(),
         "a case is tested twice"
     );
-    let steps = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(".ci/run"))
-        .expect(".ci/run can be read");
+    let steps = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(".ci/full"))
+        .expect(".ci/full can be read");
     let names: String = steps
         .lines()
         .filter_map(|line| {
@@ -177,13 +177,13 @@ fn every_case_of_the_table_is_tested_here_or_is_a_sweep_of_the_continuous_integr
     assert_eq!(
         names.split(',').collect::<Vec<_>>(),
         SWEEPS,
-        "the cases that .ci/run draws"
+        "the cases that .ci/full draws"
     );
     assert!(
         steps
             .lines()
             .any(|line| line == "\"$lab\" stress --filter \"$sweeps\""),
-        "no step of .ci/run draws them"
+        "no step of .ci/full draws them"
     );
 }
 
