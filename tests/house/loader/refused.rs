@@ -187,7 +187,7 @@ fn values_that_are_not_finite_are_refused() {
     }
     Model::square()
         .with("/nodes/0/translation", json!([1e39, 0, 0]))
-        .dropped("node 0: its translation is [1e+39,0,0]; it must be 3 numbers below 3.4e38");
+        .dropped("node 0: its translation is [1e+39,0,0]; it must be numbers below 3.4e38");
     let far = json!({ "matrix": [1e30, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] });
     let mut deep = vec![far; 12];
     (0..11).for_each(|node| deep[node]["children"] = json!([node + 1]));

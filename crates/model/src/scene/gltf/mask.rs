@@ -89,7 +89,7 @@ pub enum Masked {
 pub fn masked(about: &document::Material, has_image: bool, alphas: Alphas) -> Masked {
     let [least, most] = alphas.0;
     // The alpha that everything is multiplied by.
-    let mut factor = f64::from(about.base_color[3]);
+    let mut factor = f64::from(about.plain.base_color[3]);
     if alphas.is_uniform() {
         factor *= least;
     }

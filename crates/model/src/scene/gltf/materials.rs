@@ -13,7 +13,7 @@ use super::{
     uri,
 };
 use crate::scene::{
-    material::{Material, TextureSlot},
+    material::{Material, TEXTURE_SLOTS, TextureSlot},
     texture::{Image, MipFilter, Texture},
 };
 
@@ -27,6 +27,15 @@ pub const EXTENSIONS: [&str; 8] = [
     "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_transmission",
     "KHR_materials_volume",
+];
+
+/// What messages call the textures, in the order of [`TextureSlot`].
+const TEXTURE_KEYS: [&str; TEXTURE_SLOTS] = [
+    "baseColorTexture",
+    "emissiveTexture",
+    "metallicRoughnessTexture",
+    "occlusionTexture",
+    "normalTexture",
 ];
 
 /// Reads every material, and the images of those on `shown` nodes. A texture that cannot be read is
@@ -51,23 +60,16 @@ pub fn read(
     };
     let mut materials = Vec::with_capacity(document.materials.len());
     for (index, about) in document.materials.iter().enumerate() {
-        let [r, g, b, alpha] = about.base_color;
         let is_blended = about.alpha_mode == AlphaMode::Blend;
-        let plain = Material {
+        let mut plain = Material {
             name: part_name("material", index, about.name.as_deref()),
-            // A material that does not blend is opaque: the alpha of its color is ignored.
-            base_color: [r, g, b, if is_blended { alpha } else { 1.0 }],
             is_blended,
-            metallic: about.metallic,
-            roughness: about.roughness,
-            specular: about.specular,
-            transmission: about.transmission,
-            attenuation: about.attenuation,
-            emission: about.emission,
-            double_sided: about.double_sided,
-            unlit: about.unlit,
-            ..Material::default()
+            ..about.plain.clone()
         };
+        // A material that does not blend is opaque: the alpha of its color is ignored.
+        if !is_blended {
+            plain.base_color[3] = 1.0;
+        }
         materials.push(match used.contains(&index) {
             true => {
                 let name = called("material", index, about.name.as_deref());
@@ -110,32 +112,21 @@ impl Reader<'_, '_, '_> {
         about: &document::Material,
         name: &str,
     ) -> Result<Material, LoadError> {
-        let mut texture = |about: &Option<TextureUse>, key: &str, slot: TextureSlot| match about {
-            Some(about) => self.texture(about, slot.is_data(), format_args!("{name}: {key}")),
-            None => Ok(None),
-        };
-        let base_texture = texture(&about.base_texture, "baseColorTexture", TextureSlot::Base)?;
-        let emission_texture = texture(
-            &about.emission_texture,
-            "emissiveTexture",
-            TextureSlot::Emission,
-        )?;
-        let finish = "metallicRoughnessTexture";
-        let finish_texture = texture(&about.finish_texture, finish, TextureSlot::Finish)?;
-        let occlusion = "occlusionTexture";
-        let occlusion_texture =
-            texture(&about.occlusion_texture, occlusion, TextureSlot::Occlusion)?;
-        let normal_texture = texture(&about.normal_texture, "normalTexture", TextureSlot::Normal)?;
-        let alpha_cutoff = alpha_cutoff(about, base_texture.is_some());
+        let mut textures = [None; TEXTURE_SLOTS];
+        for (slot, key) in TextureSlot::ALL.into_iter().zip(TEXTURE_KEYS) {
+            if let Some(about) = &about.textures[slot as usize] {
+                let place = format_args!("{name}: {key}");
+                textures[slot as usize] = self.texture(about, slot.is_data(), place)?;
+            }
+        }
+        let [base, emission, finish, occlusion, normal] = textures;
         Ok(Material {
-            base_texture,
-            emission_texture,
-            finish_texture,
-            occlusion_texture,
-            occlusion_strength: about.occlusion_strength,
-            normal_texture,
-            normal_scale: about.normal_scale,
-            alpha_cutoff,
+            base_texture: base,
+            emission_texture: emission,
+            finish_texture: finish,
+            occlusion_texture: occlusion,
+            normal_texture: normal,
+            alpha_cutoff: alpha_cutoff(about, base.is_some()),
             ..plain
         })
     }
@@ -254,5 +245,5 @@ impl Reader<'_, '_, '_> {
 /// primitives.
 fn alpha_cutoff(about: &document::Material, has_base: bool) -> Option<f32> {
     (about.alpha_mode == AlphaMode::Mask && about.alpha_cutoff > 0.0 && has_base)
-        .then(|| (about.alpha_cutoff / about.base_color[3]).min(2.0))
+        .then(|| (about.alpha_cutoff / about.plain.base_color[3]).min(2.0))
 }

@@ -1,79 +1,71 @@
 //! Materials, textures, samplers and images.
 
+use ::gltf::json::{
+    self, extensions,
+    material::VALID_ALPHA_MODES,
+    texture::{Info, MagFilter, MinFilter, WrappingMode},
+    texture::{VALID_MAG_FILTERS, VALID_MIN_FILTERS, VALID_WRAPPING_MODES},
+};
 use serde_json::Value;
 
 use super::{
-    super::error::called,
     AlphaMode, Image, ImageSource, Material, Part, Sampler, Texture, TextureUse,
-    fields::{Field, Lenient, Object, needed},
+    element::Element,
     read::{Lists, WEBP},
 };
-use crate::scene::texture::{Filter, MipFilter, Wrap};
+use crate::scene::{
+    self,
+    texture::{Filter, MipFilter, Wrap},
+};
 
 /// Largest emissive strength: the largest finite f16.
 const BRIGHTEST: f32 = 65_504.0;
 
-const WRAPS: [(u64, Wrap); 3] = [
-    (10497, Wrap::Repeat),
-    (33648, Wrap::Mirrored),
-    (33071, Wrap::Clamp),
-];
-
-const MAG_FILTERS: [(u64, Filter); 2] = [(9728, Filter::Nearest), (9729, Filter::Linear)];
-
-const MIN_FILTERS: [(u64, (Filter, MipFilter)); 6] = [
-    (9728, (Filter::Nearest, MipFilter::Unused)),
-    (9729, (Filter::Linear, MipFilter::Unused)),
-    (9984, (Filter::Nearest, MipFilter::Nearest)),
-    (9985, (Filter::Linear, MipFilter::Nearest)),
-    (9986, (Filter::Nearest, MipFilter::Mixed)),
-    (9987, (Filter::Linear, MipFilter::Mixed)),
-];
-
-const ALPHA_MODES: [(&str, AlphaMode); 3] = [
-    ("OPAQUE", AlphaMode::Opaque),
-    ("MASK", AlphaMode::Mask),
-    ("BLEND", AlphaMode::Blend),
-];
-
-pub fn image(lists: &Lists, index: usize, part: Object) -> Part<Image> {
-    let lenient = lists.lenient("image", index, part);
-    let view = part.index("bufferView", "buffer views", lists.views.len())?;
-    let uri = part.text("uri")?;
-    if view.is_some() && uri.is_some() {
+pub fn image(lists: &Lists, mut part: Element) -> Part<Image> {
+    lists.check(
+        &part.json,
+        "bufferView",
+        ("buffer views", lists.views.len()),
+    )?;
+    let image: json::Image = part.read(&["bufferView", "uri"])?;
+    if image.buffer_view.is_some() && image.uri.is_some() {
         lists.notes.fault(|| {
             format!(
                 "{}: it has both a URI and a bufferView; the bufferView is used",
-                lenient.name
+                part.name
             )
         });
     }
-    let from = match (view, uri) {
-        (Some(view), _) => ImageSource::View(view),
-        (None, Some(uri)) => ImageSource::Uri(uri.to_owned()),
-        (None, None) => return Err("it has neither a URI nor a bufferView".into()),
-    };
     Ok(Image {
-        name: part.text("name").ok().flatten().map(str::to_owned),
-        from,
-        mime_type: lenient.field(part.text("mimeType")).map(str::to_owned),
+        name: image.name,
+        from: match (image.buffer_view, image.uri) {
+            (Some(view), _) => ImageSource::View(view.value()),
+            (None, Some(uri)) => ImageSource::Uri(uri),
+            (None, None) => return Err("it has neither a URI nor a bufferView".into()),
+        },
+        mime_type: image.mime_type.map(|kind| kind.0),
     })
 }
 
-pub fn texture(lists: &Lists, index: usize, part: Object) -> Part<Texture> {
-    let lenient = lists.lenient("texture", index, part);
-    let images = lists.images.len();
-    let webp = match part.extension(WEBP)? {
-        Some(extension) => extension.index("source", "images", images)?,
-        None => None,
-    };
-    // What a texture of another format falls back to is the source.
-    let image = part.index("source", "images", images)?.or(webp);
-    let at = lenient.field(part.index("sampler", "samplers", lists.samplers.len()));
+pub fn texture(lists: &Lists, mut part: Element) -> Part<Texture> {
+    let images = ("images", lists.images.len());
+    lists.check(&part.json, "source", images)?;
+    let mut image = None;
+    if let Some(webp) = part.object(&["extensions", WEBP]) {
+        lists.check(webp, "source", images)?;
+        image = webp.get("source").and_then(Value::as_u64);
+    }
+    part.drop_index("sampler", ("samplers", lists.samplers.len()));
+    let is_there = part.json.contains_key("source");
+    let texture: json::Texture = part.read(&["source"])?;
     Ok(Texture {
-        image,
-        sampler: match at {
-            Some(at) => sampler(lists, at),
+        // What a texture of another format falls back to is the source.
+        image: match is_there {
+            true => Some(texture.source.value()),
+            false => image.map(|image| image as usize),
+        },
+        sampler: match texture.sampler {
+            Some(at) => sampler(lists, at.value()),
             None => Sampler::PLAIN,
         },
     })
@@ -90,157 +82,197 @@ impl Sampler {
 }
 
 fn sampler(lists: &Lists, index: usize) -> Sampler {
-    let Some(part) = lists.object("sampler", index, &lists.samplers[index]) else {
-        return Sampler::PLAIN;
-    };
-    let name = called("sampler", index, part.text("name").ok().flatten());
-    // Unknown numbers leave the choice to us: nothing breaks the standard.
-    let known = |name: &str, field: Field<Wrap>| {
-        field.unwrap_or_else(|reason| {
-            lists
-                .notes
-                .add(|| format!("{name}: {reason}; the default is used"));
-            None
-        })
-    };
     let plain = Sampler::PLAIN;
-    let wrap = |key: &str| known(&name, part.choice(key, &WRAPS)).unwrap_or(Wrap::Repeat);
-    let mag_filter = part.choice("magFilter", &MAG_FILTERS);
-    let min_filter = part.choice("minFilter", &MIN_FILTERS);
-    for reason in [mag_filter.as_ref().err(), min_filter.as_ref().err()]
-        .into_iter()
-        .flatten()
-    {
-        lists
-            .notes
-            .add(|| format!("{name}: {reason}; the default is used"));
-    }
-    let (min_filter, mip_filter) = min_filter
-        .ok()
-        .flatten()
-        .unwrap_or((plain.min_filter, plain.mip_filter));
+    let Some(mut part) = lists.element("sampler", index, &lists.samplers[index]) else {
+        return plain;
+    };
+    part.is_free = true;
+    let Some(sampler): Option<json::texture::Sampler> = lists.read(&mut part) else {
+        return plain;
+    };
+    let wrap = |key: &str, mode| match part.lenient(part.known(key, mode, VALID_WRAPPING_MODES)) {
+        Some(WrappingMode::Repeat) | None => Wrap::Repeat,
+        Some(WrappingMode::MirroredRepeat) => Wrap::Mirrored,
+        Some(WrappingMode::ClampToEdge) => Wrap::Clamp,
+    };
+    let wrap = [wrap("wrapS", sampler.wrap_s), wrap("wrapT", sampler.wrap_t)];
+    let mag = sampler
+        .mag_filter
+        .and_then(|filter| part.lenient(part.known("magFilter", filter, VALID_MAG_FILTERS)));
+    let min = sampler
+        .min_filter
+        .and_then(|filter| part.lenient(part.known("minFilter", filter, VALID_MIN_FILTERS)));
+    let (min_filter, mip_filter) = match min {
+        None => (plain.min_filter, plain.mip_filter),
+        Some(MinFilter::Nearest) => (Filter::Nearest, MipFilter::Unused),
+        Some(MinFilter::Linear) => (Filter::Linear, MipFilter::Unused),
+        Some(MinFilter::NearestMipmapNearest) => (Filter::Nearest, MipFilter::Nearest),
+        Some(MinFilter::LinearMipmapNearest) => (Filter::Linear, MipFilter::Nearest),
+        Some(MinFilter::NearestMipmapLinear) => (Filter::Nearest, MipFilter::Mixed),
+        Some(MinFilter::LinearMipmapLinear) => (Filter::Linear, MipFilter::Mixed),
+    };
     Sampler {
-        wrap: [wrap("wrapS"), wrap("wrapT")],
-        mag_filter: mag_filter.ok().flatten().unwrap_or(plain.mag_filter),
+        wrap,
+        mag_filter: match mag {
+            Some(MagFilter::Nearest) => Filter::Nearest,
+            Some(MagFilter::Linear) | None => Filter::Linear,
+        },
         min_filter,
         mip_filter,
     }
 }
 
+/// Where materials have textures.
+const TEXTURES: [&[&str]; 6] = [
+    &["pbrMetallicRoughness", "baseColorTexture"],
+    &["pbrMetallicRoughness", "metallicRoughnessTexture"],
+    &["normalTexture"],
+    &["occlusionTexture"],
+    &["emissiveTexture"],
+    &[
+        "extensions",
+        "KHR_materials_pbrSpecularGlossiness",
+        "diffuseTexture",
+    ],
+];
+
 /// Material `index`; a plain one where it is no object.
 pub fn material(lists: &Lists, index: usize, value: &Value) -> Material {
+    let mut part = lists.element("material", index, value);
+    if let Some(part) = &mut part {
+        for path in TEXTURES {
+            let count = ("textures", lists.textures.len());
+            if let Some(texture) = part.object(path)
+                && let Err(reason) = lists.check(texture, "index", count)
+            {
+                part.fault(format_args!("{}: {reason}", path[path.len() - 1]));
+                part.remove(path);
+            }
+        }
+    }
+    // The crate does not know of transforms of these two.
+    let [occlusion, normal] = ["occlusionTexture", "normalTexture"].map(|key| {
+        let part = part.as_ref()?;
+        let name = format!("{}: {key}", part.name);
+        let given = part.json.get(key)?.clone();
+        let mut info = part.lenient(
+            Element::of(lists.notes, name, &given).map_err(|_| part.wrong(key, "an object")),
+        )?;
+        Some(texture_use(&lists.read(&mut info)?))
+    });
+    let read: Option<json::Material> = part.as_mut().and_then(|part| lists.read(part));
+    let read = read.unwrap_or_default();
+    let reader = Reader { lists, part };
     let mut material = Material {
-        name: None,
-        base_color: [1.0; 4],
-        base_texture: None,
-        metallic: 1.0,
-        roughness: 1.0,
-        specular: [0.04, 0.04, 0.04, 1.0],
-        transmission: 0.0,
-        attenuation: [1.0; 3],
-        emission: [0.0; 3],
-        emission_texture: None,
-        finish_texture: None,
-        occlusion_texture: None,
-        occlusion_strength: 1.0,
-        normal_texture: None,
-        normal_scale: 1.0,
+        name: read.name.clone(),
+        plain: scene::material::Material {
+            double_sided: read.double_sided,
+            ..scene::material::Material::default()
+        },
+        textures: Default::default(),
         alpha_mode: AlphaMode::Opaque,
         alpha_cutoff: 0.5,
-        double_sided: false,
-        unlit: false,
         has_more: false,
         has_more_transmission: false,
     };
-    let Some(part) = lists.object("material", index, value) else {
-        return material;
-    };
-    let lenient = lists.lenient("material", index, part);
-    let reader = Reader { lists, lenient };
-    material.name = part.text("name").ok().flatten().map(str::to_owned);
-    material.unlit = reader
-        .lenient
-        .field(part.extension("KHR_materials_unlit"))
-        .is_some();
-    reader.base(part, &mut material);
-    reader.reflection(part, &mut material);
-    let mode = part.word("alphaMode", &ALPHA_MODES);
-    material.alpha_mode = reader.lenient.field(mode).unwrap_or_default();
-    let cutoff = reader.lenient.field(part.number("alphaCutoff"));
-    if let Some(cutoff) = cutoff {
-        if cutoff < 0.0 {
-            let reason = format_args!("its alphaCutoff is {cutoff}; it must be at least 0");
-            reader.lenient.fault(reason);
-        } else {
-            material.alpha_cutoff = cutoff;
+    if let Some(part) = &reader.part {
+        let mode = part.known("alphaMode", read.alpha_mode, VALID_ALPHA_MODES);
+        material.alpha_mode = part.lenient(mode).unwrap_or_default();
+    }
+    if let Some(cutoff) = read.alpha_cutoff {
+        match cutoff.0 {
+            cutoff @ ..0.0 => reader.fault(&format_args!(
+                "its alphaCutoff is {cutoff}; it must be at least 0"
+            )),
+            cutoff => material.alpha_cutoff = cutoff,
         }
     }
-    material.double_sided = reader
-        .lenient
-        .field(part.flag("doubleSided"))
-        .unwrap_or(false);
-    if !material.unlit {
-        reader.transmission(part, &mut material);
-        reader.emission(part, &mut material);
-        reader.relief(part, &mut material);
+    let extensions = read.extensions.unwrap_or_default();
+    let is_unlit = extensions.unlit.is_some();
+    material.plain.unlit = is_unlit;
+    reader.base(&read.pbr_metallic_roughness, &extensions, &mut material);
+    reader.reflection(&read.pbr_metallic_roughness, &extensions, &mut material);
+    if is_unlit {
+        return material;
+    }
+    reader.transmission(&extensions, &mut material);
+    material.textures[3..].clone_from_slice(&[occlusion, normal]);
+    let plain = &mut material.plain;
+    plain.occlusion_strength =
+        (read.occlusion_texture).map_or(1.0, |given| given.strength.0.clamp(0.0, 1.0));
+    plain.normal_scale = read.normal_texture.map_or(1.0, |given| given.scale);
+    plain.emission = reader.emission(read.emissive_factor.0, &extensions);
+    if plain.emission != [0.0; 3] {
+        material.textures[1] = read.emissive_texture.as_ref().map(texture_use);
+    }
+    if extensions.pbr_specular_glossiness.is_none() {
+        let given = &read.pbr_metallic_roughness.metallic_roughness_texture;
+        material.textures[2] = given.as_ref().map(texture_use);
     }
     material
 }
 
 struct Reader<'a, 'b> {
     lists: &'b Lists<'a>,
-    lenient: Lenient<'a>,
+    /// Its JSON; none of a plain one.
+    part: Option<Element<'b>>,
+}
+
+fn unit<const N: usize>(color: [f32; N]) -> [f32; N] {
+    color.map(|channel| channel.clamp(0.0, 1.0))
 }
 
 impl Reader<'_, '_> {
+    fn fault(&self, reason: &dyn std::fmt::Display) {
+        if let Some(part) = &self.part {
+            part.fault(reason);
+        }
+    }
+
     /// The base color: that of the metallic-roughness model, or the diffuse color of the
     /// specular-glossiness model.
-    fn base(&self, part: Object, material: &mut Material) {
-        let usual = self.lenient.field(part.object("pbrMetallicRoughness"));
-        let older = part.extension("KHR_materials_pbrSpecularGlossiness");
-        let older = self.lenient.field(older);
-        let (source, factor, texture) = match (usual, older) {
-            (_, Some(older)) => (older, "diffuseFactor", "diffuseTexture"),
-            (Some(usual), None) => (usual, "baseColorFactor", "baseColorTexture"),
-            (None, None) => return,
+    fn base(
+        &self,
+        usual: &json::material::PbrMetallicRoughness,
+        extensions: &extensions::material::Material,
+        material: &mut Material,
+    ) {
+        let (color, texture) = match &extensions.pbr_specular_glossiness {
+            Some(older) => {
+                material.has_more = older.specular_glossiness_texture.is_some();
+                (older.diffuse_factor.0, &older.diffuse_texture)
+            }
+            None => (usual.base_color_factor.0, &usual.base_color_texture),
         };
-        if let Some(color) = self.lenient.field(source.vector::<4>(factor)) {
-            material.base_color = color.map(|channel| channel.clamp(0.0, 1.0));
-        }
-        material.base_texture = self.texture_use(source, texture);
-        material.has_more = source.value("specularGlossinessTexture").is_some();
+        material.plain.base_color = unit(color);
+        material.textures[0] = texture.as_ref().map(texture_use);
     }
 
     /// How the material reflects: the metallic-roughness model with KHR_materials_ior and
     /// KHR_materials_specular, or the specular-glossiness model.
-    fn reflection(&self, part: Object, material: &mut Material) {
-        let extension = |name: &str| self.lenient.field(part.extension(name));
-        if let Some(older) = extension("KHR_materials_pbrSpecularGlossiness") {
-            let [red, green, blue] = self
-                .lenient
-                .field(older.vector::<3>("specularFactor"))
-                .unwrap_or([1.0; 3])
-                .map(|channel| channel.clamp(0.0, 1.0));
-            material.metallic = 0.0;
-            material.roughness = 1.0 - self.fraction(older, "glossinessFactor");
-            material.specular = [red, green, blue, 1.0];
+    fn reflection(
+        &self,
+        usual: &json::material::PbrMetallicRoughness,
+        extensions: &extensions::material::Material,
+        material: &mut Material,
+    ) {
+        let plain = &mut material.plain;
+        if let Some(older) = &extensions.pbr_specular_glossiness {
+            let [red, green, blue] = unit(older.specular_factor.0);
+            plain.metallic = 0.0;
+            plain.roughness = 1.0 - older.glossiness_factor.0.clamp(0.0, 1.0);
+            plain.specular = [red, green, blue, 1.0];
             return;
         }
-        if let Some(usual) = self.lenient.field(part.object("pbrMetallicRoughness")) {
-            material.metallic = self.fraction(usual, "metallicFactor");
-            material.roughness = self.fraction(usual, "roughnessFactor");
-            if !material.unlit {
-                material.finish_texture = self.texture_use(usual, "metallicRoughnessTexture");
-            }
-        }
-        let given = extension("KHR_materials_ior");
-        let given = given.and_then(|given| self.lenient.field(given.number("ior")));
-        let straight = match given.unwrap_or(1.5) {
+        plain.metallic = usual.metallic_factor.0.clamp(0.0, 1.0);
+        plain.roughness = usual.roughness_factor.0.clamp(0.0, 1.0);
+        let straight = match extensions.ior.as_ref().map_or(1.5, |given| given.ior.0) {
             // As a material of the specular-glossiness model, whose Fresnel term is 1.
             0.0 => 1.0,
             index if index < 1.0 => {
-                let reason = format_args!("its ior is {index}; it must be 0 or at least 1");
-                self.lenient.fault(reason);
+                self.fault(&format_args!(
+                    "its ior is {index}; it must be 0 or at least 1"
+                ));
                 0.04
             }
             // Fresnel: ((n - 1) / (n + 1))².
@@ -249,141 +281,79 @@ impl Reader<'_, '_> {
                 (root * root) as f32
             }
         };
-        let specular = extension("KHR_materials_specular");
-        let factor = specular.map_or(1.0, |given| self.fraction(given, "specularFactor"));
-        let tint = specular
-            .and_then(|given| self.lenient.field(given.vector::<3>("specularColorFactor")))
-            .unwrap_or([1.0; 3]);
+        let specular = extensions.specular.clone().unwrap_or_default();
+        let factor = specular.specular_factor.0.clamp(0.0, 1.0);
+        let tint = specular.specular_color_factor.0;
         let [red, green, blue] = tint.map(|tint| (straight * tint).clamp(0.0, 1.0) * factor);
-        material.specular = [red, green, blue, factor];
-        let textures = ["specularTexture", "specularColorTexture"];
+        plain.specular = [red, green, blue, factor];
         material.has_more |=
-            specular.is_some_and(|given| textures.iter().any(|key| given.value(key).is_some()));
+            specular.specular_texture.is_some() || specular.specular_color_texture.is_some();
     }
 
     /// What passes through: KHR_materials_transmission, and of KHR_materials_volume what is absorbed
     /// behind the whole thickness, by the law of Beer and Lambert.
-    fn transmission(&self, part: Object, material: &mut Material) {
-        let extension = |name: &str| self.lenient.field(part.extension(name));
-        let number = |part: Object, key: &str| self.lenient.field(part.number(key));
+    fn transmission(&self, extensions: &extensions::material::Material, material: &mut Material) {
         let mut has_texture = false;
-        if let Some(given) = extension("KHR_materials_transmission") {
-            let factor = number(given, "transmissionFactor").unwrap_or(0.0);
-            material.transmission = factor.clamp(0.0, 1.0);
-            has_texture |= given.value("transmissionTexture").is_some();
+        if let Some(given) = &extensions.transmission {
+            material.plain.transmission = given.transmission_factor.0.clamp(0.0, 1.0);
+            has_texture |= given.transmission_texture.is_some();
         }
-        if let Some(volume) = extension("KHR_materials_volume") {
-            let thickness = number(volume, "thicknessFactor").unwrap_or(0.0).max(0.0);
-            let distance = number(volume, "attenuationDistance").unwrap_or(f32::INFINITY);
-            let color = self.lenient.field(volume.vector::<3>("attenuationColor"));
-            let color = color
-                .unwrap_or([1.0; 3])
-                .map(|channel| channel.clamp(0.0, 1.0));
+        if let Some(volume) = &extensions.volume {
+            let thickness = volume.thickness_factor.0.max(0.0);
+            let distance = volume.attenuation_distance.0;
             if distance > 0.0 {
                 let distances = f64::from(thickness) / f64::from(distance);
-                material.attenuation =
-                    color.map(|channel| libm::pow(channel.into(), distances) as f32);
+                material.plain.attenuation = unit(volume.attenuation_color.0)
+                    .map(|channel| libm::pow(channel.into(), distances) as f32);
             } else {
-                let reason =
-                    format_args!("its attenuationDistance is {distance}; it must be above 0");
-                self.lenient.fault(reason);
+                self.fault(&format_args!(
+                    "its attenuationDistance is {distance}; it must be above 0"
+                ));
             }
-            has_texture |= volume.value("thicknessTexture").is_some();
+            has_texture |= volume.thickness_texture.is_some();
         }
-        material.has_more_transmission = has_texture && material.transmission > 0.0;
+        material.has_more_transmission = has_texture && material.plain.transmission > 0.0;
     }
 
-    /// A factor from 0 to 1, by default 1.
-    fn fraction(&self, part: Object, key: &str) -> f32 {
-        let given = self.lenient.field(part.number(key));
-        given.unwrap_or(1.0).clamp(0.0, 1.0)
-    }
-
-    fn emission(&self, part: Object, material: &mut Material) {
-        let extension = part.extension("KHR_materials_emissive_strength");
-        let strength = self
-            .lenient
-            .field(extension)
-            .and_then(|extension| self.lenient.field(extension.number("emissiveStrength")))
-            .unwrap_or(1.0);
-        let strength = match strength {
-            ..0.0 => {
-                self.lenient.fault(format_args!(
+    fn emission(&self, factor: [f32; 3], extensions: &extensions::material::Material) -> [f32; 3] {
+        let given = extensions.emissive_strength.clone().unwrap_or_default();
+        let strength = match given.emissive_strength.0 {
+            strength @ ..0.0 => {
+                self.fault(&format_args!(
                     "its emissiveStrength is {strength}; it must be at least 0"
                 ));
                 1.0
             }
-            BRIGHTEST.. => {
+            strength @ BRIGHTEST.. => {
+                let name = self.part.as_ref().map_or("", |part| &part.name);
                 self.lists.notes.add(|| {
-                    format!(
-                        "{}: its emissiveStrength {strength} is drawn as {BRIGHTEST}",
-                        self.lenient.name
-                    )
+                    format!("{name}: its emissiveStrength {strength} is drawn as {BRIGHTEST}")
                 });
                 BRIGHTEST
             }
-            _ => strength,
+            strength => strength,
         };
-        let factor = self.lenient.field(part.vector::<3>("emissiveFactor"));
-        material.emission = factor
-            .unwrap_or([0.0; 3])
-            .map(|channel| channel.clamp(0.0, 1.0) * strength);
-        if material.emission != [0.0; 3] {
-            material.emission_texture = self.texture_use(part, "emissiveTexture");
-        }
-    }
-
-    /// Where it is shut off from light, and where its normals point.
-    fn relief(&self, part: Object, material: &mut Material) {
-        let factor = |key: &str, factor: &str| {
-            let info = self.lenient.field(part.object(key))?;
-            self.lenient.field(info.number(factor))
-        };
-        material.occlusion_texture = self.texture_use(part, "occlusionTexture");
-        material.occlusion_strength = factor("occlusionTexture", "strength")
-            .unwrap_or(1.0)
-            .clamp(0.0, 1.0);
-        material.normal_texture = self.texture_use(part, "normalTexture");
-        material.normal_scale = factor("normalTexture", "scale").unwrap_or(1.0);
-    }
-
-    /// The use of a texture, under a key of an object.
-    fn texture_use(&self, part: Object, key: &str) -> Option<TextureUse> {
-        let info = self.lenient.field(part.object(key))?;
-        let lenient = Lenient {
-            notes: self.lists.notes,
-            name: format!("{}: {key}", self.lenient.name),
-        };
-        let textures = self.lists.textures.len();
-        let texture =
-            lenient.field(needed("index", info.index("index", "textures", textures)).map(Some))?;
-        let set = lenient.field(info.integer("texCoord")).unwrap_or(0);
-        let mut used = TextureUse {
-            texture,
-            set: u32::try_from(set).unwrap_or(u32::MAX),
-            image_from_texcoord: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-        };
-        if let Some(given) = lenient.field(info.extension("KHR_texture_transform")) {
-            if let Some(set) = lenient.field(given.integer("texCoord")) {
-                used.set = u32::try_from(set).unwrap_or(u32::MAX);
-            }
-            used.image_from_texcoord = transform(&lenient, given);
-        }
-        Some(used)
+        unit(factor).map(|channel| channel * strength)
     }
 }
 
-/// KHR_texture_transform: scaled, then rotated, then translated. The rotation is counterclockwise
-/// in an image whose v axis points down, as the extension's text and test model define it; the
-/// formula next to the text rotates the other way.
-fn transform(lenient: &Lenient, given: Object) -> [[f32; 3]; 2] {
-    let pair = |key: &str, default: f64| {
-        lenient
-            .field(given.vector::<2>(key))
-            .map_or([default; 2], |pair| pair.map(f64::from))
+/// The use of a texture, with KHR_texture_transform: scaled, then rotated, then translated. The
+/// rotation is counterclockwise in an image whose v axis points down, as the extension's text and
+/// test model define it; the formula next to the text rotates the other way.
+fn texture_use(info: &Info) -> TextureUse {
+    let mut used = TextureUse {
+        texture: info.index.value(),
+        set: info.tex_coord,
+        image_from_texcoord: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
     };
-    let ([x, y], [wide, high]) = (pair("offset", 0.0), pair("scale", 1.0));
-    let rotation = lenient.field(given.number("rotation")).unwrap_or(0.0);
-    let (sin, cos) = libm::sincos(rotation.into());
-    [[cos * wide, sin * high, x], [-sin * wide, cos * high, y]].map(|row| row.map(|v| v as f32))
+    let extensions = info.extensions.as_ref();
+    if let Some(given) = extensions.and_then(|all| all.texture_transform.as_ref()) {
+        used.set = given.tex_coord.unwrap_or(used.set);
+        let pair = |pair: [f32; 2]| pair.map(f64::from);
+        let ([x, y], [wide, high]) = (pair(given.offset.0), pair(given.scale.0));
+        let (sin, cos) = libm::sincos(given.rotation.0.into());
+        used.image_from_texcoord = [[cos * wide, sin * high, x], [-sin * wide, cos * high, y]]
+            .map(|row| row.map(|v| v as f32));
+    }
+    used
 }

@@ -1,107 +1,109 @@
 //! Skins and clips.
 
-use serde_json::Value;
+use ::gltf::json::{self, animation, validation::Checked};
+use serde_json::{Value, json};
 
-use super::{
-    super::error::called,
-    Channel, Clip, KeySampler, Part, Skin,
-    fields::{Lenient, Object, needed},
-    read::Lists,
-};
+use super::{Channel, Clip, KeySampler, Part, Skin, element::Element, read::Lists};
 use crate::scene::rig::{Interpolation, Property};
 
-pub fn skin(lists: &Lists, part: Object) -> Part<Skin> {
+pub fn skin(lists: &Lists, mut part: Element) -> Part<Skin> {
     let mut lost = None;
-    let nodes = ("nodes", lists.nodes.len());
-    let joints = part.indices("joints", nodes, |reason| {
+    if let Some(joints) = part.json.get("joints").filter(|joints| !joints.is_array()) {
+        return Err(super::element::wrong("joints", joints, "a list"));
+    }
+    let joints = part.take_indices("joints", ("nodes", lists.nodes.len()), |_, reason| {
         lost.get_or_insert(reason);
-    })?;
-    let accessors = lists.accessors.len();
+    });
     match lost {
         // Vertices refer to joints by their places in the list.
-        Some(reason) => Err(reason),
-        None if joints.is_empty() => Err("it has no joints".into()),
-        None => Ok(Skin {
-            name: part.text("name").ok().flatten().map(str::to_owned),
-            joints,
-            inverse_bind: part.index("inverseBindMatrices", "accessors", accessors)?,
-        }),
-    }
+        Some(reason) => return Err(reason),
+        None if joints.is_empty() => return Err("it has no joints".into()),
+        None => part.json.insert("joints".into(), json!([])),
+    };
+    lists.check(&part.json, "inverseBindMatrices", lists.accessors())?;
+    let skin: json::Skin = part.read(&["inverseBindMatrices"])?;
+    Ok(Skin {
+        name: skin.name,
+        joints,
+        inverse_bind: skin.inverse_bind_matrices.map(|index| index.value()),
+    })
 }
 
-/// Clip `index`; one without channels where it is no object.
+/// A clip; one without channels where it is no object.
 pub fn clip(lists: &Lists, index: usize, value: &Value) -> Clip {
-    let Some(part) = lists.object("clip", index, value) else {
-        return Clip {
-            name: None,
-            channels: Vec::new(),
-            samplers: Vec::new(),
-        };
+    let Some(mut part) = lists.element("clip", index, value) else {
+        return Clip::default();
     };
-    let name = part.text("name");
-    let lenient = Lenient {
-        notes: lists.notes,
-        name: called("clip", index, name.clone().ok().flatten()),
-    };
-    let name = lenient.field(name).map(str::to_owned);
-    let samplers = lenient.list(part.list("samplers"));
-    let channels = lenient.list(part.list("channels")).iter().enumerate();
+    let (samplers, channels) = (part.take_list("samplers"), part.take_list("channels"));
+    for key in ["samplers", "channels"] {
+        part.json.insert(key.into(), json!([]));
+    }
+    let clip: Option<json::Animation> = lists.read(&mut part);
+    let mut read = Vec::with_capacity(channels.len());
+    for (at, value) in channels.iter().enumerate() {
+        let channel = || channel(lists, lists.nameless(value)?, samplers.len());
+        match channel() {
+            Ok(None) => lists
+                .notes
+                .add(|| format!("{} channel {at} animates no node; it is ignored", part.name)),
+            Ok(Some(channel)) => read.push((at, Ok(channel))),
+            Err(reason) => read.push((at, Err(reason))),
+        }
+    }
     Clip {
-        name,
-        channels: channels
-            .filter_map(|(at, value)| {
-                let channel =
-                    Object::of(value).and_then(|part| channel(lists, part, samplers.len()));
-                if matches!(channel, Ok(None)) {
-                    lists.notes.add(|| {
-                        format!(
-                            "{} channel {at} animates no node; it is ignored",
-                            lenient.name
-                        )
-                    });
-                }
-                Some((at, channel.transpose()?))
-            })
-            .collect(),
+        name: clip.and_then(|clip| clip.name),
+        channels: read,
         samplers: samplers
             .iter()
-            .map(|value| key_sampler(lists, Object::of(value)?))
+            .map(|value| key_sampler(lists, lists.nameless(value)?))
             .collect(),
     }
 }
 
 /// A channel; none that animates anything but a node, which is valid.
-fn channel(lists: &Lists, part: Object, samplers: usize) -> Part<Option<Channel>> {
-    let properties = [
-        Property::Translation,
-        Property::Rotation,
-        Property::Scale,
-        Property::Weights,
-    ]
-    .map(|property| (property.name(), property));
-    let target = needed("target", part.object("target"))?;
-    let Some(node) = target.index("node", "nodes", lists.nodes.len())? else {
-        return Ok(None);
+fn channel(lists: &Lists, mut part: Element, samplers: usize) -> Part<Option<Channel>> {
+    if let Some(target) = part.object(&["target"]) {
+        if !target.contains_key("node") {
+            return Ok(None);
+        }
+        lists.check(target, "node", ("nodes", lists.nodes.len()))?;
+    }
+    lists.check(&part.json, "sampler", ("samplers", samplers))?;
+    let channel: animation::Channel = part.read(&["target", "sampler"])?;
+    let property = match channel.target.path {
+        Checked::Valid(animation::Property::Translation) => Property::Translation,
+        Checked::Valid(animation::Property::Rotation) => Property::Rotation,
+        Checked::Valid(animation::Property::Scale) => Property::Scale,
+        Checked::Valid(animation::Property::MorphTargetWeights) => Property::Weights,
+        Checked::Invalid => {
+            let path = part.json["target"]["path"].clone();
+            let known = animation::VALID_PROPERTIES.join(", ");
+            return Err(super::element::wrong(
+                "path",
+                &path,
+                format_args!("one of {known}"),
+            ));
+        }
     };
     Ok(Some(Channel {
-        node,
-        property: needed("path", target.word("path", &properties))?,
-        sampler: needed("sampler", part.index("sampler", "samplers", samplers))?,
+        node: channel.target.node.value(),
+        property,
+        sampler: channel.sampler.value(),
     }))
 }
 
-fn key_sampler(lists: &Lists, part: Object) -> Part<KeySampler> {
-    let interpolations = [
-        ("STEP", Interpolation::Step),
-        ("LINEAR", Interpolation::Linear),
-        ("CUBICSPLINE", Interpolation::Cubic),
-    ];
-    let accessor = |key: &str| needed(key, part.index(key, "accessors", lists.accessors.len()));
+fn key_sampler(lists: &Lists, mut part: Element) -> Part<KeySampler> {
+    lists.check(&part.json, "input", lists.accessors())?;
+    lists.check(&part.json, "output", lists.accessors())?;
+    let sampler: animation::Sampler = part.read(&["input", "output", "interpolation"])?;
+    let known = animation::VALID_INTERPOLATIONS;
     Ok(KeySampler {
-        times: accessor("input")?,
-        values: accessor("output")?,
-        interpolation: part
-            .word("interpolation", &interpolations)?
-            .unwrap_or(Interpolation::Linear),
+        times: sampler.input.value(),
+        values: sampler.output.value(),
+        interpolation: match part.known("interpolation", sampler.interpolation, known)? {
+            animation::Interpolation::Linear => Interpolation::Linear,
+            animation::Interpolation::Step => Interpolation::Step,
+            animation::Interpolation::CubicSpline => Interpolation::Cubic,
+        },
     })
 }

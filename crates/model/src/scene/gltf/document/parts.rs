@@ -3,8 +3,10 @@
 use std::collections::BTreeMap;
 
 use crate::scene::{
+    self,
     accessor::ComponentType,
     camera::Projection,
+    material::TEXTURE_SLOTS,
     model::Topology,
     punctual::LightKind,
     rig::{Interpolation, Property},
@@ -152,7 +154,7 @@ pub struct Sampler {
 }
 
 /// The use of a texture by a material.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct TextureUse {
     pub texture: usize,
     /// n of `TEXCOORD_n`.
@@ -161,52 +163,24 @@ pub struct TextureUse {
     pub image_from_texcoord: [[f32; 3]; 2],
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum AlphaMode {
-    #[default]
-    Opaque,
-    Mask,
-    Blend,
-}
+pub use ::gltf::json::material::AlphaMode;
 
+/// A material, of which the textures are still to be read.
 #[derive(Debug)]
 pub struct Material {
     pub name: Option<String>,
-    /// Linear RGBA, each in [0, 1].
-    pub base_color: [f32; 4],
-    pub base_texture: Option<TextureUse>,
-    /// 0 to 1.
-    pub metallic: f32,
-    /// Perceptual, 0 to 1.
-    pub roughness: f32,
-    /// What it reflects where it is no metal: linear RGB straight on, and where light grazes it; 0
-    /// to 1.
-    pub specular: [f32; 4],
-    /// Fraction of the light that its color does not scatter but lets through, 0 to 1.
-    pub transmission: f32,
-    /// What of that is left behind its thickness: linear RGB, each 0 to 1.
-    pub attenuation: [f32; 3],
-    /// Linear RGB, from 0 up.
-    pub emission: [f32; 3],
-    pub emission_texture: Option<TextureUse>,
-    pub finish_texture: Option<TextureUse>,
-    pub occlusion_texture: Option<TextureUse>,
-    /// 0 to 1.
-    pub occlusion_strength: f32,
-    pub normal_texture: Option<TextureUse>,
-    /// Any finite number.
-    pub normal_scale: f32,
+    /// As it is drawn without textures; its color has the alpha that a mask needs.
+    pub plain: scene::Material,
+    pub textures: [Option<TextureUse>; TEXTURE_SLOTS],
     pub alpha_mode: AlphaMode,
     pub alpha_cutoff: f32,
-    pub double_sided: bool,
-    pub unlit: bool,
     /// It has textures of specular reflection or glossiness that are not drawn.
     pub has_more: bool,
     /// It has textures of transmission or thickness that are not drawn.
     pub has_more_transmission: bool,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Mesh {
     pub name: Option<String>,
     pub primitives: Vec<Part<Primitive>>,
@@ -301,7 +275,7 @@ pub struct Light {
     pub range_m: Option<f64>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Clip {
     pub name: Option<String>,
     /// Those that move a node; others are valid and ignored.

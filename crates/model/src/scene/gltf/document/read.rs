@@ -1,5 +1,6 @@
 //! Reads a document: first version and required extensions, then part by part.
 
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use super::{
@@ -13,7 +14,7 @@ use super::{
         notes::Notes,
     },
     Document, Part,
-    fields::{Lenient, Object},
+    element::{Element, Object, wrong},
     lights, materials, motion, shapes,
     variants::{self, VARIANTS},
 };
@@ -63,25 +64,38 @@ pub struct Lists<'a> {
 }
 
 impl<'a> Lists<'a> {
-    /// A part, by its place in a list, with the name that messages call it by. What is no object
-    /// is told, and read as none.
-    pub fn lenient(&self, kind: &str, index: usize, part: Object<'a>) -> Lenient<'a> {
-        let name = part.text("name");
-        let lenient = Lenient {
-            notes: self.notes,
-            name: called(kind, index, name.clone().ok().flatten()),
-        };
-        lenient.field(name);
-        lenient
+    /// The object at a place of a list, with the name that messages call it by; none where it is
+    /// something else, which is told.
+    pub fn element(&self, kind: &str, index: usize, value: &'a Value) -> Option<Element<'a>> {
+        let name = called(kind, index, value.get("name").and_then(Value::as_str));
+        match Element::of(self.notes, name.clone(), value) {
+            Ok(element) => Some(element),
+            Err(reason) => {
+                self.notes
+                    .fault(|| format!("{name}: {reason}; it is left out"));
+                None
+            }
+        }
     }
 
-    /// The object at a place of a list; none where it is something else, which is told.
-    pub fn object(&self, kind: &str, index: usize, value: &'a Value) -> Option<Object<'a>> {
-        let lenient = Lenient {
-            notes: self.notes,
-            name: called(kind, index, None),
-        };
-        lenient.field(Object::of(value).map(Some))
+    /// An object that messages call by what it is part of.
+    pub fn nameless<'b>(&'b self, value: &'b Value) -> Part<Element<'b>> {
+        Element::of(self.notes, String::new(), value)
+    }
+
+    /// A part of which every field may be left out.
+    pub fn read<T: DeserializeOwned>(&self, part: &mut Element) -> Option<T> {
+        let read = part.read(&[]);
+        part.lenient(read)
+    }
+
+    pub fn accessors(&self) -> (&'static str, usize) {
+        ("accessors", self.accessors.len())
+    }
+
+    /// Fails if a field is an index beyond a list.
+    pub fn check(&self, of: &Object, key: &str, parts: (&str, usize)) -> Result<(), String> {
+        Element::check_index(of, key, parts)
     }
 }
 
@@ -95,93 +109,115 @@ pub fn parse_document(json: &[u8], notes: &Notes) -> Result<Document, LoadError>
     let none =
         |error: &dyn std::fmt::Display| LoadError::new(format!("it is not a glTF file: {error}"));
     let value: Value = serde_json::from_str(&text).map_err(|error| none(&error))?;
-    let root = Object::of(&value).map_err(|error| none(&error))?;
-    check_version(root, notes)?;
-    let lenient = Lenient {
-        notes,
-        name: "the file".into(),
+    let Value::Object(mut root) = value else {
+        return Err(none(&"its JSON is no object"));
     };
-    let names = |key: &str| -> Vec<String> {
-        let list = lenient.list(root.list(key));
-        let name = |value: &Value| match value.as_str() {
-            Some(name) => Some(name.to_owned()),
-            None => {
-                lenient.fault(format_args!("its {key} list what is no text"));
+    check_version(&root, notes)?;
+    let fault = |reason: String| notes.fault(|| format!("the file: {reason}; it is left out"));
+    let take_list = |object: &mut Object, key: &str| match object.remove(key) {
+        Some(Value::Array(list)) => list,
+        None | Some(Value::Null) => Vec::new(),
+        Some(other) => {
+            fault(wrong(key, &other, "a list"));
+            Vec::new()
+        }
+    };
+    let mut names = |key: &str| -> Vec<String> {
+        let name = |value| match value {
+            Value::String(name) => Some(name),
+            _ => {
+                fault(format!("its {key} list what is no text"));
                 None
             }
         };
-        list.iter().filter_map(name).collect()
+        let list = take_list(&mut root, key);
+        list.into_iter().filter_map(name).collect()
     };
     let (extensions_used, extensions_required) =
         (names("extensionsUsed"), names("extensionsRequired"));
     check_required(&extensions_required, notes)?;
-    let list = |key: &str| lenient.list(root.list(key));
+    let take_object = |object: &mut Object, key: &str| match object.remove(key) {
+        Some(Value::Object(object)) => object,
+        None | Some(Value::Null) => Object::new(),
+        Some(other) => {
+            fault(wrong(key, &other, "an object"));
+            Object::new()
+        }
+    };
+    let mut extensions = take_object(&mut root, "extensions");
+    let (mut variants, mut lights) = (
+        take_object(&mut extensions, VARIANTS),
+        take_object(&mut extensions, LIGHTS),
+    );
+    let mut list = |key: &str| take_list(&mut root, key);
+    let [animations, scenes] = ["animations", "scenes"].map(&mut list);
+    let [accessors, views, buffers, images] =
+        ["accessors", "bufferViews", "buffers", "images"].map(&mut list);
+    let [samplers, textures, materials, meshes] =
+        ["samplers", "textures", "materials", "meshes"].map(&mut list);
+    let [nodes, skins, cameras] = ["nodes", "skins", "cameras"].map(&mut list);
+    let (variants, lights) = (
+        take_list(&mut variants, "variants"),
+        take_list(&mut lights, "lights"),
+    );
     let lists = Lists {
         notes,
-        accessors: list("accessors"),
-        views: list("bufferViews"),
-        buffers: list("buffers"),
-        images: list("images"),
-        samplers: list("samplers"),
-        textures: list("textures"),
-        materials: list("materials"),
-        meshes: list("meshes"),
-        nodes: list("nodes"),
-        skins: list("skins"),
-        cameras: list("cameras"),
-        variants: variants::listed(&lenient, root),
-        lights: match lenient.field(root.extension(LIGHTS)) {
-            Some(extension) => lenient.list(extension.list("lights")),
-            None => &[],
-        },
+        accessors: &accessors,
+        views: &views,
+        buffers: &buffers,
+        images: &images,
+        samplers: &samplers,
+        textures: &textures,
+        materials: &materials,
+        meshes: &meshes,
+        nodes: &nodes,
+        skins: &skins,
+        cameras: &cameras,
+        variants: &variants,
+        lights: &lights,
     };
-    let document = Document {
-        accessors: parts(lists.accessors, |index, part| {
-            shapes::accessor(&lists, index, part)
+    Ok(Document {
+        accessors: parts(&lists, "accessor", lists.accessors, shapes::accessor),
+        views: parts(&lists, "bufferView", lists.views, shapes::view),
+        buffers: parts(&lists, "buffer", lists.buffers, shapes::buffer),
+        images: parts(&lists, "image", lists.images, materials::image),
+        textures: parts(&lists, "texture", lists.textures, materials::texture),
+        materials: each(&lists, lists.materials, materials::material),
+        meshes: each(&lists, lists.meshes, shapes::mesh),
+        nodes: each(&lists, lists.nodes, shapes::node),
+        skins: parts(&lists, "skin", lists.skins, motion::skin),
+        cameras: parts(&lists, "camera", lists.cameras, |_, part| {
+            shapes::camera(part)
         }),
-        views: parts(lists.views, |_, part| shapes::view(&lists, part)),
-        buffers: parts(lists.buffers, |index, part| {
-            shapes::buffer(&lists, index, part)
-        }),
-        images: parts(lists.images, |index, part| {
-            materials::image(&lists, index, part)
-        }),
-        textures: parts(lists.textures, |index, part| {
-            materials::texture(&lists, index, part)
-        }),
-        materials: each(lists.materials, |index, value| {
-            materials::material(&lists, index, value)
-        }),
-        meshes: each(lists.meshes, |index, value| {
-            shapes::mesh(&lists, index, value)
-        }),
-        nodes: each(lists.nodes, |index, value| {
-            shapes::node(&lists, index, value)
-        }),
-        skins: parts(lists.skins, |_, part| motion::skin(&lists, part)),
-        cameras: parts(lists.cameras, |_, part| shapes::camera(part)),
-        lights: parts(lists.lights, |_, part| lights::light(part)),
-        clips: each(list("animations"), |index, value| {
-            motion::clip(&lists, index, value)
-        }),
-        scene: shapes::scene(&lists, root, list("scenes")),
+        lights: parts(&lists, "light", lists.lights, |_, part| lights::light(part)),
+        clips: each(&lists, &animations, motion::clip),
+        scene: shapes::scene(&lists, root.get("scene"), &scenes),
         variants: variants::names(lists.variants),
         extensions_used,
         extensions_required,
-    };
-    Ok(document)
-}
-
-fn parts<T>(list: &[Value], read: impl Fn(usize, Object) -> Part<T>) -> Vec<Part<T>> {
-    each(list, |index, value| {
-        Object::of(value).and_then(|part| read(index, part))
     })
 }
 
-fn each<'a, T>(list: &'a [Value], read: impl Fn(usize, &'a Value) -> T) -> Vec<T> {
+fn parts<'a, T>(
+    lists: &Lists<'a>,
+    kind: &str,
+    list: &'a [Value],
+    read: impl Fn(&Lists<'a>, Element<'a>) -> Part<T>,
+) -> Vec<Part<T>> {
+    each(lists, list, |lists, index, value| {
+        let name = called(kind, index, value.get("name").and_then(Value::as_str));
+        read(lists, Element::of(lists.notes, name, value)?)
+    })
+}
+
+fn each<'a, T>(
+    lists: &Lists<'a>,
+    list: &'a [Value],
+    read: impl Fn(&Lists<'a>, usize, &'a Value) -> T,
+) -> Vec<T> {
     list.iter()
         .enumerate()
-        .map(|(index, value)| read(index, value))
+        .map(|(index, value)| read(lists, index, value))
         .collect()
 }
 
@@ -207,19 +243,15 @@ fn check_size(json: &[u8]) -> Result<(), LoadError> {
 }
 
 /// Checks `asset.version` and `asset.minVersion`.
-fn check_version(root: Object, notes: &Notes) -> Result<(), LoadError> {
-    let asset = match root.object("asset") {
-        Ok(Some(asset)) => asset,
-        Ok(None) => {
-            return Err(LoadError::new(
-                "it is not a glTF file: its JSON has no asset",
-            ));
-        }
-        Err(reason) => {
-            return Err(LoadError::new(format!("it is not a glTF file: {reason}")));
-        }
+fn check_version(root: &Object, notes: &Notes) -> Result<(), LoadError> {
+    let none = |reason: &str| Err(LoadError::new(format!("it is not a glTF file: {reason}")));
+    let asset = match root.get("asset") {
+        Some(Value::Object(asset)) => asset,
+        None | Some(Value::Null) => return none("its JSON has no asset"),
+        Some(other) => return none(&wrong("asset", other, "an object")),
     };
-    let text = |key: &str| match asset.value(key)? {
+    let text = |key: &str| match asset.get(key)? {
+        Value::Null => None,
         Value::String(text) => Some(text.clone()),
         other => {
             notes.fault(|| format!("the {key} of its asset is not a text; it is read as one"));

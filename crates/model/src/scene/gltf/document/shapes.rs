@@ -2,224 +2,222 @@
 
 use std::collections::BTreeMap;
 
-use serde_json::Value;
+use ::gltf::json::{
+    self,
+    accessor::{ComponentType as JsonType, Type, VALID_ACCESSOR_TYPES, VALID_COMPONENT_TYPES},
+    camera::{Type as Lens, VALID_CAMERA_TYPES},
+    mesh::{Mode, Semantic, VALID_MODES},
+    validation::Checked,
+};
+use serde::{
+    Deserialize,
+    de::{IntoDeserializer, value::Error as WordError},
+};
+use serde_json::{Value, json};
 
 use super::{
     super::{
         compression::{DRACO, MESHOPT},
-        error::{called, quoted},
+        error::quoted,
         instancing::INSTANCING,
     },
     Accessor, Buffer, Camera, Instancing, Mesh, Node, Part, Primitive, Scene, Sparse, View,
-    fields::{Lenient, Object, needed, whole},
-    lights,
-    read::{Lists, is_unknown_compression},
+    element::{Element, Object, legible_value, whole, wrong},
+    read::{LIGHTS, Lists, is_unknown_compression},
     variants,
 };
 use crate::scene::{accessor::ComponentType, camera::Projection, model::Topology};
 
-const COMPONENT_TYPES: [(u64, ComponentType); 6] = [
-    (5120, ComponentType::I8),
-    (5121, ComponentType::U8),
-    (5122, ComponentType::I16),
-    (5123, ComponentType::U16),
-    (5125, ComponentType::U32),
-    (5126, ComponentType::F32),
-];
+fn component_type(known: JsonType) -> ComponentType {
+    match known {
+        JsonType::I8 => ComponentType::I8,
+        JsonType::U8 => ComponentType::U8,
+        JsonType::I16 => ComponentType::I16,
+        JsonType::U16 => ComponentType::U16,
+        JsonType::U32 => ComponentType::U32,
+        JsonType::F32 => ComponentType::F32,
+    }
+}
 
-/// Component types of indices.
-const INDEX_TYPES: [(u64, ComponentType); 3] = [
-    (5121, ComponentType::U8),
-    (5123, ComponentType::U16),
-    (5125, ComponentType::U32),
-];
-
-/// Types of elements, and their components.
-const TYPES: [(&str, u32); 7] = [
-    ("SCALAR", 1),
-    ("VEC2", 2),
-    ("VEC3", 3),
-    ("VEC4", 4),
-    ("MAT2", 4),
-    ("MAT3", 9),
-    ("MAT4", 16),
-];
-
-/// Modes of primitives; points and lines have no topology.
-const MODES: [(u64, Option<Topology>); 7] = [
-    (0, None),
-    (1, None),
-    (2, None),
-    (3, None),
-    (4, Some(Topology::List)),
-    (5, Some(Topology::Strip)),
-    (6, Some(Topology::Fan)),
-];
-
-pub fn accessor(lists: &Lists, index: usize, part: Object) -> Part<Accessor> {
-    let lenient = Lenient {
-        notes: lists.notes,
-        name: format!("accessor {index}"),
+pub fn accessor(lists: &Lists, mut part: Element) -> Part<Accessor> {
+    let bounds = ["min", "max"].map(|key| (key, part.take_numbers(key)));
+    let views = ("buffer views", lists.views.len());
+    lists.check(&part.json, "bufferView", views)?;
+    for key in ["indices", "values"] {
+        if let Some(of) = part.object(&["sparse", key]) {
+            lists
+                .check(of, "bufferView", views)
+                .map_err(|reason| format!("sparse: {reason}"))?;
+        }
+    }
+    let accessor: json::Accessor = part.read(&[
+        "type",
+        "bufferView",
+        "byteOffset",
+        "count",
+        "componentType",
+        "normalized",
+        "sparse",
+    ])?;
+    let components = match part.known("type", accessor.type_, VALID_ACCESSOR_TYPES)? {
+        Type::Scalar => 1,
+        Type::Vec2 => 2,
+        Type::Vec3 => 3,
+        Type::Vec4 | Type::Mat2 => 4,
+        Type::Mat3 => 9,
+        Type::Mat4 => 16,
     };
-    let components = needed("type", part.word("type", &TYPES))?;
-    let bounds = |key: &str| match lenient.field(part.numbers(key)) {
-        Some(numbers) if numbers.len() == components as usize => true,
-        Some(numbers) => {
-            let count = numbers.len();
-            lenient.fault(format_args!(
+    let mut has_bounds = true;
+    for (key, numbers) in bounds {
+        let count = numbers.map(|numbers| numbers.len());
+        has_bounds &= count == Some(components);
+        if let Some(count) = count.filter(|&count| count != components) {
+            part.fault(format_args!(
                 "its {key} has {count} of {components} numbers"
             ));
-            false
         }
-        None => false,
-    };
-    let (has_min, has_max) = (bounds("min"), bounds("max"));
+    }
+    let kind = part.known(
+        "componentType",
+        accessor.component_type,
+        VALID_COMPONENT_TYPES,
+    )?;
     Ok(Accessor {
-        view: part.index("bufferView", "buffer views", lists.views.len())?,
-        offset: part.integer("byteOffset")?.unwrap_or(0),
-        count: needed("count", part.integer("count"))?,
-        component_type: needed(
-            "componentType",
-            part.choice("componentType", &COMPONENT_TYPES),
-        )?,
-        components,
-        normalized: part.flag("normalized")?.unwrap_or(false),
-        sparse: match part.object("sparse")? {
-            Some(sparse) => {
-                Some(self::sparse(lists, sparse).map_err(|reason| format!("sparse: {reason}"))?)
-            }
-            None => None,
-        },
-        has_bounds: has_min && has_max,
+        view: accessor.buffer_view.map(|index| index.value()),
+        offset: accessor.byte_offset.map_or(0, |offset| offset.0),
+        count: accessor.count.0,
+        component_type: component_type(kind.0),
+        components: components as u32,
+        normalized: accessor.normalized,
+        sparse: accessor.sparse.map(sparse).transpose()?,
+        has_bounds,
     })
 }
 
-fn sparse(lists: &Lists, part: Object) -> Part<Sparse> {
-    let place = |part: Object| {
-        let view = part.index("bufferView", "buffer views", lists.views.len());
-        Ok::<_, String>((
-            needed("bufferView", view)?,
-            part.integer("byteOffset")?.unwrap_or(0),
-        ))
+fn sparse(part: json::accessor::sparse::Sparse) -> Part<Sparse> {
+    let (indices, values) = (part.indices, part.values);
+    let Checked::Valid(kind) = indices.component_type else {
+        return Err("sparse: its componentType must be one of 5121, 5123, 5125".into());
     };
-    let (indices, values) = (
-        needed("indices", part.object("indices"))?,
-        needed("values", part.object("values"))?,
-    );
     Ok(Sparse {
-        count: needed("count", part.integer("count"))?,
-        indices: place(indices)?,
-        index_type: needed(
-            "componentType",
-            indices.choice("componentType", &INDEX_TYPES),
-        )?,
-        values: place(values)?,
+        count: part.count.0,
+        indices: (indices.buffer_view.value(), indices.byte_offset.0),
+        index_type: component_type(kind.0),
+        values: (values.buffer_view.value(), values.byte_offset.0),
     })
 }
 
-pub fn view(lists: &Lists, part: Object) -> Part<View> {
-    let meshopt = match part.extension(MESHOPT)? {
-        Some(extension) => Some(
-            extension
-                .parsed()
-                .map_err(|error| format!("its {MESHOPT} is malformed: {error}"))?,
-        ),
-        None => None,
-    };
-    let buffer = part.index("buffer", "buffers", lists.buffers.len());
+/// An extension that the crate does not read.
+fn extension<T: for<'a> Deserialize<'a>>(part: &Element, name: &str) -> Part<Option<T>> {
+    let extension = part.object(&["extensions"]).and_then(|all| all.get(name));
+    let malformed = |error| format!("its {name} is malformed: {error}");
+    extension
+        .map(|extension| T::deserialize(extension).map_err(malformed))
+        .transpose()
+}
+
+pub fn view(lists: &Lists, mut part: Element) -> Part<View> {
+    lists.check(&part.json, "buffer", ("buffers", lists.buffers.len()))?;
+    let needed = ["buffer", "byteOffset", "byteLength", "byteStride"];
+    let view: json::buffer::View = part.read(&needed)?;
     Ok(View {
-        buffer: needed("buffer", buffer)?,
-        offset: part.integer("byteOffset")?.unwrap_or(0),
-        length: needed("byteLength", part.integer("byteLength"))?,
+        buffer: view.buffer.value(),
+        offset: view.byte_offset.map_or(0, |offset| offset.0),
+        length: view.byte_length.0,
         // Some writers give every view one, of 0 where there is none.
-        stride: part.integer("byteStride")?.filter(|&stride| stride > 0),
-        meshopt,
+        stride: view
+            .byte_stride
+            .map(|stride| stride.0 as u64)
+            .filter(|&stride| stride > 0),
+        meshopt: extension(&part, MESHOPT)?,
     })
 }
 
-pub fn buffer(lists: &Lists, index: usize, part: Object) -> Part<Buffer> {
-    let fallback = match part.extension(MESHOPT)? {
-        Some(extension) => extension.flag("fallback")?,
-        None => None,
-    };
-    lists.lenient("buffer", index, part);
+pub fn buffer(_: &Lists, mut part: Element) -> Part<Buffer> {
+    if !part.json.contains_key("byteLength") {
+        return Err("it has no byteLength".into());
+    }
+    let buffer: json::Buffer = part.read(&["uri", "byteLength"])?;
+    let fallback = part
+        .object(&["extensions", MESHOPT])
+        .and_then(|all| all.get("fallback"));
     Ok(Buffer {
-        uri: part.text("uri")?.map(str::to_owned),
-        length: needed("byteLength", part.integer("byteLength"))?,
-        is_fallback: fallback.unwrap_or(false),
+        uri: buffer.uri,
+        length: buffer.byte_length.0,
+        is_fallback: fallback.and_then(Value::as_bool).unwrap_or(false),
     })
 }
 
 /// Mesh `index`; an empty one where it is no object.
 pub fn mesh(lists: &Lists, index: usize, value: &Value) -> Mesh {
-    let Some(part) = lists.object("mesh", index, value) else {
-        return Mesh {
-            name: None,
-            primitives: Vec::new(),
-            weights: Vec::new(),
-        };
+    let Some(mut part) = lists.element("mesh", index, value) else {
+        return Mesh::default();
     };
-    let lenient = lists.lenient("mesh", index, part);
-    let primitives = lenient.list(part.list("primitives"));
+    let primitives = part.take_list("primitives");
+    part.json.insert("primitives".into(), json!([]));
+    let mesh: Option<json::Mesh> = lists.read(&mut part);
+    let primitive = |(at, value): (usize, &Value)| {
+        let name = format!("{} primitive {at}", part.name);
+        primitive(lists, Element::of(lists.notes, name, value)?)
+    };
+    let primitives = primitives.iter().enumerate().map(primitive).collect();
+    let (name, weights) = mesh.map_or((None, None), |mesh| (mesh.name, mesh.weights));
     Mesh {
-        name: part.text("name").ok().flatten().map(str::to_owned),
-        weights: lenient.field(part.numbers("weights")).unwrap_or_default(),
-        primitives: primitives
-            .iter()
-            .enumerate()
-            .map(|(at, value)| {
-                let lenient = Lenient {
-                    notes: lists.notes,
-                    name: format!("{} primitive {at}", lenient.name),
-                };
-                primitive(lists, &lenient, Object::of(value)?)
-            })
-            .collect(),
+        name,
+        primitives,
+        weights: weights.unwrap_or_default(),
     }
 }
 
-fn primitive(lists: &Lists, lenient: &Lenient, part: Object) -> Part<Primitive> {
-    let attributes = needed("attributes", part.object("attributes"))?;
-    let targets = lenient.list(part.list("targets"));
-    let draco = match part.extension(DRACO)? {
-        Some(extension) => Some(
-            extension
-                .parsed()
-                .map_err(|error| format!("its {DRACO} is malformed: {error}"))?,
-        ),
-        None => None,
+fn primitive(lists: &Lists, mut part: Element) -> Part<Primitive> {
+    let attributes = match part.json.insert("attributes".into(), json!({})) {
+        Some(Value::Object(attributes)) => accessors(lists, &part, &attributes),
+        Some(_) => return Err(part.wrong("attributes", "an object")),
+        None => return Err("it has no attributes".into()),
     };
+    let mut targets = Vec::new();
+    for target in part.take_list("targets") {
+        targets.push(match &target {
+            Value::Object(target) => accessors(lists, &part, target),
+            other => {
+                part.fault(format_args!(
+                    "of its targets, one is {}; it must be an object",
+                    legible_value(other)
+                ));
+                BTreeMap::new()
+            }
+        });
+    }
+    let variants = variants::materials(lists, &mut part);
+    part.drop_index("material", ("materials", lists.materials.len()));
+    lists.check(&part.json, "indices", lists.accessors())?;
+    let read: json::mesh::Primitive = part.read(&["indices", "mode", "extensions"])?;
     let primitive = Primitive {
-        attributes: accessors(lists, lenient, attributes),
-        indices: part.index("indices", "accessors", lists.accessors.len())?,
-        topology: part.choice("mode", &MODES)?.unwrap_or(Some(Topology::List)),
-        material: lenient.field(part.index("material", "materials", lists.materials.len())),
-        variants: variants::materials(lists, lenient, part),
-        targets: targets
-            .iter()
-            .map(|target| match Object::of(target) {
-                Ok(target) => accessors(lists, lenient, target),
-                Err(reason) => {
-                    lenient.fault(format_args!("of its targets, {reason}"));
-                    BTreeMap::new()
-                }
-            })
-            .collect(),
-        draco,
+        attributes,
+        indices: read.indices.map(|index| index.value()),
+        topology: match part.known("mode", read.mode, VALID_MODES)? {
+            Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => None,
+            Mode::Triangles => Some(Topology::List),
+            Mode::TriangleStrip => Some(Topology::Strip),
+            Mode::TriangleFan => Some(Topology::Fan),
+        },
+        material: read.material.map(|index| index.value()),
+        variants,
+        targets,
+        draco: extension(&part, DRACO)?,
     };
     let is_empty = |accessor: usize| {
-        let Some(Ok(about)) = lists.accessors.get(accessor).map(Object::of) else {
-            return false;
-        };
-        about.value("bufferView").is_none() && about.value("sparse").is_none()
+        let about = lists.accessors.get(accessor).and_then(Value::as_object);
+        let has = |about: &Object, key| about.get(key).is_some_and(|value| !value.is_null());
+        about.is_some_and(|about| !has(about, "bufferView") && !has(about, "sparse"))
     };
-    let extensions = part.object("extensions")?;
+    let extensions = part.object(&["extensions"]);
     let packed = extensions
         .into_iter()
-        .flat_map(Object::entries)
-        .find(|(name, _)| is_unknown_compression(name));
+        .flat_map(Object::keys)
+        .find(|name| is_unknown_compression(name));
     match packed {
-        Some((name, _)) if primitive.accessors().any(is_empty) => Err(format!(
+        Some(name) if primitive.accessors().any(is_empty) => Err(format!(
             "it is compressed with {}, which is not supported",
             quoted(name)
         )),
@@ -227,29 +225,25 @@ fn primitive(lists: &Lists, lenient: &Lenient, part: Object) -> Part<Primitive> 
     }
 }
 
-/// The sets of attributes of the standard, without their numbers.
-const SETS: [&str; 4] = ["TEXCOORD", "COLOR", "JOINTS", "WEIGHTS"];
-
 /// The accessors of attributes. Those of names that begin with `_` are of applications.
-fn accessors(lists: &Lists, lenient: &Lenient, part: Object) -> BTreeMap<String, usize> {
+fn accessors(lists: &Lists, part: &Element, attributes: &Object) -> BTreeMap<String, usize> {
     let is_known = |name: &str| {
-        let in_set = |(set, number): (&str, &str)| {
-            SETS.contains(&set) && number.parse::<u32>().is_ok_and(|n| n.to_string() == number)
-        };
-        matches!(name, "POSITION" | "NORMAL" | "TANGENT")
-            || name.split_once('_').is_some_and(in_set)
+        let word: Result<Checked<Semantic>, WordError> =
+            Checked::deserialize(name.into_deserializer());
+        matches!(word, Ok(Checked::Valid(known)) if known.to_string() == name)
     };
     let mut accessors = BTreeMap::new();
-    for (name, value) in part.entries().filter(|(name, _)| !name.starts_with('_')) {
+    for (name, value) in attributes.iter().filter(|(name, _)| !name.starts_with('_')) {
         let count = lists.accessors.len();
         match whole(value).filter(|&index| index < count as u64) {
-            _ if !is_known(name) => lenient.fault(format_args!(
+            _ if !is_known(name) => part.fault(format_args!(
                 "its attribute {} is none of glTF; names of applications begin with _",
                 quoted(name)
             )),
-            Some(index) => drop(accessors.insert(name.to_owned(), index as usize)),
-            None => lenient.fault(format_args!(
-                "its {name} refers to accessor {value}, but there are only {count}"
+            Some(index) => drop(accessors.insert(name.clone(), index as usize)),
+            None => part.fault(format_args!(
+                "its {name} refers to accessor {}, but there are only {count}",
+                legible_value(value)
             )),
         }
     }
@@ -258,25 +252,36 @@ fn accessors(lists: &Lists, lenient: &Lenient, part: Object) -> BTreeMap<String,
 
 /// Node `index`; an empty one where it is no object.
 pub fn node(lists: &Lists, index: usize, value: &Value) -> Node {
-    let Some(part) = lists.object("node", index, value) else {
+    let Some(mut part) = lists.element("node", index, value) else {
         return Node::default();
     };
-    let lenient = lists.lenient("node", index, part);
-    let nodes = ("nodes", lists.nodes.len());
-    let children = part.indices("children", nodes, |reason| lenient.fault(reason));
-    let instancing = self::instancing(lists, &lenient.name, part);
+    let children = part.take_indices("children", ("nodes", lists.nodes.len()), Element::fault);
+    part.drop_index("mesh", ("meshes", lists.meshes.len()));
+    part.drop_index("skin", ("skins", lists.skins.len()));
+    part.drop_index("camera", ("cameras", lists.cameras.len()));
+    if let Some(light) = part.object(&["extensions", LIGHTS])
+        && let Err(reason) = lists.check(light, "light", ("lights", lists.lights.len()))
+    {
+        part.fault(reason);
+        part.remove(&["extensions", LIGHTS]);
+    }
+    let instancing = instancing(lists, &mut part);
+    let Some(read): Option<json::Node> = lists.read(&mut part) else {
+        return Node::default();
+    };
+    let light = read.extensions.and_then(|all| all.khr_lights_punctual);
     let mut node = Node {
-        name: part.text("name").ok().flatten().map(str::to_owned),
-        children: lenient.list(children),
-        matrix: lenient.field(part.vector("matrix")),
-        translation: lenient.field(part.vector("translation")),
-        rotation: lenient.field(part.vector("rotation")),
-        scale: lenient.field(part.vector("scale")),
-        mesh: lenient.field(part.index("mesh", "meshes", lists.meshes.len())),
-        skin: lenient.field(part.index("skin", "skins", lists.skins.len())),
-        camera: lenient.field(part.index("camera", "cameras", lists.cameras.len())),
-        light: lenient.field(lights::of_node(lists, part)),
-        weights: lenient.field(part.numbers("weights")).unwrap_or_default(),
+        name: read.name,
+        children,
+        matrix: read.matrix,
+        translation: read.translation,
+        rotation: read.rotation.map(|rotation| rotation.0),
+        scale: read.scale,
+        mesh: read.mesh.map(|index| index.value()),
+        skin: read.skin.map(|index| index.value()),
+        camera: read.camera.map(|index| index.value()),
+        light: light.map(|light| light.light.value()),
+        weights: read.weights.unwrap_or_default(),
         instancing,
     };
     if let Some(matrix) = &mut node.matrix {
@@ -285,7 +290,7 @@ pub fn node(lists: &Lists, index: usize, value: &Value) -> Node {
             lists.notes.fault(|| {
                 format!(
                     "{}: the last row of its matrix is {last_row:?}; it is read as 0 0 0 1",
-                    lenient.name
+                    part.name
                 )
             });
             (matrix[3], matrix[7], matrix[11], matrix[15]) = (0.0, 0.0, 0.0, 1.0);
@@ -294,7 +299,7 @@ pub fn node(lists: &Lists, index: usize, value: &Value) -> Node {
             lists.notes.fault(|| {
                 format!(
                     "{}: it has a matrix and also translation, rotation or scale; the matrix is used",
-                    lenient.name
+                    part.name
                 )
             });
         }
@@ -305,7 +310,7 @@ pub fn node(lists: &Lists, index: usize, value: &Value) -> Node {
         .map(length)
         .filter(|&length| length < MIN_QUATERNION_LENGTH)
     {
-        lenient.fault(format_args!(
+        part.fault(format_args!(
             "its rotation is a quaternion of length {short:e}"
         ));
         node.rotation = None;
@@ -313,16 +318,28 @@ pub fn node(lists: &Lists, index: usize, value: &Value) -> Node {
     node
 }
 
-/// The accessors that place the instances of a node, which messages call `node`.
-fn instancing(lists: &Lists, node: &str, part: Object) -> Option<Box<Instancing>> {
-    let lenient = Lenient {
-        notes: lists.notes,
-        name: format!("{node} {INSTANCING}"),
+/// The accessors that place the instances of a node.
+fn instancing(lists: &Lists, node: &mut Element) -> Option<Box<Instancing>> {
+    let extension = node.object(&["extensions"])?.get(INSTANCING)?.clone();
+    let Value::Object(extension) = &extension else {
+        node.fault(wrong(INSTANCING, &extension, "an object"));
+        return None;
     };
-    let extension = lenient.field(part.extension(INSTANCING))?;
+    let name = format!("{} {INSTANCING}", node.name);
     let read = || {
-        let attributes = needed("attributes", extension.object("attributes"))?;
-        let accessor = |key: &str| attributes.index(key, "accessors", lists.accessors.len());
+        let attributes = match extension.get("attributes") {
+            Some(Value::Object(attributes)) => attributes,
+            Some(other) => return Err(wrong("attributes", other, "an object")),
+            None => return Err("it has no attributes".into()),
+        };
+        let accessor = |key: &str| match attributes.get(key) {
+            Some(value) => {
+                lists.check(attributes, key, lists.accessors())?;
+                let index = value.as_u64().map(|index| Some(index as usize));
+                index.ok_or_else(|| wrong(key, value, "an integer from 0 up"))
+            }
+            None => Ok(None),
+        };
         let instancing = Instancing {
             translation: accessor("TRANSLATION")?,
             rotation: accessor("ROTATION")?,
@@ -331,17 +348,19 @@ fn instancing(lists: &Lists, node: &str, part: Object) -> Option<Box<Instancing>
         if instancing == Instancing::default() {
             return Err("it has none of the attributes TRANSLATION, ROTATION and SCALE".into());
         }
-        if attributes
-            .entries()
-            .any(|(name, _)| name.starts_with("_COLOR"))
-        {
+        if attributes.keys().any(|name| name.starts_with("_COLOR")) {
             lists
                 .notes
-                .add(|| format!("{}: colors of instances are not drawn", lenient.name));
+                .add(|| format!("{name}: colors of instances are not drawn"));
         }
-        Ok(Some(Box::new(instancing)))
+        Ok(Box::new(instancing))
     };
-    lenient.field(read())
+    let fault = |reason: String| {
+        lists
+            .notes
+            .fault(|| format!("{name}: {reason}; it is left out"))
+    };
+    read().map_err(fault).ok()
 }
 
 /// The smallest length of a quaternion that is normalized; shorter ones have no meaningful
@@ -349,59 +368,64 @@ fn instancing(lists: &Lists, node: &str, part: Object) -> Option<Box<Instancing>
 pub const MIN_QUATERNION_LENGTH: f64 = 1e-6;
 
 /// The scene that is shown: the default scene, else the first.
-pub fn scene(lists: &Lists, root: Object, scenes: &[Value]) -> Option<Scene> {
-    let lenient = Lenient {
-        notes: lists.notes,
-        name: "the file".into(),
-    };
-    let index = lenient
-        .field(root.index("scene", "scenes", scenes.len()))
-        .or((!scenes.is_empty()).then_some(0))?;
-    let part = lists.object("scene", index, &scenes[index])?;
-    let lenient = Lenient {
-        notes: lists.notes,
-        name: called("scene", index, None),
-    };
-    let nodes = ("nodes", lists.nodes.len());
-    let nodes = part.indices("nodes", nodes, |reason| lenient.fault(reason));
+pub fn scene(lists: &Lists, index: Option<&Value>, scenes: &[Value]) -> Option<Scene> {
+    let given = index.filter(|index| !index.is_null());
+    let index = given.and_then(|given| {
+        let reason = match whole(given) {
+            Some(index) if index < scenes.len() as u64 => return Some(index as usize),
+            Some(index) => format!(
+                "its scene is {index}, but there are only {} scenes",
+                scenes.len()
+            ),
+            None => wrong("scene", given, "an integer from 0 up"),
+        };
+        lists
+            .notes
+            .fault(|| format!("the file: {reason}; it is left out"));
+        None
+    });
+    let index = index.or((!scenes.is_empty()).then_some(0))?;
+    let mut part = lists.element("scene", index, &scenes[index])?;
+    part.name = format!("scene {index}");
     Some(Scene {
         index,
-        nodes: lenient.list(nodes),
+        nodes: part.take_indices("nodes", ("nodes", lists.nodes.len()), Element::fault),
     })
 }
 
-pub fn camera(part: Object) -> Part<Camera> {
-    let is_perspective = [("perspective", true), ("orthographic", false)];
-    let is_perspective = needed("type", part.word("type", &is_perspective))?;
-    let kind = if is_perspective {
-        "perspective"
-    } else {
-        "orthographic"
-    };
-    let lens = needed(kind, part.object(kind))?;
-    let number = |key: &str| Ok::<_, String>(f64::from(needed(key, lens.number(key))?));
-    let projection = if is_perspective {
-        let yfov = number("yfov")?;
-        let fov_y_deg = yfov.to_degrees();
-        if !(fov_y_deg > 0.0 && fov_y_deg < 180.0) {
-            return Err(format!("yfov is {yfov}; it must be above 0 and below pi"));
+pub fn camera(mut part: Element) -> Part<Camera> {
+    // What is not used may be missing or wrong.
+    for lens in ["perspective", "orthographic"] {
+        if let Some(lens) = part.json.get_mut(lens).and_then(Value::as_object_mut) {
+            lens.retain(|key, _| ["yfov", "ymag", "znear"].contains(&key.as_str()));
+            for (key, default) in [("xmag", 1.0), ("zfar", 1.0), ("znear", 0.0)] {
+                lens.entry(key).or_insert(json!(default));
+            }
         }
-        Projection::Perspective { fov_y_deg }
-    } else {
-        let ymag = number("ymag")?;
-        if ymag == 0.0 {
-            return Err("ymag is 0; it must be another number".into());
+    }
+    let camera: json::Camera = part.read(&["type", "perspective", "orthographic"])?;
+    let (projection, near) = match part.known("type", camera.type_, VALID_CAMERA_TYPES)? {
+        Lens::Perspective => {
+            let lens = camera.perspective.ok_or("it has no perspective")?;
+            let yfov = f64::from(lens.yfov);
+            let fov_y_deg = yfov.to_degrees();
+            if !(fov_y_deg > 0.0 && fov_y_deg < 180.0) {
+                return Err(format!("yfov is {yfov}; it must be above 0 and below pi"));
+            }
+            (Projection::Perspective { fov_y_deg }, lens.znear)
         }
-        Projection::Orthographic {
-            height_m: 2.0 * ymag.abs(),
+        Lens::Orthographic => {
+            let lens = camera.orthographic.ok_or("it has no orthographic")?;
+            if lens.ymag == 0.0 {
+                return Err("ymag is 0; it must be another number".into());
+            }
+            let height_m = 2.0 * f64::from(lens.ymag).abs();
+            (Projection::Orthographic { height_m }, lens.znear)
         }
     };
     Ok(Camera {
-        name: part.text("name").ok().flatten().map(str::to_owned),
+        name: camera.name,
         projection,
-        near: match lens.value("znear") {
-            Some(_) => number("znear")?,
-            None => 0.0,
-        },
+        near: near.into(),
     })
 }

@@ -2,12 +2,13 @@
 
 use std::collections::{BTreeMap, btree_map::Entry};
 
-use serde_json::Value;
+use ::gltf::json::extensions::mesh::Mapping;
+use serde_json::{Value, json};
 
 use super::{
     super::error::menu_name,
     Document,
-    fields::{Lenient, Object, needed},
+    element::{Element, wrong},
     read::Lists,
 };
 use crate::scene::model::named;
@@ -15,48 +16,65 @@ use crate::scene::model::named;
 /// The extension.
 pub const VARIANTS: &str = "KHR_materials_variants";
 
-/// The variants that the document names.
-pub fn listed<'a>(lenient: &Lenient, root: Object<'a>) -> &'a [Value] {
-    let extension = lenient.field(root.extension(VARIANTS));
-    extension.map_or(&[], |extension| lenient.list(extension.list("variants")))
-}
-
 /// Their names in menus and presets.
 pub fn names(listed: &[Value]) -> Vec<String> {
     let name = |(index, variant): (usize, &Value)| {
-        let name = Object::of(variant).and_then(|variant| variant.text("name"));
-        menu_name("variant", index, name.ok().flatten())
+        menu_name(
+            "variant",
+            index,
+            variant.get("name").and_then(Value::as_str),
+        )
     };
     listed.iter().enumerate().map(name).collect()
 }
 
-/// The material of a primitive in each variant that gives it one. A mapping that cannot be read is
-/// left out.
-pub fn materials(lists: &Lists, lenient: &Lenient, part: Object) -> BTreeMap<usize, usize> {
+/// Takes out the material of a primitive in each variant that gives it one. A mapping that cannot be
+/// read is left out.
+pub fn materials(lists: &Lists, part: &mut Element) -> BTreeMap<usize, usize> {
     let mut materials = BTreeMap::new();
-    let Some(extension) = lenient.field(part.extension(VARIANTS)) else {
-        return materials;
-    };
-    let mappings = lenient.list(extension.list("mappings"));
+    let extensions = part.json.get_mut("extensions");
+    let extension = extensions.and_then(|extensions| extensions.as_object_mut()?.remove(VARIANTS));
+    let mut mappings = Vec::new();
+    if let Some(extension) = extension {
+        match Element::of(lists.notes, part.name.clone(), &extension) {
+            Ok(mut extension) => mappings = extension.take_list("mappings"),
+            Err(_) => part.fault(wrong(VARIANTS, &extension, "an object")),
+        }
+    }
     for (at, mapping) in mappings.iter().enumerate() {
-        let lenient = Lenient {
-            notes: lists.notes,
-            name: format!("{} {VARIANTS} mapping {at}", lenient.name),
+        let name = format!("{} {VARIANTS} mapping {at}", part.name);
+        let read = Element::of(lists.notes, name.clone(), mapping).and_then(|mut mapping| {
+            lists.check(
+                &mapping.json,
+                "material",
+                ("materials", lists.materials.len()),
+            )?;
+            let given = mapping.json.get("variants");
+            if let Some(given) = given.filter(|given| !given.is_array()) {
+                return Err(wrong("variants", given, "a list"));
+            }
+            let count = ("variants", lists.variants.len());
+            let variants = mapping.take_indices("variants", count, Element::fault);
+            mapping.json.insert("variants".into(), json!([]));
+            let mapping: Mapping = mapping.read(&["material"])?;
+            Ok((mapping.material as usize, variants))
+        });
+        let fault = |reason: &dyn std::fmt::Display| {
+            lists
+                .notes
+                .fault(|| format!("{name}: {reason}; it is left out"))
         };
-        let read = || {
-            let mapping = Object::of(mapping)?;
-            let material = mapping.index("material", "materials", lists.materials.len());
-            let variants = ("variants", lists.variants.len());
-            let variants = mapping.indices("variants", variants, |reason| lenient.fault(reason))?;
-            Ok(Some((needed("material", material)?, variants)))
-        };
-        let Some((material, variants)) = lenient.field(read()) else {
-            continue;
+        let (material, variants) = match read {
+            Ok(read) => read,
+            Err(reason) => {
+                fault(&reason);
+                continue;
+            }
         };
         for variant in variants {
             match materials.entry(variant) {
                 Entry::Vacant(entry) => _ = entry.insert(material),
-                Entry::Occupied(_) => lenient.fault(format_args!(
+                Entry::Occupied(_) => fault(&format_args!(
                     "variant {variant} has a material of an earlier mapping"
                 )),
             }
